@@ -223,13 +223,86 @@ fn faults_of_depth_say_where_and_what_to_do() {
         ("zero.exr", "{unit: m}", ["0 or less at column 1, row 0", "`far`"]),
         ("nan.exr", "{unit: m}", ["not a number at column 0, row 1", "`far`"]),
         ("sky.exr", "{unit: m}", ["infinite at column 1, row 1", "far: 1 km"]),
-        ("sky.exr", "{unit: yard, scale: 0}", ["unknown value `yard` for `unit`", "found 0, which is out of range"]),
+        ("sky.exr", "{unit: yard}", ["unknown value `yard` for `unit`", "known: mm"]),
+        ("sky.exr", "{scale: 0}", ["all depths would be 0", "-1 where depth counts against the view"]),
         ("flat.exr", "{file: small.exr}", ["2 x 1 pixels, the picture 2 x 2", "same size"]),
-        ("sky.exr", "{kind: radial}", ["unknown value `radial` for `kind`", "known: z, ray"]),
+        ("sky.exr", "{kind: radial}", ["unknown value `radial` for `kind`", "known: z, ray, inverse"]),
         ("sky.exr", "{far: 1 m, near: 2 m}", ["farther than `near`", "2:80"]),
     ] {
         let faults = load(file, depth).expect_err(file);
         assert!(words.iter().all(|word| faults.contains(word)), "{file} {depth}: {faults}");
     }
     load("sky.exr", "{unit: m, far: 100 m}").expect("a backdrop");
+}
+
+/// Depth that was read wrongly is asked about with what to write, in OpenEXR, PNG and TIFF; with that written, nothing is asked, and the
+/// depth is the same.
+#[test]
+fn mistaken_depths_are_asked_about() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    // A thing at 1.5 m, some at 2 m, the wall at 4 m; the plane is at 2 m.
+    let meters = [1.5_f32, 2.0, 2.0, 4.0];
+    let gray: Vec<f32> = vec![0.5; 4];
+    let file = |name: &str, of: &dyn Fn(f32) -> f32| {
+        let depth: Vec<f32> = meters.iter().map(|m| of(*m)).collect();
+        exr_file(&at(name), (2, 2), &[("R", gray.clone()), ("G", gray.clone()), ("B", gray.clone()), ("Z", depth)]);
+    };
+    file("m.exr", &|m| m);
+    file("mm.exr", &|m| 1000.0 * m);
+    file("cm.exr", &|m| 100.0 * m);
+    file("negative.exr", &|m| -m);
+    file("inverse.exr", &|m| 1.0 / m);
+    file("normalised.exr", &|m| (m - 1.0) / 3.0);
+    file("mask.exr", &|m| f32::from(u8::from(m < 3.0)));
+    let codes: Vec<u16> = meters.iter().map(|m| (1000.0 * m) as u16).collect();
+    let deep = image::ImageBuffer::<image::Luma<u16>, _>::from_vec(2, 2, codes).expect("four");
+    deep.save(at("deep.png")).expect("written");
+    deep.save(at("deep.tif")).expect("written");
+    let asked = |file: &str, depth: &str| {
+        let text = format!(
+            "spectra: 1\nsource: {{kind: picture, file: {file}, distance: 2 m, width: 1 m, depth: {depth}}}\n\
+             lens: {{file: zeiss-biotar-50-f1.4}}\nimager: {{kind: xyz, format: 135, resolution: [6, 4]}}\n"
+        );
+        std::fs::write(at("scene.yaml"), text).expect("written");
+        let scene = spectra_scene::load(&at("scene.yaml"), &[]).map_err(|faults| faults.to_string())?;
+        scene.source.prepare().map_err(|faults| faults.to_string())?;
+        Ok::<String, String>(scene.source.doubts().iter().map(|doubt| format!("{doubt}\n")).collect())
+    };
+    // The file, what was written of it, what is said, and what to write.
+    for (file, wrong, words, right) in [
+        ("m.exr", "{}", "did you mean `unit: m`?", "{unit: m}"),
+        ("m.exr", "{unit: cm}", "did you mean `unit: m`?", "{unit: m}"),
+        ("cm.exr", "{unit: m}", "did you mean `unit: cm`?", "{unit: cm}"),
+        ("mm.exr", "{unit: m}", "did you mean `unit: mm`?", "{}"),
+        ("negative.exr", "{unit: m}", "counts against the view, so write `scale: -1`", "{unit: m, scale: -1}"),
+        ("inverse.exr", "{}", "did you mean `unit: m, kind: inverse`?", "{unit: m, kind: inverse}"),
+        ("normalised.exr", "{}", "normalised depth has to be written anew in meters", ""),
+        ("mask.exr", "{}", "of alpha name another `channel`", ""),
+        (
+            "m.exr",
+            "{file: deep.png}",
+            "write what 1 stands for: `scale: 65535, unit: mm`",
+            "{file: deep.png, scale: 65535}",
+        ),
+        (
+            "m.exr",
+            "{file: deep.tif}",
+            "write what 1 stands for: `scale: 65535, unit: mm`",
+            "{file: deep.tif, scale: 65535}",
+        ),
+        (
+            "m.exr",
+            "{file: deep.png, scale: 65535, unit: m}",
+            "did you mean `unit: mm`?",
+            "{file: deep.png, scale: 65535}",
+        ),
+    ] {
+        let said = asked(file, wrong).unwrap_or_else(|faults| faults);
+        println!("{file} {wrong}: {said}");
+        assert!(said.contains(words), "{file} {wrong}: {said}");
+        if !right.is_empty() {
+            assert_eq!(asked(file, right).as_deref(), Ok(""), "{file} {right}");
+        }
+    }
 }

@@ -194,12 +194,20 @@ fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding
     linear(decoder, plain, orientation, cover, &tags)
 }
 
+/// Whether a file is an OpenEXR.
+///
+/// # Errors
+/// It cannot be read.
+pub fn is_exr(found: &Found) -> Result<bool, Trouble> {
+    Ok(found.read(64).map_err(io)?.starts_with(&exr::MAGIC))
+}
+
 /// The depth channel alone of an OpenEXR file, which need not hold light.
 ///
 /// # Errors
 /// What is wrong with the file.
 pub fn depth(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
-    if !found.read(64).map_err(io)?.starts_with(&exr::MAGIC) {
+    if !is_exr(found)? {
         return Err(Trouble::file("only an OpenEXR file has a depth channel"));
     }
     exr::decode(found.open().map_err(io)?, found.size_bytes().map_err(io)?, choice, false)

@@ -3,30 +3,31 @@
 use super::{find, trouble};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Length, Params, Positive, Ratio, StageNode};
+use spectra_core::params::{Faults, Length, Params, Positive, Ratio, StageNode, Warning};
 use spectra_core::registry::Context;
 use spectra_core::resources::Found;
-use spectra_pictures::read::{self, Choice, Linear};
+use spectra_pictures::read::{self, Choice, Linear, Trouble};
 
 /// `depth` of a picture.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct DepthParams {
-    /// A file of its own with the depth channel, an OpenEXR of the picture's size; the picture's file if absent.
+    /// A file of its own of the picture's size: an OpenEXR with the depth channel, or a PNG or TIFF, of which the first channel counts and
+    /// integers run from 0 to 1; the picture's file if absent.
     file: Option<String>,
     /// The channel of the file that holds the depth; `Z` if absent.
     channel: Option<String>,
     /// What its numbers count: `mm`, `cm`, `m`, `in` or `ft`; `mm` if absent.
     unit: Option<DepthUnit>,
-    /// What the numbers are multiplied by besides, above 0; 1 if absent.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    /// What the numbers are multiplied by besides, not 0; 1 if absent. -1 where they count against the view, as from Houdini.
     scale: Option<f64>,
     /// What is nearer is taken to be there, mm if bare; nothing is moved if absent.
     near: Option<Positive<Length>>,
     /// What is farther, or infinitely far, is taken to be there, mm if bare; nothing is moved if absent.
     far: Option<Positive<Length>>,
-    /// Along what the numbers count: `z`, the axis, or `ray`, the line of sight; `z` if absent.
-    kind: Option<Along>,
+    /// What the numbers are: distance along the axis, `z`, or along the line of sight, `ray`; or `inverse`, one over that along the axis, as
+    /// Nuke and depth guessed from photographs have it; `z` if absent.
+    kind: Option<DepthKind>,
     /// Depths of neighbors that differ by more than this part, 0 to 1, belong to different things; 5 % if absent.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     edge: Option<Ratio>,
@@ -39,7 +40,7 @@ pub(super) struct Depth {
     params: Params,
     p: DepthParams,
     unit_mm: f64,
-    pub along_ray: bool,
+    kind: DepthKind,
     pub edge: f64,
     pub eye_mm: f64,
     /// The file of its own.
@@ -71,13 +72,14 @@ impl DepthUnit {
     }
 }
 
-/// Along what depth counts: the axis or the line of sight.
+/// What depth counts.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
-enum Along {
+enum DepthKind {
     Z,
     Ray,
+    Inverse,
 }
 
 impl Depth {
@@ -86,6 +88,11 @@ impl Depth {
         let p: DepthParams = params.parse()?;
         let mut faults = Faults::new();
         let unit_mm = p.unit.map_or(1.0, DepthUnit::mm) * p.scale.unwrap_or(1.0);
+        if p.scale == Some(0.0) {
+            faults.push(
+                params.fault("scale", "all depths would be 0").hint("1, or -1 where depth counts against the view"),
+            );
+        }
         let edge = p.edge.map_or(0.05, Ratio::number);
         if let (Some(near), Some(far)) = (p.near, p.far)
             && near.mm() >= far.mm()
@@ -95,7 +102,7 @@ impl Depth {
         let eye_mm = p.eye.map_or(0.0, Length::mm);
         let found = p.file.as_ref().and_then(|file| faults.take(find(file, &params, context)));
         faults.into_result(())?;
-        Ok(Self { unit_mm, along_ray: p.kind == Some(Along::Ray), edge, eye_mm, found, params, p })
+        Ok(Self { unit_mm, kind: p.kind.unwrap_or(DepthKind::Z), edge, eye_mm, found, params, p })
     }
 
     /// The channel, where the picture's own file holds it.
@@ -113,8 +120,7 @@ impl Depth {
         let own = match (&self.p.file, &self.found) {
             (None, _) | (_, None) => None,
             (Some(file), Some(found)) => {
-                let choice = Choice { depth: Some(self.name()), ..Choice::default() };
-                let read = read::depth(found, choice).map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
+                let read = self.file(found).map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
                 if (read.width, read.height) != (picture.width, picture.height) {
                     let [a, b] = [(read.width, read.height), (picture.width, picture.height)];
                     let text = format!("the depth has {} x {} pixels, the picture {} x {}", a.0, a.1, b.0, b.1);
@@ -130,8 +136,11 @@ impl Depth {
         let mut bad: [Option<usize>; 3] = [None; 3];
         let mut depth = Vec::with_capacity(raw.len());
         for (i, value) in raw.iter().enumerate() {
-            let mut mm = f64::from(*value) * self.unit_mm;
-            if self.along_ray && mm.is_finite() {
+            let mut mm = match self.kind {
+                DepthKind::Inverse => self.unit_mm / f64::from(*value),
+                DepthKind::Z | DepthKind::Ray => f64::from(*value) * self.unit_mm,
+            };
+            if self.kind == DepthKind::Ray && mm.is_finite() {
                 let x = ((i % picture.width as usize) as f64 + 0.5 - 0.5 * width) * pixel_mm;
                 let y = ((i / picture.width as usize) as f64 + 0.5 - 0.5 * height) * pixel_mm / picture.pixel_aspect;
                 mm *= plane_mm / (plane_mm * plane_mm + x * x + y * y).sqrt();
@@ -151,11 +160,19 @@ impl Depth {
             depth.push(mm as f32);
         }
         let mut faults = Faults::new();
+        let against = raw.iter().filter(|v| **v < 0.0).count() > raw.len() / 2;
         let texts = [
             ("is not a number", "the renderer wrote no depth there: fill it with a large one, and give `far`"),
             (
                 "is 0 or less",
-                "depth is measured from the camera; give pixels without depth a large value, and set `far`",
+                if against && self.unit_mm > 0.0 {
+                    "most of it is negative: it counts against the view, so write `scale: -1`"
+                } else if self.kind == DepthKind::Z && raw.iter().all(|v| (0.0..=1.0).contains(v)) {
+                    "it runs from 0 to 1: as one over the distance write `kind: inverse`; normalised depth must be written anew in \
+                     meters; of alpha name another `channel`; give pixels without depth a large value, and set `far`"
+                } else {
+                    "depth is measured from the camera; give pixels without depth a large value, and set `far`"
+                },
             ),
             ("is infinite", "say where the backdrop stands, such as `far: 1 km`"),
         ];
@@ -174,4 +191,77 @@ impl Depth {
         }
         faults.into_result(depth)
     }
+
+    /// A file of its own: the channel of an OpenEXR, or the first one of any other picture as linear numbers.
+    fn file(&self, found: &Found) -> Result<Linear, Trouble> {
+        let choice = Choice { depth: Some(self.name()), ..Choice::default() };
+        if read::is_exr(found)? {
+            return read::depth(found, choice);
+        }
+        let mut read = read::decode(found, Choice { transfer: Some("linear"), ..Choice::default() })?;
+        if read.clipped_at.is_some() && self.p.scale.is_none() {
+            return Err(Trouble {
+                key: "depth",
+                text: "its integers are read as 0 to 1, which is no distance yet".to_owned(),
+                hint: Some(
+                    "write what 1 stands for: `scale: 65535, unit: mm` if each of 16 bits is a millimeter, `scale: 10, unit: m` if white \
+                     is 10 m away"
+                        .to_owned(),
+                ),
+            });
+        }
+        read.depth = Some(read.rgb.iter().map(|[first, ..]| *first).collect());
+        Ok(read)
+    }
+
+    /// What makes depths doubtful that were read as millimetres: most of them lie far from the plane, where another unit or kind would
+    /// bring them near, or they run from 0 to 1.
+    pub(super) fn doubt(&self, depth: &[f32], plane_mm: f64) -> Option<Warning> {
+        let farthest = self.p.far.map_or(f64::INFINITY, |l| l.mm());
+        let mut all: Vec<f32> = depth.iter().copied().filter(|mm| f64::from(*mm) < farthest && *mm < 1e10).collect();
+        if all.is_empty() {
+            return None;
+        }
+        let middle = all.len() / 2;
+        let median_mm = f64::from(*all.select_nth_unstable_by(middle, f32::total_cmp).1);
+        let off = |mm: f64| (mm / plane_mm).max(plane_mm / mm);
+        let [least, most] = all.iter().fold([f32::INFINITY, 0.0], |[a, b]: [f32; 2], d| [a.min(*d), b.max(*d)]);
+        // A view into the distance has its plane in front of most things, but not of all.
+        let is_view = median_mm > plane_mm && f64::from(least) < 3.0 * plane_mm;
+        if off(median_mm) < FAR_OFF || is_view {
+            return None;
+        }
+        let said = match self.kind {
+            DepthKind::Inverse => self.unit_mm / median_mm,
+            DepthKind::Z | DepthKind::Ray => median_mm / self.unit_mm,
+        };
+        let stretch = self.p.scale.unwrap_or(1.0);
+        let is_normalised = self.kind == DepthKind::Z
+            && (f64::from(most) / self.unit_mm - 1.0).abs() < 1e-6
+            && f64::from(least) < 0.5 * self.unit_mm;
+        let units = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("ft", 304.8)];
+        let as_distance = units.map(|(unit, mm)| (format!("`unit: {unit}`"), said * stretch * mm));
+        let inverse = (String::from("`unit: m, kind: inverse`"), 1000.0 * stretch / said);
+        let near = as_distance.into_iter().chain([inverse]).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+        let (remedy, fits) = near.filter(|(_, mm)| off(*mm) < 0.5 * FAR_OFF)?;
+        let text = format!(
+            "half of the depth lies nearer than {}, while the plane of the picture stands at {}",
+            length(median_mm),
+            length(plane_mm)
+        );
+        let hint = if is_normalised {
+            "its numbers run to exactly 1: normalised depth has to be written anew in meters; of alpha name another `channel`".to_owned()
+        } else {
+            format!("did you mean {remedy}? Half would lie nearer than {}", length(fits))
+        };
+        Some(self.params.fault("unit", text).hint(hint).into())
+    }
+}
+
+/// How many times farther or nearer than the plane the middle depth is doubted.
+const FAR_OFF: f64 = 10.0;
+
+/// A length for people.
+fn length(mm: f64) -> String {
+    if mm >= 1000.0 { format!("{:.3} m", mm / 1000.0) } else { format!("{mm:.2} mm") }
 }

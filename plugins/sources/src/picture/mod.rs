@@ -201,13 +201,14 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     };
     let lazy = Lazy::new(Box::new(stand_in), emits, move || {
         let linear = pixels()?;
-        let doubts = file.doubts(&linear);
+        let mut doubts = file.doubts(&linear);
         let Some(depth) = &depth else {
             let map = making.map(linear, &file.name);
             return Ok((with_halves(map, emits, |texture| Flat { texture, distance_mm }), doubts));
         };
         let plane_mm = distance_mm + depth.eye_mm;
         let all = depth.of(&linear, plane_mm, width_mm)?;
+        doubts.extend(depth.doubt(&all, plane_mm));
         let map = making.map(linear, &file.name);
         let ends = all.iter().fold([f32::INFINITY, 0.0_f32], |[a, b], d| [a.min(*d), b.max(*d)]);
         let field = Arc::new(HeightField::new(map.width_px, map.height_px, &all, depth.edge));
