@@ -342,6 +342,15 @@ fn a_tilde_behind_an_equals_sign_is_the_home_folder() {
         command.args(["lens", "export", "zeiss-biotar-50-f1.4", "--output=~/biotar.zmx"]).output().expect("starts");
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(home.join("biotar.zmx").is_file() && !folder.path().join("~").exists());
+    // In a scene, too, whose files no shell sees.
+    image::RgbImage::new(6, 4).save(home.join("photo.png")).expect("written");
+    let scene = "spectra: 1\nsource: {kind: picture, file: ~/photo.png, distance: 2 m, width: fill}\n\
+                 lens: {file: ~/biotar.zmx}\nimager: {kind: xyz, format: 135, resolution: [6, 4]}\n";
+    std::fs::write(folder.path().join("scene.yaml"), scene).expect("written");
+    let mut command = spectra();
+    let output = command.current_dir(folder.path()).env("HOME", &home).args(["check", "scene.yaml"]).output();
+    let output = output.expect("starts");
+    assert!(output.status.success(), "{}", text(&output.stderr));
 }
 
 #[test]

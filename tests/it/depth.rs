@@ -278,7 +278,7 @@ fn mistaken_depths_are_asked_about() {
         ("negative.exr", "{unit: m}", "counts against the view, so write `scale: -1`", "{unit: m, scale: -1}"),
         ("inverse.exr", "{}", "did you mean `unit: m, kind: inverse`?", "{unit: m, kind: inverse}"),
         ("normalised.exr", "{}", "normalised depth has to be written anew in meters", ""),
-        ("mask.exr", "{}", "of alpha name another `channel`", ""),
+        ("mask.exr", "{}", "another `channel` where it is alpha", ""),
         (
             "m.exr",
             "{file: deep.png}",

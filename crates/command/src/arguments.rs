@@ -22,8 +22,10 @@ use std::path::PathBuf;
     version = version::VERSION,
     long_version = version::long(),
     arg_required_else_help = true,
-    after_help = "Start with: spectra run biotar-ortho (`spectra list scene` lists the other bundled scenes)",
-    after_long_help = "Start with:\n  spectra run biotar-ortho\n  spectra list scene\n\n\
+    after_help = "Start with: spectra run biotar-ortho (`spectra list scene` lists the other bundled scenes); \
+        of a photograph: spectra film develop photo.jpg --stock tri-x",
+    after_long_help = "Start with:\n  spectra run biotar-ortho\n  spectra list scene\n  \
+        spectra film develop photo.jpg --stock tri-x\n\n\
         Exit codes: 0 success, or stopped by --time-limit; 1 failure (a full disk, a render error); \
         2 invalid input; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.\n\n\
         Environment: SPECTRA_ISA=baseline|avx2|avx512 forces an instruction set (the picture is bit-for-bit the same); \
@@ -58,7 +60,7 @@ pub(crate) enum Command {
     Schema(SchemaOf),
     /// Analyze, compare, draw, trace, import and export lenses.
     Lens(LensArguments),
-    /// Inspect film stocks: sensitivities, curves, dyes.
+    /// Develop photographs on film (`film develop`), and inspect film stocks: sensitivities, curves, dyes.
     Film(FilmArguments),
     /// Compare wavelength sampling strategies: error against samples and time.
     Bench(Bench),

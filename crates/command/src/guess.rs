@@ -6,7 +6,7 @@ use spectra_scene::bundled::{self, Bundled};
 use std::path::Path;
 
 /// Words that people write for a command of ours.
-const OTHERS: [(&str, &str); 11] = [
+const OTHERS: [(&str, &str); 18] = [
     ("render", "run SCENE"),
     ("open", "run SCENE"),
     ("view", "run SCENE"),
@@ -17,6 +17,13 @@ const OTHERS: [(&str, &str); 11] = [
     ("completion", "completions bash"),
     ("init", "new scene NAME"),
     ("stock", "film info NAME"),
+    ("develop", "film develop PICTURE --stock tri-x"),
+    ("info", "lens info LENS"),
+    ("import", "lens import FILE"),
+    ("export", "lens export LENS"),
+    ("draw", "lens draw LENS"),
+    ("trace", "lens trace LENS"),
+    ("cube", "film cube STOCK"),
     ("scenes", "list scene"),
 ];
 
@@ -50,8 +57,11 @@ fn of_word(typed: &str) -> Option<String> {
         return Some((*command).to_owned());
     }
     let ending = Path::new(typed).extension().map(|ending| ending.to_ascii_lowercase());
-    if ending.is_some_and(|ending| ending == "yaml" || ending == "yml") {
+    if ending.as_ref().is_some_and(|ending| ending == "yaml" || ending == "yml") {
         return Some(format!("run {typed}"));
+    }
+    if ending.is_some_and(|ending| ["jpg", "jpeg", "png", "tif", "tiff", "exr"].iter().any(|own| ending == *own)) {
+        return Some(format!("film develop {typed} --stock tri-x"));
     }
     let (kind, name) = bundled::meanings(typed).into_iter().find(|(kind, _)| *kind != Bundled::Glass)?;
     Some(match kind {
@@ -73,6 +83,8 @@ mod tests {
         for (typed, command) in [
             ("scene.yaml", "run scene.yaml"),
             ("render", "run SCENE"),
+            ("develop", "film develop PICTURE --stock tri-x"),
+            ("holiday.JPG", "film develop holiday.JPG --stock tri-x"),
             ("biotar-ortho", "run biotar-ortho"),
             ("helios", "lens info helios-44-58-f2"),
             ("tri-x", "film info kodak-tri-x-400"),

@@ -68,6 +68,14 @@ impl FileResources {
     }
 }
 
+/// `~/photo.jpg` as the file in the folder of the user, as shells have it.
+fn of_user(path: String) -> PathBuf {
+    match (path.strip_prefix("~/"), std::env::home_dir()) {
+        (Some(rest), Some(home)) if !home.as_os_str().is_empty() => home.join(rest),
+        _ => path.into(),
+    }
+}
+
 fn no_lens() -> Result<Params, Faults> {
     const FOCAL_MM: f64 = 100.0;
     let radius_mm = FOCAL_MM / (2.0 * NO_LENS_F_NUMBER);
@@ -90,7 +98,7 @@ impl Resources for FileResources {
         let endings = || std::iter::once("").chain(endings.iter().copied());
         for folder in self.folders() {
             for ending in endings() {
-                let on_disk = plain(&folder.join(format!("{path}{ending}")));
+                let on_disk = plain(&folder.join(of_user(format!("{path}{ending}"))));
                 if on_disk.is_file() {
                     let bytes = read_file(&on_disk, limit_bytes)?;
                     let folder = on_disk.parent().map(Path::to_owned);
@@ -121,7 +129,7 @@ impl Resources for FileResources {
     fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64) -> Result<Found, ResourceError> {
         for folder in self.folders() {
             for ending in std::iter::once("").chain(endings.iter().copied()) {
-                let on_disk = plain(&folder.join(format!("{path}{ending}")));
+                let on_disk = plain(&folder.join(of_user(format!("{path}{ending}"))));
                 if on_disk.is_file() {
                     let found = Found::on_disk(from_here(&on_disk).display().to_string(), on_disk);
                     let size = found.size_bytes()?;

@@ -168,8 +168,8 @@ impl Depth {
                 if against && self.unit_mm > 0.0 {
                     "most of it is negative: it counts against the view, so write `scale: -1`"
                 } else if self.kind == DepthKind::Z && raw.iter().all(|v| (0.0..=1.0).contains(v)) {
-                    "it runs from 0 to 1: as one over the distance write `kind: inverse`; normalised depth must be written anew in \
-                     meters; of alpha name another `channel`; give pixels without depth a large value, and set `far`"
+                    "give pixels without depth a large value, and set `far`; or, since it runs from 0 to 1, write `kind: inverse` for one \
+                     over the distance, another `channel` where it is alpha, and normalised depth anew in meters"
                 } else {
                     "depth is measured from the camera; give pixels without depth a large value, and set `far`"
                 },
