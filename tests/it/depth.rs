@@ -259,6 +259,11 @@ fn mistaken_depths_are_asked_about() {
     let deep = image::ImageBuffer::<image::Luma<u16>, _>::from_vec(2, 2, codes).expect("four");
     deep.save(at("deep.png")).expect("written");
     deep.save(at("deep.tif")).expect("written");
+    // Cover is no part of depth.
+    let covered = image::ImageBuffer::<image::LumaA<u16>, _>::from_fn(2, 2, |x, y| {
+        image::LumaA([deep.get_pixel(x, y).0[0], 30_000])
+    });
+    covered.save(at("covered.png")).expect("written");
     let asked = |file: &str, depth: &str| {
         let text = format!(
             "spectra: 1\nsource: {{kind: picture, file: {file}, distance: 2 m, width: 1 m, depth: {depth}}}\n\

@@ -34,7 +34,7 @@ pub fn fit(rgb: [f64; 3], gamut: ColorGamut) -> Fitted {
     let end = match gamut {
         ColorGamut::Srgb => line.border,
         ColorGamut::Real if RealColors::rough().toward(&line).2 >= 1.0 => 1.0,
-        ColorGamut::Real => line.share_of(RealColors::exact(line.from_white)),
+        ColorGamut::Real => line.place_of(RealColors::exact(line.toward)),
     };
     if end >= 1.0 {
         return Fitted { rgb, moved: 0.0 };
@@ -43,7 +43,8 @@ pub fn fit(rgb: [f64; 3], gamut: ColorGamut) -> Fitted {
     if gamut == ColorGamut::Srgb {
         fitted = fitted.map(|v| v.max(0.0));
     }
-    Fitted { rgb: fitted, moved: (1.0 - end) * length(line.from_white) }
+    // What has no chromaticity is beyond the whole diagram.
+    Fitted { rgb: fitted, moved: (line.distance(1.0) - line.distance(end)).min(1.0) }
 }
 
 /// Where a color beyond sRGB lies.
@@ -99,19 +100,31 @@ impl RealColors {
     pub fn place(&self, rgb: [f64; 3]) -> Option<Place> {
         let line = Line::new(rgb)?;
         let (direction, along, rim) = self.toward(&line);
-        let depth = ((1.0 - line.border) / (rim - line.border)).clamp(0.0, 1.0);
+        let depth = if rim < 1.0 {
+            1.0
+        } else {
+            let [own, border] = [1.0, line.border].map(|place| line.distance(place));
+            let whole = length(self.rim_between(direction, along)) - border;
+            ((own - border) / whole).clamp(0.0, 1.0)
+        };
         let [r, g, b] = if rim < 1.0 { line.at(rim) } else { rgb };
         Some(Place { direction, along, depth, largest: r.max(g).max(b) })
     }
 
     /// The direction before a line, how far it lies toward the next, and its place on the chord of the rim between both.
     fn toward(&self, line: &Line) -> (usize, f64, f64) {
-        let turn = Self::turn(line.from_white);
+        let turn = Self::turn(line.toward);
         let direction = self.turns.partition_point(|t| *t <= turn).clamp(1, self.turns.len() - 1) - 1;
         let [a, b] = [self.rim[direction], self.rim[direction + 1]];
-        let [before, behind] = [cross(a, line.from_white), cross(line.from_white, b)];
+        let [before, behind] = [cross(a, line.toward), cross(line.toward, b)];
         let along = (before / (before + behind)).clamp(0.0, 1.0);
-        (direction, along, line.share_of([a[0] + (b[0] - a[0]) * along, a[1] + (b[1] - a[1]) * along]))
+        (direction, along, line.place_of(self.rim_between(direction, along)))
+    }
+
+    /// The rim between a direction and the next one, on the chord, from white in xy.
+    fn rim_between(&self, direction: usize, along: f64) -> [f64; 2] {
+        let [a, b] = [self.rim[direction], self.rim[direction + 1]];
+        [a[0] + (b[0] - a[0]) * along, a[1] + (b[1] - a[1]) * along]
     }
 
     /// Chords that lie within reach, by which most colors are known to do so, too.
@@ -127,7 +140,7 @@ impl RealColors {
         let [white, rim] = [srgb.white_xy, Self::rim_at(turn)];
         let at = |share: f64| [white[0] + share * rim[0], white[1] + share * rim[1]];
         let linear = |xy| srgb.from_xyz(xyz_of_xy(xy, 1.0));
-        let border = Line::new(linear(at(1.0))).map_or(1.0, |line| line.border);
+        let border = Line::new(linear(at(1.0))).map_or(1.0, |line| line.distance(line.border) / line.distance(1.0));
         let rgb = linear(at(border + depth * (1.0 - border)));
         let largest = rgb[0].max(rgb[1]).max(rgb[2]);
         rgb.map(|v| v / largest)
@@ -156,15 +169,14 @@ impl RealColors {
     }
 }
 
-/// The line from white through a color beyond sRGB, at constant luminance. Places on it are given by their distance from white in xy,
-/// that of the color being 1.
+/// The line from white through a color beyond sRGB, at constant luminance: 0 is white, 1 the color.
 struct Line {
     rgb: [f64; 3],
     luminance: f64,
-    /// X + Y + Z of the color, and of white of its luminance.
+    /// X + Y + Z of the color, and of white of its luminance. The former may be negative of a color that no light has.
     sums: [f64; 2],
-    /// From white to the color, in xy.
-    from_white: [f64; 2],
+    /// From white toward the color in xy, times that of the color's `sums`.
+    toward: [f64; 2],
     /// Where it leaves sRGB.
     border: f64,
 }
@@ -174,27 +186,33 @@ impl Line {
         let srgb = RgbSpace::srgb();
         let [x, luminance, z] = srgb.to_xyz(rgb);
         let (sum, white) = (x + luminance + z, luminance / srgb.white_xy[1]);
-        if !(luminance > 0.0 && sum > 0.0 && sum.is_finite()) {
+        if !(luminance > 0.0 && sum.is_finite()) {
             return None;
         }
-        let from_white = [x / sum - srgb.white_xy[0], luminance / sum - srgb.white_xy[1]];
+        let toward = [x - srgb.white_xy[0] * sum, luminance - srgb.white_xy[1] * sum];
         let least = rgb[0].min(rgb[1]).min(rgb[2]);
-        let mixed = luminance / (luminance - least);
-        let border = mixed * sum / (white + mixed * (sum - white));
-        Some(Self { rgb, luminance, sums: [sum, white], from_white, border })
+        Some(Self { rgb, luminance, sums: [sum, white], toward, border: luminance / (luminance - least) })
     }
 
     /// The color there.
-    fn at(&self, share: f64) -> [f64; 3] {
-        let [sum, white] = self.sums;
-        let mixed = share * white / (sum - share * (sum - white));
-        self.rgb.map(|v| self.luminance + mixed * (v - self.luminance))
+    fn at(&self, place: f64) -> [f64; 3] {
+        self.rgb.map(|v| self.luminance + place * (v - self.luminance))
     }
 
-    /// The place of a point in this direction, given from white.
-    fn share_of(&self, point: [f64; 2]) -> f64 {
-        let dot = |a: [f64; 2]| a[0] * self.from_white[0] + a[1] * self.from_white[1];
-        dot(point) / dot(self.from_white)
+    /// Distance of a place from white in xy; infinite where it has no chromaticity.
+    fn distance(&self, place: f64) -> f64 {
+        let [sum, white] = self.sums;
+        let sum = white + place * (sum - white);
+        if sum > 0.0 { place * length(self.toward) / sum } else { f64::INFINITY }
+    }
+
+    /// The place of a point in this direction, given from white in xy; infinite where the line does not come so far.
+    fn place_of(&self, point: [f64; 2]) -> f64 {
+        let [sum, white] = self.sums;
+        let dot = |a: [f64; 2]| a[0] * self.toward[0] + a[1] * self.toward[1];
+        let share = dot(point) / dot(self.toward);
+        let left = 1.0 - share * (sum - white);
+        if left > 0.0 { share * white / left } else { f64::INFINITY }
     }
 }
 
@@ -316,6 +334,13 @@ mod tests {
         for gamut in [ColorGamut::Srgb, ColorGamut::Real] {
             assert_eq!(fit([0.2, 0.0, 7.0], gamut), Fitted { rgb: [0.2, 0.0, 7.0], moved: 0.0 });
             assert_eq!(fit([0.1, -0.5, 0.2], gamut), Fitted { rgb: [0.0; 3], moved: f64::INFINITY });
+            // Of positive luminance, but X + Y + Z is negative: moved as what lies just before it is.
+            let [before, beyond] = [-0.44, -0.46].map(|blue| fit([0.2, 0.2, blue], gamut));
+            assert!(
+                beyond.moved == 1.0 && (RgbSpace::srgb().luminance(beyond.rgb) - 0.1524).abs() < 1e-3,
+                "{beyond:?}"
+            );
+            assert!(before.rgb.iter().zip(beyond.rgb).all(|(a, b)| (a - b).abs() < 0.01), "{before:?} {beyond:?}");
         }
     }
 

@@ -69,7 +69,7 @@ impl FileResources {
 }
 
 /// `~/photo.jpg` as the file in the folder of the user, as shells have it.
-fn of_user(path: String) -> PathBuf {
+pub(crate) fn of_user(path: String) -> PathBuf {
     match (path.strip_prefix("~/"), std::env::home_dir()) {
         (Some(rest), Some(home)) if !home.as_os_str().is_empty() => home.join(rest),
         _ => path.into(),
@@ -120,7 +120,7 @@ impl Resources for FileResources {
             Some(Err(several)) if !several.is_empty() => return Err(ResourceError::NotFound(several)),
             Some(Err(_)) | None => {}
         }
-        if plain(&self.folder.join(path)).is_dir() {
+        if plain(&self.folder.join(of_user(path.to_owned()))).is_dir() {
             return Err(ResourceError::Io("this is a folder; a file is expected".to_owned()));
         }
         Err(ResourceError::NotFound(self.near(path, folders)))

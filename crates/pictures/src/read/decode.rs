@@ -14,7 +14,7 @@ use spectra_core::resources::{Found, ResourceError};
 use std::io::{BufRead, Seek};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// No picture format packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.
+/// No picture format but WebP packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.
 const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 
 /// Decodes an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file, told by its content, or whatever else OpenImageIO reads,
@@ -32,7 +32,7 @@ pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     let found = without_preview.as_ref().unwrap_or(found);
     match kind {
         Kind::Exr => exr::decode(found.open().map_err(io)?, bytes, choice, true),
-        Kind::Native(format) => match native(found, format, choice.cover, said.clone()) {
+        Kind::Native(format) => match native(found, format, choice, said.clone()) {
             Ok(linear) => Ok(linear),
             Err(NotRead::Trouble(trouble)) => Err(trouble),
             Err(NotRead::Unsupported(why)) => {
@@ -135,7 +135,9 @@ fn decoder<'a>(
     let bytes = found.size_bytes().map_err(io)?;
     let (width, height) = decoder.dimensions();
     check_size(u64::from(width), u64::from(height))?;
-    if u64::from(width) * u64::from(height) > bytes * MAX_PIXELS_PER_BYTE {
+    // WebP codes an even area by nothing at all; its sides are 16 384 pixels at most.
+    let is_packed = format == ImageFormat::WebP;
+    if !is_packed && u64::from(width) * u64::from(height) > bytes * MAX_PIXELS_PER_BYTE {
         let text = format!("the header says {width} x {height} pixels, which {bytes} bytes cannot hold");
         return Err(Trouble::file(text).into());
     }
@@ -175,7 +177,7 @@ fn orientation(decoder: &mut impl ImageDecoder) -> u8 {
     decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif()
 }
 
-fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding>) -> Result<Linear, NotRead> {
+fn native(found: &Found, format: ImageFormat, choice: Choice<'_>, said: Option<Encoding>) -> Result<Linear, NotRead> {
     if format == ImageFormat::Jpeg {
         jpeg::refuse_unless_whole(found)?;
     }
@@ -191,7 +193,7 @@ fn native(found: &Found, format: ImageFormat, cover: bool, said: Option<Encoding
     let tags = Tags::of(found, format, &mut decoder);
     let tags = Tags { encoding: said.or(tags.encoding), ..tags };
     let plain = tiff::Plain::new(found.open().map_err(io)?, &decoder, format, spare_bytes)?;
-    linear(decoder, plain, orientation, cover, &tags)
+    linear(decoder, plain, orientation, choice, &tags)
 }
 
 /// Whether a file is an OpenEXR.
@@ -234,9 +236,10 @@ fn linear<R: BufRead + Seek>(
     decoder: impl ImageDecoder,
     plain: Option<tiff::Plain<R>>,
     orientation: u8,
-    cover: bool,
+    choice: Choice<'_>,
     tags: &Tags,
 ) -> Result<Linear, NotRead> {
+    let Choice { cover, is_plain, .. } = choice;
     const LIGHT: usize = size_of::<[f32; 3]>();
     let color = decoder.color_type();
     let samples = match color {
@@ -251,7 +254,7 @@ fn linear<R: BufRead + Seek>(
     let pixels = width as usize * height as usize;
     let said = tags.encoding.as_ref();
     let of_integers = said.cloned().unwrap_or(Encoding::Curve(Transfer::Srgb));
-    let to_srgb = tags.to_srgb.filter(|_| color.has_color());
+    let to_srgb = tags.to_srgb.filter(|_| color.has_color() && !is_plain);
     let table = match samples {
         Samples::Bytes => of_integers.table(256),
         Samples::Shorts => of_integers.table(65_536),
@@ -259,8 +262,8 @@ fn linear<R: BufRead + Seek>(
     };
     let is_float = matches!(samples, Samples::Floats);
     // Integers are straight, and floating point is multiplied, unless the file says which.
-    let is_multiplied = tags.is_multiplied.unwrap_or(false);
-    let is_light_multiplied = is_float && tags.is_multiplied.unwrap_or(true);
+    let is_multiplied = tags.is_multiplied.unwrap_or(false) && !is_plain;
+    let is_light_multiplied = is_plain || (is_float && tags.is_multiplied.unwrap_or(true));
     // The light of a pixel, and its cover.
     let light = |pixel: &[u8]| -> ([f32; 3], f32) {
         let short = |c: usize| u16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]);
@@ -278,15 +281,15 @@ fn linear<R: BufRead + Seek>(
         let rgb = [0, 1, 2].map(|c| {
             let c = if gray { 0 } else { c };
             // A code that cover is multiplied into is that of what covers, times cover.
-            let uncovered = |code: f64| of_integers.decode((code / f64::from(cover)).min(1.0)) as f32;
+            let uncovered = |code: f64| of_integers.light((code / f64::from(cover)).min(1.0));
             match samples {
                 Samples::Bytes if is_multiplied && cover > 0.0 => uncovered(f64::from(pixel[c]) / 255.0),
                 Samples::Shorts if is_multiplied && cover > 0.0 => uncovered(f64::from(short(c)) / 65_535.0),
                 Samples::Longs if is_multiplied && cover > 0.0 => uncovered(long(c)),
                 Samples::Bytes => table[usize::from(pixel[c])],
                 Samples::Shorts => table[usize::from(short(c))],
-                Samples::Longs => of_integers.decode(long(c)) as f32,
-                Samples::Floats => said.map_or(float(c), |encoding| encoding.decode(f64::from(float(c))) as f32),
+                Samples::Longs => of_integers.light(long(c)),
+                Samples::Floats => said.map_or(float(c), |encoding| encoding.light(f64::from(float(c)))),
             }
         });
         let rgb = to_srgb.map_or(rgb, |matrix| {
@@ -382,11 +385,11 @@ fn linear<R: BufRead + Seek>(
         }
     }
     let mut doubts = Vec::new();
-    if matches!(samples, Samples::Floats) {
+    if matches!(samples, Samples::Floats) && !is_plain {
         doubts.extend(mend(&mut rgb));
         rgb.iter_mut().flatten().for_each(|value| *value = finite(*value));
     }
-    if !cover {
+    if !cover && !is_plain {
         doubts.extend(over_black(thin.load(Relaxed), pixels));
     }
     if !is_upright {

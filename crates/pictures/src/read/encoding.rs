@@ -57,6 +57,13 @@ impl Encoding {
         (0.2..=5.0).contains(&gamma).then_some(Self::Gamma(gamma))
     }
 
+    /// Light of a code value that is no integer of a few bits: as [`Self::decode`], but codes below black, which logarithmic scales have,
+    /// are black.
+    pub(super) fn light(&self, code: f64) -> f32 {
+        let light = self.decode(code) as f32;
+        if matches!(self, Self::Cineon | Self::AcesCct) { light.max(0.0) } else { light }
+    }
+
     /// Linear light of a code value that is 1 at most where it is an integer.
     pub(super) fn decode(&self, code: f64) -> f64 {
         match self {

@@ -13,10 +13,10 @@ use spectra_color::Transfer;
 use spectra_core::resources::Found;
 
 /// Endings of files that the library reads, beyond those that are read without it.
-pub const ENDINGS: &str = "tx env sm vsm bmp dib cin dds dcm dpx fits gif heic heif heics avif ico iff z jp2 j2k \
+pub const ENDINGS: &str = "tx env sm vsm cin dds dcm dpx fits gif heic heif heics avif ico iff z jp2 j2k \
     j2c ppm pgm pbm pnm pfm psd pdd psb bay bmq cr2 cr3 crw cs1 dc2 dcr dng erf fff k25 kdc mdc mos mrw nef orf pef pxn \
     raf raw rdc sr2 srf x3f arw 3fr cine ia kc2 mef nrw qtk rw2 sti rwl srw drf dsc ptx cap iiq rwz rla sgi rgb rgba bw \
-    int inta pic tga tpic webp";
+    int inta pic tga tpic";
 
 /// The ending of a name, in lower case, without the dot.
 fn ending(name: &str) -> String {
@@ -125,7 +125,7 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
         }
     } else {
         for value in picture.rgb.iter_mut().flatten() {
-            *value = if is_light { *value } else { encoding.decode(f64::from(*value)) as f32 };
+            *value = if is_light { *value } else { encoding.light(f64::from(*value)) };
         }
         doubts.extend(mend(&mut picture.rgb));
         picture.rgb.iter_mut().flatten().for_each(|value| *value = finite(*value));

@@ -39,6 +39,8 @@ pub struct Choice<'a> {
     pub layer: Option<&'a str>,
     /// The channel that holds depth, where depth is wanted.
     pub depth: Option<&'a str>,
+    /// Whether its numbers are no light: no color space is followed, no cover multiplied in, and none is made finite.
+    pub is_plain: bool,
 }
 
 /// What is wrong with a picture file, or doubtful in it.

@@ -290,6 +290,8 @@ mod tests {
             (277, 3, u32::from(samples)),
             (278, 4, 1),
             (279, 4, data.len() as u32),
+            // Of one channel planes and pixels are the same.
+            (284, 3, if samples == 1 { 2 } else { 1 }),
         ];
         tags.extend(extra.map(|kind| (338, 3, u32::from(kind))));
         let entries = tags.len() + 2;

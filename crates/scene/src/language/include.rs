@@ -1,7 +1,7 @@
 //! `include`: a scene on top of others.
 
 use super::merge::merge;
-use crate::resources::read_yaml;
+use crate::resources::{of_user, read_yaml};
 use crate::yaml;
 use schemars::JsonSchema;
 use spectra_core::names::nearest;
@@ -168,7 +168,8 @@ impl Found {
 fn find(name: &str, item: &Node) -> Result<Found, Fault> {
     const ENDINGS: [&str; 3] = ["", ".yaml", ".yml"];
     if let Some(folder) = item.file.folder() {
-        let found = ENDINGS.iter().map(|ending| plain(&folder.join(format!("{name}{ending}")))).find(|p| p.is_file());
+        let found =
+            ENDINGS.iter().map(|ending| plain(&folder.join(of_user(format!("{name}{ending}"))))).find(|p| p.is_file());
         if let Some(path) = found {
             return Ok(Found::Disk(path));
         }

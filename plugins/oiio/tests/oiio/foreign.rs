@@ -297,8 +297,6 @@ fn broken_and_hostile_files_are_errors() {
         ("a.dpx", File::new("dpx", Samples::U16).text("oiio:ColorSpace", "Linear").bytes()),
         ("a.jp2", jpeg_2000()),
         ("a.tga", File::new("targa", Samples::U8).bytes()),
-        ("a.webp", File::new("webp", Samples::U8).bytes()),
-        ("a.bmp", File::new("bmp", Samples::U8).bytes()),
         ("a.cin", cineon([[95, 685, 1023], [445, 0, 685]])),
     ];
     for (name, good) in &files {
@@ -323,14 +321,12 @@ fn huge_sizes_in_headers_are_refused_before_anything_is_unpacked() {
     let dpx = File::new("dpx", Samples::U8).text("oiio:ColorSpace", "Linear").bytes();
     let jp2 = jpeg_2000();
     let tga = File::new("targa", Samples::U8).bytes();
-    let bmp = File::new("bmp", Samples::U8).bytes();
     let siz = jp2.windows(4).position(|w| w == [0xff, 0x4f, 0xff, 0x51]).expect("a codestream");
     // Where width and height stand, and in how many bytes of which order.
     for (name, good, at, size, big) in [
         ("a.dpx", &dpx, [772, 776], 4, false),
         ("a.jp2", &jp2, [siz + 8, siz + 12], 4, true),
         ("a.tga", &tga, [12, 14], 2, false),
-        ("a.bmp", &bmp, [18, 22], 4, false),
     ] {
         for side in [0xffff_u32, 0x0010_0000, 0x7fff_ffff, 0xffff_fff0] {
             let mut bad = good.clone();

@@ -120,7 +120,7 @@ impl Depth {
         let own = match (&self.p.file, &self.found) {
             (None, _) | (_, None) => None,
             (Some(file), Some(found)) => {
-                let read = self.file(found).map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
+                let read = self.own(file, found).map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
                 if (read.width, read.height) != (picture.width, picture.height) {
                     let [a, b] = [(read.width, read.height), (picture.width, picture.height)];
                     let text = format!("the depth has {} x {} pixels, the picture {} x {}", a.0, a.1, b.0, b.1);
@@ -166,7 +166,7 @@ impl Depth {
             (
                 "is 0 or less",
                 if against && self.unit_mm > 0.0 {
-                    "most of it is negative: it counts against the view, so write `scale: -1`"
+                    "most of it is negative: it counts against the view, so write `scale: -1`, or turn the sign of the `scale` that is there"
                 } else if self.kind == DepthKind::Z && raw.iter().all(|v| (0.0..=1.0).contains(v)) {
                     "give pixels without depth a large value, and set `far`; or, since it runs from 0 to 1, write `kind: inverse` for one \
                      over the distance, another `channel` where it is alpha, and normalised depth anew in meters"
@@ -193,19 +193,20 @@ impl Depth {
     }
 
     /// A file of its own: the channel of an OpenEXR, or the first one of any other picture as linear numbers.
-    fn file(&self, found: &Found) -> Result<Linear, Trouble> {
-        let choice = Choice { depth: Some(self.name()), ..Choice::default() };
+    fn own(&self, name: &str, found: &Found) -> Result<Linear, Trouble> {
+        let choice = Choice { name, depth: Some(self.name()), ..Choice::default() };
         if read::is_exr(found)? {
             return read::depth(found, choice);
         }
-        let mut read = read::decode(found, Choice { transfer: Some("linear"), ..Choice::default() })?;
+        let choice = Choice { name, transfer: Some("linear"), is_plain: true, ..Choice::default() };
+        let mut read = read::decode(found, choice)?;
         if read.clipped_at.is_some() && self.p.scale.is_none() {
             return Err(Trouble {
-                key: "depth",
+                key: "file",
                 text: "its integers are read as 0 to 1, which is no distance yet".to_owned(),
                 hint: Some(
                     "write what 1 stands for: `scale: 65535, unit: mm` if each of 16 bits is a millimeter, `scale: 10, unit: m` if white \
-                     is 10 m away"
+                     is 10 m away; with `kind: inverse` how far away white is, `scale: 1, unit: m` for 1 m"
                         .to_owned(),
                 ),
             });
@@ -239,11 +240,18 @@ impl Depth {
         let is_normalised = self.kind == DepthKind::Z
             && (f64::from(most) / self.unit_mm - 1.0).abs() < 1e-6
             && f64::from(least) < 0.5 * self.unit_mm;
-        let units = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("ft", 304.8)];
-        let as_distance = units.map(|(unit, mm)| (format!("`unit: {unit}`"), said * stretch * mm));
-        let inverse = (String::from("`unit: m, kind: inverse`"), 1000.0 * stretch / said);
-        let near = as_distance.into_iter().chain([inverse]).min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
-        let (remedy, fits) = near.filter(|(_, mm)| off(*mm) < 0.5 * FAR_OFF)?;
+        // With another unit or kind the plane would lie among the things, and about the middle of them.
+        let kind = if self.kind == DepthKind::Z { "" } else { ", kind: z" };
+        let mut others: Vec<(String, f64)> = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("ft", 304.8)]
+            .into_iter()
+            .filter(|(unit, _)| self.p.unit.is_none() || !matches!(*unit, "in" | "ft"))
+            .map(|(unit, mm)| (format!("`unit: {unit}{kind}`"), said * stretch * mm))
+            .collect();
+        others.push(("`unit: m, kind: inverse`".to_owned(), 1000.0 * stretch / said));
+        let (remedy, fits) = others
+            .into_iter()
+            .filter(|(_, mm)| off(*mm) < 0.5 * FAR_OFF)
+            .min_by(|a, b| off(a.1).total_cmp(&off(b.1)))?;
         let text = format!(
             "half of the depth lies nearer than {}, while the plane of the picture stands at {}",
             length(median_mm),

@@ -1,13 +1,14 @@
 //! Colors of a picture that its color model makes no spectra of: they are moved toward white, and counted.
 
-use spectra_color::fit;
+use spectra_color::{MARGIN, fit};
 use spectra_core::stage::{ColorGamut, ColorModel};
 use spectra_pictures::read::{Linear, Trouble};
 
 /// Pixels whose largest value is less, white being 1, are too dark to be worth a word.
 const DARK: f32 = 1e-3;
-/// Distance in xy from which on a color counts as moved: less is rounding.
-const MOVED: f64 = 1e-4;
+/// Distance in xy up to which a move is not worth a word: less than an eye sees (a MacAdam ellipse). The red of Display P3, which many a
+/// photograph has, moves by a third of it.
+const UNSEEN: f64 = 3.0 * MARGIN;
 
 /// Brings the picture's colors into the gamut of the model, and adds to its doubts how many moved.
 pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
@@ -18,7 +19,7 @@ pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
         let counts = pixel.iter().any(|v| v.abs() > DARK);
         if counts && fitted.moved.is_infinite() {
             black += 1;
-        } else if counts && fitted.moved > MOVED {
+        } else if counts && fitted.moved > 0.0 {
             moved += 1;
             farthest = farthest.max(fitted.moved);
         }
@@ -26,7 +27,7 @@ pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
     }
     let all = linear.rgb.len();
     let mut said = Vec::new();
-    if moved > 0 {
+    if farthest > UNSEEN {
         let beyond = match gamut {
             ColorGamut::Srgb => "colors beyond sRGB, of which this color model makes no light",
             ColorGamut::Real => "colors that no light has, or only that of a single wavelength",

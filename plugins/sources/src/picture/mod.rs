@@ -183,10 +183,11 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let pixels = {
         let (file, making) = (Arc::clone(&file), Arc::clone(&making));
         move || -> Result<Linear, Faults> {
-            let mut linear = making.read(&file)?;
+            let mut linear = file.read()?;
             if let (Some(stops), Some(clipped_at)) = (recover_stops, linear.clipped_at) {
                 highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, stops);
             }
+            gamut::bring_in(&mut linear, &*making.model);
             Ok(linear)
         }
     };
@@ -251,6 +252,7 @@ impl PictureFile {
             cover: self.cover,
             layer: self.layer.as_deref(),
             depth: self.depth.as_deref(),
+            is_plain: false,
         }
     }
 

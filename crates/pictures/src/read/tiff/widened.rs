@@ -3,7 +3,7 @@
 
 use super::said;
 use image::metadata::Orientation;
-use image::{ColorType, ImageDecoder, ImageError, ImageResult};
+use image::{ColorType, ExtendedColorType, ImageDecoder, ImageError, ImageResult};
 use std::io::{BufRead, Seek};
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
@@ -23,7 +23,7 @@ impl<R: BufRead + Seek> Widened<R> {
     /// `None` where the file is of another kind, or where it is not sound: what is wrong with it is told by its own decoder.
     pub(in crate::read) fn new(reader: R) -> Option<Self> {
         let mut decoder = Decoder::new(reader).ok()?;
-        let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok().flatten()?;
+        let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok()?.unwrap_or_else(|| vec![UNSIGNED]);
         let format = *formats.first()?;
         let (samples, bits) = match decoder.colortype().ok()? {
             tiff::ColorType::Gray(bits) => (1, bits),
@@ -52,6 +52,11 @@ impl<R: BufRead + Seek> ImageDecoder for Widened<R> {
         if self.samples == 4 { ColorType::Rgba32F } else { ColorType::Rgb32F }
     }
 
+    /// Another one where samples are repeated: what is read is not what is handed on.
+    fn original_color_type(&self) -> ExtendedColorType {
+        if self.samples == 1 { ExtendedColorType::L8 } else { self.color_type().into() }
+    }
+
     fn orientation(&mut self) -> ImageResult<Orientation> {
         let stated = self.decoder.find_tag_unsigned::<u8>(Tag::Orientation).map_err(said)?;
         Ok(stated.and_then(Orientation::from_exif).unwrap_or(Orientation::NoTransforms))
@@ -63,9 +68,12 @@ impl<R: BufRead + Seek> ImageDecoder for Widened<R> {
     }
 
     fn read_image(self, to: &mut [u8]) -> ImageResult<()> {
-        // Samples of at most eight bytes; the size of the picture was checked against that of its file.
+        // Samples lie in memory beside what is made of them.
+        const MOST_BYTES: usize = 1 << 31;
         let mut limits = Limits::default();
-        limits.decoding_buffer_size = self.size.0 as usize * self.size.1 as usize * self.samples * 8;
+        // Of at most eight bytes each; the size of the picture was checked against that of its file.
+        limits.decoding_buffer_size =
+            (self.size.0 as usize * self.size.1 as usize).saturating_mul(self.samples * 8).min(MOST_BYTES);
         limits.intermediate_buffer_size = limits.decoding_buffer_size.max(1 << 20);
         let mut decoder = self.decoder.with_limits(limits);
         let pixel = 4 * if self.samples == 4 { 4 } else { 3 };
