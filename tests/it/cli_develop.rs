@@ -492,7 +492,7 @@ fn slips_are_told_with_what_to_write() {
         (&["photo.png", "--stock", "tri-y"], &["no film stock is called `tri-y`", "help: "]),
         (&["photo.png", "--stock", "2383"], &["is not a camera film"]),
         (&["photo.jpg", "--stock", "tri-x"], &["`photo.jpg`: no such file"]),
-        (&["notes.txt", "--stock", "tri-x"], &["not an OpenEXR, PNG, JPEG, TIFF or Radiance HDR file"]),
+        (&["notes.txt", "--stock", "tri-x"], &["not an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file"]),
         (&["huge.hdr", "--stock", "tri-x"], &["60000 x 60000"]),
         (&["empty", "--stock", "tri-x"], &["no pictures in `empty`"]),
         (&["plate.####.png", "--stock", "tri-x"], &["no file is called `plate.####.png`", "plate.0001.png"]),

@@ -350,7 +350,10 @@ fn huge_sizes_in_headers_are_refused_before_anything_is_unpacked() {
 
 #[test]
 fn the_endings_are_those_of_the_library() {
-    let own = ["png", "jpg", "jpe", "jpeg", "jif", "jfif", "jfi", "tif", "tiff", "exr", "sxr", "mxr", "hdr", "rgbe"];
+    let own = [
+        "png", "jpg", "jpe", "jpeg", "jif", "jfif", "jfi", "tif", "tiff", "exr", "sxr", "mxr", "hdr", "rgbe", "webp",
+        "bmp", "dib",
+    ];
     let library = OpenImageIo::endings();
     for ending in ENDINGS.split(' ') {
         assert!(library.iter().any(|known| known == ending), "{ending} is not read");
