@@ -509,7 +509,7 @@ fn slips_are_told_with_what_to_write() {
         (&["photo.png", "--stock", "tri-x", "--view", "projection"], &["--view projection", "is a negative"]),
         (&["photo.png", "--stock", "tri-x", "--side", "60"], &["or fewer"]),
         (&["photo.png", "--stock", "tri-x", "-o", "photo.png"], &["over a picture that is read"]),
-        (&["photo.png", "--stock", "tri-x", "-o", "photo.gif"], &[".png, .tiff or .exr"]),
+        (&["photo.png", "--stock", "tri-x", "-o", "photo.gif"], &[".png, .jpg, .tiff or .exr"]),
         (&["photo.png", "photo.png", "--stock", "tri-x", "-o", "a.png"], &["is one picture"]),
         (&["photo.png", "photo.png", "--stock", "tri-x", "-o", "out"], &["would both be written as"]),
     ] {

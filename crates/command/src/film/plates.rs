@@ -262,7 +262,7 @@ fn folder_of(path: &Path) -> &Path {
 
 fn unknown(path: &Path) -> Failure {
     let text = format!("no picture is written as `{}`", path.display());
-    Fault::new(text).hint("name a file that ends in .png, .tiff or .exr, or a folder: `-o out/`").into()
+    Fault::new(text).hint("name a file that ends in .png, .jpg, .tiff or .exr, or a folder: `-o out/`").into()
 }
 
 /// No picture is written over one that is read.
