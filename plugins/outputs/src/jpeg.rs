@@ -13,8 +13,8 @@ use spectra_scene::{Holds, Output, Shot};
 
 /// The picture as JPEG, to share.
 ///
-/// 8 bits a channel in sRGB without loss of color resolution, with an ICC profile; of films side by side a file each. Grain makes files
-/// large: at `quality: 95` about half of a PNG. A JPEG loses a little each time that it is saved: keep a `png`, `tiff` or `exr` to work on.
+/// 8 bits a channel in sRGB without loss of color resolution, with an ICC profile; of films side by side a file each. A JPEG loses a
+/// little each time that it is saved: keep a `png`, `tiff` or `exr` to work on.
 ///
 /// # Example
 /// ```yaml

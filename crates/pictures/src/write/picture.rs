@@ -219,11 +219,10 @@ mod tests {
         let rgb = (0..64 * 64).map(|i| [(i % 64) as f32 / 63.0, (i / 64) as f32 / 63.0, 0.18]).collect();
         let picture = DisplayPicture { width_px: 64, height_px: 64, rgb };
         for space in [PictureSpace::Srgb, PictureSpace::DisplayP3] {
-            let mut bytes: Vec<u8> = Vec::new();
             let folder = tempfile::tempdir().expect("a folder");
             let path = folder.path().join("a.jpg");
             write_atomically(&path, |file| jpeg(file, &picture, space, 95)).expect("written");
-            bytes.extend(std::fs::read(&path).expect("bytes"));
+            let bytes = std::fs::read(&path).expect("bytes");
             let found = spectra_core::resources::Found::bytes("a.jpg".to_owned(), bytes.into());
             let linear = crate::read::decode(&found, crate::read::Choice::default()).expect("a picture");
             let codes = |v: f64| 255.0 * spectra_color::Transfer::Srgb.encode(v.clamp(0.0, 1.0));
