@@ -238,6 +238,59 @@ fn faults_of_depth_say_where_and_what_to_do() {
 /// Depth that was read wrongly is asked about with what to write, in OpenEXR, PNG and TIFF; with that written, nothing is asked, and the
 /// depth is the same.
 #[test]
+fn overscan_lies_beside_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    // 60 x 50 pixels that differ, of which the display window is the middle 40 x 30.
+    let (data, shown, margin) = ((60, 50), (40, 30), 10);
+    let values = |f: &dyn Fn(usize, usize) -> f32| (0..data.0 * data.1).map(|i| f(i % data.0, i / data.0)).collect();
+    let planes: Vec<(&str, Vec<f32>)> = vec![
+        ("R", values(&|x, _| 0.1 + 0.01 * x as f32)),
+        ("G", values(&|_, y| 0.1 + 0.01 * y as f32)),
+        ("B", values(&|x, y| 0.1 + 0.005 * (x + y) as f32)),
+        ("Z", values(&|x, _| if x < 25 { 1.5 } else { 2.5 })),
+    ];
+    exr_file(&at("plain.exr"), data, &planes);
+    let windowed = |name: &str, position: (i32, i32)| {
+        let channels = planes.iter().map(|(name, v)| AnyChannel::new(*name, FlatSamples::F32(v.clone()))).collect();
+        let mut layer =
+            Layer::new(data, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
+        layer.attributes.layer_position = position.into();
+        let display = exr::prelude::IntegerBounds::new((0, 0), shown);
+        let image = Image::new(exr::prelude::ImageAttributes::new(display), layer);
+        image.write().to_file(at(name)).expect("written");
+    };
+    windowed("overscan.exr", (-margin, -margin));
+    windowed("uneven.exr", (-20, -20));
+    let exposure = |source: &str| {
+        let text = format!(
+            "spectra: 1\nsource: {{kind: picture, distance: 2 m, {source}}}\nlens: {{file: zeiss-biotar-50-f1.4}}\n\
+             imager: {{kind: xyz, format: 135, resolution: [36, 24]}}\nrender: {{samples: 8, seed: 1, direction: backward}}\n"
+        );
+        std::fs::write(at("scene.yaml"), text).expect("written");
+        let scene = spectra_scene::load(&at("scene.yaml"), &[]).unwrap_or_else(|faults| panic!("{faults}"));
+        let told: Vec<String> = scene.warnings.iter().map(ToString::to_string).collect();
+        let renderer = Renderer::new(scene, Isa::detect()).expect("the scene can be rendered");
+        let frame = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
+        (frame.channel("Y").expect("an XYZ imager").values.clone(), told.join("\n"))
+    };
+    for depth in ["", ", depth: {unit: m}"] {
+        // The display window alone leaves the frame's border black; with overscan it is as the whole picture at its width.
+        let (over, told) = exposure(&format!("file: overscan.exr, width: 1.2 m{depth}"));
+        assert_eq!(told, "", "{depth}");
+        let (whole, _) = exposure(&format!("file: plain.exr, width: 1.8 m{depth}"));
+        assert_eq!(over, whole, "{depth}");
+        assert!(over.iter().all(|v| *v > 0.0), "the frame is filled {depth}");
+        // `fill` is the width of the display window.
+        let (fill, _) = exposure(&format!("file: overscan.exr, width: fill{depth}"));
+        assert!(fill.iter().all(|v| *v > 0.0));
+    }
+    // On one side only there is nothing to use, and that is said.
+    let (_, told) = exposure("file: uneven.exr, width: fill");
+    assert!(told.contains("20 pixels beyond the display window on the left, 0 on the right"), "{told}");
+}
+
+#[test]
 fn mistaken_depths_are_asked_about() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);

@@ -123,12 +123,14 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let (Some(header), Some(model)) = (header, &model) else { continue };
         let (width, edge) = (layer.width, layer.edge.unwrap_or_default());
         let wide = width.mm(header.aspect(), distance_mm, center_mm, context.view, &own).map_err(Faults::from);
-        let Some(width_mm) = faults.take(wide) else { continue };
+        let Some(shown_mm) = faults.take(wide) else { continue };
+        let width_mm = shown_mm * header.widened(header.overscan);
+        let aspect = header.aspect_with(header.overscan);
         let luminance_cd_m2 = layer.luminance.unwrap_or(p.luminance).cd_per_m2();
         let making = Making { model: std::sync::Arc::clone(model), width_mm, luminance_cd_m2, edge };
         // What is in front need not fill the frame; nothing is behind the last.
         if i + 1 == p.layers.len() && layer.edge.is_none() && !width.is_fill() && faults.is_empty() {
-            let placed = Placed { width_mm, height_mm: width_mm / header.aspect(), distance_mm, center_mm };
+            let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm };
             placed.warn_unless_filled("the last layer", &own, context);
         }
         file.warn(&header, context);
@@ -164,13 +166,13 @@ struct Pending {
 
 impl Pending {
     fn white(&self) -> Layer {
-        let map = self.making.white(&self.header, &self.file.name);
+        let map = self.making.white(self.header.aspect_with(self.header.overscan), &self.file.name);
         Layer { map, cover: None, distance_mm: self.distance_mm, center_mm: self.center_mm }
     }
 
     /// The layer, and what is doubtful in its file.
     fn read(&self) -> Result<(Layer, Vec<Warning>), Faults> {
-        let mut linear = self.making.read(&self.file)?;
+        let mut linear = self.making.read(&self.file, self.header.overscan)?;
         let doubts = self.file.doubts(&linear);
         let cover = linear.alpha.take().map(Arc::new);
         let map = self.making.map(linear, &self.file.name);

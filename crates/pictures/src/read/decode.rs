@@ -164,7 +164,15 @@ pub(super) fn native_header<'a>(
     let pixel_aspect = seen(tags.pixel_aspect, turned);
     // Somebody who states the curve has seen to it.
     let doubts = tags.doubt.filter(|_| choice.transfer.is_none()).into_iter().collect();
-    Ok(Ok(Header { width, height, pixel_aspect, clips, is_jpeg: format == ImageFormat::Jpeg, doubts }))
+    Ok(Ok(Header {
+        width,
+        height,
+        overscan: [0; 2],
+        pixel_aspect,
+        clips,
+        is_jpeg: format == ImageFormat::Jpeg,
+        doubts,
+    }))
 }
 
 /// Width over height of a pixel as the picture is seen.
@@ -213,6 +221,18 @@ pub fn depth(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
         return Err(Trouble::file("only an OpenEXR file has a depth channel"));
     }
     exr::decode(found.open().map_err(io)?, found.size_bytes().map_err(io)?, choice, false)
+}
+
+/// How many pixels the chosen depth of a file has beyond its picture on the left and the right, and above and below; none where the
+/// file cannot be read.
+pub fn depth_overscan(found: &Found, choice: Choice<'_>) -> [u32; 2] {
+    let read = || -> Result<[u32; 2], Trouble> {
+        if !is_exr(found)? {
+            return Ok([0; 2]);
+        }
+        exr::depth_overscan(found.open().map_err(io)?, found.size_bytes().map_err(io)?, choice)
+    };
+    read().unwrap_or_default()
 }
 
 /// Pixels that a thread takes at a time.

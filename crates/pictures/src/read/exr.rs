@@ -1,8 +1,8 @@
 //! OpenEXR: scene-linear light with its primaries, cover and depth, in one layer of several.
 //!
 //! Layers are what the format has two ways to say: parts of the file with a name, and channels named `layer.R`
-//! (OpenEXR, "Technical Introduction", 2013). The picture is the display window; what a file holds beside it is left out,
-//! and where it holds nothing is black. Without a `chromaticities` attribute and the name of a linear space the primaries are
+//! (OpenEXR, "Technical Introduction", 2013). The picture is the display window; what a file holds beside it is overscan, which is
+//! read where it is asked for, and where it holds nothing is black. Without a `chromaticities` attribute and the name of a linear space the primaries are
 //! those of Rec. 709, as the format's documentation says, which sRGB shares.
 
 use super::linear::{Choice, Linear, OPAQUE, Trouble, check_size, finite, mend, over_black};
@@ -104,6 +104,32 @@ fn shape(headers: &[Header]) -> ([u32; 2], f64) {
     ([size.0 as u32, size.1 as u32], if (0.05..=20.0).contains(&aspect) { aspect } else { 1.0 })
 }
 
+/// What the chosen part of a file holds beyond the display window: as many pixels as both the left and the right have, and the top and
+/// the bottom; and what is left out, since one side has more.
+fn overscan(headers: &[Header], part: usize) -> ([u32; 2], Option<Trouble>) {
+    let display = headers[0].shared_attributes.display_window;
+    let data = headers[part].data_window();
+    let sides = [
+        (display.position.0, display.size.0, data.position.0, data.size.0),
+        (display.position.1, display.size.1, data.position.1, data.size.1),
+    ]
+    .map(|(at, size, from, count)| {
+        let [at, from] = [i64::from(at), i64::from(from)];
+        [at - from, from + count as i64 - at - size as i64].map(|n| n.clamp(0, i64::from(u32::MAX)) as u32)
+    });
+    let even = sides.map(|[a, b]| a.min(b));
+    let [[left, right], [top, bottom]] = sides;
+    let uneven = (left != right || top != bottom).then(|| {
+        let text = format!(
+            "its data window reaches {left} pixels beyond the display window on the left, {right} on the right, {top} above, {bottom} \
+             below: {} are used on the left and the right, {} above and below",
+            even[0], even[1]
+        );
+        Trouble::file(text).hint("render as much overscan on opposite sides to have all of it used")
+    });
+    (even, uneven)
+}
+
 fn said(e: exr::error::Error) -> Trouble {
     Trouble::file(e.to_string())
 }
@@ -117,9 +143,18 @@ pub(super) fn header(
     let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
     let light = chosen(&headers, bytes, choice, true)?.light;
     let (_, doubt) = space::of(headers[0].shared_attributes.chromaticities, &texts(&headers));
-    let doubts = doubt.filter(|_| light.len() == 3).into_iter().collect();
     let ([width, height], pixel_aspect) = shape(&headers);
-    Ok(super::header::Header { width, height, pixel_aspect, clips: false, is_jpeg: false, doubts })
+    let (overscan, uneven) = overscan(&headers, light.first().map_or(0, |(part, _)| *part));
+    let doubts = doubt.filter(|_| light.len() == 3).into_iter().chain(uneven).collect();
+    check_size(u64::from(width) + 2 * u64::from(overscan[0]), u64::from(height) + 2 * u64::from(overscan[1]))?;
+    Ok(super::header::Header { width, height, overscan, pixel_aspect, clips: false, is_jpeg: false, doubts })
+}
+
+/// How far the chosen depth of a file of `bytes` bytes reaches beyond the display window.
+pub(super) fn depth_overscan(reader: impl BufRead + Seek, bytes: u64, choice: Choice<'_>) -> Result<[u32; 2], Trouble> {
+    let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
+    let part = chosen(&headers, bytes, choice, false)?.depth.map_or(0, |(part, _)| part);
+    Ok(overscan(&headers, part).0)
 }
 
 /// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is
@@ -133,7 +168,10 @@ pub(super) fn decode(
     let reader = exr::block::read(reader, false).map_err(said)?;
     let headers = reader.headers().to_vec();
     let Chosen { light, alpha: alpha_at, depth: depth_at } = chosen(&headers, bytes, choice, lit)?;
-    let ([width, height], pixel_aspect) = shape(&headers);
+    let (size, pixel_aspect) = shape(&headers);
+    let sides = [0, 1].map(|i| u64::from(size[i]) + 2 * u64::from(choice.overscan[i]));
+    check_size(sides[0], sides[1])?;
+    let [width, height] = sides.map(|side| side as u32);
     let pixels = width as usize * height as usize;
     // Where a file holds nothing of the window there is no light, and nothing near.
     let mut rgb = vec![[0.0_f32; 3]; if lit { pixels } else { 0 }];
@@ -148,10 +186,10 @@ pub(super) fn decode(
     let take = |_: &MetaData, block: UncompressedBlock| {
         let part = block.index.layer;
         let header = &headers[part];
-        let offset = [
-            i64::from(header.own_attributes.layer_position.0) - i64::from(window.0),
-            i64::from(header.own_attributes.layer_position.1) - i64::from(window.1),
-        ];
+        let position = header.own_attributes.layer_position;
+        let [across, down] = choice.overscan.map(i64::from);
+        let offset =
+            [i64::from(position.0) - i64::from(window.0) + across, i64::from(position.1) - i64::from(window.1) + down];
         for line in block.lines(&header.channels) {
             let at = (part, line.location.channel);
             if !wanted.contains(&at) {

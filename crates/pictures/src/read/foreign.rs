@@ -41,7 +41,15 @@ pub(super) fn decode(found: &Found, choice: Choice<'_>, said: Option<Encoding>) 
 pub(super) fn header(found: &Found, choice: Choice<'_>, said: Option<Encoding>) -> Result<Header, Trouble> {
     let (picture, _) = read(found, choice.name, said, false)?;
     let ([width, height], pixel_aspect) = seen(&picture);
-    Ok(Header { width, height, pixel_aspect, clips: picture.integers, is_jpeg: false, doubts: Vec::new() })
+    Ok(Header {
+        width,
+        height,
+        overscan: [0; 2],
+        pixel_aspect,
+        clips: picture.integers,
+        is_jpeg: false,
+        doubts: Vec::new(),
+    })
 }
 
 fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Result<(FilePicture, Encoding), Trouble> {

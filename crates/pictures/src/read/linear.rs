@@ -39,6 +39,9 @@ pub struct Choice<'a> {
     pub layer: Option<&'a str>,
     /// The channel that holds depth, where depth is wanted.
     pub depth: Option<&'a str>,
+    /// How many pixels beyond the picture are wanted on the left and the right, and above and below; at most as many as the header's
+    /// `overscan`.
+    pub overscan: [u32; 2],
     /// Whether its numbers are no light: no color space is followed, no cover multiplied in, and none is made finite.
     pub is_plain: bool,
 }

@@ -23,7 +23,7 @@ mod turn;
 
 pub use beginning::header;
 pub use channels::planes;
-pub use decode::{decode, depth, is_exr};
+pub use decode::{decode, depth, depth_overscan, is_exr};
 pub use foreign::ENDINGS;
 pub use header::Header;
 pub use linear::{Choice, Linear, Trouble};

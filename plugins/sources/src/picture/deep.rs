@@ -28,6 +28,8 @@ pub(super) struct DeepPicture {
     eye_mm: f64,
     nearest_mm: f64,
     farthest_mm: f64,
+    /// What its depths were taken for.
+    meaning: Arc<str>,
     /// The steps that rays start on, found when the first does.
     walls: OnceLock<Walls>,
 }
@@ -50,20 +52,23 @@ impl Source for DeepPicture {
     }
     fn describe(&self) -> String {
         let [near, far] = [self.nearest_mm, self.farthest_mm].map(|d| d - self.eye_mm);
-        format!("picture {} with depth from {near:.0} to {far:.0} mm in front of the lens", self.map.name)
+        let (name, meaning) = (&self.map.name, &self.meaning);
+        format!("picture {name} with depth from {near:.0} to {far:.0} mm in front of the lens ({meaning})")
     }
 }
 
 impl DeepPicture {
-    /// The nearest and farthest depth are `ends_mm`.
+    /// Places the pixels of a map at the depths of a field, of which the nearest and the farthest are `ends_mm`; `meaning` says for the
+    /// summary what the depths were taken for.
     pub(super) fn new(
         map: PictureMap,
         field: Arc<HeightField>,
         plane_mm: f64,
         eye_mm: f64,
         [nearest_mm, farthest_mm]: [f64; 2],
+        meaning: Arc<str>,
     ) -> Self {
-        Self { map, field, plane_mm, eye_mm, nearest_mm, farthest_mm, walls: OnceLock::new() }
+        Self { map, field, plane_mm, eye_mm, nearest_mm, farthest_mm, meaning, walls: OnceLock::new() }
     }
 
     /// Pixels a mm on the plane, to the right and up (rows count down), and the middle of the picture in pixels.

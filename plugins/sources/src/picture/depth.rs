@@ -115,12 +115,19 @@ impl Depth {
     }
 
     /// Depth of each pixel along the axis from the center of projection, mm. `plane_mm` is the distance of the plane from
-    /// there on which the picture measures `width_mm`.
-    pub(super) fn of(&self, picture: &Linear, plane_mm: f64, width_mm: f64) -> Result<Vec<f32>, Faults> {
+    /// there on which the picture with its `overscan` measures `width_mm`.
+    pub(super) fn of(
+        &self,
+        picture: &Linear,
+        plane_mm: f64,
+        width_mm: f64,
+        overscan: [u32; 2],
+    ) -> Result<Vec<f32>, Faults> {
         let own = match (&self.p.file, &self.found) {
             (None, _) | (_, None) => None,
             (Some(file), Some(found)) => {
-                let read = self.own(file, found).map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
+                let read =
+                    self.own(file, found, overscan).map_err(|e| Faults::from(trouble(file, &e, &self.params)))?;
                 if (read.width, read.height) != (picture.width, picture.height) {
                     let [a, b] = [(read.width, read.height), (picture.width, picture.height)];
                     let text = format!("the depth has {} x {} pixels, the picture {} x {}", a.0, a.1, b.0, b.1);
@@ -192,9 +199,36 @@ impl Depth {
         faults.into_result(depth)
     }
 
-    /// A file of its own: the channel of an OpenEXR, or the first one of any other picture as linear numbers.
-    fn own(&self, name: &str, found: &Found) -> Result<Linear, Trouble> {
+    /// What its numbers are taken for, for the summary: channel, kind, unit and factor, and which of them are assumed.
+    pub(super) fn describe(&self) -> String {
+        let unit = match self.p.unit {
+            None => "mm, assumed",
+            Some(DepthUnit::Mm) => "mm",
+            Some(DepthUnit::Cm) => "cm",
+            Some(DepthUnit::M) => "m",
+            Some(DepthUnit::In) => "in",
+            Some(DepthUnit::Ft) => "ft",
+        };
+        let kind = match self.kind {
+            DepthKind::Z => "along the axis",
+            DepthKind::Ray => "along the ray",
+            DepthKind::Inverse => "inverse, along the axis",
+        };
+        let assumed = if self.p.kind.is_none() { ", assumed" } else { "" };
+        let scale = self.p.scale.map(|scale| format!(" times {scale}")).unwrap_or_default();
+        format!("`{}`{scale} in {unit}; {kind}{assumed}", self.name())
+    }
+
+    /// Whether the depth lies beyond the picture as far as the picture does, `overscan` pixels.
+    pub(super) fn has_overscan(&self, overscan: [u32; 2]) -> bool {
+        let (Some(name), Some(found)) = (&self.p.file, &self.found) else { return true };
         let choice = Choice { name, depth: Some(self.name()), ..Choice::default() };
+        overscan == [0; 2] || read::depth_overscan(found, choice) == overscan
+    }
+
+    /// A file of its own: the channel of an OpenEXR, or the first one of any other picture as linear numbers.
+    fn own(&self, name: &str, found: &Found, overscan: [u32; 2]) -> Result<Linear, Trouble> {
+        let choice = Choice { name, depth: Some(self.name()), overscan, ..Choice::default() };
         if read::is_exr(found)? {
             return read::depth(found, choice);
         }

@@ -80,7 +80,8 @@ struct PictureParams {
     layer: Option<String>,
     /// Distance of its plane from the first vertex, mm if bare.
     distance: Positive<Length>,
-    /// Width of the picture on that plane, mm if bare; the height follows. Or `fill`: 2 % more than what the frame sees
+    /// Width of the picture on that plane, mm if bare; the height follows. Overscan of an OpenEXR file, its data window beyond the display
+    /// window, lies beside that. Or `fill`: 2 % more than what the frame sees
     /// there through this lens, so that no border shows; what does not fit into the frame's shape is cut off.
     width: Width,
     /// What lies beyond the picture: `black`, nothing; `clamp`, the color of its border; `mirror`, the picture mirrored.
@@ -148,6 +149,11 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         params: params.clone(),
     });
     let header = file.as_ref().and_then(|file| faults.take(file.header()));
+    // A file of depth alone has to have the same overscan, else only what both have is used.
+    let overscan = header.as_ref().map_or([0; 2], |header| match &depth {
+        Some(depth) if !depth.has_overscan(header.overscan) => [0; 2],
+        _ => header.overscan,
+    });
     let recover_stops = p.recover_highlights.as_ref().map(|recover| recover.stops);
     if let (Some(_), Some(header)) = (recover_stops, &header) {
         let key = "recover-highlights";
@@ -165,25 +171,27 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     if depth.is_some() && distance_mm + eye_mm <= 0.0 {
         faults.push(params.fault("distance", "the center of projection lies behind the picture's plane"));
     }
-    let (Some(file), Some(header), Some(model), Some(width_mm)) =
+    let (Some(file), Some(header), Some(model), Some(shown_mm)) =
         faults.into_result((file, header, model, width_mm))?
     else {
         return Err(Faults::new());
     };
+    let width_mm = shown_mm * header.widened(overscan);
+    let aspect = header.aspect_with(overscan);
     if p.edge.is_none() && !p.width.is_fill() {
         let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm: [0.0; 2] };
         placed.warn_unless_filled("the picture", params, context);
     }
     file.warn(&header, context);
     let making = Arc::new(Making { model, width_mm, luminance_cd_m2: p.luminance.cd_per_m2(), edge });
-    let stand_in = Flat { texture: making.white(&header, &file.name), distance_mm };
+    let stand_in = Flat { texture: making.white(aspect, &file.name), distance_mm };
     let emits = edge == Edge::Black;
     let file = Arc::new(file);
     let is_flat = depth.is_none();
     let pixels = {
         let (file, making) = (Arc::clone(&file), Arc::clone(&making));
-        move || -> Result<Linear, Faults> {
-            let mut linear = file.read()?;
+        move |overscan: [u32; 2]| -> Result<Linear, Faults> {
+            let mut linear = file.read(overscan)?;
             if let (Some(stops), Some(clipped_at)) = (recover_stops, linear.clipped_at) {
                 highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, stops);
             }
@@ -194,28 +202,29 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let still = {
         let (file, pixels, making) = (Arc::clone(&file), pixels.clone(), Arc::clone(&making));
         move || {
-            pixels().map(|linear| {
+            pixels([0; 2]).map(|linear| {
                 let doubts = file.doubts(&linear);
                 (making.still(linear), doubts)
             })
         }
     };
     let lazy = Lazy::new(Box::new(stand_in), emits, move || {
-        let linear = pixels()?;
+        let linear = pixels(overscan)?;
         let mut doubts = file.doubts(&linear);
         let Some(depth) = &depth else {
             let map = making.map(linear, &file.name);
             return Ok((with_halves(map, emits, |texture| Flat { texture, distance_mm }), doubts));
         };
         let plane_mm = distance_mm + depth.eye_mm;
-        let all = depth.of(&linear, plane_mm, width_mm)?;
+        let all = depth.of(&linear, plane_mm, width_mm, overscan)?;
         doubts.extend(depth.doubt(&all, plane_mm));
         let map = making.map(linear, &file.name);
         let ends = all.iter().fold([f32::INFINITY, 0.0_f32], |[a, b], d| [a.min(*d), b.max(*d)]);
         let field = Arc::new(HeightField::new(map.width_px, map.height_px, &all, depth.edge));
         let eye_mm = depth.eye_mm;
         let ends_mm = ends.map(f64::from);
-        let deep = |map| DeepPicture::new(map, Arc::clone(&field), plane_mm, eye_mm, ends_mm);
+        let meaning: Arc<str> = depth.describe().into();
+        let deep = |map| DeepPicture::new(map, Arc::clone(&field), plane_mm, eye_mm, ends_mm, Arc::clone(&meaning));
         Ok((with_halves(map, emits, deep), doubts))
     });
     Ok(Box::new(if is_flat { lazy.with_still(still) } else { lazy }))
@@ -252,6 +261,7 @@ impl PictureFile {
             cover: self.cover,
             layer: self.layer.as_deref(),
             depth: self.depth.as_deref(),
+            overscan: [0; 2],
             is_plain: false,
         }
     }
@@ -261,9 +271,10 @@ impl PictureFile {
         read::header(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
-    /// All of it, in linear light.
-    fn read(&self) -> Result<Linear, Faults> {
-        read::decode(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
+    /// All of it in linear light, with that many pixels of its overscan on each side.
+    fn read(&self, overscan: [u32; 2]) -> Result<Linear, Faults> {
+        read::decode(&self.found, Choice { overscan, ..self.choice() })
+            .map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
     /// What is doubtful in its pixels.
@@ -292,18 +303,18 @@ pub(crate) struct Making {
 
 impl Making {
     /// All of a file, in colors that the model makes light of.
-    pub(crate) fn read(&self, file: &PictureFile) -> Result<Linear, Faults> {
-        let mut linear = file.read()?;
+    pub(crate) fn read(&self, file: &PictureFile, overscan: [u32; 2]) -> Result<Linear, Faults> {
+        let mut linear = file.read(overscan)?;
         gamut::bring_in(&mut linear, &*self.model);
         Ok(linear)
     }
 
-    /// A white picture of that shape.
-    pub(crate) fn white(&self, header: &Header, name: &str) -> PictureMap {
+    /// A white picture of that width over height.
+    pub(crate) fn white(&self, aspect: f64, name: &str) -> PictureMap {
         let pixel = Linear {
             width: 1,
             height: 1,
-            pixel_aspect: header.aspect(),
+            pixel_aspect: aspect,
             rgb: vec![[1.0; 3]],
             alpha: None,
             depth: None,
