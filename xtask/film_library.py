@@ -106,6 +106,21 @@ SILVER = {
 GRAIN = {"fuji-pro-160s": 3, "fuji-pro-400h": 4, "fuji-c200": 4, "fuji-superia-reala-100": 4, "fuji-superia-x-tra-400": 4,
          "fuji-natura-1600": 7, "fuji-eterna-500": 3.5,
          "fuji-velvia-50": 9, "fuji-provia-100f": 9, "kodachrome-64": 10}
+# What long exposures lose, by the makers' sheets; the others state none, or no more than that 1 s counts in full.
+RECIPROCITY = {
+    "kodak-t-max-100": ["# F-4016: a third of a stop more at 1 s, half a stop (15 s) at 10 s, a stop (200 s) at 100 s.",
+        "reciprocity: {table: [[1, 1.26], [10, 15], [100, 200]], above: 0.1 s}"],
+    "kodak-t-max-400": ["# F-4016: a third of a stop more at 1 s, half a stop (15 s) at 10 s, one and a half stops (300 s) at 100 s.",
+        "reciprocity: {table: [[1, 1.26], [10, 15], [100, 300]], above: 0.1 s}"],
+    "ilford-fp4-plus": ["# Harman, \"Film reciprocity failure compensation\": beyond 1 s a metered time Tm becomes Tm^1.26.",
+        "reciprocity: {exponent: 1.26, above: 1 s}"],
+    "ilford-hp5-plus": ["# Harman, \"Film reciprocity failure compensation\": beyond 1 s a metered time Tm becomes Tm^1.31.",
+        "reciprocity: {exponent: 1.31, above: 1 s}"],
+    "fuji-velvia-50": ["# Fuji's data sheet: 1/3, 1/2, 2/3 and 1 stop more at 4, 8, 16 and 32 s; the filters that it names besides are left out.",
+        "reciprocity: {table: [[4, 5.04], [8, 11.3], [16, 25.4], [32, 64]], above: 1 s}"],
+    "fuji-provia-100f": ["# Fuji's data sheet: in full to 128 s, a third of a stop more at 4 minutes.",
+        "reciprocity: {table: [[240, 302]], above: 128 s}"],
+}
 # Parts of red, green and blue in a visual density.
 VISUAL = {"red": 0.26, "green": 0.57, "blue": 0.17}
 # Visual RMS granularity of Vision3 goes with about this power of its speed: 3.1, 4.7 and 5.5 of 5203, 5213 and 5219.
@@ -337,7 +352,7 @@ def slide(folder, slug, numbers):
         remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures.",
         head=["", "process: reversal", "density: status-a", f"year: {year}", f"iso: {iso}", f"reference-illuminant: {DAYLIGHT}",
               *assumed([("granularity", grain_remark), ("mtf", mtf_remark(data))]),
-              base.halation(0.3, base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]), base.ACETATE,
+              base.halation(0.3, base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]), base.ACETATE, *RECIPROCITY.get(slug, []),
               base.flat_minimum(*base.minima(data)),
               *([interlayer(numbers, "projected")] if numbers else [])],
         layers=layers_of(data, "slide", iso, numbers, grain))
@@ -389,7 +404,8 @@ def silver(folder, slug):
         head=["", "process: negative", "density: visual", f"year: {year}", f"iso: {iso}", f"reference-illuminant: {DAYLIGHT}",
               *assumed([("mtf", f"By Frieser's formula with k = {k_mm} mm, half of the contrast at {half:.0f} cycles/mm, of the 0.005 to "
                          "0.04 mm that H. Frieser (Photogr. Sci. Eng. 4, 324, 1960) gives for emulsions.")]),
-              grain, base.halation(0.35, base.ENTERS + "Base and dye under the emulsion as of Tri-X: 0.35 passes once."), base.ACETATE],
+              grain, base.halation(0.35, base.ENTERS + "Base and dye under the emulsion as of Tri-X: 0.35 passes once."), base.ACETATE,
+              *RECIPROCITY.get(slug, [])],
         layers=[[*lines[:-1], *curve]])
 
 

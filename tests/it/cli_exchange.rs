@@ -442,3 +442,27 @@ fn what_is_left_out_is_told_and_nothing_is_written_over() {
         assert!(message.contains(word), "{arguments:?}: {message}");
     }
 }
+
+/// At another size a lens has another focal length, and the same f-number.
+#[test]
+fn a_lens_is_scaled() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("biotar.yaml");
+    good(&["lens", "scale", "zeiss-biotar-100-f1.4", "--to", "58mm", "-o", shown(&file)]);
+    let load = |name: &str| {
+        spectra_lens::load(name, &spectra_scene::FileResources::beside(std::path::Path::new(""))).expect("a lens")
+    };
+    let (before, after) = (load("zeiss-biotar-100-f1.4"), load(shown(&file)));
+    let efl = |lens: &spectra_lens::Lens| lens.first_order(lens.reference_nm).efl_mm;
+    assert!((efl(&after) - 58.0).abs() < 1e-6, "{}", efl(&after));
+    let f_number = |lens: &spectra_lens::Lens| lens.marginal_ray().expect("open").f_number();
+    assert!((f_number(&after) / f_number(&before) - 1.0).abs() < 1e-9);
+    for (arguments, word) in [
+        (&["lens", "scale", "zeiss-biotar-50-f1.4", "--by", "0"][..], "a factor of 0"),
+        (&["lens", "scale", "prism-60-sf11", "--to", "50mm"], "--by FACTOR"),
+    ] {
+        let output = run(arguments);
+        assert_ne!(output.status.code(), Some(0), "{arguments:?}");
+        assert!(text(&output.stderr).contains(word), "{}", text(&output.stderr));
+    }
+}

@@ -165,6 +165,35 @@ fn a_focus_pull_records_each_frames_focus_and_a_frame_alone_is_the_same() {
     }
 }
 
+/// A shot in which the light grows fourfold: the camera meters its first frame for all, whichever frames are asked for.
+#[test]
+fn an_animation_is_metered_on_its_first_frame() {
+    let film = "film: {exposure: null, metering: average}\n";
+    let animation = "animation: {frames: 3, animate: {source.luminance: {1: 100 cd/m2, 3: 400 cd/m2}}}\n";
+    let folder = files(&[("scene.yaml", &format!("{SMALL}{film}{animation}"))]);
+    let times = |out: &Path, film: &str| -> Vec<f64> {
+        let report = json(&out.join("scene-series.json"));
+        let pictures = report["pictures"].as_array().expect("pictures").clone();
+        pictures.iter().map(|p| p[film].as_f64().unwrap_or_else(|| panic!("{p}"))).collect()
+    };
+    let locked = rendered(folder.path(), "locked", &[]);
+    let first = times(&locked, "exposure_time_s");
+    assert!(first.len() == 3 && first.iter().all(|t| *t == first[0]), "{first:?}");
+    let each = rendered(folder.path(), "each", &["--set", "film.meter=each"]);
+    let own = times(&each, "exposure_time_s");
+    assert!((own[0] / own[2] - 4.0).abs() < 0.1, "{own:?}");
+    assert!((own[0] / first[0] - 1.0).abs() < 0.01, "{own:?} {first:?}");
+    // Alone it is as in the shot.
+    let alone = rendered(folder.path(), "alone", &["--frames", "3"]);
+    let name = "scene.0003.png";
+    assert_eq!(bytes(&alone.join(name)), bytes(&locked.join(name)));
+    // A meter that is itself animated meters each frame.
+    let pulled = format!("{SMALL}{film}animation: {{frames: 2, animate: {{film.compensation: {{1: 0, 2: 1}}}}}}\n");
+    let folder = files(&[("scene.yaml", &pulled)]);
+    let two = times(&rendered(folder.path(), "out", &[]), "exposure_time_s");
+    assert!((two[1] / two[0] - 2.0).abs() < 0.05, "{two:?}");
+}
+
 /// Whether a picture with depth has been read already changes nothing: its lens was focused in the mean light of the picture where it
 /// had been, and in white light else.
 #[test]

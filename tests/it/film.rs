@@ -202,3 +202,14 @@ fn negatives_are_kept_while_they_are_printed_otherwise() {
         }
     }
 }
+
+/// What a sheet does not say of long exposures is said, once the meter's time is known; a film with a law of its own is silent.
+#[test]
+fn long_exposures_beyond_the_sheet_are_doubted() {
+    for (stock, doubted) in [("kodak-portra-400", true), ("ilford-hp5-plus", false)] {
+        let scene = load("biotar-trix.yaml", &[&format!("film={{stock: {stock}, exposure: 30 s}}")]);
+        let film = &scene.films[0].film;
+        assert_eq!(film.long_exposure_doubt(30.0).is_some(), doubted, "{stock}");
+        assert!(film.long_exposure_doubt(1.0).is_none() && film.long_exposure_doubt(0.01).is_none());
+    }
+}

@@ -34,6 +34,7 @@ mod schema;
 mod set;
 mod sources;
 mod spectrum;
+mod threads;
 mod time_limit;
 mod version;
 mod view;
@@ -57,6 +58,7 @@ pub fn main(unpack: Unpack) -> ExitCode {
 /// bring, which `--licenses` shows after its own.
 pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
     limits::report_large_files();
+    threads::make();
     ExitCode::from(answer(std::env::args_os(), unpack, notices))
 }
 

@@ -40,6 +40,11 @@ pub trait Source: Send + Sync {
         self.spectrum()
     }
 
+    /// The light that what is white in it sends, in any scale: what color film may be balanced for. Known before [`Source::prepare`].
+    fn white(&self) -> &SpectralPower {
+        self.focus_light()
+    }
+
     /// Peak brightness divided by mean brightness; used to keep highlights within the range of the exact sums.
     fn peak_over_mean(&self) -> f64 {
         1.0
@@ -67,6 +72,12 @@ pub trait Source: Send + Sync {
     /// The source as a flat picture whose pixels are known, to expose a film to it without a lens; reads its files. `None` where
     /// it is none.
     fn still(&self) -> Option<Result<Still, Faults>> {
+        None
+    }
+
+    /// What numbers of its files were taken for, in a few words for the summary, such as the unit of a depth; `None` where nothing is to
+    /// be said.
+    fn meaning(&self) -> Option<String> {
         None
     }
 
@@ -353,6 +364,11 @@ pub trait Film: Any + Send + Sync {
         false
     }
 
+    /// Whether the camera meters each frame of an animation by itself; otherwise all are exposed as the first one is metered.
+    fn meters_each_frame(&self) -> bool {
+        false
+    }
+
     /// Whether the camera's meter looks at a pixel. The channels beyond [`Film::picture_channels`] are recorded with fewer rays
     /// than the picture, and only where this is true; elsewhere they are 0.
     fn is_metered_at(&self, _size: &FrameSize, _pixel: u32) -> bool {
@@ -372,6 +388,17 @@ pub trait Film: Any + Send + Sync {
 
     /// Exposure time, s, with which the mean of the frame would be a mid gray, where the film knows it.
     fn gray_time_s(&self, _exposure: &ExposureFrame) -> Option<f64> {
+        None
+    }
+
+    /// How many of its first channels see a gray card alike in the light that the film is balanced for; 0 where it is balanced for none.
+    fn balanced_channels(&self) -> usize {
+        0
+    }
+
+    /// What is not known of an exposure of `time_s` seconds, in a sentence: whether so long a time counts in full. `None` where it is
+    /// known.
+    fn long_exposure_doubt(&self, _time_s: f64) -> Option<String> {
         None
     }
 

@@ -32,6 +32,7 @@ mod number;
 mod place;
 mod prescription;
 mod reference;
+mod scale;
 pub mod seq;
 mod stop;
 pub mod yaml;
@@ -71,7 +72,7 @@ impl Format {
         match ending.to_ascii_lowercase().as_str() {
             "zmx" => Some(Self::Zmx),
             "seq" => Some(Self::Seq),
-            "csv" => Some(Self::Csv),
+            "csv" | "tsv" | "txt" => Some(Self::Csv),
             _ => None,
         }
     }

@@ -1,6 +1,7 @@
 //! From a scene file to a [`Scene`], with every fault in one go.
 
 use crate::advice::{self, FileIs};
+use crate::cast;
 use crate::earlier::Earlier;
 use crate::filters;
 use crate::focus::FocusLight;
@@ -440,6 +441,7 @@ fn all_stages(
     let said = Said { warnings: warnings.all(), ends: warnings.ends(), dark };
     whole.doubt(said.dark.as_ref(), &warnings);
     of_focus.iter().for_each(|fault| warnings.push(fault.clone()));
+    cast::casts(&films, &channels, source.white(), &grid, params).into_iter().for_each(|cast| warnings.push(cast.0));
     for text in films::warnings(&films) {
         warnings.push(params.fault("film", text));
     }

@@ -7,6 +7,7 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::math::exp;
 use spectra_core::params::{Faults, Length, Params, Part, Positive, StageNode, Value, keys_of};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{Channel, Grid};
@@ -17,7 +18,7 @@ use spectra_lens::{Coating, read_coating};
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FrontSection {
-    /// Filters, in any order: a name of a transmittance, `{file: ...}`, or `{glass: ..., thickness: ...}`.
+    /// Filters, in any order: a name of a transmittance, `{file: ...}`, `{glass: ..., thickness: ...}`, or `{mired: ...}`.
     #[serde(default)]
     #[schemars(length(max = 16))]
     filters: Vec<Part<FilterForm>>,
@@ -43,6 +44,27 @@ pub(crate) struct Plate {
     coating: Option<Part<spectra_lens::CoatingForm>>,
 }
 
+/// An ideal conversion filter.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct Conversion {
+    /// By how much it moves the reciprocal color temperature of light, mired, -500 to 500: 131 makes light of 5500 K one of 3200 K, as a
+    /// Wratten 85B does, -131 the other way, as an 80A.
+    #[schemars(range(min = -500, max = 500))]
+    mired: f64,
+}
+
+/// Transmittance of an ideal conversion filter on the grid: by Wien's law the light of a black body of temperature T becomes that of one
+/// with `mired` added to 10^6 / T, whatever T is: exp(-c2 m / wavelength), and 1 at the end of the visible, 400 or 700 nm, where it
+/// passes most. Nothing passes more than that.
+pub(crate) fn conversion(mired: f64, grid: &Grid) -> Vec<f64> {
+    /// Second radiation constant, nm K (CODATA 2018).
+    const C2_NM_K: f64 = 1.438_776_877e7;
+    let clear_nm = if mired > 0.0 { 700.0 } else { 400.0 };
+    let exponent = |nm: f64| C2_NM_K * mired * 1e-6 * (1.0 / clear_nm - 1.0 / nm);
+    grid.wavelengths_nm().map(|nm| exp(exponent(nm)).min(1.0)).collect()
+}
+
 /// What a filter is written as.
 #[derive(JsonSchema)]
 #[serde(untagged)]
@@ -54,6 +76,8 @@ pub(crate) enum FilterForm {
     Measured(Measured),
     /// A plate of glass.
     Plate(Plate),
+    /// A conversion filter.
+    Conversion(Conversion),
 }
 
 /// Transmittance on the grid of all filters of a `lens` section together; `None` without one.
@@ -94,8 +118,19 @@ fn one(node: &StageNode, grid: Grid, resources: &dyn Resources) -> Result<Vec<f6
         return named(name);
     }
     if !matches!(node.node().value, Value::Map(_)) {
-        let hint = "such as `wratten-15`, `{file: gel.csv}` or `{glass: SCHOTT/N-BK7, thickness: 2 mm}`";
+        let hint =
+            "such as `wratten-15`, `{file: gel.csv}`, `{mired: 131}` or `{glass: SCHOTT/N-BK7, thickness: 2 mm}`";
         return Err(node.fault("this is not a filter").hint(hint).into());
+    }
+    if node.node().get("mired").is_some() {
+        let p: Conversion = node.parse()?;
+        if !(p.mired.abs() <= 500.0) {
+            return Err(node
+                .fault(format!("`mired: {}` is out of range", p.mired))
+                .hint("-500 to 500, such as 131")
+                .into());
+        }
+        return Ok(conversion(p.mired, &grid));
     }
     if node.node().get("glass").is_none() {
         return named(&node.parse::<Measured>()?.file);
@@ -133,6 +168,24 @@ mod tests {
     use super::*;
     use spectra_core::spectral::BAND;
     use spectra_glass::Catalogue;
+
+    /// A black body of 5500 K through +131 mired has the chromaticity of one of about 3197 K; Wien's law stands for Planck's.
+    #[test]
+    fn a_conversion_filter_moves_the_color_temperature() {
+        for (kelvin, mired) in [(5500.0, 131.0), (3200.0, -131.0), (4000.0, 60.0)] {
+            let light = BAND.wavelengths_nm().map(|nm| spectra_spectrum::planck_radiance(nm, kelvin));
+            let continuum = light.zip(conversion(mired, &BAND)).map(|(l, t)| l * t).collect();
+            let power = spectra_core::spectral::SpectralPower { grid: BAND, continuum, lines: Vec::new() };
+            let [x, y, z] = spectra_spectrum::Observer::cie_1931_2deg().xyz_of_power(&power);
+            let got = spectra_color::cct([x / (x + y + z), y / (x + y + z)]).expect("white");
+            let want = 1e6 / (1e6 / kelvin + mired);
+            assert!(
+                (got.kelvin / want - 1.0).abs() < 0.01 && got.duv.abs() < 1e-3,
+                "{kelvin} {mired}: {got:?}, not {want}"
+            );
+        }
+        assert!(conversion(0.0, &BAND).iter().all(|t| *t == 1.0));
+    }
 
     /// N-BK7 at 587.56 nm: nd 1.5168, so a plate without absorption passes 2 n / (n^2 + 1) = 0.91907; 10 mm of it
     /// absorb hardly anything there (SCHOTT's data sheet: internal transmittance 0.998 at 580 nm).

@@ -8,6 +8,7 @@
 mod advice;
 mod assemble;
 pub mod bundled;
+mod cast;
 pub mod diagnostics;
 mod doubts;
 mod earlier;
@@ -19,6 +20,7 @@ mod landing;
 mod language;
 mod lens_section;
 mod light_layer;
+pub mod metering;
 mod negatives;
 mod output;
 mod remembered;

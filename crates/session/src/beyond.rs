@@ -1,4 +1,4 @@
-//! Films that an exposure leaves black or white all over.
+//! Films that an exposure leaves black or white all over, and those exposed for longer than anybody knows what they do.
 
 use spectra_core::frame::ExposureFrame;
 use spectra_core::math::log2;
@@ -31,5 +31,15 @@ pub(crate) fn beyond(scene: &Scene, exposure: &ExposureFrame) -> Vec<Warning> {
             format!("`exposure: {}`, or `metering: average` in place of `exposure`", shutter::words(gray_s))
         })))
     };
-    scene.films.iter().enumerate().filter_map(of).collect()
+    let long = |(index, film): (usize, &SceneFilm)| {
+        let time_s = film.film.metered_time_s(&film.exposure(exposure));
+        let text = film.film.long_exposure_doubt(time_s)?;
+        let at = film.name.as_ref().map_or_else(|| "film".to_owned(), |_| format!("film[{index}]"));
+        let fault = scene.params.fault(&format!("{at}.stock"), text);
+        Some(Warning(fault.hint(
+            "open the lens or light the scene for a time of a second at most; or state `reciprocity` in a stock of your own, `like` this one",
+        )))
+    };
+    let films = || scene.films.iter().enumerate();
+    films().filter_map(of).chain(films().filter_map(long)).collect()
 }

@@ -193,7 +193,8 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             continue;
         }
         if metered.is_none() && meters && index > 0 {
-            let mut earlier = plates[..index].iter().filter(|earlier| !failed.contains(&earlier.file));
+            let mut earlier =
+                plates[..index].iter().filter(|earlier| failed.iter().all(|(file, _)| *file != earlier.file));
             metered = earlier.find_map(|earlier| meter(job, earlier, host));
             if host.is_stopped() {
                 ended = Ended::Stopped;
@@ -225,7 +226,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             Err(error @ SessionError::Request(_)) => return Err(error),
             Err(error) => {
                 host.hear(Event::Warning(&Warning::from(format!("`{}` is not developed: {error}", plate.file))));
-                failed.push(plate.file.clone());
+                failed.push((plate.file.clone(), error.to_string()));
             }
         }
     }
@@ -241,8 +242,11 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
     ));
     match &failed[..] {
         [] => Ok(ended),
-        [first] => Err(SessionError::Failed(format!("`{first}` is not developed"))),
-        [first, ..] => Err(SessionError::Failed(format!("{} pictures are not developed: `{first}` ...", failed.len()))),
+        [(file, why)] => Err(SessionError::Failed(format!("`{file}` is not developed: {why}"))),
+        // The cause of the first, since it may be that of all, and warnings may be silent.
+        [(file, why), ..] => {
+            Err(SessionError::Failed(format!("{} pictures are not developed: `{file}`: {why} ...", failed.len())))
+        }
     }
 }
 

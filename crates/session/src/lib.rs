@@ -28,6 +28,7 @@ mod cube;
 mod develop;
 mod error;
 mod files;
+mod first_frame;
 mod header;
 mod host;
 mod job;

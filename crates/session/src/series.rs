@@ -5,7 +5,7 @@ use crate::check::{Look, checked, each_once};
 use crate::contact::Contact;
 use crate::files::{Files, write_report};
 use crate::taken::{Taken, Unfinished, prepare};
-use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, header, words};
+use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, first_frame, header, words};
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};
 use spectra_core::sink::WriteFault;
@@ -63,8 +63,10 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
         &format!("{}: {}", series.name(), what(series, planned.len())),
         &json!({ "event": "series", "scene": series.name(), "count": series.count(), "pictures": planned.len() }),
     ));
+    let metered = first_frame::metered(job, host)?;
     let mut work = Work {
         job,
+        series: metered.as_ref().unwrap_or(series),
         host,
         earlier: if job.skip_existing { earlier(host, &report_file) } else { Map::new() },
         contact: contact(job, &planned),
@@ -165,6 +167,8 @@ fn earlier(host: &dyn Host, report_file: &str) -> Map<String, Value> {
 /// The work on a series, and what is done of it.
 struct Work<'a> {
     job: &'a Job<'a>,
+    /// What the pictures are made of: that of the job, exposed as its first frame was metered where that is locked.
+    series: &'a Series,
     host: &'a dyn Host,
     earlier: Map<String, Value>,
     contact: Option<Contact>,
@@ -198,7 +202,7 @@ impl Work<'_> {
             return Ok(true);
         }
         // Not kept from the check: a thousand scenes would not fit into memory.
-        let mut session = Session::after(job.series.clone(), picture.index, self.other.take(), job.isa, Effort::Full)?;
+        let mut session = Session::after(self.series.clone(), picture.index, self.other.take(), job.isa, Effort::Full)?;
         let control = host.control();
         session.prepare(host.workers())?;
         for doubt in session.scene().source.doubts() {

@@ -95,6 +95,9 @@ fn of(report: &Report<'_>) -> String {
         let (median, p95) = (spectra_render::percent(noise.median), spectra_render::percent(noise.p95));
         text.push_str(&format!(", noise {median} (95 % of the frame below {p95})"));
     }
+    if let Some(meaning) = scene.source.meaning() {
+        text.push_str(&format!("; {meaning}"));
+    }
     if rendering.partial {
         text.push_str("\npartial: stopped before all samples were taken");
     }

@@ -26,6 +26,18 @@ pub enum Metering {
     Spot,
 }
 
+/// Which frames of an animation the camera meters.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+pub enum Metered {
+    /// The first one, for all.
+    #[default]
+    First,
+    /// Each by itself.
+    Each,
+}
+
 /// `spot` as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]

@@ -2,7 +2,7 @@
 
 use crate::effects::{Assumed, HalationSetting, OpticsSetting, Switches};
 use crate::frame::FrameParams;
-use crate::metering::{Metering, SpotParams};
+use crate::metering::{Metered, Metering, SpotParams};
 use crate::view::{PaperParams, ScanParams, View, WhiteParams};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -55,6 +55,10 @@ pub struct StockParams {
     /// area gets 10/S lx s, the exposure of a mid gray.
     #[serde(default)]
     pub metering: Metering,
+    /// Which frame of an animation is metered: the `first` one, for all of them, or `each` by itself, which may flicker; `first` if left
+    /// out.
+    #[serde(default)]
+    pub meter: Metered,
     /// The spot of `metering: spot`; a tenth of the height in the middle of the frame if left out.
     pub spot: Option<SpotParams>,
     /// Stops by which a metered frame is exposed more than the meter says, -10 to 10; 0 if left out.

@@ -3,7 +3,7 @@
 use crate::beyond::{beyond, ends};
 use crate::effects::{Effects, mtf50, pixel_mm};
 use crate::frame::{FrameEffects, Laid};
-use crate::metering::{METER, Meter, Metering, overruled, recorded_time_s};
+use crate::metering::{METER, Meter, Metered, Metering, overruled, recorded_time_s};
 use crate::seen::seen;
 use crate::settings::StockParams;
 use crate::stocks::load_stock;
@@ -24,7 +24,7 @@ use spectra_film::positive::{Reach, densities};
 use spectra_film::print::{Print, metered_exposure_lx_s};
 use spectra_film::push::{PushError, pushed};
 use spectra_film::raster::Raster;
-use spectra_film::stock::{MeterResponse, Process, Stock};
+use spectra_film::stock::{MeterResponse, Process, Stock, unknown_reciprocity};
 use std::any::Any;
 
 /// A film from a data file.
@@ -37,6 +37,7 @@ pub struct StockFilm {
     exposure_time_s: f64,
     /// An exposure time was stated, and the camera meters.
     is_overruled: bool,
+    meters: Metered,
     meter: Meter,
     effects: Effects,
     frame: Option<FrameEffects>,
@@ -92,6 +93,7 @@ impl StockFilm {
             channels,
             exposure_time_s,
             is_overruled,
+            meters: p.meter,
             meter,
             effects,
             frame,
@@ -300,6 +302,10 @@ impl Film for StockFilm {
         self.meter.is_on()
     }
 
+    fn meters_each_frame(&self) -> bool {
+        self.meters == Metered::Each
+    }
+
     fn is_metered_at(&self, size: &FrameSize, pixel: u32) -> bool {
         self.meter.looks_at(size, pixel)
     }
@@ -332,6 +338,14 @@ impl Film for StockFilm {
             Some((plane, ends(curve)))
         });
         beyond(&layers.collect::<Option<Vec<_>>>()?, factor * effect)
+    }
+
+    fn balanced_channels(&self) -> usize {
+        if self.stock.layers.len() == 3 { 3 } else { 0 }
+    }
+
+    fn long_exposure_doubt(&self, time_s: f64) -> Option<String> {
+        unknown_reciprocity(self.stock.reciprocity.as_ref(), &self.stock.name, time_s)
     }
 
     fn gray_time_s(&self, exposure: &ExposureFrame) -> Option<f64> {

@@ -1,7 +1,7 @@
 //! `film: three-strip`, three separation negatives behind a beam splitter, printed by dye transfer.
 
 use crate::effects::{Assumed, Effects, HalationSetting, Off, OpticsSetting, Switches, mtf50, pixel_mm};
-use crate::metering::{METER, Meter, Metering, SpotParams, overruled, recorded_time_s};
+use crate::metering::{METER, Meter, Metered, Metering, SpotParams, overruled, recorded_time_s};
 use crate::stocks::load_stock;
 use crate::view::WhiteParams;
 use schemars::JsonSchema;
@@ -17,7 +17,7 @@ use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
 use spectra_film::positive::Positive;
 use spectra_film::print::metered_exposure_lx_s;
-use spectra_film::stock::Stock;
+use spectra_film::stock::{Reciprocity, Stock, unknown_reciprocity};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmittance_in, v_lambda};
 
@@ -57,6 +57,10 @@ pub struct ThreeStripParams {
     /// area gets 10/S lx s, the exposure of a mid gray.
     #[serde(default)]
     pub metering: Metering,
+    /// Which frame of an animation is metered: the `first` one, for all of them, or `each` by itself, which may flicker; `first` if left
+    /// out.
+    #[serde(default)]
+    pub meter: Metered,
     /// The spot of `metering: spot`; a tenth of the height in the middle of the frame if left out.
     pub spot: Option<SpotParams>,
     /// Stops by which a metered frame is exposed more than the meter says, -10 to 10; 0 if left out.
@@ -156,11 +160,16 @@ pub struct ThreeStrip {
     exposure_time_s: f64,
     /// An exposure time was stated, and the camera meters.
     is_overruled: bool,
+    meters: Metered,
     meter: Meter,
     positive: Positive,
     /// Each record by itself, in the order of the print's layers.
     developed: [Emulsion; 3],
     effects: [Effects; 3],
+    /// What long exposures lose on each record.
+    reciprocity: [Option<Reciprocity>; 3],
+    /// Names of the three stocks.
+    stocks: String,
     /// Of what the matrices and the transfer lose, cycles/mm.
     mtf50: Option<f64>,
     words: String,
@@ -255,7 +264,23 @@ impl ThreeStrip {
             return Err(params.fault_here("three records are expected").into());
         };
         let mtf50 = mtf50(p.optics, None);
-        Ok(Self { channels, exposure_time_s, is_overruled, meter, positive, developed, effects, mtf50, words })
+        let reciprocity = [0, 1, 2].map(|i| records[i].stock.reciprocity.clone());
+        let stocks =
+            if stocks.iter().all(|name| *name == stocks[0]) { stocks[0].to_owned() } else { stocks.join(", ") };
+        Ok(Self {
+            channels,
+            exposure_time_s,
+            is_overruled,
+            meters: p.meter,
+            meter,
+            positive,
+            developed,
+            effects,
+            reciprocity,
+            stocks,
+            mtf50,
+            words,
+        })
     }
 }
 
@@ -285,7 +310,8 @@ impl ThreeStrip {
                 _ => effects.spread(0, light, &raster, &mut spare)?,
             };
             exposed(name, &plane, factor);
-            film.develop(0, &mut plane, factor);
+            let reciprocity = self.reciprocity[i].as_ref();
+            film.develop(0, &mut plane, factor * reciprocity.map_or(1.0, |r| r.effect(self.exposure_time_s * factor)));
             effects.edges(0, &mut plane, film, &raster);
             effects.grain(0, &mut plane, film.range(0).0, &raster)?;
             Ok(plane)
@@ -374,8 +400,21 @@ impl Film for ThreeStrip {
         self.meter.is_on()
     }
 
+    fn meters_each_frame(&self) -> bool {
+        self.meters == Metered::Each
+    }
+
     fn is_metered_at(&self, size: &FrameSize, pixel: u32) -> bool {
         self.meter.looks_at(size, pixel)
+    }
+
+    fn balanced_channels(&self) -> usize {
+        RECORDS.len()
+    }
+
+    fn long_exposure_doubt(&self, time_s: f64) -> Option<String> {
+        let unknown = self.reciprocity.iter().any(Option::is_none);
+        if unknown { unknown_reciprocity(None, &self.stocks, time_s) } else { None }
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -153,7 +153,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let scale = p.luminance.cd_per_m2() / white::luminance_cd_m2(&white);
     let spectra: Vec<SpectralPower> = spectra.iter().map(|s| s.scaled(scale)).collect();
     let palette = Palette::new(context.grid, &spectra);
-    let texture = ChartTexture { edge: p.edge.unwrap_or_default(), ..ChartTexture::new(chart, palette, &spectra) };
+    let texture =
+        ChartTexture { edge: p.edge.unwrap_or_default(), ..ChartTexture::new(chart, palette, &spectra, white) };
     Ok(Box::new(Flat { texture, distance_mm }))
 }
 
@@ -285,12 +286,14 @@ struct ChartTexture {
     chart: Chart,
     palette: Palette,
     mean: SpectralPower,
+    /// Light of a perfect white on it.
+    white: SpectralPower,
     peak_over_mean: f64,
     edge: Edge,
 }
 
 impl ChartTexture {
-    fn new(chart: Chart, palette: Palette, spectra: &[SpectralPower]) -> Self {
+    fn new(chart: Chart, palette: Palette, spectra: &[SpectralPower], white: SpectralPower) -> Self {
         let mut areas = chart.areas().to_vec();
         // An ink too small to be met still must be able to be seen: it keeps the density positive.
         areas.iter_mut().for_each(|a| *a = a.max(1e-6));
@@ -298,7 +301,7 @@ impl ChartTexture {
         let peak = spectra.iter().map(white::luminance_cd_m2).fold(0.0, f64::max);
         let average = white::luminance_cd_m2(&mean);
         let peak_over_mean = if average > 0.0 { peak / average } else { 1.0 };
-        Self { chart, palette, mean, peak_over_mean, edge: Edge::Black }
+        Self { chart, palette, mean, white, peak_over_mean, edge: Edge::Black }
     }
 
     /// The inks at up to [`CHUNK`] places, also beyond the border.
@@ -345,6 +348,10 @@ impl Texture for ChartTexture {
 
     fn spectrum(&self) -> &SpectralPower {
         &self.mean
+    }
+
+    fn white(&self) -> &SpectralPower {
+        &self.white
     }
 
     fn peak_over_mean(&self) -> f64 {

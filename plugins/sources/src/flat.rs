@@ -23,6 +23,11 @@ pub(crate) trait Texture: Send + Sync {
     /// Light summed over the picture, in any scale.
     fn spectrum(&self) -> &SpectralPower;
 
+    /// The light of what is white in the picture, in any scale.
+    fn white(&self) -> &SpectralPower {
+        self.spectrum()
+    }
+
     /// Peak over mean brightness.
     fn peak_over_mean(&self) -> f64;
 
@@ -48,6 +53,9 @@ pub(crate) struct Flat<T> {
 impl<T: Texture> Source for Flat<T> {
     fn spectrum(&self) -> &SpectralPower {
         self.texture.spectrum()
+    }
+    fn white(&self) -> &SpectralPower {
+        self.texture.white()
     }
     fn peak_over_mean(&self) -> f64 {
         self.texture.peak_over_mean()

@@ -9,6 +9,8 @@ use spectra_core::view::{Sight, View};
 /// `width: fill` makes a source this much larger than what the frame sees of it, so that no border shows between the
 /// points of the frame that were looked from.
 const MARGIN: f64 = 1.02;
+/// Widest angle, degrees, that a flat picture is seen under without a word: beyond it a picture is mostly border, drawn out.
+const WIDEST_DEG: f64 = 130.0;
 /// A share of the frame that sees nothing and is not worth a word.
 const NOTHING: f64 = 0.01;
 
@@ -109,6 +111,25 @@ impl Placed {
     fn holds(&self, sight: &Sight) -> bool {
         let [x, y] = sight.at_mm(self.distance_mm);
         (x - self.center_mm[0]).abs() <= 0.5 * self.width_mm && (y - self.center_mm[1]).abs() <= 0.5 * self.height_mm
+    }
+
+    /// Warns where a lens sees so much that no flat picture can stand before it as one would expect: a fisheye.
+    pub(crate) fn warn_of_fisheye(&self, what: &str, params: &Params, context: &Context<'_>) {
+        let Some([x, y]) = context.view.and_then(|view| view.half_size_mm(self.distance_mm, self.center_mm)) else {
+            return;
+        };
+        let seen = 2.0 * spectra_core::math::atan2((x * x + y * y).sqrt(), self.distance_mm).to_degrees();
+        if seen <= WIDEST_DEG {
+            return;
+        }
+        let text = format!(
+            "this lens sees {seen:.0} degrees from corner to corner: to fill the frame, {what} has to be {} wide, of which the middle of the \
+             frame shows a small part",
+            length(2.0 * x)
+        );
+        let hint = "take a lens of less than 130 degrees for a flat picture (`spectra list lens`); or write a width, such as `width: 2 m`, \
+                    and the border stays dark";
+        context.warn(params.fault("width", text).hint(hint));
     }
 
     /// Warns where part of the frame sees nothing of a source that has a border and does not say that it is meant.

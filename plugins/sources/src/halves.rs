@@ -44,6 +44,9 @@ impl<S: Source> Source for Halves<S> {
     fn split(&self) -> Option<Split<'_>> {
         Some(Split { lights: &self.lights, rest: &self.rest, pays: self.pays })
     }
+    fn meaning(&self) -> Option<String> {
+        self.whole.meaning()
+    }
     fn describe(&self) -> String {
         self.whole.describe()
     }

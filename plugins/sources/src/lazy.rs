@@ -62,6 +62,9 @@ impl Source for Lazy {
     fn focus_light(&self) -> &SpectralPower {
         self.stand_in.focus_light()
     }
+    fn white(&self) -> &SpectralPower {
+        self.stand_in.white()
+    }
     fn peak_over_mean(&self) -> f64 {
         self.now().peak_over_mean()
     }
@@ -83,6 +86,9 @@ impl Source for Lazy {
             let _ = self.doubts.set(doubts);
             still
         }))
+    }
+    fn meaning(&self) -> Option<String> {
+        self.now().meaning()
     }
     fn describe(&self) -> String {
         self.now().describe()

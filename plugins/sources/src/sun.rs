@@ -215,6 +215,9 @@ impl Source for Over {
     fn focus_light(&self) -> &SpectralPower {
         self.over.focus_light()
     }
+    fn white(&self) -> &SpectralPower {
+        self.over.white()
+    }
     /// Of the sun over the other one's mean: as it is where a white of the luminance of a sunlit card fills the frame.
     fn peak_over_mean(&self) -> f64 {
         self.over.peak_over_mean().max(std::f64::consts::PI * self.disk.per_solid_angle())

@@ -29,10 +29,41 @@ pub(crate) enum LensCommand {
     Ghosts(LensGhosts),
     /// Trace rays through a lens: CSV in, CSV out.
     Trace(LensTrace),
-    /// Convert a lens file from another program: .zmx, .seq or .csv.
+    /// Convert a lens file from another program, or a table as patents print it: .zmx, .seq, .csv or .txt.
     Import(LensImport),
+    /// Write a lens at another size, such as a patent for a focal length of 100 at 50 mm.
+    Scale(LensScale),
     /// Export a lens for other programs, as .zmx.
     Export(LensExport),
+}
+
+/// `spectra lens scale`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Write a lens at another size: all lengths times a factor, so that f-number, angles and glasses stay.\n\n\
+        Patents state many lenses for a focal length of 1 or 100.",
+    after_long_help = "Examples:\n  spectra lens scale zeiss-biotar-100-f1.4 --to 50mm -o biotar.yaml\n  \
+        spectra lens scale cooke-triplet-50-f5 --by 0.5"
+)]
+pub(crate) struct LensScale {
+    /// A lens file of any kind that is read, or the name of a bundled lens.
+    #[arg(value_name = "LENS")]
+    pub lens: String,
+    /// The focal length that it is to have (85mm).
+    #[arg(long, value_name = "LENGTH", value_parser = parse::<Positive<Length>>, conflicts_with = "by", required_unless_present = "by")]
+    pub to: Option<Positive<Length>>,
+    /// What all lengths are multiplied by.
+    #[arg(long, value_name = "FACTOR")]
+    pub by: Option<f64>,
+    /// Output file, .yaml; standard output if not given.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Overwrite the output file if it exists.
+    #[arg(long)]
+    pub force: bool,
+    /// Write a JSON object to standard output.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `spectra lens compare`.

@@ -14,7 +14,7 @@ use std::path::{Component, Path, absolute};
 pub(crate) fn import(arguments: &LensImport) -> Outcome {
     let name = arguments.file.display().to_string();
     let Some(format) = Format::of_name(&name) else {
-        return Err(Failure::Input(format!("{name}: unknown file extension; .zmx, .seq and .csv can be read")));
+        return Err(Failure::Input(format!("{name}: unknown file extension; .zmx, .seq, .csv and .txt can be read")));
     };
     let output = target(arguments.output.as_deref(), &arguments.file, arguments.force)?;
     let resources = FileResources::beside(Path::new(""));

@@ -8,6 +8,7 @@ mod export;
 mod ghosts;
 mod import;
 mod info;
+mod scale;
 mod trace;
 
 pub(crate) use arguments::LensArguments;
@@ -29,6 +30,7 @@ pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
         LensCommand::Ghosts(ghosts) => ghosts::ghosts(ghosts, isa),
         LensCommand::Info(info) => info::info(info),
         LensCommand::Trace(trace) => trace::trace(trace, isa),
+        LensCommand::Scale(scale) => scale::scale(scale),
         LensCommand::Import(import) => import::import(import),
         LensCommand::Export(export) => export::export(export),
     }

@@ -152,11 +152,16 @@ impl Workers for Face {
     fn each(&self, work: &(dyn Fn() + Sync)) {
         std::thread::scope(|scope| {
             let (end, ended) = mpsc::channel::<()>();
-            let worker = scope.spawn(move || {
+            let worker = std::thread::Builder::new().name("render 0".to_owned()).spawn_scoped(scope, move || {
                 // Dropped at the end, also by a panic: that is what ends the wait below.
                 let _end = end;
                 Threads(self.threads).each(work);
             });
+            let Ok(worker) = worker else {
+                // Where the system gives no thread, this one works, and nobody looks after the progress.
+                work();
+                return;
+            };
             while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
                 self.tick();
             }

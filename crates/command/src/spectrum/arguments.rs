@@ -38,6 +38,8 @@ pub(crate) enum SpectrumCommand {
     Fit(SpectrumFit),
     /// Multiply spectra as Gaussian terms: exact integrals, and estimates by one term of each.
     Product(SpectrumProduct),
+    /// Draw wavelengths of a light as renders do, each with its weight.
+    Draw(SpectrumDraw),
     /// Convert a color to a spectrum with each color model, and back to a color.
     Color(SpectrumColor),
     /// Measure how well each color model preserves colors.
@@ -218,6 +220,61 @@ pub(crate) struct SpectrumProduct {
     /// Output file: FILE.svg or FILE.png for a figure, FILE.csv for the errors. Can be repeated.
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
+    /// Write a JSON object to standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Kinds of random numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum NumbersName {
+    /// Independent numbers.
+    Random,
+    /// The scrambled Sobol sequence of renders.
+    Sobol,
+    /// A lattice.
+    Lattice,
+    /// One number in each of as many equal parts.
+    Stratified,
+}
+
+/// `spectra spectrum draw`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Draw wavelengths of a light with a sampling strategy, by the same density that renders prepare.\n\n\
+        Writes a CSV table: `wavelength_nm`; `line`, the number of the spectral line, empty for the continuum; `weight`, one over the \
+        density in nm, or over the probability of the line; `light`, the light's power there, per nm or of the line; `response`, that of \
+        --on, or 1; `density`, per nm, or the probability of the line. The mean of weight x light x response is the integral of light \
+        and response, whatever the strategy.",
+    after_long_help = "Examples:\n  spectra spectrum draw D65 --strategy uniform -n 5\n  \
+        spectra spectrum draw FL11 --strategy lines -n 5 --seed 7\n  \
+        spectra spectrum draw D65 --on ilford-ortho-plus --strategy 'truncated-gaussian{center: 540, sigma: 60}' -n 100000 -o draws.csv"
+)]
+pub(crate) struct SpectrumDraw {
+    /// The light: a bundled spectrum, a file or an expression.
+    #[arg(value_name = "SPECTRUM")]
+    pub name: String,
+    /// The strategy, as NAME or NAME{key: value, ...}; `spectra list wavelengths` lists them.
+    #[arg(long, value_name = "NAME", default_value = "source-times-response")]
+    pub strategy: String,
+    /// What records the light: a sensitivity; all wavelengths alike if not given.
+    #[arg(long, value_name = "NAME")]
+    pub on: Option<String>,
+    /// How many wavelengths are drawn, 1 to 10000000.
+    #[arg(short, long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub number: u32,
+    /// Seed of the random numbers.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub seed: u64,
+    /// Kind of random numbers.
+    #[arg(long, value_name = "KIND", value_enum, default_value = "random")]
+    pub numbers: NumbersName,
+    /// Wavelength range, nm.
+    #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 1..=2, default_value = "350,830")]
+    pub band: Vec<f64>,
+    /// Output file, FILE.csv; standard output if not given.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
     /// Write a JSON object to standard output.
     #[arg(long)]
     pub json: bool,

@@ -3,6 +3,7 @@
 mod arguments;
 mod color;
 mod describe;
+mod draw;
 mod fit;
 mod info;
 mod list;
@@ -28,6 +29,7 @@ pub(crate) fn spectrum(command: &SpectrumCommand) -> Outcome {
         SpectrumCommand::Plot(arguments) => plot::plot(arguments),
         SpectrumCommand::Fit(arguments) => fit::fit(arguments),
         SpectrumCommand::Product(arguments) => product::product(arguments),
+        SpectrumCommand::Draw(arguments) => draw::draw(arguments),
         SpectrumCommand::Color(arguments) => color::color(arguments),
         SpectrumCommand::Models(arguments) => color::measure(arguments),
         SpectrumCommand::List(arguments) => list::list(arguments),

@@ -16,11 +16,15 @@
 //! | `surface` | `#`, `no`, `number` | numbers that rise from row to row; `stop` marks the stop |
 //! | `comment` | `remark`, `note` | words |
 //!
+//! Tables as patents print them, with titles, headings of several words, columns of blanks, equations, marks and blocks of coefficients,
+//! are typed again first, see [`patent`].
+//!
 //! Case, blanks, `-` and `_` do not matter in names. A unit may follow in brackets: `radius [in]`, `a4 [mm^-3]`; without one lengths are
 //! in mm, and if one column states another unit, all lengths state theirs. Cells are separated by comma, semicolon or tab; with
 //! semicolons and tabs a decimal comma is understood. Lines that start with `#` are comments.
 
 mod columns;
+mod patent;
 mod table;
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,7 @@
 //! Rows to surfaces.
 
 use super::columns::{self, Column, HINT, by_name};
-use super::units;
+use super::{patent, units};
 use crate::glass::{Catalogues, OwnCatalogue};
 use crate::place::{Source, shown};
 use crate::prescription::{Item, Medium, Prescription, Shape, Surface};
@@ -13,7 +13,9 @@ use spectra_core::params::{Fault, Faults};
 /// # Errors
 /// No usable columns, no rows, several lenses in one table, and each cell that cannot be read, with its place.
 pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
-    let source = Source::new(name, text);
+    let printed = patent::plain(text);
+    let retyped = patent::retype(&printed);
+    let source = Source::new(name, retyped.as_ref().map_or(printed.as_str(), |retyped| retyped.text.as_str()));
     let mut rows = source.text().lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
         !line.is_empty() && !line.starts_with('#')
@@ -74,11 +76,14 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
         }
         row.surface(&mut lens);
     }
+    for (line, alters, text) in retyped.into_iter().flat_map(|retyped| retyped.notes) {
+        lens.leave_out(line, alters, text);
+    }
     if let Some((line, count)) = seen.zero_radii {
         let rows = if count > 1 { format!(" ({count} rows)") } else { String::new() };
         lens.leave_out(line, false, format!("a radius of 0 is taken as a plane{rows}"));
-        lens.left_out.sort_by_key(|note| note.line);
     }
+    lens.left_out.sort_by_key(|note| note.line);
     if lens.items.is_empty() && faults.is_empty() {
         faults.push(source.fault_here("the table has no surfaces"));
     }
@@ -176,6 +181,10 @@ fn decimal_commas<'a>(source: &Source, head: &str, rows: impl Iterator<Item = &'
 
 /// What helps where a cell is no number.
 fn hint_of(cell: &str) -> Option<String> {
+    if patent::is_variable(cell) {
+        let text = "the gap varies with zoom or focus: write its value at one setting, in mm, from the patent's table of variable gaps";
+        return Some(text.to_owned());
+    }
     let point = cell.replacen(',', ".", 1);
     if number::parse(&point).is_some() {
         return Some(format!("write it with a point, `{}`, or separate cells by semicolons or tabs", shown(&point)));
@@ -233,8 +242,8 @@ impl<'a> Row<'a, '_> {
 
     fn parse(&mut self, cell: &str) -> Option<f64> {
         let value = match self.separator {
-            ',' => number::parse(cell),
-            _ => number::parse(&cell.replacen(',', ".", 1)),
+            ',' => number::parse(&patent::figure(cell)),
+            _ => number::parse(&patent::figure(&cell.replacen(',', ".", 1))),
         };
         if value.is_none() {
             let fault = self.source.fault(cell, format!("`{}` is not a number", shown(cell)));

@@ -157,3 +157,93 @@ fn the_table_of_the_guide() {
     assert!(matches!(surfaces[0].shape, Shape::Sphere { radius } if (radius - 60.96).abs() < 1e-12));
     assert_eq!((&surfaces[3].shape, surfaces.len()), (&Shape::Stop, 4));
 }
+
+/// Radii, thicknesses and indices of a table, the number of the stop from 1, and the notes.
+fn printed(text: &str) -> (Vec<[f64; 3]>, Option<usize>, String) {
+    let lens = read("t.csv", text).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
+    let surfaces: Vec<_> = lens.surfaces().collect();
+    let radius = |shape: &Shape| match shape {
+        Shape::Sphere { radius } | Shape::Conic { radius, .. } | Shape::EvenAsphere { radius, .. } => *radius,
+        _ => f64::INFINITY,
+    };
+    let index = |medium: &Medium| match medium {
+        Medium::Model { nd, .. } => *nd,
+        Medium::Glass { nd, .. } => nd.unwrap_or(0.0),
+        _ => 1.0,
+    };
+    let rows = surfaces.iter().map(|s| [radius(&s.shape), s.thickness_mm, index(&s.medium)]).collect();
+    let stop = surfaces.iter().position(|s| s.stop || s.shape == Shape::Stop).map(|at| at + 1);
+    let notes: Vec<String> = lens.left_out.iter().map(ToString::to_string).collect();
+    (rows, stop, notes.join("\n"))
+}
+
+/// A triplet, as six offices and typists print it; each must be the same lens.
+#[test]
+fn tables_as_patents_print_them() {
+    const TRIPLET: [[f64; 3]; 7] = [
+        [23.713, 4.831, 1.691],
+        [7331.288, 5.86, 1.0],
+        [-24.456, 0.975, 1.6727],
+        [21.896, 4.822, 1.0],
+        [f64::INFINITY, 1.2, 1.0],
+        [86.759, 3.127, 1.691],
+        [-20.4942, 41.1, 1.0],
+    ];
+    let modern = "Numerical Example 1\nUnit mm\n\nSurface data\nSurface No.    r        d      nd       νd    Effective diameter\n\
+        1      23.713    4.831  1.69100  54.7   20.0\n2    7331.288    5.860                  19.4\n3    −24.456    0.975  1.67270  32.2  15.0\n\
+        4      21.896    4.822                  14.0\n5(stop)   ∞       1.200                  13.0\n6      86.759    3.127  1.69100  54.7  16.0\n\
+        7    −20.4942  41.100\nImage plane   ∞\n\nVarious data\nFocal length   50.00\nF-number   4.00\n";
+    let equations = "r1 = 23.713  d1 = 4.831  n1 = 1.69100  ν1 = 54.7\nr2 = 7331.288  d2 = 5.860\nr3 = -24.456  d3 = 0.975  n2 = 1.67270  ν2 = 32.2\n\
+        r4 = 21.896  d4 = 4.822\nr5 = ∞ (stop)  d5 = 1.2\nr6 = 86.759  d6 = 3.127  n3 = 1.69100  ν3 = 54.7\nr7 = -20.4942  d7 = 41.1\n";
+    let german = "r1 = + 23,713\n   d1 = 4,831   n1 = 1,6910   v1 = 54,7\nr2 = + 7331,288\n   d2 = 5,860\nr3 = - 24,456\n   d3 = 0,975   n2 = 1,6727   v2 = 32,2\n\
+        r4 = + 21,896\n   d4 = 4,822\nr5 = inf  Blende\n   d5 = 1,2\nr6 = + 86,759\n   d6 = 3,127   n3 = 1,6910   v3 = 54,7\nr7 = - 20,4942\n   d7 = 41,1\n";
+    let office = "Surface No.,R,D,Nd,νd,Effective diameter,Remarks\n1,23.713,4.831,1.691,54.7,20,\n2,7331.288,5.86,,,19,\n3,−24.456,.975,1.6727,32.2,15,\n\
+        4,21.896,4.822,,,14,\n5,∞,1.2,,,13,Aperture stop\n6,86.759,3.127,1.691,54.7,16,\n7,−20.4942,41.1,,,16,\n";
+    let japanese = "面番号\t曲率半径\t面間隔\t屈折率\tアッベ数\t備考\n1\t23.713\t4.831\t1.691\t54.7\t\n2\t7331.288\t5.86\t\t\t\n3\t-24.456\t0.975\t1.6727\t32.2\t\n\
+        4\t21.896\t4.822\t\t\t\n5\t∞\t1.2\t\t\t絞り\n6\t86.759\t3.127\t1.691\t54.7\t\n7\t-20.4942\t41.1\t\t\t\n";
+    let blanks = "LENS DATA OF EXAMPLE 3\nNo.   r   d   nd   vd\n1 23.713 4.831 1.691 54.7\n2 7331.288 5.86\n3 - 24.456 0.975 1.6727 32.2\n4 21.896 4.822\n\
+        5 stop ∞ 1.2\n6 86.759 3.127 1.691 54.7\n7 - 20.4942 41.1\n";
+    for (name, text) in [
+        ("modern", modern),
+        ("equations", equations),
+        ("german", german),
+        ("office", office),
+        ("japanese", japanese),
+        ("blanks", blanks),
+    ] {
+        let (rows, stop, notes) = printed(text);
+        assert_eq!(rows, TRIPLET, "{name}\n{notes}");
+        assert_eq!(stop, Some(5), "{name}");
+        assert_eq!(notes, "", "{name}");
+    }
+}
+
+/// What follows a table: coefficients of aspheres, and gaps that vary.
+#[test]
+fn coefficients_and_gaps_below_a_table() {
+    let text = "Surface No.  r  d  nd  vd\n1*  50.0  5.0  1.5168  64.2\n2  -40.0  d2\n3  30.0  2.0  1.62  36.3\n4*  ∞  (BF)\n\
+        Aspherical surface data\n1st surface\nK = -1.25  A4 = -1.2E-06  A6 = 3.5 × 10^-9\n4th surface\nK=0, A 4=2.0e-5\n\
+        Zoom data\n   Wide  Tele\nd2  1.50  12.25\n";
+    let lens = read("t.txt", text).unwrap_or_else(|faults| panic!("{faults}"));
+    let surfaces: Vec<_> = lens.surfaces().collect();
+    let asphere = Shape::EvenAsphere { radius: 50.0, conic: -1.25, coefficients: vec![0.0, -1.2e-6, 3.5e-9] };
+    assert_eq!(surfaces[0].shape, asphere);
+    assert_eq!(
+        surfaces[3].shape,
+        Shape::EvenAsphere { radius: f64::INFINITY, conic: 0.0, coefficients: vec![0.0, 2e-5] }
+    );
+    assert_eq!(surfaces[1].thickness_mm, 1.5);
+    let notes: Vec<String> = lens.left_out.iter().map(|note| format!("{note} {}", note.alters)).collect();
+    assert_eq!(
+        notes,
+        [
+            "line 3: the gap `d2` varies: its first value, 1.50, is taken true",
+            "line 5: `(BF)` is no number: the film stands where the lens is focused false"
+        ]
+    );
+    // Without values the gap is asked for, without coefficients the asphere is told of.
+    let fault = read("t.txt", &text[..text.find("Aspherical").unwrap()]).unwrap_err().to_string();
+    assert!(fault.contains("`d2` is not a number") && fault.contains("write its value at one setting"), "{fault}");
+    let (_, _, notes) = printed("No. r d nd vd\n1* 50 5 1.5168 64.2\n2 -40 47\n3 30 2 1.62 36.3\n4 -90 40\n");
+    assert!(notes.contains("surface 1 is marked as an asphere, and no coefficients follow"), "{notes}");
+}

@@ -11,7 +11,7 @@ mod structure;
 
 pub use color::{AimDensity, Interlayer, Medium};
 pub use material::{Densitometry, Dye, MinimumDensity, SpectralDensity};
-pub use reciprocity::Reciprocity;
+pub use reciprocity::{Reciprocity, unknown as unknown_reciprocity};
 pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
 pub use speed::{ISO_6_SPAN, Iso6, MeterResponse, SpeedKind};
 pub use structure::{Assumptions, Base, Granularity, Halation};

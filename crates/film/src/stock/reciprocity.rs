@@ -58,6 +58,20 @@ impl Reciprocity {
     }
 }
 
+/// Longest exposure, s, that counts in full where a film's sheet says nothing: makers give their films this much and more.
+const UNDOUBTED_S: f64 = 1.0;
+
+/// What is to be said of an exposure of `time_s` on a stock called `name` whose file has no reciprocity.
+#[must_use]
+pub fn unknown(reciprocity: Option<&Reciprocity>, name: &str, time_s: f64) -> Option<String> {
+    (reciprocity.is_none() && time_s > UNDOUBTED_S).then(|| {
+        format!(
+            "reciprocity of {name} is not known: {} counts in full, though most films lose speed beyond 1 s",
+            spectra_core::shutter::words(time_s)
+        )
+    })
+}
+
 /// What long exposures lose: a power law, or a table.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]

@@ -9,6 +9,7 @@ use super::variables::{self, VARIABLES, Variables};
 use crate::assemble::{assemble, read, record};
 use crate::earlier::Earlier;
 use crate::lens_section::is_too_fast;
+use crate::metering;
 use crate::remembered::{BUNDLED, Remembered};
 use crate::sight::Search;
 use crate::{FileResources, NO_LENS, Scene, yaml};
@@ -326,6 +327,31 @@ impl Series {
             overrides.push(text.to_owned());
         }
         self.written.clone().set(&overrides)
+    }
+
+    /// The series with films exposed for stated times in place of what their meters would choose: places of films in the list, and
+    /// seconds.
+    #[must_use]
+    pub fn exposed_for(&self, times: &[(usize, f64)]) -> Self {
+        let mut series = self.clone();
+        let is_list = matches!(series.root.get("film").map(|node| &node.value), Some(Value::Seq(_)));
+        for (index, time_s) in times {
+            let film = if is_list { format!("film[{index}]") } else { "film".to_owned() };
+            variables::open(&mut series.root, &film);
+            for key in metering::KEYS {
+                take_away(&mut series.root, &format!("{film}.{key}"));
+            }
+            let text = format!("{time_s} s");
+            let node = Node { value: Value::String(text), ..series.root.clone() };
+            // A film that is metered is a section.
+            let _ = series.root.set_path(&format!("{film}.exposure"), node);
+        }
+        series
+    }
+
+    /// The paths that are set for each picture.
+    pub(crate) fn set_paths(&self) -> Vec<String> {
+        self.setting(0).into_iter().map(|(path, _)| path).collect()
     }
 
     /// What is set on top of the scene as it is written: texts `path=value`.

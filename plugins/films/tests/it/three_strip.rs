@@ -137,3 +137,24 @@ fn records_spread_light_and_have_grain() {
     let film = build(plain).expect("sound");
     assert!(film.describe().contains("halation assumed"), "{}", film.describe());
 }
+
+/// The same lux seconds in 10 s as in 1/100 s leave less on a film that has reciprocity failure: Tri-X in all three records, to which
+/// its sheet gives 50 s where a meter says 10.
+#[test]
+fn long_exposures_lose_speed() {
+    let record = "{stock: kodak-tri-x-400, filters: []}";
+    let film = |time: &str| {
+        build(&format!("exposure: {time}\nblue: {record}\ngreen: {record}\nred: {record}\n")).expect("sound")
+    };
+    let size = FrameSize { width_px: 1, height_px: 1, width_mm: 1.0, height_mm: 1.0 };
+    let density = |film: &ThreeStrip, lx_s: f32| {
+        let channel = |name: &str| ExposureChannel { name: name.into(), unit: "lx s".into(), values: vec![lx_s] };
+        let channels = ["blue", "green", "red"].map(channel).into();
+        film.negatives(&ExposureFrame { size, channels }).expect("complete")[1][0]
+    };
+    let (short, long) = (film("1/100 s"), film("50 s"));
+    let lx_s = mid_gray(&short)[1];
+    let (quick, slow) = (density(&short, lx_s), density(&long, 5.0 * lx_s));
+    assert!((quick - slow).abs() < 0.02, "{quick} {slow}");
+    assert!(density(&long, lx_s) < quick - 0.2);
+}

@@ -50,6 +50,9 @@ impl Source for DeepPicture {
     fn radiance(&self) -> Option<&dyn Radiance> {
         Some(self)
     }
+    fn meaning(&self) -> Option<String> {
+        Some(format!("depth {}", self.meaning))
+    }
     fn describe(&self) -> String {
         let [near, far] = [self.nearest_mm, self.farthest_mm].map(|d| d - self.eye_mm);
         let (name, meaning) = (&self.map.name, &self.meaning);

@@ -178,8 +178,10 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     };
     let width_mm = shown_mm * header.widened(overscan);
     let aspect = header.aspect_with(overscan);
-    if p.edge.is_none() && !p.width.is_fill() {
-        let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm: [0.0; 2] };
+    let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm: [0.0; 2] };
+    if p.width.is_fill() {
+        placed.warn_of_fisheye("the picture", params, context);
+    } else if p.edge.is_none() {
         placed.warn_unless_filled("the picture", params, context);
     }
     file.warn(&header, context);

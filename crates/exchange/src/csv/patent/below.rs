@@ -1,0 +1,177 @@
+//! What stands below a table: coefficients of aspheres, gaps that vary, and the back focus.
+
+use super::equations::equations_of;
+use super::value;
+use super::words::{figure, gap_number, is_back_focus, surface_number};
+use crate::number;
+use std::collections::BTreeMap;
+
+/// The conic constant and the coefficients of an asphere by their powers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Asphere {
+    pub conic: Option<String>,
+    pub coefficients: BTreeMap<u32, String>,
+}
+
+/// What stands below a table, and the back focus that stands anywhere.
+#[derive(Default)]
+pub(super) struct Below {
+    pub aspheres: BTreeMap<u32, Asphere>,
+    /// First values of gaps by the numbers of their surfaces.
+    pub gaps: BTreeMap<u32, String>,
+    pub back_focus: Option<String>,
+    /// Whether the conic constant was given by kappa.
+    pub has_kappa: bool,
+}
+
+/// What a figure of an asphere is.
+#[derive(Clone, Copy)]
+enum Term {
+    Conic,
+    Kappa,
+    Power(u32),
+}
+
+impl Term {
+    /// By its name and number: `K`, `A4`, `C6`, or `A`, `B`, `C` for the fourth, sixth and eighth power.
+    fn of(name: &str, number: Option<u32>) -> Option<Self> {
+        Some(match (name, number) {
+            ("k" | "cc" | "conic", None) => Self::Conic,
+            ("κ" | "kappa" | "ε", None) => Self::Kappa,
+            ("a" | "c" | "e" | "as", Some(power)) if power.is_multiple_of(2) && (2..=40).contains(&power) => {
+                Self::Power(power)
+            }
+            ("a" | "b" | "c" | "d" | "e" | "f", None) => Self::Power(4 + 2 * "abcdef".find(name)? as u32),
+            _ => return None,
+        })
+    }
+}
+
+impl Below {
+    pub(super) fn of(lines: &[&str], from: usize) -> Self {
+        let mut below = Self::default();
+        lines.iter().for_each(|line| below.take_back_focus(line));
+        let mut surface = None;
+        // The terms of a table of aspheres, the surface of its row, and how many of them it has.
+        let mut terms: Vec<Term> = Vec::new();
+        let mut row: Option<(u32, usize)> = None;
+        for line in lines.iter().skip(from) {
+            let plain = line.trim();
+            let head = plain.split('=').next().unwrap_or_default();
+            let lower = head.to_lowercase();
+            let is_named = (lower.contains("surface") || head.contains('面') || lower.starts_with("no."))
+                && !lower.contains("number of");
+            let bare = plain.trim_matches(['(', ')', '*', ':', '.', 'r', ' ', '[', ']']);
+            let is_bare = !bare.is_empty() && bare.len() < 4 && bare.chars().all(|c| c.is_ascii_digit());
+            if is_named || is_bare {
+                surface = surface_number(head).or(surface);
+            }
+            for equation in equations_of(plain) {
+                if value(&equation.value).is_none() {
+                    continue;
+                }
+                if let (Some(surface), Some(term)) = (surface, Term::of(&equation.name, equation.number)) {
+                    below.set(surface, term, equation.value);
+                }
+            }
+            if !plain.contains('=') {
+                below.take_row(plain, &mut terms, &mut row);
+                below.take_gap(plain);
+            }
+        }
+        below.aspheres.retain(|_, asphere| asphere.conic.is_some() || !asphere.coefficients.is_empty());
+        below
+    }
+
+    fn set(&mut self, surface: u32, term: Term, figure: String) {
+        let asphere = self.aspheres.entry(surface).or_default();
+        match term {
+            Term::Conic => asphere.conic = Some(figure),
+            Term::Kappa => {
+                asphere.conic = Some(number::shortest(value(&figure).unwrap_or(1.0) - 1.0));
+                self.has_kappa = true;
+            }
+            Term::Power(power) => drop(asphere.coefficients.insert(power, figure)),
+        }
+    }
+
+    /// A line of a table of aspheres: headings such as `Si K A B C`, rows, and lines that go on with a row.
+    fn take_row(&mut self, line: &str, terms: &mut Vec<Term>, row: &mut Option<(u32, usize)>) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let term = |word: &&str| {
+            let letters: String = word.chars().filter(|c| c.is_alphabetic()).flat_map(char::to_lowercase).collect();
+            let digits: String = word.chars().filter(char::is_ascii_digit).collect();
+            (letters.chars().count() <= 2).then(|| Term::of(&letters, digits.parse().ok())).flatten()
+        };
+        let named: Vec<Term> = words.iter().filter_map(term).collect();
+        if named.len() >= 2 && named.len() + 2 >= words.len() && matches!(named[0], Term::Conic | Term::Kappa) {
+            (*terms, *row) = (named, None);
+            return;
+        }
+        let figures: Option<Vec<String>> =
+            words.iter().map(|word| value(word).map(|_| figure(word))).collect::<Option<Vec<String>>>();
+        let Some(mut figures) = figures.filter(|all| !all.is_empty() && !terms.is_empty()) else {
+            // Words end a table of aspheres.
+            if !line.is_empty() && words.len() > 2 {
+                terms.clear();
+            }
+            return;
+        };
+        let is_open = row.is_some_and(|(_, count)| count < terms.len());
+        if !(is_open && row.is_some_and(|(_, count)| count + figures.len() <= terms.len())) {
+            let Some(number) = figures.remove(0).parse().ok().filter(|number| *number < 1000) else { return };
+            *row = Some((number, 0));
+        }
+        let Some((surface, count)) = row else { return };
+        for figure in figures {
+            let Some(term) = terms.get(*count) else { break };
+            *count += 1;
+            self.set(*surface, *term, figure);
+        }
+    }
+
+    /// `d5 1.20 8.40 16.50` or `d 5 1.20`: values of a gap, of which the first counts.
+    fn take_gap(&mut self, line: &str) {
+        let words: Vec<&str> =
+            line.split(|c: char| c.is_whitespace() || c == ',' || c == ';').filter(|w| !w.is_empty()).collect();
+        let joined = words.get(..2).map(|two| two.concat()).unwrap_or_default();
+        let named = |name: &str, first: Option<&&str>| {
+            Some((gap_number(Some(name))?, first.filter(|f| value(f).is_some())?.to_string()))
+        };
+        let found = words.first().and_then(|name| named(name, words.get(1)));
+        let found = found.or_else(|| named(&joined, words.get(2)));
+        if let Some((number, first)) = found {
+            self.gaps.entry(number).or_insert_with(|| figure(&first));
+        }
+    }
+
+    /// `BF = 37.78`, `Back focus = +79.8`, `s' = 47,96` or `BF 37.78`.
+    fn take_back_focus(&mut self, line: &str) {
+        if self.back_focus.is_some() {
+            return;
+        }
+        let typed = |word: &str| {
+            let point = if word.contains('.') { word.to_owned() } else { word.replacen(',', ".", 1) };
+            value(word).map(|_| figure(&point).trim_start_matches('+').to_owned())
+        };
+        let parts: Vec<&str> = line.split('=').collect();
+        for pair in parts.windows(2) {
+            let name: Vec<&str> = pair[0].split_whitespace().collect();
+            let is_named =
+                (1..=3).any(|count| count <= name.len() && is_back_focus(&name[name.len() - count..].join(" ")));
+            let mut words = pair[1].split_whitespace();
+            let first = words.next().unwrap_or_default();
+            let first = if ["+", "-"].contains(&first) { words.next().unwrap_or_default() } else { first };
+            if is_named && let Some(figure) = typed(first.trim_end_matches([',', ';'])) {
+                self.back_focus = Some(figure);
+                return;
+            }
+        }
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if let [name, first, ..] = &words[..]
+            && is_back_focus(name)
+        {
+            self.back_focus = typed(first);
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Tables of equations: `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`, in one line or many.
+
+use super::words::{figure, is_back_focus, is_other, says_stop};
+use super::{Found, Row, value};
+
+/// An equation of a patent: its name, its number and its value.
+pub(super) struct Equation {
+    /// Letters, small.
+    pub name: String,
+    /// As it stands.
+    written: String,
+    pub number: Option<u32>,
+    pub value: String,
+    /// Words behind the value.
+    pub words: String,
+}
+
+/// Whether a word goes on with a figure: `e-5`, `×10^-5`.
+fn is_power(word: &str) -> bool {
+    let rest = word.strip_prefix(['×', 'e', 'E']);
+    rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '+'))
+}
+
+/// A line without the marks of lower letters and the rules of a table.
+fn unmarked(line: &str) -> String {
+    line.replace(".sub.", "").replace("<sub>", "").replace("</sub>", "").replace(['_', '{', '}'], "").replace('|', " ")
+}
+
+/// The equations of a line.
+pub(super) fn equations_of(line: &str) -> Vec<Equation> {
+    let plain = unmarked(line);
+    let parts: Vec<&str> = plain.split('=').collect();
+    let mut found = Vec::new();
+    let mut name = parts.first().map(|part| last_name(part).0).unwrap_or_default();
+    for (k, part) in parts.iter().enumerate().skip(1) {
+        let (next, value) = if k + 1 < parts.len() { last_name(part) } else { (String::new(), (*part).to_owned()) };
+        let words: Vec<&str> = value.split(|c: char| c.is_whitespace() || c == ';').filter(|w| !w.is_empty()).collect();
+        let mut count = 0;
+        for word in &words {
+            let signs = ["-", "+", "x", "×", "X"];
+            let goes_on =
+                count == 0 || signs.contains(&words[count - 1]) || signs[2..].contains(word) || is_power(word);
+            if !goes_on {
+                break;
+            }
+            count += 1;
+        }
+        let text = words[..count].concat();
+        let text = text.trim_end_matches([',', ';']);
+        let text = if text.contains('.') { text.to_owned() } else { text.replacen(',', ".", 1) };
+        let digits: String = name.chars().filter(char::is_ascii_digit).collect();
+        found.push(Equation {
+            name: name.chars().filter(|c| c.is_alphabetic()).flat_map(char::to_lowercase).collect(),
+            written: std::mem::replace(&mut name, next),
+            number: digits.parse().ok(),
+            value: figure(&text),
+            words: words[count..].join(" "),
+        });
+    }
+    found
+}
+
+/// Splits the name of the next equation off the end of a text: `4.99 n 1` is `n1` behind `4.99`.
+fn last_name(part: &str) -> (String, String) {
+    let words: Vec<&str> = part.split_whitespace().collect();
+    let Some(last) = words.last() else { return (String::new(), String::new()) };
+    let digits = last.trim_end_matches('*').chars().all(|c| c.is_ascii_digit());
+    let is_split = digits && words.len() >= 2 && words[words.len() - 2].chars().all(char::is_alphabetic);
+    let count = if is_split { 2 } else { 1 };
+    let at = words.len() - count;
+    (words[at..].concat(), words[..at].join(" "))
+}
+
+/// An index and an Abbe number that stand in a text without equations.
+fn glass_in(words: &str) -> Option<[String; 2]> {
+    let figures: Vec<&str> = words.split_whitespace().filter(|word| value(word).is_some()).collect();
+    let pair = figures.windows(2).find(|pair| {
+        let of = |i: usize| value(pair[i]).unwrap_or(0.0);
+        (1.3..2.3).contains(&of(0)) && (15.0..100.0).contains(&of(1))
+    })?;
+    Some([pair[0], pair[1]].map(|word| if word.contains('.') { word.to_owned() } else { word.replacen(',', ".", 1) }))
+}
+
+/// Rows of a table of equations; `None` where there are fewer than three radii.
+pub(super) fn rows(lines: &[&str]) -> Option<Found> {
+    let mut found = Found { head: 0, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: true };
+    for (at, line) in lines.iter().enumerate() {
+        if is_other(line) && found.rows.len() >= 2 {
+            found.end = at;
+            break;
+        }
+        let plain = unmarked(line);
+        let all = equations_of(line);
+        for equation in &all {
+            let name = match equation.name.as_str() {
+                "r" => "radius",
+                "d" | "t" | "l" | "s" | "b" if !is_back_focus(&equation.written) => "thickness",
+                "n" | "nd" => "nd",
+                "v" | "vd" | "nu" | "ny" => "vd",
+                "phi" | "ø" | "φ" => "diameter",
+                _ => continue,
+            };
+            let is_plane = ["∞", "plane", "plano", "flat"].contains(&equation.value.to_lowercase().as_str());
+            if name == "radius" && !is_plane && value(&equation.value).is_none() {
+                // A sentence about radii.
+                continue;
+            }
+            // A gap without a number is one that has none yet.
+            let is_new_gap = || found.rows.last().is_some_and(|row| !row.cells.contains_key("thickness"));
+            if equation.number.is_none() && !(name == "thickness" && is_new_gap()) {
+                continue;
+            }
+            if name == "radius" {
+                // One row a line of the table that is typed.
+                let line = found.rows.last().map_or(at, |last: &Row| at.max(last.line + 1));
+                let is_marked = equation.written.contains('*') || equation.words.to_lowercase().contains("aspher");
+                let is_stop = says_stop(&equation.words);
+                found.rows.push(Row { line, number: equation.number, is_marked, is_stop, ..Row::default() });
+            }
+            let Some(row) = found.rows.last_mut() else { continue };
+            row.cells.insert(name, equation.value.clone());
+            if name == "thickness"
+                && !row.cells.contains_key("nd")
+                && let Some([nd, vd]) = glass_in(&equation.words)
+            {
+                row.cells.insert("nd", nd);
+                row.cells.insert("vd", vd);
+            }
+        }
+        // Figures of a glass in columns of their own, before the first equation.
+        let before = plain.split('=').next().unwrap_or_default();
+        if !all.is_empty()
+            && let (Some([nd, vd]), Some(row)) = (glass_in(before), found.rows.last_mut())
+            && !row.cells.contains_key("nd")
+        {
+            row.cells.insert("nd", nd);
+            row.cells.insert("vd", vd);
+        }
+        // A word of the stop that stands alone below a radius.
+        if all.is_empty()
+            && says_stop(line)
+            && line.split_whitespace().count() <= 2
+            && let Some(row) = found.rows.last_mut()
+        {
+            row.is_stop = true;
+        }
+    }
+    cemented(&mut found.rows);
+    found.head = found.rows.first()?.line.saturating_sub(1);
+    (found.rows.len() >= 3).then_some(found)
+}
+
+/// A face that two cemented lenses share may stand twice, `r4` and `r4'`: the first has no gap, and goes.
+fn cemented(rows: &mut Vec<Row>) {
+    for at in (1..rows.len()).rev() {
+        let (before, row) = (&rows[at - 1], &rows[at]);
+        let is_same = before.number.is_some()
+            && before.number == row.number
+            && before.cells.get("radius") == row.cells.get("radius")
+            && !before.cells.contains_key("thickness");
+        if is_same {
+            rows.remove(at - 1);
+        }
+    }
+}

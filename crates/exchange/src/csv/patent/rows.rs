@@ -1,0 +1,240 @@
+//! Tables with a line of headings, their columns separated by tabs, commas, semicolons or blanks.
+
+use super::words::{figure, is_end, is_other, is_stop, is_variable, mark, says_stop};
+use super::{Found, Row, value};
+use crate::csv::columns::{Column, by_name};
+use std::collections::BTreeMap;
+
+/// A line of headings.
+pub(super) struct Head {
+    pub separator: Option<char>,
+    columns: Vec<Option<Column>>,
+}
+
+impl Head {
+    /// Reads a line of headings: it names at least a radius and a thickness.
+    pub(super) fn of(line: &str) -> Option<Self> {
+        let separator = [';', '\t', ','].into_iter().find(|c| line.contains(*c));
+        // Where headings stand farther apart than one tab, tabs only align.
+        let separator = separator.filter(|c| *c != '\t' || !line.trim().contains("\t\t"));
+        let columns: Vec<Option<Column>> = match separator {
+            Some(separator) => line.split(separator).map(|cell| by_name(cell.trim().trim_matches('"'))).collect(),
+            None => by_blanks(line),
+        };
+        let has = |wanted: Column| columns.contains(&Some(wanted));
+        (has(Column::Radius) && has(Column::Thickness)).then_some(Self { separator, columns })
+    }
+
+    fn has(&self, column: Column) -> bool {
+        self.columns.contains(&Some(column))
+    }
+
+    fn place(&self, column: Column) -> Option<usize> {
+        self.columns.iter().position(|c| *c == Some(column))
+    }
+}
+
+/// Headings separated by blanks, of which one may have several words: the longest run of words that is a name counts.
+fn by_blanks(line: &str) -> Vec<Option<Column>> {
+    /// Most words of a heading.
+    const LONGEST: usize = 5;
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let mut columns = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        let most = LONGEST.min(words.len() - at);
+        match (1..=most).rev().find_map(|count| Some((count, by_name(&words[at..at + count].join(" "))?))) {
+            Some((count, column)) => {
+                columns.push(Some(column));
+                at += count;
+            }
+            None => at += 1,
+        }
+    }
+    columns
+}
+
+/// The name of a column in the table that is typed.
+fn name_of(column: Column) -> Option<&'static str> {
+    Some(match column {
+        Column::Number => "surface",
+        Column::Kind => "type",
+        Column::Radius => "radius",
+        Column::Thickness => "thickness",
+        Column::Glass => "glass",
+        Column::Index => "nd",
+        Column::Abbe => "vd",
+        Column::SemiDiameter => "semi-diameter",
+        Column::Diameter => "diameter",
+        Column::Comment => "comment",
+        _ => return None,
+    })
+}
+
+/// Rows below a line of headings.
+pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
+    let mut found = Found { head, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: false };
+    for (at, line) in lines.iter().enumerate().skip(head + 1) {
+        let plain = line.trim();
+        if plain.is_empty() || plain.starts_with('#') {
+            // A blank line ends a table that has a separator only where something else follows.
+            continue;
+        }
+        if is_other(plain) {
+            found.end = at;
+            found.is_needed = true;
+            break;
+        }
+        let cells = match columns.separator {
+            Some(separator) => line
+                .split(separator)
+                .zip(&columns.columns)
+                .filter_map(|(cell, column)| Some(((*column)?, cell.trim().trim_matches('"').trim().to_owned())))
+                .filter(|(_, cell)| !cell.is_empty())
+                .collect(),
+            None => by_rule(plain, columns),
+        };
+        let mut row = Row { line: at, ..Row::default() };
+        let mut is_row = true;
+        for (column, cell) in cells {
+            let Some(name) = name_of(column) else { continue };
+            match column {
+                Column::Number => match mark(&cell) {
+                    Some((number, is_stop, is_marked)) => {
+                        found.is_needed |= is_marked || is_stop && number.is_some();
+                        (row.number, row.is_stop, row.is_marked) = (number, is_stop, is_marked);
+                    }
+                    // The object, the image, or words of something else.
+                    None if is_end(&cell) || columns.separator.is_none() => {
+                        found.is_needed |= is_end(&cell);
+                        is_row = false;
+                    }
+                    None => drop(row.cells.insert("comment", cell)),
+                },
+                Column::Comment => {
+                    found.is_needed |= says_stop(&cell) && !cell.eq_ignore_ascii_case("stop");
+                    row.is_stop |= says_stop(&cell);
+                    row.is_marked |= cell.to_lowercase().contains("aspher");
+                    found.is_needed |= row.is_marked;
+                    row.cells.insert(name, cell);
+                }
+                Column::Thickness if is_variable(&cell) => {
+                    found.is_needed = true;
+                    row.cells.insert(name, cell);
+                }
+                _ => {
+                    let typed = figure(&cell);
+                    found.is_needed |= typed != cell && !cell.contains(',');
+                    row.cells.insert(name, typed);
+                }
+            }
+        }
+        // A line of words among the rows has none of their columns.
+        if !is_row || row.cells.is_empty() && row.number.is_none() && !row.is_stop && !plain.contains([',', ';', '\t'])
+        {
+            found.is_needed |= is_row;
+            continue;
+        }
+        // Behind the rows something else begins that has no heading of its own.
+        if columns.separator.is_none() && value_of(&row, "radius").is_none() {
+            if found.rows.is_empty() {
+                continue;
+            }
+            found.end = at;
+            break;
+        }
+        found.rows.push(row);
+    }
+    // A table that has columns of coefficients is read as it stands.
+    let as_it_stands = |c: &Column| {
+        matches!(c, Column::Conic | Column::Coefficient(_) | Column::Coefficients | Column::Curvature | Column::Lens)
+    };
+    found.is_needed &= !columns.columns.iter().flatten().any(as_it_stands);
+    found
+}
+
+/// Whether a row has a radius: a figure, or a word for a plane.
+fn value_of(row: &Row, name: &str) -> Option<()> {
+    let cell = row.cells.get(name)?;
+    let is_plane = ["∞", "plane", "plano", "flat", "stop"].contains(&cell.to_lowercase().as_str());
+    (is_plane || value(cell).is_some()).then_some(())
+}
+
+/// The cells of a row whose columns are separated by blanks, where cells may be empty: surface, type, radius and thickness stand
+/// first, then the index and the Abbe number of a glass in the order of the headings, then a diameter; words that are no glass last.
+fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
+    let mut words: Vec<String> = Vec::new();
+    for word in line.split_whitespace() {
+        match words.last_mut() {
+            // A sign that stands alone belongs to the figure behind it.
+            Some(last) if last == "-" || last == "+" => last.push_str(word),
+            _ => words.push(word.to_owned()),
+        }
+    }
+    let mut words = words.into_iter().peekable();
+    let mut cells = Vec::new();
+    if head.has(Column::Number)
+        && let Some(mut first) = words.next()
+    {
+        let is_end = is_end(&first);
+        while let Some(next) = words.peek() {
+            let bare: String = next.to_lowercase().chars().filter(|c| c.is_alphabetic()).collect();
+            if !(next == "*" || is_stop(&bare) || is_end && ["plane", "surface"].contains(&bare.as_str())) {
+                break;
+            }
+            first.push(' ');
+            first.push_str(&words.next().unwrap_or_default());
+        }
+        cells.push((Column::Number, first));
+    }
+    let is_word = |word: &String| word.chars().next().is_some_and(char::is_alphabetic) && value(word).is_none();
+    if head.has(Column::Kind)
+        && let Some(kind) = words.next_if(is_word)
+    {
+        cells.push((Column::Kind, kind));
+    }
+    cells.extend(words.next().map(|radius| (Column::Radius, radius)));
+    cells.extend(words.next().map(|gap| (Column::Thickness, gap)));
+    let mut rest: Vec<String> = words.collect();
+    // The mark of a solve.
+    if rest.first().is_some_and(|word| word.len() == 3 && word.starts_with('(') && word.ends_with(')')) {
+        rest.remove(0);
+    }
+    if head.has(Column::Glass)
+        && rest.first().is_some_and(is_word)
+        && rest.get(1).is_some_and(|word| value(word).is_some())
+    {
+        cells.push((Column::Glass, rest.remove(0)));
+    }
+    let figures: Vec<String> = rest.iter().take_while(|word| value(word).is_some()).cloned().collect();
+    let remark = rest[figures.len()..].join(" ");
+    let at = |i: usize| figures.get(i).and_then(|word| value(word)).unwrap_or(0.0);
+    let is_index = |n: f64| (1.2..3.0).contains(&n);
+    let mut left = 0;
+    if is_index(at(0)) && at(1) > 10.0 || is_index(at(1)) && at(0) > 10.0 {
+        let abbe_first = head.place(Column::Abbe) < head.place(Column::Index);
+        let (index, abbe) = if is_index(at(0)) && !(abbe_first && is_index(at(1))) { (0, 1) } else { (1, 0) };
+        cells.push((Column::Index, figures[index].clone()));
+        cells.push((Column::Abbe, figures[abbe].clone()));
+        left = 2;
+    } else if figures.len() == 1 && !head.has(Column::Diameter) && !head.has(Column::SemiDiameter) {
+        cells.push((Column::Index, figures[0].clone()));
+        left = 1;
+    } else if at(0) == 1.0 && figures.len() > 1 {
+        // Air with its index.
+        left = 1;
+    }
+    // What stands between, such as a partial dispersion, is below 1 where a diameter is not.
+    if let Some(size) = (left..figures.len()).find(|i| at(*i) >= 1.0) {
+        let column = if head.has(Column::Diameter) { Column::Diameter } else { Column::SemiDiameter };
+        cells.push((column, figures[size].clone()));
+    }
+    if !remark.is_empty() {
+        // A name of a glass in the last column, or words.
+        let is_glass = head.has(Column::Glass) && !head.has(Column::Comment) && left == 2;
+        cells.push((if is_glass { Column::Glass } else { Column::Comment }, remark));
+    }
+    let mut seen = BTreeMap::new();
+    cells.retain(|(column, _)| seen.insert(format!("{column:?}"), ()).is_none());
+    cells
+}

@@ -1,0 +1,155 @@
+//! Words, marks and figures of patents, in English, German and Japanese.
+
+use super::Told;
+use crate::number;
+use crate::place::shown;
+
+/// Characters of print in those of a keyboard: minus signs, wide letters and digits, Greek letters, thin spaces.
+pub(in crate::csv) fn plain(text: &str) -> String {
+    let one = |c: char| match c {
+        '\u{2212}' | '\u{2010}'..='\u{2015}' | '\u{fe63}' | '\u{ff0d}' => '-',
+        '\u{ff01}'..='\u{ff5e}' => char::from_u32(c as u32 - 0xff01 + 0x21).unwrap_or(c),
+        '\u{3000}' | '\u{a0}' | '\u{2000}'..='\u{200a}' | '\u{202f}' => ' ',
+        '\u{3bd}' | '\u{39d}' => 'v',
+        _ => c,
+    };
+    text.chars().map(one).collect()
+}
+
+/// A number as printed: a blank behind the sign, `1.2 x 10^-5`, a mark of a solve behind it.
+pub(in crate::csv) fn figure(cell: &str) -> String {
+    let joined: String = cell.chars().filter(|c| !c.is_whitespace()).collect();
+    let powers = joined.replace(['×', 'x', 'X'], "*").replace("**", "^");
+    let typed = match powers.split_once("*10") {
+        Some((head, tail)) => format!("{head}e{}", tail.trim_start_matches('^').trim_matches(['(', ')', '{', '}'])),
+        None => powers,
+    };
+    if number::parse(&typed).is_some() { typed } else { cell.trim().to_owned() }
+}
+
+/// The letters of a word, small.
+fn letters(word: &str) -> String {
+    word.chars().filter(|c| c.is_alphabetic()).flat_map(char::to_lowercase).collect()
+}
+
+/// The mark of a surface's number: the number, and whether it is the stop or aspherical. `None` where it is none.
+pub(super) fn mark(cell: &str) -> Option<(Option<u32>, bool, bool)> {
+    let digits: String = cell.chars().filter(char::is_ascii_digit).collect();
+    let rest = letters(cell);
+    let is_stop = is_stop(&rest) || rest == "s" || rest == "st";
+    let is_marked = cell.contains(['*', '＊']) || rest.starts_with("asp");
+    let is_number = rest.is_empty() || is_stop || is_marked || rest == "r";
+    let bare = cell.chars().all(|c| c.is_alphanumeric() || "*() .:#-".contains(c));
+    (is_number && bare && (!digits.is_empty() || is_stop) && digits.len() < 4)
+        .then(|| (digits.parse().ok(), is_stop, is_marked))
+}
+
+/// Whether a word is that for the stop, without case and blanks.
+pub(super) fn is_stop(word: &str) -> bool {
+    ["stop", "sto", "aperturestop", "aperturestops", "diaphragm", "blende", "iris", "絞り", "開口絞り"].contains(&word)
+}
+
+/// Whether the words of a remark say that the surface is the stop.
+pub(super) fn says_stop(words: &str) -> bool {
+    let plain = words.to_lowercase();
+    let of = |word: &&str| plain.split(|c: char| !c.is_alphanumeric()).any(|w| w == *word);
+    !plain.contains("flare") && (["stop", "diaphragm", "blende"].iter().any(of) || plain.contains("絞り"))
+}
+
+/// What is said where the stop stands in a sentence and in no row: where it says so.
+pub(super) fn stop_in_prose(lines: &[&str]) -> Option<Told> {
+    let is_about = |line: &&str| {
+        let plain = line.to_lowercase();
+        ["diaphragm", "aperture stop", "blende", "絞り"].iter().any(|word| plain.contains(word))
+    };
+    let at = lines.iter().position(|line| is_about(&line))?;
+    let text = format!("the stop has no row, but words: `{}`; add a row `stop` where it stands", shown(lines[at]));
+    Some((at + 1, true, text))
+}
+
+/// Whether a gap has no number, but a word for one that varies.
+pub(in crate::csv) fn is_variable(cell: &str) -> bool {
+    let plain: String = cell.to_lowercase().chars().filter(|c| !c.is_whitespace() && !"()[]".contains(*c)).collect();
+    plain.starts_with("var") || plain == "可変" || is_back_focus(cell) || gap_number(Some(cell)).is_some()
+}
+
+/// The number of a gap by its name, `d5`, `Di5` or `(D 5)`.
+pub(super) fn gap_number(cell: Option<&str>) -> Option<u32> {
+    let plain: String = cell?.to_lowercase().chars().filter(|c| !c.is_whitespace() && !"()[]".contains(*c)).collect();
+    let rest = plain.strip_prefix("di").or(plain.strip_prefix('d'))?;
+    rest.parse().ok()
+}
+
+/// Whether a name is that of the back focus: `BF`, `B.F.`, `s'`.
+pub(super) fn is_back_focus(name: &str) -> bool {
+    let is_image_side = name.trim_start_matches(['(', '[']).starts_with("s'");
+    is_image_side
+        || ["bf", "fb", "bfl", "backfocus", "backfocallength", "schnittweite"].contains(&letters(name).as_str())
+}
+
+/// The number of a surface in words: `14`, `Third surface`, `第11面`.
+pub(super) fn surface_number(words: &str) -> Option<u32> {
+    const ORDINALS: [&str; 20] = [
+        "first",
+        "second",
+        "third",
+        "fourth",
+        "fifth",
+        "sixth",
+        "seventh",
+        "eighth",
+        "ninth",
+        "tenth",
+        "eleventh",
+        "twelfth",
+        "thirteenth",
+        "fourteenth",
+        "fifteenth",
+        "sixteenth",
+        "seventeenth",
+        "eighteenth",
+        "nineteenth",
+        "twentieth",
+    ];
+    let digits = words.split(|c: char| !c.is_ascii_digit()).find(|word| !word.is_empty());
+    if let Some(digits) = digits {
+        return digits.parse().ok();
+    }
+    let plain = words.to_lowercase();
+    let mut of = plain.split(|c: char| !c.is_alphanumeric());
+    of.find_map(|word| ORDINALS.iter().position(|ordinal| *ordinal == word)).map(|at| at as u32 + 1)
+}
+
+/// Words that begin what follows a table, or what stands before it.
+const OTHER: [&str; 18] = [
+    "asph",
+    "variable",
+    "various",
+    "zoom",
+    "focal",
+    "unit",
+    "f-number",
+    "fno",
+    "f no",
+    "image height",
+    "half angle",
+    "angle of view",
+    "total",
+    "conditional",
+    "single lens",
+    "data",
+    "example",
+    "table",
+];
+
+/// Whether a line begins something else than a row.
+pub(super) fn is_other(line: &str) -> bool {
+    let plain = line.trim().trim_start_matches(['[', '(', '<', '"', '【']).to_lowercase();
+    OTHER.iter().any(|word| plain.starts_with(word)) || plain.starts_with("非球面") || plain.starts_with("各種")
+}
+
+/// Whether a row is that of the object or the image, by the words that it begins with.
+pub(super) fn is_end(words: &str) -> bool {
+    let plain = words.trim().to_lowercase();
+    ["obj", "img", "ima", "image", "物面", "物体面", "像面"].iter().any(|end| plain.starts_with(end))
+}

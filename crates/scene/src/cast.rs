@@ -1,0 +1,77 @@
+//! Color film under a light that it is not balanced for.
+//!
+//! A gray card in the light that a film is balanced for exposes its layers alike. In another white light one layer gets more than
+//! another, and the picture has a cast that a photographer takes away with a conversion filter before the lens.
+
+use crate::SceneFilm;
+use crate::filters::conversion;
+use spectra_color::cct;
+use spectra_core::math::log2;
+use spectra_core::params::{Params, Warning};
+use spectra_core::spectral::{Channel, Grid, SpectralPower};
+use spectra_spectrum::Observer;
+
+/// Stops between the layers from which on a cast is said. Daylight film between D50 and D75 stays below.
+const STOPS: f64 = 1.0;
+/// Farthest from the Planckian locus (CIE 1960) that light counts as white: what is more colored is colored on purpose.
+const WHITE_DUV: f64 = 0.02;
+/// Strongest conversion filter that is proposed, mired.
+const MIRED: i32 = 250;
+
+/// What is said of the films of a scene in its light. `channels` hold what the filters of the scene leave.
+pub(crate) fn casts(
+    films: &[SceneFilm],
+    channels: &[Channel],
+    light: &SpectralPower,
+    grid: &Grid,
+    params: &Params,
+) -> Vec<Warning> {
+    let [x, y, z] = Observer::cie_1931_2deg().xyz_of_power(light);
+    let sum = x + y + z;
+    let Some(white) = cct([x / sum, y / sum]).filter(|white| white.duv.abs() <= WHITE_DUV) else { return Vec::new() };
+    let of = |(index, film): (usize, &SceneFilm)| {
+        let first = film.channels.start;
+        let own = channels.get(first..first + film.film.balanced_channels())?;
+        let spread = |mired: f64| -> Option<(f64, usize, usize)> {
+            let filter = conversion(mired, grid);
+            let exposures: Vec<f64> = own
+                .iter()
+                .map(|c| {
+                    let filtered: Vec<f64> = c.response.iter().zip(&filter).map(|(r, t)| r * t).collect();
+                    log2(light.seen_by(&filtered))
+                })
+                .collect();
+            let by = |a: &&usize, b: &&usize| exposures[**a].total_cmp(&exposures[**b]);
+            let all: Vec<usize> = (0..exposures.len()).collect();
+            let (least, most) = (*all.iter().min_by(by)?, *all.iter().max_by(by)?);
+            let stops = exposures[most] - exposures[least];
+            stops.is_finite().then_some((stops, least, most))
+        };
+        let (stops, least, most) = spread(0.0)?;
+        if stops < STOPS {
+            return None;
+        }
+        let filters = (-MIRED..=MIRED).filter_map(|mired| spread(f64::from(mired)).map(|(left, ..)| (left, mired)));
+        let (left, mired) = filters.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let at = film.name.as_ref().map_or_else(|| "film".to_owned(), |_| format!("film[{index}]"));
+        let layer = |i: usize| own[i].name.rsplit('.').next().unwrap_or_default().to_owned();
+        let text = format!(
+            "{} is balanced for another light than this one of {:.0} K: on a gray card its {} layer gets {stops:.1} stops more than its {} \
+             layer, so the picture has a cast",
+            film.film.name(),
+            white.kelvin,
+            layer(most),
+            layer(least)
+        );
+        let hint = if left < 0.5 * stops {
+            format!(
+                "write `lens.filters: [{{mired: {mired}}}]` for the conversion filter that a photographer would use, or take a film for this \
+                 light; nothing has to be done if the cast is meant"
+            )
+        } else {
+            "take a film for this light; nothing has to be done if the cast is meant".to_owned()
+        };
+        Some(Warning(params.fault(&format!("{at}.stock"), text).hint(hint)))
+    };
+    films.iter().enumerate().filter_map(of).collect()
+}

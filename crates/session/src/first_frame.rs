@@ -1,0 +1,51 @@
+//! What the camera meters of the first frame of an animation, for all of its frames.
+//!
+//! A camera that meters each frame by itself makes a shot flicker with whatever moves through it. So the first frame is traced with few
+//! rays before any picture is made, and all frames, the first among them, are exposed as the meter has it there. Which frames are asked
+//! for does not matter: frame 17 alone has the exposure that it has in the whole shot.
+
+use crate::{Event, Host, Job, Session, SessionError};
+use spectra_core::shutter;
+use spectra_scene::{SeriesKind, metering};
+
+/// Samples over the frame that the meter looks at: its mean is known to about 0.1 %.
+const SAMPLES: u64 = 1 << 21;
+
+/// The series of a job with the exposures of its first frame where its films are metered on that; `None` where they are not.
+pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_scene::Series>, SessionError> {
+    let series = job.series;
+    if !matches!(series.kind(), SeriesKind::Animation { .. }) || metering::is_animated(series) {
+        return Ok(None);
+    }
+    let first = series.scene(0).map_err(SessionError::Faults)?;
+    let locked = |film: &spectra_scene::SceneFilm| film.film.is_metered() && !film.film.meters_each_frame();
+    if !first.films.iter().any(locked) {
+        return Ok(None);
+    }
+    let size = first.imager.size();
+    let pixels = u64::from(size.width_px) * u64::from(size.height_px);
+    let samples = SAMPLES.div_ceil(pixels.max(1)).next_power_of_two().min(u64::from(first.render.samples.max(1)));
+    let few = series.with_all(&["render.noise=null".to_owned(), format!("render.samples={samples}")]);
+    let mut session = Session::of_series(few.map_err(SessionError::Faults)?, 0, job.isa)?;
+    session.prepare(host.workers())?;
+    session.advance(samples, host.workers(), &host.control())?;
+    let rendering = session.look()?;
+    if rendering.partial {
+        return Ok(None);
+    }
+    let times = session.scene().film_times(&rendering.exposure);
+    let locked: Vec<(usize, f64)> = first
+        .films
+        .iter()
+        .zip(&times)
+        .enumerate()
+        .filter(|(_, (f, _))| locked(f))
+        .map(|(i, (_, t))| (i, t.time_s))
+        .collect();
+    let words: Vec<String> = locked.iter().map(|(_, time_s)| shutter::words(*time_s)).collect();
+    host.hear(Event::Note(&format!(
+        "metered on the first frame: {} for all frames (`film.meter: each` meters each by itself, and may flicker)",
+        words.join(", ")
+    )));
+    Ok(Some(series.exposed_for(&locked)))
+}
