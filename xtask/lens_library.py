@@ -8,7 +8,8 @@ Run from the root of the repository, with the program itself for the choice of g
 - Three prescriptions of the CSV are left out, since they do not hold together as lenses, though their focal lengths do:
   leica-summilux-35-f1.4 and nikon-28-70-f2.8-wide have 4 and 1.4 mm of spherical aberration wide open (aspheres seem to be
   lost in the transcription), kodak-100-f3.8 has 0.4 % of lateral color (a glass seems to be wrong).
-- Radii, thicknesses, nd and Vd are copied; a lens of unit focal length is scaled, figure by figure.
+- Radii, thicknesses, nd and Vd are copied; a lens of unit focal length is scaled, figure by figure. Where a transcription was compared with the
+  print of the patent, the print's figures stand (`printed`: by surface and column), and the remark names them.
 - A catalogue glass is named where one of the time agrees within 0.0005 in nd and 0.5 in Vd (`spectra glass match`);
   elsewhere nd and Vd stand alone.
 - The f-number of a lens's name is its nominal one. No source states coatings: those of the time stand in the files, as
@@ -16,6 +17,8 @@ Run from the root of the repository, with the program itself for the choice of g
 - Semi-diameters are copied where they are clear apertures. Where the source has none, or says that they are not
   reliable, they are computed here by tracing real rays: the stop by the axial beam at the stated f-number, the others
   to pass that beam, and of the beam at the edge of the format the middle half.
+- `rims` of a lens says where its semi-diameters come from. Patents state none but that of the Primoplan: those of transcriptions are
+  guesses. Where a real lens was measured, `fitted` has the semi-diameters that give its light (see `xtask/measured_light.py`).
 """
 
 import csv
@@ -37,26 +40,38 @@ OPTILAND = "transcription of the Optiland project (MIT)"
 REALFLARE = "transcription of the realflare project (MIT)"
 
 # By name: the CSV's name where it differs, scale, name, year, maker, patent, source, remark, makers of glass (in order of
-# preference), era, semi-diameters to compute: (f-number, half diagonal of the format in mm).
+# preference), era, semi-diameters to compute: (f-number, half diagonal of the format in mm), figures of the patent's print.
 LENSES = {
     "angenieux-100-f1.1": dict(
         name="Angénieux 100 mm f/1.1", year=1953, maker="P. Angénieux, Paris", patent="US 2701982", source=LENTIL,
-        remark="Normalized to 100 mm; built shorter. The glasses named in the transcription are Schott's.",
+        remark="Normalized to 100 mm; built shorter. Compared with the print of the patent, which calls it 1:1, states indices for the D line and no "
+        "semi-diameters. The glasses named in the transcription are Schott's.",
         makers=["SCHOTT", "CORNING"], era="1953"),
     "meyer-primoplan-100-f1.5": dict(
         name="Meyer Primoplan 100 mm f/1.5", year=1936, maker="Meyer-Optik Görlitz", patent="DE 1387593",
-        source=LENTIL, remark="Normalized to 100 mm. The number of the patent is that of the transcription.",
+        source=LENTIL, rims="stated", gap=51.8854,
+        printed={1: dict(nd_after="1.657"), 2: dict(radius_mm="1450.1"), 3: dict(semi_diameter_mm="31"), 6: dict(semi_diameter_mm="23.3")},
+        remark="A utility model, at its scale: 1:1.5, 100 mm, free opening 66.7 mm. Compared with its print, by which three figures of the "
+        "transcription were corrected: nd of the first lens 1.657 (1.66), radius 2 1450.1 (1450.01), diameter of the second lens 62 (58); the stop "
+        "is that of the free opening (23.3 mm, 25 in the transcription). Its diameters are those of the lenses. So spherical "
+        "aberration at f/1.5 (a ray of the edge meets the axis 1.1 mm behind the focus) is the design's own; it was built as f/1.9. The image plane is "
+        "put to the smallest axial spot.",
         makers=["SCHOTT"], era="1936"),
     "nikon-retrofocus-100-f2.8": dict(
         name="Nikon retrofocus 100 mm f/2.8", year=1971, maker="Nippon Kogaku", patent="US 3583791", source=LENTIL,
-        remark="Normalized to 100 mm: a wide angle for a short focal length; the image circle is that of 66 degrees.",
+        remark="Example 1, normalized to 100 mm: a wide angle for a short focal length; the image circle is that of 66 degrees. Compared with the "
+        "print of the patent, by which three figures of the transcription were corrected: the Abbe number of the fourth lens 46.2 (27.5), nd of the first "
+        "1.6425 (1.64), the second gap 17.83 (17.38). The back focus comes out 130.92 mm for its 131.19. The image plane is put to the smallest axial spot.",
+        printed={1: dict(nd_after="1.6425"), 2: dict(thickness_mm="17.83"), 7: dict(vd_after="46.2")}, gap=130.3501,
         makers=["OHARA", "HOYA", "SCHOTT"], era="1971"),
     "zeiss-biotar-100-f1.4": dict(
         name="Zeiss Biotar 100 mm f/1.4", year=1927, maker="Carl Zeiss Jena (W. Merté)", patent="DE 485798", source=LENTIL,
-        remark="The same design as example 2 of US 1786916, at the scale of the patent.", makers=["SCHOTT"], era="1927"),
+        remark="The same design as example 2 of US 1786916, at the scale of the patent. Compared with the print of the patent, which states no "
+        "semi-diameters.", makers=["SCHOTT"], era="1927"),
     "asahi-takumar-100-f1.2": dict(
         name="Asahi Takumar 100 mm f/1.2", year=1969, maker="Asahi Kogaku", patent="US 3451745", source=LENTIL,
-        remark="Normalized to 100 mm; the type of the Super Takumar 50 mm f/1.4.", makers=["OHARA", "HOYA"], era="1969"),
+        remark="Normalized to 100 mm; the type of the Super Takumar 50 mm f/1.4. Compared with the print of the patent, which states no "
+        "semi-diameters; its space of 32.50 for the stop is 32.51 here.", makers=["OHARA", "HOYA"], era="1969"),
     "canon-35-f1.8": dict(
         csv="canon-35-f1.8-unit", scale=35, name="Canon 35 mm f/1.8", year=1956, maker="Canon", patent="US 2854890", source=LENTIL,
         remark="The patent's unit focal length times 35. It states three decimals, so radii are known to some 1 %; the image plane is put to the "
@@ -64,7 +79,9 @@ LENSES = {
         makers=["OHARA", "SCHOTT", "HOYA"], era="1956"),
     "kodak-petzval-100-f2.2": dict(
         name="Kodak Petzval 100 mm f/2.2", year=1948, maker="Eastman Kodak", patent="US 2500046", source=LENTIL,
-        remark="Normalized to 100 mm: a projection lens for small angles.", makers=["SCHOTT", "CORNING", "CHANCE"], era="1948"),
+        remark="Normalized to 100 mm: a projection lens for small angles. Compared with the print of the patent, which states no semi-diameters; by "
+        "it one figure of the transcription was corrected: the thickness of the last lens 7.5 (7.4).",
+        printed={7: dict(thickness_mm="7.5")}, makers=["SCHOTT", "CORNING", "CHANCE"], era="1948"),
     "minolta-fisheye-16-f2.7": dict(
         csv="minolta-fisheye-1-f2.7", scale=16, name="Minolta fisheye 16 mm f/2.7", year=1978, maker="Minolta", patent="US 4256373",
         source=LENTIL,
@@ -84,11 +101,19 @@ LENSES = {
     "helios-44-58-f2": dict(
         name="Helios-44 58 mm f/2", year=1958, maker="KMZ Krasnogorsk", source=OPTRACE,
         remark="The source cites no patent; a Soviet Biotar. The image plane is put to the smallest axial spot: the source's 37.12 lies 0.88 mm "
-        "in front of it.", makers=["LZOS"], gap=37.9975),
+        "in front of it. The source's semi-diameters are round guesses; of them the front's 15 became 14.3 and the rear's 13.25 12.3.",
+        fitted={1: 14.3, 2: 14.3, 10: 12.3, 11: 12.3},
+        rims="the light of a Helios-44 58 mm f/2 at f/2 and f/2.8, as Lensfun measured it (CC BY-SA 3.0): at 5.4, 10.8, 16.2 and 21.6 mm "
+        "0.914, 0.712, 0.507, 0.317 of the middle's at f/2, here 0.955, 0.759, 0.515, 0.285; 0.995, 0.948, 0.801, 0.556 at f/2.8, here 0.985, 0.937, "
+        "0.781, 0.501", makers=["LZOS"], gap=37.9975),
     "canon-fd-50-f1.8": dict(
         name="Canon FD 50 mm f/1.8", year=1979, maker="Canon", patent="JP 1988-081312", source=REALFLARE,
         remark="The source calls it 50 mm; 48.9 mm come out. The image plane is put to the smallest axial spot: the source's 34.81 "
-        "lies 2.15 mm behind it, as for an object at 1.2 m.", makers=["OHARA", "HOYA", "SCHOTT"], era="1979", gap=32.6629),
+        "lies 2.15 mm behind it, as for an object at 1.2 m. A glass is very likely misread: the foci of F and C lie 0.27 mm apart, 0.56 % of the focal "
+        "length, where the other normal lenses have 0.11 to 0.29 %; blue is drawn 11.7 um larger than green at 14 mm and red 4.4 um smaller, and the "
+        "lens that was measured (Lensfun, New FD 50 mm f/1.8) has -0.6 and +0.6. The source names catalogue glasses of other makers and decades (M-NBFD130, "
+        "F5, PBH4W, E-FD10), and nd and Vd are those of these. One Abbe number would explain it: 25.3 in place of 27.51 behind surface 4, or "
+        "40 in place of 35.93 behind surface 3. The patent was not seen, so the figures stand as the source has them.", makers=["OHARA", "HOYA", "SCHOTT"], era="1979", gap=32.6629),
     "zeiss-hologon-15-f8": dict(
         name="Zeiss Hologon 15 mm f/8", year=1969, maker="Carl Zeiss", source=REALFLARE,
         remark="The source cites no patent. The stop lies in the glass of the middle element, between two planes.",
@@ -96,6 +121,9 @@ LENSES = {
     "canon-ef-70-200-f2.8-at-72": dict(
         name="Canon EF 70-200 mm f/2.8L at 72 mm", year=1995, maker="Canon", patent="US 5537259", source=ISS,
         remark="One position of a zoom. The image plane is put to the smallest axial spot: the source has none.",
+        wider={(1, 17): 0.8, (18, 28): 0.4, (29, 34): 0.8},
+        rims="the light of a Canon EF 70-200 mm f/2.8L USM wide open, as Lensfun measured it at 70 and 80 mm (CC BY-SA 3.0): at 5.4, 10.8, 16.2 and "
+        "21.6 mm 0.972, 0.894, 0.768, 0.517 of the middle's, here 0.976, 0.885, 0.741, 0.507",
         makers=["OHARA", "HOYA"], era="1995", sizes=(2.923, 21.633), gap=52.1753),
     "nikkor-100-f1.4": dict(
         name="Nikkor 100 mm f/1.4", year=1981, maker="Nippon Kogaku (K. Wakamiya)", patent="US 4448497, example 1", source=OPTRACE,
@@ -287,6 +315,7 @@ def write(name, entry, table, program):
     source_name = entry.get("csv", name)
     surfaces, n = [], 1.0
     for row in table[source_name]:
+        row = {**row, **entry.get("printed", {}).get(int(row["surface"]), {})}
         surfaces.append(Surface(row, scale, n))
         n = surfaces[-1].n
     stop_at = entry.get("stop_at")
@@ -302,6 +331,15 @@ def write(name, entry, table, program):
             f" Semi-diameters computed: the axial beam at f/{number(f_number)}, and the middle half of the beam at "
             f"{math.degrees(math.atan(half / efl)):.0f} degrees."
         )
+    rims = entry.get("rims", "computed" if entry.get("sizes") else "guessed")
+    for surface, size in entry.get("fitted", {}).items():
+        surfaces[surface - 1].size = size
+    if entry.get("wider"):
+        parts = ", ".join(f"{first} to {last} by {number(by)} mm" for (first, last), by in entry["wider"].items())
+        remark += f" Then all but the stop were made wider, surfaces {parts}."
+    for (first, last), by in entry.get("wider", {}).items():
+        for i in range(first - 1, last):
+            surfaces[i].size = round(surfaces[i].size + by * (i != stop), 4)
     if entry.get("gap"):
         surfaces[-1].thickness = entry["gap"]
     seen = {}
@@ -347,6 +385,7 @@ def write(name, entry, table, program):
     else:
         remark += " No catalogue glass of the time has the stated nd and Vd: they stand alone."
     lines += text_block("remark", remark.strip())
+    lines += [f"rims: {rims}"] if rims in ("stated", "computed", "guessed") else ["rims:"] + ["  " + line for line in text_block("fitted", rims)]
     lines.append("surfaces:")
     for key in ("groups", "focus"):
         if entry.get(key):

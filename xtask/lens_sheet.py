@@ -94,7 +94,9 @@ def page(infos):
         "Every lens in `lenses/`, with its drawing (rays of the e line on the axis, at 0.6 and at 0.95 of the largest field that passes) and the",
         "resolution chart through it, wide open, focused at 2 m or forty focal lengths (the anamorphic at 1 km). Focal length and f-number are",
         "those of the reference line, by the real marginal ray. Where each comes from, and what is doubtful, stands in its file;",
-        "`tests/it/lenses.rs` holds them to the figures of their patents. Written by `xtask/lens_sheet.py`.",
+        "`tests/it/lenses.rs` holds them to the figures of their patents. Rims decide the light of corners and the shapes of blurs, and patents state them",
+        "seldom: those that are computed pass the axial beam and half of that at the edge, those that are guessed are figures of whoever drew the lens,",
+        "and those that are fitted give the light that was measured of a real copy. Written by `xtask/lens_sheet.py`.",
         "",
         "A lens named 100 mm whose circle is larger than 135 is shown as its patent has it, normalized; its frame is named.",
         "",
@@ -109,10 +111,11 @@ def page(infos):
             facts.append(f"f/{info['f_number']:.2f}")
         facts += [about[k] for k in ("year", "patent") if k in about]
         facts.append(FORMATS.get(name, "135"))
+        rims = info["rims"] if isinstance(info["rims"], str) else f"fitted to {info['rims']['fitted']}"
         lines += [
             f"## {about['name']}",
             "",
-            f"`{name}`: {', '.join(facts)}. Source: {about['source']}.",
+            f"`{name}`: {', '.join(facts)}. Source: {about['source']}. Rims: {rims}.",
             "",
             f"![{about['name']}, drawing](images/lenses/{name}.svg)",
             f"![{about['name']}, chart](images/lenses/{name}-chart.png)",

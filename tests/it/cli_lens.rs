@@ -353,7 +353,7 @@ fn lenses_are_compared() {
         "Zeiss Biotar 50 mm f/1.4",
         "Helios-44 58 mm f/2",
         "f/1.438",
-        "f/2.039",
+        "f/2.046",
         "T/",
         "contrast",
         "distortion",

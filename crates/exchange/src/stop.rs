@@ -35,6 +35,7 @@ pub(crate) fn size(lens: &mut Prescription, line: usize, mark: &str) {
                     shortest(size)
                 );
                 lens.remarks.push(text);
+                lens.stop_is_computed = true;
             }
         }
         Err(why) => lens.leave_out(line, true, format!("{stated} limits nothing: {why}")),

@@ -214,17 +214,19 @@ impl Lens {
             e.apertures.clear();
         }
         let tracer = Tracer::new(&open, Indices::At(self.reference_nm), Isa::Baseline)?;
-        let mut high = self.first_order(self.reference_nm).efl_mm.abs() * sine * 2.0;
-        let mut low = 0.0;
-        let mut found = None;
-        for _ in 0..if round { HALVINGS } else { 0 } {
-            let middle = 0.5 * (low + high);
-            match self.axial_ray(&tracer, middle) {
-                Some(ray) if ray.sine <= sine => (low, found) = (middle, Some(ray)),
-                _ => high = middle,
+        let search = |mut high: f64| -> Result<MarginalRay, ApertureError> {
+            let mut low = 0.0;
+            let mut found = None;
+            for _ in 0..if round { HALVINGS } else { 0 } {
+                let middle = 0.5 * (low + high);
+                match self.axial_ray(&tracer, middle) {
+                    Some(ray) if ray.sine <= sine => (low, found) = (middle, Some(ray)),
+                    _ => high = middle,
+                }
             }
-        }
-        let ray = found.filter(|r| (r.sine / sine - 1.0).abs() < 1e-9).ok_or(ApertureError::NoRay(f_number));
+            found.filter(|r: &MarginalRay| (r.sine / sine - 1.0).abs() < 1e-9).ok_or(ApertureError::NoRay(f_number))
+        };
+        let mut ray = search(self.first_order(self.reference_nm).efl_mm.abs() * sine * 2.0);
         let mut unset = self.clone();
         // The rim of an optical surface is there, whatever the stop is set to.
         if let Some(stop) = unset.stop().filter(|stop| unset.elements[*stop].action == Action::Pass) {
@@ -251,6 +253,8 @@ impl Lens {
                     None => Err(ApertureError::NoStop),
                 };
             }
+            // Of rays that no rim lets pass, some leave less steeply the higher they come in.
+            ray = ray.or_else(|_| search(widest.height_mm));
         }
         let height = match round {
             true => ray?.stop_height_mm.ok_or(ApertureError::NoStop)?,

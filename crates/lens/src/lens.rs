@@ -4,6 +4,7 @@ use crate::aperture::Shape;
 use crate::coating::Coating;
 use crate::focus::FocusLaw;
 use crate::group::Group;
+use crate::origin::Rims;
 use crate::pose::{AxisBreak, Pose};
 use crate::{Element, symmetry};
 use spectra_core::cover::CoverStack;
@@ -48,6 +49,8 @@ pub struct Lens {
     pub source: Option<String>,
     /// Doubts, and choices that were made.
     pub remark: Option<String>,
+    /// Where the semi-diameters come from, where that is known.
+    pub rims: Option<Rims>,
     /// Wavelength of the reference line, nm: focus and first order are meant there.
     pub reference_nm: f64,
     /// The lines of the Abbe numbers that go with it.
@@ -95,6 +98,7 @@ impl Lens {
             maker: None,
             source: None,
             remark: None,
+            rims: None,
             reference_nm: LineTriple::FDC.mid.wavelength_nm,
             abbe_lines: LineTriple::FDC,
             elements: Vec::new(),

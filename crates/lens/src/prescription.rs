@@ -5,7 +5,7 @@ use crate::schema::SurfaceOrBreak;
 use crate::surface_file::{BREAK, BreakParams, Place, displacement};
 use crate::{
     Coating, CoatingForm, DustForm, Element, FocusLaw, FocusTable, Group, GroupTravel, HazeForm, Lens, LensMedium,
-    ScratchesForm, aperture, read_coating, read_layers, read_separation, read_stated_coating, separation,
+    Rims, ScratchesForm, aperture, read_coating, read_layers, read_separation, read_stated_coating, separation,
 };
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
@@ -74,6 +74,9 @@ pub(crate) struct LensFile {
     source: Option<String>,
     /// Doubts and choices, for people.
     remark: Option<String>,
+    /// Where the semi-diameters come from: `stated` by the source, `computed` by rays that were to pass, `guessed`, or
+    /// `{fitted: ...}`, to light that was measured, with what was. Not known if absent.
+    rims: Option<Rims>,
     /// The surfaces, one or more, in the order of the light.
     surfaces: Vec<Part<SurfaceOrBreak>>,
     /// Groups of surfaces that move together, in focusing or out of place; none if absent.
@@ -151,6 +154,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         maker: file.maker,
         source: file.source,
         remark: file.remark,
+        rims: file.rims,
         reference_nm,
         abbe_lines: reference,
         ..Lens::empty("")

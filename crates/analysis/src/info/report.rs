@@ -9,7 +9,7 @@ use glam::DVec3;
 use serde::Serialize;
 use spectra_core::Isa;
 use spectra_core::surface::Action;
-use spectra_lens::{Criterion, Element, FirstOrder, Indices, Lens, MarginalRay, Section, Tracer};
+use spectra_lens::{Criterion, Element, FirstOrder, Indices, Lens, MarginalRay, Rims, Section, Tracer};
 
 /// A lens in figures, all in one light. Places along the axis (`..._z_mm`) are measured from the first
 /// vertex, +z toward the image. What a lens does not have (a pupil without a stop, a focal length
@@ -28,6 +28,8 @@ pub struct LensReport {
     pub source: Option<String>,
     /// Doubts, choices of glass.
     pub remark: Option<String>,
+    /// Where the semi-diameters come from.
+    pub rims: Option<Rims>,
     /// Wavelength in air; `None` at the stated indices.
     pub wavelength_nm: Option<f64>,
     /// Name of the spectral line there.
@@ -167,6 +169,7 @@ impl LensReport {
             patent: lens.patent.clone(),
             source: lens.source.clone(),
             remark: lens.remark.clone(),
+            rims: lens.rims.clone(),
             wavelength_nm: light.wavelength_nm(),
             line: light.line(),
             efl_mm: first_order.efl_mm,
@@ -220,7 +223,10 @@ impl LensReport {
             glare: None,
             assumed_media: super::media::assumed(lens),
             notes: lens.notes.clone(),
-            warnings: lens.warnings.iter().cloned().chain(misplaced_image(lens, &first_order, paraxial)).collect(),
+            warnings: (lens.warnings.iter().cloned())
+                .chain(misplaced_image(lens, &first_order, paraxial))
+                .chain(lens.glass_doubts())
+                .collect(),
         }
     }
 }

@@ -31,6 +31,9 @@ impl fmt::Display for LensReport {
                 writeln!(f, "{name}: {}", text.trim())?;
             }
         }
+        if let Some(rims) = &self.rims {
+            writeln!(f, "rims: {rims}")?;
+        }
         match (self.wavelength_nm, self.line) {
             (Some(nm), Some(line)) => writeln!(f, "wavelength: {nm} nm (line {line})")?,
             (Some(nm), None) => writeln!(f, "wavelength: {nm} nm")?,

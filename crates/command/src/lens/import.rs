@@ -32,9 +32,12 @@ pub(crate) fn import(arguments: &LensImport) -> Outcome {
     let code = deliver(&title, lens.surfaces().count(), output, text.as_bytes(), &lens.left_out, arguments.json)?;
     // A file that was written and cannot be loaded: better told now.
     let written = output.unwrap_or(&arguments.file).display().to_string();
-    if let Err(faults) = spectra_lens::load(&written, &resources) {
-        console::warning("the lens file must be completed before it can be used:");
-        console::faults(&faults);
+    match spectra_lens::load(&written, &resources) {
+        Err(faults) => {
+            console::warning("the lens file must be completed before it can be used:");
+            console::faults(&faults);
+        }
+        Ok(lens) => lens.glass_doubts().iter().for_each(|doubt| console::warning(doubt)),
     }
     Ok(code)
 }

@@ -31,6 +31,11 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
     for key in ["source", "remark"] {
         lens.remarks.extend(value::<String>(params, key)?);
     }
+    if let Some(rims) = params.get("rims") {
+        let fitted = rims.get("fitted").and_then(Node::as_str);
+        let words = fitted.map(|to| format!("fitted to {to}")).or(rims.as_str().map(str::to_owned));
+        lens.remarks.extend(words.map(|words| format!("Rims {words}.")));
+    }
     let known = [
         "name",
         "maker",
@@ -40,6 +45,7 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
         "reference-line",
         "source",
         "remark",
+        "rims",
         "surfaces",
         "coating",
         "absorption",

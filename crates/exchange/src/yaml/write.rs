@@ -48,6 +48,9 @@ pub fn write(lens: &Prescription, source: Option<&str>) -> String {
     if !remark.is_empty() {
         line(&format!("remark: {}", quoted(&remark)));
     }
+    if let Some(rims) = rims(lens) {
+        line(&format!("rims: {rims}"));
+    }
     line("surfaces:");
     for item in &lens.items {
         match item {
@@ -58,6 +61,18 @@ pub fn write(lens: &Prescription, source: Option<&str>) -> String {
         }
     }
     out
+}
+
+/// Where the sizes that clip come from: from the file, or, where the beam that it asks for is all that limits the light, from a ray that was
+/// computed.
+fn rims(lens: &Prescription) -> Option<&'static str> {
+    let clips = |surface: &Surface| surface.semi_diameter_mm.is_some() || !surface.apertures.is_empty();
+    let of_its_own = |surface: &&Surface| clips(surface) && !(surface.stop && lens.stop_is_computed);
+    match lens.surfaces().any(clips) {
+        true if lens.surfaces().filter(of_its_own).count() > 0 => Some("stated"),
+        true => Some("computed"),
+        false => None,
+    }
 }
 
 /// The words of a lens that only a person reads.

@@ -92,6 +92,8 @@ pub struct Match {
     pub distance: f64,
 }
 
+/// How far a melt's index, and the Abbe number of an older list, may be from the catalogue's for the glass to be the same.
+const NEAR: (f64, f64) = (5e-4, 0.5);
 /// Tolerance of the index in the ranking.
 const TOLERANCE_N: f64 = 5e-4;
 /// Relative tolerance of the Abbe number in the ranking.
@@ -100,6 +102,19 @@ const TOLERANCE_V: f64 = 5e-3;
 const SAME: f64 = 0.02;
 
 impl Catalogue {
+    /// Returns whether a glass or a plastic is within 0.0005 of an index and 0.5 of an Abbe number, both for the lines d, F and C.
+    #[must_use]
+    pub fn has_near(&self, nd: f64, vd: f64) -> bool {
+        let (of_n, of_v) = NEAR;
+        let is_lens_material =
+            |c: Category| matches!(c, Category::OpticalGlass | Category::TechnicalGlass | Category::Plastic);
+        let places =
+            self.index.iter().map(|(_, place)| *place).filter(|place| is_lens_material(self.category_of(*place)));
+        places
+            .map(|place| self.glass(place))
+            .any(|glass| (glass.nd() - nd).abs() <= of_n && (glass.vd() - vd).abs() <= of_v)
+    }
+
     /// The glasses nearest to an index and an Abbe number, nearest first; equals by name.
     #[must_use]
     pub fn nearest(&self, query: &Query) -> Vec<Match> {
