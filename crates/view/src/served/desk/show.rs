@@ -34,6 +34,19 @@ pub(super) struct Taken {
     turns: u64,
 }
 
+impl Taken {
+    /// Says what a draft leaves out that the picture of its session will have.
+    pub(super) fn leaves_out(&mut self, session: &Session) {
+        let scene = session.scene();
+        // Where nothing is said, they are looked for where a source has lights.
+        let has_lights = scene.source.split().is_some();
+        let has_ghosts = scene.render.reflections.order.map_or(has_lights, |order| order > 0);
+        let has_stars = scene.render.diffraction.unwrap_or(has_lights);
+        let all = [(has_ghosts, "ghosts"), (has_stars, "stars")];
+        self.head["left_out"] = all.iter().filter(|(has, _)| *has).map(|(_, name)| *name).collect();
+    }
+}
+
 impl Desk {
     /// Develops the light so far and gives it to the page. If it is to be `quick`, a small picture comes before a large one.
     pub(super) fn picture(
@@ -109,7 +122,10 @@ impl Desk {
         let scene = Arc::clone(session.scene());
         let times = scene.film_times(&plate.exposure);
         let mut head = head(json!({}), session, &times, plate.rays);
-        if kind == Kind::Draft {
+        if session.series().is_without_lens() {
+            // No sample is traced: all of it is there.
+            (head["samples"], head["of"], head["flat"]) = (1.into(), 1.into(), true.into());
+        } else if kind == Kind::Draft {
             head["samples"] = 0.into();
         }
         let turns = held(&self.state).turns_taken;
@@ -139,7 +155,7 @@ impl Desk {
             "lens_drawn": state.lenses,
             "reread": state.reread,
             "turns": taken.turns,
-            "fault": state.fault,
+            "fault": state.said(),
             "width": whole_px,
             "height": if is_draft { taken.shape.height_px(whole_px) } else { height_px },
             "light": [width_px, height_px],
