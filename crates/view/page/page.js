@@ -474,6 +474,7 @@ function sync() {
       lines.push(shown);
     }
   }
+  document.body.dataset.waits = String(sent.size + turned.size);
   box.replaceChildren(...lines);
   box.hidden = lines.length === 0;
   for (const row of form.querySelectorAll("[data-path]")) {
@@ -495,7 +496,7 @@ function sync() {
 /** What a control says in the picture, in words. @param {string} path */
 function shownValue(path) {
   const control = said?.controls.find((control) => control.path === path);
-  if (!control || control.value === null) return "what it was";
+  if (!control || control.value === null) return "not set";
   if (path === "film.exposure") return timeSaid(control.value);
   if (control.kind.is === "number") return `${control.kind.before}${Number(Number(control.value).toPrecision(6))}${control.kind.unit ? ` ${control.kind.unit}` : ""}`;
   return Array.isArray(control.value) ? control.value.join(", ") : String(control.value);
@@ -603,7 +604,14 @@ function row(control) {
       other.hidden = isKnown;
       other.textContent = value ?? "not set";
       select.value = isKnown ? value : "";
-      for (const tile of tiles) tile.setAttribute("aria-pressed", String(tile.value === value));
+      for (const tile of tiles) {
+        const isOwn = tile.value === value;
+        // What is pressed is seen, once: whoever scrolls is not led back.
+        if (isOwn && tile.getAttribute("aria-pressed") !== "true" && tile.parentElement) {
+          tile.parentElement.scrollLeft = tile.offsetLeft - tile.parentElement.offsetLeft - 40;
+        }
+        tile.setAttribute("aria-pressed", String(isOwn));
+      }
     };
     div.append(select);
     if (tiles.length > 0) {
@@ -733,7 +741,7 @@ function numberFields(control, kind, id, send) {
     field.removeAttribute("step");
   }
   field.setAttribute("aria-label", named(path));
-  field.placeholder = "auto";
+  field.placeholder = "–";
   const read = () => isTime ? timeOf(field.value) : Number(field.value);
   const show = (/** @type {number?} */ value) => { field.value = value === null ? "" : isTime ? timeSaid(value) : shortly(value); };
   const slider = document.createElement("input");
@@ -945,8 +953,9 @@ function tell(head) {
     const time = ((head.since_change_ms ?? 0) / 1000).toFixed(1);
     const rays = Number(head.rays).toLocaleString("en");
     const samples = head.draft ? "draft" : `${head.samples} of ${head.of} samples`;
-    state.textContent = head.flat ? `developed, ${time} s` : `${samples}, ${rays} rays, ${time} s`;
-    progress.value = head.samples / head.of;
+    const isQuick = head.flat && head.draft;
+    state.textContent = isQuick ? "developing" : head.flat ? `developed, ${time} s` : `${samples}, ${rays} rays, ${time} s`;
+    progress.value = isQuick ? 0.5 : head.samples / head.of;
     if (head.draft && !head.flat) {
       if (!isDraftSeen) changedAt = performance.now();
       isDraftSeen = true;
@@ -1017,14 +1026,20 @@ save.addEventListener("click", async () => {
   }
 });
 
+/** What a step back is known by among what was sent. */
+const BACK = "back";
 async function back() {
   if (undo.disabled) return;
   turned.clear();
   refused.clear();
   state.textContent = "tracing";
+  sent.set(BACK, Infinity);
+  sync();
   try {
-    await post(`/back?desk=${desk}`);
+    const answer = await post(`/back?desk=${desk}`);
+    sent.set(BACK, answer.turn);
   } catch (error) {
+    sent.delete(BACK);
     saved.textContent = error instanceof Error ? error.message : String(error);
   }
 }

@@ -63,7 +63,7 @@ const lies = () => page.evaluate(async () => {
   if (red > 0 && document.querySelector("#fault").hidden) all.push("a red field is not told");
   return { all, red };
 });
-const calm = () => page.waitForFunction(() => document.querySelectorAll(".control.waits").length === 0);
+const calm = () => page.waitForFunction(() => document.body.dataset.waits === "0");
 
 let red = 0;
 const times = [];
