@@ -186,7 +186,7 @@ impl Server {
                 let desk = self.desk(request)?;
                 let frame = desk.frame_after(number(request, "after")?, WAIT);
                 desk.is_asked();
-                Ok(frame.map_or_else(Answer::nothing, |f| Answer::new("application/octet-stream", f.bytes.clone())))
+                Ok(frame.map_or_else(Answer::nothing, |f| Answer::new("application/octet-stream", f)))
             }
             (false, "/controls") => Ok(Answer::json(&self.desk(request)?.controls())),
             (false, "/spectra") => {

@@ -370,6 +370,45 @@ fn a_swept_key_chooses_among_the_pictures() {
     assert!(command.starts_with("spectra run ") && command.ends_with(end), "{command}");
 }
 
+/// A picture whose file is cut off shows that only when light is asked for: the scene goes back to the picture that it had.
+#[test]
+fn what_turns_out_to_have_no_picture_is_taken_back() {
+    let scene = "spectra: 1\nsource: {kind: picture, distance: 2 m, luminance: 300 cd/m2, width: fill}\n\
+        lens: {file: zeiss-biotar-50-f1.4, f-number: f/2, focus: 2 m}\nimager: {kind: film, format: 135, resolution: [60, 40]}\n\
+        film: {stock: kodak-tri-x-400, exposure: 1/80 s}\nrender: {samples: 4}\nsweep: {source.file: [good.png, cut.png]}\n";
+    let png = photograph();
+    let browser = Browser::start_with("good.png", &png);
+    let folder = browser.file.parent().expect("a folder");
+    std::fs::write(folder.join("cut.png"), &png[..png.len() / 2]).expect("written");
+    std::fs::write(folder.join("scene.yaml"), scene).expect("written");
+    let browser = browser.entered();
+    let desk =
+        browser.post("/open", r#"{"name": "scene.yaml", "bundled": false}"#).json()["desk"].as_u64().expect("a desk");
+    let (head, first) = browser.frame(desk, 0, |head| is_done(head) && head["draft"] == false);
+    assert_eq!(browser.turn(desk, "source.file", json!("cut.png")).status, 200);
+    let at = head["frame"].as_u64().expect("a number");
+    let (head, _) = browser.frame(desk, at, |head| head["fault"]["path"] == "source.file");
+    let why = head["fault"]["faults"][0]["message"].as_str().expect("a message");
+    assert!(why.contains("cut.png"), "{why}");
+    let said = browser.controls(desk, 0);
+    assert_eq!((value_of(&said, "source.file"), &said["undos"]), (json!("good.png"), &json!(0)));
+    assert!(said["refused"]["source.file"].is_object(), "{}", said["refused"]);
+    // It goes on from there.
+    browser.turned(desk, "lens.f-number", json!(4));
+    browser.turned(desk, "lens.f-number", json!(2));
+    let (_, again) =
+        browser.frame(desk, head["frame"].as_u64().expect("a number"), |head| is_done(head) && head["draft"] == false);
+    assert!(again.len() == first.len());
+}
+
+/// The file of a small photograph.
+fn photograph() -> Vec<u8> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let color = |x: u32, y: u32| image::Rgb([(x * 4) as u8, (y * 5) as u8, ((x + y) * 2) as u8]);
+    image::RgbImage::from_fn(60, 40, color).write_to(&mut png, image::ImageFormat::Png).expect("a picture");
+    png.into_inner()
+}
+
 #[test]
 fn steps_are_taken_back_and_what_is_seen_is_a_scene_of_its_own() {
     let browser = Browser::let_in();
@@ -403,10 +442,7 @@ fn steps_are_taken_back_and_what_is_seen_is_a_scene_of_its_own() {
 /// A photograph is developed as `film develop` does: the same bits; and through a lens once one is turned to.
 #[test]
 fn a_photograph_is_developed() {
-    let mut png = std::io::Cursor::new(Vec::new());
-    let color = |x: u32, y: u32| image::Rgb([(x * 4) as u8, (y * 5) as u8, ((x + y) * 2) as u8]);
-    image::RgbImage::from_fn(60, 40, color).write_to(&mut png, image::ImageFormat::Png).expect("a picture");
-    let browser = Browser::viewing("photo.png", png.get_ref());
+    let browser = Browser::viewing("photo.png", &photograph());
     let desk = browser.open();
     let (head, light) = browser.frame(desk, 0, is_done);
     assert_eq!((&head["width"], &head["flat"], &head["rays"]), (&json!(60), &json!(true), &json!(0)));

@@ -49,7 +49,11 @@ struct State {
     controls: Vec<Control>,
     /// The pictures of the scene.
     picks: Picks,
+    /// The last picture.
     frame: Option<Arc<Frame>>,
+    /// What was said last without a picture: a number and a head.
+    note: Option<(u64, Arc<Vec<u8>>)>,
+    /// Of pictures and notes together.
     number: u64,
     /// Why there is no picture at all of the scene as it is; until something else is turned, nothing is traced.
     fault: Option<Value>,
@@ -78,6 +82,8 @@ struct State {
     turns: u64,
     turns_taken: u64,
     turns_settled: u64,
+    /// Those of them that the page was told.
+    turns_told: u64,
     /// A large picture is being developed beside the desk's thread.
     is_developing: bool,
     stop: Arc<Stop>,
@@ -194,13 +200,20 @@ impl Desk {
         state.turns
     }
 
-    /// The first frame after this number, if there is one within the time.
-    pub(crate) fn frame_after(&self, number: u64, patience: Duration) -> Option<Arc<Frame>> {
-        let is_waiting =
-            |state: &mut State| !state.is_closed && state.frame.as_ref().is_none_or(|frame| frame.number <= number);
+    /// The last picture after this number, or what was said after it, if there is one within the time.
+    pub(crate) fn frame_after(&self, number: u64, patience: Duration) -> Option<Vec<u8>> {
+        let found = |state: &State| {
+            let picture = state.frame.as_ref().filter(|frame| frame.number > number).map(|frame| frame.bytes.clone());
+            let note = || state.note.as_ref().filter(|note| note.0 > number).map(|note| note.1.to_vec());
+            picture.or_else(note)
+        };
+        let is_waiting = |state: &mut State| {
+            let last = [state.frame.as_ref().map(|frame| frame.number), state.note.as_ref().map(|note| note.0)];
+            !state.is_closed && last.into_iter().flatten().all(|last| last <= number)
+        };
         let waited = self.turned.wait_timeout_while(held(&self.state), patience, is_waiting);
         let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        state.frame.clone().filter(|frame| frame.number > number)
+        found(&state)
     }
 
     /// What the scene's controls are and say now.

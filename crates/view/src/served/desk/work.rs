@@ -5,11 +5,10 @@ use super::hand::{Drafted, Hand, Plate, Shape, Unproved};
 use super::history::Before;
 use super::show::Kind;
 use super::turned::What;
-use super::{Desk, Frame, State, WIDTHS_PX, held, priority};
+use super::{Desk, State, WIDTHS_PX, held, priority};
 use crate::controls;
 use crate::parts::{Picks, packed, said};
 use serde_json::{Value, json};
-use spectra_core::frame::ExposureFrame;
 use spectra_scene::NumberFamily;
 use spectra_session::{Control as Stop, Session, SessionError, Threads, Workers};
 use std::mem::take;
@@ -519,20 +518,16 @@ impl Desk {
     /// Says what is wrong with the scene, or that nothing is any more, and what was refused.
     pub(super) fn tell(&self, fault: Option<Value>) {
         let mut state = held(&self.state);
-        let is_new = fault.is_some() || state.fault.is_some() || state.refused != state.refused_told;
+        let is_other = state.refused != state.refused_told || state.turns_settled != state.turns_told;
+        let is_new = fault.is_some() || state.fault.is_some() || is_other;
         state.fault = fault;
         state.refused_told = state.refused.clone();
+        state.turns_told = state.turns_settled;
         if is_new {
-            // The page hears of it by a frame: the last one again, under a new number.
-            let before = state.frame.take();
+            // The page need not wait for a picture to hear of it.
             state.number += 1;
-            let head = json!({"frame": state.number, "scene": state.scenes, "fault": state.said(), "turns": state.turns_settled});
-            let (exposure, times, whole_px) = match before {
-                Some(before) => (Arc::clone(&before.exposure), before.times.clone(), before.whole_px),
-                None => (Arc::new(empty()), Vec::new(), 0),
-            };
-            let (number, bytes) = (state.number, packed(&head, &[]));
-            state.frame = Some(Arc::new(Frame { number, bytes, exposure, times, whole_px }));
+            let head = json!({"frame": state.number, "scene": state.scenes, "fault": state.said()});
+            state.note = Some((state.number, Arc::new(packed(&head, &[]))));
         }
         self.turned.notify_all();
     }
@@ -541,9 +536,4 @@ impl Desk {
 /// Whether a value is of the development of a film, by its path.
 fn is_of_development(path: &str) -> bool {
     path.starts_with("film.") && !CHOOSES_FILM.iter().any(|key| path.rsplit('.').next() == Some(key))
-}
-
-fn empty() -> ExposureFrame {
-    let size = spectra_core::frame::FrameSize { width_px: 0, height_px: 0, width_mm: 0.0, height_mm: 0.0 };
-    ExposureFrame { size, channels: Vec::new() }
 }
