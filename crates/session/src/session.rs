@@ -227,6 +227,18 @@ impl Session {
         renderer.look(&self.scene, light).map_err(|error| SessionError::of(&error, &self.scene))
     }
 
+    /// The same without what the edge of the aperture does to it, which takes seconds: stars of lights are left out.
+    ///
+    /// # Errors
+    /// As [`Session::look`].
+    pub fn look_without_stars(&mut self) -> Result<Rendering, SessionError> {
+        self.prepare(&Alone)?;
+        let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
+        let mut plain = Scene::clone(&self.scene);
+        plain.render.diffraction = Some(false);
+        renderer.look(&plain, light).map_err(|error| SessionError::of(&error, &self.scene))
+    }
+
     /// The exposure of the scene's film to its flat picture, pixel by pixel, as by an ideal lens at f/2.8 in place of the scene's: no
     /// ray is traced, and the light so far stays as it is.
     ///

@@ -941,8 +941,9 @@ const leftOut = (head) => (head.left_out ?? []).join(" and ");
 
 /** Marks what is seen as what it is. @param {Head} head */
 function mark(head) {
-  badge.hidden = !(head.draft && !head.flat);
-  badge.textContent = leftOut(head) ? `draft, without ${leftOut(head)}` : "draft";
+  const isDraft = head.draft && !head.flat;
+  badge.hidden = !isDraft && !leftOut(head);
+  badge.textContent = [isDraft && "draft", leftOut(head) && `without ${leftOut(head)} yet`].filter(Boolean).join(", ");
 }
 
 /** @param {Head} head */

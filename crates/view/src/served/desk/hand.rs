@@ -121,9 +121,19 @@ impl Hand {
     pub(super) fn is_done(&self) -> bool {
         let is_lit = || match self.is_flat() {
             true => self.light.is_some(),
-            false => self.session.samples() >= u64::from(self.session.scene().render.samples),
+            false => self.is_traced(),
         };
         self.owed.is_empty() && is_lit()
+    }
+
+    /// Whether its picture will have stars, and the light so far has none.
+    pub(super) fn is_without_stars(&self) -> bool {
+        !self.is_flat() && has_stars(&self.session) && !self.is_traced()
+    }
+
+    /// Whether all samples are there.
+    fn is_traced(&self) -> bool {
+        self.session.samples() >= u64::from(self.session.scene().render.samples)
     }
 
     /// The light so far.
@@ -131,6 +141,8 @@ impl Hand {
         let light = match self.light.take() {
             Some(light) => light,
             None if self.is_flat() => Arc::new(Plate::of(Small::expose(&mut self.pixels, &self.session)?)),
+            // Stars take seconds in which nothing that is turned is heard: they come with the last sample.
+            None if self.is_without_stars() => Arc::new(Plate::of(self.session.look_without_stars()?)),
             None => Arc::new(Plate::of(self.session.look()?)),
         };
         Ok(Arc::clone(self.light.insert(light)))
@@ -159,6 +171,12 @@ impl Hand {
         let owed = std::mem::take(&mut self.owed);
         *self = Self { owed, ..Self::of(session, shape, self.width_px) };
     }
+}
+
+/// Whether lights get stars: where nothing is said, they are looked for where a source has lights.
+pub(super) fn has_stars(session: &Session) -> bool {
+    let scene = session.scene();
+    scene.render.diffraction.unwrap_or_else(|| scene.source.split().is_some())
 }
 
 /// The shape of a scene's picture, as its file has it.

@@ -1,6 +1,6 @@
 //! Develops light and gives the picture to the page: a small one at once, and a large one beside whatever is turned next.
 
-use super::hand::{Hand, Plate, Shape};
+use super::hand::{Hand, Plate, Shape, has_stars};
 use super::{Desk, Frame, State, held, priority};
 use crate::parts::{halves, head, packed, said};
 use serde_json::{Value, json};
@@ -38,11 +38,9 @@ impl Taken {
     /// Says what a draft leaves out that the picture of its session will have.
     pub(super) fn leaves_out(&mut self, session: &Session) {
         let scene = session.scene();
-        // Where nothing is said, they are looked for where a source has lights.
-        let has_lights = scene.source.split().is_some();
-        let has_ghosts = scene.render.reflections.order.map_or(has_lights, |order| order > 0);
-        let has_stars = scene.render.diffraction.unwrap_or(has_lights);
-        let all = [(has_ghosts, "ghosts"), (has_stars, "stars")];
+        let has_lights = || scene.source.split().is_some();
+        let has_ghosts = scene.render.reflections.order.map_or_else(has_lights, |order| order > 0);
+        let all = [(has_ghosts, "ghosts"), (has_stars(session), "stars")];
         self.head["left_out"] = all.iter().filter(|(has, _)| *has).map(|(_, name)| *name).collect();
     }
 }
@@ -55,7 +53,13 @@ impl Desk {
         started: Instant,
         quick: bool,
     ) -> Result<(), SessionError> {
-        let of = |hand: &Hand, plate, kind| self.taken(&hand.session, &hand.shape, started, plate, kind);
+        let of = |hand: &Hand, plate, kind| {
+            let mut taken = self.taken(&hand.session, &hand.shape, started, plate, kind);
+            if hand.is_without_stars() {
+                taken.head["left_out"] = json!(["stars"]);
+            }
+            taken
+        };
         if quick {
             let small = match &hand.small {
                 Some(small) => Some(Arc::clone(small)),
