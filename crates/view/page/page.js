@@ -607,9 +607,7 @@ function row(control) {
       for (const tile of tiles) {
         const isOwn = tile.value === value;
         // What is pressed is seen, once: whoever scrolls is not led back.
-        if (isOwn && tile.getAttribute("aria-pressed") !== "true" && tile.parentElement) {
-          tile.parentElement.scrollLeft = tile.offsetLeft - tile.parentElement.offsetLeft - 40;
-        }
+        if (isOwn && tile.getAttribute("aria-pressed") !== "true") setTimeout(() => bringIn(tile));
         tile.setAttribute("aria-pressed", String(isOwn));
       }
     };
@@ -655,6 +653,12 @@ function row(control) {
   });
   fills.get(div)?.();
   return div;
+}
+
+/** Scrolls a strip to one of its tiles. @param {HTMLElement} tile */
+function bringIn(tile) {
+  const strip = tile.parentElement;
+  if (strip) strip.scrollLeft += tile.getBoundingClientRect().left - strip.getBoundingClientRect().left - 40;
 }
 
 /** Films side by side. @param {Tile[]} tiles @param {(word: string) => void} send */
