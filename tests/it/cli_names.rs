@@ -766,6 +766,23 @@ impl Proposal {
     }
 }
 
+/// What is no scene and no photograph is refused in words, and not by printing what is in it.
+#[test]
+fn the_viewer_says_what_it_cannot_open() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("photo.heic"), b"\0\0\0\x18ftypheic\0\xff\xfe").expect("written");
+    for (arguments, wanted) in [
+        (&["photo.heic"][..], "neither a scene nor a picture"),
+        (&["gone.jpg"], "`gone.jpg`: no such file"),
+        (&["gray-card", "--stock", "tri-x"], "--set film.stock=tri-x"),
+        (&["gone.jpg", "--stock", "portra"], "which one? kodak-portra-160"),
+    ] {
+        let said = answer_in(folder.path(), &[&["view", "--no-open"], arguments].concat());
+        let said = text(&said.stderr);
+        assert!(said.contains(wanted) && said.len() < 600, "{arguments:?}: {said}");
+    }
+}
+
 /// The README's paths of scenes are names of scenes that are there.
 #[test]
 fn scenes_of_the_readme_are_there() {

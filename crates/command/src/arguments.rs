@@ -188,21 +188,29 @@ fn samples(text: &str) -> Result<u32, String> {
 /// `spectra view`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "View a scene in the browser: the picture follows every change.\n\n\
+    long_about = "View a scene, or a photograph on film, in the browser: the picture follows every change.\n\n\
         A page opens with the picture, which grows as light is traced, the lens with its rays, and a control for each number and \
         choice of the scene. What changes development alone (print, push, grain) traces no light again. `Save to the scene` \
         writes what was changed into the scene file, where it stands, and leaves the rest of the file as it is.\n\n\
+        A photograph (OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR) is developed as `spectra film develop` would, on the film \
+        of --stock; turn the lens to see it through one.\n\n\
         The address is printed to standard output. It opens once, in one browser, and only on this machine. Ctrl-C ends the \
         viewer.",
-    after_long_help = "Examples: a bundled scene; another film, and the address alone; wavelengths as a screen shows them\n  \
+    after_long_help = "Examples: a bundled scene; a photograph of yours; another film, and the address alone; wavelengths as a screen \
+        shows them\n  \
         spectra view biotar-ortho\n  \
+        spectra view photo.jpg --stock tri-x\n  \
         spectra view biotar-ortho --set film.stock=tri-x --no-open\n  \
         spectra view --color-tester"
 )]
 pub(crate) struct View {
-    /// A scene file, or the name of a bundled scene (see `spectra list scene`).
-    #[arg(value_name = "SCENE", required_unless_present = "color_tester")]
+    /// A scene file, the name of a bundled scene (see `spectra list scene`), or a photograph.
+    #[arg(value_name = "SCENE|PICTURE", required_unless_present = "color_tester")]
     pub scene: Option<PathBuf>,
+    /// The film of a photograph: a bundled one (see `spectra list stock`), a part of its name, or a YAML file;
+    /// kodak-portra-400 if not given.
+    #[arg(long, value_name = "NAME", conflicts_with = "color_tester")]
+    pub stock: Option<String>,
     /// In place of a scene: light of one wavelength or a narrow band, as a screen can show it.
     #[arg(long, conflicts_with_all = ["scene", "overrides", "threads"])]
     pub color_tester: bool,

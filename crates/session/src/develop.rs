@@ -73,6 +73,72 @@ pub struct Develop<'a> {
     pub unit_of: &'a (dyn Fn(&str) -> Option<String> + Sync),
 }
 
+/// A photograph on a film, to be held as a [`Session`] and not only written: the scene is the one that [`develop`] makes of it.
+#[derive(Clone, Debug)]
+pub struct Photograph {
+    /// The picture; its output names the scene.
+    pub plate: Plate,
+    /// What the scene says, as in [`Develop`].
+    pub settings: Vec<Setting>,
+    /// The format that the frame is cut from; 135 if none is said.
+    pub format: Option<Setting>,
+}
+
+impl Photograph {
+    /// The scene of it, with texts `path=value` on top. Without a lens ([`Series::is_without_lens`]) its film is exposed by
+    /// [`Session::expose`].
+    ///
+    /// # Errors
+    /// Everything that is wrong with the picture's file or with what is set.
+    pub fn series(&self, overrides: &[String], isa: Isa) -> Result<Series, SessionError> {
+        let job = Develop {
+            plates: Vec::new(),
+            settings: self.settings.clone(),
+            overrides: overrides.to_vec(),
+            format: self.format.clone(),
+            side_px: None,
+            is_series: false,
+            notes: Vec::new(),
+            meter_each: false,
+            skip_existing: false,
+            isa,
+            version: "",
+            versions: Value::Null,
+            unit_of: &|_| None,
+        };
+        Ok(scene(&job, &self.plate, None).map_err(of_nobody)?.0)
+    }
+}
+
+/// The number that a name without its ending closes with; before a version, as in `plate.0007.v2`, where there is one.
+#[must_use]
+pub fn last_number(stem: &str) -> Option<u64> {
+    let version = stem.rfind(['.', '_', '-']).filter(|at| {
+        let said = stem[at + 1..].strip_prefix(['v', 'V']);
+        said.is_some_and(|said| !said.is_empty() && said.bytes().all(|b| b.is_ascii_digit()))
+    });
+    if let Some(number) = version.and_then(|at| closing_number(&stem[..at])) {
+        return Some(number);
+    }
+    closing_number(stem)
+}
+
+/// The digits that a text closes with.
+fn closing_number(stem: &str) -> Option<u64> {
+    let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+    stem[stem.len() - digits..].parse().ok()
+}
+
+/// Whether a file is a picture by its ending.
+#[must_use]
+pub fn is_picture(file: &Path) -> bool {
+    let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    ending.is_some_and(|ending| PICTURES.contains(&&*ending))
+}
+
+/// Endings of pictures that can be developed.
+pub const PICTURES: [&str; 10] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "hdr", "dpx"];
+
 /// Pixels along the longer side of a frame that rays are traced for, where nobody says how many.
 pub const TRACED_PX: u32 = 1920;
 

@@ -48,7 +48,9 @@ pub mod words;
 
 pub use check::{Checked, Look, check};
 pub use cube::{Cube, CubeErrors, CubeFile, RANDOM_COLORS};
-pub use develop::{Develop, Plate, Setting, TRACED_PX, develop, picture_ending};
+pub use develop::{
+    Develop, PICTURES, Photograph, Plate, Setting, TRACED_PX, develop, is_picture, last_number, picture_ending,
+};
 pub use error::SessionError;
 pub use header::films;
 pub use host::{Event, Folder, Host, Place};
@@ -58,6 +60,6 @@ pub use names::Names;
 pub use pace::Pace;
 pub use report::Report;
 pub use run::run;
-pub use session::{Kept, Session};
+pub use session::{Kept, Moment, Session};
 pub use spectra_render::{Alone, Control, Rendering, Threads, Workers};
 pub use spectra_scene::Developed;

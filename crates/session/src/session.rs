@@ -5,7 +5,7 @@ use crate::{Alone, Control, Names, Rendering, SessionError, Workers, header, sti
 use spectra_core::params::{Faults, Node, Warning};
 use spectra_core::resources::Resources;
 use spectra_core::sink::Sink;
-use spectra_core::stage::WavelengthDensity;
+use spectra_core::stage::{Still, WavelengthDensity};
 use spectra_core::{Isa, frame::ExposureFrame};
 use spectra_render::{Effort, Light, RenderError, Renderer};
 use spectra_scene::{Developed, Scene, Search, Series, Shot, load_series, series_of_text, series_of_tree};
@@ -24,6 +24,28 @@ pub struct Kept {
     pub lens: bool,
     /// The source, with its files.
     pub source: bool,
+}
+
+/// How a session was set: its values, its picture of the series and its stages, without the light.
+#[derive(Clone)]
+pub struct Moment {
+    series: Series,
+    index: usize,
+    scene: Arc<Scene>,
+}
+
+impl Moment {
+    /// The pictures that the scene stood for.
+    #[must_use]
+    pub fn series(&self) -> &Series {
+        &self.series
+    }
+
+    /// The place of its picture among them, from 0.
+    #[must_use]
+    pub fn index(&self) -> usize {
+        self.index
+    }
 }
 
 /// One picture of a scene: its stages, and its light so far.
@@ -101,11 +123,11 @@ impl Session {
     /// # Errors
     /// Everything that is wrong with the scene as it would be.
     pub fn branch(&self, texts: &[String]) -> Result<Self, SessionError> {
-        self.branched(texts, Effort::Full)
+        self.branched(texts, self.index, Effort::Full)
     }
 
-    fn branched(&self, texts: &[String], effort: Effort) -> Result<Self, SessionError> {
-        Self::after(self.series.with_all(texts)?, self.index, Some(Arc::clone(&self.scene)), self.isa, effort)
+    fn branched(&self, texts: &[String], index: usize, effort: Effort) -> Result<Self, SessionError> {
+        Self::after(self.series.with_all(texts)?, index, Some(Arc::clone(&self.scene)), self.isa, effort)
     }
 
     /// The same for a first look: what passes the lens, and what frame and meters see, is found with less effort, and so the bits are
@@ -114,7 +136,15 @@ impl Session {
     /// # Errors
     /// As [`Session::branch`].
     pub fn draft(&self, texts: &[String]) -> Result<Self, SessionError> {
-        self.branched(texts, Effort::Draft)
+        self.draft_of(texts, self.index)
+    }
+
+    /// The same of another picture of the series, by its place from 0.
+    ///
+    /// # Errors
+    /// As [`Session::branch`].
+    pub fn draft_of(&self, texts: &[String], index: usize) -> Result<Self, SessionError> {
+        self.branched(texts, index, Effort::Draft)
     }
 
     /// The picture among those that the scene's file stands for.
@@ -197,6 +227,18 @@ impl Session {
         renderer.look(&self.scene, light).map_err(|error| SessionError::of(&error, &self.scene))
     }
 
+    /// The same without what the edge of the aperture does to it, which takes seconds: stars of lights are left out.
+    ///
+    /// # Errors
+    /// As [`Session::look`].
+    pub fn look_without_stars(&mut self) -> Result<Rendering, SessionError> {
+        self.prepare(&Alone)?;
+        let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
+        let mut plain = Scene::clone(&self.scene);
+        plain.render.diffraction = Some(false);
+        renderer.look(&plain, light).map_err(|error| SessionError::of(&error, &self.scene))
+    }
+
     /// The exposure of the scene's film to its flat picture, pixel by pixel, as by an ideal lens at f/2.8 in place of the scene's: no
     /// ray is traced, and the light so far stays as it is.
     ///
@@ -204,6 +246,14 @@ impl Session {
     /// The source is no flat picture, or its file is broken; the film has more pixels than the picture, or another shape.
     pub fn expose(&self) -> Result<Rendering, SessionError> {
         still::expose(&self.scene)
+    }
+
+    /// The same of pixels that [`spectra_core::stage::Source::still`] of its source gave before, or of the same picture with fewer.
+    ///
+    /// # Errors
+    /// The film has more pixels than the picture, or another shape.
+    pub fn expose_still(&self, still: &Still) -> Result<Rendering, SessionError> {
+        still::of_still(&self.scene, still)
     }
 
     /// Whether any ray was traced.
@@ -264,7 +314,7 @@ impl Session {
     /// # Errors
     /// As [`Session::change`].
     pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<Kept, SessionError> {
-        self.changed(text, true, None, workers)
+        self.changed(&[text], self.index, true, None, workers)
     }
 
     /// The same, but what the change asks to be made ready anew is made when light is asked for again, where it can be stopped. What
@@ -273,7 +323,7 @@ impl Session {
     /// # Errors
     /// What is wrong with the stages of the scene as it would be.
     pub fn change_later(&mut self, text: &str) -> Result<Kept, SessionError> {
-        self.changed(text, false, None, &Alone)
+        self.changed(&[text], self.index, false, None, &Alone)
     }
 
     /// The same, where `other` may have the lens as the change asks for it, focused: a draft that was changed so before.
@@ -281,43 +331,68 @@ impl Session {
     /// # Errors
     /// As [`Session::change_later`]; and something where the workers are to stop meanwhile, which then leaves all as it was.
     pub fn change_after(&mut self, text: &str, other: &Self, workers: &dyn Workers) -> Result<Kept, SessionError> {
-        self.changed(text, false, Some(&other.scene), workers)
+        self.changed(&[text], self.index, false, Some(&other.scene), workers)
+    }
+
+    /// Sets several values at once and goes to another picture of the series, by its place from 0; made ready when light is asked for
+    /// again. `other` may have the lens as this asks for it, as in [`Session::change_after`].
+    ///
+    /// # Errors
+    /// As [`Session::change_after`].
+    pub fn turn(
+        &mut self,
+        texts: &[impl AsRef<str>],
+        index: usize,
+        other: Option<&Self>,
+        workers: &dyn Workers,
+    ) -> Result<Kept, SessionError> {
+        let texts: Vec<&str> = texts.iter().map(AsRef::as_ref).collect();
+        self.changed(&texts, index, false, other.map(|other| &*other.scene), workers)
+    }
+
+    /// How it is set now.
+    #[must_use]
+    pub fn moment(&self) -> Moment {
+        Moment { series: self.series.clone(), index: self.index, scene: Arc::clone(&self.scene) }
+    }
+
+    /// Goes back to how it was set, with the light where that is the same; it cannot be refused, since it was so before.
+    pub fn back_to(&mut self, moment: &Moment) -> Kept {
+        let Moment { series, index, scene } = moment.clone();
+        let kept = self.kept(&scene);
+        if !kept.light {
+            let known = self.ready.take().map(|(renderer, _)| Arc::clone(renderer.density())).or(self.density.take());
+            self.density = known.filter(|_| kept.density);
+        }
+        (self.series, self.index, self.scene) = (series, index, scene);
+        kept
+    }
+
+    /// The pictures that the scene stands for: one, those of a sweep, the frames of an animation.
+    #[must_use]
+    pub fn series(&self) -> &Series {
+        &self.series
+    }
+
+    /// The place of its picture among them, from 0.
+    #[must_use]
+    pub fn index(&self) -> usize {
+        self.index
     }
 
     fn changed(
         &mut self,
-        text: &str,
+        texts: &[&str],
+        index: usize,
         is_made_ready: bool,
         lens_of: Option<&Scene>,
         workers: &dyn Workers,
     ) -> Result<Kept, SessionError> {
-        let series = self.series.with(text)?;
-        let before = Arc::clone(&self.scene);
+        let series = self.series.with_all(texts)?;
         let search = Search { effort: self.effort, workers };
-        let scene: Arc<Scene> = series.scene_between(self.index, Some(Arc::clone(&before)), lens_of, search)?.into();
-        let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
-            which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()
-        };
-        let same_channels =
-            responses(&before, before.picture_channels()) == responses(&scene, scene.picture_channels());
-        let same_meters = responses(&before, before.meter_channels()) == responses(&scene, scene.meter_channels())
-            && before.metered_pixels() == scene.metered_pixels();
-        let source = Arc::ptr_eq(&before.source, &scene.source);
-        let lens = Arc::ptr_eq(&before.lens, &scene.lens);
-        // A source that fills the frame is another one with every lens; its light has the spectrum of before.
-        let system = before.source.spectrum() == scene.source.spectrum()
-            && same_channels
-            && before.grid == scene.grid
-            && Arc::ptr_eq(&before.sampler, &scene.sampler);
-        let same_light = system
-            && source
-            && same_meters
-            && lens
-            && before.imager.size() == scene.imager.size()
-            && Arc::ptr_eq(&before.imager, &scene.imager)
-            && before.ghost_paths() == scene.ghost_paths()
-            && before.render.traces_as(&scene.render);
-        let mut kept = Kept { light: same_light, density: system, lens, source };
+        let scene: Arc<Scene> = series.scene_between(index, Some(Arc::clone(&self.scene)), lens_of, search)?.into();
+        let mut kept = self.kept(&scene);
+        let (system, same_light) = (kept.density, kept.light);
         let ready = self.ready.take();
         let known = ready.as_ref().map(|(renderer, _)| renderer.density()).or(self.density.as_ref());
         let density = known.filter(|_| system).cloned();
@@ -336,8 +411,35 @@ impl Session {
                 }
             },
         };
-        (self.series, self.scene, self.density) = (series, scene, density);
+        (self.series, self.index, self.scene, self.density) = (series, index, scene, density);
         Ok(kept)
+    }
+
+    /// What another scene leaves of what was made for the one that is there.
+    fn kept(&self, scene: &Scene) -> Kept {
+        let before = &*self.scene;
+        let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
+            which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()
+        };
+        let same_channels = responses(before, before.picture_channels()) == responses(scene, scene.picture_channels());
+        let same_meters = responses(before, before.meter_channels()) == responses(scene, scene.meter_channels())
+            && before.metered_pixels() == scene.metered_pixels();
+        let source = Arc::ptr_eq(&before.source, &scene.source);
+        let lens = Arc::ptr_eq(&before.lens, &scene.lens);
+        // A source that fills the frame is another one with every lens; its light has the spectrum of before.
+        let system = before.source.spectrum() == scene.source.spectrum()
+            && same_channels
+            && before.grid == scene.grid
+            && Arc::ptr_eq(&before.sampler, &scene.sampler);
+        let same_light = system
+            && source
+            && same_meters
+            && lens
+            && before.imager.size() == scene.imager.size()
+            && Arc::ptr_eq(&before.imager, &scene.imager)
+            && before.ghost_paths() == scene.ghost_paths()
+            && before.render.traces_as(&scene.render);
+        Kept { light: same_light, density: system, lens, source }
     }
 
     /// Gives the memory of the light back.

@@ -46,7 +46,11 @@ pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
         let fault = scene.params.fault("source.kind", "only a flat picture can be exposed without a lens");
         return Err(fault.hint("`kind: picture` without `depth`; or name a lens").into());
     };
-    let still = still?;
+    of_still(scene, &still?)
+}
+
+/// The same of pixels that were read before.
+pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, SessionError> {
     let size = scene.imager.size();
     let [across, down] = [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)];
     let aspects =
@@ -67,8 +71,7 @@ pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
     if still.rgb.par_iter().any(|rgb| rgb.iter().any(|v| *v < 0.0)) {
         colors.take_wide();
     }
-    let planes = colors.planes(&still, &size);
-    drop(still);
+    let planes = colors.planes(still, &size);
     let channels = scene.channels.iter().zip(planes).map(|(channel, values)| ExposureChannel {
         name: channel.name.clone(),
         unit: channel.unit.clone(),

@@ -6,12 +6,14 @@
 
 /** @typedef {{is: "number", before: string, unit: string, least: number?, most: number?, whole: boolean}} NumberKind */
 /** @typedef {{is: "pair", unit: string, least: number?, most: number?}} PairKind */
-/** @typedef {{is: "choice", words: string[]}} ChoiceKind */
+/** @typedef {{word: string, title: string, iso: number?, kind: "color" | "slide" | "gray"}} Tile */
+/** @typedef {{is: "choice", words: string[], tiles?: Tile[]}} ChoiceKind */
 /** @typedef {{is: "switch"}} SwitchKind */
-/** @typedef {{path: string, kind: NumberKind | PairKind | ChoiceKind | SwitchKind, value: any, help: string, front: boolean}} Control */
+/** @typedef {{path: string, kind: NumberKind | PairKind | ChoiceKind | SwitchKind, value: any, help: string, front: boolean, fixed?: string?, from?: number?}} Control */
+/** @typedef {{name: string, controls: Control[], widths: number[], width?: number, saves: boolean, changes: number, undos?: number, turns?: number, refused?: Record<string, {faults: Fault[]}>, is_prism?: boolean, photograph?: boolean}} Said */
 /** @typedef {{message: string, place?: string, hint?: string}} Fault */
 /** @typedef {{frame: number, scene?: number, lens_drawn?: number, reread?: number, turns?: number, width?: number, height?: number, light?: [number, number], draft?: boolean, samples?: number, of?: number, rays?: number, since_change_ms?: number,
- *   exposure_s?: number, lens?: string, film?: string, focus?: string, warnings?: Fault[], fault?: {path: string, faults: Fault[]}?}} Head */
+ *   exposure_s?: number, lens?: string, film?: string, focus?: string, flat?: boolean, left_out?: string[], warnings?: Fault[], fault?: {path: string, faults: Fault[]}?}} Head */
 /** @typedef {{across: number, down: number, light: Float32Array}} Light */
 /**
  * A picture, and its light: of a draft, fewer pixels than the picture will have.
@@ -44,6 +46,9 @@ const save = part("save", HTMLButtonElement);
 const saved = part("saved", HTMLElement);
 const form = part("controls", HTMLFormElement);
 const section = part("section", HTMLImageElement);
+const badge = part("badge", HTMLElement);
+const undo = part("undo", HTMLButtonElement);
+const open = part("open", HTMLSelectElement);
 
 let desk = 0;
 /** @type {Picture?} */
@@ -54,7 +59,13 @@ let keptIsShown = false;
 let view = { zoom: 1, x: 0, y: 0 };
 /** What is to be sent, by path; sent one after the other, the last value of each. @type {Map<string, any>} */
 const turned = new Map();
+/** What was sent and is not taken up yet, by path: its number among all that were turned. @type {Map<string, number>} */
+const sent = new Map();
+/** What is not taken: by path, with what is wrong. Such a field stays red, and keeps what was typed until it is turned again or let go. @type {Map<string, Fault[]>} */
+const refused = new Map();
 let isSending = false;
+/** What the scene's controls say now. @type {Said?} */
+let said = null;
 
 /** @param {string} path @param {any} [body] */
 async function post(path, body) {
@@ -66,6 +77,8 @@ async function post(path, body) {
 /** @param {string} path @param {any} value */
 function turn(path, value) {
   turned.set(path, value);
+  refused.delete(path);
+  sync();
   state.textContent = "tracing";
   if (!isSending) send();
 }
@@ -76,12 +89,25 @@ async function send() {
     const [[path, value]] = turned;
     turned.delete(path);
     try {
-      await post(`/turn?desk=${desk}`, { path, value });
+      // Until its number is known, it is not taken up.
+      sent.set(path, Infinity);
+      const answer = await post(`/turn?desk=${desk}`, { path, value });
+      // Who answers without a number has taken it.
+      if (Number.isFinite(answer?.turn)) sent.set(path, answer.turn);
+      else sent.delete(path);
     } catch (error) {
-      showFault([{ message: `${path}: ${error instanceof Error ? error.message : error}` }]);
+      sent.delete(path);
+      if (!turned.has(path)) refuse(path, [{ message: error instanceof Error ? error.message : String(error) }]);
     }
   }
   isSending = false;
+  refresh().catch(() => {});
+}
+
+/** A value is not taken: its field is red. @param {string} path @param {Fault[]} faults */
+function refuse(path, faults) {
+  refused.set(path, faults);
+  sync();
 }
 
 // The picture -------------------------------------------------------------------------------------------------------------------
@@ -401,31 +427,109 @@ new ResizeObserver(() => {
 
 // Faults ------------------------------------------------------------------------------------------------------------------------
 
+/** @param {Fault} fault */
+function line(fault) {
+  const line = document.createElement("p");
+  line.textContent = `${fault.place ? `${fault.place}: ` : ""}${fault.message}${fault.hint ? ` (${fault.hint})` : ""}`;
+  return line;
+}
+
 /** @param {HTMLElement} to @param {Fault[]} faults */
 function list(to, faults) {
-  to.replaceChildren(...faults.map((fault) => {
-    const line = document.createElement("p");
-    line.textContent = `${fault.place ? `${fault.place}: ` : ""}${fault.message}${fault.hint ? ` (${fault.hint})` : ""}`;
-    return line;
-  }));
+  to.replaceChildren(...faults.map(line));
   to.hidden = faults.length === 0;
 }
 
-/** @param {Fault[]} faults */
-function showFault(faults) {
-  list(part("fault", HTMLElement), faults);
+/** What is wrong with the scene or the server, apart from values that are not taken. @type {Fault[]} */
+let faults = [];
+/** @param {Fault[]} now */
+function showFault(now) {
+  faults = now;
+  sync();
 }
+
+/** The name of a control, as a camera has it. @param {string} path */
+function named(path) {
+  const known = NAMES[/** @type {keyof typeof NAMES} */ (path)];
+  if (known) return known;
+  const words = path.slice(path.indexOf(".") + 1).replaceAll(".", " \u203a ").replaceAll("-", " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/**
+ * Every field says what the picture has, but for those that are red, those that wait for their picture, and the one that is being typed in.
+ */
+function sync() {
+  const box = part("fault", HTMLElement);
+  const lines = faults.map((fault) => line(fault));
+  for (const [path, wrong] of refused) {
+    for (const fault of wrong) {
+      // Where it stands in a command line helps nobody here.
+      const shown = line({ ...fault, place: undefined, message: `${named(path)}: ${fault.message}` });
+      const back = document.createElement("button");
+      back.type = "button";
+      back.textContent = `Back to ${shownValue(path)}`;
+      back.addEventListener("click", () => letGo(path));
+      shown.append(" ", back);
+      lines.push(shown);
+    }
+  }
+  document.body.dataset.waits = String(sent.size + turned.size);
+  box.replaceChildren(...lines);
+  box.hidden = lines.length === 0;
+  for (const row of form.querySelectorAll("[data-path]")) {
+    if (!(row instanceof HTMLElement)) continue;
+    const path = String(row.dataset.path);
+    const isRefused = refused.has(path);
+    row.classList.toggle("refused", isRefused);
+    row.classList.toggle("waits", sent.has(path) || turned.has(path));
+    const why = isRefused ? (refused.get(path) ?? []).map((fault) => fault.message).join(" ") : "";
+    row.title = why || row.dataset.help || "";
+    for (const field of row.querySelectorAll("input, select")) {
+      if (isRefused) field.setAttribute("aria-invalid", "true");
+      else field.removeAttribute("aria-invalid");
+    }
+    if (!isRefused && !sent.has(path) && !turned.has(path)) fills.get(row)?.();
+  }
+}
+
+/** What a control says in the picture, in words. @param {string} path */
+function shownValue(path) {
+  const control = said?.controls.find((control) => control.path === path);
+  if (!control || control.value === null) return "not set";
+  if (path === "film.exposure") return timeSaid(control.value);
+  if (control.kind.is === "number") return `${control.kind.before}${Number(Number(control.value).toPrecision(6))}${control.kind.unit ? ` ${control.kind.unit}` : ""}`;
+  return Array.isArray(control.value) ? control.value.join(", ") : String(control.value);
+}
+
+/** A value that was refused is given up: the field says again what the picture has. @param {string} path */
+function letGo(path) {
+  refused.delete(path);
+  given.set(path, said?.refused?.[path]);
+  sync();
+}
+/** Refusals that were seen and given up. @type {Map<string, any>} */
+const given = new Map();
 
 // Controls ----------------------------------------------------------------------------------------------------------------------
 
 const groups = [
-  ["lens", "Lens"], ["film", "Film"], ["imager", "Frame"], ["source", "Light and subject"], ["wavelengths", "Wavelengths"], ["render", "Render"],
+  ["picture", "Picture"], ["film", "Film"], ["lens", "Lens"], ["imager", "Frame"], ["source", "Light and subject"], ["variables", "Variables"],
+  ["wavelengths", "Wavelengths"], ["render", "Render"],
 ];
+/** Names of controls that a camera has words for. */
+const NAMES = {
+  picture: "Picture", "lens.file": "Lens", "lens.f-number": "Aperture", "lens.focus": "Focus", "lens.aperture": "Blades",
+  "lens.aperture.blades": "Blades", "film.stock": "Film", "film.exposure": "Shutter", "film.compensation": "Exposure +/-",
+  "film.metering": "Meter", "film.iso": "ISO", "film.print": "Print on", "film.paper.grade": "Paper grade", "source.illuminant": "Light",
+  "imager.format": "Format",
+};
 
 /** @param {Control[]} controls */
 function build(controls) {
+  fills.clear();
   form.replaceChildren(...groups.flatMap(([key, title]) => {
-    const own = controls.filter((control) => control.path.startsWith(`${key}.`));
+    const own = controls.filter((control) => control.path === key || control.path.startsWith(`${key}.`));
     if (own.length === 0) return [];
     const set = document.createElement("fieldset");
     const legend = document.createElement("legend");
@@ -437,65 +541,142 @@ function build(controls) {
       const summary = document.createElement("summary");
       summary.textContent = `${rest.length} more`;
       details.append(summary);
-      // Made when it is looked at: hundreds of fields cost time.
-      details.addEventListener("toggle", () => {
+      details.open = opened.has(key);
+      const fill = () => {
+        if (details.open) opened.add(key);
+        else opened.delete(key);
         if (details.open && details.children.length === 1) details.append(...rest.map(row));
-      });
+        sync();
+      };
+      // Made when it is looked at: hundreds of fields cost time.
+      details.addEventListener("toggle", fill);
+      if (details.open) details.append(...rest.map(row));
       set.append(details);
     }
     return [set];
   }));
 }
+/** Groups whose further controls are seen. @type {Set<string>} */
+const opened = new Set();
+/** What fills a row with the value that the picture has. @type {Map<HTMLElement, () => void>} */
+const fills = new Map();
+/** The value of a control now. @param {string} path */
+const valueOf = (path) => said?.controls.find((control) => control.path === path)?.value ?? null;
+/** Whether somebody types in a field. @param {HTMLInputElement} field */
+const isTypedIn = (field) => field.dataset.typed === "true" && document.activeElement === field;
 
 let ids = 0;
 /** @param {Control} control */
 function row(control) {
   const { path, kind, help } = control;
   const div = document.createElement("div");
-  div.className = `control ${kind.is === "choice" || kind.is === "switch" ? "wide" : kind.is}${control.value === null ? " unset" : ""}`;
+  div.className = `control ${kind.is === "choice" || kind.is === "switch" ? "wide" : kind.is}`;
   div.dataset.path = path;
-  div.title = help;
+  div.dataset.help = control.fixed ? `${path}: ${control.fixed}` : `${path}: ${help}`;
   const label = document.createElement("label");
   ids += 1;
   label.htmlFor = `c${ids}`;
-  label.textContent = path === "lens.aperture" || path === "lens.aperture.blades" ? "blades" : path.slice(path.indexOf(".") + 1);
+  label.textContent = named(path);
   div.append(label);
-  const send = (/** @type {any} */ value) => {
-    div.classList.remove("unset");
-    turn(path, value);
-  };
+  const send = (/** @type {any} */ value) => turn(path, value);
+  /** @type {() => void} */
+  let fill = () => {};
   if (kind.is === "switch") {
     const box = document.createElement("input");
     box.type = "checkbox";
     box.id = label.htmlFor;
-    box.checked = control.value === true;
-    box.indeterminate = control.value === null;
     box.addEventListener("change", () => send(box.checked));
+    fill = () => {
+      box.checked = valueOf(path) === true;
+      box.indeterminate = valueOf(path) === null;
+    };
     div.append(box);
   } else if (kind.is === "choice") {
     const select = document.createElement("select");
     select.id = label.htmlFor;
-    const known = control.value === null || !kind.words.includes(control.value);
-    if (known) select.append(new Option(control.value ?? "not set", "", true, true));
-    select.append(...kind.words.map((word) => new Option(word, word, false, word === control.value)));
+    const other = new Option("not set", "");
+    select.append(other, ...kind.words.map((word) => new Option(word, word)));
     select.addEventListener("change", () => select.value !== "" && send(select.value));
+    const tiles = tilesOf(kind.tiles ?? [], send);
+    fill = () => {
+      const value = valueOf(path);
+      const isKnown = value !== null && kind.words.includes(value);
+      other.hidden = isKnown;
+      other.textContent = value ?? "not set";
+      select.value = isKnown ? value : "";
+      for (const tile of tiles) {
+        const isOwn = tile.value === value;
+        // What is pressed is seen, once: whoever scrolls is not led back.
+        if (isOwn && tile.getAttribute("aria-pressed") !== "true") setTimeout(() => bringIn(tile));
+        tile.setAttribute("aria-pressed", String(isOwn));
+      }
+    };
     div.append(select);
+    if (tiles.length > 0) {
+      const strip = document.createElement("div");
+      strip.className = "tiles";
+      strip.setAttribute("role", "group");
+      strip.setAttribute("aria-label", "Films");
+      strip.append(...tiles);
+      div.append(strip);
+    }
   } else if (kind.is === "number") {
-    div.append(...numberFields(control, kind, label.htmlFor, send));
+    const [fields, filled] = numberFields(control, kind, label.htmlFor, send);
+    div.append(...fields);
+    fill = filled;
   } else {
     const fields = [0, 1].map((i) => {
-      const field = numberField(kind, control.value?.[i] ?? 0);
-      field.setAttribute("aria-label", `${path}, ${i === 0 ? "x" : "y"}`);
+      const field = numberField(kind);
+      field.setAttribute("aria-label", `${named(path)}, ${i === 0 ? "x" : "y"}`);
       field.addEventListener("change", () => {
         const both = fields.map((f) => Number(f.value));
-        if (both.every(Number.isFinite)) send(both);
+        if (fields.every((f) => f.value !== "") && both.every(Number.isFinite)) send(both);
+        else sync();
       });
       return field;
+    });
+    fill = () => fields.forEach((field, i) => {
+      if (!isTypedIn(field)) field.value = shortly(valueOf(path)?.[i] ?? 0);
     });
     fields[0].id = label.htmlFor;
     div.append(...fields, unit(kind.unit));
   }
+  div.addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && refused.has(path)) letGo(path);
+  });
+  for (const field of div.querySelectorAll("input, select, button")) {
+    if (control.fixed && "disabled" in field) field.disabled = true;
+  }
+  fills.set(div, () => {
+    div.classList.toggle("unset", valueOf(path) === null);
+    fill();
+  });
+  fills.get(div)?.();
   return div;
+}
+
+/** Scrolls a strip to one of its tiles. @param {HTMLElement} tile */
+function bringIn(tile) {
+  const strip = tile.parentElement;
+  if (strip) strip.scrollLeft += tile.getBoundingClientRect().left - strip.getBoundingClientRect().left - 40;
+}
+
+/** Films side by side. @param {Tile[]} tiles @param {(word: string) => void} send */
+function tilesOf(tiles, send) {
+  return tiles.map(({ word, title, iso, kind }) => {
+    const tile = document.createElement("button");
+    tile.type = "button";
+    tile.className = `tile ${kind}`;
+    tile.value = word;
+    const name = document.createElement("span");
+    name.textContent = title;
+    const speed = document.createElement("small");
+    speed.textContent = iso === null ? "" : `ISO ${iso}`;
+    tile.append(name, speed);
+    tile.title = word;
+    tile.addEventListener("click", () => send(word));
+    return tile;
+  });
 }
 
 /** @param {string} text */
@@ -506,59 +687,130 @@ function unit(text) {
   return span;
 }
 
-/** @param {{least: number?, most: number?, whole?: boolean}} kind @param {number?} value */
-function numberField(kind, value) {
+/** A number to six digits. @param {number?} value */
+const shortly = (value) => value === null ? "" : String(Number(Number(value).toPrecision(6)));
+
+/** @param {{least: number?, most: number?, whole?: boolean}} kind */
+function numberField(kind) {
   const field = document.createElement("input");
   field.type = "number";
   field.step = kind.whole ? "1" : "any";
   if (kind.least !== null) field.min = String(kind.least);
   if (kind.most !== null) field.max = String(kind.most);
-  field.value = value === null ? "" : String(Number(Number(value).toPrecision(6)));
+  typed(field);
   return field;
 }
 
+/** Knows when somebody types in a field. @param {HTMLInputElement} field */
+function typed(field) {
+  field.addEventListener("input", () => { field.dataset.typed = "true"; });
+  field.addEventListener("change", () => { field.dataset.typed = "false"; });
+  field.addEventListener("blur", () => {
+    field.dataset.typed = "false";
+    sync();
+  });
+}
+
+/** Stops of an aperture ring, a third apart, as they are engraved. */
+const STOPS = [0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.4, 1.6, 1.8, 2, 2.2, 2.5, 2.8, 3.2, 3.5, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9, 10, 11, 13, 14, 16, 18, 20, 22, 25, 29, 32, 36, 40, 45, 51, 57, 64];
+/** Times of a shutter, a third of a stop apart: one over these, seconds; then whole seconds. */
+const SHUTTER = [8000, 6400, 5000, 4000, 3200, 2500, 2000, 1600, 1250, 1000, 800, 640, 500, 400, 320, 250, 200, 160, 125, 100, 80, 60, 50, 40, 30, 25, 20, 15, 13, 10, 8, 6, 5, 4, 3, 2.5, 2]
+  .map((part) => 1 / part).concat([0.6, 0.8, 1, 1.3, 1.6, 2, 2.5, 3.2, 4, 5, 6, 8, 10, 13, 15, 20, 25, 30, 60, 120, 240, 480]);
+
+/** A time as a camera has it. @param {number} seconds */
+function timeSaid(seconds) {
+  const part = 1 / seconds;
+  if (seconds < 0.35 && Math.abs(part - Math.round(part)) < 1e-4 * part) return `1/${Math.round(part)} s`;
+  return `${Number(seconds.toPrecision(5))} s`;
+}
+
+/** Seconds of `1/80 s`, `1/80`, `0.5`; not a number of anything else. @param {string} text */
+function timeOf(text) {
+  const found = /^\s*([0-9.]+)\s*(?:\/\s*([0-9.]+))?\s*s?\s*$/.exec(text);
+  return found ? Number(found[1]) / Number(found[2] ?? 1) : NaN;
+}
+
 /**
- * A slider and a field. What is above zero and has no narrow range slides by factors, around where it stands.
- * @param {Control} control @param {NumberKind} kind @param {string} id @param {(value: number) => void} send
+ * A slider and a field. A ring of stops and a shutter click; what else is above zero and has no narrow range slides by factors, around where it
+ * stands.
+ * @param {Control} control @param {NumberKind} kind @param {string} id @param {(value: number) => void} send @returns {[HTMLElement[], () => void]}
  */
 function numberFields(control, kind, id, send) {
-  const value = control.value ?? (kind.least !== null && kind.least > 0 ? kind.least : kind.most !== null && kind.least === 0 ? kind.most / 2 : null);
-  const field = numberField(kind, control.value);
-  field.setAttribute("aria-label", control.path);
+  const { path } = control;
+  const isTime = path === "film.exposure" && kind.unit === "s";
+  const field = numberField(kind);
+  if (isTime) {
+    // `1/80 s` is no number to a browser.
+    field.type = "text";
+    field.removeAttribute("step");
+  }
+  field.setAttribute("aria-label", named(path));
+  field.placeholder = "–";
+  const read = () => isTime ? timeOf(field.value) : Number(field.value);
+  const show = (/** @type {number?} */ value) => { field.value = value === null ? "" : isTime ? timeSaid(value) : shortly(value); };
   const slider = document.createElement("input");
   slider.type = "range";
   slider.id = id;
+  const clicks = isTime ? SHUTTER : path === "lens.f-number" ? STOPS.filter((stop) => stop >= (control.from ?? 1) * 1.02 || stop > 32) : null;
+  if (clicks && !isTime && control.from) clicks.unshift(control.from);
   const isNarrow = kind.least !== null && kind.most !== null && kind.most - kind.least <= 1000;
-  const byFactors = !isNarrow && value !== null && value > 0;
-  const around = byFactors ? Number(value) : 1;
+  let around = 1, byFactors = false;
   /** @type {(v: number) => number} */
   let of = (v) => v;
-  if (byFactors) {
-    [slider.min, slider.max, slider.step] = ["-4", "4", "0.01"];
-    of = (v) => Number((around * 2 ** v).toPrecision(4));
-    slider.value = "0";
-  } else {
-    const [least, most] = isNarrow ? [Number(kind.least), Number(kind.most)] : [(value ?? 0) - 10, (value ?? 0) + 10];
-    [slider.min, slider.max] = [String(least), String(most)];
-    slider.step = kind.whole ? "1" : String((most - least) / 400);
-    slider.value = String(value ?? Math.min(Math.max(0, least), most));
-  }
+  let isDragged = false;
+  const place = () => {
+    const own = valueOf(path);
+    const value = own ?? (kind.least !== null && kind.least > 0 ? kind.least : kind.most !== null && kind.least === 0 ? kind.most / 2 : null);
+    if (clicks) {
+      [slider.min, slider.max, slider.step] = ["0", String(clicks.length - 1), "1"];
+      of = (v) => clicks[Math.round(v)];
+      const near = (/** @type {number} */ v) => Math.abs(Math.log(v / (value ?? 1)));
+      slider.value = String(clicks.reduce((best, v, i) => near(v) < near(clicks[best]) ? i : best, 0));
+      return;
+    }
+    byFactors = !isNarrow && value !== null && value > 0;
+    if (byFactors) {
+      around = Number(value);
+      [slider.min, slider.max, slider.step] = ["-4", "4", "0.01"];
+      of = (v) => Number((around * 2 ** v).toPrecision(4));
+      slider.value = "0";
+    } else {
+      const [least, most] = isNarrow ? [Number(kind.least), Number(kind.most)] : [(value ?? 0) - 10, (value ?? 0) + 10];
+      [slider.min, slider.max] = [String(least), String(most)];
+      slider.step = kind.whole ? "1" : String((most - least) / 400);
+      slider.value = String(value ?? Math.min(Math.max(0, least), most));
+      of = (v) => v;
+    }
+  };
   const bounded = (/** @type {number} */ v) => {
     const inside = Math.min(Math.max(v, kind.least ?? -Infinity), kind.most ?? Infinity);
     return kind.whole ? Math.round(inside) : inside;
   };
+  slider.addEventListener("pointerdown", () => { isDragged = true; });
+  for (const end of ["pointerup", "pointercancel", "blur"]) {
+    slider.addEventListener(end, () => {
+      isDragged = false;
+      sync();
+    });
+  }
   slider.addEventListener("input", () => {
-    const next = bounded(of(Number(slider.value)));
-    field.value = String(Number(next.toPrecision(6)));
+    const next = Number(bounded(of(Number(slider.value))).toPrecision(6));
+    show(next);
     send(next);
   });
   field.addEventListener("change", () => {
-    const next = Number(field.value);
-    if (field.value === "" || !Number.isFinite(next)) return;
-    slider.value = String(byFactors && next > 0 ? Math.log2(next / around) : next);
-    send(next);
+    const next = read();
+    // What is no number is none that the picture could have.
+    if (field.value === "" || !Number.isFinite(next)) sync();
+    else send(next);
   });
-  return [slider, field, unit(kind.unit || kind.before)];
+  const fill = () => {
+    if (!isTypedIn(field)) show(valueOf(path));
+    // A slider that goes by factors goes on from where it was taken.
+    if (!isDragged && document.activeElement !== slider) place();
+  };
+  place();
+  return [[slider, field, unit(isTime ? "" : kind.unit || kind.before)], fill];
 }
 
 // Work --------------------------------------------------------------------------------------------------------------------------
@@ -568,27 +820,52 @@ let formSays = "";
 async function refresh() {
   const answer = await fetch(`/controls?desk=${desk}`);
   if (!answer.ok) return;
-  const said = await answer.json();
-  part("name", HTMLElement).textContent = said.name;
-  document.title = `${said.name} – spectra`;
-  part("study", HTMLElement).hidden = !said.is_prism;
-  save.disabled = !said.saves || said.changes === 0;
-  if (width.options.length === 0) {
-    width.append(...said.widths.map((/** @type {number} */ w) => new Option(`${w} px`, String(w), w === 480, w === 480)));
+  /** @type {Said} */
+  const now = await answer.json();
+  said = now;
+  part("name", HTMLElement).textContent = now.name;
+  document.title = `${now.name} \u2013 spectra`;
+  part("study", HTMLElement).hidden = !now.is_prism;
+  save.disabled = !now.saves || now.changes === 0;
+  save.title = now.saves ? "" : "This is no file of yours: save it as one.";
+  undo.disabled = !now.undos;
+  const widths = now.widths.map(String).join();
+  if (width.dataset.widths !== widths) {
+    width.dataset.widths = widths;
+    width.replaceChildren(...now.widths.map((w) => new Option(`${w} px`, String(w))));
+  }
+  width.value = String(now.width ?? 480);
+  // What the controls have is taken up, or refused.
+  for (const [path, number] of sent) {
+    if (number <= (now.turns ?? Infinity)) sent.delete(path);
+  }
+  for (const path of refused.keys()) {
+    if (isTold.has(path) && !now.refused?.[path]) refused.delete(path);
+  }
+  isTold.clear();
+  for (const [path, { faults }] of Object.entries(now.refused ?? {})) {
+    isTold.add(path);
+    if (sent.has(path) || turned.has(path)) continue;
+    if (given.has(path) && JSON.stringify(given.get(path)) === JSON.stringify(now.refused?.[path])) continue;
+    given.delete(path);
+    refused.set(path, faults);
   }
   drawSpectra().catch(() => {});
-  const shape = JSON.stringify(said.controls.map((/** @type {Control} */ c) => [c.path, c.kind]));
+  const shape = JSON.stringify(now.controls.map((control) => [control.path, control.kind, control.fixed, control.from]));
   if (shape !== formSays) {
     formSays = shape;
     const focused = document.activeElement?.closest(".control");
     const path = focused instanceof HTMLElement ? focused.dataset.path : undefined;
-    build(said.controls);
+    build(now.controls);
     if (path) {
       const field = form.querySelector(`[data-path="${CSS.escape(path)}"] :is(input, select)`);
-      if (field instanceof HTMLElement) field.focus();
+      if (field instanceof HTMLElement) field.focus({ preventScroll: true });
     }
   }
+  sync();
 }
+/** Values that the scene refused, as it was heard last. @type {Set<string>} */
+const isTold = new Set();
 
 // Spectra -----------------------------------------------------------------------------------------------------------------------
 
@@ -647,32 +924,69 @@ async function drawLens() {
   section.hidden = !drawing.ok;
 }
 
+/** When the last change was made, and how long the whole picture took to be made ready before, ms. */
+let changedAt = performance.now();
+let readyMs = 0;
+/** Counts on while nothing comes: ghosts and stars are searched for before the first ray of the whole picture. */
+setInterval(() => {
+  const head = now?.head;
+  if (!head?.draft || head.flat || refused.size > 0 || !isDraftSeen) return;
+  const waited = performance.now() - changedAt;
+  const left = leftOut(head);
+  const what = left ? `preparing ${left}` : "preparing the picture";
+  state.textContent = `draft; ${what}, ${(waited / 1000).toFixed(0)} s${readyMs > waited ? ` of about ${Math.ceil(readyMs / 1000)} s` : ""}`;
+  if (readyMs > 0) progress.value = Math.min(0.99, waited / readyMs);
+  else progress.removeAttribute("value");
+}, 500);
+let isDraftSeen = false;
+
+/** What a draft leaves out that the picture will have. @param {Head} head */
+const leftOut = (head) => (head.left_out ?? []).join(" and ");
+
+/** Marks what is seen as what it is. @param {Head} head */
+function mark(head) {
+  const isDraft = head.draft && !head.flat;
+  badge.hidden = !isDraft && !leftOut(head);
+  badge.textContent = [isDraft && "draft", leftOut(head) && `without ${leftOut(head)} yet`].filter(Boolean).join(", ");
+}
+
 /** @param {Head} head */
 function tell(head) {
-  showFault(head.fault?.faults ?? []);
+  showFault((head.fault?.path ? [] : head.fault?.faults) ?? []);
   list(part("warnings", HTMLElement), head.warnings ?? []);
   if (head.samples !== undefined && head.of !== undefined) {
     const time = ((head.since_change_ms ?? 0) / 1000).toFixed(1);
     const rays = Number(head.rays).toLocaleString("en");
     const samples = head.draft ? "draft" : `${head.samples} of ${head.of} samples`;
-    state.textContent = `${samples}, ${rays} rays, ${time} s`;
-    progress.value = head.samples / head.of;
+    const isQuick = head.flat && head.draft;
+    state.textContent = isQuick ? "developing" : head.flat ? `developed, ${time} s` : `${samples}, ${rays} rays, ${time} s`;
+    progress.value = isQuick ? 0.5 : head.samples / head.of;
+    if (head.draft && !head.flat) {
+      if (!isDraftSeen) changedAt = performance.now();
+      isDraftSeen = true;
+    } else if (isDraftSeen) {
+      readyMs = performance.now() - changedAt;
+      isDraftSeen = false;
+    }
+    mark(head);
     const seconds = head.exposure_s ?? 1;
     const exposed = seconds < 0.3 ? `1/${Math.round(1 / seconds)} s` : `${Number(seconds.toPrecision(2))} s`;
     part("lens", HTMLElement).textContent = [head.lens, `focus ${head.focus}`, head.film && `${head.film}, ${exposed}`].filter(Boolean).join("; ");
-  } else if (head.fault) {
+  } else if (head.fault && !head.fault.path) {
     state.textContent = "the scene cannot be as it is set";
   }
 }
 
-async function follow() {
+/** @param {AbortSignal} signal */
+async function follow(signal) {
   let after = 0;
   let scene = -1, lens = -1, reread = 0;
   for (;;) {
-    const answer = await fetch(`/frame?desk=${desk}&after=${after}`);
+    const answer = await fetch(`/frame?desk=${desk}&after=${after}`, { signal });
     if (answer.status === 204) continue;
     if (!answer.ok) throw new Error((await answer.text()).trim());
     const bytes = await answer.arrayBuffer();
+    if (signal.aborted) throw new Error("another scene was opened");
     const length = new DataView(bytes).getUint32(0, true);
     /** @type {Head} */
     const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
@@ -716,6 +1030,113 @@ save.addEventListener("click", async () => {
     saved.textContent = error instanceof Error ? error.message : String(error);
   }
 });
+
+/** What a step back is known by among what was sent. */
+const BACK = "back";
+async function back() {
+  if (undo.disabled) return;
+  turned.clear();
+  refused.clear();
+  state.textContent = "tracing";
+  sent.set(BACK, Infinity);
+  sync();
+  try {
+    const answer = await post(`/back?desk=${desk}`);
+    sent.set(BACK, answer.turn);
+  } catch (error) {
+    sent.delete(BACK);
+    saved.textContent = error instanceof Error ? error.message : String(error);
+  }
+}
+undo.addEventListener("click", back);
+addEventListener("keydown", (event) => {
+  const isTyping = event.target instanceof HTMLInputElement && event.target.type !== "range";
+  if (event.key === "z" && (event.ctrlKey || event.metaKey) && !isTyping) {
+    event.preventDefault();
+    back();
+  }
+});
+
+/** Hands a file to the browser's downloads. @param {Blob} blob @param {string} name */
+function handOver(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  saved.textContent = `${name} is among the downloads of your browser.`;
+}
+
+/** All pixels of what is seen, with its brightness. */
+part("save-picture", HTMLButtonElement).addEventListener("click", () => {
+  const picture = shown();
+  if (!picture) return;
+  const { across, down, light, head } = picture;
+  const whole = document.createElement("canvas");
+  [whole.width, whole.height] = [across, down];
+  const context = whole.getContext("2d");
+  if (!context) return;
+  const image = context.createImageData(across, down);
+  const gain = 2 ** Number(stops.value);
+  for (let i = 0, to = 0; i < light.length; i += 3, to += 4) {
+    for (let c = 0; c < 3; c += 1) image.data[to + c] = code(gain * light[i + c]);
+    image.data[to + 3] = 255;
+  }
+  context.putImageData(image, 0, 0);
+  const name = `${said?.name ?? "picture"}${head.draft ? "-draft" : ""}.png`;
+  whole.toBlob((blob) => blob && handOver(blob, name), "image/png");
+});
+
+part("save-as", HTMLButtonElement).addEventListener("click", async () => {
+  const answer = await fetch(`/scene?desk=${desk}`);
+  const text = await answer.text();
+  if (answer.ok && text) handOver(new Blob([text], { type: "text/yaml" }), `${said?.name ?? "scene"}.yaml`);
+  else saved.textContent = text.trim() || "there is no text of this scene here";
+});
+
+part("copy", HTMLButtonElement).addEventListener("click", async () => {
+  const answer = await fetch(`/command?desk=${desk}`);
+  if (answer.status !== 200) {
+    saved.textContent = "there is no command for this here";
+    return;
+  }
+  const { command } = await answer.json();
+  // Where the browser lets nobody copy, it is there to be read.
+  const isCopied = await navigator.clipboard?.writeText(command).then(() => true, () => false);
+  saved.textContent = `${isCopied ? "Copied: " : ""}${command}`;
+});
+
+/** What can be opened, asked for when somebody looks. */
+async function offer() {
+  if (open.options.length > 1) return;
+  const answer = await fetch("/openable");
+  if (answer.status !== 200) return;
+  const { files, bundled } = await answer.json();
+  const group = (/** @type {string} */ label, /** @type {string[]} */ names, /** @type {string} */ mark) => {
+    const group = document.createElement("optgroup");
+    group.label = label;
+    group.append(...names.map((name) => new Option(name, `${mark}${name}`)));
+    return group;
+  };
+  if (files.length > 0) open.append(group("Here", files, "f"));
+  open.append(group("Bundled scenes", bundled, "b"));
+}
+open.addEventListener("change", async () => {
+  const [mark, name] = [open.value.slice(0, 1), open.value.slice(1)];
+  open.value = "";
+  if (!name) return;
+  state.textContent = `opening ${name}`;
+  try {
+    const other = await post("/open", { name, bundled: mark === "b" });
+    const before = desk;
+    desk = other.desk;
+    follows.abort();
+    fetch(`/close?desk=${before}`, { method: "POST", keepalive: true });
+  } catch (error) {
+    showFault([{ message: error instanceof Error ? error.message : String(error) }]);
+    state.textContent = `${name} cannot be opened`;
+  }
+});
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   redraw();
   drawLens().catch(() => {});
@@ -726,9 +1147,34 @@ addEventListener("pagehide", () => {
 addEventListener("pageshow", (event) => event.persisted && location.reload());
 form.addEventListener("submit", (event) => event.preventDefault());
 
+/** Forgets what was seen of another scene. */
+function forget() {
+  [now, kept, keptIsShown, formSays, spectraSaid, said, readyMs, isDraftSeen] = [null, null, false, "", "", null, 0, false];
+  turned.clear();
+  sent.clear();
+  refused.clear();
+  given.clear();
+  isTold.clear();
+  swap.disabled = true;
+  saved.textContent = "";
+  fit();
+}
+
+/** Ends the wait for a picture of a scene that is left. */
+let follows = new AbortController();
 try {
+  offer().catch(() => {});
   ({ desk } = await post("/open"));
-  await follow();
+  for (;;) {
+    const own = desk;
+    follows = new AbortController();
+    try {
+      await follow(follows.signal);
+    } catch (error) {
+      if (own === desk) throw error;
+    }
+    forget();
+  }
 } catch (error) {
   state.textContent = "stopped";
   showFault([{ message: error instanceof Error ? error.message : String(error), hint: "reload the page, or start `spectra view` again" }]);

@@ -8,7 +8,8 @@ use spectra_core::params::{Node, Value as Written};
 use spectra_core::registry::{self, Listed, Parameter};
 use spectra_film::stock::{Process, Stock};
 use spectra_scene::bundled::Bundled;
-use spectra_scene::{FileKind, FileResources, file_documentation, shared_documentation};
+use spectra_scene::{FileKind, FileResources, NO_LENS, Series, SeriesKind, file_documentation, shared_documentation};
+use spectra_session::Session;
 use spectra_spectrum::bundled_spectra;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -38,7 +39,16 @@ pub struct Control {
     is_in_front: bool,
     /// What is set in place of the number alone.
     within: Option<[&'static str; 2]>,
+    /// Whether it chooses one of the pictures of a sweep, or frames of an animation, and changes none of them.
+    picks: bool,
+    /// Why it cannot be turned, where it cannot.
+    fixed: Option<String>,
+    /// Where its scale begins, if that is not its range: a lens is no faster than it is.
+    from: Option<f64>,
 }
+
+/// The path of the control that chooses the picture of a series.
+pub(crate) const PICTURE: &str = "picture";
 
 /// Keys that stand in front even where a scene leaves them out.
 const IN_FRONT: [&str; 14] = [
@@ -59,6 +69,19 @@ const IN_FRONT: [&str; 14] = [
 ];
 /// Keys that the viewer sets itself, or that say how the work is cut up and not what the picture is.
 const OWN: [&str; 4] = ["imager.resolution", "imager.crop", "render.batch", "render.frame"];
+/// Keys that do nothing where a photograph's own pixels are developed: no ray is traced.
+const OF_RAYS: [&str; 10] = [
+    "lens.f-number",
+    "lens.focus",
+    "lens.aperture",
+    "lens.coating",
+    "imager.tilt",
+    "imager.shift",
+    "source.distance",
+    "source.width",
+    "render.",
+    "wavelengths.",
+];
 const LIGHTS: [&str; 3] = ["illuminant", "lamp", "light"];
 
 /// Sections of a scene, and the stages that stand in them.
@@ -103,10 +126,25 @@ static STOCKS: LazyLock<[Vec<String>; 2]> = LazyLock::new(|| {
     both
 });
 
+/// The stocks of a camera as a page shows them side by side: names, speed, and what they are.
+static TILES: LazyLock<Value> = LazyLock::new(|| {
+    let bundled = FileResources::beside(Path::new(""));
+    let tile = |name: &String| {
+        let stock = Stock::load(name, &bundled).ok()?;
+        let kind = match stock.process {
+            _ if stock.layers.len() == 1 => "gray",
+            Process::Reversal => "slide",
+            _ => "color",
+        };
+        Some(json!({"word": name, "title": stock.name, "iso": stock.iso, "kind": kind}))
+    };
+    STOCKS[0].iter().filter_map(tile).collect()
+});
+
 /// Gathers what all scenes have in common, ahead of the first page.
 pub(crate) fn gather() {
     LazyLock::force(&DECLARED);
-    LazyLock::force(&STOCKS);
+    LazyLock::force(&TILES);
 }
 
 /// The controls of a scene, as it is written.
@@ -149,6 +187,100 @@ pub fn of_scene(root: &Node) -> Vec<Control> {
     all
 }
 
+/// The controls of a session: those of its scene, of which some choose among the pictures of its series instead.
+#[must_use]
+pub fn of_session(session: &Session) -> Vec<Control> {
+    let mut all = of_scene(session.scene().params.node());
+    let series = session.series();
+    for control in all.iter_mut().filter(|control| control.path == "lens.f-number") {
+        control.from = session.scene().lens.nominal_f_number;
+    }
+    if is_flat_picture(session.scene().params.node()) {
+        // What a flat picture does not have cannot be turned.
+        all.retain(|control| !control.path.starts_with("source.depth"));
+    }
+    if series.is_without_lens() {
+        // Rays are what these are for.
+        all.retain(|control| !OF_RAYS.iter().any(|path| control.path.starts_with(path)));
+    }
+    if series.count() < 2 {
+        return all;
+    }
+    let (count, at) = (series.count(), session.index());
+    let members: Vec<Vec<(String, String)>> = (0..count).map(|index| series.member(index).values).collect();
+    let is_sweep = matches!(series.kind(), SeriesKind::Sweep { .. });
+    let mut paths: Vec<&String> = Vec::new();
+    for (path, _) in members.iter().flatten() {
+        if !paths.contains(&path) {
+            paths.push(path);
+        }
+    }
+    for path in paths {
+        let below = |own: &str| own.strip_prefix(path.as_str()).is_some_and(|rest| rest.starts_with(['.', '[']));
+        let why = if is_sweep {
+            format!("the sweep sets `{path}` for each picture")
+        } else {
+            format!("the animation sets `{path}` for each frame")
+        };
+        let is_own = |control: &Control| control.path == *path || (!is_sweep && path.starts_with(&*control.path));
+        for control in all.iter_mut().filter(|control| below(&control.path) || is_own(control)) {
+            control.fixed = Some(why.clone());
+        }
+        if !is_sweep {
+            continue;
+        }
+        let of = |index: usize| members[index].iter().find(|(own, _)| own == path).map(|(_, value)| value.clone());
+        let mut words: Vec<String> = Vec::new();
+        for word in (0..count).filter_map(of) {
+            if !words.contains(&word) {
+                words.push(word);
+            }
+        }
+        let choice = Control {
+            path: path.clone(),
+            kind: Kind::Choice(words),
+            value: of(at).map_or(Value::Null, Value::String),
+            help: "The sweep's own values: each chooses among its pictures.".to_owned(),
+            is_in_front: true,
+            within: None,
+            picks: true,
+            fixed: None,
+            from: None,
+        };
+        match all.iter_mut().find(|control| control.path == *path) {
+            Some(control) => *control = Control { help: control.help.clone(), ..choice },
+            None => all.push(choice),
+        }
+    }
+    all.insert(0, chooser(series, at, is_sweep));
+    all
+}
+
+/// The control that chooses the picture of a series.
+fn chooser(series: &Series, at: usize, is_sweep: bool) -> Control {
+    let said = |index: usize| format!("{}: {}", index + 1, series.member(index).words());
+    let (kind, value) = if is_sweep {
+        (Kind::Choice((0..series.count()).map(said).collect()), json!(said(at)))
+    } else {
+        let most = series.count() as f64;
+        let kind = Kind::Number { before: "", unit: String::new(), least: Some(1.0), most: Some(most), whole: true };
+        (kind, json!(at + 1))
+    };
+    let help = if is_sweep { "The picture of the sweep." } else { "The frame of the animation, counted from 1." };
+    let help = help.to_owned();
+    Control {
+        path: PICTURE.to_owned(),
+        kind,
+        value,
+        help,
+        is_in_front: true,
+        within: None,
+        picks: true,
+        fixed: None,
+        from: None,
+    }
+}
+
 /// The blades of the iris, which stand in a map of their own.
 fn blades(root: &Node) -> Control {
     let at = root.at_path("lens.aperture.blades").and_then(number);
@@ -159,6 +291,9 @@ fn blades(root: &Node) -> Control {
         help: "Number of blades of the iris; the opening is round if absent.".to_owned(),
         is_in_front: true,
         within: at.is_none().then_some(["{shape: iris, blades: ", "}"]),
+        picks: false,
+        fixed: None,
+        from: None,
     }
 }
 
@@ -181,7 +316,10 @@ fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
     };
     let kind = if path == "film.paper.grade" {
         Kind::Choice(["0", "1", "2", "3", "4", "5", "auto"].map(str::to_owned).into())
-    } else if let Some(names) = names(path) {
+    } else if let Some(mut names) = names(path) {
+        if path == "lens.file" && is_flat_picture(root) {
+            names.insert(0, NO_LENS.to_owned());
+        }
         Kind::Choice(names)
     } else if parameter.kind == "true or false" {
         Kind::Switch
@@ -218,7 +356,24 @@ fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
     // A number that is written as a word, such as `inf`, is left to whoever wrote it until it is turned.
     let help = parameter.description.split_whitespace().collect::<Vec<_>>().join(" ");
     let is_in_front = node.is_some() || IN_FRONT.contains(&path);
-    Some(Control { path: path.to_owned(), kind, value: value.unwrap_or(Value::Null), help, is_in_front, within: None })
+    let value = value.unwrap_or(Value::Null);
+    Some(Control {
+        path: path.to_owned(),
+        kind,
+        value,
+        help,
+        is_in_front,
+        within: None,
+        picks: false,
+        fixed: None,
+        from: None,
+    })
+}
+
+/// Whether the source is a flat picture, which film can get without a lens.
+fn is_flat_picture(root: &Node) -> bool {
+    let says = |path: &str| root.at_path(path).and_then(Node::as_str);
+    says("source.kind") == Some("picture") && root.at_path("source.depth").is_none()
 }
 
 /// The names that a text is one of, by its place.
@@ -256,6 +411,17 @@ fn range(words: &str) -> (Option<f64>, Option<f64>) {
     (least, most)
 }
 
+/// A range in words.
+fn range_said(least: Option<f64>, most: Option<f64>, unit: &str) -> String {
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    match (least, most) {
+        (Some(least), Some(most)) => format!("it goes from {least} to {most}{unit}"),
+        (Some(least), None) => format!("it is at least {least}{unit}"),
+        (None, Some(most)) => format!("it is at most {most}{unit}"),
+        (None, None) => "any number".to_owned(),
+    }
+}
+
 /// A number as it is written: what stands before it, its value and its unit.
 fn number(node: &Node) -> Option<(&'static str, f64, String)> {
     match &node.value {
@@ -285,6 +451,14 @@ impl Control {
         &self.path
     }
 
+    /// The unit of its numbers.
+    fn unit(&self) -> &str {
+        match &self.kind {
+            Kind::Number { unit, .. } | Kind::Pair { unit, .. } => unit,
+            Kind::Choice(_) | Kind::Switch => "",
+        }
+    }
+
     /// As the page gets it.
     #[must_use]
     pub fn to_json(&self) -> Value {
@@ -293,10 +467,28 @@ impl Control {
                 json!({"is": "number", "before": before, "unit": unit, "least": least, "most": most, "whole": whole})
             }
             Kind::Pair { unit, least, most } => json!({"is": "pair", "unit": unit, "least": least, "most": most}),
+            Kind::Choice(words) if self.path == "film.stock" && !self.picks => {
+                json!({"is": "choice", "words": words, "tiles": *TILES})
+            }
             Kind::Choice(words) => json!({"is": "choice", "words": words}),
             Kind::Switch => json!({"is": "switch"}),
         };
-        json!({"path": self.path, "kind": kind, "value": self.value, "help": self.help, "front": self.is_in_front})
+        json!({
+            "path": self.path,
+            "kind": kind,
+            "value": self.value,
+            "help": self.help,
+            "front": self.is_in_front,
+            "fixed": self.fixed,
+            "from": self.from,
+        })
+    }
+
+    /// The word that it chooses a picture of the series by, if that is what it does.
+    #[must_use]
+    pub fn picked(&self, value: &Value) -> Option<String> {
+        let word = || value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        self.picks.then(word)
     }
 
     /// The text `path=value` of a value that a page sent.
@@ -304,10 +496,13 @@ impl Control {
     /// # Errors
     /// Why it is none of this control's.
     pub fn text(&self, value: &Value) -> Result<String, String> {
+        if let Some(why) = &self.fixed {
+            return Err(why.clone());
+        }
         let bounded = |value: &Value, least: Option<f64>, most: Option<f64>| match value.as_f64() {
             Some(number) if !number.is_finite() => Err("no finite number".to_owned()),
             Some(number) if least.is_some_and(|least| number < least) || most.is_some_and(|most| number > most) => {
-                Err(format!("{number} is outside of its range"))
+                Err(format!("{number} is out of range: {}", range_said(least, most, self.unit())))
             }
             Some(number) => Ok(number),
             None => Err("no number".to_owned()),

@@ -9,6 +9,7 @@
 
 mod controls;
 pub mod parts;
+mod picks;
 mod section;
 
 // Where there are no threads and no connections, another program stands in for the server.

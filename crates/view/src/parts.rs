@@ -1,6 +1,7 @@
 //! What a page needs wherever its engine runs: controls, the drawing of the lens, pictures and faults as it takes them.
 
-pub use crate::controls::{Control, of_scene};
+pub use crate::controls::{Control, of_session};
+pub use crate::picks::Picks;
 pub use crate::section::svg;
 
 use half::f16;

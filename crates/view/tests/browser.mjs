@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { findings } from "./axe.mjs";
 import { driven } from "./driver.mjs";
 
-const { folder, address, page, narrow, end } = await driven();
+const { folder, address, page, errors, narrow, end } = await driven();
 
 /** The number of the frame that is seen. */
 const frame = () => page.evaluate(() => Number(document.body.dataset.frame ?? 0));
@@ -51,7 +51,7 @@ for (const blades of ["5", "6"]) {
   await page.waitForFunction(() => document.querySelector('[data-path="lens.aperture.blades"]'));
 }
 
-// A value that cannot be: it is said with its place, and the picture stays.
+// A value that cannot be: it is said, its field stays red whatever else is turned, and the picture stays.
 at = await frame();
 await row("lens.f-number").locator("input[type=number]").fill("0.1");
 await page.keyboard.press("Enter");
@@ -59,6 +59,26 @@ await page.waitForFunction(() => !document.querySelector("#fault").hidden);
 const fault = await page.locator("#fault").textContent();
 assert.match(fault, /f-number/);
 assert.ok((await mean()) > 20, "the picture stays");
+const isRed = () => row("lens.f-number").evaluate((row) => row.classList.contains("refused"));
+assert.ok(await isRed());
+await row("film.compensation").locator("input[type=number]").fill("99");
+await page.keyboard.press("Enter");
+await page.waitForFunction(() => document.querySelectorAll(".refused").length === 2);
+assert.match(await page.locator("#fault").textContent(), /99 is out of range: it goes from -10 to 10/);
+await page.keyboard.press("Escape");
+await page.waitForFunction(() => document.querySelectorAll(".refused").length === 1);
+assert.equal(await row("film.compensation").locator("input[type=number]").inputValue(), "");
+at = await frame();
+await row("film.push").locator("input[type=number]").fill("1");
+await page.keyboard.press("Enter");
+await done(at);
+assert.ok(await isRed(), "still red");
+assert.equal(await row("lens.f-number").locator("input[type=number]").inputValue(), "0.1");
+// A step back: all fields say what the picture has.
+await page.locator("#undo").click();
+await page.waitForFunction(() => document.querySelectorAll(".refused").length === 0 && document.body.dataset.waits === "0"
+  && document.querySelector('[data-path="film.push"] input[type=number]').value === "");
+assert.equal(await row("lens.f-number").locator("input[type=number]").inputValue(), "5.6");
 at = await frame();
 await row("lens.f-number").locator("input[type=number]").fill("5.6");
 await page.keyboard.press("Enter");
@@ -85,6 +105,21 @@ await page.locator("#canvas").hover({ position: { x: 200, y: 120 } });
 await page.waitForFunction(() => /display .*lx s/.test(document.querySelector("#readout").textContent));
 
 await narrow();
+// Picture and knob are seen together, however far down the knob stands.
+await row("lens.f-number").evaluate((row) => row.scrollIntoView({ block: "center" }));
+const seen = await page.evaluate(() => ["#stage", '[data-path="lens.f-number"]'].map((at) => document.querySelector(at).getBoundingClientRect()).map(({ top, bottom }) => [top, bottom]));
+assert.ok(seen[0][0] >= -1 && seen[0][1] > 100 && seen[1][0] >= seen[0][1] && seen[1][1] <= 800, JSON.stringify(seen));
+await page.setViewportSize({ width: 1280, height: 900 });
+
+// Kept elsewhere: the picture, a scene that says what is seen, and a command.
+for (const [button, name] of [["#save-picture", "scene.png"], ["#save-as", "scene.yaml"]]) {
+  const download = page.waitForEvent("download");
+  await page.locator(button).click();
+  assert.equal((await download).suggestedFilename(), name);
+}
+await page.locator("#copy").click();
+await page.waitForFunction(() => /spectra run .*scene\.yaml --set lens.f-number=f\/5.6/.test(document.querySelector("#saved").textContent));
+await page.locator("#saved").evaluate((said) => { said.textContent = ""; });
 
 await page.locator("#save").click();
 await page.waitForFunction(() => document.querySelector("#saved").textContent !== "");
@@ -95,4 +130,10 @@ await page.reload();
 await done(0);
 await page.waitForFunction(() => document.querySelector('[data-path="lens.f-number"] input[type=number]'));
 assert.equal(await row("lens.f-number").locator("input[type=number]").inputValue(), "5.6");
+
+// Another scene, in the same page.
+await page.locator("#open").selectOption("bgray-card");
+await page.waitForFunction(() => document.querySelector("#name").textContent === "gray-card");
+// A value out of range is answered with 400, which the browser notes.
+errors.splice(0, errors.length, ...errors.filter((text) => !/status of 400/.test(text)));
 await end();

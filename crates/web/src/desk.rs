@@ -4,10 +4,9 @@ use serde_json::{Value, json};
 use spectra_core::frame::DisplayPicture;
 use spectra_core::{Isa, registry};
 use spectra_scene::{Shot, bundled::Bundled};
-use spectra_session::{Alone, Control as Stop, Session, SessionError};
-use spectra_view::parts::{Control, halves, head, of_scene, packed, pixel, said, spectra, svg};
+use spectra_session::{Alone, Control as Stop, Kept, Session, SessionError};
+use spectra_view::parts::{Control, Picks, halves, head, of_session, packed, pixel, said, spectra, svg};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Widths of the picture that a page may choose, pixels.
 const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
@@ -104,7 +103,7 @@ impl Open {
         let session = Session::open(Path::new(name), set, Isa::detect())?;
         let size = session.scene().imager.size();
         let aspect = f64::from(size.height_px) / f64::from(size.width_px);
-        let controls = of_scene(session.scene().params.node());
+        let controls = of_session(&session);
         Ok(Self { name: name.to_owned(), session, controls, aspect, frames: 0, scenes: 1, lenses: 1, fault: None })
     }
 
@@ -122,13 +121,22 @@ impl Open {
     }
 
     fn change(&mut self, path: &str, text: &str) -> Answer {
-        let before = Arc::clone(&self.session.scene().lens);
         let changed = self.session.change(text);
+        self.changed(path, changed)
+    }
+
+    /// Goes to another picture of the series.
+    fn pick(&mut self, path: &str, index: usize) -> Answer {
+        let changed = self.session.turn(&[""; 0], index, None, &Alone);
+        self.changed(path, changed)
+    }
+
+    fn changed(&mut self, path: &str, changed: Result<Kept, SessionError>) -> Answer {
         self.fault = changed.as_ref().err().map(|error| said(error, path));
         let kept = changed.map_err(|error| said(&error, path))?;
-        self.controls = of_scene(self.session.scene().params.node());
+        self.controls = of_session(&self.session);
         self.scenes += 1;
-        self.lenses += u64::from(!Arc::ptr_eq(&before, &self.session.scene().lens));
+        self.lenses += u64::from(!kept.lens);
         let mut state = self.state();
         state["kept"] = kept.light.into();
         Ok(json(&state))
@@ -142,7 +150,12 @@ impl Open {
 
     fn turn(&mut self, path: &str, value: &Value) -> Answer {
         let control = self.controls.iter().find(|control| control.path() == path);
-        let text = control.ok_or_else(|| wrong("no such control"))?.text(value).map_err(|why| wrong(&why))?;
+        let control = control.ok_or_else(|| wrong("no such control"))?;
+        let text = control.text(value).map_err(|why| wrong(&why))?;
+        if let Some(word) = control.picked(value) {
+            let picture = Picks::of(&self.session).with(None, path, &word);
+            return self.pick(path, picture.ok_or_else(|| wrong("no picture of the scene has it"))?);
+        }
         self.change(path, &text)
     }
 

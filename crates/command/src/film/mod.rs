@@ -42,7 +42,7 @@ fn load(name: &str) -> Result<Stock, Failure> {
 }
 
 /// The file, or the whole name of the bundled stock, that `name` stands for.
-fn called(name: &str) -> Result<String, Failure> {
+pub(crate) fn called(name: &str) -> Result<String, Failure> {
     let is_file = name.ends_with(".yaml") || name.ends_with(".yml") || name.contains(['/', '\\']);
     let found = if is_file { Ok(name.to_owned()) } else { Bundled::Stock.find(name) };
     found.map_err(|several| {

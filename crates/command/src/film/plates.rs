@@ -3,12 +3,9 @@
 use crate::folder::Target;
 use crate::outcome::Failure;
 use spectra_core::params::Fault;
-use spectra_session::{Names, Plate};
+use spectra_session::{Names, PICTURES, Plate, is_picture, last_number};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// Endings of pictures in a folder.
-const ENDINGS: [&str; 10] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "hdr", "dpx"];
 
 /// A numbered name: `plate.####.exr`, `plate.%04d.exr`.
 struct Numbered {
@@ -55,24 +52,6 @@ impl Numbered {
     }
 }
 
-/// The number that a name without its ending closes with; before a version, as in `plate.0007.v2`, where there is one.
-fn last_number(stem: &str) -> Option<u64> {
-    let version = stem.rfind(['.', '_', '-']).filter(|at| {
-        let said = stem[at + 1..].strip_prefix(['v', 'V']);
-        said.is_some_and(|said| !said.is_empty() && said.bytes().all(|b| b.is_ascii_digit()))
-    });
-    if let Some(number) = version.and_then(|at| closing_number(&stem[..at])) {
-        return Some(number);
-    }
-    closing_number(stem)
-}
-
-/// The digits that a text closes with.
-fn closing_number(stem: &str) -> Option<u64> {
-    let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
-    stem[stem.len() - digits..].parse().ok()
-}
-
 /// Names of the files in a folder.
 fn names_in(folder: &Path) -> Result<Vec<String>, Failure> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -90,14 +69,11 @@ type Numbering = (PathBuf, Option<u64>);
 fn files(argument: &str) -> Result<(Vec<Numbering>, bool), Failure> {
     let path = Path::new(argument);
     if path.is_dir() {
-        let is_picture = |name: &String| {
-            let ending = Path::new(name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-            !name.starts_with('.') && ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
-        };
+        let is_picture = |name: &String| !name.starts_with('.') && is_picture(Path::new(name));
         let names: Vec<String> = names_in(path)?.into_iter().filter(is_picture).collect();
         if names.is_empty() {
             let fault = Fault::new(format!("there are no pictures in `{argument}`"));
-            return Err(fault.hint(format!("files that end in .{}", ENDINGS.join(", ."))).into());
+            return Err(fault.hint(format!("files that end in .{}", PICTURES.join(", ."))).into());
         }
         let all = names.into_iter().map(|name| {
             let stem = Path::new(&name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());

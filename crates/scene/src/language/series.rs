@@ -247,6 +247,12 @@ impl Series {
         record(&self.written.text.text, &self.overrides)
     }
 
+    /// The text of its file, as it is written.
+    #[must_use]
+    pub fn written(&self) -> &str {
+        &self.written.text.text
+    }
+
     /// Takes `sweep` and `animation` out of the tree.
     fn unfolded(mut self, set: &[String], references: &std::collections::BTreeSet<String>) -> Result<Self, Faults> {
         let mut faults = Faults::new();

@@ -34,7 +34,7 @@ fn normals(lens: &Lens) -> Option<[DVec3; 2]> {
 /// What the scene of an order has of a prism in words of the page; nothing of what the study cannot show. `None` where the scene
 /// has no prism.
 pub(super) fn start(order: &Order) -> Option<Value> {
-    let session = Session::open(&order.scene, &order.overrides, order.isa).ok()?;
+    let session = order.session().ok()?;
     let scene = session.scene();
     if !is_prism(&scene.lens) {
         return None;
@@ -156,7 +156,7 @@ mod tests {
     use spectra_plugins as _;
 
     fn order(scene: PathBuf) -> Order {
-        Order { scene, overrides: Vec::new(), isa: Isa::detect(), threads: 1 }
+        Order { scene, photograph: None, overrides: Vec::new(), isa: Isa::detect(), threads: 1 }
     }
 
     #[test]

@@ -1,15 +1,18 @@
 //! The page with its server: connections, threads, and the scene's file.
 
 mod bench;
+mod choices;
 mod desk;
 mod guard;
 mod http;
 mod memory;
 mod order;
+mod photograph;
 mod save;
 mod server;
 mod study;
 mod tester;
+mod told;
 
 use crate::controls;
 use order::Order;
@@ -21,8 +24,10 @@ use std::path::PathBuf;
 /// What is viewed, and how.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// A scene file, or the name of a bundled scene.
+    /// A scene file, the name of a bundled scene, or a photograph: a file of a picture, which is developed on a film.
     pub scene: PathBuf,
+    /// The film of a photograph, by its whole name or its file; the usual one if not said.
+    pub stock: Option<String>,
     /// Texts `path=value` on top of it.
     pub overrides: Vec<String>,
     /// Port of 127.0.0.1; 0 is a free one.
@@ -38,10 +43,11 @@ pub struct View {
 /// # Errors
 /// Everything that is wrong with the scene; a port that cannot be had.
 pub fn view(view: View, ready: impl FnOnce(&str)) -> Result<std::convert::Infallible, SessionError> {
-    let View { scene, overrides, port, isa, threads } = view;
+    let View { scene, stock, overrides, port, isa, threads } = view;
     memory::keep_little();
-    desk::looked_at(&scene, &overrides, isa)?;
-    let order = Order { scene, overrides, isa, threads };
+    let order = Order::of(scene, stock.as_deref(), overrides, isa, threads)?;
+    // Faults are told at the start, and not by a page.
+    order.session()?;
     let server = bound(port, Some(order))?;
     ready(&server.address());
     // A page that is there sooner waits for it; without a thread for it, too.

@@ -58,7 +58,7 @@ pub(crate) fn says_same(one: &str, other: &str, path: &str) -> bool {
 }
 
 /// What a tree says, so that its order does not count.
-fn said(node: &Node) -> String {
+pub(super) fn said(node: &Node) -> String {
     match &node.value {
         Value::Map(entries) => {
             let mut all: Vec<String> =
@@ -75,7 +75,7 @@ fn said(node: &Node) -> String {
 }
 
 /// A text of YAML in which `path` has this value.
-fn with(text: &str, path: &str, value: &str) -> Option<String> {
+pub(super) fn with(text: &str, path: &str, value: &str) -> Option<String> {
     let root = spectra_yaml::parse(SourceFile::new("scene", text)).ok()?;
     if let Some(node) = root.at_path(path) {
         let Span { offset, len, .. } = node.span;

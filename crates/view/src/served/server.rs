@@ -4,7 +4,7 @@ use super::desk::Desk;
 use super::guard::Guard;
 use super::http::{self, Answer, Request};
 use super::order::Order;
-use super::{bench, study, tester};
+use super::{bench, choices, study, tester};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
@@ -147,7 +147,25 @@ impl Server {
             }
             (false, "/page.js") => Ok(Answer::new("text/javascript; charset=utf-8", SCRIPT)),
             (false, "/page.css") => Ok(Answer::new("text/css; charset=utf-8", STYLE)),
-            (true, "/open") => self.open(),
+            // Of nothing, what the viewer was started with.
+            (true, "/open") if request.body.is_empty() => self.open(None),
+            (true, "/open") => {
+                let sent = sent()?;
+                let name = sent["name"].as_str().ok_or_else(|| Answer::refused(400, "no name"))?;
+                self.open(Some((name, sent["bundled"] == true)))
+            }
+            (false, "/openable") => Ok(Answer::json(&choices::listed(self.order()?))),
+            (false, "/command") => {
+                let command = self.desk(request)?.command();
+                command
+                    .map(|command| Answer::json(&json!({"command": command})))
+                    .ok_or_else(|| Answer::refused(404, "no scene yet"))
+            }
+            (false, "/scene") => match self.desk(request)?.text() {
+                Some(Ok(text)) => Ok(Answer::new("text/yaml; charset=utf-8", text)),
+                Some(Err(why)) => Err(Answer::refused(409, &why)),
+                None => Err(Answer::refused(404, "no scene yet")),
+            },
             (true, "/close") => {
                 self.desk(request)?.close();
                 Ok(Answer::nothing())
@@ -156,9 +174,10 @@ impl Server {
                 let desk = self.desk(request)?;
                 let sent = sent()?;
                 let path = sent["path"].as_str().ok_or_else(|| Answer::refused(400, "no path"))?;
-                desk.turn(path, &sent["value"]).map_err(|why| Answer::refused(400, &why))?;
-                Ok(Answer::nothing())
+                let turn = desk.turn(path, &sent["value"]).map_err(|why| Answer::refused(400, &why))?;
+                Ok(Answer::json(&json!({"turn": turn})))
             }
+            (true, "/back") => Ok(Answer::json(&json!({"turn": self.desk(request)?.back()}))),
             (true, "/save") => match self.desk(request)?.save() {
                 Ok(count) => Ok(Answer::json(&json!({"saved": count}))),
                 Err(why) => Err(Answer::refused(409, &why)),
@@ -167,7 +186,7 @@ impl Server {
                 let desk = self.desk(request)?;
                 let frame = desk.frame_after(number(request, "after")?, WAIT);
                 desk.is_asked();
-                Ok(frame.map_or_else(Answer::nothing, |f| Answer::new("application/octet-stream", f.bytes.clone())))
+                Ok(frame.map_or_else(Answer::nothing, |f| Answer::new("application/octet-stream", f)))
             }
             (false, "/controls") => Ok(Answer::json(&self.desk(request)?.controls())),
             (false, "/spectra") => {
@@ -197,15 +216,25 @@ impl Server {
         Ok(Arc::clone(desk))
     }
 
+    /// What the viewer was started with.
+    fn order(&self) -> Result<&Order, Answer> {
+        self.order.as_ref().ok_or_else(|| Answer::refused(404, "no scene is viewed"))
+    }
+
     /// A page more.
-    fn open(&self) -> Result<Answer, Answer> {
+    fn open(&self, other: Option<(&str, bool)>) -> Result<Answer, Answer> {
+        let order = match other {
+            None => self.order()?.clone(),
+            Some((name, is_bundled)) => {
+                choices::opened(self.order()?, name, is_bundled).map_err(|why| Answer::refused(400, &why))?
+            }
+        };
         let mut desks = self.desks.lock().unwrap_or_else(PoisonError::into_inner);
         desks.1.retain(|_, desk| !desk.is_closed());
         while desks.1.len() >= MAX_DESKS {
             let Some((_, oldest)) = desks.1.pop_first() else { break };
             oldest.close();
         }
-        let order = self.order.clone().ok_or_else(|| Answer::refused(404, "no scene is viewed"))?;
         let desk = Desk::open(order);
         let desk = desk.map_err(|error| Answer::refused(503, &format!("no thread for another page: {error}")))?;
         desks.0 += 1;

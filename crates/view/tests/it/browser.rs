@@ -30,12 +30,40 @@ fn a_person_turns_types_saves_and_is_told_what_is_wrong() {
     let scene = tempfile::tempdir().expect("a folder");
     let file = scene.path().join("scene.yaml");
     std::fs::write(&file, SCENE).expect("written");
-    let own = View { scene: file.clone(), overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
+    let own = View { scene: file.clone(), stock: None, overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
     if !driven("browser.mjs", |ready| drop(view(own, ready))) {
         return;
     }
     let saved = std::fs::read_to_string(&file).expect("a file");
     assert_eq!(saved, SCENE.replace("f/2, focus: 2 m", "f/5.6, focus: 2 m, aperture: {shape: iris, blades: 6}"));
+}
+
+/// Opens a scene and changes it so often, with values that are refused among them.
+fn tells_the_truth(scene: &str, changes: u32) {
+    let own = View { scene: scene.into(), stock: None, overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
+    driven_with("truth.mjs", &[&changes.to_string()], |ready| drop(view(own, ready)));
+}
+
+#[test]
+fn no_field_says_what_the_picture_does_not_have() {
+    let scene = tempfile::tempdir().expect("a folder");
+    let file = scene.path().join("scene.yaml");
+    std::fs::write(&file, SCENE).expect("written");
+    tells_the_truth(&file.to_string_lossy(), 12);
+}
+
+/// Five scenes with 30 changes each, every other one with five: minutes. `SPECTRA_BROWSER_SCENES`, names with commas, are those alone.
+#[test]
+#[ignore = "minutes; a step of .ci/run --all"]
+fn no_field_says_what_the_picture_does_not_have_in_any_scene() {
+    const MANY: [&str; 5] = ["night-stars", "biotar-ortho", "gray-card", "stops-and-stocks", "portrait-lights"];
+    let only = std::env::var("SPECTRA_BROWSER_SCENES").ok();
+    let is_asked = |name: &str| only.as_ref().is_none_or(|only| only.split(',').any(|own| own == name));
+    let names = spectra_scene::bundled::Bundled::Scene.names();
+    for scene in names.iter().filter(|name| !name.contains('/') && is_asked(name)) {
+        println!("{scene}");
+        tells_the_truth(scene, if MANY.contains(&scene.as_str()) { 30 } else { 5 });
+    }
 }
 
 /// A short one; `SPECTRA_BROWSER_SECONDS` makes it longer.
@@ -78,6 +106,11 @@ fn random_use_leaves_neither_errors_nor_threads_behind() {
 
 /// Drives a page of what `serve` serves by a script beside this file, which says what fails; false where there is no browser.
 fn driven(script: &str, serve: impl FnOnce(Box<dyn FnOnce(&str)>) + Send + 'static) -> bool {
+    driven_with(script, &[], serve)
+}
+
+/// The same, with more words for the script.
+fn driven_with(script: &str, more: &[&str], serve: impl FnOnce(Box<dyn FnOnce(&str)>) + Send + 'static) -> bool {
     let (folder, chromium) = match browser() {
         Ok(found) => found,
         Err(why) => {
@@ -90,7 +123,7 @@ fn driven(script: &str, serve: impl FnOnce(Box<dyn FnOnce(&str)>) + Send + 'stat
     std::thread::spawn(move || serve(Box::new(move |address: &str| tell.send(address.to_owned()).expect("heard"))));
     let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
     let script = format!("{}/tests/{script}", env!("CARGO_MANIFEST_DIR"));
-    let output = Command::new("node").args([&script, &folder, &chromium, &address]).output().expect("node");
+    let output = Command::new("node").args([&script, &folder, &chromium, &address]).args(more).output().expect("node");
     let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     println!("{said}");

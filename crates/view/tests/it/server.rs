@@ -57,11 +57,17 @@ fn raw(host: &str, bytes: &[u8]) -> Option<Got> {
 impl Browser {
     /// A server with a scene, without its cookie yet.
     fn start() -> Self {
+        Self::start_with("scene.yaml", SCENE.as_bytes())
+    }
+
+    /// The same with a file.
+    fn start_with(name: &str, bytes: &[u8]) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
-        let file = folder.path().join("scene.yaml");
-        std::fs::write(&file, SCENE).expect("written");
+        let file = folder.path().join(name);
+        std::fs::write(&file, bytes).expect("written");
         let (tell, hear) = mpsc::channel();
-        let own = View { scene: file.clone(), overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
+        let own =
+            View { scene: file.clone(), stock: None, overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
         // The thread ends with the process.
         std::thread::spawn(move || view(own, |address| tell.send(address.to_owned()).expect("heard")));
         let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
@@ -73,7 +79,16 @@ impl Browser {
 
     /// The same after the address was opened.
     fn let_in() -> Self {
-        let mut browser = Self::start();
+        Self::start().entered()
+    }
+
+    /// The same of a file.
+    fn viewing(name: &str, bytes: &[u8]) -> Self {
+        Self::start_with(name, bytes).entered()
+    }
+
+    fn entered(self) -> Self {
+        let mut browser = self;
         let got = browser.get(&format!("/?token={}", browser.token)).expect("an answer");
         assert_eq!(got.status, 303, "{}", got.head);
         let cookie = got.head.lines().find_map(|line| line.strip_prefix("Set-Cookie: ")).expect("a cookie");
@@ -122,9 +137,44 @@ impl Browser {
         }
     }
 
+    /// What the controls say once so many values that were turned are taken up or refused.
+    fn controls(&self, desk: u64, turns: u64) -> Value {
+        let end = Instant::now() + Duration::from_secs(60);
+        loop {
+            let said = self.get(&format!("/controls?desk={desk}")).expect("an answer").json();
+            if said["turns"].as_u64().expect("a number") >= turns {
+                return said;
+            }
+            assert!(Instant::now() < end, "{said}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Turns a control, waits until it is taken up or refused, and gives what the controls say then.
+    fn turned(&self, desk: u64, path: &str, value: Value) -> Value {
+        let got = self.turn(desk, path, value);
+        assert_eq!(got.status, 200, "{path}: {}", String::from_utf8_lossy(&got.body));
+        self.controls(desk, got.json()["turn"].as_u64().expect("a number"))
+    }
+
     fn turn(&self, desk: u64, path: &str, value: Value) -> Got {
         self.post(&format!("/turn?desk={desk}"), &json!({"path": path, "value": value}).to_string())
     }
+}
+
+/// The value of a control.
+fn value_of(said: &Value, path: &str) -> Value {
+    let all = said["controls"].as_array().expect("a list");
+    all.iter().find(|control| control["path"] == path).unwrap_or_else(|| panic!("no {path}"))["value"].clone()
+}
+
+/// The picture of a text of a scene, with all its samples, as a page is handed it.
+fn picture_of(text: &str) -> Vec<f32> {
+    let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
+    let mut session = spectra_session::Session::of_text("scene.yaml", text, resources, Isa::detect()).expect("a scene");
+    let samples = u64::from(session.scene().render.samples);
+    session.step(samples, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
+    as_sent(&session.develop().expect("a picture").remove(0).1.rgb.concat())
 }
 
 fn is_done(head: &Value) -> bool {
@@ -173,13 +223,13 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     // Development alone: the same rays, a lighter print of the denser negative or the other way round.
     let rays = head["rays"].clone();
     let at = head["frame"].as_u64().expect("a number");
-    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 204);
+    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 200);
     let (pushed, light) = browser.frame(desk, at, is_done);
     assert_eq!(pushed["rays"], rays);
     assert!((mean(&light) - mean(&first)).abs() > 0.005, "{} {}", mean(&light), mean(&first));
 
     // What is traced: a stop less light, and the picture of a run with that value, to the bit.
-    assert_eq!(browser.turn(desk, "lens.f-number", json!(4)).status, 204);
+    assert_eq!(browser.turn(desk, "lens.f-number", json!(4)).status, 200);
     let (closed, light) = browser.frame(desk, pushed["frame"].as_u64().expect("a number"), is_done);
     let text = SCENE.replace("[60, 40]", "[480, 320]").replace("f/2", "f/4").replace("1/80 s", "1/80 s, push: 1");
     let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
@@ -190,12 +240,12 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     assert!(light == as_sent(&wanted.rgb.concat()), "{closed}");
 
     // What the scene cannot be is told with its place, and the picture stays.
-    assert_eq!(browser.turn(desk, "lens.f-number", json!(0.01)).status, 204);
+    assert_eq!(browser.turn(desk, "lens.f-number", json!(0.01)).status, 200);
     let (faulty, _) =
         browser.frame(desk, closed["frame"].as_u64().expect("a number"), |head| head["fault"].is_object());
     assert_eq!(faulty["fault"]["path"], "lens.f-number");
     assert!(faulty["fault"]["faults"][0]["message"].as_str().is_some_and(|m| !m.is_empty()), "{faulty}");
-    assert_eq!(browser.turn(desk, "lens.f-number", json!(4)).status, 204);
+    assert_eq!(browser.turn(desk, "lens.f-number", json!(4)).status, 200);
     browser.frame(desk, faulty["frame"].as_u64().expect("a number"), |head| head["fault"].is_null() && is_done(head));
 
     let got = browser.post(&format!("/save?desk={desk}"), "");
@@ -203,13 +253,13 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     let saved = std::fs::read_to_string(&browser.file).expect("a file");
     assert_eq!(saved, SCENE.replace("f/2", "f/4").replace("1/80 s", "1/80 s, push: 1"));
     // The page goes on from there, until somebody else writes to the file.
-    assert_eq!(browser.turn(desk, "film.push", json!(0)).status, 204);
+    assert_eq!(browser.turn(desk, "film.push", json!(0)).status, 200);
     let at = browser.frame(desk, 0, |_| true).0["frame"].as_u64().expect("a number");
-    assert_eq!(browser.turn(desk, "film.compensation", json!(0)).status, 204);
+    assert_eq!(browser.turn(desk, "film.compensation", json!(0)).status, 200);
     browser.frame(desk, at, |head| !head["width"].is_null());
     assert_eq!(browser.post(&format!("/save?desk={desk}"), "").status, 200);
     assert!(std::fs::read_to_string(&browser.file).expect("a file").contains("push: 0"));
-    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 204);
+    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 200);
     // What somebody else wrote is no scene, so the page cannot take it up, and must not write over it.
     let broken = SCENE.replace("f/2", "f/2, fnumber: 3");
     std::fs::write(&browser.file, &broken).expect("written by somebody else");
@@ -233,7 +283,7 @@ fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
     let desk = browser.open();
     let (head, _) = browser.frame(desk, 0, is_done);
     let at = head["frame"].as_u64().expect("a number");
-    assert_eq!(browser.turn(desk, "lens.focus", json!(1.5)).status, 204);
+    assert_eq!(browser.turn(desk, "lens.focus", json!(1.5)).status, 200);
     let (draft, light) = browser.frame(desk, at, |head| head["width"].is_u64());
     assert_eq!((&draft["draft"], &draft["width"], &draft["light"]), (&json!(true), &json!(480), &json!([120, 80])));
     assert_eq!(light.len(), 3 * 120 * 80);
@@ -250,15 +300,200 @@ fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
     assert!(light == as_sent(&wanted.rgb.concat()), "{whole}");
 
     // Print, push, grade and grain: no draft, no ray, the whole at once; where it is large, smaller before.
-    assert_eq!(browser.turn(desk, "width", json!(960)).status, 204);
+    assert_eq!(browser.turn(desk, "width", json!(960)).status, 200);
     let large = |head: &Value| is_done(head) && head["width"] == 960;
     let (head, _) = browser.frame(desk, whole["frame"].as_u64().expect("a number"), large);
-    assert_eq!(browser.turn(desk, "film.paper.grade", json!("4")).status, 204);
+    assert_eq!(browser.turn(desk, "film.paper.grade", json!("4")).status, 200);
     let (first, _) = browser.frame(desk, head["frame"].as_u64().expect("a number"), |head| head["width"].is_u64());
     assert_eq!(first["rays"], head["rays"]);
     assert!(first["light"] == json!([480, 320]) || first["light"] == json!([960, 640]), "{first}");
     let (last, _) = browser.frame(desk, head["frame"].as_u64().expect("a number"), |head| head["light"][0] == 960);
     assert_eq!(last["rays"], head["rays"]);
+}
+
+/// Values that are refused leave the scene as it was, whatever is turned beside them; they are told until they are turned again.
+#[test]
+fn controls_never_say_what_the_picture_does_not_have() {
+    let browser = Browser::let_in();
+    let desk = browser.open();
+    browser.frame(desk, 0, is_done);
+    // Out of range: at once, with the range, and nothing is turned.
+    let far = browser.turn(desk, "film.compensation", json!(99));
+    let why = String::from_utf8_lossy(&far.body).into_owned();
+    assert!(far.status == 400 && why.contains("99 is out of range: it goes from -10 to 10"), "{why}");
+    for (path, value) in [("lens.f-number", json!(1.0)), ("lens.focus", json!(0.001))] {
+        let before = browser.controls(desk, 0);
+        let said = browser.turned(desk, path, value);
+        assert!(said["refused"][path]["faults"][0]["message"].is_string(), "{path}: {}", said["refused"]);
+        assert_eq!(value_of(&said, path), value_of(&before, path));
+    }
+    // Something else is turned: what was refused is still told, and the picture has what the controls say.
+    let said = browser.turned(desk, "film.push", json!(1));
+    let refused = said["refused"].as_object().expect("a map");
+    assert_eq!(refused.len(), 2, "{refused:?}");
+    let stop = value_of(&said, "lens.f-number");
+    assert_eq!((stop, value_of(&said, "film.push")), (json!(2.0), json!(1.0)));
+    let (head, light) = browser.frame(desk, 0, |head| is_done(head) && head["draft"] == false);
+    let text = SCENE.replace("[60, 40]", "[480, 320]").replace("1/80 s", "1/80 s, push: 1");
+    assert!(light == picture_of(&text), "{head}");
+    // Turned to what can be, it is refused no more.
+    let said = browser.turned(desk, "lens.f-number", json!(4));
+    assert!(said["refused"]["lens.f-number"].is_null() && value_of(&said, "lens.f-number") == json!(4.0));
+}
+
+#[test]
+fn a_swept_key_chooses_among_the_pictures() {
+    let swept = format!("{SCENE}sweep: {{lens.f-number: [f/2, f/8], film.push: [0, 1]}}\n");
+    let browser = Browser::viewing("swept.yaml", swept.as_bytes());
+    let desk = browser.open();
+    let (head, first) = browser.frame(desk, 0, is_done);
+    let said = browser.controls(desk, 0);
+    let control =
+        said["controls"].as_array().expect("a list").iter().find(|c| c["path"] == "lens.f-number").expect("it");
+    assert_eq!((&control["kind"]["words"], &control["value"]), (&json!(["f/2", "f/8"]), &json!("f/2")));
+    let said = browser.turned(desk, "lens.f-number", json!("f/8"));
+    assert_eq!((value_of(&said, "lens.f-number"), value_of(&said, "film.push")), (json!("f/8"), json!("0")));
+    assert_eq!(value_of(&said, "picture"), "3: lens.f-number = f/8, film.push = 0");
+    let at = head["frame"].as_u64().expect("a number");
+    let (_, light) = browser.frame(desk, at, |head| is_done(head) && head["draft"] == false);
+    assert!(light != first);
+    let text = SCENE.replace("[60, 40]", "[480, 320]").replace("f/2", "f/8").replace("1/80 s", "1/80 s, push: 0");
+    assert!(light == picture_of(&text));
+    // What it has of its own is turned as ever; a value that the sweep does not have is none.
+    browser.turned(desk, "lens.focus", json!(3));
+    assert_eq!(browser.turn(desk, "lens.f-number", json!("f/4")).status, 400);
+    let said = browser.turned(desk, "picture", json!("2: lens.f-number = f/2, film.push = 1"));
+    assert_eq!((value_of(&said, "lens.f-number"), value_of(&said, "lens.focus")), (json!("f/2"), json!(3.0)));
+    let command = browser.get(&format!("/command?desk={desk}")).expect("an answer").json();
+    let command = command["command"].as_str().expect("a command").to_owned();
+    let end = "swept.yaml --set 'lens.focus=3 m' --set sweep=null --set lens.f-number=f/2 --set film.push=1";
+    assert!(command.starts_with("spectra run ") && command.ends_with(end), "{command}");
+}
+
+/// A picture whose file is cut off shows that only when light is asked for: the scene goes back to the picture that it had.
+#[test]
+fn what_turns_out_to_have_no_picture_is_taken_back() {
+    let scene = "spectra: 1\nsource: {kind: picture, distance: 2 m, luminance: 300 cd/m2, width: fill}\n\
+        lens: {file: zeiss-biotar-50-f1.4, f-number: f/2, focus: 2 m}\nimager: {kind: film, format: 135, resolution: [60, 40]}\n\
+        film: {stock: kodak-tri-x-400, exposure: 1/80 s}\nrender: {samples: 4}\nsweep: {source.file: [good.png, cut.png]}\n";
+    let png = photograph();
+    let browser = Browser::start_with("good.png", &png);
+    let folder = browser.file.parent().expect("a folder");
+    std::fs::write(folder.join("cut.png"), &png[..png.len() / 2]).expect("written");
+    std::fs::write(folder.join("scene.yaml"), scene).expect("written");
+    let browser = browser.entered();
+    let desk =
+        browser.post("/open", r#"{"name": "scene.yaml", "bundled": false}"#).json()["desk"].as_u64().expect("a desk");
+    let (head, first) = browser.frame(desk, 0, |head| is_done(head) && head["draft"] == false);
+    assert_eq!(browser.turn(desk, "source.file", json!("cut.png")).status, 200);
+    let at = head["frame"].as_u64().expect("a number");
+    let (head, _) = browser.frame(desk, at, |head| head["fault"]["path"] == "source.file");
+    let why = head["fault"]["faults"][0]["message"].as_str().expect("a message");
+    assert!(why.contains("cut.png"), "{why}");
+    let said = browser.controls(desk, 0);
+    assert_eq!((value_of(&said, "source.file"), &said["undos"]), (json!("good.png"), &json!(0)));
+    assert!(said["refused"]["source.file"].is_object(), "{}", said["refused"]);
+    // It goes on from there.
+    browser.turned(desk, "lens.f-number", json!(4));
+    browser.turned(desk, "lens.f-number", json!(2));
+    let (_, again) =
+        browser.frame(desk, head["frame"].as_u64().expect("a number"), |head| is_done(head) && head["draft"] == false);
+    assert!(again.len() == first.len());
+}
+
+/// The file of a small photograph.
+fn photograph() -> Vec<u8> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let color = |x: u32, y: u32| image::Rgb([(x * 4) as u8, (y * 5) as u8, ((x + y) * 2) as u8]);
+    image::RgbImage::from_fn(60, 40, color).write_to(&mut png, image::ImageFormat::Png).expect("a picture");
+    png.into_inner()
+}
+
+#[test]
+fn steps_are_taken_back_and_what_is_seen_is_a_scene_of_its_own() {
+    let browser = Browser::let_in();
+    let desk = browser.open();
+    let (_, first) = browser.frame(desk, 0, is_done);
+    let said = browser.turned(desk, "lens.f-number", json!(8));
+    assert_eq!(said["undos"], 1);
+    let said = browser.turned(desk, "film.push", json!(1));
+    assert_eq!((&said["undos"], &said["changes"]), (&json!(2), &json!(2)));
+    let got = browser.get(&format!("/scene?desk={desk}")).expect("an answer");
+    assert_eq!(String::from_utf8_lossy(&got.body), SCENE.replace("f/2", "f/8").replace("1/80 s", "1/80 s, push: 1"));
+    for (left, stop, push) in [(1, json!(8.0), Value::Null), (0, json!(2.0), Value::Null)] {
+        let turn = browser.post(&format!("/back?desk={desk}"), "").json()["turn"].as_u64().expect("a number");
+        let said = browser.controls(desk, turn);
+        assert_eq!((&said["undos"], &said["changes"]), (&json!(left), &json!(left)));
+        assert_eq!((value_of(&said, "lens.f-number"), value_of(&said, "film.push")), (stop, push));
+        browser.frame(desk, 0, |head| is_done(head) && head["turns"] == turn && head["draft"] == false);
+    }
+    let (_, again) = browser.frame(desk, 0, |head| is_done(head) && head["draft"] == false);
+    assert!(again == first);
+    // Another scene from the list, and nothing else.
+    assert_eq!(browser.post("/open", r#"{"name": "../scene.yaml", "bundled": false}"#).status, 400);
+    let listed = browser.get("/openable").expect("an answer").json();
+    assert_eq!(listed["files"], json!(["scene.yaml"]));
+    let other =
+        browser.post("/open", r#"{"name": "gray-card", "bundled": true}"#).json()["desk"].as_u64().expect("a desk");
+    browser.frame(other, 0, |head| head["width"].is_u64());
+    assert_eq!(browser.controls(other, 0)["name"], "gray-card");
+}
+
+/// A photograph is developed as `film develop` does: the same bits; and through a lens once one is turned to.
+#[test]
+fn a_photograph_is_developed() {
+    let browser = Browser::viewing("photo.png", &photograph());
+    let desk = browser.open();
+    let (head, light) = browser.frame(desk, 0, is_done);
+    assert_eq!((&head["width"], &head["flat"], &head["rays"]), (&json!(60), &json!(true), &json!(0)));
+    let said = browser.controls(desk, 0);
+    assert_eq!((&said["photograph"], &said["widths"], &said["saves"]), (&json!(true), &json!([60]), &json!(false)));
+    assert!(said["controls"].as_array().expect("a list").iter().all(|control| control["path"] != "lens.f-number"));
+    let wanted = |stock: &str, light: &str| {
+        let setting = |path: &str, value: &str| spectra_session::Setting {
+            path: path.to_owned(),
+            value: value.to_owned(),
+            said: String::new(),
+        };
+        let file = browser.file.to_string_lossy().into_owned();
+        let photograph = spectra_session::Photograph {
+            plate: spectra_session::Plate { file, output: "photo.png".to_owned(), number: None },
+            settings: vec![setting("film.stock", stock), setting("source.illuminant", light)],
+            format: None,
+        };
+        let series = photograph.series(&[], Isa::detect()).expect("a scene");
+        let session = spectra_session::Session::of_series(series, 0, Isa::detect()).expect("a scene");
+        let exposure = session.expose().expect("light").exposure;
+        let times = session.scene().film_times(&exposure);
+        let shot = spectra_scene::Shot::new(session.scene(), &exposure, &times, &[], Isa::detect());
+        as_sent(&shot.pictures().expect("a picture")[0].1.rgb.concat())
+    };
+    assert!(light == wanted("kodak-portra-400", "iso-7589-sensitometric-daylight"));
+    // A film for lamps sees its own light.
+    let at = head["frame"].as_u64().expect("a number");
+    let said = browser.turned(desk, "film.stock", json!("kodak-vision3-500t-5219"));
+    let own = value_of(&said, "source.illuminant");
+    let (_, light) = browser.frame(desk, at, is_done);
+    assert!(light == wanted("kodak-vision3-500t-5219", own.as_str().expect("a name")), "{own}");
+    let command = |ending: &str| {
+        let command = browser.get(&format!("/command?desk={desk}")).expect("an answer").json();
+        let command = command["command"].as_str().expect("a command").to_owned();
+        assert!(command.starts_with("spectra film develop ") && command.ends_with(ending), "{command}");
+    };
+    command("photo.png --stock kodak-vision3-500t-5219");
+    let said = browser.turned(desk, "lens.file", json!("helios-44-58-f2"));
+    assert_eq!(value_of(&said, "lens.file"), "helios-44-58-f2");
+    let (seen, _) = browser.frame(desk, at, |head| head["rays"].as_u64().is_some_and(|rays| rays > 0));
+    assert!(seen["lens"].as_str().is_some_and(|name| name.contains("Helios")), "{seen}");
+    browser.turned(desk, "lens.f-number", json!(5.6));
+    command("--lens=helios-44-58-f2 --f-number=f/5.6");
+    // Without it again, its pixels are as they were.
+    browser.turned(desk, "lens.file", json!("no-lens"));
+    let (_, again) = browser.frame(desk, seen["frame"].as_u64().expect("a number"), |head| head["flat"] == true);
+    assert!(again == light);
+    command("photo.png --stock kodak-vision3-500t-5219");
+    let text = browser.get(&format!("/scene?desk={desk}")).expect("an answer");
+    assert!(String::from_utf8_lossy(&text.body).contains("kodak-vision3-500t-5219"));
 }
 
 #[test]
@@ -268,8 +503,8 @@ fn a_file_that_is_saved_is_rendered_again_and_a_broken_one_is_told() {
     let (head, first) = browser.frame(desk, 0, is_done);
     let at = |head: &Value| head["frame"].as_u64().expect("a number");
     // Values of the page stay, but for those that the file now says otherwise.
-    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 204);
-    assert_eq!(browser.turn(desk, "lens.f-number", json!(8)).status, 204);
+    assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 200);
+    assert_eq!(browser.turn(desk, "lens.f-number", json!(8)).status, 200);
     let (head, _) = browser.frame(desk, at(&head), |head| is_done(head) && head["draft"] == false);
     std::fs::write(&browser.file, SCENE.replace("f/2", "f/4")).expect("written");
     let (again, light) = browser.frame(desk, at(&head), |head| is_done(head) && head["reread"] == 1);
@@ -299,7 +534,7 @@ fn pages_do_not_disturb_each_other_and_the_oldest_makes_room() {
     assert_eq!(browser.turn(two, "lens.f-number", json!(8)).status, 404 - 4, "no control before the scene is there");
     let (_, first) = browser.frame(one, 0, is_done);
     let (before, _) = browser.frame(two, 0, is_done);
-    assert_eq!(browser.turn(two, "lens.f-number", json!(8)).status, 204);
+    assert_eq!(browser.turn(two, "lens.f-number", json!(8)).status, 200);
     let (_, second) = browser.frame(two, before["frame"].as_u64().expect("a number"), is_done);
     assert!(first != second);
     let again = browser.get(&format!("/frame?desk={one}&after=0")).expect("an answer");

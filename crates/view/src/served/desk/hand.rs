@@ -1,6 +1,9 @@
 //! What the thread of a desk has in hand: the scene, the same scene small for a draft, and what either is still to be told.
 
+use super::history::{Before, History};
+use super::turned::{Turned, What};
 use super::watch::Stamps;
+use crate::served::photograph::Small;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::params::Node;
 use spectra_scene::Negatives;
@@ -15,10 +18,15 @@ const QUICK_PX: u32 = 480;
 
 /// A value that was turned and that the whole picture does not have yet.
 pub(super) struct Owed {
-    pub(super) path: String,
-    /// `path=value`; of the width, the number alone.
-    pub(super) text: String,
+    pub(super) turned: Turned,
     pub(super) is_drafted: bool,
+}
+
+/// What was taken up and that no picture has been made of yet: it may still turn out that there is none.
+pub(super) struct Unproved {
+    pub(super) before: Before,
+    /// The controls that were turned since.
+    pub(super) controls: Vec<String>,
 }
 
 /// What came of a draft.
@@ -75,24 +83,82 @@ pub(super) struct Hand {
     pub(super) stamps: Stamps,
     /// A text of the scene's file, and the files that it names, that are no scene.
     pub(super) refused: Option<(Option<String>, Stamps)>,
+    /// How the scene was set before.
+    pub(super) history: History,
+    pub(super) unproved: Option<Unproved>,
+    /// The pixels of a photograph, to be exposed again.
+    pub(super) pixels: Option<Small>,
 }
 
 impl Hand {
+    /// A scene, nothing of which is traced yet.
+    pub(super) fn of(session: Session, shape: Shape, width_px: u32) -> Self {
+        Self {
+            session,
+            draft: None,
+            shape,
+            width_px,
+            owed: Vec::new(),
+            behind: Vec::new(),
+            is_light_owed: true,
+            light: None,
+            small: None,
+            pace_s: None,
+            stamps: Stamps::default(),
+            refused: None,
+            history: History::default(),
+            unproved: None,
+            pixels: None,
+        }
+    }
+
+    /// Whether its film gets a photograph's own pixels, and no ray is traced.
+    pub(super) fn is_flat(&self) -> bool {
+        self.session.series().is_without_lens()
+    }
+
+    /// Whether there is nothing to do for the picture.
+    pub(super) fn is_done(&self) -> bool {
+        let is_lit = || match self.is_flat() {
+            true => self.light.is_some(),
+            false => self.is_traced(),
+        };
+        self.owed.is_empty() && is_lit()
+    }
+
+    /// Whether its picture will have stars, and the light so far has none.
+    pub(super) fn is_without_stars(&self) -> bool {
+        !self.is_flat() && has_stars(&self.session) && !self.is_traced()
+    }
+
+    /// Whether all samples are there.
+    fn is_traced(&self) -> bool {
+        self.session.samples() >= u64::from(self.session.scene().render.samples)
+    }
+
     /// The light so far.
     pub(super) fn look(&mut self) -> Result<Arc<Plate>, SessionError> {
         let light = match self.light.take() {
             Some(light) => light,
+            None if self.is_flat() => Arc::new(Plate::of(Small::expose(&mut self.pixels, &self.session)?)),
+            // Stars take seconds in which nothing that is turned is heard: they come with the last sample.
+            None if self.is_without_stars() => Arc::new(Plate::of(self.session.look_without_stars()?)),
             None => Arc::new(Plate::of(self.session.look()?)),
         };
         Ok(Arc::clone(self.light.insert(light)))
     }
 
     /// Of values of one control the last counts.
-    pub(super) fn owe(&mut self, turned: Vec<(String, String)>) {
-        for (path, text) in turned {
-            self.owed.retain(|owed| owed.path != path);
-            self.owed.push(Owed { path, text, is_drafted: false });
+    pub(super) fn owe(&mut self, turned: Vec<Turned>) {
+        for turned in turned {
+            self.owed.retain(|owed| owed.turned.control != turned.control);
+            self.owed.push(Owed { turned, is_drafted: false });
         }
+    }
+
+    /// The picture of the series that is owed, or that is there.
+    pub(super) fn index_owed(&self) -> usize {
+        self.owed.iter().rev().find_map(|owed| owed.turned.picture()).unwrap_or(self.session.index())
     }
 
     pub(super) fn without_draft(&mut self) -> Drafted {
@@ -102,21 +168,15 @@ impl Hand {
 
     /// Goes on with another scene.
     pub(super) fn take_up(&mut self, session: Session, shape: Shape) {
-        *self = Self {
-            session,
-            draft: None,
-            shape,
-            width_px: self.width_px,
-            owed: std::mem::take(&mut self.owed),
-            behind: Vec::new(),
-            is_light_owed: true,
-            light: None,
-            small: None,
-            pace_s: None,
-            stamps: Stamps::default(),
-            refused: None,
-        };
+        let owed = std::mem::take(&mut self.owed);
+        *self = Self { owed, ..Self::of(session, shape, self.width_px) };
     }
+}
+
+/// Whether lights get stars: where nothing is said, they are looked for where a source has lights.
+pub(super) fn has_stars(session: &Session) -> bool {
+    let scene = session.scene();
+    scene.render.diffraction.unwrap_or_else(|| scene.source.split().is_some())
 }
 
 /// The shape of a scene's picture, as its file has it.
@@ -140,12 +200,13 @@ impl Shape {
         format!("imager.resolution=[{width_px}, {}]", self.height_px(width_px))
     }
 
-    /// `path=value` for the whole picture.
-    pub(super) fn text(&self, owed: &Owed) -> Option<String> {
-        if owed.path != "width" {
-            return Some(owed.text.clone());
+    /// Texts `path=value` for the whole picture.
+    pub(super) fn texts(&self, turned: &Turned) -> Vec<String> {
+        match &turned.what {
+            What::Set(texts) => texts.clone(),
+            What::Width(width_px) => vec![self.resolution(*width_px)],
+            What::Picture(_) => Vec::new(),
         }
-        owed.text.parse().ok().map(|width_px| self.resolution(width_px))
     }
 
     /// What makes a draft of a scene.

@@ -4,25 +4,27 @@
 //! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
 
 mod hand;
+mod history;
 mod priority;
 mod show;
+mod turned;
 mod watch;
 mod work;
 
 use super::bench::is_prism;
 use super::order::Order;
-use super::{memory, save};
+use super::{memory, save, told};
 use crate::controls::Control;
-use crate::parts::{pixel, spectra};
+use crate::parts::{Picks, pixel, spectra};
 use crate::section;
 use serde_json::{Value, json};
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_scene::FilmTime;
-use spectra_session::{Control as Stop, Session, SessionError};
-use std::path::Path;
+use spectra_session::{Control as Stop, Moment};
+use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+use turned::{Turned, What};
 
 /// Widths of the picture that a page may choose, pixels.
 const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
@@ -40,32 +42,60 @@ pub(crate) struct Frame {
 
 #[derive(Default)]
 struct State {
-    /// Texts `path=value` by their paths, in the order in which the paths were first turned.
-    pending: Vec<(String, String)>,
+    /// What was turned, in the order in which it was first turned.
+    pending: Vec<Turned>,
+    /// So many steps back are asked for.
+    backs: usize,
     controls: Vec<Control>,
+    /// The pictures of the scene.
+    picks: Picks,
+    /// The last picture.
     frame: Option<Arc<Frame>>,
+    /// What was said last without a picture: a number and a head.
+    note: Option<(u64, Arc<Vec<u8>>)>,
+    /// Of pictures and notes together.
     number: u64,
+    /// Why there is no picture at all of the scene as it is; until something else is turned, nothing is traced.
     fault: Option<Value>,
+    /// What was turned and refused, by control, with what is wrong: the scene is as it was.
+    refused: BTreeMap<String, Value>,
+    /// Those of them that the page was told.
+    refused_told: BTreeMap<String, Value>,
     section: [Option<Arc<String>>; 2],
     scene: Option<Arc<spectra_scene::Scene>>,
+    /// How the session is set.
+    moment: Option<Moment>,
     /// How often the scene was another one: the page asks for its controls again.
     scenes: u64,
     /// What the page set, by path, for the scene's file.
     changes: Vec<(String, String)>,
+    /// So many steps back can be taken.
+    undos: usize,
     /// How often the lens was another one: the page asks for its drawing again.
     lenses: u64,
     /// How often the scene's file was taken up after somebody wrote it.
     reread: u64,
-    /// Width of the whole picture, pixels.
+    /// Width of the whole picture, pixels, and those that can be chosen.
     width_px: u32,
-    /// Values that were turned; and those among them that the pictures have.
+    widths_px: Vec<u32>,
+    /// Values that were turned; those among them that the pictures have; and those that the controls have, or that are refused.
     turns: u64,
     turns_taken: u64,
+    turns_settled: u64,
+    /// Those of them that the page was told.
+    turns_told: u64,
     /// A large picture is being developed beside the desk's thread.
     is_developing: bool,
     stop: Arc<Stop>,
     is_closed: bool,
 }
+impl State {
+    /// What is wrong, for the page: with the scene, or else with what was turned last of what is refused.
+    fn said(&self) -> Option<Value> {
+        self.fault.clone().or_else(|| self.refused.values().next_back().cloned())
+    }
+}
+
 /// A desk, as the page's requests and its thread share it.
 pub(crate) struct Desk {
     order: Order,
@@ -84,7 +114,7 @@ fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Desk {
     /// A desk with its thread, which ends when the desk is closed or forgotten.
     pub(crate) fn open(order: Order) -> std::io::Result<Arc<Self>> {
-        let written = std::fs::read_to_string(&order.scene).ok();
+        let written = order.file().and_then(|file| std::fs::read_to_string(file).ok());
         let desk = Self {
             order,
             written: Mutex::new(written),
@@ -119,48 +149,89 @@ impl Desk {
         self.turned.notify_all();
     }
 
-    /// Takes a value that the page sent.
+    /// Takes a value that the page sent; gives its number among all that were turned.
     ///
     /// # Errors
     /// Why the scene has no such value.
-    pub(crate) fn turn(&self, path: &str, value: &Value) -> Result<(), String> {
+    pub(crate) fn turn(&self, path: &str, value: &Value) -> Result<u64, String> {
         let mut state = held(&self.state);
-        let text = if path == "width" {
-            let width = value.as_u64().and_then(|w| u32::try_from(w).ok()).filter(|w| WIDTHS_PX.contains(w));
-            width.ok_or("none of the widths")?.to_string()
+        let what = if path == "width" {
+            let width = value.as_u64().and_then(|w| u32::try_from(w).ok());
+            What::Width(width.filter(|w| state.widths_px.contains(w)).ok_or("none of the widths")?)
         } else {
             let control = state.controls.iter().find(|c| c.path() == path).ok_or("no such control")?;
-            control.text(value)?
+            let text = control.text(value)?;
+            match control.picked(value) {
+                Some(word) => {
+                    let from = state.pending.iter().rev().find_map(Turned::picture);
+                    What::Picture(state.picks.with(from, path, &word).ok_or("no picture of the scene has it")?)
+                }
+                None => What::Set(self.together(path, text)?),
+            }
         };
-        match state.pending.iter_mut().find(|(other, _)| other == path) {
-            Some((_, pending)) => *pending = text,
-            None => state.pending.push((path.to_owned(), text)),
+        // Of values of one control the last counts.
+        state.pending.retain(|other| other.control != path);
+        state.pending.push(Turned { control: path.to_owned(), what });
+        state.turns += 1;
+        let number = state.turns;
+        state.stop.stop();
+        self.turned.notify_all();
+        Ok(number)
+    }
+
+    /// A text `path=value` with what goes with it: of a photograph, the light that a film is made for, so that gray is gray.
+    fn together(&self, path: &str, text: String) -> Result<Vec<String>, String> {
+        let mut all = vec![text];
+        if path == "film.stock" && self.order.photograph.is_some() {
+            let stock = all[0].split_once('=').map_or("", |(_, stock)| stock).to_owned();
+            let light = super::photograph::light_of(&stock).map_err(|error| error.to_string())?;
+            all.push(format!("source.illuminant={light}"));
         }
+        Ok(all)
+    }
+
+    /// Takes the last step back.
+    pub(crate) fn back(&self) -> u64 {
+        let mut state = held(&self.state);
+        state.backs += 1;
         state.turns += 1;
         state.stop.stop();
         self.turned.notify_all();
-        Ok(())
+        state.turns
     }
 
-    /// The first frame after this number, if there is one within the time.
-    pub(crate) fn frame_after(&self, number: u64, patience: Duration) -> Option<Arc<Frame>> {
-        let is_waiting =
-            |state: &mut State| !state.is_closed && state.frame.as_ref().is_none_or(|frame| frame.number <= number);
+    /// The last picture after this number, or what was said after it, if there is one within the time.
+    pub(crate) fn frame_after(&self, number: u64, patience: Duration) -> Option<Vec<u8>> {
+        let found = |state: &State| {
+            let picture = state.frame.as_ref().filter(|frame| frame.number > number).map(|frame| frame.bytes.clone());
+            let note = || state.note.as_ref().filter(|note| note.0 > number).map(|note| note.1.to_vec());
+            picture.or_else(note)
+        };
+        let is_waiting = |state: &mut State| {
+            let last = [state.frame.as_ref().map(|frame| frame.number), state.note.as_ref().map(|note| note.0)];
+            !state.is_closed && last.into_iter().flatten().all(|last| last <= number)
+        };
         let waited = self.turned.wait_timeout_while(held(&self.state), patience, is_waiting);
         let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        state.frame.clone().filter(|frame| frame.number > number)
+        found(&state)
     }
 
     /// What the scene's controls are and say now.
     pub(crate) fn controls(&self) -> Value {
+        let saves = held(&self.written).is_some();
         let state = held(&self.state);
         let name = self.order.scene.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         json!({
             "name": name,
             "controls": state.controls.iter().map(Control::to_json).collect::<Vec<_>>(),
-            "widths": WIDTHS_PX,
-            "saves": held(&self.written).is_some(),
+            "widths": state.widths_px,
+            "width": state.width_px,
+            "saves": saves,
             "changes": state.changes.len(),
+            "undos": state.undos,
+            "turns": state.turns_settled,
+            "refused": state.refused,
+            "photograph": self.order.photograph.is_some(),
             "is_prism": state.scene.as_ref().is_some_and(|scene| is_prism(&scene.lens)),
         })
     }
@@ -198,6 +269,18 @@ impl Desk {
         Some(spectra(&scene))
     }
 
+    /// The command that makes the picture that is seen, with all of its pixels.
+    pub(crate) fn command(&self) -> Option<String> {
+        let moment = held(&self.state).moment.clone()?;
+        Some(told::command(&self.order, moment.series(), moment.index()))
+    }
+
+    /// The text of a scene that says what is seen.
+    pub(crate) fn text(&self) -> Option<Result<String, String>> {
+        let moment = held(&self.state).moment.clone()?;
+        Some(told::text(&self.order, moment.series(), moment.index()))
+    }
+
     /// Writes what the page set into the scene's file; says how many values.
     ///
     /// # Errors
@@ -215,12 +298,4 @@ impl Desk {
         held(&self.state).changes.retain(|change| !changes.contains(change));
         Ok(changes.len())
     }
-}
-
-/// Whether a scene can be viewed at all: faults are told at the start, and not by a page.
-///
-/// # Errors
-/// Everything that is wrong with it.
-pub(crate) fn looked_at(scene: &Path, overrides: &[String], isa: Isa) -> Result<Session, SessionError> {
-    Session::open(scene, overrides, isa)
 }

@@ -1,6 +1,6 @@
 //! Develops light and gives the picture to the page: a small one at once, and a large one beside whatever is turned next.
 
-use super::hand::{Hand, Plate, Shape};
+use super::hand::{Hand, Plate, Shape, has_stars};
 use super::{Desk, Frame, State, held, priority};
 use crate::parts::{halves, head, packed, said};
 use serde_json::{Value, json};
@@ -34,6 +34,17 @@ pub(super) struct Taken {
     turns: u64,
 }
 
+impl Taken {
+    /// Says what a draft leaves out that the picture of its session will have.
+    pub(super) fn leaves_out(&mut self, session: &Session) {
+        let scene = session.scene();
+        let has_lights = || scene.source.split().is_some();
+        let has_ghosts = scene.render.reflections.order.map_or_else(has_lights, |order| order > 0);
+        let all = [(has_ghosts, "ghosts"), (has_stars(session), "stars")];
+        self.head["left_out"] = all.iter().filter(|(has, _)| *has).map(|(_, name)| *name).collect();
+    }
+}
+
 impl Desk {
     /// Develops the light so far and gives it to the page. If it is to be `quick`, a small picture comes before a large one.
     pub(super) fn picture(
@@ -42,7 +53,13 @@ impl Desk {
         started: Instant,
         quick: bool,
     ) -> Result<(), SessionError> {
-        let of = |hand: &Hand, plate, kind| self.taken(&hand.session, &hand.shape, started, plate, kind);
+        let of = |hand: &Hand, plate, kind| {
+            let mut taken = self.taken(&hand.session, &hand.shape, started, plate, kind);
+            if hand.is_without_stars() {
+                taken.head["left_out"] = json!(["stars"]);
+            }
+            taken
+        };
         if quick {
             let small = match &hand.small {
                 Some(small) => Some(Arc::clone(small)),
@@ -109,7 +126,10 @@ impl Desk {
         let scene = Arc::clone(session.scene());
         let times = scene.film_times(&plate.exposure);
         let mut head = head(json!({}), session, &times, plate.rays);
-        if kind == Kind::Draft {
+        if session.series().is_without_lens() {
+            // No sample is traced: all of it is there.
+            (head["samples"], head["of"], head["flat"]) = (1.into(), 1.into(), true.into());
+        } else if kind == Kind::Draft {
             head["samples"] = 0.into();
         }
         let turns = held(&self.state).turns_taken;
@@ -139,7 +159,7 @@ impl Desk {
             "lens_drawn": state.lenses,
             "reread": state.reread,
             "turns": taken.turns,
-            "fault": state.fault,
+            "fault": state.said(),
             "width": whole_px,
             "height": if is_draft { taken.shape.height_px(whole_px) } else { height_px },
             "light": [width_px, height_px],

@@ -1,16 +1,18 @@
 //! What the thread of a desk does: take up what was turned, trace, develop, and watch the scene's file.
 
 use super::super::{memory, save};
-use super::hand::{Drafted, Hand, Owed, Plate, Shape};
+use super::hand::{Drafted, Hand, Plate, Shape, Unproved};
+use super::history::Before;
 use super::show::Kind;
-use super::watch::Stamps;
-use super::{Desk, Frame, State, WIDTHS_PX, held, priority};
+use super::turned::What;
+use super::{Desk, State, WIDTHS_PX, held, priority};
 use crate::controls;
-use crate::parts::{packed, said};
+use crate::parts::{Picks, packed, said};
 use serde_json::{Value, json};
-use spectra_core::frame::ExposureFrame;
 use spectra_scene::NumberFamily;
-use spectra_session::{Control as Stop, Session, Threads, Workers};
+use spectra_session::{Control as Stop, Session, SessionError, Threads, Workers};
+use std::mem::take;
+use std::path::Path;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -32,6 +34,10 @@ const REST: Duration = Duration::from_millis(60);
 const GLANCE: Duration = Duration::from_millis(300);
 /// Memory that nobody used for so long is given back.
 const TIDY: Duration = Duration::from_secs(1);
+/// The first picture of a photograph is so wide, pixels: it takes no rays.
+const PHOTOGRAPH_PX: u32 = 960;
+/// A photograph is seen with at most so many pixels across.
+const LARGEST_PX: u32 = 8192;
 /// A scene's file that is larger than this is none.
 const MAX_SCENE_BYTES: u64 = 1 << 22;
 
@@ -55,7 +61,7 @@ impl Desk {
     pub(super) fn work(self: &Arc<Self>) {
         // Before there is much to do: later pictures are developed by it.
         priority::pool(self.order.threads);
-        let mut session = match Session::open(&self.order.scene, &self.order.overrides, self.order.isa) {
+        let mut session = match self.order.session() {
             Ok(session) => session,
             Err(error) => {
                 self.tell(Some(said(&error, "")));
@@ -64,24 +70,22 @@ impl Desk {
         };
         let shape = Shape::of(&session);
         self.adopt(&session, false);
-        if let Err(error) = session.change(&shape.resolution(WIDTHS_PX[1])) {
+        let own_px = session.scene().imager.size().width_px;
+        let widths_px = match self.order.photograph {
+            // It has no more pixels than it has.
+            Some(_) => WIDTHS_PX.into_iter().filter(|w| *w < own_px).chain([own_px.min(LARGEST_PX)]).collect(),
+            None => WIDTHS_PX.to_vec(),
+        };
+        let width_px = match self.order.photograph {
+            Some(_) => own_px.min(PHOTOGRAPH_PX),
+            None => WIDTHS_PX[1],
+        };
+        held(&self.state).widths_px = widths_px;
+        if let Err(error) = session.change(&shape.resolution(width_px)) {
             self.tell(Some(said(&error, "imager.resolution")));
         }
         self.adopt(&session, true);
-        let mut hand = Hand {
-            session,
-            draft: None,
-            shape,
-            width_px: WIDTHS_PX[1],
-            owed: Vec::new(),
-            behind: Vec::new(),
-            is_light_owed: true,
-            light: None,
-            small: None,
-            pace_s: None,
-            stamps: Stamps::default(),
-            refused: None,
-        };
+        let mut hand = Hand::of(session, shape, width_px);
         let mut started = Instant::now();
         // The first picture of all is a draft, too.
         let mut is_asked_for_draft = true;
@@ -89,11 +93,11 @@ impl Desk {
         // When there was work to do last, until its memory is given back.
         let mut worked = None;
         loop {
-            let (pending, stop) = {
-                let all = u64::from(hand.session.scene().render.samples);
-                let is_done = hand.session.samples() >= all && hand.owed.is_empty() && !is_asked_for_draft;
+            let (pending, backs, stop) = {
+                let is_done = hand.is_done() && !is_asked_for_draft;
                 let is_idle = |state: &mut State| {
-                    !state.is_closed && state.pending.is_empty() && (is_done || state.fault.is_some())
+                    let is_asked = !state.pending.is_empty() || state.backs > 0;
+                    !state.is_closed && !is_asked && (is_done || state.fault.is_some())
                 };
                 let waited = self.turned.wait_timeout_while(held(&self.state), GLANCE, is_idle);
                 let (mut state, _) = waited.unwrap_or_else(PoisonError::into_inner);
@@ -104,16 +108,24 @@ impl Desk {
                 if state.is_closed {
                     break;
                 }
-                if !is_done || !state.pending.is_empty() {
+                if !is_done || !state.pending.is_empty() || state.backs > 0 {
                     worked = Some(Instant::now());
                 }
                 state.stop = Arc::new(Stop::new());
                 state.turns_taken = state.turns;
-                (std::mem::take(&mut state.pending), Arc::clone(&state.stop))
+                (take(&mut state.pending), take(&mut state.backs), Arc::clone(&state.stop))
             };
             if worked.is_some_and(|worked| worked.elapsed() >= TIDY) {
                 worked = None;
                 memory::give_back();
+            }
+            if backs > 0 {
+                started = Instant::now();
+                if !self.go_back(&mut hand, backs) {
+                    is_asked_for_draft = true;
+                } else if let Err(error) = self.picture(&mut hand, started, true) {
+                    self.tell(Some(said(&error, "")));
+                }
             }
             if pending.is_empty() && looked.elapsed() >= GLANCE {
                 looked = Instant::now();
@@ -127,7 +139,7 @@ impl Desk {
                 hand.owe(pending);
                 is_asked_for_draft = true;
             }
-            if std::mem::take(&mut is_asked_for_draft) {
+            if take(&mut is_asked_for_draft) {
                 match self.drafted(&mut hand, started) {
                     Drafted::Shown => {
                         // While somebody drags, drafts alone follow: the whole is begun once the hand rests.
@@ -145,17 +157,28 @@ impl Desk {
                 hand.is_light_owed = false;
             } else {
                 let Some(is_light_kept) = self.settle(&mut hand, &stop) else { continue };
+                if hand.is_flat() {
+                    self.exposed(&mut hand, started);
+                    continue;
+                }
                 if !is_light_kept && !hand.behind.is_empty() {
                     // What was taken for development alone is not.
                     is_asked_for_draft = true;
                     continue;
                 }
                 if is_light_kept && hand.session.has_light() {
-                    if let Err(error) = self.picture(&mut hand, started, true) {
-                        self.tell(Some(said(&error, "")));
+                    match self.picture(&mut hand, started, true) {
+                        Ok(()) => hand.unproved = None,
+                        Err(error) => self.take_back(&mut hand, &error),
                     }
                     continue;
                 }
+            }
+            if hand.is_flat() {
+                if !hand.is_done() && held(&self.state).fault.is_none() {
+                    self.exposed(&mut hand, started);
+                }
+                continue;
             }
             let scene = Arc::clone(hand.session.scene());
             let (all, done) = (u64::from(scene.render.samples), hand.session.samples());
@@ -177,7 +200,8 @@ impl Desk {
             // To search what passes the whole scene's lens may take longer than a draft: that, too, ends where more is turned.
             let workers = Until { threads: self.order.threads, stop: &stop };
             if let Err(error) = hand.session.step(more, &workers, &stop) {
-                self.tell(Some(said(&error, "")));
+                self.take_back(&mut hand, &error);
+                is_asked_for_draft = hand.is_light_owed;
                 continue;
             }
             // The first sample pays for what is made ready once.
@@ -191,42 +215,122 @@ impl Desk {
             if hand.session.samples() == 0 || stop.should_stop() {
                 continue;
             }
-            if let Err(error) = self.picture(&mut hand, started, false) {
-                self.tell(Some(said(&error, "")));
+            match self.picture(&mut hand, started, false) {
+                Ok(()) => hand.unproved = None,
+                Err(error) => {
+                    self.take_back(&mut hand, &error);
+                    is_asked_for_draft = hand.is_light_owed;
+                }
             }
         }
+    }
+
+    /// Exposes the film to a photograph's own pixels, and shows it.
+    fn exposed(self: &Arc<Self>, hand: &mut Hand, started: Instant) {
+        hand.light = None;
+        match self.picture(hand, started, true) {
+            Ok(()) => hand.unproved = None,
+            Err(error) => self.take_back(hand, &error),
+        }
+    }
+
+    /// There is no picture of the scene as it was turned: what was turned is refused, and the scene is as it was. Where nothing was
+    /// turned, the scene itself is at fault.
+    fn take_back(&self, hand: &mut Hand, error: &SessionError) {
+        let Some(Unproved { before, controls }) = hand.unproved.take() else {
+            return self.tell(Some(said(error, "")));
+        };
+        hand.session.back_to(&before.moment);
+        hand.history.pop();
+        self.at_another(hand, &mut false);
+        let mut state = held(&self.state);
+        state.changes = before.changes;
+        state.undos = hand.history.len();
+        for control in controls {
+            state.refused.insert(control.clone(), said(error, &control));
+        }
+        drop(state);
+        self.adopt(&hand.session, false);
+        self.tell(None);
+    }
+
+    /// Takes steps back; what is not taken up yet is the last of them. Says whether the light is the same.
+    fn go_back(&self, hand: &mut Hand, steps: usize) -> bool {
+        let steps = steps - usize::from(!hand.owed.is_empty());
+        let mut is_light_kept = hand.session.has_light() && hand.unproved.is_none();
+        hand.owed.clear();
+        for _ in 0..steps {
+            let Some(before) = hand.history.pop() else { break };
+            is_light_kept &= hand.session.back_to(&before.moment).light;
+            held(&self.state).changes = before.changes;
+        }
+        self.at_another(hand, &mut is_light_kept);
+        let mut state = held(&self.state);
+        state.refused.clear();
+        state.fault = None;
+        state.undos = hand.history.len();
+        drop(state);
+        self.adopt(&hand.session, false);
+        self.tell(None);
+        is_light_kept
+    }
+
+    /// Goes on from another moment of the session, at the width that is chosen.
+    fn at_another(&self, hand: &mut Hand, is_light_kept: &mut bool) {
+        if hand.session.scene().imager.size().width_px != hand.width_px {
+            // It had another width then; one that cannot be is no worse than that.
+            let resolution = hand.shape.resolution(hand.width_px);
+            let _ = hand.session.turn(&[resolution], hand.session.index(), None, &Threads(self.order.threads));
+            *is_light_kept = false;
+        }
+        hand.unproved = None;
+        hand.draft = None;
+        hand.behind.clear();
+        (hand.light, hand.small) = (None, None);
+        if !*is_light_kept {
+            hand.pace_s = None;
+        }
+        hand.is_light_owed = !*is_light_kept;
     }
 
     /// Shows a small picture of few samples of the scene as it is to be.
     fn drafted(&self, hand: &mut Hand, started: Instant) -> Drafted {
         let workers = Threads(self.order.threads);
         let mut same_light = hand.draft.is_some() && hand.session.has_light();
-        if same_light && !hand.is_light_owed && hand.owed.iter().all(|owed| is_of_development(&owed.path)) {
+        if same_light && !hand.is_light_owed && hand.owed.iter().all(|owed| is_of_development(&owed.turned.control)) {
             // The draft takes it up when it is wanted.
             return Drafted::SameLight;
         }
+        let index = hand.index_owed();
         match &mut hand.draft {
             None => {
                 hand.behind.clear();
-                let mut texts: Vec<String> = hand.owed.iter().filter_map(|owed| hand.shape.text(owed)).collect();
+                let mut texts: Vec<String> = hand.owed.iter().flat_map(|owed| hand.shape.texts(&owed.turned)).collect();
                 texts.extend(hand.shape.draft(&hand.session));
                 // What cannot be is said of the whole scene.
-                hand.draft = hand.session.draft(&texts).ok();
+                hand.draft = hand.session.draft_of(&texts, index).ok();
             }
             Some(draft) => {
-                let fresh = |owed: &&Owed| !owed.is_drafted && !NOT_DRAFTED.contains(&&*owed.path);
-                let behind = std::mem::take(&mut hand.behind);
-                for text in behind.iter().chain(hand.owed.iter().filter(fresh).map(|owed| &owed.text)) {
-                    match draft.change_on(text, &workers) {
-                        Ok(kept) => same_light &= kept.light,
-                        Err(_) => return hand.without_draft(),
+                let mut texts = take(&mut hand.behind);
+                for owed in hand.owed.iter().filter(|owed| !owed.is_drafted) {
+                    match &owed.turned.what {
+                        What::Set(own) if !NOT_DRAFTED.contains(&&*owed.turned.control) => texts.extend_from_slice(own),
+                        _ => {}
                     }
+                }
+                match draft.turn(&texts, index, None, &workers) {
+                    Ok(kept) => same_light &= kept.light,
+                    Err(_) => return hand.without_draft(),
                 }
             }
         }
+        // Pixels of a photograph are developed as soon.
+        if hand.draft.as_ref().is_some_and(|draft| draft.series().is_without_lens()) {
+            hand.draft = None;
+        }
         hand.owed.iter_mut().for_each(|owed| owed.is_drafted = true);
         hand.is_light_owed |= !same_light;
-        if hand.owed.iter().any(|owed| NOT_DRAFTED.contains(&&*owed.path)) && hand.owed.len() == 1 {
+        if hand.owed.iter().any(|owed| NOT_DRAFTED.contains(&&*owed.turned.control)) && hand.owed.len() == 1 {
             return Drafted::None;
         }
         if !hand.is_light_owed {
@@ -241,7 +345,9 @@ impl Desk {
             _ => return hand.without_draft(),
         };
         let shown = seen.and_then(|seen| {
-            self.show(&self.taken(draft, &hand.shape, started, Arc::new(Plate::of(seen)), Kind::Draft))
+            let mut taken = self.taken(draft, &hand.shape, started, Arc::new(Plate::of(seen)), Kind::Draft);
+            taken.leaves_out(&hand.session);
+            self.show(&taken)
         });
         if shown.is_err() {
             return hand.without_draft();
@@ -257,35 +363,44 @@ impl Desk {
         let never = Stop::new();
         let stop = if is_drafted { stop } else { &never };
         let workers = Until { threads: self.order.threads, stop };
-        let (mut is_light_kept, mut trouble) = (true, None);
+        let mut is_light_kept = true;
         let time_s = hand.session.scene().exposure_time_s();
-        let is_developed_only = hand.owed.iter().all(|owed| is_of_development(&owed.path));
-        for owed in std::mem::take(&mut hand.owed) {
-            let Some(text) = hand.shape.text(&owed) else { continue };
+        let is_developed_only = hand.owed.iter().all(|owed| is_of_development(&owed.turned.control));
+        let before = Before { moment: hand.session.moment(), changes: held(&self.state).changes.clone() };
+        let mut controls = Vec::new();
+        for owed in take(&mut hand.owed) {
+            let (texts, control) = (hand.shape.texts(&owed.turned), owed.turned.control.clone());
+            let index = owed.turned.picture().unwrap_or(hand.session.index());
             // Where a draft of it was made, the scene can be.
-            let changed = match &hand.draft {
-                Some(draft) if !NOT_DRAFTED.contains(&&*owed.path) => hand.session.change_after(&text, draft, &workers),
-                _ => hand.session.change_on(&text, &Threads(self.order.threads)),
-            };
+            let draft = hand.draft.as_ref().filter(|_| !NOT_DRAFTED.contains(&&*control));
+            let changed = hand.session.turn(&texts, index, draft, &workers);
             match changed {
                 Ok(kept) => {
                     is_light_kept &= kept.light;
-                    if hand.draft.is_some() && is_of_development(&owed.path) && !owed.is_drafted {
-                        hand.behind.push(text.clone());
+                    if hand.draft.is_some() && is_of_development(&control) && !owed.is_drafted {
+                        hand.behind.extend(texts.iter().cloned());
                     }
-                    if owed.path == "width" {
-                        hand.width_px = owed.text.parse().unwrap_or(hand.width_px);
+                    held(&self.state).refused.remove(&control);
+                    if let What::Width(width_px) = owed.turned.what {
+                        hand.width_px = width_px;
                     } else {
-                        self.remember(&owed.path, &text);
+                        texts.iter().for_each(|text| self.remember(text));
+                        controls.push(control);
                     }
                 }
                 Err(_) if stop.should_stop() => hand.owed.push(owed),
                 Err(error) => {
-                    trouble = Some(said(&error, &owed.path));
+                    held(&self.state).refused.insert(control.clone(), said(&error, &control));
                     // The draft may have taken it.
                     hand.draft = None;
+                    hand.is_light_owed |= is_drafted;
                 }
             }
+        }
+        if !controls.is_empty() {
+            hand.history.push(before.clone(), &controls);
+            let unproved = hand.unproved.get_or_insert(Unproved { before, controls: Vec::new() });
+            unproved.controls.extend(controls);
         }
         if !is_light_kept {
             hand.pace_s = None;
@@ -299,8 +414,9 @@ impl Desk {
             return None;
         }
         hand.is_light_owed = false;
-        self.tell(trouble);
+        held(&self.state).undos = hand.history.len();
         self.adopt(&hand.session, is_drafted);
+        self.tell(None);
         Some(is_light_kept)
     }
 
@@ -319,7 +435,7 @@ impl Desk {
                 Some(now)
             }
         };
-        let others = hand.stamps.now(&hand.session, &self.order.scene);
+        let others = hand.stamps.now(&hand.session, self.order.file().unwrap_or(Path::new("")));
         if now == *written && !others.differ(&hand.stamps) {
             hand.stamps.learn(&others);
             if hand.refused.take().is_some() {
@@ -335,7 +451,7 @@ impl Desk {
         if let (Some(before), Some(now)) = (&*written, &now) {
             changes.retain(|(path, _)| save::says_same(before, now, path));
         }
-        let opened = Session::open(&self.order.scene, &self.order.overrides, self.order.isa).and_then(|session| {
+        let opened = self.order.session().and_then(|session| {
             let shape = Shape::of(&session);
             let mut texts: Vec<String> = changes.iter().map(|(_, text)| text.clone()).collect();
             texts.push(shape.resolution(hand.width_px));
@@ -348,6 +464,8 @@ impl Desk {
                 hand.take_up(session, shape);
                 let mut state = held(&self.state);
                 state.changes = changes;
+                state.refused.clear();
+                state.undos = 0;
                 state.reread += 1;
                 drop(state);
                 self.tell(None);
@@ -363,19 +481,24 @@ impl Desk {
         }
     }
 
-    /// Keeps what was set, for the scene's file.
-    fn remember(&self, path: &str, text: &str) {
+    /// Keeps what was set, a text `path=value`, for the scene's file.
+    fn remember(&self, text: &str) {
+        let path = text.split_once('=').map_or(text, |(path, _)| path);
         let mut state = held(&self.state);
         state.changes.retain(|(other, _)| other != path);
         state.changes.push((path.to_owned(), text.to_owned()));
     }
 
-    /// Shows the scene's controls as they are now, and its lens, if that was not drawn from the draft.
+    /// Shows the scene's controls as they are now, which have all that was taken, and its lens, if that was not drawn from the draft.
     fn adopt(&self, session: &Session, is_lens_drawn: bool) {
         self.draw(session, is_lens_drawn);
-        let controls = controls::of_scene(session.scene().params.node());
+        let controls = controls::of_session(session);
+        let picks = Picks::of(session);
         let mut state = held(&self.state);
+        state.turns_settled = state.turns_taken;
         state.controls = controls;
+        state.picks = picks;
+        state.moment = Some(session.moment());
         state.width_px = session.scene().imager.size().width_px;
         state.scenes += 1;
         self.turned.notify_all();
@@ -392,22 +515,19 @@ impl Desk {
         state.scene = Some(Arc::clone(session.scene()));
     }
 
-    /// Says what is wrong, or that nothing is any more.
+    /// Says what is wrong with the scene, or that nothing is any more, and what was refused.
     pub(super) fn tell(&self, fault: Option<Value>) {
         let mut state = held(&self.state);
-        let is_new = fault.is_some() || state.fault.is_some();
+        let is_other = state.refused != state.refused_told || state.turns_settled != state.turns_told;
+        let is_new = fault.is_some() || state.fault.is_some() || is_other;
         state.fault = fault;
+        state.refused_told = state.refused.clone();
+        state.turns_told = state.turns_settled;
         if is_new {
-            // The page hears of it by a frame: the last one again, under a new number.
-            let before = state.frame.take();
+            // The page need not wait for a picture to hear of it.
             state.number += 1;
-            let head = json!({"frame": state.number, "fault": state.fault});
-            let (exposure, times, whole_px) = match before {
-                Some(before) => (Arc::clone(&before.exposure), before.times.clone(), before.whole_px),
-                None => (Arc::new(empty()), Vec::new(), 0),
-            };
-            let (number, bytes) = (state.number, packed(&head, &[]));
-            state.frame = Some(Arc::new(Frame { number, bytes, exposure, times, whole_px }));
+            let head = json!({"frame": state.number, "scene": state.scenes, "fault": state.said()});
+            state.note = Some((state.number, Arc::new(packed(&head, &[]))));
         }
         self.turned.notify_all();
     }
@@ -416,9 +536,4 @@ impl Desk {
 /// Whether a value is of the development of a film, by its path.
 fn is_of_development(path: &str) -> bool {
     path.starts_with("film.") && !CHOOSES_FILM.iter().any(|key| path.rsplit('.').next() == Some(key))
-}
-
-fn empty() -> ExposureFrame {
-    let size = spectra_core::frame::FrameSize { width_px: 0, height_px: 0, width_mm: 0.0, height_mm: 0.0 };
-    ExposureFrame { size, channels: Vec::new() }
 }
