@@ -22,6 +22,15 @@ pub(super) struct Below {
     pub back_focus: Option<String>,
     /// Whether the conic constant was given by kappa.
     pub has_kappa: bool,
+    /// Whether kappa is the conic constant itself, and not 1 more.
+    pub kappa_is_conic: bool,
+}
+
+/// What kappa is, by the formula of the sag where it is printed, 1 - kappa or 1 + kappa, or else by its name.
+fn kappa_is_conic(lines: &[&str]) -> bool {
+    let plain: String = lines.concat().to_lowercase().chars().filter(|c| !c.is_whitespace()).collect();
+    let formula = |sign: char| plain.contains(&format!("1{sign}κ"));
+    !formula('-') && (formula('+') || plain.contains("conicconstantκ") || plain.contains("conicconstant(κ)"))
 }
 
 /// What a figure of an asphere is.
@@ -49,7 +58,7 @@ impl Term {
 
 impl Below {
     pub(super) fn of(lines: &[&str], from: usize) -> Self {
-        let mut below = Self::default();
+        let mut below = Self { kappa_is_conic: kappa_is_conic(lines), ..Self::default() };
         lines.iter().for_each(|line| below.take_back_focus(line));
         let mut surface = None;
         // The terms of a table of aspheres, the surface of its row, and how many of them it has.
@@ -88,7 +97,8 @@ impl Below {
         match term {
             Term::Conic => asphere.conic = Some(figure),
             Term::Kappa => {
-                asphere.conic = Some(number::shortest(value(&figure).unwrap_or(1.0) - 1.0));
+                let kappa = value(&figure).unwrap_or(1.0);
+                asphere.conic = Some(number::shortest(if self.kappa_is_conic { kappa } else { kappa - 1.0 }));
                 self.has_kappa = true;
             }
             Term::Power(power) => drop(asphere.coefficients.insert(power, figure)),

@@ -95,6 +95,8 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
             let name = match equation.name.as_str() {
                 "r" => "radius",
                 "d" | "t" | "l" | "s" | "b" if !is_back_focus(&equation.written) => "thickness",
+                // `a2` is an air gap where none is there yet, a coefficient elsewhere.
+                "a" if found.rows.last().is_some_and(|row| !row.cells.contains_key("thickness")) => "thickness",
                 "n" | "nd" => "nd",
                 "v" | "vd" | "nu" | "ny" => "vd",
                 "phi" | "ø" | "φ" => "diameter",

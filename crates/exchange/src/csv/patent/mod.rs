@@ -123,7 +123,12 @@ fn written(lines: &[&str], found: &Found, below: &Below, notes: &mut Vec<Told>) 
         all
     };
     if below.has_kappa {
-        notes.push((0, true, "kappa is taken as 1 plus the conic constant: 1 is a sphere".to_owned()));
+        let is = if below.kappa_is_conic {
+            "the conic constant: 0 is a sphere"
+        } else {
+            "1 plus the conic constant: 1 is a sphere"
+        };
+        notes.push((0, true, format!("kappa is taken as {is}")));
     }
     let mut used: Vec<u32> = Vec::new();
     let mut out: Vec<String> = lines.iter().map(|_| "#".to_owned()).collect();

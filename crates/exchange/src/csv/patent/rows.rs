@@ -17,10 +17,18 @@ impl Head {
         let separator = [';', '\t', ','].into_iter().find(|c| line.contains(*c));
         // Where headings stand farther apart than one tab, tabs only align.
         let separator = separator.filter(|c| *c != '\t' || !line.trim().contains("\t\t"));
-        let columns: Vec<Option<Column>> = match separator {
+        let mut columns: Vec<Option<Column>> = match separator {
             Some(separator) => line.split(separator).map(|cell| by_name(cell.trim().trim_matches('"'))).collect(),
             None => by_blanks(line),
         };
+        // Numbers stand first, whatever their heading is called.
+        let is_unknown = |word: &str| by_name(word).is_none();
+        if separator.is_none()
+            && !columns.contains(&Some(Column::Number))
+            && line.split_whitespace().next().is_some_and(is_unknown)
+        {
+            columns.insert(0, Some(Column::Number));
+        }
         let has = |wanted: Column| columns.contains(&Some(wanted));
         (has(Column::Radius) && has(Column::Thickness)).then_some(Self { separator, columns })
     }
@@ -135,6 +143,19 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
             found.is_needed |= is_row;
             continue;
         }
+        // A sentence with commas behind the rows.
+        let has_figures =
+            ["radius", "thickness", "nd", "semi-diameter", "diameter"].iter().any(|name| row.cells.contains_key(name));
+        if columns.separator.is_some()
+            && row.number.is_none()
+            && !has_figures
+            && !row.is_stop
+            && row.cells.contains_key("comment")
+        {
+            found.is_needed = true;
+            found.end = at;
+            break;
+        }
         // Behind the rows something else begins that has no heading of its own.
         if columns.separator.is_none() && value_of(&row, "radius").is_none() {
             if found.rows.is_empty() {
@@ -167,7 +188,11 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
     for word in line.split_whitespace() {
         match words.last_mut() {
             // A sign that stands alone belongs to the figure behind it.
-            Some(last) if last == "-" || last == "+" => last.push_str(word),
+            Some(last)
+                if (last == "-" || last == "+") && word.starts_with(|c: char| c.is_ascii_digit() || c == '.') =>
+            {
+                last.push_str(word);
+            }
             _ => words.push(word.to_owned()),
         }
     }
@@ -179,7 +204,11 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         let is_end = is_end(&first);
         while let Some(next) = words.peek() {
             let bare: String = next.to_lowercase().chars().filter(|c| c.is_alphabetic()).collect();
-            if !(next == "*" || is_stop(&bare) || is_end && ["plane", "surface"].contains(&bare.as_str())) {
+            if !(next == "*"
+                || is_stop(&bare)
+                || bare.starts_with("asp")
+                || is_end && ["plane", "surface"].contains(&bare.as_str()))
+            {
                 break;
             }
             first.push(' ');
@@ -194,8 +223,9 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         cells.push((Column::Kind, kind));
     }
     cells.extend(words.next().map(|radius| (Column::Radius, radius)));
-    cells.extend(words.next().map(|gap| (Column::Thickness, gap)));
-    let mut rest: Vec<String> = words.collect();
+    // A dash is an empty cell.
+    cells.extend(words.next().filter(|gap| gap != "-").map(|gap| (Column::Thickness, gap)));
+    let mut rest: Vec<String> = words.filter(|word| word != "-").collect();
     // The mark of a solve.
     if rest.first().is_some_and(|word| word.len() == 3 && word.starts_with('(') && word.ends_with(')')) {
         rest.remove(0);
