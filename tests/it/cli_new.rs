@@ -147,6 +147,40 @@ fn scenes_and_lenses_work_as_they_are() {
     assert!(at.join("out/first-light.png").is_file());
 }
 
+/// A film like another one develops at once, of silver or of three dyes, and says of what it was made.
+#[test]
+fn films_start_from_another_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    for (name, like, stock) in [("my-pan", "tri-x", "kodak-tri-x-400"), ("my-slide", "velvia", "fuji-velvia-50")] {
+        let said = good(at, &["new", "film", name, "--like", like]);
+        assert!(said.contains(&format!("spectra film info {name}.yaml")), "{said}");
+        assert!(read(&at.join(format!("{name}.yaml"))).contains(&format!("like: {stock}\n")));
+        let info = good(at, &["film", "info", &format!("{name}.yaml"), "--json"]);
+        let json: serde_json::Value = serde_json::from_str(&info).expect("JSON");
+        assert!(json["warnings"].as_array().is_some_and(Vec::is_empty), "{info}");
+        assert!(json["source"].as_str().is_some_and(|source| source.contains("changed: ")), "{info}");
+    }
+    // A sheet with a relative axis: all curves 3 to the right, slid back to the speed.
+    let text = read(&at.join("my-pan.yaml")).replace("# exposure: relative ", "exposure: relative ");
+    let (head, points) = text.split_once("        points:\n").expect("a curve");
+    let moved: String = points
+        .lines()
+        .map(|line| {
+            let (x, density) = line.trim().trim_start_matches("- [").split_once(',').expect("a point");
+            format!("          - [{:.2},{density}\n", x.parse::<f64>().expect("a number") + 3.0)
+        })
+        .collect();
+    std::fs::write(at.join("sheet.yaml"), format!("{head}        points:\n{moved}")).expect("written");
+    let info = good(at, &["film", "info", "sheet.yaml"]);
+    assert!(info.contains("relative in the file; slid by -") && !info.contains("warning"), "{info}");
+    let text = read(&at.join("sheet.yaml")).replace("exposure: relative ", "# exposure: relative ");
+    std::fs::write(at.join("sheet.yaml"), text).expect("written");
+    let info = good(at, &["film", "info", "sheet.yaml"]);
+    assert!(info.contains("warning: its curves have the speed") && info.contains("stops slower"), "{info}");
+    assert!(refused(at, &["new", "film", "x", "--like", "velvio"]).contains("no film stock is called"));
+}
+
 #[test]
 fn names_that_cannot_be_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,18 +1,36 @@
-//! Longer development: curves between those that a sheet prints.
+//! Longer development: curves between those that a sheet prints, or, where it prints one only, what other films' curves do.
 
 use crate::curve::{CharacteristicCurve, CurveError, TabulatedCurve};
 use crate::print::metered_exposure_lx_s;
-use crate::stock::{Development, Layer, Stock};
-use spectra_core::math::{log, log10};
+use crate::stock::{Development, Layer, Process, Stock};
+use spectra_core::math::{log, log10, pow};
 
 /// A film that cannot be pushed as asked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PushError {
-    /// No series of development times.
-    #[error("{stock} has no curves for other times of development than its usual one")]
-    NoSeries {
+    /// A print stock, which has no speed.
+    #[error("{stock} is no camera film: it has no speed from which to push it")]
+    NoCameraFilm {
         /// The stock.
         stock: String,
+    },
+    /// No curve from which mid grays could be told.
+    #[error("{stock}: a mid gray lies beyond its curve, {stops:+} stops from its speed")]
+    NoGray {
+        /// The stock.
+        stock: String,
+        /// What was asked for.
+        stops: f64,
+    },
+    /// Farther than other films' curves tell.
+    #[error(
+        "{stock} has one time of development; what other films do is assumed from -{MOST_ASSUMED} to +{MOST_ASSUMED} stops, not {stops:+}"
+    )]
+    BeyondAssumed {
+        /// The stock.
+        stock: String,
+        /// What was asked for.
+        stops: f64,
     },
     /// Beyond the longest or the shortest time.
     #[error("the curves of {stock} reach from {fewest:+} to {most:+} stops, not {stops:+}")]
@@ -34,14 +52,83 @@ pub enum PushError {
 /// A development between those of the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pushed {
-    /// How long it takes, min.
-    pub minutes: f64,
+    /// How long it takes, min; `None` where its curves are assumed.
+    pub minutes: Option<f64>,
     /// A curve for each layer.
     pub curves: Vec<CharacteristicCurve>,
 }
 
 /// Points at which two curves are mixed.
 const POINTS: usize = 256;
+
+/// Most stops by which a film without a series is pushed or pulled.
+pub const MOST_ASSUMED: f64 = 2.0;
+/// By what contrast (ISO 6's average gradient) is multiplied for each stop of push, and divided for each of pull: the median over the
+/// times of the series of Tri-X and Double-X.
+pub const CONTRAST_PER_STOP: f64 = 1.24;
+/// What a stop of push adds to the fog, density: their median; a pull leaves it.
+pub const FOG_PER_STOP: f64 = 0.036;
+
+/// Pushes as [`pushed`] where the sheet has a series of times; elsewhere densities over base and fog grow as the
+/// median of other films' do, and curves are moved until a mid gray has the density that the definition asks for.
+/// Of a reversal film that is the density of its first developer, which the positive lacks.
+///
+/// # Errors
+/// [`PushError`].
+pub fn pushed_or_assumed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> {
+    match stock.layers.as_slice() {
+        [layer] if series(layer).len() > 1 && layer.development(usual).is_some_and(|d| d.minutes.is_some()) => {
+            pushed(stock, usual, stops)
+        }
+        _ => assumed(stock, usual, stops),
+    }
+}
+
+fn assumed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> {
+    let name = || stock.name.clone();
+    let iso = stock
+        .iso
+        .filter(|_| stock.process != Process::Print)
+        .ok_or_else(|| PushError::NoCameraFilm { stock: name() })?;
+    if !(stops.abs() <= MOST_ASSUMED) {
+        return Err(PushError::BeyondAssumed { stock: name(), stops });
+    }
+    let gray = log10(metered_exposure_lx_s(iso));
+    let (contrast, fog) = (pow(CONTRAST_PER_STOP, stops), FOG_PER_STOP * stops.max(0.0));
+    let each = stock.layers.iter().map(|layer| {
+        let curve = &layer
+            .development(usual)
+            .or(layer.developments.first())
+            .ok_or_else(|| PushError::NoCameraFilm { stock: name() })?
+            .curve;
+        let (least, most) = curve.density_range();
+        let is_reversal = stock.process == Process::Reversal;
+        // What the first developer makes, over what it makes without light.
+        let silver =
+            |x: f64| if is_reversal { most - curve.density(x) } else { curve.density(x) - curve.unexposed_density() };
+        // A negative's mid gray is as dense over its fog, a slide's as dense as it was.
+        let kept = silver(gray) - if is_reversal { fog } else { 0.0 };
+        let metered = gray - stops * log10(2.0);
+        let (mut left, mut right) = (metered - 4.0, metered + 4.0);
+        if contrast * silver(left) > kept || contrast * silver(right) < kept {
+            return Err(PushError::NoGray { stock: name(), stops });
+        }
+        while right - left > 1e-12 {
+            let middle = 0.5 * (left + right);
+            if contrast * silver(middle) > kept { right = middle } else { left = middle }
+        }
+        let moved = 0.5 * (left + right) - metered;
+        let density = |x: f64| match is_reversal {
+            true => (most - fog - contrast * silver(x + moved)).max(least),
+            false => (curve.unexposed_density() + fog + contrast * silver(x + moved)).min(10.0),
+        };
+        let (low, high) = curve.span();
+        let at = |i: usize| low - moved + (high - low) * i as f64 / POINTS as f64;
+        let points: Vec<[f64; 2]> = (0..=POINTS).map(|i| [at(i), density(at(i))]).collect();
+        Ok(TabulatedCurve::new(&points)?.into())
+    });
+    Ok(Pushed { minutes: None, curves: each.collect::<Result<_, _>>()? })
+}
 
 /// Pushes by `stops` (pulls, if negative) from the development `usual`: the time of development at which a mid gray metered at
 /// 2^stops times the speed has the density over base and fog that one metered at the speed has after the usual time. Between
@@ -50,7 +137,7 @@ const POINTS: usize = 256;
 /// # Errors
 /// [`PushError`].
 pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> {
-    let none = || PushError::NoSeries { stock: stock.name.clone() };
+    let none = || PushError::NoCameraFilm { stock: stock.name.clone() };
     let iso = stock.iso.ok_or_else(none)?;
     let [layer] = &stock.layers[..] else { return Err(none()) };
     let usual = layer.development(usual).ok_or_else(none)?;
@@ -92,7 +179,7 @@ pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushErro
         .map(|i| low + (high - low) * i as f64 / POINTS as f64)
         .map(|x| [x, density(&series, minutes, x)])
         .collect();
-    Ok(Pushed { minutes, curves: vec![TabulatedCurve::new(&points)?.into()] })
+    Ok(Pushed { minutes: Some(minutes), curves: vec![TabulatedCurve::new(&points)?.into()] })
 }
 
 /// To a tenth; never -0.

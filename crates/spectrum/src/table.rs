@@ -73,6 +73,16 @@ impl Table {
         Reader::new(file, text.strip_prefix('\u{feff}').unwrap_or(text), kind).read()
     }
 
+    /// The same where whoever names the file says how its values are to be read: a file that says nothing of it itself is read so.
+    ///
+    /// # Errors
+    /// As [`Table::parse_bytes`].
+    pub fn parse_read_as(file: &str, bytes: &[u8], kind: Kind, scale: Scale) -> Result<Self, TableError> {
+        let text = std::str::from_utf8(bytes).map_err(|_| whole(file, TableFault::NotText))?;
+        let reader = Reader::new(file, text.strip_prefix('\u{feff}').unwrap_or(text), Some(kind));
+        Reader { scale, ..reader }.read()
+    }
+
     /// The same where nothing says what is wanted: the kind is that of the file, else that of the name of `column` or, without
     /// one, of all columns whose names say any, else `kind`.
     ///
@@ -124,6 +134,8 @@ struct Reader<'a> {
     kind: Option<Kind>,
     /// The column whose name says the kind; all if it is empty, none if there is no such thing.
     by_header: Option<&'a str>,
+    /// How the values of a table without front matter are read.
+    scale: Scale,
     /// Whether the table is written as the bundled ones are.
     strict: bool,
     separator: Separator,
@@ -135,7 +147,17 @@ impl<'a> Reader<'a> {
     fn new(file: &'a str, text: &'a str, kind: Option<Kind>) -> Self {
         let strict = text.lines().next().is_some_and(|l| key_value(l).is_some_and(|(k, _)| k == "spectra"));
         let separator = Separator::Comma;
-        Self { file, text, kind, by_header: None, strict, separator, header: Vec::new(), notes: Vec::new() }
+        Self {
+            file,
+            text,
+            kind,
+            by_header: None,
+            scale: Scale::Linear,
+            strict,
+            separator,
+            header: Vec::new(),
+            notes: Vec::new(),
+        }
     }
 
     fn fault(&self, row: usize, column: usize, cause: TableFault) -> TableError {
@@ -178,6 +200,9 @@ impl<'a> Reader<'a> {
             rows.next();
         } else {
             self.name_columns(first, self.separator.fields(line).len())?;
+        }
+        if !self.strict && self.scale == Scale::Log10 {
+            meta.unit = Some("log10".to_owned());
         }
         let kind = meta
             .kind

@@ -69,7 +69,8 @@ pub struct StockParams {
     pub iso: Option<Positive<f64>>,
     /// How the film is developed: a name from the stock's file; the first one there if left out.
     pub development: Option<String>,
-    /// Stops of push, or pull if negative, within the series of development times in the stock's file; 0 if left out.
+    /// Stops of push, or pull if negative, within the series of development times in the stock's file. Of a stock with one time, 2 at
+    /// most, by the median change of contrast and fog that other films' sheets show: that is assumed, and said. 0 if left out.
     pub push: Option<f64>,
     /// How it is viewed: `print`, `negative`, `scan`, or `projection` of a reversal film; `projection` of a reversal
     /// film and `print` of any other if left out.

@@ -1,7 +1,7 @@
 //! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
 
 use crate::beyond::{beyond, ends};
-use crate::effects::{Effects, mtf50, pixel_mm};
+use crate::effects::{Assumed, Effects, mtf50, pixel_mm};
 use crate::frame::{FrameEffects, Laid};
 use crate::metering::{METER, Meter, Metered, Metering, overruled, recorded_time_s};
 use crate::seen::seen;
@@ -22,7 +22,7 @@ use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
 use spectra_film::positive::{Reach, densities};
 use spectra_film::print::{Print, metered_exposure_lx_s};
-use spectra_film::push::{PushError, pushed};
+use spectra_film::push::{PushError, pushed_or_assumed};
 use spectra_film::raster::Raster;
 use spectra_film::stock::{MeterResponse, Process, Stock, unknown_reciprocity};
 use std::any::Any;
@@ -269,16 +269,24 @@ fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsi
         let emulsion = Emulsion::new(stock, chosen).map_err(|e| params.fault("stock", e.to_string()))?;
         return Ok((emulsion, chosen.to_owned()));
     };
-    let developed = pushed(stock, chosen, stops).map_err(|e| {
+    let developed = pushed_or_assumed(stock, chosen, stops).map_err(|e| {
         let other = "set another `iso`: the same film, exposed otherwise";
         let hint = match &e {
-            PushError::Beyond { .. } => format!("a `push` within that, or {other}"),
+            PushError::Beyond { .. } | PushError::BeyondAssumed { .. } => format!("a `push` within that, or {other}"),
             _ => format!("leave `push` out, or {other}"),
         };
         params.fault("push", e.to_string()).hint(hint)
     })?;
     let emulsion = Emulsion::with_curves(stock, developed.curves).map_err(|e| params.fault("push", e.to_string()))?;
-    Ok((emulsion, format!("{:.1} min (pushed {stops:+} stops)", developed.minutes)))
+    if developed.minutes.is_none() && p.assumed == Assumed::Off {
+        let text = format!("what a push does to {} is assumed, and `assumed: off` leaves that out", stock.name);
+        return Err(params.fault("push", text).hint("leave out one of the two").into());
+    }
+    let how = match developed.minutes {
+        Some(minutes) => format!("{minutes:.1} min (pushed {stops:+} stops)"),
+        None => format!("{chosen} (pushed {stops:+} stops, assumed: as the median of other films)"),
+    };
+    Ok((emulsion, how))
 }
 
 impl Film for StockFilm {

@@ -92,6 +92,9 @@ fn to_json(stock: &Stock) -> Value {
         "iso_tungsten": stock.iso_tungsten,
         "speed_kind": stock.iso.map(|_| stock.speed_kind.name()),
         "meter": stock.iso.map(|_| stock.meter.name()),
+        "speed_of_curves": stock.curve_speed(),
+        "relative_exposures_slid_by_log10": stock.slid,
+        "warnings": stock.doubts(),
         "iso_6": stock.iso_6().map(|at| json!({ "speed": at.speed, "minutes": at.minutes })),
         "reference_illuminant": stock.reference_illuminant,
         "mid_gray_lx_s": stock.iso.map(metered_exposure_lx_s),
@@ -204,6 +207,10 @@ fn text(stock: &Stock) -> String {
     row("year", stock.year.map(|year| year.to_string()));
     row("speed", speed(stock));
     row("by ISO 6", iso_6(stock));
+    row(
+        "exposures",
+        stock.slid.map(|by| format!("relative in the file; slid by {by:+.2} in log10 of lx s to the stated speed")),
+    );
     if stock.meter == MeterResponse::Film {
         row("metered", Some("by the film's own sensitivity".to_owned()));
     }
@@ -304,6 +311,9 @@ fn text(stock: &Stock) -> String {
             let shown = values.iter().map(|v| v.map_or(format!("{:>16}", "-"), |v| format!("{v:>16.2}")));
             let _ = writeln!(out, "{w:>8}{}", shown.collect::<String>());
         }
+    }
+    for doubt in stock.doubts() {
+        let _ = writeln!(out, "\nwarning: {doubt}");
     }
     out
 }

@@ -41,6 +41,11 @@ fn load(name: &str) -> Result<Stock, Failure> {
     Ok(Stock::load(&called(name)?, &FileResources::beside(Path::new("")))?)
 }
 
+/// The whole name of a stock, or its file, and what it says.
+pub(crate) fn stock_called(name: &str) -> Result<(String, Stock), Failure> {
+    Ok((called(name)?, load(name)?))
+}
+
 /// The file, or the whole name of the bundled stock, that `name` stands for.
 pub(crate) fn called(name: &str) -> Result<String, Failure> {
     let is_file = name.ends_with(".yaml") || name.ends_with(".yml") || name.contains(['/', '\\']);

@@ -23,6 +23,8 @@ pub(crate) enum NewCommand {
     Scene(NewFile),
     /// Create a lens file that is ready to use.
     Lens(NewFile),
+    /// Create a film stock that is like another one, to be changed by a data sheet.
+    Film(NewFilm),
 }
 
 /// `spectra new plugin`.
@@ -60,6 +62,26 @@ pub(crate) struct NewFile {
     /// Name of the file; `.yaml` is added.
     #[arg(value_name = "NAME")]
     pub name: String,
+    /// Folder to create it in.
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub path: PathBuf,
+}
+
+/// `spectra new film`.
+#[derive(Debug, Args)]
+#[command(
+    long_about = "Create a film stock that is like another one, to be changed by a data sheet.\n\n\
+        The file takes all its figures from the other stock and has the first curve of each layer written out, so it develops at once. Overwrite what \
+        the sheet says otherwise; what is left out stays that of the other stock.",
+    after_long_help = "Example: a film to be changed by a data sheet\n  spectra new film my-pan --like tri-x"
+)]
+pub(crate) struct NewFilm {
+    /// Name of the file; `.yaml` is added.
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// The stock that it is like: a bundled one, or a file.
+    #[arg(long, value_name = "STOCK", default_value = "kodak-tri-x-400")]
+    pub like: String,
     /// Folder to create it in.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub path: PathBuf,

@@ -1,7 +1,8 @@
-//! `spectra new`: a plugin, a scene or a lens to start from, which works as it is.
+//! `spectra new`: a plugin, a scene, a lens or a film to start from, which works as it is.
 
 mod arguments;
 mod files;
+mod film;
 mod name;
 mod plugin;
 
@@ -13,6 +14,7 @@ use crate::sources::Unpack;
 use arguments::{NewCommand, NewFile};
 use files::{Folder, filled};
 use spectra_core::params::Fault;
+use std::path::Path;
 
 const SCENE: &str = include_str!("templates/scene.yaml");
 const LENS: &str = include_str!("templates/lens.yaml");
@@ -34,20 +36,25 @@ pub(crate) fn new(arguments: &NewArguments, unpack: Unpack) -> Outcome {
             ))?;
             Ok(DONE)
         }
+        NewCommand::Film(arguments) => film::film(arguments),
     }
 }
 
 /// Writes one file; returns its path as a person types it.
 fn file(arguments: &NewFile, template: &str) -> Result<String, Failure> {
     let name = arguments.name.strip_suffix(".yaml").unwrap_or(&arguments.name);
+    written(name, &arguments.path, &filled(template, name))
+}
+
+/// Writes a text as `NAME.yaml` into a folder; returns its path as a person types it.
+fn written(name: &str, folder: &Path, text: &str) -> Result<String, Failure> {
     name::check(name)?;
-    let path = arguments.path.join(format!("{name}.yaml"));
+    let path = folder.join(format!("{name}.yaml"));
     if path.exists() {
         let fault = Fault::new(format!("{} already exists", path.display()));
         return Err(fault.hint("choose another name, or remove it first").into());
     }
-    Folder::must_exist(&arguments.path)?;
-    let text = filled(template, name);
+    Folder::must_exist(folder)?;
     spectra_files::write_atomically(&path, |file| Ok(std::io::Write::write_all(file, text.as_bytes())?))?;
     Ok(files::typed(&path))
 }

@@ -87,6 +87,15 @@ impl CharacteristicCurve {
         }
     }
 
+    /// Returns the curve for `by` more in log10 of the exposure. A closed form stands where its speed put it.
+    #[must_use]
+    pub(crate) fn slid(&self, by: f64) -> Self {
+        match self {
+            Self::ToeShoulder(_) => self.clone(),
+            Self::Tabulated(c) => Self::Tabulated(c.slid(by)),
+        }
+    }
+
     /// Where it bends: log10 exposures between which all but a thousandth of its density changes.
     #[must_use]
     pub fn span(&self) -> (f64, f64) {

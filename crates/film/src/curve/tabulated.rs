@@ -50,6 +50,11 @@ impl TabulatedCurve {
         Ok(Self { log10_exposure, density, slope })
     }
 
+    /// The same curve, `by` further to the right in log10 of the exposure.
+    pub(crate) fn slid(&self, by: f64) -> Self {
+        Self { log10_exposure: self.log10_exposure.iter().map(|x| x + by).collect(), ..self.clone() }
+    }
+
     /// Log10 exposures of its first and its last point.
     #[must_use]
     pub fn span(&self) -> (f64, f64) {

@@ -4,7 +4,7 @@ use super::color::{AimDensityFile, InterlayerFile, Medium};
 use super::like::inherited;
 use super::material::{DensityFile, DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
-use super::speed::{MeterResponse, SpeedKind};
+use super::speed::{ExposureFile, MeterResponse, SpeedKind};
 use super::structure::{Assumptions, AssumptionsFile, BaseFile, GranularityFile, HalationFile, granularity, mtf};
 use super::{Development, FilterFactor, Layer, Process, Reading, SensitivityError, SpectralSensitivity, Stock};
 use crate::curve::{
@@ -94,6 +94,11 @@ struct StockFile {
     /// to) or `assumed`.
     #[serde(default)]
     speed: SpeedKind,
+    /// What the exposures of curves' `points` count from: `lux-seconds` (the default) or `relative`, as of sheets that print a relative log
+    /// exposure: all curves are then slid together until the first development has the speed `iso`, by ISO 6 of a silver negative, ISO 5800 of
+    /// a color negative, ISO 2240 of a reversal film.
+    #[serde(default)]
+    exposure: ExposureFile,
     /// What a meter for it weighs light by: `photopic` (the default; as the eye does) or `film` (the film's own
     /// sensitivity, as the actinometers for plates did). A film of several layers has the first.
     #[serde(default)]
@@ -324,7 +329,9 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
     let Some(reference) = reference else {
         return Err(faults);
     };
-    faults.into_result(Stock {
+    let exposure = file.exposure;
+    let mut stock = faults.into_result(Stock {
+        slid: None,
         name: file.name,
         maker: file.maker,
         source: file.source,
@@ -351,7 +358,12 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         print: file.print,
         reciprocity,
         filter_factors: file.filter_factors.into_iter().map(filter_factor).collect(),
-    })
+    })?;
+    if exposure == ExposureFile::Relative && stock.slide().is_none() {
+        let fault = params.fault("exposure", "relative exposures are slid to the speed, and these curves have none");
+        return Err(fault.hint("an `iso`, and curves that begin at the density of unexposed film").into());
+    }
+    Ok(stock)
 }
 
 /// The layers that could be read.
@@ -493,11 +505,12 @@ fn points(
         };
         fault(format!("`{name}`: {error}")).hint(hint)
     })?;
-    let table = Table::parse_bytes(&found.name, &found.bytes, Some(Kind::Sensitivity)).map_err(|e| {
+    let reading = if file.reading == ReadingFile::Log10 { Scale::Log10 } else { Scale::Linear };
+    let table = Table::parse_read_as(&found.name, &found.bytes, Kind::Sensitivity, reading).map_err(|e| {
         let placed = e.fault();
         match e.cause {
             TableFault::Negative { .. } | TableFault::AboveBound { .. } => {
-                placed.hint("logarithms need `# spectra: 1` and `# unit: log10` above the header")
+                placed.hint("logarithms are read by `reading: log10`")
             }
             _ => placed,
         }

@@ -62,6 +62,8 @@ pub struct Stock {
     pub iso: Option<f64>,
     /// What that speed is.
     pub speed_kind: SpeedKind,
+    /// By how much the curves of a file with relative exposures were slid to that speed, log10 of exposure; `None` of any other.
+    pub slid: Option<f64>,
     /// What a meter for it weighs light by.
     pub meter: MeterResponse,
     /// The same in tungsten light, where the sheet prints one.

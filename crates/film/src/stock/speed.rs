@@ -3,7 +3,7 @@
 use super::{Development, Process, Stock};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::math::pow;
+use spectra_core::math::{log10, pow};
 
 /// Exposure of the speed point of a film of ISO 1, lx s (ISO 6:1993).
 const SPEED_POINT_LX_S: f64 = 0.8;
@@ -11,6 +11,24 @@ const SPEED_POINT_LX_S: f64 = 0.8;
 pub const ISO_6_SPAN: f64 = 1.3;
 /// The density that lies over that of the speed point there, by the span.
 const ISO_6_GRADIENT: f64 = 0.8 / ISO_6_SPAN;
+
+/// Density over the minimum at which the speed of a color negative is measured (ISO 5800:1987).
+const COLOR_NEGATIVE_DENSITY: f64 = 0.15;
+/// Densities over the minimum between which the exposures of a reversal film are averaged (ISO 2240:2003).
+const REVERSAL_DENSITIES: [f64; 2] = [0.2, 2.0];
+/// Stops between the speed of the curves and the stated one beyond which a slip is likely.
+const DOUBTED_STOPS: f64 = 1.0;
+
+/// What the exposures of a stock's printed points count from.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum ExposureFile {
+    /// Lux-seconds of the reference illuminant.
+    #[default]
+    LuxSeconds,
+    /// Nothing that is stated.
+    Relative,
+}
 
 /// What a stock's speed is.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
@@ -97,6 +115,62 @@ impl Stock {
         let between = |a: f64, b: f64| a + share * (b - a);
         let speed = SPEED_POINT_LX_S / pow(10.0, between(pair[0].2, pair[1].2));
         Some(Iso6 { speed, minutes: between(pair[0].1, pair[1].1) })
+    }
+}
+
+impl Stock {
+    /// Returns the speed that the curves of the usual development give, whatever their contrast: by ISO 6 of a silver negative, ISO 5800 of a
+    /// color negative (the green layer and the slowest) and ISO 2240 of a reversal film (the mean of its layers). `None` of a print stock, and where a
+    /// curve does not reach these densities.
+    #[must_use]
+    pub fn curve_speed(&self) -> Option<f64> {
+        let curves: Vec<_> =
+            self.layers.iter().map(|l| l.developments.first().map(|d| &d.curve)).collect::<Option<_>>()?;
+        let at = |over: f64| {
+            curves.iter().map(|c| c.log10_exposure_at(c.density_range().0 + over)).collect::<Option<Vec<f64>>>()
+        };
+        let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
+        match (self.process, curves.len()) {
+            (Process::Print, _) | (_, 0) => None,
+            (Process::Negative, 1) => Some(SPEED_POINT_LX_S / pow(10.0, curves[0].speed_point()?)),
+            (Process::Negative, _) => {
+                let points = at(COLOR_NEGATIVE_DENSITY)?;
+                let green = self.layers.iter().position(|l| l.name == "green").unwrap_or(points.len() / 2);
+                let slowest = points.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                Some(std::f64::consts::SQRT_2 / pow(10.0, 0.5 * (points[green] + slowest)))
+            }
+            (Process::Reversal, _) => {
+                let [low, high] = REVERSAL_DENSITIES;
+                Some(10.0 / pow(10.0, 0.5 * (mean(&at(low)?) + mean(&at(high)?))))
+            }
+        }
+    }
+
+    /// Returns what looks like a slip in the stock's file: curves that are over a stop faster or slower than the speed that it states.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<String> {
+        let Some((stated, found)) = self.iso.zip(self.curve_speed()) else { return Vec::new() };
+        let stops = log10(found / stated) / log10(2.0);
+        if stops.abs() <= DOUBTED_STOPS {
+            return Vec::new();
+        }
+        vec![format!(
+            "its curves have the speed {}, {:.1} stops {} than the stated {stated}: are exposures in lux-seconds? `exposure: relative` slides the \
+             curves to the speed",
+            if found < 10.0 { format!("{found:.2}") } else { format!("{found:.0}") },
+            stops.abs(),
+            if stops > 0.0 { "faster" } else { "slower" }
+        )]
+    }
+
+    /// Slides all printed curves together until they have the stated speed; `None` where they have none.
+    pub(super) fn slide(&mut self) -> Option<()> {
+        let by = log10(self.curve_speed()? / self.iso?);
+        for development in self.layers.iter_mut().flat_map(|layer| &mut layer.developments) {
+            development.curve = development.curve.slid(by);
+        }
+        self.slid = Some(by);
+        Some(())
     }
 }
 
