@@ -24,7 +24,7 @@ pub(super) enum Column {
 }
 
 /// Names without case, blanks, dashes and units.
-const NAMES: [(&str, Column); 117] = [
+const NAMES: [(&str, Column); 120] = [
     ("lens", Column::Lens),
     ("name", Column::Lens),
     ("lensname", Column::Lens),
@@ -82,6 +82,9 @@ const NAMES: [(&str, Column); 117] = [
     ("label", Column::Comment),
     ("surfaceno", Column::Number),
     ("si", Column::Number),
+    ("sn", Column::Number),
+    ("m", Column::Number),
+    ("i", Column::Number),
     ("surfacenumber", Column::Number),
     ("surf#", Column::Number),
     ("sno", Column::Number),

@@ -1,6 +1,6 @@
 //! Tables of equations: `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`, in one line or many.
 
-use super::words::{figure, is_back_focus, is_other, says_stop};
+use super::words::{figure, is_back_focus, is_other, is_plane, says_stop};
 use super::{Found, Row, value};
 
 /// An equation of a patent: its name, its number and its value.
@@ -102,8 +102,8 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
                 "phi" | "ø" | "φ" => "diameter",
                 _ => continue,
             };
-            let is_plane = ["∞", "plane", "plano", "flat"].contains(&equation.value.to_lowercase().as_str());
-            if name == "radius" && !is_plane && value(&equation.value).is_none() {
+            let is_stop_word = says_stop(&equation.value);
+            if name == "radius" && !is_stop_word && !is_plane(&equation.value) && value(&equation.value).is_none() {
                 // A sentence about radii.
                 continue;
             }
@@ -116,11 +116,15 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
                 // One row a line of the table that is typed.
                 let line = found.rows.last().map_or(at, |last: &Row| at.max(last.line + 1));
                 let is_marked = equation.written.contains('*') || equation.words.to_lowercase().contains("aspher");
-                let is_stop = says_stop(&equation.words);
+                let is_stop = says_stop(&equation.words) || is_stop_word;
                 found.rows.push(Row { line, number: equation.number, is_marked, is_stop, ..Row::default() });
             }
             let Some(row) = found.rows.last_mut() else { continue };
-            row.cells.insert(name, equation.value.clone());
+            let is_plane = name == "radius" && (is_stop_word || is_plane(&equation.value));
+            row.cells.insert(name, if is_plane { "inf".to_owned() } else { equation.value.clone() });
+            if name == "thickness" {
+                row.gap = equation.number.map(|number| (equation.name.clone(), number));
+            }
             if name == "thickness"
                 && !row.cells.contains_key("nd")
                 && let Some([nd, vd]) = glass_in(&equation.words)
@@ -148,8 +152,34 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
         }
     }
     cemented(&mut found.rows);
+    glasses_apart(lines, &mut found.rows);
     found.head = found.rows.first()?.line.saturating_sub(1);
     (found.rows.len() >= 3).then_some(found)
+}
+
+/// Indices and Abbe numbers in lines of their own, `nD 1.623 1.670` and `v 56.9 47.2`, one of each lens: lens k fills the gap `dk`.
+fn glasses_apart(lines: &[&str], rows: &mut [Row]) {
+    if rows.iter().any(|row| row.cells.contains_key("nd")) {
+        return;
+    }
+    let figures = |line: &str, names: &[&str], range: std::ops::Range<f64>| -> Option<Vec<String>> {
+        let mut words = line.split_whitespace();
+        let name = words.next()?.to_lowercase();
+        let figures: Vec<String> = words.map(str::to_owned).collect();
+        let is_in = |word: &String| value(word).is_some_and(|n| range.contains(&n));
+        (names.contains(&name.as_str()) && figures.len() >= 2 && figures.iter().all(is_in)).then_some(figures)
+    };
+    let indices = lines.iter().find_map(|line| figures(line, &["nd", "n", "n_d"], 1.3..2.3));
+    let abbe = lines.iter().find_map(|line| figures(line, &["v", "vd", "nu", "ny"], 15.0..100.0));
+    let (Some(indices), Some(abbe)) = (indices, abbe) else { return };
+    for row in rows {
+        let Some((letter, number)) = &row.gap else { continue };
+        let at = *number as usize;
+        if matches!(letter.as_str(), "d" | "t") && (1..=indices.len().min(abbe.len())).contains(&at) {
+            row.cells.insert("nd", indices[at - 1].replacen(',', ".", 1));
+            row.cells.insert("vd", abbe[at - 1].replacen(',', ".", 1));
+        }
+    }
 }
 
 /// A face that two cemented lenses share may stand twice, `r4` and `r4'`: the first has no gap, and goes.

@@ -36,6 +36,8 @@ struct Row {
     cells: BTreeMap<&'static str, String>,
     is_stop: bool,
     is_marked: bool,
+    /// The name of its gap in a table of equations: `d3` is that of the third lens.
+    gap: Option<(String, u32)>,
 }
 
 /// The rows of a table, and where it ends.
@@ -58,7 +60,7 @@ const COLUMNS: [&str; 10] =
 pub(super) fn retype(text: &str) -> Option<Retyped> {
     let lines: Vec<&str> = text.lines().collect();
     let is_word = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
-    let first = lines.iter().position(|line| is_word(&line))?;
+    let first = lines.iter().position(is_word)?;
     let by_equations = equations::rows(&lines);
     let head = lines.iter().position(|line| Head::of(line).is_some()).filter(|_| by_equations.is_none());
     let mut found = match head.and_then(|at| Some((at, Head::of(lines[at])?))) {
@@ -74,6 +76,13 @@ pub(super) fn retype(text: &str) -> Option<Retyped> {
     let below = Below::of(&lines, found.end);
     let mut notes = std::mem::take(&mut found.notes);
     fill_gaps(&mut found.rows, &below, &mut notes);
+    if !found.rows.iter().any(|row| row.cells.contains_key("nd") || row.cells.contains_key("glass")) {
+        notes.push((
+            0,
+            true,
+            "no row has a glass: add its index and Abbe number behind each radius, as columns `nd` and `vd`".to_owned(),
+        ));
+    }
     if !found.rows.iter().any(|row| row.is_stop) {
         notes.extend(words::stop_in_prose(&lines));
     }

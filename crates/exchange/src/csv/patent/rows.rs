@@ -1,6 +1,6 @@
 //! Tables with a line of headings, their columns separated by tabs, commas, semicolons or blanks.
 
-use super::words::{figure, is_end, is_other, is_stop, is_variable, mark, says_stop};
+use super::words::{figure, is_end, is_other, is_plane, is_stop, is_variable, mark, says_stop};
 use super::{Found, Row, value};
 use crate::csv::columns::{Column, by_name};
 use std::collections::BTreeMap;
@@ -31,6 +31,16 @@ impl Head {
         }
         let has = |wanted: Column| columns.contains(&Some(wanted));
         (has(Column::Radius) && has(Column::Thickness)).then_some(Self { separator, columns })
+    }
+
+    /// A last heading `Effective`, of which the next line says whether it is a radius or a diameter.
+    fn with_effective(&self, line: &str, next: &str) -> Self {
+        let mut columns = self.columns.clone();
+        if self.separator.is_none() && line.trim_end().to_lowercase().ends_with("effective") {
+            let is_radius = next.to_lowercase().contains("radius");
+            columns.push(Some(if is_radius { Column::SemiDiameter } else { Column::Diameter }));
+        }
+        Self { separator: self.separator, columns }
     }
 
     fn has(&self, column: Column) -> bool {
@@ -81,11 +91,21 @@ fn name_of(column: Column) -> Option<&'static str> {
 
 /// Rows below a line of headings.
 pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
+    let columns = &columns.with_effective(lines[head], lines.get(head + 1).copied().unwrap_or_default());
     let mut found = Found { head, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: false };
     for (at, line) in lines.iter().enumerate().skip(head + 1) {
         let plain = line.trim();
         if plain.is_empty() || plain.starts_with('#') {
             // A blank line ends a table that has a separator only where something else follows.
+            continue;
+        }
+        // Numbers of columns at the head of a page.
+        let page: Vec<u32> = plain.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+        if columns.separator.is_none()
+            && page.len() == 2
+            && page[1] == page[0] + 1
+            && plain.split_whitespace().count() == 2
+        {
             continue;
         }
         if is_other(plain) {
@@ -166,6 +186,22 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
         }
         found.rows.push(row);
     }
+    // Where every row has a size but the last, which has one figure near the size before, that is its size.
+    let size = ["diameter", "semi-diameter"]
+        .into_iter()
+        .find(|name| found.rows.first().is_some_and(|row| row.cells.contains_key(name)));
+    if let (None, Some(size), Some((last, others))) = (columns.separator, size, found.rows.split_last_mut())
+        && others.iter().all(|row| row.cells.contains_key(size))
+        && !last.cells.contains_key(size)
+        && let Some(figure) = last.cells.get("thickness").filter(|cell| !is_variable(cell)).cloned()
+    {
+        let of = |cell: Option<&String>| cell.and_then(|cell| value(cell));
+        let before = of(others.last().and_then(|row| row.cells.get(size)));
+        if before.zip(value(&figure)).is_some_and(|(before, own)| (own / before - 1.0).abs() < 0.3) {
+            last.cells.remove("thickness");
+            last.cells.insert(size, figure);
+        }
+    }
     // A table that has columns of coefficients is read as it stands.
     let as_it_stands = |c: &Column| {
         matches!(c, Column::Conic | Column::Coefficient(_) | Column::Coefficients | Column::Curvature | Column::Lens)
@@ -177,8 +213,7 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
 /// Whether a row has a radius: a figure, or a word for a plane.
 fn value_of(row: &Row, name: &str) -> Option<()> {
     let cell = row.cells.get(name)?;
-    let is_plane = ["∞", "plane", "plano", "flat", "stop"].contains(&cell.to_lowercase().as_str());
-    (is_plane || value(cell).is_some()).then_some(())
+    (is_plane(cell) || cell.eq_ignore_ascii_case("stop") || value(cell).is_some()).then_some(())
 }
 
 /// The cells of a row whose columns are separated by blanks, where cells may be empty: surface, type, radius and thickness stand
@@ -247,7 +282,11 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         cells.push((Column::Index, figures[index].clone()));
         cells.push((Column::Abbe, figures[abbe].clone()));
         left = 2;
-    } else if figures.len() == 1 && !head.has(Column::Diameter) && !head.has(Column::SemiDiameter) {
+    } else if figures.len() == 1
+        && (is_index(at(0)) || at(0) == 1.0)
+        && !head.has(Column::Diameter)
+        && !head.has(Column::SemiDiameter)
+    {
         cells.push((Column::Index, figures[0].clone()));
         left = 1;
     } else if at(0) == 1.0 && figures.len() > 1 {

@@ -58,11 +58,11 @@ pub(super) fn says_stop(words: &str) -> bool {
 
 /// What is said where the stop stands in a sentence and in no row: where it says so.
 pub(super) fn stop_in_prose(lines: &[&str]) -> Option<Told> {
-    let is_about = |line: &&str| {
+    let is_about = |line: &&str| -> bool {
         let plain = line.to_lowercase();
         ["diaphragm", "aperture stop", "blende", "絞り"].iter().any(|word| plain.contains(word))
     };
-    let at = lines.iter().position(|line| is_about(&line))?;
+    let at = lines.iter().position(is_about)?;
     let text = format!("the stop has no row, but words: `{}`; add a row `stop` where it stands", shown(lines[at]));
     Some((at + 1, true, text))
 }
@@ -146,6 +146,11 @@ const OTHER: [&str; 18] = [
 pub(super) fn is_other(line: &str) -> bool {
     let plain = line.trim().trim_start_matches(['[', '(', '<', '"', '【']).to_lowercase();
     OTHER.iter().any(|word| plain.starts_with(word)) || plain.starts_with("非球面") || plain.starts_with("各種")
+}
+
+/// Whether a word stands for a plane.
+pub(super) fn is_plane(word: &str) -> bool {
+    ["∞", "plane", "plano", "plan", "flat", "inf", "infinity", "infinite"].contains(&word.to_lowercase().as_str())
 }
 
 /// Whether a row is that of the object or the image, by the words that it begins with.
