@@ -455,6 +455,11 @@ fn a_lens_is_scaled() {
     let (before, after) = (load("zeiss-biotar-100-f1.4"), load(shown(&file)));
     let efl = |lens: &spectra_lens::Lens| lens.first_order(lens.reference_nm).efl_mm;
     assert!((efl(&after) - 58.0).abs() < 1e-6, "{}", efl(&after));
+    // Where its rims come from is kept.
+    let written = std::fs::read_to_string(&file).expect("a file");
+    let rims = |text: &str| text.lines().find(|line| line.starts_with("rims:")).map(str::to_owned);
+    let own = std::fs::read_to_string(repository("lenses/zeiss-biotar-100-f1.4.yaml")).expect("a file");
+    assert_eq!(rims(&written), rims(&own));
     let f_number = |lens: &spectra_lens::Lens| lens.marginal_ray().expect("open").f_number();
     assert!((f_number(&after) / f_number(&before) - 1.0).abs() < 1e-9);
     for (arguments, word) in [

@@ -187,6 +187,12 @@ fn an_animation_is_metered_on_its_first_frame() {
     let alone = rendered(folder.path(), "alone", &["--frames", "3"]);
     let name = "scene.0003.png";
     assert_eq!(bytes(&alone.join(name)), bytes(&locked.join(name)));
+    // A film by a variable is locked as well, and an animated variable that its meter uses meters each frame.
+    let shared =
+        format!("{SMALL}variables: {{own: {{stock: ilford-ortho-plus, metering: average}}}}\nfilm: $own\n{animation}");
+    let folder = files(&[("scene.yaml", &shared)]);
+    let shared = times(&rendered(folder.path(), "out", &[]), "exposure_time_s");
+    assert!(shared.iter().all(|t| *t == first[0]), "{shared:?} {first:?}");
     // A meter that is itself animated meters each frame.
     let pulled = format!("{SMALL}{film}animation: {{frames: 2, animate: {{film.compensation: {{1: 0, 2: 1}}}}}}\n");
     let folder = files(&[("scene.yaml", &pulled)]);

@@ -213,3 +213,27 @@ fn long_exposures_beyond_the_sheet_are_doubted() {
         assert!(film.long_exposure_doubt(1.0).is_none() && film.long_exposure_doubt(0.01).is_none());
     }
 }
+
+/// The cast of tungsten film in daylight is told with the filter that mends it, on top of one that is there; a colored filter is meant.
+#[test]
+fn casts_are_mended_by_the_filter_that_is_named() {
+    let said = |filters: &str| {
+        let film = "film={stock: kodak-vision3-500t-5219, metering: average}";
+        let scene = load("biotar-trix.yaml", &[film, "source.illuminant=D55", &format!("lens.filters={filters}")]);
+        scene.warnings.iter().map(ToString::to_string).find(|text| text.contains("is balanced for another light"))
+    };
+    let alone = said("[]").expect("a cast");
+    let mired: f64 = alone
+        .split("mired: ")
+        .nth(1)
+        .and_then(|rest| rest.split('}').next())
+        .expect("a filter")
+        .parse()
+        .expect("mired");
+    // The light of D55 is 182 mired, that of 3200 K 312.
+    assert!((mired - 130.0).abs() < 20.0, "{alone}");
+    let added = said("[{mired: 40}]").expect("a cast still");
+    assert!(added.contains("add `{mired: ") && !added.contains(&format!("mired: {mired:.0}}}")), "{added}");
+    assert_eq!(said(&format!("[{{mired: {mired}}}]")), None);
+    assert_eq!(said("[wratten-15]"), None);
+}

@@ -25,6 +25,8 @@ pub struct Prescription {
     pub system_aperture: Option<SystemAperture>,
     /// Distance of the object in front of the first surface, mm; `None` is infinity.
     pub object_distance_mm: Option<f64>,
+    /// Where the sizes that clip come from, as a lens file of ours says it: `stated`, `computed`, `guessed`, or `fitted to ...`.
+    pub rims: Option<String>,
     /// Whether the size of the stop is that of the beam that the file asks for, and not a figure of its own.
     pub stop_is_computed: bool,
     /// What else is worth telling of the file.

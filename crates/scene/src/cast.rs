@@ -7,7 +7,7 @@ use crate::SceneFilm;
 use crate::filters::conversion;
 use spectra_color::cct;
 use spectra_core::math::log2;
-use spectra_core::params::{Params, Warning};
+use spectra_core::params::{Node, Params, Value, Warning};
 use spectra_core::spectral::{Channel, Grid, SpectralPower};
 use spectra_spectrum::Observer;
 
@@ -26,6 +26,15 @@ pub(crate) fn casts(
     grid: &Grid,
     params: &Params,
 ) -> Vec<Warning> {
+    let filters = params.get("lens").and_then(|lens| lens.get("filters"));
+    let filters: &[Node] = match filters.map(|node| &node.value) {
+        Some(Value::Seq(items)) => items,
+        _ => &[],
+    };
+    // Who takes another filter than a conversion filter wants its color.
+    if filters.iter().any(|filter| filter.get("mired").is_none()) {
+        return Vec::new();
+    }
     let [x, y, z] = Observer::cie_1931_2deg().xyz_of_power(light);
     let sum = x + y + z;
     let Some(white) = cct([x / sum, y / sum]).filter(|white| white.duv.abs() <= WHITE_DUV) else { return Vec::new() };
@@ -51,9 +60,9 @@ pub(crate) fn casts(
         if stops < STOPS {
             return None;
         }
-        let filters = (-MIRED..=MIRED).filter_map(|mired| spread(f64::from(mired)).map(|(left, ..)| (left, mired)));
-        let (left, mired) = filters.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let at = film.name.as_ref().map_or_else(|| "film".to_owned(), |_| format!("film[{index}]"));
+        let tried = (-MIRED..=MIRED).filter_map(|mired| spread(f64::from(mired)).map(|(left, ..)| (left, mired)));
+        let (left, mired) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let at = place(film, index, params);
         let layer = |i: usize| own[i].name.rsplit('.').next().unwrap_or_default().to_owned();
         let text = format!(
             "{} is balanced for another light than this one of {:.0} K: on a gray card its {} layer gets {stops:.1} stops more than its {} \
@@ -63,7 +72,11 @@ pub(crate) fn casts(
             layer(most),
             layer(least)
         );
-        let hint = if left < 0.5 * stops {
+        let hint = if left < 0.5 * stops && !filters.is_empty() {
+            format!(
+                "add `{{mired: {mired}}}` to `lens.filters`, or take a film for this light; nothing has to be done if the cast is meant"
+            )
+        } else if left < 0.5 * stops {
             format!(
                 "write `lens.filters: [{{mired: {mired}}}]` for the conversion filter that a photographer would use, or take a film for this \
                  light; nothing has to be done if the cast is meant"
@@ -71,7 +84,15 @@ pub(crate) fn casts(
         } else {
             "take a film for this light; nothing has to be done if the cast is meant".to_owned()
         };
-        Some(Warning(params.fault(&format!("{at}.stock"), text).hint(hint)))
+        Some(Warning(params.fault(&at, text).hint(hint)))
     };
     films.iter().enumerate().filter_map(of).collect()
+}
+
+/// Where what is said of a film stands: at its stock, or at the film where it names none.
+#[must_use]
+pub fn place(film: &SceneFilm, index: usize, params: &Params) -> String {
+    let section = params.get("film").map(|node| if film.name.is_some() { node.element(index) } else { Some(node) });
+    let at = film.name.as_ref().map_or_else(|| "film".to_owned(), |_| format!("film[{index}]"));
+    if section.flatten().is_some_and(|node| node.get("stock").is_some()) { format!("{at}.stock") } else { at }
 }

@@ -34,6 +34,7 @@ mod sight;
 
 pub use spectra_yaml as yaml;
 
+pub use cast::place as place_of_film;
 pub use focus::{Focus, FocusBy};
 pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,

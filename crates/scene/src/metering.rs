@@ -16,5 +16,12 @@ pub fn is_animated(series: &Series) -> bool {
             KEYS.contains(&key) || key == "exposure" || key == "stock" || key == "iso" || key == "kind"
         })
     };
-    series.set_paths().iter().any(of_meter)
+    let used = |path: &String| match path.strip_prefix("variables.") {
+        Some(name) => {
+            let name = name.split(['.', '[']).next().unwrap_or(name);
+            series.uses_of_variable(name).into_iter().map(|(path, _)| path).collect()
+        }
+        None => vec![path.clone()],
+    };
+    series.set_paths().iter().flat_map(used).any(|path| of_meter(&path))
 }

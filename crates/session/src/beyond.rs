@@ -5,7 +5,7 @@ use spectra_core::math::log2;
 use spectra_core::params::Warning;
 use spectra_core::shutter;
 use spectra_core::stage::Beyond;
-use spectra_scene::{Scene, SceneFilm};
+use spectra_scene::{Scene, SceneFilm, place_of_film};
 
 /// What is said of a scene's films of such a frame: at the exposure, with what to write in its place.
 pub(crate) fn beyond(scene: &Scene, exposure: &ExposureFrame) -> Vec<Warning> {
@@ -34,8 +34,7 @@ pub(crate) fn beyond(scene: &Scene, exposure: &ExposureFrame) -> Vec<Warning> {
     let long = |(index, film): (usize, &SceneFilm)| {
         let time_s = film.film.metered_time_s(&film.exposure(exposure));
         let text = film.film.long_exposure_doubt(time_s)?;
-        let at = film.name.as_ref().map_or_else(|| "film".to_owned(), |_| format!("film[{index}]"));
-        let fault = scene.params.fault(&format!("{at}.stock"), text);
+        let fault = scene.params.fault(&place_of_film(film, index, &scene.params), text);
         Some(Warning(fault.hint(
             "open the lens or light the scene for a time of a second at most; or state `reciprocity` in a stock of your own, `like` this one",
         )))

@@ -5,11 +5,14 @@
 //! for does not matter: frame 17 alone has the exposure that it has in the whole shot.
 
 use crate::{Event, Host, Job, Session, SessionError};
+use spectra_core::params::Warning;
 use spectra_core::shutter;
 use spectra_scene::{SeriesKind, metering};
 
-/// Samples over the frame that the meter looks at: its mean is known to about 0.1 %.
+/// Samples over the frame: the mean of an even one is known to about 0.1 %, that of a spot of a hundredth of it to about 1 %.
 const SAMPLES: u64 = 1 << 21;
+/// A first frame that would be exposed for longer, s, is dark: nobody opens a shutter for an hour in each frame of a shot.
+const LONGEST_S: f64 = 3600.0;
 
 /// The series of a job with the exposures of its first frame where its films are metered on that; `None` where they are not.
 pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_scene::Series>, SessionError> {
@@ -28,12 +31,21 @@ pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_s
     let few = series.with_all(&["render.noise=null".to_owned(), format!("render.samples={samples}")]);
     let mut session = Session::of_series(few.map_err(SessionError::Faults)?, 0, job.isa)?;
     session.prepare(host.workers())?;
+    let samples = samples.min(u64::from(session.scene().render.samples));
     session.advance(samples, host.workers(), &host.control())?;
-    let rendering = session.look()?;
-    if rendering.partial {
+    if host.is_stopped() {
         return Ok(None);
     }
+    let rendering = session.look()?;
     let times = session.scene().film_times(&rendering.exposure);
+    // Where a meter sees no light it leaves the time as it is.
+    if times.iter().any(|time| time.gain == 1.0 || time.time_s > LONGEST_S) {
+        let text = "the first frame has no light to meter: each frame is metered by itself";
+        host.hear(Event::Warning(&Warning::from(format!(
+            "{text}; begin the animation where there is light, or state `film.exposure`"
+        ))));
+        return Ok(None);
+    }
     let locked: Vec<(usize, f64)> = first
         .films
         .iter()
@@ -47,5 +59,5 @@ pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_s
         "metered on the first frame: {} for all frames (`film.meter: each` meters each by itself, and may flicker)",
         words.join(", ")
     )));
-    Ok(Some(series.exposed_for(&locked)))
+    series.exposed_for(&locked).map(Some).map_err(SessionError::Faults)
 }

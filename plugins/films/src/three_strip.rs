@@ -168,8 +168,8 @@ pub struct ThreeStrip {
     effects: [Effects; 3],
     /// What long exposures lose on each record.
     reciprocity: [Option<Reciprocity>; 3],
-    /// Names of the three stocks.
-    stocks: String,
+    /// Names of those of the three stocks whose reciprocity is not known.
+    unknown: String,
     /// Of what the matrices and the transfer lose, cycles/mm.
     mtf50: Option<f64>,
     words: String,
@@ -265,8 +265,10 @@ impl ThreeStrip {
         };
         let mtf50 = mtf50(p.optics, None);
         let reciprocity = [0, 1, 2].map(|i| records[i].stock.reciprocity.clone());
-        let stocks =
-            if stocks.iter().all(|name| *name == stocks[0]) { stocks[0].to_owned() } else { stocks.join(", ") };
+        let mut unknown: Vec<&str> =
+            records.iter().filter(|r| r.stock.reciprocity.is_none()).map(|r| r.name.as_str()).collect();
+        unknown.dedup();
+        let unknown = unknown.join(", ");
         Ok(Self {
             channels,
             exposure_time_s,
@@ -277,7 +279,7 @@ impl ThreeStrip {
             developed,
             effects,
             reciprocity,
-            stocks,
+            unknown,
             mtf50,
             words,
         })
@@ -413,8 +415,7 @@ impl Film for ThreeStrip {
     }
 
     fn long_exposure_doubt(&self, time_s: f64) -> Option<String> {
-        let unknown = self.reciprocity.iter().any(Option::is_none);
-        if unknown { unknown_reciprocity(None, &self.stocks, time_s) } else { None }
+        unknown_reciprocity(None, &self.unknown, time_s).filter(|_| !self.unknown.is_empty())
     }
 
     fn warnings(&self) -> Vec<String> {

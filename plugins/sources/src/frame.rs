@@ -115,20 +115,20 @@ impl Placed {
 
     /// Warns where a lens sees so much that no flat picture can stand before it as one would expect: a fisheye.
     pub(crate) fn warn_of_fisheye(&self, what: &str, params: &Params, context: &Context<'_>) {
-        let Some([x, y]) = context.view.and_then(|view| view.half_size_mm(self.distance_mm, self.center_mm)) else {
-            return;
-        };
-        let seen = 2.0 * spectra_core::math::atan2((x * x + y * y).sqrt(), self.distance_mm).to_degrees();
+        let half = context.view.and_then(|view| view.half_size_mm(self.distance_mm, self.center_mm));
+        let Some([x, y]) = half else { return };
+        let corner = (x * x + y * y).sqrt();
+        let seen = 2.0 * spectra_core::math::atan2(corner, self.distance_mm).to_degrees();
         if seen <= WIDEST_DEG {
             return;
         }
         let text = format!(
-            "this lens sees {seen:.0} degrees from corner to corner: to fill the frame, {what} has to be {} wide, of which the middle of the \
-             frame shows a small part",
-            length(2.0 * x)
+            "this lens sees {seen:.0} degrees from corner to corner: {what} is {} wide to fill the frame, of which its middle shows a small part",
+            length(self.width_mm)
         );
-        let hint = "take a lens of less than 130 degrees for a flat picture (`spectra list lens`); or write a width, such as `width: 2 m`, \
-                    and the border stays dark";
+        let hint = format!(
+            "take a lens of less than {WIDEST_DEG:.0} degrees for a flat picture: `spectra list lens` shows them all"
+        );
         context.warn(params.fault("width", text).hint(hint));
     }
 

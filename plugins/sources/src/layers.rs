@@ -128,9 +128,12 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let aspect = header.aspect_with(header.overscan);
         let luminance_cd_m2 = layer.luminance.unwrap_or(p.luminance).cd_per_m2();
         let making = Making { model: std::sync::Arc::clone(model), width_mm, luminance_cd_m2, edge };
+        let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm };
         // What is in front need not fill the frame; nothing is behind the last.
-        if i + 1 == p.layers.len() && layer.edge.is_none() && !width.is_fill() && faults.is_empty() {
-            let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm };
+        let is_last = i + 1 == p.layers.len();
+        if is_last && width.is_fill() {
+            placed.warn_of_fisheye("the last layer", &own, context);
+        } else if is_last && layer.edge.is_none() && faults.is_empty() {
             placed.warn_unless_filled("the last layer", &own, context);
         }
         file.warn(&header, context);

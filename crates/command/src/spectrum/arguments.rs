@@ -247,7 +247,7 @@ pub(crate) enum NumbersName {
         --on, or 1; `density`, per nm, or the probability of the line. The mean of weight x light x response is the integral of light \
         and response, whatever the strategy.",
     after_long_help = "Examples:\n  spectra spectrum draw D65 --strategy uniform -n 5\n  \
-        spectra spectrum draw FL11 --strategy lines -n 5 --seed 7\n  \
+        spectra spectrum draw FdC --strategy lines -n 5 --seed 7\n  \
         spectra spectrum draw D65 --on ilford-ortho-plus --strategy 'truncated-gaussian{center: 540, sigma: 60}' -n 100000 -o draws.csv"
 )]
 pub(crate) struct SpectrumDraw {
@@ -273,7 +273,7 @@ pub(crate) struct SpectrumDraw {
     #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 1..=2, default_value = "350,830")]
     pub band: Vec<f64>,
     /// Output file, FILE.csv; standard output if not given.
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     pub output: Option<PathBuf>,
     /// Write a JSON object to standard output.
     #[arg(long)]

@@ -24,7 +24,7 @@ pub(super) enum Column {
 }
 
 /// Names without case, blanks, dashes and units.
-const NAMES: [(&str, Column); 120] = [
+const NAMES: [(&str, Column); 122] = [
     ("lens", Column::Lens),
     ("name", Column::Lens),
     ("lensname", Column::Lens),
@@ -113,6 +113,8 @@ const NAMES: [(&str, Column); 120] = [
     ("面間隔", Column::Thickness),
     ("間隔", Column::Thickness),
     ("ndi", Column::Index),
+    ("ne", Column::Index),
+    ("ve", Column::Abbe),
     ("brechzahl", Column::Index),
     ("brechungsindex", Column::Index),
     ("屈折率", Column::Index),

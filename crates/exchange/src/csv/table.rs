@@ -50,6 +50,9 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
         faults.push(source.fault_here("no column `thickness`").hint(HINT));
     }
     let mut lens = Prescription::default();
+    if head_line_is_e(&cells(head, separator)) {
+        lens.reference_line = Some("e".to_owned());
+    }
     let mut seen = Seen { no_thickness: !columns.contains(&Some(Column::Thickness)), ..Seen::default() };
     for (at, line) in rows {
         if lens.items.len() >= MAX_ITEMS {
@@ -90,8 +93,13 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
     faults.into_result(lens)
 }
 
+/// Whether indices stand for the line e, by their heading.
+fn head_line_is_e(heads: &[&str]) -> bool {
+    heads.iter().any(|head| head.eq_ignore_ascii_case("ne"))
+}
+
 /// Cells of a line, without blanks and quotes around them.
-fn cells(line: &str, separator: char) -> Vec<&str> {
+pub(super) fn cells(line: &str, separator: char) -> Vec<&str> {
     let mut cells = Vec::new();
     let mut quoted = false;
     let mut start = 0;
@@ -293,7 +301,7 @@ impl<'a> Row<'a, '_> {
         let stop = kind == "stop"
             || kind == "aperture"
             || marked(Column::Number)
-            || marked(Column::Comment)
+            || self.text(Column::Comment).is_some_and(patent::is_stop_phrase)
             || marked(Column::Radius);
         let mirror =
             kind == "mirror" || self.text(Column::Glass).is_some_and(|cell| cell.eq_ignore_ascii_case("mirror"));

@@ -247,3 +247,35 @@ fn coefficients_and_gaps_below_a_table() {
     let (_, _, notes) = printed("No. r d nd vd\n1* 50 5 1.5168 64.2\n2 -40 47\n3 30 2 1.62 36.3\n4 -90 40\n");
     assert!(notes.contains("surface 1 is marked as an asphere, and no coefficients follow"), "{notes}");
 }
+
+/// A table with separators and headings keeps its meaning, whatever words stand in it or above it.
+#[test]
+fn plain_tables_stay_what_they_are() {
+    let inches =
+        "radius [in],thickness [in],nd,vd,comment\n2,0.2,1.5168,64.2,behind the aperture stop\n-2,4,,,Zoom group\n";
+    let (rows, stop, notes) = printed(inches);
+    assert_eq!((rows[0][0], rows.len(), stop), (50.8, 2, None), "{notes}");
+    // A title above it changes nothing of conics and coefficients.
+    let text = "radius,thickness,nd,vd,conic,a4\n50,5,1.5168,64.2,-1.5,1e-6\n-40,47,,,,\n";
+    let shape = |text: &str| read("t.csv", text).expect("a lens").surfaces().next().expect("a surface").shape.clone();
+    assert_eq!(shape(&format!("A singlet of mine\n{text}")), shape(text));
+    // Comments are no equations, and a first cell of a row no heading.
+    let (rows, ..) = printed(&format!("# r1 = 99, r2 = 98 and r3 = 97\n{text}"));
+    assert_eq!(rows[0][0], 50.0);
+    let kinds = "type,radius,thickness,nd,vd\naspherical,50,5,1.5168,64.2\naspherical,-40,47,,\n";
+    assert_eq!(printed(kinds).0.len(), 2);
+    // Two figures in a cell are no number, nor a remark in quotes two cells.
+    assert!(read("t.csv", "radius,thickness\n1 0,5\n").is_err());
+    let quoted = "no,radius,thickness,nd,vd,comment\n1,50,5,1.5168,64.2,\"front, coated\"\n2 stop,inf,3,,,\n";
+    let lens = read("t.csv", quoted).expect("a lens");
+    let surfaces: Vec<_> = lens.surfaces().collect();
+    assert_eq!((surfaces[0].comment.as_str(), surfaces[1].stop), ("front, coated", true));
+    // Indices of the line e are told apart.
+    let e = read("t.csv", "radius,thickness,ne,ve\n50,5,1.5187,64\n-40,47,,\n").expect("a lens");
+    assert_eq!(e.reference_line.as_deref(), Some("e"));
+    // A focal length below a block of aspheres is no coefficient, and a second example another lens.
+    let two = "No. r d nd vd\n1* 50 5 1.5168 64.2\n2 -40 47\n3 inf 1\nAspherical surface data\n1st surface\nK = -1 A4 = 1e-6\n\
+               Various data\nf = 50.00\nF = 2.8\nExample 2\nNo. r d nd vd\n1* 99 5 1.6 60\nAspherical surface data\n1st surface\nK = -9 A4 = 9e-6\n";
+    let Shape::EvenAsphere { conic, coefficients, .. } = shape(two) else { panic!("an asphere") };
+    assert_eq!((conic, coefficients), (-1.0, vec![0.0, 1e-6]));
+}

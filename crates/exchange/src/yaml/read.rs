@@ -34,7 +34,8 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
     if let Some(rims) = params.get("rims") {
         let fitted = rims.get("fitted").and_then(Node::as_str);
         let words = fitted.map(|to| format!("fitted to {to}")).or(rims.as_str().map(str::to_owned));
-        lens.remarks.extend(words.map(|words| format!("Rims {words}.")));
+        lens.remarks.extend(words.as_ref().map(|words| format!("Rims {words}.")));
+        lens.rims = words;
     }
     let known = [
         "name",

@@ -48,8 +48,13 @@ pub fn write(lens: &Prescription, source: Option<&str>) -> String {
     if !remark.is_empty() {
         line(&format!("remark: {}", quoted(&remark)));
     }
-    if let Some(rims) = rims(lens) {
-        line(&format!("rims: {rims}"));
+    match (lens.rims.as_deref(), rims(lens)) {
+        (Some(rims), _) => match rims.strip_prefix("fitted to ") {
+            Some(to) => line(&format!("rims: {{fitted: {}}}", quoted(to))),
+            None => line(&format!("rims: {rims}")),
+        },
+        (None, Some(rims)) => line(&format!("rims: {rims}")),
+        (None, None) => {}
     }
     line("surfaces:");
     for item in &lens.items {

@@ -145,8 +145,14 @@ pub(super) fn header(
     let (_, doubt) = space::of(headers[0].shared_attributes.chromaticities, &texts(&headers));
     let ([width, height], pixel_aspect) = shape(&headers);
     let (overscan, uneven) = overscan(&headers, light.first().map_or(0, |(part, _)| *part));
-    let doubts = doubt.filter(|_| light.len() == 3).into_iter().chain(uneven).collect();
-    check_size(u64::from(width) + 2 * u64::from(overscan[0]), u64::from(height) + 2 * u64::from(overscan[1]))?;
+    let [x, y] = overscan.map(u64::from);
+    let fits = check_size(u64::from(width) + 2 * x, u64::from(height) + 2 * y).is_ok();
+    let left = (!fits).then(|| {
+        let text = format!("with its overscan of {x} x {y} pixels on each side it is larger than what is read: the overscan is left out");
+        Trouble::file(text).hint("crop the data window")
+    });
+    let overscan = if fits { overscan } else { [0; 2] };
+    let doubts = doubt.filter(|_| light.len() == 3).into_iter().chain(uneven).chain(left).collect();
     Ok(super::header::Header { width, height, overscan, pixel_aspect, clips: false, is_jpeg: false, doubts })
 }
 

@@ -337,22 +337,24 @@ impl Series {
 
     /// The series with films exposed for stated times in place of what their meters would choose: places of films in the list, and
     /// seconds.
-    #[must_use]
-    pub fn exposed_for(&self, times: &[(usize, f64)]) -> Self {
+    ///
+    /// # Errors
+    /// A film that is no section of the scene.
+    pub fn exposed_for(&self, times: &[(usize, f64)]) -> Result<Self, Faults> {
         let mut series = self.clone();
+        variables::open(&mut series.root, "film.exposure");
         let is_list = matches!(series.root.get("film").map(|node| &node.value), Some(Value::Seq(_)));
         for (index, time_s) in times {
             let film = if is_list { format!("film[{index}]") } else { "film".to_owned() };
-            variables::open(&mut series.root, &film);
+            let path = format!("{film}.exposure");
+            variables::open(&mut series.root, &path);
             for key in metering::KEYS {
                 take_away(&mut series.root, &format!("{film}.{key}"));
             }
-            let text = format!("{time_s} s");
-            let node = Node { value: Value::String(text), ..series.root.clone() };
-            // A film that is metered is a section.
-            let _ = series.root.set_path(&format!("{film}.exposure"), node);
+            let place = series.root.at_path(&film).unwrap_or(&series.root).clone();
+            series.root.set_path(&path, Node { value: Value::String(format!("{time_s} s")), ..place })?;
         }
-        series
+        Ok(series)
     }
 
     /// The paths that are set for each picture.

@@ -219,11 +219,15 @@ impl Depth {
         format!("`{}`{scale} in {unit}; {kind}{assumed}", self.name())
     }
 
-    /// Whether the depth lies beyond the picture as far as the picture does, `overscan` pixels.
-    pub(super) fn has_overscan(&self, overscan: [u32; 2]) -> bool {
-        let (Some(name), Some(found)) = (&self.p.file, &self.found) else { return true };
+    /// How far the depth reaches beyond the picture, at most as far as the picture does itself, `overscan` pixels.
+    pub(super) fn overscan(&self, overscan: [u32; 2]) -> [u32; 2] {
+        let (Some(name), Some(found)) = (&self.p.file, &self.found) else { return overscan };
+        if overscan == [0; 2] {
+            return overscan;
+        }
         let choice = Choice { name, depth: Some(self.name()), ..Choice::default() };
-        overscan == [0; 2] || read::depth_overscan(found, choice) == overscan
+        let [x, y] = read::depth_overscan(found, choice);
+        [overscan[0].min(x), overscan[1].min(y)]
     }
 
     /// A file of its own: the channel of an OpenEXR, or the first one of any other picture as linear numbers.

@@ -149,11 +149,16 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         params: params.clone(),
     });
     let header = file.as_ref().and_then(|file| faults.take(file.header()));
-    // A file of depth alone has to have the same overscan, else only what both have is used.
+    // What both the picture and a file of its depth have is used.
     let overscan = header.as_ref().map_or([0; 2], |header| match &depth {
-        Some(depth) if !depth.has_overscan(header.overscan) => [0; 2],
-        _ => header.overscan,
+        Some(depth) => depth.overscan(header.overscan),
+        None => header.overscan,
     });
+    if let Some(header) = header.as_ref().filter(|header| header.overscan != overscan) {
+        let [own, used] = [header.overscan, overscan].map(|[x, y]| format!("{x} x {y}"));
+        let text = format!("the picture has {own} pixels of overscan on each side, its depth fewer: {used} are used");
+        context.warn(params.fault("depth", text).hint("render depth with the same overscan as the picture"));
+    }
     let recover_stops = p.recover_highlights.as_ref().map(|recover| recover.stops);
     if let (Some(_), Some(header)) = (recover_stops, &header) {
         let key = "recover-highlights";

@@ -1,10 +1,11 @@
 //! What stands below a table: coefficients of aspheres, gaps that vary, and the back focus.
 
-use super::equations::equations_of;
+use super::equations::{Equation, equations_of};
+use super::rows::Head;
 use super::value;
-use super::words::{figure, gap_number, is_back_focus, surface_number};
+use super::words::{figure, gap_number, is_back_focus, is_other, surface_number};
 use crate::number;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The conic constant and the coefficients of an asphere by their powers.
 #[derive(Clone, Debug, Default)]
@@ -57,6 +58,20 @@ impl Term {
 }
 
 impl Below {
+    /// Powers that any asphere has, rising.
+    pub(super) fn powers(&self) -> Vec<u32> {
+        let all: BTreeSet<u32> = self.aspheres.values().flat_map(|a| a.coefficients.keys().copied()).collect();
+        all.into_iter().collect()
+    }
+
+    /// The conic constant and the coefficients of these powers of a surface, empty where there are none.
+    pub(super) fn terms(&self, surface: Option<u32>, powers: &[u32]) -> Vec<String> {
+        let asphere = surface.and_then(|number| self.aspheres.get(&number));
+        let of = |power: &u32| asphere.and_then(|a| a.coefficients.get(power).cloned()).unwrap_or_default();
+        let conic = asphere.and_then(|a| a.conic.clone()).unwrap_or_default();
+        std::iter::once(conic).chain(powers.iter().map(of)).collect()
+    }
+
     pub(super) fn of(lines: &[&str], from: usize) -> Self {
         let mut below = Self { kappa_is_conic: kappa_is_conic(lines), ..Self::default() };
         lines.iter().for_each(|line| below.take_back_focus(line));
@@ -66,6 +81,15 @@ impl Below {
         let mut row: Option<(u32, usize)> = None;
         for line in lines.iter().skip(from) {
             let plain = line.trim();
+            // A second example is another lens.
+            if Head::of(plain).is_some_and(|head| head.is_of_surfaces())
+                || plain.to_lowercase().starts_with("example 2")
+            {
+                break;
+            }
+            if is_other(plain) && !plain.to_lowercase().contains("asph") && !plain.contains("非球面") {
+                surface = None;
+            }
             let head = plain.split('=').next().unwrap_or_default();
             let lower = head.to_lowercase();
             let is_named = (lower.contains("surface") || head.contains('面') || lower.starts_with("no."))
@@ -75,7 +99,14 @@ impl Below {
             if is_named || is_bare {
                 surface = surface_number(head).or(surface);
             }
-            for equation in equations_of(plain) {
+            let all = equations_of(plain);
+            let leads = |e: &Equation| matches!(e.name.as_str(), "k" | "κ" | "kappa" | "a") || e.number.is_some();
+            let is_of_asphere = all.iter().any(leads);
+            for equation in all {
+                // Bare letters are coefficients beside the conic constant or `A`, and a focal length elsewhere.
+                if !is_of_asphere && equation.number.is_none() {
+                    continue;
+                }
                 if value(&equation.value).is_none() {
                     continue;
                 }
@@ -95,13 +126,14 @@ impl Below {
     fn set(&mut self, surface: u32, term: Term, figure: String) {
         let asphere = self.aspheres.entry(surface).or_default();
         match term {
-            Term::Conic => asphere.conic = Some(figure),
+            Term::Conic => drop(asphere.conic.get_or_insert(figure)),
             Term::Kappa => {
                 let kappa = value(&figure).unwrap_or(1.0);
-                asphere.conic = Some(number::shortest(if self.kappa_is_conic { kappa } else { kappa - 1.0 }));
+                let conic = number::shortest(if self.kappa_is_conic { kappa } else { kappa - 1.0 });
+                asphere.conic.get_or_insert(conic);
                 self.has_kappa = true;
             }
-            Term::Power(power) => drop(asphere.coefficients.insert(power, figure)),
+            Term::Power(power) => drop(asphere.coefficients.entry(power).or_insert(figure)),
         }
     }
 

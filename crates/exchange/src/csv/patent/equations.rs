@@ -1,7 +1,8 @@
 //! Tables of equations: `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`, in one line or many.
 
-use super::words::{figure, is_back_focus, is_other, is_plane, says_stop};
+use super::words::{figure, is_back_focus, is_other, is_plane, is_stop_phrase};
 use super::{Found, Row, value};
+use crate::MAX_ITEMS;
 
 /// An equation of a patent: its name, its number and its value.
 pub(super) struct Equation {
@@ -83,9 +84,13 @@ fn glass_in(words: &str) -> Option<[String; 2]> {
 
 /// Rows of a table of equations; `None` where there are fewer than three radii.
 pub(super) fn rows(lines: &[&str]) -> Option<Found> {
-    let mut found = Found { head: 0, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: true };
+    let mut found =
+        Found { head: 0, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: true, is_line_e: false };
     for (at, line) in lines.iter().enumerate() {
-        if is_other(line) && found.rows.len() >= 2 {
+        if line.trim().starts_with('#') {
+            continue;
+        }
+        if is_other(line) && found.rows.len() >= 2 || found.rows.len() > MAX_ITEMS {
             found.end = at;
             break;
         }
@@ -97,12 +102,12 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
                 "d" | "t" | "l" | "s" | "b" if !is_back_focus(&equation.written) => "thickness",
                 // `a2` is an air gap where none is there yet, a coefficient elsewhere.
                 "a" if found.rows.last().is_some_and(|row| !row.cells.contains_key("thickness")) => "thickness",
-                "n" | "nd" => "nd",
-                "v" | "vd" | "nu" | "ny" => "vd",
+                "n" | "nd" | "ne" => "nd",
+                "v" | "vd" | "ve" | "nu" | "ny" => "vd",
                 "phi" | "ø" | "φ" => "diameter",
                 _ => continue,
             };
-            let is_stop_word = says_stop(&equation.value);
+            let is_stop_word = is_stop_phrase(&equation.value);
             if name == "radius" && !is_stop_word && !is_plane(&equation.value) && value(&equation.value).is_none() {
                 // A sentence about radii.
                 continue;
@@ -116,9 +121,10 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
                 // One row a line of the table that is typed.
                 let line = found.rows.last().map_or(at, |last: &Row| at.max(last.line + 1));
                 let is_marked = equation.written.contains('*') || equation.words.to_lowercase().contains("aspher");
-                let is_stop = says_stop(&equation.words) || is_stop_word;
+                let is_stop = is_stop_phrase(&equation.words) || is_stop_word;
                 found.rows.push(Row { line, number: equation.number, is_marked, is_stop, ..Row::default() });
             }
+            found.is_line_e |= matches!(equation.name.as_str(), "ne" | "ve");
             let Some(row) = found.rows.last_mut() else { continue };
             let is_plane = name == "radius" && (is_stop_word || is_plane(&equation.value));
             row.cells.insert(name, if is_plane { "inf".to_owned() } else { equation.value.clone() });
@@ -144,7 +150,7 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
         }
         // A word of the stop that stands alone below a radius.
         if all.is_empty()
-            && says_stop(line)
+            && is_stop_phrase(line)
             && line.split_whitespace().count() <= 2
             && let Some(row) = found.rows.last_mut()
         {
@@ -184,14 +190,13 @@ fn glasses_apart(lines: &[&str], rows: &mut [Row]) {
 
 /// A face that two cemented lenses share may stand twice, `r4` and `r4'`: the first has no gap, and goes.
 fn cemented(rows: &mut Vec<Row>) {
-    for at in (1..rows.len()).rev() {
-        let (before, row) = (&rows[at - 1], &rows[at]);
-        let is_same = before.number.is_some()
-            && before.number == row.number
-            && before.cells.get("radius") == row.cells.get("radius")
-            && !before.cells.contains_key("thickness");
-        if is_same {
-            rows.remove(at - 1);
-        }
-    }
+    let is_twice = |pair: &[Row]| {
+        pair[0].number.is_some()
+            && pair[0].number == pair[1].number
+            && pair[0].cells.get("radius") == pair[1].cells.get("radius")
+            && !pair[0].cells.contains_key("thickness")
+    };
+    let twice: Vec<bool> = rows.windows(2).map(is_twice).chain([false]).collect();
+    let mut twice = twice.into_iter();
+    rows.retain(|_| !twice.next().unwrap_or_default());
 }

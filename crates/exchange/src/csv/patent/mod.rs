@@ -10,12 +10,15 @@ mod equations;
 mod rows;
 mod words;
 
+use super::columns::Column;
+use super::table::cells;
 use crate::number;
+use crate::place::shown;
 use below::Below;
 use rows::Head;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-pub(super) use words::{figure, is_variable, plain};
+pub(super) use words::{figure, is_stop_phrase, is_variable, plain};
 
 /// A table typed again.
 pub(super) struct Retyped {
@@ -50,6 +53,8 @@ struct Found {
     notes: Vec<Told>,
     /// Whether something in it has to be typed in another way.
     is_needed: bool,
+    /// Whether its indices are those of the line e.
+    is_line_e: bool,
 }
 
 /// Columns of the table that is typed.
@@ -61,18 +66,21 @@ pub(super) fn retype(text: &str) -> Option<Retyped> {
     let lines: Vec<&str> = text.lines().collect();
     let is_word = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
     let first = lines.iter().position(is_word)?;
-    let by_equations = equations::rows(&lines);
+    let is_table = |line: &str| Head::of(line).is_some_and(|head| head.separator.is_some());
+    let by_equations = if is_table(lines[first]) { None } else { equations::rows(&lines) };
     let head = lines.iter().position(|line| Head::of(line).is_some()).filter(|_| by_equations.is_none());
-    let mut found = match head.and_then(|at| Some((at, Head::of(lines[at])?))) {
+    let mut head = head.and_then(|at| Some((at, Head::of(lines[at])?)));
+    let mut found = match &head {
         Some((at, head)) => {
-            let found = rows::rows(&lines, at, &head);
-            if head.separator.is_some() && at == first && !found.is_needed {
+            let found = rows::rows(&lines, *at, head);
+            if head.separator.is_some() && *at == first && !found.is_needed {
                 return None;
             }
             found
         }
         None => by_equations?,
     };
+    let separator = head.take().and_then(|(_, head)| Some((head.separator?, head)));
     let below = Below::of(&lines, found.end);
     let mut notes = std::mem::take(&mut found.notes);
     fill_gaps(&mut found.rows, &below, &mut notes);
@@ -86,7 +94,89 @@ pub(super) fn retype(text: &str) -> Option<Retyped> {
     if !found.rows.iter().any(|row| row.is_stop) {
         notes.extend(words::stop_in_prose(&lines));
     }
-    Some(Retyped { text: written(&lines, &found, &below, &mut notes), notes })
+    let text = match &separator {
+        Some((separator, head)) => kept(&lines, *separator, head, &found, &below, &mut notes),
+        None => written(&lines, &found, &below, &mut notes),
+    };
+    Some(Retyped { text, notes })
+}
+
+/// A table that has separators: its rows stay as they are, but for marks, gaps that vary and what stands below it, and lines that are no
+/// rows go.
+fn kept(lines: &[&str], separator: char, head: &Head, found: &Found, below: &Below, notes: &mut Vec<Told>) -> String {
+    let powers = below.powers();
+    let mut out: Vec<String> = lines.iter().map(|_| "#".to_owned()).collect();
+    let joined = |cells: Vec<String>| {
+        let quoted = cells.into_iter().map(|cell| if cell.contains(separator) { format!("\"{cell}\"") } else { cell });
+        quoted.collect::<Vec<_>>().join(&separator.to_string())
+    };
+    let own = |line: &str| -> Vec<String> { cells(line, separator).into_iter().map(str::to_owned).collect() };
+    let has_aspheres = !below.aspheres.is_empty();
+    let mut heads = own(lines[found.head]);
+    let count = heads.len();
+    // A heading that nobody knows is told, where it is not that of a patent's groups.
+    for (cell, column) in heads.iter_mut().zip(&head.columns) {
+        if column.is_none() && !cell.is_empty() {
+            notes.push((found.head + 1, false, format!("the column `{}` is not read", shown(cell))));
+            cell.clear();
+        }
+    }
+    if has_aspheres {
+        heads.push("conic".to_owned());
+        heads.extend(powers.iter().map(|power| format!("a{power}")));
+    }
+    out[found.head] = joined(heads);
+    let place = |column: Column| head.columns.iter().position(|c| *c == Some(column));
+    let mut used = BTreeSet::new();
+    for row in &found.rows {
+        let mut cells = own(lines[row.line]);
+        if cells.len() <= count {
+            cells.resize(count, String::new());
+        }
+        if let Some(at) =
+            place(Column::Number).filter(|at| cells.get(*at).is_some_and(|cell| words::mark(cell).is_some()))
+        {
+            cells[at] =
+                if row.is_stop { "stop".to_owned() } else { row.number.map(|n| n.to_string()).unwrap_or_default() };
+        }
+        if let Some(at) = place(Column::Thickness).filter(|at| cells.get(*at).is_some_and(|cell| is_variable(cell))) {
+            cells[at] = row.cells.get("thickness").cloned().unwrap_or_default();
+        }
+        if has_aspheres {
+            cells.truncate(count);
+            cells.extend(below.terms(row.number, &powers));
+        }
+        used.extend(row.number);
+        tell_marked(row, below, notes);
+        out[row.line] = joined(cells);
+    }
+    tell_unused(&used, below, notes);
+    out.join("\n") + "\n"
+}
+
+/// Tells of a surface that is marked as an asphere and has no coefficients.
+fn tell_marked(row: &Row, below: &Below, notes: &mut Vec<Told>) {
+    if row.is_marked && row.number.is_none_or(|number| !below.aspheres.contains_key(&number)) {
+        let number = row.number.map(|n| n.to_string()).unwrap_or_default();
+        let text =
+            format!("surface {number} is marked as an asphere, and no coefficients follow: carried as its sphere");
+        notes.push((row.line + 1, true, text));
+    }
+}
+
+/// Tells of coefficients of surfaces that the table does not have, and of what kappa was taken for.
+fn tell_unused(used: &BTreeSet<u32>, below: &Below, notes: &mut Vec<Told>) {
+    for number in below.aspheres.keys().filter(|number| !used.contains(number)) {
+        notes.push((0, true, format!("coefficients of surface {number}, which the table does not have")));
+    }
+    if below.has_kappa {
+        let is = if below.kappa_is_conic {
+            "the conic constant: 0 is a sphere"
+        } else {
+            "1 plus the conic constant: 1 is a sphere"
+        };
+        notes.push((0, true, format!("kappa is taken as {is}")));
+    }
 }
 
 /// Gaps that vary get the first of their values, the last gap the back focus that stands anywhere; without one it is left out.
@@ -125,23 +215,13 @@ fn fill_gaps(rows: &mut [Row], below: &Below, notes: &mut Vec<Told>) {
 
 /// The table that is typed, a line of it for each line of the text.
 fn written(lines: &[&str], found: &Found, below: &Below, notes: &mut Vec<Told>) -> String {
-    let powers: Vec<u32> = {
-        let mut all: Vec<u32> = below.aspheres.values().flat_map(|a| a.coefficients.keys().copied()).collect();
-        all.sort_unstable();
-        all.dedup();
-        all
-    };
-    if below.has_kappa {
-        let is = if below.kappa_is_conic {
-            "the conic constant: 0 is a sphere"
-        } else {
-            "1 plus the conic constant: 1 is a sphere"
-        };
-        notes.push((0, true, format!("kappa is taken as {is}")));
-    }
-    let mut used: Vec<u32> = Vec::new();
+    let powers = below.powers();
+    let mut used = BTreeSet::new();
     let mut out: Vec<String> = lines.iter().map(|_| "#".to_owned()).collect();
     let mut head = COLUMNS.join(";");
+    if found.is_line_e {
+        head = head.replace(";nd;vd;", ";ne;ve;");
+    }
     head.push_str(";conic");
     for power in &powers {
         let _ = write!(head, ";a{power}");
@@ -151,28 +231,17 @@ fn written(lines: &[&str], found: &Found, below: &Below, notes: &mut Vec<Told>) 
         let mut cells: Vec<String> = COLUMNS.iter().map(|name| cell(name)).collect();
         cells[0] = row.number.map(|number| number.to_string()).unwrap_or_default();
         if row.is_stop {
-            cells[1] = "stop".to_owned();
+            cells[0] = "stop".to_owned();
         }
-        let asphere = row.number.and_then(|number| below.aspheres.get(&number));
-        used.extend(row.number.filter(|_| asphere.is_some()));
-        if row.is_marked && asphere.is_none() {
-            let number = row.number.map(|n| n.to_string()).unwrap_or_default();
-            let text =
-                format!("surface {number} is marked as an asphere, and no coefficients follow: carried as its sphere");
-            notes.push((row.line + 1, true, text));
-        }
-        cells.push(asphere.and_then(|a| a.conic.clone()).unwrap_or_default());
-        for power in &powers {
-            cells.push(asphere.and_then(|a| a.coefficients.get(power).cloned()).unwrap_or_default());
-        }
+        used.extend(row.number);
+        tell_marked(row, below, notes);
+        cells.extend(below.terms(row.number, &powers));
         while out.len() <= row.line {
             out.push("#".to_owned());
         }
         out[row.line] = cells.join(";");
     }
-    for number in below.aspheres.keys().filter(|number| !used.contains(number)) {
-        notes.push((0, true, format!("coefficients of surface {number}, which the table does not have")));
-    }
+    tell_unused(&used, below, notes);
     match found.rows.first() {
         // The headings stand somewhere above the first row.
         Some(first) if first.line == 0 => out.insert(0, head),

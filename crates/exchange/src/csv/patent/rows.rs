@@ -1,14 +1,16 @@
 //! Tables with a line of headings, their columns separated by tabs, commas, semicolons or blanks.
 
-use super::words::{figure, is_end, is_other, is_plane, is_stop, is_variable, mark, says_stop};
+use super::words::{figure, is_end, is_other, is_plane, is_stop, is_stop_phrase, is_variable, mark};
 use super::{Found, Row, value};
+use crate::MAX_ITEMS;
 use crate::csv::columns::{Column, by_name};
+use crate::csv::table::cells;
 use std::collections::BTreeMap;
 
 /// A line of headings.
 pub(super) struct Head {
     pub separator: Option<char>,
-    columns: Vec<Option<Column>>,
+    pub columns: Vec<Option<Column>>,
 }
 
 impl Head {
@@ -41,6 +43,11 @@ impl Head {
             columns.push(Some(if is_radius { Column::SemiDiameter } else { Column::Diameter }));
         }
         Self { separator: self.separator, columns }
+    }
+
+    /// Whether it names media besides, so that it heads a table of surfaces.
+    pub(super) fn is_of_surfaces(&self) -> bool {
+        self.has(Column::Index) || self.has(Column::Glass)
     }
 
     fn has(&self, column: Column) -> bool {
@@ -92,7 +99,8 @@ fn name_of(column: Column) -> Option<&'static str> {
 /// Rows below a line of headings.
 pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
     let columns = &columns.with_effective(lines[head], lines.get(head + 1).copied().unwrap_or_default());
-    let mut found = Found { head, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: false };
+    let mut found =
+        Found { head, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: false, is_line_e: false };
     for (at, line) in lines.iter().enumerate().skip(head + 1) {
         let plain = line.trim();
         if plain.is_empty() || plain.starts_with('#') {
@@ -108,16 +116,22 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
         {
             continue;
         }
-        if is_other(plain) {
+        let has_figures = |separator: char| {
+            let own = cells(line, separator);
+            let of =
+                |column| columns.place(column).and_then(|at| own.get(at)).is_some_and(|cell| value(cell).is_some());
+            of(Column::Radius) || of(Column::Thickness)
+        };
+        if is_other(plain) && !columns.separator.is_some_and(has_figures) || found.rows.len() > MAX_ITEMS {
             found.end = at;
             found.is_needed = true;
             break;
         }
         let cells = match columns.separator {
-            Some(separator) => line
-                .split(separator)
+            Some(separator) => cells(line, separator)
+                .into_iter()
                 .zip(&columns.columns)
-                .filter_map(|(cell, column)| Some(((*column)?, cell.trim().trim_matches('"').trim().to_owned())))
+                .filter_map(|(cell, column)| Some(((*column)?, cell.to_owned())))
                 .filter(|(_, cell)| !cell.is_empty())
                 .collect(),
             None => by_rule(plain, columns),
@@ -140,10 +154,9 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
                     None => drop(row.cells.insert("comment", cell)),
                 },
                 Column::Comment => {
-                    found.is_needed |= says_stop(&cell) && !cell.eq_ignore_ascii_case("stop");
-                    row.is_stop |= says_stop(&cell);
-                    row.is_marked |= cell.to_lowercase().contains("aspher");
-                    found.is_needed |= row.is_marked;
+                    found.is_needed |= is_stop_phrase(&cell) && columns.separator.is_none();
+                    row.is_stop |= is_stop_phrase(&cell);
+                    row.is_marked |= columns.separator.is_none() && cell.to_lowercase().contains("aspher");
                     row.cells.insert(name, cell);
                 }
                 Column::Thickness if is_variable(&cell) => {
@@ -202,11 +215,6 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
             last.cells.insert(size, figure);
         }
     }
-    // A table that has columns of coefficients is read as it stands.
-    let as_it_stands = |c: &Column| {
-        matches!(c, Column::Conic | Column::Coefficient(_) | Column::Coefficients | Column::Curvature | Column::Lens)
-    };
-    found.is_needed &= !columns.columns.iter().flatten().any(as_it_stands);
     found
 }
 
@@ -276,7 +284,8 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
     let at = |i: usize| figures.get(i).and_then(|word| value(word)).unwrap_or(0.0);
     let is_index = |n: f64| (1.2..3.0).contains(&n);
     let mut left = 0;
-    if is_index(at(0)) && at(1) > 10.0 || is_index(at(1)) && at(0) > 10.0 {
+    let has_abbe = head.has(Column::Abbe);
+    if has_abbe && (is_index(at(0)) && at(1) > 10.0 || is_index(at(1)) && at(0) > 10.0) {
         let abbe_first = head.place(Column::Abbe) < head.place(Column::Index);
         let (index, abbe) = if is_index(at(0)) && !(abbe_first && is_index(at(1))) { (0, 1) } else { (1, 0) };
         cells.push((Column::Index, figures[index].clone()));
@@ -289,12 +298,16 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
     {
         cells.push((Column::Index, figures[0].clone()));
         left = 1;
+    } else if !has_abbe && is_index(at(0)) && figures.len() > 1 {
+        cells.push((Column::Index, figures[0].clone()));
+        left = 1;
     } else if at(0) == 1.0 && figures.len() > 1 {
         // Air with its index.
         left = 1;
     }
-    // What stands between, such as a partial dispersion, is below 1 where a diameter is not.
-    if let Some(size) = (left..figures.len()).find(|i| at(*i) >= 1.0) {
+    // Where partial dispersions stand between, they are below 1 and a diameter is not.
+    let least = if head.has(Column::Unused) { 1.0 } else { 0.0 };
+    if let Some(size) = (left..figures.len()).find(|i| at(*i) >= least) {
         let column = if head.has(Column::Diameter) { Column::Diameter } else { Column::SemiDiameter };
         cells.push((column, figures[size].clone()));
     }

@@ -16,10 +16,15 @@ pub(in crate::csv) fn plain(text: &str) -> String {
     text.chars().map(one).collect()
 }
 
-/// A number as printed: a blank behind the sign, `1.2 x 10^-5`, a mark of a solve behind it.
+/// A number as printed: a blank behind the sign, `1.2 x 10^-5`. A blank between digits is none of a number.
 pub(in crate::csv) fn figure(cell: &str) -> String {
-    let joined: String = cell.chars().filter(|c| !c.is_whitespace()).collect();
-    let powers = joined.replace(['×', 'x', 'X'], "*").replace("**", "^");
+    let words: Vec<&str> = cell.split_whitespace().collect();
+    let is_sign = |word: &str| ["-", "+", "x", "X", "×", "*"].contains(&word);
+    let joins = |pair: &[&str]| is_sign(pair[0]) || is_sign(pair[1]) || pair[1].starts_with(['×', '*', '^', 'e', 'E']);
+    if !words.windows(2).all(joins) {
+        return cell.trim().to_owned();
+    }
+    let powers = words.concat().replace(['×', 'x', 'X'], "*").replace("**", "^");
     let typed = match powers.split_once("*10") {
         Some((head, tail)) => format!("{head}e{}", tail.trim_start_matches('^').trim_matches(['(', ')', '{', '}'])),
         None => powers,
@@ -46,14 +51,14 @@ pub(super) fn mark(cell: &str) -> Option<(Option<u32>, bool, bool)> {
 
 /// Whether a word is that for the stop, without case and blanks.
 pub(super) fn is_stop(word: &str) -> bool {
-    ["stop", "sto", "aperturestop", "aperturestops", "diaphragm", "blende", "iris", "絞り", "開口絞り"].contains(&word)
+    ["stop", "sto", "aperturestop", "diaphragm", "aperturediaphragm", "blende", "iris", "絞り", "開口絞り"]
+        .contains(&word)
 }
 
-/// Whether the words of a remark say that the surface is the stop.
-pub(super) fn says_stop(words: &str) -> bool {
-    let plain = words.to_lowercase();
-    let of = |word: &&str| plain.split(|c: char| !c.is_alphanumeric()).any(|w| w == *word);
-    !plain.contains("flare") && (["stop", "diaphragm", "blende"].iter().any(of) || plain.contains("絞り"))
+/// Whether a remark is the word for the stop and nothing else: `Aperture stop S`, `(絞り)`.
+pub(in crate::csv) fn is_stop_phrase(words: &str) -> bool {
+    let plain = letters(words);
+    is_stop(&plain) || is_stop(plain.trim_end_matches('s')) || is_stop(plain.trim_start_matches("the"))
 }
 
 /// What is said where the stop stands in a sentence and in no row: where it says so.
