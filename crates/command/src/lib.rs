@@ -34,7 +34,6 @@ mod schema;
 mod set;
 mod sources;
 mod spectrum;
-mod threads;
 mod time_limit;
 mod version;
 mod view;
@@ -58,7 +57,7 @@ pub fn main(unpack: Unpack) -> ExitCode {
 /// bring, which `--licenses` shows after its own.
 pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
     limits::report_large_files();
-    threads::make();
+    spectra_session::make_threads();
     ExitCode::from(answer(std::env::args_os(), unpack, notices))
 }
 

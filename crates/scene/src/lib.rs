@@ -20,7 +20,7 @@ mod landing;
 mod language;
 mod lens_section;
 mod light_layer;
-pub mod metering;
+mod metering;
 mod negatives;
 mod output;
 mod remembered;

@@ -7,7 +7,7 @@
 use crate::{Event, Host, Job, Session, SessionError};
 use spectra_core::params::Warning;
 use spectra_core::shutter;
-use spectra_scene::{SeriesKind, metering};
+use spectra_scene::SeriesKind;
 
 /// Samples over the frame: the mean of an even one is known to about 0.1 %, that of a spot of a hundredth of it to about 1 %.
 const SAMPLES: u64 = 1 << 21;
@@ -17,7 +17,7 @@ const LONGEST_S: f64 = 3600.0;
 /// The series of a job with the exposures of its first frame where its films are metered on that; `None` where they are not.
 pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_scene::Series>, SessionError> {
     let series = job.series;
-    if !matches!(series.kind(), SeriesKind::Animation { .. }) || metering::is_animated(series) {
+    if !matches!(series.kind(), SeriesKind::Animation { .. }) || series.sets_exposures() {
         return Ok(None);
     }
     let first = series.scene(0).map_err(SessionError::Faults)?;

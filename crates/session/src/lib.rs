@@ -44,6 +44,7 @@ mod session;
 mod still;
 mod summary;
 mod taken;
+mod threads;
 pub mod words;
 
 pub use check::{Checked, Look, check};
@@ -63,3 +64,4 @@ pub use run::run;
 pub use session::{Kept, Moment, Session};
 pub use spectra_render::{Alone, Control, Rendering, Threads, Workers};
 pub use spectra_scene::Developed;
+pub use threads::make_threads;

@@ -23,6 +23,7 @@
 //! in mm, and if one column states another unit, all lengths state theirs. Cells are separated by comma, semicolon or tab; with
 //! semicolons and tabs a decimal comma is understood. Lines that start with `#` are comments.
 
+mod cells;
 mod columns;
 mod patent;
 mod table;

@@ -1,5 +1,6 @@
 //! Rows to surfaces.
 
+use super::cells::cells;
 use super::columns::{self, Column, HINT, by_name};
 use super::{patent, units};
 use crate::glass::{Catalogues, OwnCatalogue};
@@ -96,23 +97,6 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
 /// Whether indices stand for the line e, by their heading.
 fn head_line_is_e(heads: &[&str]) -> bool {
     heads.iter().any(|head| head.eq_ignore_ascii_case("ne"))
-}
-
-/// Cells of a line, without blanks and quotes around them.
-pub(super) fn cells(line: &str, separator: char) -> Vec<&str> {
-    let mut cells = Vec::new();
-    let mut quoted = false;
-    let mut start = 0;
-    for (at, c) in line.char_indices() {
-        if c == '"' {
-            quoted = !quoted;
-        } else if c == separator && !quoted {
-            cells.push(&line[start..at]);
-            start = at + c.len_utf8();
-        }
-    }
-    cells.push(&line[start..]);
-    cells.into_iter().map(|cell| cell.trim().trim_matches('"').trim()).collect()
 }
 
 /// What rows so far have said.

@@ -357,9 +357,17 @@ impl Series {
         Ok(series)
     }
 
-    /// The paths that are set for each picture.
-    pub(crate) fn set_paths(&self) -> Vec<String> {
-        self.setting(0).into_iter().map(|(path, _)| path).collect()
+    /// Whether what its films are exposed by is set for each picture: then each is metered by itself.
+    #[must_use]
+    pub fn sets_exposures(&self) -> bool {
+        let used = |path: &str| match path.strip_prefix("variables.") {
+            Some(name) => {
+                let name = name.split(['.', '[']).next().unwrap_or(name);
+                self.uses_of_variable(name).into_iter().map(|(path, _)| path).collect()
+            }
+            None => vec![path.to_owned()],
+        };
+        self.setting(0).iter().flat_map(|(path, _)| used(path)).any(|path| metering::is_of_meter(&path))
     }
 
     /// What is set on top of the scene as it is written: texts `path=value`.

@@ -10,8 +10,8 @@ mod equations;
 mod rows;
 mod words;
 
+use super::cells::cells;
 use super::columns::Column;
-use super::table::cells;
 use crate::number;
 use crate::place::shown;
 use below::Below;

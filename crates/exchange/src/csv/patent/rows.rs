@@ -3,8 +3,8 @@
 use super::words::{figure, is_end, is_other, is_plane, is_stop, is_stop_phrase, is_variable, mark};
 use super::{Found, Row, value};
 use crate::MAX_ITEMS;
+use crate::csv::cells::cells;
 use crate::csv::columns::{Column, by_name};
-use crate::csv::table::cells;
 use std::collections::BTreeMap;
 
 /// A line of headings.
@@ -284,6 +284,8 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
     let at = |i: usize| figures.get(i).and_then(|word| value(word)).unwrap_or(0.0);
     let is_index = |n: f64| (1.2..3.0).contains(&n);
     let mut left = 0;
+    let has_size = head.has(Column::Diameter) || head.has(Column::SemiDiameter);
+    let is_lone_index = figures.len() == 1 && (is_index(at(0)) || at(0) == 1.0) && !has_size;
     let has_abbe = head.has(Column::Abbe);
     if has_abbe && (is_index(at(0)) && at(1) > 10.0 || is_index(at(1)) && at(0) > 10.0) {
         let abbe_first = head.place(Column::Abbe) < head.place(Column::Index);
@@ -291,14 +293,7 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         cells.push((Column::Index, figures[index].clone()));
         cells.push((Column::Abbe, figures[abbe].clone()));
         left = 2;
-    } else if figures.len() == 1
-        && (is_index(at(0)) || at(0) == 1.0)
-        && !head.has(Column::Diameter)
-        && !head.has(Column::SemiDiameter)
-    {
-        cells.push((Column::Index, figures[0].clone()));
-        left = 1;
-    } else if !has_abbe && is_index(at(0)) && figures.len() > 1 {
+    } else if is_lone_index || !has_abbe && is_index(at(0)) && figures.len() > 1 {
         cells.push((Column::Index, figures[0].clone()));
         left = 1;
     } else if at(0) == 1.0 && figures.len() > 1 {
