@@ -17,7 +17,7 @@
 //! | `comment` | `remark`, `note` | words |
 //!
 //! Tables as patents print them, with titles, headings of several words, columns of blanks, equations, marks and blocks of coefficients,
-//! are typed again first, see [`patent`].
+//! are typed again first.
 //!
 //! Case, blanks, `-` and `_` do not matter in names. A unit may follow in brackets: `radius [in]`, `a4 [mm^-3]`; without one lengths are
 //! in mm, and if one column states another unit, all lengths state theirs. Cells are separated by comma, semicolon or tab; with

@@ -74,7 +74,6 @@ fn each_fault_names_its_key() {
         ("iso: 100", "iso: -100", "-100"),
         ("iso: 100", "iso: 100\nisso: 3", "isso"),
         ("name: Mine", "nam: Mine", "nam"),
-        ("reading: linear", "reading: log10", "front matter"),
         ("reading: linear", "reading: linear, floor: 0", "floor"),
         ("reading: linear", "reading: linear, column: red", "red"),
         ("file: tables/pan.csv", "file: tables/pin.csv", "pin.csv"),

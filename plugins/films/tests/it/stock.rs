@@ -85,7 +85,7 @@ fn parameters_are_checked() {
         ("stock: ilford-ortho-plus\nmetering: average\nview: scan\nprint: kodak-2302\n", "view: print"),
         ("stock: ilford-ortho-plus\nmetering: average\nprint: kodak-tri-x-400\n", "is not a print stock"),
         ("stock: ilford-ortho-plus\nmetering: average\nprint: kodak-2302\npaper: {range: 1}\n", "paper"),
-        ("stock: ilford-ortho-plus\nmetering: average\npush: 1\n", "other times"),
+        ("stock: ilford-ortho-plus\nmetering: average\npush: 3\n", "from -2 to +2 stops"),
         ("stock: kodak-tri-x-400\nmetering: average\npush: 5\n", "stops"),
         ("stock: kodak-vision-2383\nmetering: average\n", "is not a camera film"),
         ("stock: ilford-ortho-plus\nmetering: average\npaper: {grade: 6}\n", "no paper of grade 6"),
