@@ -5,7 +5,6 @@ use super::{Found, Row, value};
 use crate::MAX_ITEMS;
 use crate::csv::cells::cells;
 use crate::csv::columns::{Column, by_name};
-use std::collections::BTreeMap;
 
 /// A line of headings.
 pub(super) struct Head {
@@ -104,7 +103,6 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
     for (at, line) in lines.iter().enumerate().skip(head + 1) {
         let plain = line.trim();
         if plain.is_empty() || plain.starts_with('#') {
-            // A blank line ends a table that has a separator only where something else follows.
             continue;
         }
         // Numbers of columns at the head of a page.
@@ -311,7 +309,12 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         let is_glass = head.has(Column::Glass) && !head.has(Column::Comment) && left == 2;
         cells.push((if is_glass { Column::Glass } else { Column::Comment }, remark));
     }
-    let mut seen = BTreeMap::new();
-    cells.retain(|(column, _)| seen.insert(format!("{column:?}"), ()).is_none());
+    // The first of two cells of a column counts.
+    let mut seen = Vec::new();
+    cells.retain(|(column, _)| {
+        let is_first = !seen.contains(column);
+        seen.push(*column);
+        is_first
+    });
     cells
 }
