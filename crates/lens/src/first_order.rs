@@ -94,7 +94,10 @@ impl Lens {
                     let (first, second) = if e.reversed { (after, n) } else { (n, after) };
                     m = m.bend(section.of(e.surface.paraxial_power_per_mm(first, second)), n, after);
                 }
-                Action::Reflect => m = m.bend(section.of(e.vertex_curvature_per_mm()) * (-n - n), n, -n),
+                Action::Reflect => {
+                    let (first, second) = if e.reversed { (-n, n) } else { (n, -n) };
+                    m = m.bend(section.of(e.surface.paraxial_power_per_mm(first, second)), n, -n);
+                }
                 Action::Pass => {}
             }
             if at + 1 < end {

@@ -4,7 +4,7 @@
 //! to face, reflected totally or by a silvered one, until a face lets it out; where it meets the prism again it enters again. What the
 //! faces reflect of light that they let pass is not followed.
 
-use crate::coating::Coating;
+use crate::coating::{Amplitudes, Coating, Polarizing};
 use crate::pose::{Displacement, Pose};
 use glam::{DVec2, DVec3};
 use spectra_core::Loss;
@@ -100,7 +100,7 @@ impl Solid {
         let silvered = (0..n).map(|k| silvered.contains(&k)).collect();
         let (exit, inside_mm) = (Pose::IDENTITY, 0.0);
         let mut own = Self { corners, normals, silvered, half_width_mm, medium, exit, inside_mm, reduced_mm: 0.0 };
-        let axis = own.pass(DVec3::ZERO, DVec3::Z, relative_index, |_, _, _| {}).map_err(|loss| match loss {
+        let axis = own.pass(DVec3::ZERO, DVec3::Z, relative_index, |_| {}).map_err(|loss| match loss {
             Loss::Missed => SolidError::Beside,
             _ => SolidError::Trapped,
         })?;
@@ -169,13 +169,13 @@ impl Solid {
     }
 
     /// Takes a ray through, given in its frame by any point of its line, where the index inside is `index` times that outside. `face` hears
-    /// of each face that it meets: which, the cosine of the angle of incidence, and whether it goes `Some(in)` or is reflected.
+    /// of each face that it meets.
     pub(crate) fn pass(
         &self,
         position: DVec3,
         direction: DVec3,
         index: f64,
-        mut face: impl FnMut(usize, f64, Bend),
+        mut face: impl FnMut(&Face),
     ) -> Result<Passed, Loss> {
         let across = DVec2::new(direction.y, direction.z);
         let speed = across.length();
@@ -214,31 +214,49 @@ impl Solid {
                     // The back of a mirror, or total reflection at the outside.
                     return Err(Loss::Absorbed);
                 }
+                face(&Face {
+                    direction: d,
+                    normal,
+                    cosine,
+                    bend: if self.silvered[k] { Bend::Mirror } else { Bend::Total },
+                });
                 d = (d + 2.0 * cosine * normal).normalize();
-                face(k, cosine, if self.silvered[k] { Bend::Mirror } else { Bend::Total });
             } else {
-                face(k, cosine, if inside { Bend::Out } else { Bend::In });
+                face(&Face { direction: d, normal, cosine, bend: if inside { Bend::Out } else { Bend::In } });
                 d = (ratio * d + (ratio * cosine - inner.sqrt()) * normal).normalize();
                 inside = !inside;
             }
         }
         Err(Loss::Absorbed)
     }
+}
 
-    /// What is left of light after the faces that it meets: by their coating between media of these indices, and by their silver.
-    pub(crate) fn passes(
+/// A face that light meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Face {
+    /// Of the light in front of it.
+    pub direction: DVec3,
+    /// Against the light.
+    pub normal: DVec3,
+    /// Of the angle of incidence.
+    pub cosine: f64,
+    pub bend: Bend,
+}
+
+impl Face {
+    /// What the face does to s and p light by its coating between a medium of index `n` and glass of index `inside`, or by its silver.
+    pub(crate) fn polarizes(
         &self,
-        bend: Bend,
-        cosine: f64,
         [n, inside]: [f64; 2],
         wavelength_nm: f64,
-        (coating, reflectance): (&Coating, f64),
-    ) -> f64 {
-        match bend {
-            Bend::In => coating.transmittance(n, inside, cosine.min(1.0), wavelength_nm).mean(),
-            Bend::Out => coating.transmittance(inside, n, cosine.min(1.0), wavelength_nm).mean(),
-            Bend::Mirror => reflectance,
-            Bend::Total => 1.0,
+        (coating, reflectance): (&Amplitudes<'_>, f64),
+    ) -> Polarizing {
+        let cosine = self.cosine.min(1.0);
+        match self.bend {
+            Bend::In => coating.through(n, inside, cosine, wavelength_nm),
+            Bend::Out => coating.through(inside, n, cosine, wavelength_nm),
+            Bend::Mirror => Polarizing::evenly(reflectance, true),
+            Bend::Total => Amplitudes::of(&Coating::Bare).back(inside, n, cosine, wavelength_nm),
         }
     }
 }

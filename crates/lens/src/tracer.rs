@@ -1,25 +1,25 @@
 //! Tracing of whole batches along a path: straight through the lens in either direction, or by reflections.
 
 mod kernels;
+mod phase;
 mod route;
 
 pub use route::Route;
 
 use crate::absorption::{Absorption, Absorptions, Grid};
 use crate::aperture::{Opening, Shape};
-use crate::coating::Coating;
+use crate::coating::{Amplitudes, Coating};
 use crate::ledger::{Booked, Ledger, StepLedger, living};
 use crate::onion::Bent;
 use crate::path::Path;
-use crate::pose::Pose;
 use crate::scatter::{self, Layer, Meeting, Shares};
 use crate::solid::{Bend, Solid};
-use crate::transmission::{Before, Passage};
+use crate::transmission::{Before, Passage, weigh_polarized};
 use crate::{Element, Lens};
 use glam::DVec3;
 use kernels::{Count, Evaluate, Leave, Reframe};
-use route::{Leg, Move, route};
-use spectra_core::batch::Column;
+use route::{ImagePlane, Leg, Move, route};
+use spectra_core::batch::{Column, Polarization};
 use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
 use spectra_core::surface::{Action, IndexColumns, Interface, Travel};
@@ -56,7 +56,9 @@ pub struct Tracer {
     clips: Vec<f64>,
     /// What the blades of each one's irises leave open, by its apertures; none of other apertures.
     openings: Vec<Vec<Option<Opening>>>,
-    image_pose: Pose,
+    image: ImagePlane,
+    /// Distance from the first vertex that the lens is focused at, mm.
+    focused_mm: f64,
     forward: Route,
     backward: Route,
     media: Vec<Dispersion>,
@@ -165,14 +167,15 @@ impl Tracer {
         let absorptions = Absorptions::of(grid, &absorptions);
         let elements = lens.elements.clone();
         let layers: Vec<Vec<Layer>> = elements.iter().map(|e| e.layers.clone()).collect();
-        let image_pose = lens.image_pose;
-        let way = |travel| route(&elements, &image_pose, &Path::through(elements.len(), travel), None);
+        let image = ImagePlane { pose: lens.image_pose, along_axis_mm: lens.image_along_axis_mm };
+        let way = |travel| route(&elements, &image, &Path::through(elements.len(), travel), None);
         let (forward, backward) = (way(Travel::Forward), way(Travel::Backward));
         Ok(Self {
             elements,
             clips,
             openings,
-            image_pose,
+            image,
+            focused_mm: lens.focused_mm,
             forward,
             backward,
             media,
@@ -191,7 +194,7 @@ impl Tracer {
     /// If the path names an element that the lens does not have.
     #[must_use]
     pub fn route(&self, path: &Path) -> Route {
-        route(&self.elements, &self.image_pose, path, self.scattered.then_some(&self.layers[..]))
+        route(&self.elements, &self.image, path, self.scattered.then_some(&self.layers[..]))
     }
 
     /// The same for light that layers on surfaces scatter at least once ([`crate::Layer`]): batches that follow it must have
@@ -229,6 +232,23 @@ impl Tracer {
     /// What a surface does to the weight of light.
     pub(crate) fn passage(&self, at: usize) -> &Passage {
         &self.passages[at]
+    }
+
+    /// Whether light meets surfaces at so steep angles that what they pass depends on how it was polarized before: prisms and tilted
+    /// plates. Batches then carry its polarization ([`RayBatch::with_polarization`]); elsewhere it makes no difference of a percent.
+    #[must_use]
+    pub fn polarizes(&self) -> bool {
+        /// Cosine of 30 degrees. At both sides of a plate of index 1.5 the mean of s and p light is wrong by 0.0003 there, at 60 degrees by 0.008.
+        const STEEP: f64 = 0.866;
+        let mut axis = DVec3::Z;
+        self.elements.iter().zip(&self.passages).any(|(element, passage)| {
+            let normal = element.pose.rotation.z_axis;
+            let steep = axis.dot(normal).abs() < STEEP;
+            if element.action == Action::Reflect {
+                axis -= 2.0 * axis.dot(normal) * normal;
+            }
+            steep && element.solid.is_none() && element.action == Action::Refract && *passage != Passage::All
+        })
     }
 
     /// As far as light of this direction comes before a surface draws its numbers; straight through where none does.
@@ -322,7 +342,7 @@ impl Tracer {
         }
         let mut alive = rays.len();
         for (step, leg) in route.legs.iter().enumerate() {
-            let ended = self.interact(rays, work, leg, step, self.isa);
+            let ended = self.interact(rays, work, route, step, self.isa);
             if let Some(seen) = &mut seen {
                 work.weigh_absorbed(rays, self.isa);
                 seen(leg.at, rays);
@@ -356,7 +376,8 @@ impl Tracer {
     }
 
     /// Brings a batch along one leg and through its element; says how many rays ended there.
-    fn interact(&self, rays: &mut RayBatch, work: &mut Work, leg: &Leg, step: usize, isa: Isa) -> usize {
+    fn interact(&self, rays: &mut RayBatch, work: &mut Work, route: &Route, step: usize, isa: Isa) -> usize {
+        let leg = &route.legs[step];
         let element = &self.elements[leg.at];
         let shift_mm = match &leg.into {
             Move::Shift(shift_mm) => *shift_mm,
@@ -410,10 +431,11 @@ impl Tracer {
         if let Some((ledger, booked)) = &mut work.ledger {
             booked.settle(rays, &mut ledger.steps[step], |s| &mut s.absorbed);
         }
+        if carries_path {
+            Before::lengthen(rays, interface.before.n);
+            self.add_phase(rays, work, route, step);
+        }
         if let Some(noted) = &mut work.before {
-            if carries_path {
-                Before::lengthen(rays, interface.before.n);
-            }
             if let Some(table) = absorption {
                 noted.absorb(rays, table, isa);
                 if let Some((ledger, booked)) = &mut work.ledger {
@@ -512,12 +534,19 @@ impl Tracer {
         let inside = columns(&work.media[solid.medium], len).n;
         let absorption = self.absorptions.as_ref().and_then(|all| Some((all, all.table_of(solid.medium)?)));
         let weighs = work.before.is_some();
-        if let Some(noted) = &mut work.before {
-            noted.note_directions(rays);
-        }
         let mut paths: Vec<(usize, f64)> = Vec::with_capacity(len);
         let (mut ended, mut clear, mut mirrors) = (0, vec![1.0; len], vec![1.0; len]);
-        let c = rays.columns_mut();
+        let coating = (&Amplitudes::of(&self.solid_coatings[leg.at]), element.reflectance);
+        // Light keeps its polarization from face to face, whether the batch carries it or not.
+        let mut own: [Vec<f64>; 6] =
+            if rays.is_polarized() { Default::default() } else { std::array::from_fn(|_| vec![0.0; len]) };
+        let mut c = rays.columns_mut();
+        let polarization = if c.polarization.is_empty() {
+            let [q, u, v, ax, ay, az] = own.each_mut().map(|column| &mut column[..]);
+            &mut Polarization { q, u, v, axis: [ax, ay, az] }
+        } else {
+            &mut c.polarization
+        };
         for i in 0..len {
             if c.state[i] != ALIVE {
                 continue;
@@ -525,11 +554,12 @@ impl Tracer {
             let from = DVec3::new(c.x[i], c.y[i], c.z[i] - shift_mm);
             let way = DVec3::new(c.l[i], c.m[i], c.n[i]);
             let nm = c.wavelength_nm[i];
-            let passed = solid.pass(from, way, inside[i] / n[i], |_, cosine, bend| {
+            let passed = solid.pass(from, way, inside[i] / n[i], |face| {
                 if weighs {
-                    let of = (&self.solid_coatings[leg.at], element.reflectance);
-                    let left = solid.passes(bend, cosine, [n[i], inside[i]], nm, of);
-                    *(if bend == Bend::Mirror { &mut mirrors[i] } else { &mut clear[i] }) *= left;
+                    let does = face.polarizes([n[i], inside[i]], nm, coating);
+                    let across = face.direction.cross(face.normal).to_array();
+                    let left = weigh_polarized(polarization, i, face.direction.to_array(), across, does);
+                    *(if face.bend == Bend::Mirror { &mut mirrors[i] } else { &mut clear[i] }) *= left;
                 }
             });
             match passed {
@@ -568,11 +598,6 @@ impl Tracer {
                 );
             }
         }
-        if rays.is_polarized()
-            && let Some(noted) = &work.before
-        {
-            noted.polarize(rays, &Passage::All, false, [n, n]);
-        }
         rays.set_surface(number);
         ended
     }
@@ -602,7 +627,7 @@ impl Tracer {
         let mut path = RayPath { points: vec![position], elements: Vec::new(), direction, end: None };
         for (step, leg) in route.legs.iter().enumerate() {
             let element = &self.elements[leg.at];
-            self.interact(&mut rays, &mut work, leg, step, Isa::Baseline);
+            self.interact(&mut rays, &mut work, route, step, Isa::Baseline);
             let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
             path.end = rays.loss(0);
             if path.end.is_none_or(|(cause, _)| cause == Loss::Vignetted) {

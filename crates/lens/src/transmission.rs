@@ -21,13 +21,38 @@ use loops::{
 use passage::Kernel;
 use spectra_core::Loss;
 use spectra_core::RayBatch;
-use spectra_core::batch::Column;
+use spectra_core::batch::{Column, Polarization};
 use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
 
 /// Sine of the angle between the directions before and after below which light keeps its axis: it meets the surface along the
 /// normal, where s and p are the same.
 const NO_PLANE: f64 = 1e-9;
+
+/// The part of ray `i` that goes on from a surface which acts on its polarization, and the state that it goes on in. `direction` is
+/// that in front of the surface, `across` any vector across the plane of incidence; where it has no length, light meets the surface
+/// along the normal and any axis will do.
+pub(crate) fn weigh_polarized(
+    p: &mut Polarization<'_>,
+    i: usize,
+    direction: [f64; 3],
+    across: [f64; 3],
+    does: Polarizing,
+) -> f64 {
+    let size = dot(across, across).sqrt();
+    if size > NO_PLANE {
+        p.turn(i, direction, across.map(|a| a / size));
+    }
+    let (mean, half) = (0.5 * (does.s + does.p), 0.5 * (does.s - does.p));
+    let left = mean + half * p.q[i];
+    if left > 0.0 {
+        let [re, im] = does.mixed;
+        let (u, v) = (p.u[i], p.v[i]);
+        p.q[i] = (half + mean * p.q[i]) / left;
+        (p.u[i], p.v[i]) = ((re * u - im * v) / left, (re * v + im * u) / left);
+    }
+    left
+}
 
 /// Positions and directions in front of a surface, in its frame.
 #[derive(Debug)]
@@ -247,22 +272,7 @@ impl Before {
                     does = does.beside(part, of(&Amplitudes::of(&coating)));
                 }
             }
-            // Across the plane of incidence; where there is none, any axis will do.
-            let across = cross(d, after);
-            let size = dot(across, across).sqrt();
-            if size > NO_PLANE {
-                c.polarization.turn(i, d, across.map(|a| a / size));
-            }
-            let p = &mut c.polarization;
-            let (mean, half) = (0.5 * (does.s + does.p), 0.5 * (does.s - does.p));
-            let left = mean + half * p.q[i];
-            c.weight[i] *= left;
-            if left > 0.0 {
-                let [re, im] = does.mixed;
-                let (u, v) = (p.u[i], p.v[i]);
-                p.q[i] = (half + mean * p.q[i]) / left;
-                (p.u[i], p.v[i]) = ((re * u - im * v) / left, (re * v + im * u) / left);
-            }
+            c.weight[i] *= weigh_polarized(&mut c.polarization, i, d, cross(d, after), does);
         }
     }
 

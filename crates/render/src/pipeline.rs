@@ -195,6 +195,7 @@ pub(crate) struct ThreadState {
 impl ThreadState {
     pub(crate) fn new(pipeline: &Pipeline, capacity: usize) -> Self {
         let rays = RayBatch::new(capacity);
+        let rays = if pipeline.tracer.polarizes() { rays.with_polarization() } else { rays };
         Self {
             rays: if pipeline.draws { rays.with_numbers() } else { rays },
             work: pipeline.tracer.work_for_light(capacity),

@@ -4,13 +4,14 @@ use crate::ray::{Line, Rays, outcome};
 use crate::spread::Spread;
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
-use spectra_core::surface::{Action, Surface};
+use spectra_core::surface::{Action, BentRay, Surface};
 use spectra_core::{Isa, Loss};
 
 /// The laws of surfaces, and what must be known of one to try them.
 ///
 /// - A ray ends up on the sag, on its own line, with a unit direction; the sag is never NaN.
 /// - Snell's law: n' d' x N = n d x N, in the plane of incidence; a mirror keeps the angle.
+/// - Where a surface has a phase, that is what bends light: along the surface, n' d' - n d is its gradient.
 /// - Light is reversible.
 /// - The result does not depend on how rays are split into batches, nor (bit by bit) on the instruction set, nor on rays that
 ///   were dropped; on numbers only where the surface says that it draws them ([`Surface::draws`]). Laws of single rays are tried
@@ -73,6 +74,9 @@ impl SurfaceLaws {
                 for action in [Action::Refract, Action::Reflect, Action::Pass] {
                     self.bends_each(surface, &rays, Rays { indices, action, ..Rays::default() });
                 }
+            }
+            if surface.has_phase() {
+                self.is_bent_by_its_phase(surface, &rays);
             }
             self.is_the_same_however_asked(surface, &rays);
             self.clips(surface, &rays);
@@ -153,6 +157,42 @@ impl SurfaceLaws {
             how.action,
             rays.len()
         );
+    }
+
+    /// Parallel light, whose object is at infinity: between neighboring rays the phase differs as their directions do.
+    fn is_bent_by_its_phase(&self, surface: &dyn Surface, rays: &[Line]) {
+        /// Distance between neighbors, mm: differences are good to its square.
+        const STEP_MM: f64 = 1e-3;
+        for indices in INDICES {
+            for action in [Action::Refract, Action::Reflect] {
+                let how = Rays { indices, action, ..Rays::default() };
+                let (n, m) = (indices.0, if action == Action::Reflect { indices.0 } else { indices.1 });
+                for &(p, d) in rays {
+                    for aside in [DVec3::X, DVec3::Y].map(|axis| axis * STEP_MM) {
+                        let met = how.meet(surface, &[(p - aside, d), (p, d), (p + aside, d)], Isa::detect());
+                        let [Ok((a, from)), Ok((_, after)), Ok((b, to))] = met[..] else { continue };
+                        let phase = |point, after| {
+                            let of = BentRay {
+                                point,
+                                before: d,
+                                after,
+                                wavelength_nm: how.wavelength_nm,
+                                n_before: n,
+                                n_after: m,
+                                object_mm: f64::INFINITY,
+                            };
+                            surface.phase_mm(&of)
+                        };
+                        let (got, want) = (phase(b, to) - phase(a, from), (m * after - n * d).dot(b - a));
+                        assert!(
+                            (got - want).abs() < 1e-5 * STEP_MM,
+                            "{surface:?}: {action:?} from {n} to {m}, ray at {p} mm along {d}: between points {a} and {b} mm the phase \
+                             differs by {got} mm; the way that rays are bent asks for {want} mm"
+                        );
+                    }
+                }
+            }
+        }
     }
 
     /// Other batches and other instruction sets: the same rays.

@@ -8,7 +8,9 @@ use spectra_core::Loss;
 use spectra_core::math::{cos, sin};
 use spectra_core::params::{Angle, Faults, LengthOrInfinity, Params, SpatialFrequency};
 use spectra_core::registry::Context;
-use spectra_core::surface::{Action, Bending, Intersection, KernelShape, PerRay, Ray, ScalarShape, Surface};
+use spectra_core::surface::{Action, Bending, BentRay, Intersection, KernelShape, PerRay, Ray, ScalarShape, Surface};
+
+const MM_PER_NM: f64 = 1e-6;
 
 /// A diffraction grating: lines in parallel planes along the axis, equally spaced on the vertex plane, on a sphere.
 ///
@@ -64,10 +66,8 @@ impl ScalarShape for Grating {
     }
 
     fn redirect(&self, at: &Bending) -> Option<Result<DVec3, Loss>> {
-        /// mm in a nm.
-        const MM: f64 = 1e-6;
         let n_after = if at.action == Action::Reflect { at.n_before } else { at.n_after };
-        let turned = at.n_before * at.direction + at.wavelength_nm * MM * self.order_lines_per_mm;
+        let turned = at.n_before * at.direction + at.wavelength_nm * MM_PER_NM * self.order_lines_per_mm;
         let tangential = (turned - turned.dot(at.normal) * at.normal) / n_after;
         let square = 1.0 - tangential.length_squared();
         if !(square >= 0.0) {
@@ -75,6 +75,14 @@ impl ScalarShape for Grating {
         }
         let away = if at.action == Action::Reflect { -square.sqrt() } else { square.sqrt() };
         Some(Ok(tangential + away * at.normal))
+    }
+
+    fn has_phase(&self) -> bool {
+        true
+    }
+
+    fn phase_mm(&self, ray: &BentRay) -> f64 {
+        ray.wavelength_nm * MM_PER_NM * self.order_lines_per_mm.dot(ray.point)
     }
 }
 

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use spectra_core::Loss;
 use spectra_core::params::{Faults, Length, Params};
 use spectra_core::registry::Context;
-use spectra_core::surface::{Action, Bending, Intersection, PerRay, ScalarShape, Surface};
+use spectra_core::surface::{Action, Bending, BentRay, Intersection, PerRay, ScalarShape, Surface};
 
 /// An ideal lens: every plane across the axis is imaged sharp and to scale, n'/s' = n/s + 1/f at any angle. With u the
 /// slope against the axis and h the place on the lens, n' u' = n u - h / f.
@@ -55,6 +55,32 @@ impl ScalarShape for ThinLens {
         let (u, v) = (slope(at.direction.x, at.point.x), slope(at.direction.y, at.point.y));
         Some(Ok(DVec3::new(u, v, sense).normalize()))
     }
+
+    fn has_phase(&self) -> bool {
+        true
+    }
+
+    /// What makes all paths from a point of the plane that the lens is focused on to its image as long as the one through the center.
+    fn phase_mm(&self, ray: &BentRay) -> f64 {
+        let image_mm = ray.n_after / (self.power_per_mm - ray.n_before / ray.object_mm);
+        ray.n_before * Self::shorter_mm(ray.point, -ray.before, ray.object_mm)
+            + ray.n_after * Self::shorter_mm(ray.point, ray.after, image_mm)
+    }
+}
+
+impl ThinLens {
+    /// By how much the way from the center to a point is longer than that from a place on the lens, mm: the point lies along
+    /// `toward` from the place, at this depth (mm along the axis; negative for a point on the other side, whose ways are negative).
+    fn shorter_mm(place: DVec3, toward: DVec3, depth_mm: f64) -> f64 {
+        if depth_mm.is_infinite() {
+            return toward.dot(place);
+        }
+        let aside = toward * (depth_mm / toward.z.abs());
+        let ways = (place + aside).length() + aside.length();
+        // The difference of the squares of two lengths over their sum: exact for far points, too.
+        let difference = (2.0 * aside.dot(place) + place.length_squared()) / ways;
+        if ways > 0.0 { difference * depth_mm.signum() } else { 0.0 }
+    }
 }
 
 /// An ideal lens without thickness or aberration.
@@ -62,6 +88,10 @@ impl ScalarShape for ThinLens {
 /// For a first layout, for an idealized relay or eyepiece, for tests. Every plane across the axis is imaged sharp and
 /// to scale, n'/s' = n/s + 1/f, at any angle: with u the slope of a ray against the axis and h its height on the lens,
 /// n' u' = n u - h / f. The focal length is the same at all wavelengths.
+///
+/// Its optical path, in `lens trace` and for diffraction, is a convention, since no lens is ideal for all distances at once: all paths
+/// from a point at the distance that the lens is focused at (infinity if it is not focused), as what stands before images it, to the
+/// image are equal.
 ///
 /// It has no glass of its own: what stands behind it is air unless `glass` says otherwise. With `mirror: true` it is an
 /// ideal mirror, with a positive focal length if it converges light. Coatings and Fresnel losses skip it.

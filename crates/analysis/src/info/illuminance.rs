@@ -27,7 +27,8 @@ pub(super) fn relative_illuminance(lens: &Lens, indices: Indices, points_mm: &[[
     let middle = |i: usize| (i as f64 + 0.5) / CELLS as f64;
     let u: Vec<f64> = (0..CELLS * CELLS).map(|i| middle(i / CELLS)).collect();
     let v: Vec<f64> = (0..CELLS * CELLS).map(|i| middle(i % CELLS)).collect();
-    let mut rays = RayBatch::new(BATCH);
+    let rays = RayBatch::new(BATCH);
+    let mut rays = if tracer.polarizes() { rays.with_polarization() } else { rays };
     let mut work = tracer.work_in_place(BATCH);
     let mut illuminance = |point: &DVec3| {
         let mut sum = 0.0;

@@ -5,7 +5,7 @@
 //! and in any order. Out, a row for each:
 //! `status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm`. A `hit` is where the ray
 //! meets the image plane, in the frame of the lens, with its direction there, the part of its light that glass and coatings left, and
-//! index times length from its start; a ray that ended on the way
+//! index times length from its start, with what gratings and ideal lenses add ([`spectra_core::surface::Surface::phase_mm`]); a ray that ended on the way
 //! gives `missed`, `vignetted`, `tir` or `absorbed` and the number of the surface, and its other fields are
 //! empty. A ray that leaves along the image plane has `missed` it: one surface more than the lens has.
 //! On request there is a row `passed` before it for each surface that the ray went through, and the number of the ray before each.
@@ -120,6 +120,12 @@ pub fn trace(
     Ok(bench.summary())
 }
 
+/// A batch of so many rays, with what is asked of each.
+fn room_for(rays: usize, tracer: &Tracer) -> RayBatch {
+    let batch = RayBatch::with_optical_path(rays);
+    if tracer.polarizes() { batch.with_polarization() } else { batch }
+}
+
 /// A batch of rays in front of a lens.
 struct Bench<'a> {
     lens: &'a Lens,
@@ -160,8 +166,8 @@ impl<'a> Bench<'a> {
             isa,
             path: path.cloned().unwrap_or_else(|| Path::through(tracer.surfaces(), Travel::Forward)),
             work: tracer.work_in_place(BATCH),
+            rays: room_for(BATCH, &tracer),
             tracer,
-            rays: RayBatch::with_optical_path(BATCH),
             every_surface,
             outside: Vec::new(),
             single: None,
@@ -288,7 +294,7 @@ impl<'a> Bench<'a> {
             Some((made_for, tracer)) if made_for == nm => tracer,
             _ => Tracer::new(self.lens, Indices::At(nm), self.isa)?,
         };
-        let mut rays = RayBatch::with_optical_path(1);
+        let mut rays = room_for(1, &tracer);
         rays.restart(1);
         let c = rays.columns_mut();
         [c.x[0], c.y[0], c.z[0], c.l[0], c.m[0], c.n[0], c.wavelength_nm[0]] = ray;

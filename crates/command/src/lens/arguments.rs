@@ -355,7 +355,7 @@ pub(crate) struct LensGhosts {
         Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm. A \
         `hit` is where the ray meets the image plane, in the same coordinates; a ray that ends earlier is `missed`, \
         `vignetted`, `tir` or `absorbed`, with the number of the surface, counted from 1. `transmittance` is what \
-        coatings and glass leave of the light, `optical_path_mm` the index times the length from the start of the ray. \
+        coatings and glass leave of the light, `optical_path_mm` the index times the length from the start of the ray, with what gratings and ideal lenses add. \
         --every-surface has a row `passed` for each surface as well, with the direction behind it, and the number of the \
         ray first. Surfaces clip only at stated semi-diameters, unless --f-number sets the stop; the lens is not \
         refocused unless --focus is given.",

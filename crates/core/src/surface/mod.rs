@@ -12,6 +12,7 @@ mod by_batch;
 mod from_sag;
 mod kernel;
 mod per_ray;
+mod phase;
 mod plane;
 mod sag;
 mod search;
@@ -19,6 +20,7 @@ mod search;
 pub use from_sag::FromSag;
 pub use kernel::{Hit, Kernel, KernelShape, Near, Ray, Real};
 pub use per_ray::{Bending, Intersection, PerRay, ScalarShape};
+pub use phase::BentRay;
 pub use plane::Plane;
 pub use sag::SagShape;
 pub use search::nearest_crossing;
@@ -112,6 +114,19 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
     /// works it out from positions and directions before and after.
     fn notes_meeting(&self) -> bool {
         false
+    }
+
+    /// Whether the surface adds to the optical path of rays: see [`Surface::phase_mm`].
+    fn has_phase(&self) -> bool {
+        false
+    }
+
+    /// Optical path, mm, that the surface adds to a ray beside index times way; the same for light that runs back along the ray. Surfaces
+    /// that refract by Snell's law, or reflect, add none. One that bends light otherwise does, or wavefronts behind it are wrong:
+    /// along the surface, n' d' - n d is the gradient of what it adds (order times wavelength times place across the lines for a
+    /// grating). Facets and other steps of a shape that refracts add none either: their path is that of their geometry.
+    fn phase_mm(&self, _ray: &BentRay) -> f64 {
+        0.0
     }
 
     /// Moves the living rays of the batch, given in the frame of the surface before, onto this surface in its own frame, and

@@ -1,6 +1,6 @@
 //! The plain tier: one ray at a time, in ordinary scalar code.
 
-use super::{Action, Interface, Surface, Travel, bend};
+use super::{Action, BentRay, Interface, Surface, Travel, bend};
 use crate::RayBatch;
 use crate::isa::Isa;
 use crate::loss::{ALIVE, Loss};
@@ -60,9 +60,18 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
         None
     }
     /// For surfaces that bend light by another law than Snell's, such as an ideal lens or a grating: the unit direction after
-    /// the surface, or why the ray ends. `None`, the default, refracts or reflects as the action says.
+    /// the surface, or why the ray ends. `None`, the default, refracts or reflects as the action says. Such a surface has a
+    /// [phase](ScalarShape::phase_mm), too.
     fn redirect(&self, _at: &Bending) -> Option<Result<DVec3, Loss>> {
         None
+    }
+    /// As [`Surface::has_phase`].
+    fn has_phase(&self) -> bool {
+        false
+    }
+    /// As [`Surface::phase_mm`].
+    fn phase_mm(&self, _ray: &BentRay) -> f64 {
+        0.0
     }
     /// As [`Surface::is_stop`].
     fn is_stop(&self) -> bool {
@@ -106,6 +115,12 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     }
     fn draws(&self) -> bool {
         self.0.draws()
+    }
+    fn has_phase(&self) -> bool {
+        self.0.has_phase()
+    }
+    fn phase_mm(&self, ray: &BentRay) -> f64 {
+        self.0.phase_mm(ray)
     }
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize {
         if let Some(lost) = self.0.by_batch(rays, interface, isa) {

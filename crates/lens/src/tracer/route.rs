@@ -27,9 +27,19 @@ impl Move {
     }
 }
 
+/// Where the image plane stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ImagePlane {
+    pub(super) pose: Pose,
+    /// Length of the axis to it from the first vertex, mm.
+    pub(super) along_axis_mm: f64,
+}
+
 /// A path made ready: where each surface stands seen from the one before, what it does, and between which media.
 #[derive(Clone, Debug)]
 pub struct Route {
+    /// From which side it enters.
+    pub(super) enters: Travel,
     pub(super) legs: Vec<Leg>,
     /// Into the frame in which the light leaves.
     pub(super) out: Move,
@@ -52,6 +62,8 @@ pub(super) struct Leg {
     pub(super) at: usize,
     /// Into the frame of the surface.
     pub(super) into: Move,
+    /// Length of the axis, along the light, from the vertex before, mm: from the first vertex or the image plane for the first leg.
+    pub(super) length_mm: f64,
     pub(super) action: Action,
     /// Whether a refracting surface reflects.
     pub(super) turns: bool,
@@ -72,8 +84,9 @@ pub(super) struct Leg {
 }
 
 /// A path made ready; for light that is scattered at least once by these layers of elements, if there are any.
-pub(super) fn route(elements: &[Element], image_pose: &Pose, path: &Path, layers: Option<&[Vec<Layer>]>) -> Route {
-    let end = |at_front: bool| if at_front { &Pose::IDENTITY } else { image_pose };
+pub(super) fn route(elements: &[Element], image: &ImagePlane, path: &Path, layers: Option<&[Vec<Layer>]>) -> Route {
+    let end = |at_front: bool| if at_front { &Pose::IDENTITY } else { &image.pose };
+    let mut along_mm = if path.enters() == Travel::Forward { 0.0 } else { image.along_axis_mm };
     let mut frame = end(path.enters() == Travel::Forward);
     let mut outside = 0;
     let mut legs: Vec<Leg> = Vec::with_capacity(path.steps().len());
@@ -88,6 +101,10 @@ pub(super) fn route(elements: &[Element], image_pose: &Pose, path: &Path, layers
         legs.push(Leg {
             at: *at,
             into: Move::between(frame, &element.pose),
+            length_mm: match travel {
+                Travel::Forward => element.along_axis_mm - along_mm,
+                Travel::Backward => along_mm - element.along_axis_mm,
+            },
             action: if turns { Action::Reflect } else { element.action },
             turns,
             travel: sense(element, *travel),
@@ -103,7 +120,7 @@ pub(super) fn route(elements: &[Element], image_pose: &Pose, path: &Path, layers
             }),
             soiled: None,
         });
-        (frame, outside) = (&element.pose, after);
+        (frame, outside, along_mm) = (&element.pose, after, element.along_axis_mm);
     }
     if let Some(layers) = layers {
         let most = |leg: &Leg| if leg.turns { 0.0 } else { Shares::most_scattered(&layers[leg.at]) };
@@ -119,7 +136,7 @@ pub(super) fn route(elements: &[Element], image_pose: &Pose, path: &Path, layers
             }
         }
     }
-    Route { legs, out: Move::between(frame, end(path.leaves() == Travel::Backward)), outside }
+    Route { enters: path.enters(), legs, out: Move::between(frame, end(path.leaves() == Travel::Backward)), outside }
 }
 
 /// The sense in which light meets a surface, along the surface's own z: behind a mirror, or where the surface is turned

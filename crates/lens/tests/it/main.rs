@@ -4,6 +4,7 @@ mod chance;
 mod onion;
 mod passing;
 mod paths;
+mod phases;
 mod polarization;
 mod prisms;
 mod scatter;

@@ -19,7 +19,8 @@ fn lens(surfaces: &str) -> Result<Lens, String> {
 /// Rays through it, each a place and a direction in the frame of the lens: likewise behind it, in the frame of the lens, or why it ended.
 fn traced(lens: &Lens, nm: f64, rays: &[(DVec3, DVec3)]) -> Vec<Result<(DVec3, DVec3, f64), Loss>> {
     let tracer = Tracer::new(lens, Indices::Band { min_nm: 380.0, max_nm: 780.0 }, Isa::detect()).expect("media");
-    let mut batch = RayBatch::with_optical_path(rays.len());
+    let batch = RayBatch::with_optical_path(rays.len());
+    let mut batch = if tracer.polarizes() { batch.with_polarization() } else { batch };
     batch.restart(rays.len());
     let c = batch.columns_mut();
     for (i, (p, d)) in rays.iter().enumerate() {
@@ -206,6 +207,36 @@ fn light_is_booked() {
     let silver = lens(&text.replace("width: 20", "width: 20, silvered: [2], reflectance: 0.9")).expect("a prism");
     let (_, _, weight) = traced(&silver, D_NM, &[(DVec3::new(0.0, 0.0, -5.0), DVec3::Z)])[0].expect("passes");
     assert!(weight < 0.9 + 1e-12 && weight > 0.85, "{weight}");
+}
+
+/// A dispersing prism of bare glass: s and p light pass both faces each by its own transmittance (Fresnel; Born and Wolf 1.5.2), so
+/// unpolarized light passes by the mean of the products, not by the product of the means. The prism as one solid and as two tilted
+/// planes agree.
+#[test]
+fn light_keeps_its_polarization_from_face_to_face() {
+    let solid = "  - {kind: prism, apex: 60, side: 30, glass: SCHOTT/N-SF11, thickness: 150}\n";
+    let mut solid = lens(solid).expect("a prism").with_coating(Coating::Bare);
+    solid.absorption = false;
+    let bundled = concat!(env!("CARGO_MANIFEST_DIR"), "/../../lenses/prism-60-sf11.yaml");
+    let mut planes = spectra_lens::load(bundled, &FileResources::beside(std::path::Path::new(""))).expect("a lens");
+    planes.absorption = false;
+    let n = solid.index(1, D_NM);
+    let (a, b) = ((n * 0.5).asin(), std::f64::consts::FRAC_PI_6);
+    let s = 1.0 - ((a - b).sin() / (a + b).sin()).powi(2);
+    let p = 1.0 - ((a - b).tan() / (a + b).tan()).powi(2);
+    // At least deviation both faces have the same angles.
+    let want = 0.5 * (s * s + p * p);
+    assert!(want - (0.5 * (s + p)).powi(2) > 0.01);
+    for (name, lens) in [("solid", &solid), ("planes", &planes)] {
+        let (_, _, weight) = traced(lens, D_NM, &[(DVec3::new(0.0, 0.0, -50.0), DVec3::Z)])[0].expect("passes");
+        assert!((weight - want).abs() < 1e-5, "{name}: {weight} {want}");
+    }
+    // Light aside of the plane of symmetry, too.
+    for d in [DVec3::new(0.15, 0.02, 1.0), DVec3::new(-0.1, -0.03, 1.0)] {
+        let ray = [(DVec3::new(-20.0 * d.x, -20.0 * d.y, -20.0), d)];
+        let [a, b] = [&solid, &planes].map(|lens| traced(lens, D_NM, &ray)[0].expect("passes").2);
+        assert!((a - b).abs() < 1e-6 && a < 1.0, "{a} {b}");
+    }
 }
 
 #[test]
