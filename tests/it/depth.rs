@@ -290,6 +290,71 @@ fn overscan_lies_beside_the_picture() {
     assert!(told.contains("20 pixels beyond the display window on the left, 0 on the right"), "{told}");
 }
 
+/// A room whose depth counts along the ray, read as along the axis, and the other way round; things nearer than two focal lengths. In
+/// OpenEXR, and in TIFF and PNG of 16 bits.
+#[test]
+fn kinds_of_depth_and_near_things_are_asked_about() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let (width, height) = (96_usize, 54_usize);
+    let gray: Vec<f32> = vec![0.5; width * height];
+    // A wall at 4 m, a floor 1 m below; the plane of the picture, 2 m wide, is at 2 m.
+    let depth = |ray: bool, near_mm: f32| -> Vec<f32> {
+        let place = |i: usize, n: usize| (i as f64 + 0.5 - 0.5 * n as f64) / width as f64;
+        let pixel = |i: usize| {
+            let (u, v) = (place(i % width, width), place(i / width, height));
+            let z = if v > 0.0 { (1000.0 / v).min(4000.0) } else { 4000.0 };
+            let along = if ray { (1.0 + u * u + v * v).sqrt() } else { 1.0 };
+            if i == 0 && near_mm > 0.0 { near_mm } else { (z * along) as f32 }
+        };
+        (0..width * height).map(pixel).collect()
+    };
+    let file = |name: &str, depth: Vec<f32>| {
+        let channels = [("R", gray.clone()), ("G", gray.clone()), ("B", gray.clone()), ("Z", depth)];
+        exr_file(&at(name), (width, height), &channels);
+    };
+    file("z.exr", depth(false, 0.0));
+    file("ray.exr", depth(true, 0.0));
+    file("near.exr", depth(false, 60.0));
+    for name in ["ray.png", "ray.tif"] {
+        let codes: Vec<u16> = depth(true, 0.0).iter().map(|mm| mm.round() as u16).collect();
+        let deep =
+            image::ImageBuffer::<image::Luma<u16>, _>::from_vec(width as u32, height as u32, codes).expect("all");
+        deep.save(at(name)).expect("written");
+    }
+    let asked = |file: &str, depth: &str| {
+        let text = format!(
+            "spectra: 1\nsource: {{kind: picture, file: {file}, distance: 2 m, width: 2 m, depth: {depth}}}\n\
+             lens: {{file: zeiss-biotar-50-f1.4}}\nimager: {{kind: xyz, format: 135, resolution: [6, 4]}}\n"
+        );
+        std::fs::write(at("scene.yaml"), text).expect("written");
+        let scene = spectra_scene::load(&at("scene.yaml"), &[]).unwrap_or_else(|faults| panic!("{faults}"));
+        scene.source.prepare().unwrap_or_else(|faults| panic!("{faults}"));
+        scene.source.doubts().iter().map(|doubt| format!("{doubt}\n")).collect::<String>()
+    };
+    for (file, wrong, words, right) in [
+        ("ray.exr", "{}", "did you mean `kind: ray`?", "{kind: ray}"),
+        ("z.exr", "{kind: ray}", "did you mean `kind: z`?", "{kind: z}"),
+        (
+            "z.exr",
+            "{file: ray.png, scale: 65535}",
+            "did you mean `kind: ray`?",
+            "{file: ray.png, scale: 65535, kind: ray}",
+        ),
+        (
+            "z.exr",
+            "{file: ray.tif, scale: 65535}",
+            "did you mean `kind: ray`?",
+            "{file: ray.tif, scale: 65535, kind: ray}",
+        ),
+        ("near.exr", "{}", "under two focal lengths", "{near: 20 cm}"),
+    ] {
+        let said = asked(file, wrong);
+        assert!(said.contains(words), "{file} {wrong}: {said}");
+        assert_eq!(asked(file, right), "", "{file} {right}");
+    }
+}
+
 #[test]
 fn mistaken_depths_are_asked_about() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -26,6 +26,8 @@ pub struct View {
     sights: Vec<Sight>,
     /// Points of the frame with a line of sight that runs backward, so that they cannot see a plane.
     beside: Vec<usize>,
+    /// Focal length of the lens, mm, where it is known.
+    focal_length_mm: Option<f64>,
 }
 
 impl View {
@@ -33,7 +35,19 @@ impl View {
     /// or more.
     #[must_use]
     pub fn new(sights: Vec<Sight>, beside: Vec<usize>) -> Self {
-        Self { sights, beside }
+        Self { sights, beside, focal_length_mm: None }
+    }
+
+    /// The same view, through a lens of this focal length, mm.
+    #[must_use]
+    pub fn with_focal_length(self, mm: f64) -> Self {
+        Self { focal_length_mm: Some(mm.abs()).filter(|mm| mm.is_finite()), ..self }
+    }
+
+    /// Focal length of the lens, mm, positive; `None` where it is not known, or infinite.
+    #[must_use]
+    pub fn focal_length_mm(&self) -> Option<f64> {
+        self.focal_length_mm
     }
 
     /// Whether a plane across the axis can fill the frame. It cannot if the lens looks to the side or behind.

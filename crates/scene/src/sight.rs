@@ -81,7 +81,8 @@ pub(crate) fn seen(lens: &Lens, imager: &dyn Imager, search: Search<'_>) -> Opti
         diagonal_mm: diagonal_mm(imager.size()),
         share: unlit as f64 / points.len() as f64,
     });
-    Some(Seen { view: View::new(sights, beside), dark })
+    let view = View::new(sights, beside).with_focal_length(lens.first_order(lens.reference_nm).efl_mm);
+    Some(Seen { view, dark })
 }
 
 fn diagonal_mm(size: FrameSize) -> f64 {

@@ -1,9 +1,10 @@
 //! A glass by its figures, as patents state them.
 
 use super::stated_lines::{self, ThreeLines};
-use crate::formula::ModelGlass;
+use crate::formula::{ModelGlass, resonance};
 use crate::lines::{self, Line, LineTriple};
 use crate::medium::Medium;
+use crate::{Category, Glass};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Params};
@@ -91,6 +92,22 @@ pub struct AbbeNumber {
     /// Abbe number, 5 to 200.
     #[schemars(range(min = 5, max = 200))]
     pub v: f64,
+    /// How the index runs between the lines and beyond: `normal` (the default) as that of real glasses does on average, `resonance` as
+    /// n = A + B / (L^2 - 0.014 um^2), which some renderers use. That needs `n`, and no other figure.
+    #[serde(default)]
+    pub curve: AbbeCurve,
+}
+
+/// A curve of dispersion through an index and an Abbe number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+pub enum AbbeCurve {
+    /// That of glasses on the normal lines of partial dispersion.
+    #[default]
+    Normal,
+    /// One resonance in the ultraviolet: n = A + B / (L^2 - 0.014 um^2).
+    Resonance,
 }
 
 impl Figures {
@@ -199,6 +216,23 @@ impl Figures {
             ([(_, _, n)], []) => format!("n = {n}"),
             _ => named.map(figure).collect::<Vec<_>>().join(", "),
         };
+        if let (Some(AbbeNumber { curve: AbbeCurve::Resonance, .. }), Some(lines)) = (&self.abbe, self.abbe_lines()) {
+            let [(ANY_N, _, n)] = indices[..] else {
+                let fault = params
+                    .fault("abbe.curve", "this curve follows from an index and an Abbe number at three lines alone");
+                return Err(
+                    fault.hint("`abbe: {curve: resonance, lines: [F, d, C], n: 1.62, v: 36.4}`, and no other figure")
+                );
+            };
+            let [(ANY_V, _, v)] = abbe[..] else {
+                let fault = params.fault("abbe.curve", "this curve follows from one Abbe number alone");
+                return Err(fault.hint("leave the other one out"));
+            };
+            let formula = resonance::through(n, v, lines);
+            let range = (*MODEL_NM.start(), *MODEL_NM.end());
+            let glass = Glass::new("", &format!("{label}, one resonance"), Category::User, formula, range);
+            return Ok((Medium::Glass(glass.into()), format!("{label}, one resonance")));
+        }
         let medium = match (&indices[..], &abbe[..]) {
             ([], []) => {
                 let fault = params.fault_here("the glass has no index");

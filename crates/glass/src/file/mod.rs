@@ -12,7 +12,7 @@ mod figures;
 mod stated_lines;
 mod yaml;
 
-pub use figures::{AbbeNumber, Figures};
+pub use figures::{AbbeCurve, AbbeNumber, Figures};
 pub use stated_lines::{StatedLine, StatedLines, ThreeLines};
 pub use yaml::{GlassFile, InternalTransmittance, from_params};
 

@@ -181,6 +181,7 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
     }
     let formula = match p.figures.medium(params)?.0 {
         Medium::Model(model) => Formula::Model(model),
+        Medium::Glass(glass) => glass.formula.clone(),
         medium => Formula::Constant(medium.index(crate::lines::D.wavelength_nm)),
     };
     Ok(plain(formula, BAND_NM))

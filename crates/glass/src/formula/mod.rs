@@ -40,6 +40,7 @@ mod melt;
 mod model;
 mod numbered;
 mod polynomial;
+pub(crate) mod resonance;
 mod sellmeier;
 mod table;
 mod unit;

@@ -1,6 +1,7 @@
 //! The tests of this crate as its users see it: one program, so that what they need is linked once.
 
 mod chance;
+mod glasses;
 mod onion;
 mod passing;
 mod paths;

@@ -1,5 +1,6 @@
 //! From the bytes of a picture file to linear light, hostile files included.
 
+use super::cmyk::Cmyk;
 use super::encoding::Encoding;
 use super::header::Header;
 use super::linear::{Choice, Linear, MAX_SIDE, OPAQUE, Trouble, check_size, finite, mend, over_black, positive};
@@ -128,9 +129,11 @@ fn decoder<'a>(
 ) -> Result<impl ImageDecoder + 'a, NotRead> {
     let is_tiff = format == ImageFormat::Tiff;
     let widened = if is_tiff { tiff::Widened::new(found.open().map_err(io)?) } else { None };
-    let decoder: Box<dyn ImageDecoder + 'a> = match widened {
-        Some(widened) => Box::new(widened),
-        None => Box::new(ImageReader::with_format(reader, format).into_decoder()?),
+    let inks = Cmyk::new(found.open().map_err(io)?, found, format);
+    let decoder: Box<dyn ImageDecoder + 'a> = match (widened, inks) {
+        (Some(widened), _) => Box::new(widened),
+        (None, Some(inks)) => Box::new(inks),
+        (None, None) => Box::new(ImageReader::with_format(reader, format).into_decoder()?),
     };
     let bytes = found.size_bytes().map_err(io)?;
     let (width, height) = decoder.dimensions();
@@ -484,6 +487,28 @@ mod tests {
                 assert_eq!(of(format, alpha), png, "{format:?}");
             }
         }
+    }
+
+    /// A lossy WebP of a smooth picture against the PNG that it was made of (`xtask/picture_samples.py`): mean difference in CIELAB of 2.
+    #[test]
+    fn lossy_webp_is_near_its_original() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/");
+        let [lossy, plain] = ["lossy.webp", "lossy.png"].map(|name| {
+            let bytes = std::fs::read(format!("{folder}{name}")).expect("a sample");
+            decode(&bytes, Choice::default()).expect("a picture")
+        });
+        assert_eq!((lossy.width, lossy.height), (plain.width, plain.height));
+        let lab = |light: &[f32; 3]| {
+            let space = spectra_color::RgbSpace::srgb();
+            let xyz = apply(&space.xyz_from_rgb, light.map(f64::from));
+            spectra_color::lab(xyz, space.white_xyz())
+        };
+        let differences = lossy.rgb.iter().zip(&plain.rgb).map(|(a, b)| {
+            let [a, b] = [lab(a), lab(b)];
+            (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt()
+        });
+        let mean = differences.sum::<f64>() / lossy.rgb.len() as f64;
+        assert!(mean < 2.0 && mean > 0.0, "{mean}");
     }
 
     /// A TIFF of 20 x 19 pixels whose sample c of pixel (x, y) is `of(c, x, y)`, a plane for each channel or pixel by pixel, in

@@ -51,6 +51,38 @@ fn is_whole(mut file: impl BufRead) -> io::Result<bool> {
     }
 }
 
+/// How many components its picture has, by the header of its frame (B.2.2); `None` where there is none.
+pub(super) fn components(mut file: impl BufRead) -> Option<u8> {
+    /// Behind the length: bits of a sample, height, width, components.
+    const COMPONENTS_AT: usize = 5;
+    let mut marker = [0; 2];
+    fill(&mut file, &mut marker).ok().filter(|is| *is)?;
+    loop {
+        let mut marker = [0xff];
+        while marker[0] == 0xff {
+            fill(&mut file, &mut marker).ok().filter(|is| *is)?;
+        }
+        let mut length = [0; 2];
+        fill(&mut file, &mut length).ok().filter(|is| *is)?;
+        let length = u64::from(u16::from_be_bytes(length)).saturating_sub(2);
+        match marker[0] {
+            // Tables of codes, JPEG extensions and arithmetic conditioning have numbers among those of frames.
+            0xc0..=0xcf if !matches!(marker[0], 0xc4 | 0xc8 | 0xcc) => {
+                let mut frame = [0; COMPONENTS_AT + 1];
+                fill(&mut file, &mut frame).ok().filter(|is| *is)?;
+                return Some(frame[COMPONENTS_AT]);
+            }
+            // The data of a scan follow, and no frame.
+            0xda => return None,
+            _ => {
+                io::copy(&mut file.by_ref().take(length), &mut io::sink()).ok()?;
+                let mut next = [0];
+                fill(&mut file, &mut next).ok().filter(|is| *is && next[0] == 0xff)?;
+            }
+        }
+    }
+}
+
 /// Reads as many bytes; says whether there were so many.
 fn fill(file: &mut impl Read, bytes: &mut [u8]) -> io::Result<bool> {
     match file.read_exact(bytes) {

@@ -2,6 +2,7 @@
 
 mod beginning;
 mod channels;
+mod cmyk;
 mod decode;
 mod encoding;
 mod exif;
@@ -10,6 +11,7 @@ mod exr;
 mod exr_tests;
 mod foreign;
 mod header;
+mod inks;
 mod jpeg;
 mod linear;
 mod planes;

@@ -5,7 +5,7 @@ use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, RgbSpace, Transfer};
 
 /// XYZ of the white that profiles are connected by, D50 (7.2.16).
-const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
+pub(super) const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
 /// Bytes of a header, and of an entry of the table of tags.
 const HEADER: usize = 128;
 const ENTRY: usize = 12;
@@ -46,7 +46,7 @@ pub(super) fn read(bytes: &[u8]) -> Option<Stated> {
 }
 
 /// The bytes of a tag.
-fn tag<'a>(bytes: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
+pub(super) fn tag<'a>(bytes: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     let count = (long(bytes, HEADER)? as usize).min(MOST_TAGS);
     let entry =
         (0..count).map(|i| HEADER + 4 + i * ENTRY).find(|at| bytes.get(*at..*at + 4).is_some_and(|own| own == name))?;
@@ -54,13 +54,13 @@ fn tag<'a>(bytes: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     bytes.get(at..at.checked_add(length)?)
 }
 
-fn long(bytes: &[u8], at: usize) -> Option<u32> {
+pub(super) fn long(bytes: &[u8], at: usize) -> Option<u32> {
     let four = bytes.get(at..at.checked_add(4)?)?;
     Some(u32::from_be_bytes([four[0], four[1], four[2], four[3]]))
 }
 
 /// A number in 16.16 bits.
-fn fixed(bytes: &[u8], at: usize) -> Option<f64> {
+pub(super) fn fixed(bytes: &[u8], at: usize) -> Option<f64> {
     Some(f64::from(long(bytes, at)? as i32) / 65_536.0)
 }
 
@@ -110,7 +110,7 @@ fn encoding(tags: &[&[u8]]) -> Option<Encoding> {
 }
 
 /// Light of a code value, 0 to 1, by a curve (10.6 and 10.18).
-fn light(tag: &[u8], code: f64) -> Option<f64> {
+pub(super) fn light(tag: &[u8], code: f64) -> Option<f64> {
     match tag.get(..4)? {
         b"curv" => {
             let count = long(tag, 8)? as usize;

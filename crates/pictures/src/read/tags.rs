@@ -6,7 +6,7 @@ use super::encoding::Encoding;
 use super::linear::Trouble;
 use super::primaries::to_srgb;
 use super::profile::{self, Stated};
-use super::{exif, radiance, tiff};
+use super::{cmyk, exif, radiance, tiff};
 use image::{ImageDecoder, ImageFormat};
 use spectra_color::matrix::Matrix;
 use spectra_color::{RgbSpace, Transfer};
@@ -53,12 +53,18 @@ impl Tags {
                 format!("code points {primaries}, {transfer}, {matrix}, {range} (cICP)")
             });
         }
+        if decoder.original_color_type() == cmyk::KIND {
+            return Self::stated(Some((Encoding::Curve(Transfer::Srgb), to_srgb(cmyk::space()))), String::new);
+        }
         let profile = match format {
             ImageFormat::Tiff => found.open().ok().and_then(tiff::profile),
             _ => decoder.icc_profile().ok().flatten(),
         };
         if let Some(bytes) = profile {
             return Self::stated(profile::read(&bytes), || "a color profile of another kind".to_owned());
+        }
+        if cmyk::is_one(found, format) {
+            return Self { doubt: Some(cmyk::without_profile()), ..Self::default() };
         }
         if format == ImageFormat::Jpeg
             && let Some(space) = decoder.exif_metadata().ok().flatten().and_then(|bytes| exif::stated(&bytes))

@@ -181,8 +181,13 @@ pub(super) fn profile(reader: impl BufRead + Seek) -> Option<Vec<u8>> {
     Decoder::new(reader).ok()?.with_limits(limits).get_tag_u8_vec(Tag::IccProfile).ok()
 }
 
+/// Whether the picture holds four inks.
+pub(super) fn has_inks(reader: impl BufRead + Seek) -> bool {
+    Decoder::new(reader).is_ok_and(|mut decoder| matches!(decoder.colortype(), Ok(tiff::ColorType::CMYK(_))))
+}
+
 /// As the crate `image` says it.
-fn said(error: TiffError) -> ImageError {
+pub(super) fn said(error: TiffError) -> ImageError {
     let format = ImageFormat::Tiff;
     match error {
         TiffError::IoError(error) => ImageError::IoError(error),

@@ -1,5 +1,6 @@
 //! The depth of a picture, from what a file says to millimetres along the axis.
 
+use super::planes::{self, Pixels};
 use super::{find, trouble};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -253,9 +254,26 @@ impl Depth {
         Ok(read)
     }
 
+    /// Whether depth that was read as distance along the axis is one along the ray, or the other way round, which bends walls and floors.
+    pub(super) fn doubt_kind(&self, depth: &[f32], plane_mm: f64, pixels: Pixels) -> Option<Warning> {
+        let (is_ray, other, bend) = match self.kind {
+            DepthKind::Inverse => return None,
+            DepthKind::Z => (false, "ray", "toward the edges they bend away from the lens"),
+            DepthKind::Ray => (true, "z", "toward the edges they bend toward the lens"),
+        };
+        let farthest_mm = self.p.far.map_or(f64::INFINITY, |l| l.mm());
+        if !planes::are_straighter_as(!is_ray, depth, plane_mm, farthest_mm, pixels) {
+            return None;
+        }
+        let read = if is_ray { "`kind: ray`" } else { "`kind: z`, distance along the axis" };
+        let text = format!("read as {read}, its walls and floors are not plane: {bend}");
+        let hint = format!("did you mean `kind: {other}`? Then they are");
+        Some(self.params.fault(if self.p.kind.is_some() { "kind" } else { "channel" }, text).hint(hint).into())
+    }
+
     /// What makes depths doubtful that were read as millimetres: most of them lie far from the plane, where another unit or kind would
-    /// bring them near, or they run from 0 to 1.
-    pub(super) fn doubt(&self, depth: &[f32], plane_mm: f64) -> Option<Warning> {
+    /// bring them near, or they run from 0 to 1; or the nearest lies under two focal lengths from the lens, while the plane is no close-up.
+    pub(super) fn doubt(&self, depth: &[f32], plane_mm: f64, focal_length_mm: Option<f64>) -> Option<Warning> {
         let farthest = self.p.far.map_or(f64::INFINITY, |l| l.mm());
         let mut all: Vec<f32> = depth.iter().copied().filter(|mm| f64::from(*mm) < farthest && *mm < 1e10).collect();
         if all.is_empty() {
@@ -267,8 +285,18 @@ impl Depth {
         let [least, most] = all.iter().fold([f32::INFINITY, 0.0], |[a, b]: [f32; 2], d| [a.min(*d), b.max(*d)]);
         // A view into the distance has its plane in front of most things, but not of all.
         let is_view = median_mm > plane_mm && f64::from(least) < 3.0 * plane_mm;
+        let near = focal_length_mm.filter(|f| f64::from(least) < NEAR * f && plane_mm > 2.0 * NEAR * f);
         if off(median_mm) < FAR_OFF || is_view {
-            return None;
+            return near.map(|f| {
+                let text = format!(
+                    "its nearest depth is {}, under two focal lengths of the lens ({}), while the plane of the picture stands at {}",
+                    length(f64::from(least)),
+                    length(f),
+                    length(plane_mm)
+                );
+                let hint = "are its numbers in another unit, or a few of them wrong? `near: 20 cm` takes what is nearer to be there";
+                self.params.fault("unit", text).hint(hint).into()
+            });
         }
         let said = match self.kind {
             DepthKind::Inverse => self.unit_mm / median_mm,
@@ -304,6 +332,8 @@ impl Depth {
     }
 }
 
+/// Focal lengths within which nothing stands before a lens but in close-ups.
+const NEAR: f64 = 2.0;
 /// How many times farther or nearer than the plane the middle depth is doubted.
 const FAR_OFF: f64 = 10.0;
 

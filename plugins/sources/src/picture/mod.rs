@@ -10,6 +10,7 @@ pub(crate) mod lights;
 pub(crate) mod map;
 mod narrowing;
 mod places;
+mod planes;
 mod spot;
 
 use crate::flat::Flat;
@@ -23,6 +24,7 @@ use field::HeightField;
 use lights::Lights;
 use map::{Importance, PictureMap};
 use places::LightPlaces;
+use planes::Pixels;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Part, Positive, Quantity, Warning};
@@ -30,6 +32,7 @@ use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::resources::{Found, ResourceError};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Source, Still};
+use spectra_core::view::View;
 use spectra_pictures::read::{self, Choice, Header, Linear, Trouble};
 use std::sync::Arc;
 
@@ -195,6 +198,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let emits = edge == Edge::Black;
     let file = Arc::new(file);
     let is_flat = depth.is_none();
+    let focal_length_mm = context.view.and_then(View::focal_length_mm);
     let pixels = {
         let (file, making) = (Arc::clone(&file), Arc::clone(&making));
         move |overscan: [u32; 2]| -> Result<Linear, Faults> {
@@ -224,7 +228,10 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         };
         let plane_mm = distance_mm + depth.eye_mm;
         let all = depth.of(&linear, plane_mm, width_mm, overscan)?;
-        doubts.extend(depth.doubt(&all, plane_mm));
+        let size_px = [linear.width, linear.height];
+        let pixels = Pixels { size_px, aspect: linear.pixel_aspect, pixel_mm: width_mm / f64::from(linear.width) };
+        doubts
+            .extend(depth.doubt(&all, plane_mm, focal_length_mm).or_else(|| depth.doubt_kind(&all, plane_mm, pixels)));
         let map = making.map(linear, &file.name);
         let ends = all.iter().fold([f32::INFINITY, 0.0_f32], |[a, b], d| [a.min(*d), b.max(*d)]);
         let field = Arc::new(HeightField::new(map.width_px, map.height_px, &all, depth.edge));

@@ -1,0 +1,239 @@
+//! Color profiles of four printing inks (ICC.1:2022): amounts of ink to colors, by tables.
+//!
+//! Of the tables of a profile that for relative colorimetry is taken, else its first: paper is white, and the darkest ink is as dark as it
+//! is. Between the entries of the table colors are interpolated along the first ink, and in the tetrahedra of the cube of the others.
+
+use super::profile::{D50, fixed, light, long, tag};
+use spectra_color::matrix::{Matrix, apply, product};
+use spectra_color::{Adaptation, RgbSpace};
+
+/// Inks.
+const INKS: usize = 4;
+/// Most entries of a table: 33 to the fourth.
+const MOST_ENTRIES: usize = 1_185_921;
+/// Points at which curves of other kinds are known.
+const POINTS: usize = 4096;
+
+/// What a profile makes of four inks.
+#[derive(Clone, Debug)]
+pub(super) struct Inks {
+    /// Of each ink.
+    input: [Vec<f64>; INKS],
+    /// Entries along each ink, and three values of each; the last ink varies fastest.
+    grid: [usize; INKS],
+    table: Vec<[f32; 3]>,
+    /// Behind the table: curves, a matrix with an offset, and curves.
+    middle: Option<([Vec<f64>; 3], Matrix, [f64; 3])>,
+    output: [Vec<f64>; 3],
+    /// How three values stand for a color.
+    connection: Connection,
+    /// From XYZ under D50 to linear light in `space`.
+    to_rgb: Matrix,
+}
+
+/// How the three numbers of a profile, 0 to 1, stand for a color.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Connection {
+    Xyz,
+    /// L* up to 100 and a*, b* of -128 to 127.
+    Lab,
+    /// The same in 16 bits of version 2, where 0xff00 is 100 (6.3.4.2).
+    OldLab,
+}
+
+impl Inks {
+    /// By the bytes of a profile, into linear light of a space; `None` where it is of another kind, or broken.
+    pub(super) fn read(bytes: &[u8], space: &RgbSpace) -> Option<Self> {
+        if bytes.get(36..40)? != b"acsp" || bytes.get(16..20)? != b"CMYK" {
+            return None;
+        }
+        let of_lab = match bytes.get(20..24)? {
+            b"XYZ " => false,
+            b"Lab " => true,
+            _ => return None,
+        };
+        let lut = tag(bytes, b"A2B1").or_else(|| tag(bytes, b"A2B0"))?;
+        let to_rgb = product(&space.rgb_from_xyz, &Adaptation::Bradford.matrix(D50, space.white_xyz()));
+        if (*lut.get(8)?, *lut.get(9)?) != (INKS as u8, 3) {
+            return None;
+        }
+        match lut.get(..4)? {
+            b"mft1" => Self::plain(lut, 1, if of_lab { Connection::Lab } else { Connection::Xyz }, to_rgb),
+            b"mft2" => Self::plain(lut, 2, if of_lab { Connection::OldLab } else { Connection::Xyz }, to_rgb),
+            b"mAB " => Self::staged(lut, if of_lab { Connection::Lab } else { Connection::Xyz }, to_rgb),
+            _ => None,
+        }
+    }
+
+    /// Curves, a table and curves, all of so many bytes a number (10.10 and 10.11). Their matrix is for XYZ as input alone.
+    fn plain(lut: &[u8], bytes: usize, connection: Connection, to_rgb: Matrix) -> Option<Self> {
+        let grid = [usize::from(*lut.get(10)?); INKS];
+        let short = |at: usize| Some(usize::from(u16::from_be_bytes([*lut.get(at)?, *lut.get(at + 1)?])));
+        let (entries_in, entries_out, start) = if bytes == 1 { (256, 256, 48) } else { (short(48)?, short(50)?, 52) };
+        if !(2..=4096).contains(&entries_in) || !(2..=4096).contains(&entries_out) {
+            return None;
+        }
+        let numbers = Numbers { bytes: lut, size: bytes };
+        let curve =
+            |at: usize, many: usize| (0..many).map(|i| numbers.at(at + i * bytes)).collect::<Option<Vec<f64>>>();
+        let mut at = start;
+        let mut next = |many: usize| {
+            let own = curve(at, many);
+            at += many * bytes;
+            own
+        };
+        let input = [next(entries_in)?, next(entries_in)?, next(entries_in)?, next(entries_in)?];
+        let table_at = start + INKS * entries_in * bytes;
+        let table = numbers.table(table_at, grid)?;
+        let mut at = table_at + 3 * table.len() * bytes;
+        let mut next = || {
+            let own = curve(at, entries_out);
+            at += entries_out * bytes;
+            own
+        };
+        let output = [next()?, next()?, next()?];
+        Some(Self { input, grid, table, middle: None, output, connection, to_rgb })
+    }
+
+    /// Curves, a table, curves, a matrix and curves (10.12).
+    fn staged(lut: &[u8], connection: Connection, to_rgb: Matrix) -> Option<Self> {
+        let offset = |at: usize| long(lut, at).map(|at| at as usize);
+        let [b, matrix, m, table, a] = [offset(12)?, offset(16)?, offset(20)?, offset(24)?, offset(28)?];
+        if b == 0 || table == 0 || a == 0 {
+            return None;
+        }
+        let input = curves::<INKS>(lut, a)?;
+        let grid: [usize; INKS] = std::array::from_fn(|ink| lut.get(table + ink).map_or(0, |n| usize::from(*n)));
+        let size = usize::from(*lut.get(table + 16)?);
+        if !(1..=2).contains(&size) {
+            return None;
+        }
+        let table = Numbers { bytes: lut, size }.table(table + 20, grid)?;
+        let middle = if m == 0 || matrix == 0 {
+            None
+        } else {
+            let number = |i: usize| fixed(lut, matrix + 4 * i);
+            let mut rows = [[0.0; 3]; 3];
+            for (i, value) in rows.as_flattened_mut().iter_mut().enumerate() {
+                *value = number(i)?;
+            }
+            Some((curves::<3>(lut, m)?, rows, [number(9)?, number(10)?, number(11)?]))
+        };
+        Some(Self { input, grid, table, middle, output: curves::<3>(lut, b)?, connection, to_rgb })
+    }
+
+    /// Linear light of amounts of ink, each from 0 (none) to 1; paper is (1, 1, 1).
+    pub(super) fn light(&self, inks: [f64; INKS]) -> [f64; 3] {
+        let mut values = self.interpolated(std::array::from_fn(|ink| along(&self.input[ink], inks[ink])));
+        if let Some((curves, matrix, offset)) = &self.middle {
+            let curved = std::array::from_fn(|k| along(&curves[k], values[k]));
+            let turned = apply(matrix, curved);
+            values = std::array::from_fn(|k| turned[k] + offset[k]);
+        }
+        let values: [f64; 3] = std::array::from_fn(|k| along(&self.output[k], values[k]));
+        apply(&self.to_rgb, self.connection.xyz(values))
+    }
+
+    fn interpolated(&self, place: [f64; INKS]) -> [f64; 3] {
+        let (mut from, mut part) = ([0_usize; INKS], [0.0; INKS]);
+        for ink in 0..INKS {
+            let at = place[ink].clamp(0.0, 1.0) * (self.grid[ink] - 1) as f64;
+            from[ink] = (at as usize).min(self.grid[ink] - 2);
+            part[ink] = at - from[ink] as f64;
+        }
+        let mut step = [1_usize; INKS];
+        for ink in (0..INKS - 1).rev() {
+            step[ink] = step[ink + 1] * self.grid[ink + 1];
+        }
+        let corner: usize = (0..INKS).map(|ink| from[ink] * step[ink]).sum();
+        // From the near corner of the cube to the far one, along the longest part first.
+        let mut order = [1, 2, 3];
+        order.sort_by(|a, b| part[*b].total_cmp(&part[*a]));
+        let in_cube = |corner: usize| -> [f64; 3] {
+            let mut at = corner;
+            let mut sum = self.table[at].map(|v| f64::from(v) * (1.0 - part[order[0]]));
+            for (k, ink) in order.iter().enumerate() {
+                at += step[*ink];
+                let weight = part[*ink] - order.get(k + 1).map_or(0.0, |next| part[*next]);
+                sum = std::array::from_fn(|c| sum[c] + f64::from(self.table[at][c]) * weight);
+            }
+            sum
+        };
+        let [near, far] = [in_cube(corner), in_cube(corner + step[0])];
+        std::array::from_fn(|c| near[c] + (far[c] - near[c]) * part[0])
+    }
+}
+
+impl Connection {
+    /// XYZ under D50, white's Y 1.
+    fn xyz(self, values: [f64; 3]) -> [f64; 3] {
+        /// Of an old L*, and of an old a* or b* over 255.
+        const OLD: f64 = 65_535.0 / 65_280.0;
+        let (scale, [l, a, b]) = match self {
+            Self::Xyz => return values.map(|v| v * (1.0 + 32_767.0 / 32_768.0)),
+            Self::Lab => (1.0, values),
+            Self::OldLab => (OLD, values),
+        };
+        let (l, a, b) = (100.0 * scale * l, 255.0 * scale * a - 128.0, 255.0 * scale * b - 128.0);
+        // CIE 15:2018, 8.2.1.
+        let fy = (l + 16.0) / 116.0;
+        let f = [fy + a / 500.0, fy, fy - b / 200.0];
+        let light =
+            |f: f64| if f > 6.0 / 29.0 { f * f * f } else { (f - 4.0 / 29.0) * 3.0 * (6.0 / 29.0) * (6.0 / 29.0) };
+        std::array::from_fn(|k| D50[k] * light(f[k]))
+    }
+}
+
+/// Numbers of one or two bytes, 0 to 1.
+struct Numbers<'a> {
+    bytes: &'a [u8],
+    size: usize,
+}
+
+impl Numbers<'_> {
+    fn at(&self, at: usize) -> Option<f64> {
+        let first = *self.bytes.get(at)?;
+        Some(match self.size {
+            1 => f64::from(first) / 255.0,
+            _ => f64::from(u16::from_be_bytes([first, *self.bytes.get(at + 1)?])) / 65_535.0,
+        })
+    }
+
+    fn table(&self, at: usize, grid: [usize; INKS]) -> Option<Vec<[f32; 3]>> {
+        if grid.iter().any(|n| *n < 2) {
+            return None;
+        }
+        let entries = grid.iter().try_fold(1_usize, |all, n| all.checked_mul(*n)).filter(|n| *n <= MOST_ENTRIES)?;
+        // All there, before room is made.
+        self.bytes.get(at..at.checked_add(3 * entries * self.size)?)?;
+        let entry = |i: usize| -> Option<[f32; 3]> {
+            let value = |c: usize| self.at(at + (3 * i + c) * self.size).map(|v| v as f32);
+            Some([value(0)?, value(1)?, value(2)?])
+        };
+        (0..entries).map(entry).collect()
+    }
+}
+
+/// Curves that stand one behind the other, each at a multiple of four bytes.
+fn curves<const N: usize>(lut: &[u8], mut at: usize) -> Option<[Vec<f64>; N]> {
+    let mut all: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
+    for curve in &mut all {
+        let own = lut.get(at..)?;
+        *curve = (0..POINTS)
+            .map(|i| light(own, i as f64 / (POINTS - 1) as f64).filter(|v| v.is_finite()))
+            .collect::<Option<_>>()?;
+        let length = match own.get(..4)? {
+            b"curv" => 12 + 2 * long(own, 8)? as usize,
+            _ => 12 + 4 * [1, 3, 4, 5, 7].get(usize::from(*own.get(9)?))?,
+        };
+        at = at.checked_add(length.next_multiple_of(4))?;
+    }
+    Some(all)
+}
+
+/// A curve at a place from 0 to 1.
+fn along(curve: &[f64], place: f64) -> f64 {
+    let at = place.clamp(0.0, 1.0) * (curve.len() - 1) as f64;
+    let from = (at as usize).min(curve.len() - 2);
+    curve[from] + (curve[from + 1] - curve[from]) * (at - from as f64)
+}
