@@ -8,11 +8,13 @@ Run from the root of the repository, with numpy and scipy:
 Each strategy draws 100 000 wavelengths of D65 (`lines` those of FdC) with independent numbers for each of five seeds: the p-value of
 Kolmogorov and Smirnov's test (for `lines` of the chi-square test) must exceed 0.001. With Sobol numbers the largest difference of the
 distributions must stay below 0.005. The mean of weight, light and response multiplied must be the integral within 4 standard errors. A floor
-follows the response, which is flat here: 1/16 of the samples, 5 % of `source-times-response`.
+follows the response, which is flat here: 1/16 of the samples, 5 % of `source-times-response`. `gaussian-terms` draws from the terms that
+`spectrum fit` prints, without their signs, each by its integral over the band.
 """
 
 import csv
 import io
+import json
 import subprocess
 import sys
 
@@ -29,6 +31,16 @@ def draw(program, light, strategy, seed, numbers="random", many=MANY):
     rows = list(csv.DictReader(io.StringIO(subprocess.run(command, check=True, capture_output=True, text=True).stdout)))
     column = lambda name: np.array([float(row[name] or "nan") for row in rows])
     return column("wavelength_nm"), column("line"), column("density"), column("weight") * column("light") * column("response"), column("light")
+
+
+def of_terms(program):
+    """Distribution of the sum of the fitted terms without their signs, within the band."""
+    told = subprocess.run([program, "spectrum", "fit", "D65", "--json"], check=True, capture_output=True, text=True).stdout
+    terms = [(term["center_nm"], term["sigma_nm"], abs(term["amplitude"])) for term in json.loads(told)["terms"]]
+    within = lambda to, center, sigma: stats.norm.cdf((to - center) / sigma) - stats.norm.cdf((BAND[0] - center) / sigma)
+    shares = np.array([size * sigma * within(BAND[1], center, sigma) for center, sigma, size in terms])
+    parts = [lambda w, c=c, s=s: within(w, c, s) / within(BAND[1], c, s) for c, s, _ in terms]
+    return lambda w: sum(share * part(w) for share, part in zip(shares / shares.sum(), parts))
 
 
 def main():
@@ -49,6 +61,7 @@ def main():
         ("truncated-gaussian{center: 540, sigma: 60}", mixed(1 / 16, gaussian)),
         ("inverse-transform", mixed(1 / 16, of_source)),
         ("source-times-response", mixed(0.05, of_source)),
+        ("gaussian-terms", mixed(1 / 16, of_terms(program))),
     ]
     failed = 0
     for strategy, distribution in cases:

@@ -48,9 +48,34 @@ fn a_tiny_benchmark_writes_what_programs_read() {
         assert!(low <= error && error <= high && error > 0.0, "{row:?}");
         assert!(value("seconds") > 0.0 && value("ciede2000") > 0.0, "{row:?}");
     }
+    // Each seed by itself: the root of the mean of their squares is the error of the table.
+    let seeds = std::fs::read_to_string(folder.path().join("sampling-d65-xyz-sampling-seeds.csv")).expect("a table");
+    let of_seeds: Vec<Vec<&str>> = seeds.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(of_seeds[0][5..], ["relative_rms_error", "relative_error X", "relative_error Y", "relative_error Z"]);
+    let of_first: Vec<f64> = of_seeds[1..]
+        .iter()
+        .filter(|row| row[..4] == [rows[0][0], rows[0][1], rows[0][2], rows[0][3]])
+        .map(|row| row[5].parse().expect("a number"))
+        .collect();
+    let error: f64 = rows[0][column("relative_rms_error")].parse().expect("a number");
+    let mean = of_first.iter().map(|e| e * e).sum::<f64>() / of_first.len() as f64;
+    assert_eq!(of_first.len().to_string(), rows[0][column("seeds")]);
+    assert!((mean.sqrt() / error - 1.0).abs() < 1e-9, "{mean} {error}");
     let svg = std::fs::read_to_string(folder.path().join("sampling-d65-xyz-sampling.svg")).expect("a picture");
     assert!(svg.starts_with("<svg") && svg.contains("samples a pixel"));
     assert!(folder.path().join("sampling-d65-xyz-sampling.png").exists());
+}
+
+/// Another base seed draws other numbers; the same one the same.
+#[test]
+fn a_base_seed_is_followed() {
+    let of = |seed: &str| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let more = ["--integral-only", "--strategies", "uniform", "--samples", "4", "--seeds", "5", "--seed", seed];
+        report(folder.path(), "d65-xyz", &more);
+        std::fs::read_to_string(folder.path().join("sampling-d65-xyz-sampling-seeds.csv")).expect("a table")
+    };
+    assert!(of("7") == of("7") && of("7") != of("8"));
 }
 
 /// Independent uniform wavelengths: the error falls with the root of their number, by the central limit theorem.

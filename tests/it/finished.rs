@@ -181,6 +181,9 @@ fn a_print_in_every_file() {
         "exposure.blue",
         "exposure.green",
         "exposure.red",
+        "print.blue",
+        "print.green",
+        "print.red",
     ];
     assert_eq!(names, wanted);
     assert_eq!(said(&image, "spectra:image state"), "display-referred");
@@ -195,6 +198,14 @@ fn a_print_in_every_file() {
     };
     let (dark, light) = (at(&|a, b| a < b), at(&|a, b| a > b));
     assert!(density[dark] > 0.4 && density[light] > density[dark] + 0.4, "{} {}", density[dark], density[light]);
+    // A print is the denser the thinner its negative; a metered gray has Kodak's aim densities for 2383, 1.09, 1.06 and 1.03: within
+    // 0.05, and the chart's patch of 0.18 is nearly that gray.
+    let printed = plane(&image, "print.green");
+    assert!(printed[dark] > printed[light] + 1.0, "{} {}", printed[dark], printed[light]);
+    let gray = at(&|a, b| (a - 0.04).abs() < (b - 0.04).abs());
+    let read = ["red", "green", "blue"].map(|layer| plane(&image, &format!("print.{layer}"))[gray]);
+    println!("a metered gray prints at {read:?}");
+    assert!((read[1] - 1.06).abs() < 0.15, "{read:?}");
     // The same picture under another encoding.
     let png = file("s.png");
     let found = chunks(&png);

@@ -113,3 +113,33 @@ fn faults_of_the_lens_come_at_once() {
         assert!(faults.contains(word), "{set}: {faults}");
     }
 }
+
+/// A lens file scaled by a scene is a lens of that focal length, with the same f-number, field and light.
+#[test]
+fn a_scene_scales_a_lens_to_a_focal_length() {
+    let load = |lens: &str| {
+        let text = format!(
+            "spectra: 1\nsource: {{kind: white, luminance: 100 cd/m2, distance: 10 m}}\nlens: {{{lens}}}\n\
+             imager: {{kind: xyz, format: 135, resolution: [6, 4]}}\n"
+        );
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("scene.yaml");
+        std::fs::write(&path, text).expect("written");
+        spectra_scene::load(&path, &[]).map_err(|faults| faults.to_string())
+    };
+    for name in ["zeiss-biotar-50-f1.4", "helios-44-58-f2", "canon-ef-70-200-f2.8-at-72"] {
+        let own = load(&format!("file: {name}")).expect("a scene").lens;
+        let scene = load(&format!("file: {name}, focal-length: 120 mm")).expect("a scene");
+        let lens = &scene.lens;
+        let [a, b] = [&own, lens].map(|lens| lens.first_order(lens.reference_nm));
+        let factor = 120.0 / a.efl_mm;
+        assert!((b.efl_mm - 120.0).abs() < 1e-9, "{name}: {}", b.efl_mm);
+        assert!((b.bfl_mm - a.bfl_mm * factor).abs() < 1e-9 * factor, "{name}");
+        let f_number = |lens: &spectra_lens::Lens| lens.marginal_ray().expect("a ray").f_number();
+        assert!((f_number(lens) / f_number(&own) - 1.0).abs() < 1e-6, "{name}");
+        assert!((lens.image_along_axis_mm / own.image_along_axis_mm / factor - 1.0).abs() < 1e-9, "{name}");
+        assert!(scene.all_notes().any(|note| note.contains("scaled from")), "{name}");
+    }
+    let told = load("file: zeiss-biotar-50-f1.4, focal-length: 0 mm").err().expect("refused");
+    assert!(told.contains("focal-length"), "{told}");
+}

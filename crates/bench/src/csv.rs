@@ -36,6 +36,29 @@ pub fn csv(report: &Report) -> String {
     text
 }
 
+/// CSV of each seed by itself, one row a strategy, measure, kind of numbers, number of samples and seed: its relative RMS error, and the
+/// signed relative error of each channel's light, empty where a channel sees none.
+#[must_use]
+pub fn seeds_csv(report: &Report) -> String {
+    let channels: Vec<String> = report.channels.iter().map(|name| quoted(&format!("relative_error {name}"))).collect();
+    let mut text = format!("measure,numbers,strategy,samples,seed,relative_rms_error,{}\n", channels.join(","));
+    for series in &report.series {
+        let of_series = format!("{},{},{}", series.measure.name(), series.numbers.name(), quoted(&series.strategy));
+        for point in &series.points {
+            for of_seed in &point.by_seed {
+                let of_channel = |name: &String| {
+                    let at = point.bias.iter().position(|bias| bias.channel == *name);
+                    at.map_or(String::new(), |at| of_seed.relative[at].to_string())
+                };
+                let errors: Vec<String> = report.channels.iter().map(of_channel).collect();
+                let (samples, seed, error) = (point.samples, of_seed.seed, of_seed.error);
+                text.push_str(&format!("{of_series},{samples},{seed},{error},{}\n", errors.join(",")));
+            }
+        }
+    }
+    text
+}
+
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))

@@ -29,12 +29,12 @@ mod statistics;
 mod strategy;
 mod table;
 
-pub use csv::csv;
+pub use csv::{csv, seeds_csv};
 pub use error::BenchError;
 pub use ghosts::{GhostNoise, GhostRow, GhostSettings, ghost_table, ghosts};
 pub use noise::{NoiseRow, NoiseSettings, noise, noise_table};
 pub use picture::picture;
-pub use report::{ChannelBias, Interval, LeftOut, Measure, NumberKind, Point, Reference, Report, Series};
+pub use report::{ChannelBias, Interval, LeftOut, Measure, NumberKind, OfSeed, Point, Reference, Report, Series};
 pub use runner::{Settings, bench};
 pub use strategy::{Strategy, parse_list};
 pub use table::table;

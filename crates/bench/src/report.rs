@@ -87,6 +87,20 @@ pub struct Point {
     /// Mean CIEDE2000 to the truth, over seeds and pixels; where the channels are X, Y, Z. The lightest pixel of the
     /// truth has Y = 100, and the light itself is the white.
     pub ciede2000: Option<f64>,
+    /// Each seed by itself: [`crate::seeds_csv`] has them; too many for JSON.
+    #[serde(skip)]
+    pub by_seed: Vec<OfSeed>,
+}
+
+/// What one seed gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OfSeed {
+    /// The seed.
+    pub seed: u64,
+    /// Its relative RMS error over channels, and pixels of a scene.
+    pub error: f64,
+    /// Relative error of the light of each channel, with its sign, in the order of [`Point::bias`].
+    pub relative: Vec<f64>,
 }
 
 /// One strategy, measured in one way.

@@ -3,7 +3,7 @@
 use crate::every_factor::{EveryFactor, needs_wavelength};
 use crate::frame::{RENDERS, Truth, renders};
 use crate::integral::{Draws, Measured, exact, measure};
-use crate::report::{ChannelBias, LeftOut, Measure, NumberKind, Point, Reference, Report, Series};
+use crate::report::{ChannelBias, LeftOut, Measure, NumberKind, OfSeed, Point, Reference, Report, Series};
 use crate::statistics::{fit, in_standard_errors, mean_and_variance_of_mean};
 use crate::strategy::{Said, Strategy, all, resolve};
 use crate::{BenchError, colors};
@@ -21,6 +21,8 @@ pub struct Settings {
     pub seeds: usize,
     /// Seeds of each integral, 2 at least: it is so much quicker than a render that it can have many more.
     pub integral_seeds: usize,
+    /// The seed that all others follow from; that of the scene if `None`.
+    pub seed: Option<u64>,
     /// Numbers of samples, each from 1 to 2^20; powers of two keep Sobol points even.
     pub samples: Vec<u32>,
     /// Strategies to compare, the first of which the others are related to; all registered ones if empty.
@@ -203,7 +205,7 @@ impl<'a> Run<'a> {
             return Err(BenchError::Dark);
         }
         let names = system.channels.iter().map(|c| c.name.clone()).collect();
-        let first_seed = scene.render.seed;
+        let first_seed = settings.seed.unwrap_or(scene.render.seed);
         let said = Said::by(scene, overrides)?;
         let wanted = if settings.strategies.is_empty() { all() } else { settings.strategies.clone() };
         let (mut entrants, mut left_out) = (Vec::new(), Vec::new());
@@ -325,6 +327,17 @@ impl<'a> Run<'a> {
             seconds: seconds_a_sample * f64::from(self.samples[at]) * pixels,
             bias: seen.iter().enumerate().map(|(i, c)| bias(&self.names[*c], &measured[at], i)).collect(),
             ciede2000: measured[at].ciede2000,
+            by_seed: measured[at]
+                .squared
+                .iter()
+                .enumerate()
+                .map(|(seed, squared)| OfSeed {
+                    seed: self.seed(at).wrapping_add(seed as u64),
+                    // What the reference's own noise adds is taken off squares, which may leave less than nothing.
+                    error: squared.max(0.0).sqrt(),
+                    relative: measured[at].relative.iter().map(|of_channel| of_channel[seed]).collect(),
+                })
+                .collect(),
         };
         Series {
             strategy: entrant.strategy.label(),

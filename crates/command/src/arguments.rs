@@ -293,7 +293,7 @@ pub(crate) struct SchemaOf {
         intervals by bootstrap over the seeds. `= samples` and `= time` compare a strategy with the first one at the \
         largest number of samples; `bias/se` is the largest deviation of the mean from the true value, in standard \
         errors.\n\n\
-        Writes SCENE-sampling.csv, .svg and .png; the table goes to standard output.",
+        Writes SCENE-sampling.csv, .svg and .png, and SCENE-sampling-seeds.csv with the errors of each seed; the table goes to standard output.",
     after_long_help = "Example: three strategies under a fluorescent lamp\n  \
         spectra bench bench/sampling-fl11-ortho --seeds 4 --samples 1,4,16 --integral-only --strategies \
         'source-times-response, uniform, truncated-gaussian{center: 500, sigma: 60}'"
@@ -312,6 +312,9 @@ pub(crate) struct Bench {
     /// given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=10_000))]
     pub seeds: Option<u16>,
+    /// The seed that those of all renders and integrals follow from; that of the scene if not given.
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
     /// Numbers of samples to test, from 1 to 1048576: for the integral, and per pixel for the scene.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "1,4,16,64,256",
         value_parser = clap::value_parser!(u32).range(1..=1_048_576))]

@@ -41,6 +41,7 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
     let settings = Settings {
         seeds,
         integral_seeds,
+        seed: arguments.seed,
         samples: arguments.samples.clone(),
         strategies,
         render: !arguments.integral_only,
@@ -56,6 +57,7 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
     let picture = spectra_bench::picture(&report);
     let file = |ending: &str| folder.join(format!("{}-sampling.{ending}", report.scene));
     write(&file("csv"), &spectra_bench::csv(&report))?;
+    write(&folder.join(format!("{}-sampling-seeds.csv", report.scene)), &spectra_bench::seeds_csv(&report))?;
     for path in [file("svg"), file("png")] {
         picture.write(&path).map_err(|e| Failure::Failed(e.to_string()))?;
         console::note(&format!("wrote {}", path.display()));

@@ -160,6 +160,12 @@ impl Print {
         (reflectance(&self.paper, self.light - density) - self.black) / (1.0 - self.black)
     }
 
+    /// Density of the print over the paper's white, at a place of the negative with `density`.
+    #[must_use]
+    pub fn density(&self, density: f64) -> f64 {
+        -log10(reflectance(&self.paper, self.light - density))
+    }
+
     /// The picture of a whole negative: [`Print::picture`] of each density, within 1e-6.
     #[must_use]
     pub fn pictures(&self, density: &[f32]) -> Vec<f32> {

@@ -69,6 +69,18 @@ pub(crate) struct Passed {
 }
 
 impl Solid {
+    /// With all lengths times `factor`.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        Self {
+            corners: self.corners.iter().map(|corner| *corner * factor).collect(),
+            half_width_mm: self.half_width_mm * factor,
+            exit: Pose { origin_mm: self.exit.origin_mm * factor, ..self.exit },
+            inside_mm: self.inside_mm * factor,
+            reduced_mm: self.reduced_mm * factor,
+            ..self.clone()
+        }
+    }
+
     /// By its corners (y and z in mm, either way round), the faces that are silvered (from 0), half its width along x, mm, and the index of its
     /// glass over that of what is outside, for the axis.
     ///

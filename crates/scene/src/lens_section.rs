@@ -1,6 +1,6 @@
 //! The `lens` section of a scene: which lens, and how it is set.
 //!
-//! In this order: the lens is turned round, coated, stopped and focused as its maker meant it; then groups go out of place;
+//! In this order: the lens is scaled, turned round, coated, stopped and focused as its maker meant it; then groups go out of place;
 //! a focus by real rays, as a camera finds it, sees them so; a matte box comes last. The frame stands as much farther back
 //! as the plates before it set the image back, whether a distance is focused or not.
 
@@ -28,6 +28,9 @@ pub(crate) struct LensSection {
     /// A lens file beside the scene, or the name of a bundled lens.
     #[expect(dead_code, reason = "states the key; the lens is read even where another key is faulty")]
     file: String,
+    /// Focal length that the lens is scaled to, with all its lengths, at its reference line, mm if bare; the lens file's if absent. Patents
+    /// state many lenses for a focal length of 1 or 100.
+    focal_length: Option<Positive<Length>>,
     /// Whether the lens is mounted back to front.
     #[serde(default)]
     reverse: bool,
@@ -204,6 +207,9 @@ pub(crate) fn held_lens(
         faults.take(spectra_lens::load(file, resources).map_err(|faults| params.place_at("file", faults)))
     });
     let (Some(section), Some(mut lens)) = (section, lens) else { return Err(faults) };
+    if let Some(wanted) = section.focal_length {
+        lens = faults.take(at_focal_length(&lens, wanted.mm(), params)).unwrap_or(lens);
+    }
     lens = as_built(lens, &section, params, resources, &mut faults);
     if let Some(f_number) = section.f_number {
         let stopped = lens.clone().at_f_number(f_number.number());
@@ -291,6 +297,30 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     stop.apertures.extend(apertures);
     Ok(lens)
 }
+
+/// The lens scaled to a focal length, mm.
+fn at_focal_length(lens: &Lens, wanted_mm: f64, params: &Params) -> Result<Lens, Fault> {
+    let own_mm = lens.first_order(lens.reference_nm).efl_mm.abs();
+    // An afocal attachment has none, and so has a flat window.
+    if !(own_mm.is_finite() && own_mm > 0.0 && own_mm < MOST_FOCAL_MM) {
+        let fault =
+            params.fault("focal-length", format!("{} has no focal length that it could be scaled by", lens.name));
+        return Err(fault.hint("leave it out; `spectra lens scale FILE --factor 2` scales a file by a factor"));
+    }
+    let factor = wanted_mm / own_mm;
+    let scaled = lens.clone().scaled(factor);
+    let mut scaled = scaled.map_err(|error| {
+        let fault = params.fault("focal-length", format!("the lens cannot be scaled: {error}"));
+        fault.hint("leave it out, or let the surface say how it scales (`scaled`)")
+    })?;
+    scaled
+        .notes
+        .push(format!("the lens is scaled from a focal length of {own_mm:.4} mm to {wanted_mm} mm, {factor:.5} times"));
+    Ok(scaled)
+}
+
+/// Focal length, mm, from which on a lens counts as having none.
+const MOST_FOCAL_MM: f64 = 1e7;
 
 /// The lens before anything is set on it: turned round or not, coated, absorbing.
 fn as_built(

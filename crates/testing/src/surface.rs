@@ -18,6 +18,7 @@ use spectra_core::{Isa, Loss};
 ///   without numbers.
 /// - Rays beyond the clear semi-diameter are vignetted; a lost ray keeps its cause and the surface's number, one that was lost
 ///   before is left alone.
+/// - At another size, where it knows one, it bends rays alike at places as many times farther out.
 /// - The curvature at the vertex is that of the sag, and rays near the axis are bent by the paraxial power.
 /// - Wild rays (grazing, from far away, along the vertex plane) are met or lost; nothing panics and nothing is NaN.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +82,7 @@ impl SurfaceLaws {
             self.is_the_same_however_asked(surface, &rays);
             self.clips(surface, &rays);
         }
+        self.scales(surface);
         self.is_known_to_paraxial_optics(surface);
         self.survives_wild_rays(surface);
     }
@@ -264,6 +266,27 @@ impl SurfaceLaws {
                     outcome(&batch, i) == clipped[i],
                     "{surface:?}: ray {i} depends on whether its neighbors are alive"
                 );
+            }
+        }
+    }
+
+    fn scales(&self, surface: &dyn Surface) {
+        const FACTOR: f64 = 2.5;
+        let Some(larger) = surface.scaled(FACTOR) else { return };
+        for indices in INDICES {
+            let how = Rays { indices, ..Rays::default() };
+            let rays = self.some_rays(true);
+            let far: Vec<Line> = rays.iter().map(|(p, d)| (*p * FACTOR, *d)).collect();
+            let [own, of_larger] = [how.meet(surface, &rays, Isa::detect()), how.meet(&*larger, &far, Isa::detect())];
+            for (i, (own, of_larger)) in own.iter().zip(&of_larger).enumerate() {
+                let same = match (own, of_larger) {
+                    (Ok((p, d)), Ok((q, e))) => {
+                        (*p * FACTOR - *q).length() < FACTOR * self.tolerance_mm && (*d - *e).length() < self.tolerance
+                    }
+                    // A ray at the very rim may be lost by rounding.
+                    (own, of_larger) => own.is_err() == of_larger.is_err() || self.rays > 100,
+                };
+                assert!(same, "{surface:?}: ray {i} ends as {own:?}; {FACTOR} times as large as {of_larger:?}");
             }
         }
     }

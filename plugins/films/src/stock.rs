@@ -215,9 +215,18 @@ impl StockFilm {
     }
 
     /// The picture of a developed film.
-    fn printed(&self, negative: &Planes, layers: Vec<ExposureChannel>, wanted: Wanted) -> Result<Finished, String> {
+    fn printed(&self, negative: &Planes, mut layers: Vec<ExposureChannel>, wanted: Wanted) -> Result<Finished, String> {
         let Planes { amounts, raster, laid, .. } = negative;
         let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
+        if wanted.layers {
+            let print = match (&self.picture, &planes[..]) {
+                (Picture::Paper(print), [silver]) => Some(vec![("silver".to_owned(), print.densities(silver)?)]),
+                (Picture::Positive(positive), planes) => positive.print_densities(planes),
+                (Picture::Paper(_), _) => None,
+            };
+            let print = print.into_iter().flatten();
+            layers.extend(print.map(|(layer, values)| layer_of("print", &layer, "", values)));
+        }
         let (mut shown, mut open): (Vec<[f32; 3]>, _) = match (&self.picture, &planes[..]) {
             // Paper is a gray between its own black and white: any screen has it.
             (Picture::Paper(print), [silver]) => (print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(), None),

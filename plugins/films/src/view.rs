@@ -5,6 +5,7 @@ use serde::Deserialize;
 use spectra_core::params::Positive as AboveZero;
 use spectra_film::positive::{PictureWhite, Positive, ScanScale};
 use spectra_film::print::{Paper, Print};
+use std::borrow::Cow;
 
 /// `view` as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
@@ -116,9 +117,19 @@ pub(crate) struct PaperPrint {
 impl PaperPrint {
     /// The picture of a negative.
     pub(crate) fn pictures(&self, density: &[f32]) -> Result<Vec<f32>, String> {
+        Ok(self.of(density)?.pictures(density))
+    }
+
+    /// Densities of the print of a negative over the paper's white.
+    pub(crate) fn densities(&self, density: &[f32]) -> Result<Vec<f32>, String> {
+        let print = self.of(density)?;
+        Ok(density.iter().map(|d| print.density(f64::from(*d)) as f32).collect())
+    }
+
+    fn of(&self, density: &[f32]) -> Result<Cow<'_, Print>, String> {
         let automatic = self.automatic.as_ref().map(|paper| Print::automatic(paper, density));
         let automatic = automatic.transpose().map_err(|error| error.to_string())?.flatten();
-        Ok(automatic.as_ref().unwrap_or(&self.metered).pictures(density))
+        Ok(automatic.map_or(Cow::Borrowed(&self.metered), Cow::Owned))
     }
 }
 

@@ -54,7 +54,8 @@ struct ExrParams {
     space: Option<Space>,
     /// Layers beside it. Of light: `direct`, straight through the lens; `ghosts`; `glare`, the veil; `star`, what diffraction moves, negative
     /// where it takes more away than it brings. With `holds: picture`: `exposures` of each channel, of a film in lux seconds after scatter and halation, as
-    /// `exposure.red`; `densities` of each layer of a film as a densitometer reads them, grain included, as `density.red`.
+    /// `exposure.red`; `densities` of each layer of a film as a densitometer reads them, grain included, as
+    /// `density.red`, and of a print's own, as `print.red`, or `print.silver` on paper.
     #[schemars(length(max = 4))]
     layers: Option<Vec<LayerGroup>>,
     /// Of light, so many paths of ghosts as layers of their own: the strongest of the picture by their light on the frame in watts, as
@@ -249,7 +250,7 @@ impl PictureExr {
     fn takes(&self, name: &str) -> bool {
         let is_of = |group: &LayerGroup| match group {
             LayerGroup::Exposures => name.starts_with("exposure."),
-            LayerGroup::Densities => name.starts_with("density."),
+            LayerGroup::Densities => name.starts_with("density.") || name.starts_with("print."),
             // Kinds of light are refused.
             _ => false,
         };

@@ -36,6 +36,11 @@ impl Biconic {
 }
 
 impl SagShape for Biconic {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        let (x, y) = self.curvature_per_mm;
+        Some(Self { curvature_per_mm: (x / factor, y / factor), ..*self })
+    }
+
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
         self.parts(x_mm, y_mm).map(|(numerator, root)| numerator / (1.0 + root))
     }

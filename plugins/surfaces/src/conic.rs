@@ -37,6 +37,10 @@ impl Conic {
 }
 
 impl KernelShape for Conic {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        Some(Self { section: self.section.scaled(factor) })
+    }
+
     /// Half the gradient of c (r^2 + (1 + k) z^2) - 2 z, turned round: unit length on spheres only.
     const UNIT_NORMAL: bool = false;
 

@@ -43,6 +43,10 @@ impl Cylinder {
 }
 
 impl KernelShape for Cylinder {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        Some(Self { x_per_mm: self.x_per_mm / factor, y_per_mm: self.y_per_mm / factor })
+    }
+
     /// From the point of the ray nearest to the vertex, as for the sphere without the coordinate along the axis: with the curvatures c, d of the two sections, of which one
     /// is 0, the surface is c x^2 + d y^2 + (c + d) z^2 - 2 z = 0.
     #[inline(always)]

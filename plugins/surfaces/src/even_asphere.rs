@@ -122,6 +122,12 @@ fn shorter<R: Real>(step: R, last: R) -> R {
 }
 
 impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        let coefficients = shared::scaled_powers(&self.coefficients, 2, 2, factor);
+        let radius_mm = factor / self.section.curvature_per_mm;
+        Some(Self::new(radius_mm, self.section.one_plus_conic - 1.0, &coefficients))
+    }
+
     const UNIT_NORMAL: bool = false;
     const SEARCHES: bool = true;
     const STEPS: bool = true;

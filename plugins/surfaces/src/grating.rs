@@ -40,6 +40,10 @@ impl Grating {
 }
 
 impl ScalarShape for Grating {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        Some(Self { sphere: KernelShape::scaled(&self.sphere, factor)?, ..*self })
+    }
+
     fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection> {
         let (p, d) = (position.to_array(), direction.to_array());
         let radius2 = p[0] * p[0] + p[1] * p[1];

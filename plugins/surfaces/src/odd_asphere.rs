@@ -1,6 +1,6 @@
 //! `kind: odd-asphere`: a conic with a polynomial in all powers of the radius on top.
 
-use crate::shared::{self, ConicSection, MOST_COEFFICIENTS, polynomial};
+use crate::shared::{self, ConicSection, MOST_COEFFICIENTS, polynomial, scaled_powers};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
@@ -27,6 +27,11 @@ impl OddAsphere {
 }
 
 impl SagShape for OddAsphere {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        let coefficients = scaled_powers(&self.coefficients, 0, 1, factor);
+        Some(Self { section: self.section.scaled(factor), coefficients })
+    }
+
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
         let radius2 = x_mm * x_mm + y_mm * y_mm;
         Some(self.section.sag_mm(radius2)? + polynomial(&self.coefficients, radius2.sqrt()).0)

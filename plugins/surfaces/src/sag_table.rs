@@ -113,6 +113,11 @@ fn differentiate(nodes: &mut [[f64; 4]], first: usize, stride: usize, count: usi
 }
 
 impl SagShape for SagTable {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        let nodes = self.nodes.iter().map(|node| node.map(|v| v * factor)).collect();
+        Some(Self { step_mm: self.step_mm * factor, nodes, ..self.clone() })
+    }
+
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
         self.at(x_mm, y_mm).map(|(z, _, _)| z)
     }

@@ -29,6 +29,11 @@ impl ConicSection {
         Self { curvature_per_mm, one_plus_conic: 1.0 + conic }
     }
 
+    /// With all lengths times `factor`.
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        Self { curvature_per_mm: self.curvature_per_mm / factor, ..self }
+    }
+
     /// Sag, mm, and its derivative by r^2, 1/mm, at a square of the radius, mm^2; `None` beyond the rim.
     pub(crate) fn sag_and_slope(&self, radius2: f64) -> Option<(f64, f64)> {
         let c = self.curvature_per_mm;
@@ -47,6 +52,16 @@ impl ConicSection {
     pub(crate) fn sag_mm(&self, radius2: f64) -> Option<f64> {
         self.sag_and_slope(radius2).map(|(sag, _)| sag)
     }
+}
+
+/// Coefficients of r^first, r^(first + step), ..., in mm^(1 - power), where all lengths are `factor` times as long.
+pub(crate) fn scaled_powers(coefficients: &[f64], first: i32, step: i32, factor: f64) -> Vec<f64> {
+    let scaled = |(i, a): (usize, &f64)| {
+        let power = 1 - first - step * i as i32;
+        let each = if power < 0 { 1.0 / factor } else { factor };
+        (0..power.unsigned_abs()).fold(*a, |value, _| value * each)
+    };
+    coefficients.iter().enumerate().map(scaled).collect()
 }
 
 /// A polynomial sum of a_i x^i from i = 0, and its derivative, by Horner's rule.

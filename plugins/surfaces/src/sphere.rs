@@ -24,6 +24,10 @@ impl Sphere {
 }
 
 impl KernelShape for Sphere {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        Some(Self { curvature_per_mm: self.curvature_per_mm / factor, size_mm: self.size_mm * factor.abs() })
+    }
+
     /// With b = n - c (p . d) and q = c p^2 - 2 z the distance t solves c t^2 - 2 b t + q = 0. The form
     /// t = q / (b + sqrt(b^2 - c q)) does not cancel for long radii, and holds for a plane.
     #[inline(always)]

@@ -27,6 +27,10 @@ impl ThinLens {
 }
 
 impl ScalarShape for ThinLens {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        Some(Self { power_per_mm: self.power_per_mm / factor })
+    }
+
     fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection> {
         (direction.z != 0.0)
             .then(|| Intersection { distance_mm: -position.z / direction.z, normal: DVec3::new(0.0, 0.0, 1.0) })

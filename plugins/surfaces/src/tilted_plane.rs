@@ -27,6 +27,10 @@ impl TiltedPlane {
 }
 
 impl KernelShape for TiltedPlane {
+    fn scaled(&self, _factor: f64) -> Option<Self> {
+        Some(*self)
+    }
+
     #[inline(always)]
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let [a, b, c] = self.normal.map(R::constant);

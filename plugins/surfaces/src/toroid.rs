@@ -1,6 +1,6 @@
 //! `kind: toroid`: a curve in the y-z plane, rotated about an axis parallel to y.
 
-use crate::shared::{self, ConicSection, MOST_COEFFICIENTS, polynomial};
+use crate::shared::{self, ConicSection, MOST_COEFFICIENTS, polynomial, scaled_powers};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, LengthOrInfinity, Params};
@@ -50,6 +50,14 @@ impl Toroid {
 }
 
 impl SagShape for Toroid {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        Some(Self {
+            section: self.section.scaled(factor),
+            coefficients: scaled_powers(&self.coefficients, 0, 2, factor),
+            rotation_per_mm: self.rotation_per_mm / factor,
+        })
+    }
+
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
         let (g, _, around, root) = self.parts(x_mm, y_mm)?;
         Some(g + x_mm * x_mm * around / (1.0 + root))

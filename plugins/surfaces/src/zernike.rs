@@ -128,6 +128,15 @@ impl Zernike {
 }
 
 impl SagShape for Zernike {
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        let times = |sum: &Vec<f64>| sum.iter().map(|c| c * factor).collect();
+        Some(Self {
+            section: self.section.scaled(factor),
+            per_mm: self.per_mm / factor,
+            orders: self.orders.iter().map(|both| both.each_ref().map(times)).collect(),
+        })
+    }
+
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
         let conic = self.section.sag_mm(x_mm * x_mm + y_mm * y_mm)?;
         Some(conic + self.sum(x_mm * self.per_mm, y_mm * self.per_mm).0)

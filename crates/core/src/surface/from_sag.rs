@@ -40,6 +40,9 @@ impl<S: SagShape> ScalarShape for FromSag<S> {
     fn extent_mm(&self, radius_mm: f64) -> Option<[f64; 2]> {
         self.0.extent_mm(radius_mm)
     }
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        self.0.scaled(factor).map(Self)
+    }
     fn by_batch(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> Option<usize> {
         let clip2 = interface.clip_radius2_mm2;
         let extent = if clip2.is_finite() { self.0.extent_mm(clip2.sqrt()) } else { None };

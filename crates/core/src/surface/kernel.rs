@@ -5,6 +5,7 @@ use crate::RayBatch;
 use crate::isa::{Isa, Vectorized};
 use crate::loss::{ALIVE, Loss};
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::Arc;
 
 /// The arithmetic that a kernel needs. The tracer uses `f64`; tolerances of the shapes are chosen for it.
 pub trait Real:
@@ -94,7 +95,7 @@ pub struct Near<R> {
 const MOST_SETTLING: usize = 4;
 
 /// A surface in branch-free code. Mark its methods `#[inline(always)]`.
-pub trait KernelShape: Send + Sync + std::fmt::Debug {
+pub trait KernelShape: Send + Sync + std::fmt::Debug + 'static {
     /// Where the ray hits the surface; for a ray along the axis, the vertex.
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R>;
     /// Whether rays come to the surface by steps, from the distance that `hit` guesses: then `approach`, `correct` and `settle`
@@ -159,6 +160,13 @@ pub trait KernelShape: Send + Sync + std::fmt::Debug {
     fn is_stop(&self) -> bool {
         false
     }
+    /// As [`Surface::scaled`].
+    fn scaled(&self, _factor: f64) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
 }
 
 /// Turns a [`KernelShape`] into a [`Surface`].
@@ -177,6 +185,9 @@ impl<S: KernelShape> Surface for Kernel<S> {
     }
     fn notes_meeting(&self) -> bool {
         true
+    }
+    fn scaled(&self, factor: f64) -> Option<Arc<dyn Surface>> {
+        self.0.scaled(factor).map(|shape| Arc::new(Self(shape)) as Arc<dyn Surface>)
     }
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize {
         match interface.action {

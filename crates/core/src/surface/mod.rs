@@ -27,6 +27,7 @@ pub use search::nearest_crossing;
 
 use crate::RayBatch;
 use crate::isa::Isa;
+use std::sync::Arc;
 
 /// What a surface does with a ray that hits it inside its clear aperture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,6 +128,12 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
     /// grating). Facets and other steps of a shape that refracts add none either: their path is that of their geometry.
     fn phase_mm(&self, _ray: &BentRay) -> f64 {
         0.0
+    }
+
+    /// The same surface with all its lengths times `factor`, so that rays are bent alike at places that lie as many times farther out;
+    /// `None` where it does not know how. What depends on wavelengths, such as the lines of a grating, stays as it is.
+    fn scaled(&self, _factor: f64) -> Option<Arc<dyn Surface>> {
+        None
     }
 
     /// Moves the living rays of the batch, given in the frame of the surface before, onto this surface in its own frame, and

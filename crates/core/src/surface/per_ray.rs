@@ -6,6 +6,7 @@ use crate::isa::Isa;
 use crate::loss::{ALIVE, Loss};
 use crate::numbers::RayNumbers;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +42,7 @@ pub struct Bending {
 }
 
 /// A surface in scalar code.
-pub trait ScalarShape: Send + Sync + std::fmt::Debug {
+pub trait ScalarShape: Send + Sync + std::fmt::Debug + 'static {
     /// Where the ray through `position` (mm, frame of the surface) along the unit `direction` meets
     /// the surface; `None` where it does not.
     fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection>;
@@ -85,6 +86,13 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug {
     fn draws(&self) -> bool {
         false
     }
+    /// As [`Surface::scaled`].
+    fn scaled(&self, _factor: f64) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
     /// As [`Surface::interact`], for shapes that can do more for a batch than one ray after the other; `None`, the default, where
     /// there is nothing better.
     #[doc(hidden)]
@@ -121,6 +129,9 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     }
     fn phase_mm(&self, ray: &BentRay) -> f64 {
         self.0.phase_mm(ray)
+    }
+    fn scaled(&self, factor: f64) -> Option<Arc<dyn Surface>> {
+        self.0.scaled(factor).map(|shape| Arc::new(Self(shape)) as Arc<dyn Surface>)
     }
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize {
         if let Some(lost) = self.0.by_batch(rays, interface, isa) {

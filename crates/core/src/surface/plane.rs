@@ -39,6 +39,10 @@ impl KernelShape for Plane {
         Some(0.0)
     }
 
+    fn scaled(&self, _factor: f64) -> Option<Self> {
+        Some(*self)
+    }
+
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         (0.0, 0.0)
     }

@@ -1,7 +1,7 @@
 //! The least that makes a surface: its sag.
 
 /// A surface given by its sag z(x, y).
-pub trait SagShape: Send + Sync + std::fmt::Debug {
+pub trait SagShape: Send + Sync + std::fmt::Debug + 'static {
     /// Sag at a point, mm from the vertex plane; `None` where the surface does not reach.
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
 
@@ -23,6 +23,14 @@ pub trait SagShape: Send + Sync + std::fmt::Debug {
     /// Sag and slopes at once: give it where both cost less together than apart.
     fn sag_and_slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, (f64, f64))> {
         Some((self.sag_mm(x_mm, y_mm)?, self.slope(x_mm, y_mm)?))
+    }
+
+    /// As [`super::Surface::scaled`].
+    fn scaled(&self, _factor: f64) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
     }
 
     /// As [`super::ScalarShape::extent_mm`]: give it where the sag is costly, and most rays of a search pass beside the surface.

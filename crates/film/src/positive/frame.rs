@@ -1,5 +1,6 @@
 //! Tables by which whole frames go the way of one place.
 
+use super::printing::Printing;
 use super::{Reach, Way};
 use crate::cube::Cube;
 use crate::deposit::Deposit;
@@ -122,6 +123,46 @@ impl Tables {
     }
 }
 
+/// Amounts in the layers of a print of places of a film: one plane a layer.
+pub(super) fn printed(tables: &Tables, printing: &Printing, film: &Deposit, planes: &[&[f32]]) -> Vec<Vec<f32>> {
+    let layers = printing.emulsion.layers();
+    let mut printed = vec![Vec::with_capacity(planes.first().map_or(0, |plane| plane.len())); layers];
+    match (tables, planes) {
+        (Tables::Dyes(dyes), [a, b, c]) => {
+            for ((a, b), c) in a.iter().zip(*b).zip(*c) {
+                let seen = dyes.first.at([*a, *b, *c]);
+                for (layer, to) in printed.iter_mut().enumerate() {
+                    to.push(along_curve(&dyes.curves[layer], seen[layer]));
+                }
+            }
+        }
+        (_, [silver]) => {
+            let at = |i: usize| printing.printed(film, &[i as f64 / SILVER_STEPS as f64 * HIGHEST_DENSITY]);
+            let table: Vec<Vec<f64>> = (0..SILVER_STEPS + 1).into_par_iter().with_min_len(256).map(at).collect();
+            for d in *silver {
+                let place = (f64::from(*d) * SILVER_STEPS as f64 / HIGHEST_DENSITY).clamp(0.0, SILVER_STEPS as f64);
+                let i = (place as usize).min(SILVER_STEPS - 1);
+                for (layer, to) in printed.iter_mut().enumerate() {
+                    let (a, b) = (table[i][layer], table[i + 1][layer]);
+                    to.push((a + (b - a) * (place - i as f64)) as f32);
+                }
+            }
+        }
+        // Planes are as many as layers: the film that made the one made the other.
+        _ => {}
+    }
+    printed
+}
+
+/// The amount of a layer that an exposure leaves, given as minus its logarithm: linear between samples.
+#[inline(always)]
+fn along_curve(curve: &[f32], density: f32) -> f32 {
+    const PER_STEP: f32 = CURVE_STEPS as f32 / (2.0 * EXPOSURES as f32);
+    let place = ((EXPOSURES as f32 - density) * PER_STEP).max(0.0).min(CURVE_STEPS as f32);
+    let k = (place as i32 as usize).min(CURVE_STEPS - 1);
+    curve[k] + (curve[k + 1] - curve[k]) * (place - k as f32)
+}
+
 /// Places on their way from amounts of dye to the screen.
 struct Shown<'a> {
     dyes: &'a Dyes,
@@ -174,13 +215,7 @@ impl Dyes {
     #[inline(always)]
     fn print(&self, row: &mut [[f32; ROW]; 3], found: &mut [[f32; 4]; ROW], count: usize) {
         for (line, curve) in row.iter_mut().zip(&self.curves) {
-            for d in &mut line[..count] {
-                // Linear between samples.
-                const PER_STEP: f32 = CURVE_STEPS as f32 / (2.0 * EXPOSURES as f32);
-                let place = ((EXPOSURES as f32 - *d) * PER_STEP).max(0.0).min(CURVE_STEPS as f32);
-                let k = (place as i32 as usize).min(CURVE_STEPS - 1);
-                *d = curve[k] + (curve[k + 1] - curve[k]) * (place - k as f32);
-            }
+            line[..count].iter_mut().for_each(|d| *d = along_curve(curve, *d));
         }
         let Some(last) = &self.last else {
             // Silver: the same in X, Y and Z.

@@ -198,6 +198,17 @@ impl Positive {
         self.tables.get_or_init(|| Tables::new(&self.film, &self.ranges, &self.way))
     }
 
+    /// Densities of the print of a whole negative, layer by layer with their names, as a densitometer reads them ([`densities`]): of paper
+    /// and film base with what lies on them. `None` where nothing is printed.
+    #[must_use]
+    pub fn print_densities(&self, planes: &[&[f32]]) -> Option<Vec<(String, Vec<f32>)>> {
+        let Way::Print(printing) = &self.way else { return None };
+        let printed = frame::printed(self.tables(), printing, &self.film, planes);
+        let printed: Vec<&[f32]> = printed.iter().map(Vec::as_slice).collect();
+        let read = read_through(printing.filters.as_deref(), &printing.emulsion, &printed);
+        Some(printing.names.iter().cloned().zip(read).collect())
+    }
+
     /// [`Positive::shown`] for each place.
     #[must_use]
     pub fn picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
@@ -235,12 +246,15 @@ fn bare(weights: &[Vec<f64>]) -> [f64; 3] {
 /// densitometry, each layer through that of its own color; of silver its own.
 #[must_use]
 pub fn densities(stock: &Stock, film: &Emulsion, planes: &[&[f32]]) -> Vec<Vec<f32>> {
-    let names: Vec<&str> = stock.layers.iter().map(|layer| layer.name.as_str()).collect();
-    let products = stock.densitometry.products(&names);
-    match (planes, products) {
-        ([a, b, c], Some(products)) => {
+    read_through(stock.filters().as_deref(), film, planes)
+}
+
+/// [`densities`] through these filters.
+fn read_through(filters: Option<&[Vec<f64>]>, film: &Emulsion, planes: &[&[f32]]) -> Vec<Vec<f32>> {
+    match (planes, filters) {
+        ([a, b, c], Some(filters)) => {
             let ranges: Vec<(f64, f64)> = (0..film.layers()).map(|i| film.range(i)).collect();
-            let seen = frame::seen(film.deposit(), &ranges, &products, [a, b, c]);
+            let seen = frame::seen(film.deposit(), &ranges, filters, [a, b, c]);
             (0..3).map(|i| seen.iter().map(|d| d[i]).collect()).collect()
         }
         _ => planes.iter().map(|plane| plane.to_vec()).collect(),

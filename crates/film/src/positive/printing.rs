@@ -20,6 +20,9 @@ pub(super) struct Printing {
     pub emulsion: Emulsion,
     /// The print, looked at.
     pub viewing: Viewing,
+    /// Names of the print's layers, and the filters through which a densitometer reads each; `None` where it reads silver.
+    pub names: Vec<String>,
+    pub filters: Option<Vec<Vec<f64>>>,
 }
 
 impl Printing {
@@ -93,7 +96,13 @@ impl Printing {
             let weights = parts.iter().map(|of_layer| {
                 (0..BAND.count).map(|i| of_layer.iter().zip(&lights).map(|(p, l)| p[i] * l).sum()).collect()
             });
-            let now = Self { weights: weights.collect(), emulsion: emulsion.clone(), viewing: viewing.clone() };
+            let now = Self {
+                weights: weights.collect(),
+                emulsion: emulsion.clone(),
+                viewing: viewing.clone(),
+                names: stock.layers.iter().map(|layer| layer.name.clone()).collect(),
+                filters: stock.filters(),
+            };
             let next = now.viewing.xyz(now.emulsion.deposit(), &now.printed(negative, unexposed))[1];
             let moved = (next - black).abs();
             black = next;

@@ -146,6 +146,13 @@ pub struct FilterFactor {
 }
 
 impl Stock {
+    /// The spectral products through which a densitometer reads each layer ([`Densitometry::products`]); `None` where it reads silver.
+    #[must_use]
+    pub fn filters(&self) -> Option<Vec<Vec<f64>>> {
+        let names: Vec<&str> = self.layers.iter().map(|layer| layer.name.as_str()).collect();
+        self.densitometry.products(&names)
+    }
+
     /// Reads the stock `name`: a YAML file beside the scene, or the name of a bundled one.
     ///
     /// # Errors

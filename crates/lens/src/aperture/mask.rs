@@ -23,6 +23,11 @@ impl Mask {
         Self { width_px, height_px, pitch_mm: width_mm / width_px as f64, transmittances }
     }
 
+    /// With all lengths times `factor`.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        Self { pitch_mm: self.pitch_mm * factor, ..self.clone() }
+    }
+
     /// Transmittance of the pixel at a point, mm from the center of the picture; 0 beside it.
     #[must_use]
     pub fn transmittance(&self, x_mm: f64, y_mm: f64) -> f64 {

@@ -64,6 +64,16 @@ impl FocusTable {
         Some(Self { vergence, shift_mm, slope })
     }
 
+    /// With all lengths times `factor`.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        let times = |all: &[f64], factor: f64| all.iter().map(|v| v * factor).collect();
+        Self {
+            vergence: times(&self.vergence, 1.0 / factor),
+            shift_mm: times(&self.shift_mm, factor),
+            slope: times(&self.slope, factor * factor),
+        }
+    }
+
     /// Nearest and farthest distance, mm.
     #[must_use]
     pub fn range_mm(&self) -> (f64, f64) {

@@ -62,8 +62,9 @@ impl Tracer {
     /// the vertex.
     fn behind_mm(&self, object_mm: f64, leg: &Leg, n: &dyn Fn(usize) -> f64) -> f64 {
         let element = &self.elements[leg.at];
-        if let Some(solid) = &element.solid {
-            return object_mm - solid.inside_mm * (1.0 - n(leg.before) / n(solid.medium));
+        if element.solid.is_some() {
+            // The axis counts what is inside a prism as reduced.
+            return object_mm;
         }
         let before = n(leg.before);
         let (after, [first, second]) = match leg.action {

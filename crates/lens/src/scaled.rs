@@ -1,0 +1,106 @@
+//! A lens at another size: all its lengths times a factor, so that angles, f-numbers and glasses stay what they are.
+
+use crate::aperture::{Aperture, Shape};
+use crate::focus::GroupTravel;
+use crate::pose::{AxisBreak, Displacement};
+use crate::solid::Solid;
+use crate::{Element, Lens};
+use std::sync::Arc;
+
+/// Why a lens cannot be scaled.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ScaleError {
+    /// A surface does not know how; its number, from 1, and its kind.
+    #[error("surface {0} (`{1}`) does not say how it scales")]
+    Surface(usize, String),
+    /// A surface has a drawing as its aperture; its number, from 1.
+    #[error("surface {0} has a drawing as its aperture, which is not scaled")]
+    Drawing(usize),
+}
+
+impl Lens {
+    /// The lens with all its lengths times `factor`, above 0: radii, gaps, rims, apertures, displacements, and how groups move. Layers
+    /// that act by the wavelength stay as they are: coatings, gaps of air in cement, the lines of a grating, the rings that a tool left.
+    ///
+    /// # Errors
+    /// [`ScaleError`]
+    pub fn scaled(mut self, factor: f64) -> Result<Self, ScaleError> {
+        for (at, element) in self.elements.iter_mut().enumerate() {
+            scale_element(element, at + 1, factor)?;
+        }
+        for group in &mut self.groups {
+            group.displacement = group.displacement.scaled(factor);
+        }
+        for law in &mut self.focus_laws {
+            if let GroupTravel::Table(table) = &mut law.travel {
+                *table = table.scaled(factor);
+            }
+        }
+        self.focused_mm *= factor;
+        self.image_breaks.iter_mut().for_each(|axis| *axis = axis.scaled(factor));
+        self.arrange();
+        Ok(self)
+    }
+}
+
+fn scale_element(element: &mut Element, number: usize, factor: f64) -> Result<(), ScaleError> {
+    let unknown = || ScaleError::Surface(number, element.kind.clone());
+    element.surface = element.surface.scaled(factor).ok_or_else(unknown)?;
+    // What the file says of it holds no longer.
+    element.parameters = None;
+    element.solid = element.solid.as_deref().map(|solid| Arc::new(Solid::scaled(solid, factor)));
+    element.breaks.iter_mut().for_each(|axis| *axis = axis.scaled(factor));
+    element.displacement = element.displacement.scaled(factor);
+    element.thickness_mm *= factor;
+    element.chamfer_mm *= factor;
+    for size in [&mut element.semi_diameter_mm, &mut element.outer_semi_diameter_mm].into_iter().flatten() {
+        *size *= factor;
+    }
+    let places = element.layers.iter_mut().map(|layer| &mut layer.places);
+    let mut all: Vec<&mut Vec<Aperture>> = places.chain([&mut element.apertures]).collect();
+    if let Some(separation) = &mut element.separation {
+        separation.depth_mm = separation.depth_mm.map(|mm| mm * factor);
+        all.push(&mut separation.places);
+    }
+    for aperture in all.into_iter().flatten() {
+        *aperture = aperture.scaled(factor).ok_or(ScaleError::Drawing(number))?;
+    }
+    Ok(())
+}
+
+impl Aperture {
+    /// With all lengths times `factor`; `None` of a drawing.
+    fn scaled(&self, factor: f64) -> Option<Self> {
+        let by = |mm: &f64| mm * factor;
+        let shape = match &self.shape {
+            Shape::Ring { inner_mm, outer_mm } => Shape::Ring { inner_mm: by(inner_mm), outer_mm: by(outer_mm) },
+            Shape::Rectangle { half_width_mm, half_height_mm } => {
+                Shape::Rectangle { half_width_mm: by(half_width_mm), half_height_mm: by(half_height_mm) }
+            }
+            Shape::Ellipse { half_width_mm, half_height_mm } => {
+                Shape::Ellipse { half_width_mm: by(half_width_mm), half_height_mm: by(half_height_mm) }
+            }
+            Shape::Polygon(corners) => Shape::Polygon(corners.iter().map(|corner| corner.each_ref().map(by)).collect()),
+            Shape::Iris(iris) => {
+                let mut iris = iris.clone();
+                iris.blade_radius_mm *= factor;
+                Shape::Iris(iris)
+            }
+            Shape::Mask(mask) => Shape::Mask(mask.scaled(factor)),
+            Shape::Drawing(_) => return None,
+        };
+        Some(Self { shape, center_mm: self.center_mm.each_ref().map(by), obscures: self.obscures })
+    }
+}
+
+impl Displacement {
+    fn scaled(self, factor: f64) -> Self {
+        Self { decenter_mm: self.decenter_mm.map(|mm| mm * factor), ..self }
+    }
+}
+
+impl AxisBreak {
+    fn scaled(self, factor: f64) -> Self {
+        Self { displacement: self.displacement.scaled(factor), thickness_mm: self.thickness_mm * factor }
+    }
+}
