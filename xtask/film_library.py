@@ -326,8 +326,8 @@ def negative(folder, slug, numbers):
     speed = "the maker's exposure index" if cine else "an ISO speed"
     tungsten = " It is balanced for tungsten light: in daylight its prints are blue without an amber filter (Wratten 85) before the lens." if light == TUNGSTEN else ""
     stops = " counted in stops from the normal exposure, taken here as 10/S lx s of the reference light" if data.exposure_base == 2 else ""
-    back = ("The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " if cine and maker == KODAK else
-            "A layer of gray silver or of dye under the emulsion, cleared in processing, lets 0.35 pass once. ")
+    back = ("The black backing (rem-jet) takes nearly all of it. " if cine else
+            "A layer of gray silver or of dye under the emulsion, cleared in processing, takes some of it. ")
     remark = (f"Color negative for {'tungsten light' if light == TUNGSTEN else 'daylight'}; the speed is {speed}.{tungsten} The "
               f"sheet's curves are Status M densities of neutral exposures{stops}.")
     base.stock(
@@ -335,7 +335,7 @@ def negative(folder, slug, numbers):
         head=["", "process: negative", "density: status-m", f"year: {year}", f"iso: {iso}",
               *(["speed: exposure-index"] if cine else []), f"reference-illuminant: {light}", f"print: {print_stock}",
               *assumed([("dyes", dye_remark(data.dyes_off)), ("granularity", grain_remark), ("mtf", mtf_remark(data))]),
-              base.halation(0.3 if cine and maker == KODAK else 0.35, base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]),
+              base.halation("rem-jet" if cine else "dye", base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]),
               base.ACETATE, f"minimum-density:\n  table:{base.flow(base.pairs(data.d_min_sd), '    ')}",
               *([interlayer(numbers, f"printed on {print_stock}")] if numbers else [])],
         layers=layers_of(data, "negative", iso, numbers, grain))
@@ -345,14 +345,14 @@ def slide(folder, slug, numbers):
     _, _, name, maker, sheet, year, iso = SLIDES[slug]
     data = prepared(folder, "slide", slug)
     grain, grain_remark = grainy(folder, slug, iso, data, "slide")
-    back = ("The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " if slug == "kodachrome-64" else
-            "A layer of gray silver under the emulsion, bleached in processing, lets 0.3 pass once. ")
+    back = ("The black backing (rem-jet) takes nearly all of it. " if slug == "kodachrome-64" else
+            "A layer of gray silver under the emulsion, bleached in processing, takes most of it. ")
     base.stock(
         slug, name=name, maker=maker, source=f"{sheet}, {base.CARRIED}",
         remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures.",
         head=["", "process: reversal", "density: status-a", f"year: {year}", f"iso: {iso}", f"reference-illuminant: {DAYLIGHT}",
               *assumed([("granularity", grain_remark), ("mtf", mtf_remark(data))]),
-              base.halation(0.3, base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]), base.ACETATE, *RECIPROCITY.get(slug, []),
+              base.halation("rem-jet" if slug == "kodachrome-64" else "silver", base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]), base.ACETATE, *RECIPROCITY.get(slug, []),
               base.flat_minimum(*base.minima(data)),
               *([interlayer(numbers, "projected")] if numbers else [])],
         layers=layers_of(data, "slide", iso, numbers, grain))
@@ -404,7 +404,7 @@ def silver(folder, slug):
         head=["", "process: negative", "density: visual", f"year: {year}", f"iso: {iso}", f"reference-illuminant: {DAYLIGHT}",
               *assumed([("mtf", f"By Frieser's formula with k = {k_mm} mm, half of the contrast at {half:.0f} cycles/mm, of the 0.005 to "
                          "0.04 mm that H. Frieser (Photogr. Sci. Eng. 4, 324, 1960) gives for emulsions.")]),
-              grain, base.halation(0.35, base.ENTERS + "Base and dye under the emulsion as of Tri-X: 0.35 passes once."), base.ACETATE,
+              grain, base.halation("dye", base.ENTERS + "Base and dye under the emulsion as of Tri-X: 0.35 passes once."), base.ACETATE,
               *RECIPROCITY.get(slug, [])],
         layers=[[*lines[:-1], *curve]])
 

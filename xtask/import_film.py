@@ -232,7 +232,7 @@ def tri_x(folder):
         head=["", "process: negative", "density: visual", "year: 1954", "iso: 400",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "granularity: {rms: 17, aperture: 0.048 mm, density: 1}",
-              halation(0.35, ENTERS + "The base is gray, with about 0.2 of the density of unexposed film; with a dyed layer under the "
+              halation("dye", ENTERS + "The base is gray, with about 0.2 of the density of unexposed film; with a dyed layer under the "
                        "emulsion 0.35 passes once."), ACETATE,
               "reciprocity: {table: [[1, 2], [10, 50], [100, 1200]], above: 0.1 s}"],
         layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
@@ -342,7 +342,7 @@ def color_negative(folder):
         head=["", "process: negative", "density: status-m", "year: 2009", "iso: 250", "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "print: kodak-vision-2383",
-              halation(0.3, ENTERS + "The black backing (rem-jet) lets 0.3 pass once, through it and the surfaces before it. " + DEPTH,
+              halation("rem-jet", ENTERS + "The black backing (rem-jet) takes nearly all of it. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE,
               f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}",
               interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, three skins and two leaves, printed "
@@ -412,7 +412,7 @@ def reversal(folder):
         "little in density (more than the digitization errs), until a gray scale is gray and skins keep their hue.",
         head=["", "process: reversal", "density: status-a", "year: 2018", "iso: 100",
               "reference-illuminant: iso-7589-sensitometric-daylight",
-              halation(0.3, ENTERS + "A layer of gray silver under the emulsion, bleached in processing, lets 0.3 pass once. " + DEPTH,
+              halation("silver", ENTERS + "A layer of gray silver under the emulsion, bleached in processing, takes most of it. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low),
               interlayer("reversal", "Fitted as that of kodak-vision3-250d-5207 was, but for the leaf, which counts 6.5 times and alone "
                          "is seen in shade, too; hardly needed. Rows and columns are blue, green, red. No sheet tells it.")],

@@ -203,9 +203,9 @@ fn a_print_in_every_file() {
     let printed = plane(&image, "print.green");
     assert!(printed[dark] > printed[light] + 1.0, "{} {}", printed[dark], printed[light]);
     let gray = at(&|a, b| (a - 0.04).abs() < (b - 0.04).abs());
-    let read = ["red", "green", "blue"].map(|layer| plane(&image, &format!("print.{layer}"))[gray]);
-    println!("a metered gray prints at {read:?}");
-    assert!((read[1] - 1.06).abs() < 0.15, "{read:?}");
+    let printed = ["red", "green", "blue"].map(|layer| plane(&image, &format!("print.{layer}"))[gray]);
+    println!("a metered gray prints at {printed:?}");
+    assert!((printed[1] - 1.06).abs() < 0.15, "{printed:?}");
     // The same picture under another encoding.
     let png = file("s.png");
     let found = chunks(&png);

@@ -119,7 +119,7 @@ fn faults_of_the_lens_come_at_once() {
 fn a_scene_scales_a_lens_to_a_focal_length() {
     let load = |lens: &str| {
         let text = format!(
-            "spectra: 1\nsource: {{kind: white, luminance: 100 cd/m2, distance: 10 m}}\nlens: {{{lens}}}\n\
+            "spectra: 1\nsource: {{kind: chart, chart: gray-card, distance: 10 m, width: fill, illuminant: D55, luminance: 100 cd/m2}}\nlens: {{{lens}}}\n\
              imager: {{kind: xyz, format: 135, resolution: [6, 4]}}\n"
         );
         let folder = tempfile::tempdir().expect("a folder");

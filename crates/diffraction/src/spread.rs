@@ -71,6 +71,30 @@ pub fn brightest_star(size: FrameSize, light: &Light, seen: &dyn View, plane: &[
     (star > 0.0).then(|| star / f64::from(median(plane)))
 }
 
+/// Whether two openings with their waves spread light alike: their shapes within a thousandth of their size, wherever they lie, and waves
+/// within a hundredth of a wavelength.
+fn are_alike(a: &(Polygon, Option<Wave>), b: &(Polygon, Option<Wave>), mean_mm: f64) -> bool {
+    let [(a, wave_a), (b, wave_b)] = [a, b];
+    let size = b.reach();
+    let about_center = |p: &Polygon| {
+        let [[x0, y0], [x1, y1]] = p.bounds();
+        let [x, y] = p.center();
+        [x0 - x, y0 - y, x1 - x, y1 - y]
+    };
+    let near = |a: f64, b: f64, one: f64| (a - b).abs() < 1e-3 * one;
+    let shapes = about_center(a).into_iter().zip(about_center(b)).all(|(a, b)| near(a, b, size))
+        && near(a.reach(), b.reach(), size)
+        && near(a.area(), b.area(), b.area());
+    let (Some(wave_a), Some(wave_b)) = (wave_a, wave_b) else {
+        return shapes && wave_a.is_some() == wave_b.is_some();
+    };
+    let [ca, cb] = [a.center(), b.center()];
+    let places = b.rings().iter().flatten().flat_map(|[x, y]| [0.5, 1.0].map(|t| [t * x, t * y]));
+    // Of each from its own center.
+    let path = |wave: &Wave, c: [f64; 2], p: [f64; 2]| wave.at([c[0] + p[0], c[1] + p[1]]).0 - wave.at(c).0;
+    shapes && places.into_iter().all(|p| (path(wave_a, ca, p) - path(wave_b, cb, p)).abs() < 0.01 * mean_mm)
+}
+
 /// How many pixels around one get its light pixel by pixel, where that goes so far.
 fn radius(near_mm: f64, pitch_mm: f64) -> usize {
     ((near_mm / pitch_mm / 0.6).ceil() as usize + 2).clamp(RADIUS[0], RADIUS[1])
@@ -124,7 +148,14 @@ impl<'a> Spread<'a> {
             (opening, wave)
         };
         let count = (zones[0] + 1) * (zones[1] + 1);
-        let openings: Vec<(Polygon, Option<Wave>)> = (0..count).into_par_iter().map(node).collect();
+        let mut openings: Vec<(Polygon, Option<Wave>)> = (0..count).into_par_iter().map(node).collect();
+        // A small piece of a frame sees one opening, whose kernels need not be made again and again.
+        let mut zones = zones;
+        let center = openings.len() / 2;
+        if openings.iter().all(|other| are_alike(other, &openings[center], light.mean_mm())) {
+            openings = vec![openings.swap_remove(center)];
+            zones = [0; 2];
+        }
         let pitch = pitch_mm[0].min(pitch_mm[1]);
         let near = openings.iter().map(|(o, _)| near_mm(o, &light)).fold(0.0, f64::max);
         let radius = radius(near, pitch);

@@ -12,18 +12,21 @@ use spectra_film::grain::{ColorGrain, FOG, Grain, GrainError, usual_half_power};
 use spectra_film::halation::{Halation, HalationBase};
 use spectra_film::raster::Raster;
 use spectra_film::scatter::{Modulation, Mtf, Scatter};
-use spectra_film::stock::Stock;
+use spectra_film::stock::{Backing, Stock};
 
 /// `halation` as written in a scene; see [`HalationBase`].
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct HalationParams {
-    /// Light that enters the base, over the light that exposes the layer, 0 to 10.
+    /// Light that enters the base, over the light that exposes the layer, 0 to 10; the stock's if left out.
     #[schemars(range(min = 0, max = 10))]
-    pub entering: f64,
-    /// Transmittance of base and backing, passed once, 0 to 1.
+    pub entering: Option<f64>,
+    /// What keeps light from coming back, in place of the stock's: `rem-jet` takes nearly all, `silver` most, `dye` some; `removed` leaves
+    /// clear base, as of cinema film whose rem-jet was washed off before it was shot.
+    pub backing: Option<Backing>,
+    /// Transmittance of base and backing, passed once, 0 to 1, in place of `backing`; the stock's if both are left out.
     #[schemars(range(min = 0, max = 1))]
-    pub transmittance: f64,
+    pub transmittance: Option<f64>,
     /// Thickness of the base, 0.001 to 10 mm, mm if bare; the stock's first base if left out.
     pub thickness: Option<Positive<Length>>,
     /// Refractive index of the base, above 1 to 4; the stock's if left out.
@@ -325,12 +328,19 @@ fn halation(p: &Switches<'_>, params: &Params, stock: &Stock, faults: &mut Fault
         (None, Some(_)) if p.assumed == Assumed::Off && halation_is_assumed(stock) => return none,
         (None, Some(h)) => (None, Some(h)),
     };
-    let figures = match (own, of_stock) {
-        (Some(h), _) => Some((h.entering, h.transmittance)),
-        (None, Some(h)) => Some((h.scattered, h.backing)),
-        (None, None) => None,
+    if own.is_some_and(|h| h.backing.is_some() && h.transmittance.is_some()) {
+        let fault = params.fault("halation.transmittance", "`backing` has a transmittance of its own");
+        faults.push(fault.hint("leave one of the two out"));
+        return none;
+    }
+    let entering = own.and_then(|h| h.entering).or_else(|| of_stock.map(|h| h.scattered));
+    let stated = own.and_then(|h| h.transmittance.or_else(|| h.backing.map(Backing::transmittance)));
+    let (Some(entering), Some(transmittance)) = (entering, stated.or_else(|| of_stock.map(|h| h.backing))) else {
+        let fault =
+            params.fault("halation", format!("{} does not say what light comes back from its base", stock.name));
+        faults.push(fault.hint("`halation: {entering: 0.3, backing: dye}`"));
+        return none;
     };
-    let Some((entering, transmittance)) = figures else { return none };
     let thickness_mm = own.and_then(|h| h.thickness).map(|t| t.mm()).or_else(|| base.map(|b| b.thickness_mm));
     let index = own.and_then(|h| h.index).or_else(|| base.and_then(|b| b.index));
     let (Some(thickness_mm), Some(index)) = (thickness_mm, index) else {

@@ -112,7 +112,7 @@ fn to_json(stock: &Stock) -> Value {
             json!({ "rms": g.rms, "aperture_mm": g.aperture_mm, "density": g.density, "assumed": g.assumed })
         }),
         "halation": stock.halation.as_ref().map(|h| {
-            json!({ "scattered": h.scattered, "backing": h.backing, "reflected": h.reflected, "layers": h.layers,
+            json!({ "scattered": h.scattered, "backing": h.backing, "backing_kind": h.kind.map(|kind| kind.name()), "reflected": h.reflected, "layers": h.layers,
                 "assumed": h.assumed, "remark": h.remark })
         }),
         "reciprocity": reciprocity,
@@ -229,7 +229,8 @@ fn text(stock: &Stock) -> String {
             let assumed = if h.assumed { " (assumed)" } else { "" };
             let shares: Vec<String> = h.layers.iter().map(f64::to_string).collect();
             let layers = if shares.len() > 1 { format!(", by layer {}", shares.join(" : ")) } else { String::new() };
-            format!("{} enters the base, backing passes {}{layers}{assumed}", h.scattered, h.backing)
+            let kind = h.kind.map_or(String::new(), |kind| format!("{} ", kind.name()));
+            format!("{} enters the base, {kind}backing passes {}{layers}{assumed}", h.scattered, h.backing)
         }),
     );
     row(

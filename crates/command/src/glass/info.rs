@@ -34,6 +34,8 @@ struct Report {
     years: Option<(u16, u16)>,
     formula: Option<&'static str>,
     coefficients: Option<Vec<f64>>,
+    /// By how much the index of the formula may differ from the maker's, where the formula is a coarse fit.
+    expected_error: Option<&'static str>,
     range_nm: Option<(f64, f64)>,
     /// `air` or `vacuum`.
     relative_to: &'static str,
@@ -151,6 +153,7 @@ fn report(medium: &Medium, arguments: &GlassInfo) -> Report {
             Medium::Constant(_) => Some("constant"),
         },
         coefficients: glass.map(|g| g.formula.coefficients()),
+        expected_error: expected_error(medium),
         range_nm: medium.range_nm(),
         relative_to: if arguments.absolute { "vacuum" } else { "air" },
         temperature_c,
@@ -216,6 +219,18 @@ fn warnings(medium: &Medium, glass: Option<&Glass>, arguments: &GlassInfo) -> Ve
     warnings
 }
 
+/// How good a coarse description of a glass is, where it is one. Two terms of Buchdahl's form, fitted to 240 glasses of SCHOTT from 400 to
+/// 700 nm, leave 3.2e-5 at the median and 6.6e-5 at the 95th percentile; the figures of a model glass are those of the guide.
+fn expected_error(medium: &Medium) -> Option<&'static str> {
+    match medium {
+        Medium::Glass(glass) if glass.formula.name() == "Buchdahl" => {
+            Some("7e-5 in n from 400 to 700 nm (two terms, fitted)")
+        }
+        Medium::Model(_) => Some("2e-4 in n at r, 4e-4 at g, 9e-4 at h for nine of ten glasses"),
+        _ => None,
+    }
+}
+
 /// The report as a person reads it.
 fn text(report: &Report) -> String {
     let mut out = format!("{}{}\n\n", report.name, report.category.map_or(String::new(), |c| format!(": {c}")));
@@ -234,6 +249,7 @@ fn text(report: &Report) -> String {
     row("formula", report.formula.map(str::to_owned));
     let coefficients = report.coefficients.as_ref().filter(|c| c.len() <= 20);
     row("coefficients", coefficients.map(|c| c.iter().map(ToString::to_string).collect::<Vec<_>>().join("  ")));
+    row("expected error", report.expected_error.map(str::to_owned));
     row("measured", report.range_nm.map(|(from, to)| format!("{from} to {to} nm")));
     row("index relative to", Some(format!("{}, at {} C", report.relative_to, report.temperature_c)));
     let listed = |v: Option<f64>| v.map_or(String::new(), |v| format!("  (listed: {v})"));

@@ -1,6 +1,5 @@
 //! Tables by which whole frames go the way of one place.
 
-use super::printing::Printing;
 use super::{Reach, Way};
 use crate::cube::Cube;
 use crate::deposit::Deposit;
@@ -123,9 +122,13 @@ impl Tables {
     }
 }
 
-/// Amounts in the layers of a print of places of a film: one plane a layer.
-pub(super) fn printed(tables: &Tables, printing: &Printing, film: &Deposit, planes: &[&[f32]]) -> Vec<Vec<f32>> {
-    let layers = printing.emulsion.layers();
+/// Amounts in the `layers` of a print of places of a film: one plane a layer. `of_silver` are those of a print of silver of one density.
+pub(super) fn printed(
+    tables: &Tables,
+    layers: usize,
+    of_silver: &(dyn Fn(f64) -> Vec<f64> + Sync),
+    planes: &[&[f32]],
+) -> Vec<Vec<f32>> {
     let mut printed = vec![Vec::with_capacity(planes.first().map_or(0, |plane| plane.len())); layers];
     match (tables, planes) {
         (Tables::Dyes(dyes), [a, b, c]) => {
@@ -137,7 +140,7 @@ pub(super) fn printed(tables: &Tables, printing: &Printing, film: &Deposit, plan
             }
         }
         (_, [silver]) => {
-            let at = |i: usize| printing.printed(film, &[i as f64 / SILVER_STEPS as f64 * HIGHEST_DENSITY]);
+            let at = |i: usize| of_silver(i as f64 / SILVER_STEPS as f64 * HIGHEST_DENSITY);
             let table: Vec<Vec<f64>> = (0..SILVER_STEPS + 1).into_par_iter().with_min_len(256).map(at).collect();
             for d in *silver {
                 let place = (f64::from(*d) * SILVER_STEPS as f64 / HIGHEST_DENSITY).clamp(0.0, SILVER_STEPS as f64);

@@ -203,7 +203,8 @@ impl Positive {
     #[must_use]
     pub fn print_densities(&self, planes: &[&[f32]]) -> Option<Vec<(String, Vec<f32>)>> {
         let Way::Print(printing) = &self.way else { return None };
-        let printed = frame::printed(self.tables(), printing, &self.film, planes);
+        let of_silver = |density: f64| printing.printed(&self.film, &[density]);
+        let printed = frame::printed(self.tables(), printing.emulsion.layers(), &of_silver, planes);
         let printed: Vec<&[f32]> = printed.iter().map(Vec::as_slice).collect();
         let read = read_through(printing.filters.as_deref(), &printing.emulsion, &printed);
         Some(printing.names.iter().cloned().zip(read).collect())

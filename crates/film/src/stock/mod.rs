@@ -14,7 +14,7 @@ pub use material::{Densitometry, Dye, MinimumDensity, SpectralDensity};
 pub use reciprocity::{Reciprocity, unknown as unknown_reciprocity};
 pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
 pub use speed::{ISO_6_SPAN, Iso6, MeterResponse, SpeedKind};
-pub use structure::{Assumptions, Base, Granularity, Halation};
+pub use structure::{Assumptions, Backing, Base, Granularity, Halation};
 
 use crate::curve::CharacteristicCurve;
 use schemars::{Schema, SchemaGenerator};

@@ -32,6 +32,45 @@ pub struct Granularity {
     pub assumed: bool,
 }
 
+/// What keeps light from coming back from the film's back. Makers name the kind and no figure: the figures are assumed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+pub enum Backing {
+    /// Soot in a binder on the back, washed off before development: it takes nearly all.
+    RemJet,
+    /// Fine silver under the emulsion, bleached in processing: it takes most.
+    Silver,
+    /// A dye under the emulsion or in the base: it takes some.
+    Dye,
+    /// None, or one that was removed before exposure: clear base.
+    Removed,
+}
+
+impl Backing {
+    /// Transmittance of base and backing, passed once.
+    #[must_use]
+    pub fn transmittance(self) -> f64 {
+        match self {
+            Self::RemJet => 0.12,
+            Self::Silver => 0.2,
+            Self::Dye => 0.35,
+            Self::Removed => 0.95,
+        }
+    }
+
+    /// Its name in a file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::RemJet => "rem-jet",
+            Self::Silver => "silver",
+            Self::Dye => "dye",
+            Self::Removed => "removed",
+        }
+    }
+}
+
 /// Light that comes back from the film's back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Halation {
@@ -39,6 +78,8 @@ pub struct Halation {
     pub scattered: f64,
     /// Transmittance of the anti-halation backing, passed on the way out and on the way back, 0 to 1.
     pub backing: f64,
+    /// The kind of backing, where the file names it.
+    pub kind: Option<Backing>,
     /// Share of what comes back that the emulsion throws down again, 0 to 0.95.
     pub reflected: f64,
     /// What comes back to each layer, in the order of the stock, over what would come back to the layer next to the base.
@@ -157,6 +198,15 @@ impl GranularityFile {
     }
 }
 
+/// A backing by its kind, or by its transmittance.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+enum BackingForm {
+    Kind(Backing),
+    Transmittance(#[schemars(range(min = 0, max = 1))] f64),
+}
+
 /// Light that the base of a film throws back.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -164,9 +214,9 @@ pub(super) struct HalationFile {
     /// Light that enters the base, over the light that exposes the layer next to it, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     scattered: f64,
-    /// Transmittance of base and backing, passed once, 0 to 1.
-    #[schemars(range(min = 0, max = 1))]
-    backing: f64,
+    /// What keeps light from coming back: `rem-jet`, `silver`, `dye` or `removed`, with transmittances of 0.12, 0.2, 0.35 and 0.95, which
+    /// are assumed; or the transmittance of base and backing, passed once, 0 to 1.
+    backing: BackingForm,
     /// Share of what comes back that the emulsion throws down again, for another trip, 0 to 0.95.
     #[serde(default)]
     #[schemars(range(min = 0, max = 0.95))]
@@ -195,7 +245,11 @@ impl HalationFile {
             let fault = params.fault("halation.assumed", "assumed halation needs a remark");
             return Err(fault.hint("add a `remark` that says what it is based on"));
         }
-        Ok(Halation { scattered, backing, reflected, layers: shares, assumed, remark: self.remark.clone() })
+        let (backing, kind) = match backing {
+            BackingForm::Kind(kind) => (kind.transmittance(), Some(kind)),
+            BackingForm::Transmittance(passed) => (passed, None),
+        };
+        Ok(Halation { scattered, backing, kind, reflected, layers: shares, assumed, remark: self.remark.clone() })
     }
 }
 

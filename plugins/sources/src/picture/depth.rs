@@ -158,7 +158,7 @@ impl Depth {
             } else if mm <= 0.0 {
                 Some(1)
             } else {
-                mm = mm.max(near.unwrap_or(mm)).min(far.unwrap_or(mm));
+                mm = mm.max(near.unwrap_or(0.0)).min(far.unwrap_or(f64::INFINITY));
                 // Beyond what 32 bits hold of millimetres is as good as infinite.
                 (mm > 1e30).then_some(2)
             };

@@ -34,6 +34,36 @@ fn kappa_is_conic(lines: &[&str]) -> bool {
     !formula('-') && (formula('+') || plain.contains("conicconstantκ") || plain.contains("conicconstant(κ)"))
 }
 
+/// The words of a line, each with where it ends, in characters.
+fn placed(line: &str) -> Vec<(String, usize)> {
+    let mut words = Vec::new();
+    let mut word = String::new();
+    for (at, c) in line.chars().chain([' ']).enumerate() {
+        if !c.is_whitespace() {
+            word.push(c);
+        } else if !word.is_empty() {
+            words.push((std::mem::take(&mut word), at));
+        }
+    }
+    words
+}
+
+/// `Surface # 2 3 4 5`: the surfaces of a table of aspheres whose columns they are, with where each number ends.
+fn surfaces_across(line: &str) -> Option<Vec<(u32, usize)>> {
+    let words = placed(line);
+    let (first, rest) = words.split_first()?;
+    if !first.0.to_lowercase().starts_with("surface") {
+        return None;
+    }
+    let rest = if rest.first().is_some_and(|(word, _)| ["#", "no.", "number"].contains(&word.to_lowercase().as_str())) {
+        &rest[1..]
+    } else {
+        rest
+    };
+    let columns: Option<Vec<(u32, usize)>> = rest.iter().map(|(word, end)| Some((word.parse().ok()?, *end))).collect();
+    columns.filter(|all| all.len() >= 2 && all.windows(2).all(|pair| pair[0].0 < pair[1].0))
+}
+
 /// What a figure of an asphere is.
 #[derive(Clone, Copy)]
 enum Term {
@@ -78,6 +108,8 @@ impl Below {
         let mut surface = None;
         // The terms of a table of aspheres, the surface of its row, and how many of them it has.
         let mut terms: Vec<Term> = Vec::new();
+        // The surfaces of a table of aspheres whose columns they are, each with where its figures end.
+        let mut columns: Vec<(u32, usize)> = Vec::new();
         let mut row: Option<(u32, usize)> = None;
         for line in lines.iter().skip(from) {
             let plain = line.trim();
@@ -89,6 +121,13 @@ impl Below {
             }
             if is_other(plain) && !plain.to_lowercase().contains("asph") && !plain.contains("非球面") {
                 surface = None;
+            }
+            if let Some(own) = surfaces_across(line) {
+                columns = own;
+                continue;
+            }
+            if below.take_across(line, &columns) {
+                continue;
             }
             let head = plain.split('=').next().unwrap_or_default();
             let lower = head.to_lowercase();
@@ -121,6 +160,28 @@ impl Below {
         }
         below.aspheres.retain(|_, asphere| asphere.conic.is_some() || !asphere.coefficients.is_empty());
         below
+    }
+
+    /// `A4 = 9.9e-3 -3.0e-3 ...`: one term of several surfaces, each figure below the number of its surface; whether the line is one.
+    fn take_across(&mut self, line: &str, columns: &[(u32, usize)]) -> bool {
+        let words = placed(line);
+        let Some(((name, _), figures)) = words.split_first().filter(|_| !columns.is_empty()) else { return false };
+        let name = name.trim_end_matches('=');
+        let letters: String = name.chars().filter(|c| c.is_alphabetic()).flat_map(char::to_lowercase).collect();
+        let digits: String = name.chars().filter(char::is_ascii_digit).collect();
+        let Some(term) = Term::of(&letters, digits.parse().ok()) else { return false };
+        let figures: Vec<&(String, usize)> = figures.iter().filter(|(word, _)| word != "=").collect();
+        if figures.is_empty() || figures.len() > columns.len() || figures.iter().any(|(word, _)| value(word).is_none())
+        {
+            return false;
+        }
+        for (word, end) in figures {
+            let nearest = columns.iter().min_by_key(|(_, column)| column.abs_diff(*end));
+            if let Some((surface, _)) = nearest {
+                self.set(*surface, term, figure(word));
+            }
+        }
+        true
     }
 
     fn set(&mut self, surface: u32, term: Term, figure: String) {

@@ -82,8 +82,37 @@ fn glass_in(words: &str) -> Option<[String; 2]> {
     Some([pair[0], pair[1]].map(|word| if word.contains('.') { word.to_owned() } else { word.replacen(',', ".", 1) }))
 }
 
+/// Lines that name a figure without a sign of equality, `R1  +.4089` and `D1 .0645`, as equations; `None` where fewer than three radii are
+/// written so.
+fn with_signs(lines: &[&str]) -> Option<Vec<String>> {
+    let named = |line: &str| -> Option<(String, String)> {
+        let mut words = line.split_whitespace();
+        let name = words.next()?;
+        let letter = name.chars().next()?.to_ascii_lowercase();
+        let is_name = "rdst".contains(letter) && name.len() > 1 && name[1..].chars().all(|c| c.is_ascii_digit());
+        let first = words.next()?;
+        let is_figure = value(first).is_some() || is_plane(first) || ["+", "-"].contains(&first);
+        (is_name && is_figure && !line.contains('=')).then(|| {
+            let rest = line.trim().split_once(char::is_whitespace).map_or("", |(_, rest)| rest.trim());
+            (name.to_lowercase(), format!("{name} = {rest}"))
+        })
+    };
+    let all: Vec<Option<(String, String)>> = lines.iter().map(|line| named(line)).collect();
+    let radii = all.iter().flatten().filter(|(name, _)| name.starts_with('r')).count();
+    let typed =
+        |(own, line): (Option<(String, String)>, &&str)| own.map_or_else(|| (*line).to_owned(), |(_, text)| text);
+    (radii >= 3).then(|| all.into_iter().zip(lines).map(typed).collect())
+}
+
 /// Rows of a table of equations; `None` where there are fewer than three radii.
 pub(super) fn rows(lines: &[&str]) -> Option<Found> {
+    if let Some(typed) = with_signs(lines) {
+        return rows_of(&typed.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+    rows_of(lines)
+}
+
+fn rows_of(lines: &[&str]) -> Option<Found> {
     let mut found =
         Found { head: 0, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: true, is_line_e: false };
     for (at, line) in lines.iter().enumerate() {
@@ -96,6 +125,17 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
         }
         let plain = unmarked(line);
         let all = equations_of(line);
+        // The stop between the lenses, with a gap and no radius of its own.
+        let first_cell = line.split('|').next().unwrap_or_default().split("  ").find(|cell| !cell.trim().is_empty());
+        if !all.is_empty()
+            && !all.iter().any(|equation| equation.name == "r")
+            && first_cell.is_some_and(is_stop_phrase)
+            && !found.rows.is_empty()
+        {
+            let mut row = Row { line: at, is_stop: true, ..Row::default() };
+            row.cells.insert("radius", "inf".to_owned());
+            found.rows.push(row);
+        }
         for equation in &all {
             let name = match equation.name.as_str() {
                 "r" => "radius",

@@ -7,6 +7,7 @@
 
 mod below;
 mod equations;
+mod lists;
 mod rows;
 mod words;
 
@@ -67,7 +68,8 @@ pub(super) fn retype(text: &str) -> Option<Retyped> {
     let is_word = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
     let first = lines.iter().position(is_word)?;
     let is_table = |line: &str| Head::of(line).is_some_and(|head| head.separator.is_some());
-    let by_equations = if is_table(lines[first]) { None } else { equations::rows(&lines) };
+    let by_equations =
+        if is_table(lines[first]) { None } else { lists::rows(&lines).or_else(|| equations::rows(&lines)) };
     let head = lines.iter().position(|line| Head::of(line).is_some()).filter(|_| by_equations.is_none());
     let mut head = head.and_then(|at| Some((at, Head::of(lines[at])?)));
     let mut found = match &head {

@@ -100,11 +100,14 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
     let columns = &columns.with_effective(lines[head], lines.get(head + 1).copied().unwrap_or_default());
     let mut found =
         Found { head, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: false, is_line_e: false };
+    let mut resumed = head + 1;
     for (at, line) in lines.iter().enumerate().skip(head + 1) {
         let plain = line.trim();
-        if plain.is_empty() || plain.starts_with('#') {
+        // A line of a spreadsheet may hold nothing but separators.
+        if !plain.contains(char::is_alphanumeric) || plain.starts_with('#') || at < resumed {
             continue;
         }
+        let last = found.rows.last().and_then(|row| row.number);
         // Numbers of columns at the head of a page.
         let page: Vec<u32> = plain.split_whitespace().filter_map(|word| word.parse().ok()).collect();
         if columns.separator.is_none()
@@ -121,6 +124,10 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
             of(Column::Radius) || of(Column::Thickness)
         };
         if is_other(plain) && !columns.separator.is_some_and(has_figures) || found.rows.len() > MAX_ITEMS {
+            if let Some(next) = goes_on(lines, at, last, columns).filter(|_| found.rows.len() <= MAX_ITEMS) {
+                resumed = next;
+                continue;
+            }
             found.end = at;
             found.is_needed = true;
             break;
@@ -152,6 +159,8 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
                     None => drop(row.cells.insert("comment", cell)),
                 },
                 Column::Comment => {
+                    // The object and the image, by their names in a column without a heading.
+                    is_row &= columns.separator.is_some() || !is_end(&cell);
                     found.is_needed |= is_stop_phrase(&cell) && columns.separator.is_none();
                     row.is_stop |= is_stop_phrase(&cell);
                     row.is_marked |= columns.separator.is_none() && cell.to_lowercase().contains("aspher");
@@ -160,6 +169,9 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
                 Column::Thickness if is_variable(&cell) => {
                     found.is_needed = true;
                     row.cells.insert(name, cell);
+                }
+                Column::Radius if columns.separator.is_none() && is_plane(&cell) => {
+                    row.cells.insert(name, "inf".to_owned());
                 }
                 _ => {
                     let typed = figure(&cell);
@@ -192,6 +204,10 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
             if found.rows.is_empty() {
                 continue;
             }
+            if let Some(next) = goes_on(lines, at, last, columns) {
+                resumed = next;
+                continue;
+            }
             found.end = at;
             break;
         }
@@ -222,6 +238,32 @@ fn value_of(row: &Row, name: &str) -> Option<()> {
     (is_plane(cell) || cell.eq_ignore_ascii_case("stop") || value(cell).is_some()).then_some(())
 }
 
+/// Whether two words are one figure that a reader of pages has taken apart at its point: `1. 84666`, `82 .788`.
+fn is_broken(first: &str, second: &str) -> bool {
+    let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+    let whole = |text: &str| digits(text.trim_start_matches(['-', '+']));
+    first.strip_suffix('.').is_some_and(whole) && digits(second)
+        || whole(first) && second.strip_prefix('.').is_some_and(digits)
+}
+
+/// Where the rows of a table go on behind a break of the page: the line of the row whose number is the next one, if it is near.
+fn goes_on(lines: &[&str], from: usize, last: Option<u32>, columns: &Head) -> Option<usize> {
+    /// Lines that the foot of a page and the head of the next one take at most.
+    const FEW: usize = 14;
+    let next = last? + 1;
+    let is_next = |line: &str| {
+        let cells = by_rule(line.trim(), columns);
+        let of = |wanted: Column| cells.iter().find(|(column, _)| *column == wanted).map(|(_, cell)| cell.as_str());
+        let number = of(Column::Number).and_then(mark).and_then(|(number, ..)| number);
+        let has_radius = of(Column::Radius).is_some_and(|cell| is_plane(cell) || value(cell).is_some());
+        let has_gap = of(Column::Thickness).is_some_and(|cell| is_variable(cell) || value(cell).is_some());
+        number == Some(next) && has_radius && has_gap
+    };
+    (columns.separator.is_none() && columns.has(Column::Number))
+        .then(|| (from..lines.len().min(from + FEW)).find(|at| is_next(lines[*at])))
+        .flatten()
+}
+
 /// The cells of a row whose columns are separated by blanks, where cells may be empty: surface, type, radius and thickness stand
 /// first, then the index and the Abbe number of a glass in the order of the headings, then a diameter; words that are no glass last.
 fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
@@ -230,10 +272,13 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         match words.last_mut() {
             // A sign that stands alone belongs to the figure behind it.
             Some(last)
-                if (last == "-" || last == "+") && word.starts_with(|c: char| c.is_ascii_digit() || c == '.') =>
+                if (last == "-" || last == "+") && word.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+                    || is_broken(last, word) =>
             {
                 last.push_str(word);
             }
+            // The mark of an asphere behind its radius.
+            Some(_) if ["(asp)", "(asph)", "asp", "(aspheric)"].contains(&word.to_lowercase().as_str()) => {}
             _ => words.push(word.to_owned()),
         }
     }
@@ -258,6 +303,22 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         cells.push((Column::Number, first));
     }
     let is_word = |word: &String| word.chars().next().is_some_and(char::is_alphabetic) && value(word).is_none();
+    // `Lens 1`, `Ape. Stop`, `IR-cut filter` between the number and the radius, in a column without a heading.
+    let mut named = String::new();
+    while head.has(Column::Number)
+        && !head.has(Column::Kind)
+        && words.peek().is_some_and(|word| is_word(word) && !is_plane(word))
+    {
+        let word = words.next().unwrap_or_default();
+        let is_lens = word.to_lowercase().starts_with("lens");
+        named = format!("{named} {word}").trim().to_owned();
+        if is_lens && words.peek().is_some_and(|next| next.parse::<u8>().is_ok()) {
+            words.next();
+        }
+    }
+    if !named.is_empty() {
+        cells.push((Column::Comment, named));
+    }
     if head.has(Column::Kind)
         && let Some(kind) = words.next_if(is_word)
     {
@@ -269,6 +330,10 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
     let mut rest: Vec<String> = words.filter(|word| word != "-").collect();
     // The mark of a solve.
     if rest.first().is_some_and(|word| word.len() == 3 && word.starts_with('(') && word.ends_with(')')) {
+        rest.remove(0);
+    }
+    // A word for the kind of medium is no glass.
+    if rest.first().is_some_and(|word| ["plastic", "glass"].contains(&word.to_lowercase().as_str())) {
         rest.remove(0);
     }
     if head.has(Column::Glass)
@@ -300,7 +365,7 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
     }
     // Where partial dispersions stand between, they are below 1 and a diameter is not.
     let least = if head.has(Column::Unused) { 1.0 } else { 0.0 };
-    if let Some(size) = (left..figures.len()).find(|i| at(*i) >= least) {
+    if has_size && let Some(size) = (left..figures.len()).find(|i| at(*i) >= least) {
         let column = if head.has(Column::Diameter) { Column::Diameter } else { Column::SemiDiameter };
         cells.push((column, figures[size].clone()));
     }

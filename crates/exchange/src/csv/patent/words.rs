@@ -51,8 +51,21 @@ pub(super) fn mark(cell: &str) -> Option<(Option<u32>, bool, bool)> {
 
 /// Whether a word is that for the stop, without case and blanks.
 pub(super) fn is_stop(word: &str) -> bool {
-    ["stop", "sto", "aperturestop", "diaphragm", "aperturediaphragm", "blende", "iris", "絞り", "開口絞り"]
-        .contains(&word)
+    [
+        "stop",
+        "sto",
+        "aperturestop",
+        "apestop",
+        "aperstop",
+        "apstop",
+        "diaphragm",
+        "aperturediaphragm",
+        "blende",
+        "iris",
+        "絞り",
+        "開口絞り",
+    ]
+    .contains(&word)
 }
 
 /// Whether a remark is the word for the stop and nothing else: `Aperture stop S`, `(絞り)`.
@@ -155,7 +168,7 @@ pub(super) fn is_other(line: &str) -> bool {
 
 /// Whether a word stands for a plane.
 pub(super) fn is_plane(word: &str) -> bool {
-    ["∞", "plane", "plano", "plan", "flat", "inf", "infinity", "infinite"].contains(&word.to_lowercase().as_str())
+    ["∞", "oo", "plane", "plano", "plan", "flat", "inf", "infinity", "infinite"].contains(&word.to_lowercase().as_str())
 }
 
 /// Whether a row is that of the object or the image, by the words that it begins with.

@@ -1,0 +1,77 @@
+//! Tables as lists, one below the other: all radii, then all thicknesses and gaps, then the glasses of the lenses.
+
+use super::equations::equations_of;
+use super::words::{is_back_focus, is_plane};
+use super::{Found, Row, value};
+use crate::MAX_ITEMS;
+
+/// Rows of lists; `None` where radii and gaps do not stand apart, or are not as many as belong to each other.
+pub(super) fn rows(lines: &[&str]) -> Option<Found> {
+    let mut rows: Vec<Row> = Vec::new();
+    // Letter and value of each gap, and its line.
+    let mut gaps: Vec<(String, String, usize)> = Vec::new();
+    for (at, line) in lines.iter().enumerate() {
+        let all = equations_of(line);
+        let [equation] = &all[..] else {
+            // Several in a line are a table of another kind.
+            if all.iter().any(|e| e.name == "r" && e.number.is_some()) {
+                return None;
+            }
+            continue;
+        };
+        let (Some(number), name) = (equation.number, equation.name.as_str()) else { continue };
+        let is_radius = name == "r" && (value(&equation.value).is_some() || is_plane(&equation.value));
+        if is_radius && number as usize == rows.len() + 1 && gaps.is_empty() && rows.len() < MAX_ITEMS {
+            let mut row = Row { line: at, number: Some(number), ..Row::default() };
+            let radius = if is_plane(&equation.value) { "inf" } else { &equation.value };
+            row.cells.insert("radius", radius.to_owned());
+            rows.push(row);
+        } else if matches!(name, "d" | "t" | "l" | "s" | "a" | "e")
+            && rows.len() >= 3
+            && gaps.len() < rows.len()
+            && !is_back_focus(line)
+            && value(&equation.value).is_some()
+        {
+            gaps.push((name.to_owned(), equation.value.clone(), at));
+        } else if is_radius && !gaps.is_empty() {
+            return None;
+        }
+    }
+    // The last gap is that to the film, which may stand elsewhere.
+    if rows.len() < 3 || gaps.len() + 1 < rows.len() {
+        return None;
+    }
+    let end = gaps.last()?.2 + 1;
+    let glasses = glasses(&lines[end..]);
+    // Where two letters are used, that of the first gap is of glass, since light meets a lens first.
+    let glass = gaps[0].0.clone();
+    let has_air = gaps.iter().any(|(letter, ..)| *letter != glass);
+    let mut next = glasses.into_iter();
+    for (row, (letter, thickness, _)) in rows.iter_mut().zip(gaps) {
+        row.cells.insert("thickness", thickness);
+        if has_air
+            && letter == glass
+            && let Some([nd, vd]) = next.next()
+        {
+            row.cells.insert("nd", nd);
+            row.cells.insert("vd", vd);
+        }
+    }
+    let head = rows.first()?.line.saturating_sub(1);
+    Some(Found { head, rows, end, notes: Vec::new(), is_needed: true, is_line_e: false })
+}
+
+/// Index and Abbe number of each lens, `L1 1.6227 56.9`, in order.
+fn glasses(lines: &[&str]) -> Vec<[String; 2]> {
+    let mut found = Vec::new();
+    for line in lines {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [name, index, abbe] = words[..] else { continue };
+        let number = name.trim_start_matches(['L', 'l', '(']).trim_end_matches([')', '.', ':']);
+        let of = |word: &str, range: std::ops::Range<f64>| value(word).is_some_and(|n| range.contains(&n));
+        if number.parse() == Ok(found.len() + 1) && of(index, 1.3..2.3) && of(abbe, 15.0..100.0) {
+            found.push([index, abbe].map(|word| word.replacen(',', ".", 1)));
+        }
+    }
+    found
+}
