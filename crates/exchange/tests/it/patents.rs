@@ -42,11 +42,12 @@ fn tables_in_the_manner_of_patents_are_read() {
             let want: Vec<Option<f64>> = right[what].as_array().expect("a list").iter().map(Value::as_f64).collect();
             let near = |(a, b): (&Option<f64>, &Option<f64>)| match (a, b) {
                 (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * b.abs(),
-                // The last gap, where the table states none.
-                (Some(_), None) if what == "thicknesses" => true,
                 (a, b) => a == b,
             };
-            if got.len() != want.len() || !got.iter().zip(&want).all(near) {
+            // Of the last gap the table may state nothing.
+            let states_all = what != "thicknesses" || want.last().is_none_or(Option::is_some);
+            let compared = if states_all { want.len() } else { want.len() - 1 };
+            if got.len() != want.len() || !got.iter().zip(&want).take(compared).all(near) {
                 wrong.push(format!("{name}: {what}: {got:?}, not {want:?}"));
             }
         };

@@ -121,6 +121,7 @@ impl Below {
             }
             if is_other(plain) && !plain.to_lowercase().contains("asph") && !plain.contains("非球面") {
                 surface = None;
+                columns.clear();
             }
             if let Some(own) = surfaces_across(line) {
                 columns = own;
@@ -136,6 +137,7 @@ impl Below {
             let bare = plain.trim_matches(['(', ')', '*', ':', '.', 'r', ' ', '[', ']']);
             let is_bare = !bare.is_empty() && bare.len() < 4 && bare.chars().all(|c| c.is_ascii_digit());
             if is_named || is_bare {
+                columns.clear();
                 surface = surface_number(head).or(surface);
             }
             let all = equations_of(plain);
@@ -175,11 +177,18 @@ impl Below {
         {
             return false;
         }
-        for (word, end) in figures {
-            let nearest = columns.iter().min_by_key(|(_, column)| column.abs_diff(*end));
-            if let Some((surface, _)) = nearest {
-                self.set(*surface, term, figure(word));
-            }
+        let surfaces: Vec<u32> = if figures.len() == columns.len() {
+            columns.iter().map(|(surface, _)| *surface).collect()
+        } else {
+            // Each below its column, where blanks have kept their places.
+            let nearest = |end: usize| columns.iter().min_by_key(|(_, column)| column.abs_diff(end)).map(|(s, _)| *s);
+            figures.iter().filter_map(|(_, end)| nearest(*end)).collect()
+        };
+        if surfaces.windows(2).any(|pair| pair[0] == pair[1]) {
+            return false;
+        }
+        for ((word, _), surface) in figures.into_iter().zip(surfaces) {
+            self.set(surface, term, figure(word));
         }
         true
     }

@@ -19,7 +19,13 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
             }
             continue;
         };
-        let (Some(number), name) = (equation.number, equation.name.as_str()) else { continue };
+        let name = equation.name.as_str();
+        // Coefficients of an asphere are no gaps.
+        if matches!(name, "k" | "κ") || line.to_lowercase().contains("asph") || line.contains("非球面") {
+            break;
+        }
+        let Some(number) = equation.number else { continue };
+        let is_next_gap = number as usize == gaps.iter().filter(|(letter, ..)| letter == name).count() + 1;
         let is_radius = name == "r" && (value(&equation.value).is_some() || is_plane(&equation.value));
         if is_radius && number as usize == rows.len() + 1 && gaps.is_empty() && rows.len() < MAX_ITEMS {
             let mut row = Row { line: at, number: Some(number), ..Row::default() };
@@ -32,6 +38,9 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
             && !is_back_focus(line)
             && value(&equation.value).is_some()
         {
+            if !is_next_gap {
+                break;
+            }
             gaps.push((name.to_owned(), equation.value.clone(), at));
         } else if is_radius && !gaps.is_empty() {
             return None;
@@ -46,6 +55,15 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
     // Where two letters are used, that of the first gap is of glass, since light meets a lens first.
     let glass = gaps[0].0.clone();
     let has_air = gaps.iter().any(|(letter, ..)| *letter != glass);
+    let lenses = gaps.iter().filter(|(letter, ..)| *letter == glass).count();
+    let mut notes = Vec::new();
+    if has_air && !glasses.is_empty() && glasses.len() != lenses {
+        let text = format!(
+            "the list of glasses has {}, the list of thicknesses {lenses}: which lens has none?",
+            glasses.len()
+        );
+        notes.push((end + 1, true, text));
+    }
     let mut next = glasses.into_iter();
     for (row, (letter, thickness, _)) in rows.iter_mut().zip(gaps) {
         row.cells.insert("thickness", thickness);
@@ -58,7 +76,7 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
         }
     }
     let head = rows.first()?.line.saturating_sub(1);
-    Some(Found { head, rows, end, notes: Vec::new(), is_needed: true, is_line_e: false })
+    Some(Found { head, rows, end, notes, is_needed: true, is_line_e: false })
 }
 
 /// Index and Abbe number of each lens, `L1 1.6227 56.9`, in order.

@@ -211,6 +211,10 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
             found.end = at;
             break;
         }
+        if columns.separator.is_none() {
+            let told = |pair: String| (at, false, format!("`{pair}` is read as one figure"));
+            found.notes.extend(broken(plain).into_iter().map(told).map(|(at, alters, text)| (at + 1, alters, text)));
+        }
         found.rows.push(row);
     }
     // Where every row has a size but the last, which has one figure near the size before, that is its size.
@@ -238,47 +242,74 @@ fn value_of(row: &Row, name: &str) -> Option<()> {
     (is_plane(cell) || cell.eq_ignore_ascii_case("stop") || value(cell).is_some()).then_some(())
 }
 
-/// Whether two words are one figure that a reader of pages has taken apart at its point: `1. 84666`, `82 .788`.
+/// Whether two words are one figure that a reader of pages has taken apart at its point, with three decimals or more: `1. 84666`,
+/// `82 .788`.
 fn is_broken(first: &str, second: &str) -> bool {
-    let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
-    let whole = |text: &str| digits(text.trim_start_matches(['-', '+']));
-    first.strip_suffix('.').is_some_and(whole) && digits(second)
-        || whole(first) && second.strip_prefix('.').is_some_and(digits)
+    const DECIMALS: usize = 3;
+    let is_whole = |text: &str| {
+        let digits = text.trim_start_matches(['-', '+']);
+        !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit())
+    };
+    let is_part = |text: &str| text.len() >= DECIMALS && text.chars().all(|c| c.is_ascii_digit());
+    first.strip_suffix('.').is_some_and(is_whole) && is_part(second)
+        || is_whole(first) && second.strip_prefix('.').is_some_and(is_part)
 }
 
-/// Where the rows of a table go on behind a break of the page: the line of the row whose number is the next one, if it is near.
+/// The figures of a row that [`by_rule`] puts together again, for a word about them.
+fn broken(line: &str) -> Vec<String> {
+    let words: Vec<&str> = line.split_whitespace().skip(1).collect();
+    words.windows(2).filter(|pair| is_broken(pair[0], pair[1])).map(|pair| pair.join(" ")).collect()
+}
+
+/// Where the rows of a table go on behind a break of the page: the line of the row whose number is the next one, if it is near and nothing
+/// else begins before it.
 fn goes_on(lines: &[&str], from: usize, last: Option<u32>, columns: &Head) -> Option<usize> {
     /// Lines that the foot of a page and the head of the next one take at most.
     const FEW: usize = 14;
     let next = last? + 1;
-    let is_next = |line: &str| {
+    if columns.separator.is_some() || !columns.has(Column::Number) {
+        return None;
+    }
+    for (at, line) in lines.iter().enumerate().skip(from).take(FEW) {
+        let plain = line.trim().to_lowercase();
+        let is_unit = plain.starts_with("unit") && plain.contains("mm");
+        if Head::of(line).is_some() || is_other(line) && !plain.contains("continued") && !is_unit {
+            return None;
+        }
         let cells = by_rule(line.trim(), columns);
         let of = |wanted: Column| cells.iter().find(|(column, _)| *column == wanted).map(|(_, cell)| cell.as_str());
         let number = of(Column::Number).and_then(mark).and_then(|(number, ..)| number);
         let has_radius = of(Column::Radius).is_some_and(|cell| is_plane(cell) || value(cell).is_some());
         let has_gap = of(Column::Thickness).is_some_and(|cell| is_variable(cell) || value(cell).is_some());
-        number == Some(next) && has_radius && has_gap
-    };
-    (columns.separator.is_none() && columns.has(Column::Number))
-        .then(|| (from..lines.len().min(from + FEW)).find(|at| is_next(lines[*at])))
-        .flatten()
+        match number {
+            Some(number) if has_radius && has_gap => return (number == next).then_some(at),
+            _ => {}
+        }
+    }
+    None
 }
 
 /// The cells of a row whose columns are separated by blanks, where cells may be empty: surface, type, radius and thickness stand
 /// first, then the index and the Abbe number of a glass in the order of the headings, then a diameter; words that are no glass last.
 fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
     let mut words: Vec<String> = Vec::new();
+    let mut is_marked = false;
     for word in line.split_whitespace() {
+        let count = words.len();
         match words.last_mut() {
             // A sign that stands alone belongs to the figure behind it.
             Some(last)
                 if (last == "-" || last == "+") && word.starts_with(|c: char| c.is_ascii_digit() || c == '.')
-                    || is_broken(last, word) =>
+                    || count > 1 && is_broken(last, word) =>
             {
                 last.push_str(word);
             }
             // The mark of an asphere behind its radius.
-            Some(_) if ["(asp)", "(asph)", "asp", "(aspheric)"].contains(&word.to_lowercase().as_str()) => {}
+            Some(_)
+                if count > 1 && ["(asp)", "(asph)", "asp", "(aspheric)"].contains(&word.to_lowercase().as_str()) =>
+            {
+                is_marked = true;
+            }
             _ => words.push(word.to_owned()),
         }
     }
@@ -300,9 +331,14 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
             first.push(' ');
             first.push_str(&words.next().unwrap_or_default());
         }
+        if is_marked {
+            first.push('*');
+        }
         cells.push((Column::Number, first));
     }
     let is_word = |word: &String| word.chars().next().is_some_and(char::is_alphabetic) && value(word).is_none();
+    /// A number behind `Lens` up to this one is its own, and no radius.
+    const MOST_LENSES: u8 = 20;
     // `Lens 1`, `Ape. Stop`, `IR-cut filter` between the number and the radius, in a column without a heading.
     let mut named = String::new();
     while head.has(Column::Number)
@@ -312,7 +348,8 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         let word = words.next().unwrap_or_default();
         let is_lens = word.to_lowercase().starts_with("lens");
         named = format!("{named} {word}").trim().to_owned();
-        if is_lens && words.peek().is_some_and(|next| next.parse::<u8>().is_ok()) {
+        // Its number, of which no lens has more than a few.
+        if is_lens && words.peek().is_some_and(|next| next.parse::<u8>().is_ok_and(|number| number <= MOST_LENSES)) {
             words.next();
         }
     }
