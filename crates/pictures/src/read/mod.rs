@@ -12,6 +12,7 @@ mod foreign;
 mod header;
 mod jpeg;
 mod linear;
+mod packed;
 mod planes;
 mod primaries;
 mod profile;
