@@ -286,10 +286,19 @@ impl Depth {
             .map(|(unit, mm)| (format!("`unit: {unit}{kind}`"), said * stretch * mm))
             .collect();
         others.push(("`unit: m, kind: inverse`".to_owned(), 1000.0 * stretch / said));
+        // Where the plane stands in front of most things a view fits, too; feet and inches are asked about last.
+        let as_view = |mm: f64| mm > plane_mm && f64::from(least) * (mm / median_mm) < plane_mm;
+        let is_z = |remedy: &str| !remedy.contains("inverse");
         let (remedy, fits) = others
             .into_iter()
-            .filter(|(_, mm)| off(*mm) < 0.5 * FAR_OFF)
-            .min_by(|a, b| off(a.1).total_cmp(&off(b.1)))?;
+            .filter(|(remedy, mm)| off(*mm) < 0.5 * FAR_OFF || is_z(remedy) && off(*mm) < FAR_OFF && as_view(*mm))
+            .min_by(|a, b| {
+                let rank = |(remedy, mm): &(String, f64)| {
+                    let is_rare = remedy.starts_with("`unit: ft") || remedy.starts_with("`unit: in");
+                    off(*mm) * if is_rare { 4.0 } else { 1.0 }
+                };
+                rank(a).total_cmp(&rank(b))
+            })?;
         let text = format!(
             "half of the depth lies nearer than {}, while the plane of the picture stands at {}",
             length(median_mm),
