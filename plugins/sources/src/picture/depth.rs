@@ -265,9 +265,14 @@ impl Depth {
         let median_mm = f64::from(*all.select_nth_unstable_by(middle, f32::total_cmp).1);
         let off = |mm: f64| (mm / plane_mm).max(plane_mm / mm);
         let [least, most] = all.iter().fold([f32::INFINITY, 0.0], |[a, b]: [f32; 2], d| [a.min(*d), b.max(*d)]);
+        let is_normalised = self.kind == DepthKind::Z
+            && (f64::from(most) / self.unit_mm - 1.0).abs() < 1e-6
+            && f64::from(least) < 0.5 * self.unit_mm;
+        // Alpha, and what is normalised, as meters: all of it lies within the first one, and the plane beyond.
+        let is_within_one = is_normalised && plane_mm > f64::from(most);
         // A view into the distance has its plane in front of most things, but not of all.
         let is_view = median_mm > plane_mm && f64::from(least) < 3.0 * plane_mm;
-        if off(median_mm) < FAR_OFF || is_view {
+        if !is_within_one && (off(median_mm) < FAR_OFF || is_view) {
             return None;
         }
         let said = match self.kind {
@@ -275,9 +280,6 @@ impl Depth {
             DepthKind::Z | DepthKind::Ray => median_mm / self.unit_mm,
         };
         let stretch = self.p.scale.unwrap_or(1.0);
-        let is_normalised = self.kind == DepthKind::Z
-            && (f64::from(most) / self.unit_mm - 1.0).abs() < 1e-6
-            && f64::from(least) < 0.5 * self.unit_mm;
         // With another unit or kind the plane would lie among the things, and about the middle of them.
         let kind = if self.kind == DepthKind::Z { "" } else { ", kind: z" };
         let mut others: Vec<(String, f64)> = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("ft", 304.8)]
@@ -289,7 +291,7 @@ impl Depth {
         // Where the plane stands in front of most things a view fits, too; feet and inches are asked about last.
         let as_view = |mm: f64| mm > plane_mm && f64::from(least) * (mm / median_mm) < plane_mm;
         let is_z = |remedy: &str| !remedy.contains("inverse");
-        let (remedy, fits) = others
+        let other = others
             .into_iter()
             .filter(|(remedy, mm)| off(*mm) < 0.5 * FAR_OFF || is_z(remedy) && off(*mm) < FAR_OFF && as_view(*mm))
             .min_by(|a, b| {
@@ -298,16 +300,18 @@ impl Depth {
                     off(*mm) * if is_rare { 4.0 } else { 1.0 }
                 };
                 rank(a).total_cmp(&rank(b))
-            })?;
+            });
         let text = format!(
             "half of the depth lies nearer than {}, while the plane of the picture stands at {}",
             length(median_mm),
             length(plane_mm)
         );
-        let hint = if is_normalised {
-            "its numbers run to exactly 1: normalised depth has to be written anew in meters; of alpha name another `channel`".to_owned()
-        } else {
-            format!("did you mean {remedy}? Half would lie nearer than {}", length(fits))
+        let hint = match other {
+            _ if is_normalised => {
+                "its numbers run to exactly 1: normalised depth has to be written anew in meters; of alpha name another `channel`".to_owned()
+            }
+            Some((remedy, fits)) => format!("did you mean {remedy}? Half would lie nearer than {}", length(fits)),
+            None => return None,
         };
         Some(self.params.fault("unit", text).hint(hint).into())
     }
