@@ -515,6 +515,35 @@ fn the_field_is_told_point_by_point() {
     );
 }
 
+/// A lens of one element sees 90 degrees, and nobody uses them: its field is listed and drawn to the corner of 135 film. A fisheye is shown whole.
+#[test]
+fn a_field_that_no_rim_limits_ends_at_the_corner() {
+    let last = |name: &str| {
+        let found = info(name, &[]);
+        let points = found["chief_ray_exit_angle_deg"].as_array().expect("a list").clone();
+        let [field, height] =
+            ["field_deg", "image_height_mm"].map(|key| figure(points.last().expect("points"), key).abs());
+        (figure(&found, "max_field_deg"), field, height)
+    };
+    let (largest, field, height) = last("surfaces/conic-singlet");
+    assert!(largest > 80.0 && field < 30.0 && (height - 21.633).abs() < 0.01, "{largest} {field} {height}");
+    assert!(good(&["lens", "info", "surfaces/conic-singlet"]).contains("to the corner of 135 film"));
+    let (largest, field, _) = last("minolta-fisheye-16-f2.7");
+    assert!(largest > 100.0 && field > 90.0, "{largest} {field}");
+    // Drawn to the same field, so the figure is not all beam: the height of the beam at the lens's front stays within ten of its radii.
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["surfaces/conic-singlet", "surfaces/axicon"] {
+        let drawn = folder.path().join("drawn.svg");
+        good(&["lens", "draw", name, "-o", shown(&drawn)]);
+        let svg = std::fs::read_to_string(&drawn).expect("a figure");
+        let side = |key: &str| -> f64 {
+            let rest = svg.split(&format!(" {key}=\"")).nth(1).expect(key);
+            rest.split('"').next().and_then(|n| n.parse().ok()).expect("a number")
+        };
+        assert!(side("height") < 1.5 * side("width"), "{name}: {} x {}", side("width"), side("height"));
+    }
+}
+
 /// The same distortion in both commands, and none of a pinhole.
 #[test]
 fn distortion_is_told_alike() {

@@ -253,6 +253,62 @@ fn words_that_are_no_commands_have_one_behind_them() {
     }
 }
 
+/// Words that have no page lead to a command that tells of them.
+#[test]
+fn words_of_photographers_lead_somewhere() {
+    let words = "tri-x helios D55 gray-card bokeh dof fov sequence overscan alpha z-depth ghosts starburst vignetting \
+                 distortion asa shutter-speed darkroom lut aces raw anamorphic tilt-shift denoise cryptomatte gel";
+    for word in words.split(' ') {
+        let said = refused(&["doc", word]).replace("\n        ", " ");
+        let command = said.split("see `spectra ").nth(1).and_then(|rest| rest.split('`').next());
+        let command: Vec<&str> = command.unwrap_or_else(|| panic!("{word}: {said}")).split(' ').collect();
+        assert!(!good(&command).is_empty(), "{word}: {command:?}");
+    }
+    assert!(refused(&["doc", "BK7"]).contains("`spectra list glass BK7`"));
+}
+
+/// The list begins with what there is, and how many.
+#[test]
+fn the_list_begins_with_kinds_and_counts() {
+    let list = good(&["list"]);
+    let head: Vec<Vec<&str>> = list.lines().skip(1).take(7).map(|line| line.split_whitespace().collect()).collect();
+    for (line, kind) in head.iter().zip(["scene", "lens", "stock", "spectrum", "glass", "sensor", "format"]) {
+        assert!(
+            line[0] == kind && line[1].parse::<u32>().is_ok_and(|n| n > 0) && line[2..] == ["spectra", "list", kind],
+            "{list}"
+        );
+    }
+    assert!(!good(&["list", "lens"]).contains("spectra list"));
+}
+
+/// What is asked of a command in the words of another one is answered with what to write.
+#[test]
+fn slips_of_the_command_line_are_told_with_what_to_write() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("foma.csv"), "nm,S\n400,1\n500,2\n").expect("written");
+    for (arguments, words) in [
+        (&["check", "--set", "film.stock", "tri-x", "gray-card"][..], "write `--set film.stock=tri-x`"),
+        (&["run", "gray-card", "--set", "film.stock", "tri-x"], "write `--set film.stock=tri-x`"),
+        (&["check", "gray-card", "--set", "film.stock"], "`--set film.stock=VALUE`"),
+        (&["film", "info", "foma.csv"], "`spectra new film foma`"),
+        (&["film", "info", "cinestill-800t"], "`kodak-vision3-500t-5219`"),
+        (&["film", "info", "delta-3200"], "`spectra new film NAME`"),
+        (&["film", "info", "fomapan-100"], "the nearest are"),
+        (&["film", "develop", "a.png", "--stock", "tri-x", "--frames", "1..3"], "'plate.####.exr'"),
+        (&["film", "develop", "a.png", "--stock", "tri-x", "--filter", "yellow"], "lens.filters=[wratten-12]"),
+        (&["bench", "gray-card", "--samples", "1..64"], "such as 1,4,16,64"),
+        (&["info", "tri-x"], "`spectra film info kodak-tri-x-400`"),
+        (&["develop", "a.png"], "`spectra film develop a.png --stock tri-x`"),
+    ] {
+        let output = run_in(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = text(&output.stderr).replace("\n        ", " ");
+        assert!(said.contains(words), "{arguments:?}: {said}");
+    }
+    let said = text(&run_in(folder.path(), &["film", "info", "fomapan"]).stderr);
+    assert!(said.contains("fuji-c200") && !said.contains("kodak-2302") && !said.contains("paper"), "{said}");
+}
+
 #[test]
 fn completions_and_man_page_know_every_command() {
     let bash = good(&["completions", "bash"]);
@@ -678,10 +734,11 @@ fn changed(content: &str, told: &Told, change: Change, text: &str) -> Option<Str
 }
 
 /// Recorded hints that this test cannot write by itself, and why.
-const BY_HAND: [(&str, &str); 4] = [
+const BY_HAND: [(&str, &str); 5] = [
     ("dng-from-film", "`dng` is left out of a list, not of a map"),
     ("empty-file", "an empty file is no scene with its first line alone"),
     ("lens-index-as-glass", "`nd` is written in place of another key, `glass`"),
+    ("picture-sequence", "the pictures of the sequence are not there"),
     ("width-without-a-unit", "the width that is meant leaves a narrow border, and a warning of it"),
 ];
 

@@ -181,6 +181,23 @@ fn signal(child: &Child, name: &str) {
     assert!(killed.expect("a shell").success());
 }
 
+/// What runs left that were killed goes with the next one into the folder, whatever they wrote; what others left stays.
+#[test]
+fn what_killed_runs_left_is_swept() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // No process has this number.
+    let [left, other] =
+        [".spectra-4294967290-3.tmp", ".other.0007.png.4294967290-12.tmp"].map(|name| folder.path().join(name));
+    let stays = folder.path().join(".notes.tmp");
+    for path in [&left, &other, &stays] {
+        std::fs::write(path, "half of it").expect("written");
+    }
+    let set = ["--set", "imager.resolution=[12, 8]", "--samples", "1"];
+    let said = run(&[&["run", "gray-card", "--output", shown(folder.path())][..], &set].concat());
+    assert!(said.status.success(), "{}", text(&said.stderr));
+    assert!(!left.exists() && !other.exists() && stays.exists());
+}
+
 /// 128 + the number of the signal, as shells and batch systems have it; what there is, is kept by all of them.
 #[cfg(unix)]
 #[test]

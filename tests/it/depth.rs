@@ -347,7 +347,7 @@ fn kinds_of_depth_and_near_things_are_asked_about() {
             "did you mean `kind: ray`?",
             "{file: ray.tif, scale: 65535, kind: ray}",
         ),
-        ("near.exr", "{}", "under two focal lengths", "{near: 20 cm}"),
+        ("near.exr", "{}", "`near: 11 cm`", "{near: 11 cm}"),
     ] {
         let said = asked(file, wrong);
         assert!(said.contains(words), "{file} {wrong}: {said}");

@@ -89,6 +89,15 @@ fn light_is_saved_and_taken_up() {
         let mut other = session(scene, &[&set[..], &["render.seed=5"]].concat());
         assert!(other.load(&mut file.as_slice()).is_err());
         assert_eq!(bits(&mut second), bits(&mut whole));
+        // A surface that no lens has is seen before room is made for all up to it.
+        file[last] ^= 1;
+        let magic = b"spectra light 5\n";
+        let state = file.windows(16).position(|w| w == magic).expect("light") + 16 + 8;
+        if file[state - 8..state] != [0; 8] {
+            file[state + 3] = 0xf0;
+            let error = second.load(&mut file.as_slice()).expect_err("no such surface").to_string();
+            assert!(error.contains("of another scene"), "{error}");
+        }
     }
 }
 

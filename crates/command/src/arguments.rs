@@ -176,6 +176,17 @@ impl Quality {
     }
 }
 
+/// One of the numbers of `spectra bench --samples`.
+fn sample_count(text: &str) -> Result<u32, String> {
+    const MOST: u32 = 1_048_576;
+    let wanted = "expected whole numbers with commas between them, such as 1,4,16,64";
+    let number = text.trim().parse::<u32>().ok().filter(|n| (1..=MOST).contains(n));
+    number.ok_or_else(|| match text.parse::<f64>() {
+        Ok(_) => format!("expected whole numbers from 1 to {MOST}, such as 1,4,16,64"),
+        Err(_) => wanted.to_owned(),
+    })
+}
+
 /// The number of `--samples`.
 fn samples(text: &str) -> Result<u32, String> {
     let wanted = "expected a whole number from 1 to 4194304, such as 64";
@@ -317,7 +328,7 @@ pub(crate) struct Bench {
     pub seed: Option<u64>,
     /// Numbers of samples to test, from 1 to 1048576: for the integral, and per pixel for the scene.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "1,4,16,64,256",
-        value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
+        value_parser = sample_count)]
     pub samples: Vec<u32>,
     /// Strategies, as NAME or NAME{key: value, ...}; the first is the baseline for the others. If not given, all
     /// registered ones; the scene's own strategy keeps its keys.

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use spectra_core::names::{self, Match};
 use spectra_core::params::Fault;
 use spectra_core::registry::{self, Documentation, Listed, Parameter};
+use spectra_scene::bundled::{self, Bundled};
 use spectra_scene::{FileKind, file_documentation, shared_documentation};
 use std::fmt::Write;
 
@@ -151,12 +152,32 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
         }
     }
     match names::find(&wanted, last.iter().map(String::as_str)) {
-        Match::One(key) => keys(key),
+        // What is bundled under this name, or a word of photographers, is meant before a part of a key: `tri-x` is no `matrix`.
+        Match::One(key) if names::normalized(key) == names::normalized(&wanted) || elsewhere(name).is_none() => {
+            keys(key)
+        }
+        Match::One(key) => Err(vec![key.to_owned()]),
         Match::Several(several) => Err(several.into_iter().map(str::to_owned).collect()),
         Match::Nothing => {
             Err(names::nearest(&wanted, last.iter().map(String::as_str)).map(str::to_owned).into_iter().collect())
         }
     }
+}
+
+/// Where something is shown that has no page: a lens, a film, a spectrum, a word of photographers. What it is, and the command.
+fn elsewhere(name: &str) -> Option<(String, String)> {
+    if let Some((what, command)) = crate::glossary::meant(name) {
+        return Some((what.to_owned(), command.to_owned()));
+    }
+    let (kind, name) = bundled::meanings(name).into_iter().next()?;
+    let command = match kind {
+        Bundled::Scene => "check",
+        Bundled::Lens => "lens info",
+        Bundled::Stock => "film info",
+        Bundled::Spectrum => "spectrum info",
+        Bundled::Glass => "glass info",
+    };
+    Some((kind.noun().to_owned(), format!("spectra {command} {name}")))
 }
 
 /// The unit of a bare number at a path of a scene, where all pages agree on it.
@@ -244,9 +265,18 @@ fn find(name: &str) -> Result<Page, Failure> {
             names.extend(all.iter().map(|l| l.stage.to_owned()));
             names.extend(all.iter().map(|l| l.name.to_owned()));
             names.extend(FileKind::ALL.map(|kind| kind.name().to_owned()));
+            if let Some((what, command)) = elsewhere(name) {
+                let fault = Fault::new(format!("`{name}` has no page of its own: {what}"));
+                return Err(fault.hint(format!("see `{command}`")).into());
+            }
             let fault = Fault::new(format!("nothing is called `{name}`"));
             if let Match::One(one) = names::find(name, names.iter().map(String::as_str)) {
                 return find(one);
+            }
+            if let Err(glasses) = Bundled::Glass.find(name)
+                && !glasses.is_empty()
+            {
+                return Err(fault.hint(format!("glasses: `spectra list glass {name}`")).into());
             }
             let near = names::nearest(name, names.iter().map(String::as_str)).map(str::to_owned);
             let hint = match (near, near_keys.as_slice()) {

@@ -5,9 +5,11 @@ use spectra_core::params::Fault;
 use spectra_core::sink::{Content, Sink, WriteFault};
 use spectra_files::{self as files, leftover};
 use spectra_session::{Folder, Names};
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
 
 /// What `--output` names.
 #[derive(Clone, Debug)]
@@ -55,7 +57,7 @@ impl Sink for Target {
 }
 
 impl Folder for Target {
-    fn prepare(&self, name: &str, files: &[&str]) -> Result<(), String> {
+    fn prepare(&self, _: &str, files: &[&str]) -> Result<(), String> {
         std::fs::create_dir_all(&self.folder).map_err(|error| refused(&self.folder, &error))?;
         if let Some(path) = files.iter().map(|file| self.folder.join(file)).find(|path| path.is_dir()) {
             return Err(refused(&path, &"a folder of that name exists"));
@@ -65,10 +67,14 @@ impl Folder for Target {
         static ATTEMPTS: AtomicU64 = AtomicU64::new(0);
         let number = ATTEMPTS.fetch_add(1, Relaxed);
         let attempt = self.folder.join(format!(".spectra-{}-{number}.tmp", std::process::id()));
-        std::fs::write(&attempt, b"spectra").map_err(|error| refused(&self.folder, &error))?;
-        std::fs::remove_file(&attempt).map_err(|error| refused(&self.folder, &error))?;
-        if number == 0 {
-            leftover::sweep(&self.folder, name);
+        let written = std::fs::write(&attempt, b"spectra");
+        // Also where the disk is full, the name is there.
+        let removed = std::fs::remove_file(&attempt);
+        written.and(removed).map_err(|error| refused(&self.folder, &error))?;
+        // Once, however many pictures come into it.
+        static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+        if SWEPT.lock().unwrap_or_else(PoisonError::into_inner).insert(self.folder.clone()) {
+            leftover::sweep(&self.folder);
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use spectra_core::params::Fault;
 use spectra_scene::bundled::{self, Bundled};
+use std::ffi::OsString;
 use std::path::Path;
 
 /// Words that people write for a command of ours.
@@ -27,14 +28,53 @@ const OTHERS: [(&str, &str); 18] = [
     ("scenes", "list scene"),
 ];
 
-/// What to write in place of an unknown command; `None` for other errors, and where nothing comes to mind.
-pub(crate) fn meant(error: &clap::Error) -> Option<Fault> {
+/// Arguments that people write for what is done in another way.
+const OTHER_ARGUMENTS: [(&str, &str); 6] = [
+    ("--frames", "frames are named by their files: `plate.000[1-8].exr`, or `'plate.####.exr'` for all"),
+    ("--filter", "a filter stands before a lens: `--lens helios --set lens.filters=[wratten-12]`"),
+    ("--filters", "a filter stands before a lens: `--lens helios --set lens.filters=[wratten-12]`"),
+    ("--iso", "a stock has its speed: `--push 1` develops it longer, `--exposure=+1` exposes it more"),
+    ("--film", "write `--stock tri-x`"),
+    ("--aperture", "write `--lens helios --f-number f/2`"),
+];
+
+/// What to write in place of an unknown command or argument of the command line `line`, whose first word is the program; `None` for
+/// other errors, and where nothing comes to mind.
+pub(crate) fn meant(error: &clap::Error, line: &[OsString]) -> Option<Fault> {
+    if error.kind() == ErrorKind::UnknownArgument && holds(line, &["film", "develop"]) {
+        let Some(ContextValue::String(typed)) = error.get(ContextKind::InvalidArg) else { return None };
+        let (_, hint) = OTHER_ARGUMENTS.iter().find(|(argument, _)| argument == typed)?;
+        return Some(Fault::new(format!("`film develop` has no `{typed}`")).hint(*hint));
+    }
     if error.kind() != ErrorKind::InvalidSubcommand {
         return None;
     }
     let Some(ContextValue::String(typed)) = error.get(ContextKind::InvalidSubcommand) else { return None };
-    let command = of_word(typed)?;
+    let behind = line.iter().position(|word| word.to_str() == Some(typed)).and_then(|at| line.get(at + 1));
+    let behind = behind.and_then(|word| word.to_str()).filter(|word| !word.starts_with('-'));
+    let command = of_word(typed, behind)?;
     Some(Fault::new(format!("`{typed}` is not a command")).hint(format!("did you mean `spectra {command}`?")))
+}
+
+/// Whether the line calls this command.
+fn holds(line: &[OsString], command: &[&str]) -> bool {
+    let words = line.iter().skip(1).filter_map(|word| word.to_str()).filter(|word| !word.starts_with('-'));
+    words.take(command.len()).eq(command.iter().copied())
+}
+
+/// `--set film.stock tri-x`: the value stands behind a space.
+pub(crate) fn set_without_equals(line: &[OsString]) -> Option<Fault> {
+    let words: Vec<&str> = line.iter().map(|word| word.to_str().unwrap_or_default()).collect();
+    let at = words.iter().take_while(|word| **word != "--").position(|word| *word == "--set")?;
+    let (path, value) = (*words.get(at + 1)?, *words.get(at + 2)?);
+    let is_path = path.starts_with(|c: char| c.is_ascii_alphabetic())
+        && path.chars().all(|c| c.is_ascii_alphanumeric() || ".-_[]".contains(c));
+    let is_value =
+        !value.is_empty() && !value.starts_with('-') && !value.ends_with(".yaml") && !value.ends_with(".yml");
+    (is_path && is_value).then(|| {
+        let quoted = if value.contains([' ', '{', '[', '*', '$']) { format!("\"{value}\"") } else { value.to_owned() };
+        Fault::new(format!("`--set {path} {value}`: `=` is missing")).hint(format!("write `--set {path}={quoted}`"))
+    })
 }
 
 /// Takes away the tip to write `-- -1` or `-- --sample`, which makes the name of a file of what was meant as an option or a number.
@@ -50,11 +90,22 @@ pub(crate) fn without_false_tips(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// The command, without `spectra`.
-fn of_word(typed: &str) -> Option<String> {
+/// The command, without `spectra`, for a word and what stands `behind` it.
+fn of_word(typed: &str, behind: Option<&str>) -> Option<String> {
     let typed = typed.trim();
     if let Some((_, command)) = OTHERS.iter().find(|(word, _)| word.eq_ignore_ascii_case(typed)) {
-        return Some((*command).to_owned());
+        if typed.eq_ignore_ascii_case("info")
+            && let Some(command) =
+                behind.and_then(|name| of_word(name, None)).filter(|command| command.contains(" info "))
+        {
+            return Some(command);
+        }
+        let is_place = |word: &&str| word.len() > 2 && word.chars().all(|c| c.is_ascii_uppercase());
+        let place = command.split(' ').find(is_place);
+        return Some(match (place, behind) {
+            (Some(place), Some(behind)) => command.replacen(place, behind, 1),
+            _ => (*command).to_owned(),
+        });
     }
     let ending = Path::new(typed).extension().map(|ending| ending.to_ascii_lowercase());
     if ending.as_ref().is_some_and(|ending| ending == "yaml" || ending == "yml") {
@@ -91,8 +142,31 @@ mod tests {
             ("D65", "spectrum info D65"),
         ] {
             let error = Arguments::try_parse_from(["spectra", typed]).expect_err(typed);
-            let hint = meant(&error).and_then(|fault| fault.hint).unwrap_or_default();
+            let hint = meant(&error, &[]).and_then(|fault| fault.hint).unwrap_or_default();
             assert_eq!(hint, format!("did you mean `spectra {command}`?"));
+        }
+        let line = |words: &str| words.split(' ').map(OsString::from).collect::<Vec<_>>();
+        for (typed, hint) in [
+            ("spectra develop a.png", "`spectra film develop a.png --stock tri-x`"),
+            ("spectra info tri-x", "`spectra film info kodak-tri-x-400`"),
+            ("spectra info helios", "`spectra lens info helios-44-58-f2`"),
+            ("spectra info --json", "`spectra lens info LENS`"),
+            ("spectra film develop a.png --stock tri-x --frames 1-3", "`'plate.####.exr'`"),
+            ("spectra film develop a.png --stock tri-x --filter red", "lens.filters=[wratten-12]"),
+        ] {
+            let error = Arguments::try_parse_from(line(typed)).expect_err(typed);
+            let said = meant(&error, &line(typed)).and_then(|fault| fault.hint).unwrap_or_default();
+            assert!(said.contains(hint), "{typed}: {said}");
+        }
+        for (typed, hint) in [
+            ("spectra check --set film.stock tri-x a.yaml", Some("write `--set film.stock=tri-x`")),
+            ("spectra run a.yaml --set film.stock tri-x", Some("write `--set film.stock=tri-x`")),
+            ("spectra check --set film.stock a.yaml", None),
+            ("spectra check --set film.stock=tri-x a", None),
+            ("spectra run a.yaml --set film.stock -v", None),
+        ] {
+            let said = set_without_equals(&line(typed)).and_then(|fault| fault.hint);
+            assert_eq!(said.as_deref(), hint, "{typed}");
         }
         for words in
             [&["run", "a.yaml", "--threads", "-1"][..], &["film", "develop", "a.png", "--stock", "x", "--samples"]]
@@ -103,6 +177,6 @@ mod tests {
         }
         // The parser's own hint is as good: `spectra lst`.
         let error = Arguments::try_parse_from(["spectra", "lst"]).expect_err("no command");
-        assert!(meant(&error).is_none() && error.to_string().contains("list"), "{error}");
+        assert!(meant(&error, &[]).is_none() && error.to_string().contains("list"), "{error}");
     }
 }

@@ -18,6 +18,7 @@ mod film;
 mod folder;
 mod frames;
 mod glass;
+mod glossary;
 mod guess;
 mod interrupt;
 mod lens;
@@ -96,11 +97,16 @@ fn at_home(argument: OsString) -> OsString {
 /// Runs a command line, the name of the program first; returns the exit code.
 fn answer(line: impl Iterator<Item = OsString>, unpack: Unpack, notices: &str) -> u8 {
     let started = Instant::now();
-    let arguments = match Arguments::try_parse_from(line.map(at_home)).map_err(guess::without_false_tips) {
+    let line: Vec<OsString> = line.map(at_home).collect();
+    if let Some(fault) = guess::set_without_equals(&line) {
+        console::faults(&fault.into());
+        return outcome::BAD_INPUT;
+    }
+    let arguments = match Arguments::try_parse_from(&line).map_err(guess::without_false_tips) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version come this way too, with code 0.
-            match guess::meant(&error) {
+            match guess::meant(&error, &line) {
                 Some(hint) => console::faults(&hint.into()),
                 None => console::parsed(&error),
             }

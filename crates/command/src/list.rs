@@ -52,6 +52,7 @@ pub(crate) fn list(arguments: &List) -> Outcome {
     // Of spectra there are kinds and files.
     kinds.retain(|kind| !KINDS.contains(kind));
     kinds.extend(KINDS);
+    let all = kinds.clone();
     let wanted = match &arguments.stage {
         Some(typed) => vec![kind(typed, &kinds)?],
         None => kinds,
@@ -70,7 +71,9 @@ pub(crate) fn list(arguments: &List) -> Outcome {
     if arguments.json {
         console::pretty_json(&items)?;
     } else {
-        let mut out = table(&items);
+        let is_whole = arguments.stage.is_none() && arguments.words.is_empty();
+        let mut out = if is_whole { contents(&all, &items) } else { String::new() };
+        out.push_str(&table(&items));
         if arguments.stage.is_none() {
             for kind in LONG {
                 // Writing to a String cannot fail.
@@ -80,6 +83,23 @@ pub(crate) fn list(arguments: &List) -> Outcome {
         console::out(&out)?;
     }
     Ok(DONE)
+}
+
+/// What there is and how many of each: what is looked for first at the top, kinds of stages behind it. `listed` has all but the long ones.
+fn contents(kinds: &[&str], listed: &[Item]) -> String {
+    let mut out = String::from("What can be named, and how many there are:\n");
+    let order = KINDS.into_iter().chain(kinds.iter().copied().filter(|kind| !KINDS.contains(kind)));
+    let width = kinds.iter().map(|kind| kind.len()).max().unwrap_or(0);
+    for kind in order {
+        let count = match kind {
+            kind if LONG.contains(&kind) => items_of(kind).len(),
+            kind => listed.iter().filter(|item| item.stage.split(' ').next_back() == Some(kind)).count(),
+        };
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "  {kind:<width$}  {count:>5}  spectra list {kind}");
+    }
+    out.push('\n');
+    out
 }
 
 /// The kind that is meant: `lens`, `lenses`, `stocks`, `spectra`.

@@ -6,6 +6,9 @@ use spectra_core::sink::{Content, Sink};
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 
+/// Whether writers lock what they write: where a lock is only a word among those who ask for it.
+pub(crate) const HOLDS: bool = cfg!(unix);
+
 /// Lets `write` fill a temporary file in the folder of `path`, then gives it that name. Where `write` or
 /// the system fails, an older file of that name stays as it was and the temporary one is removed.
 ///
@@ -21,6 +24,8 @@ pub fn write_atomically(
     };
     let create = |name: &Path| OpenOptions::new().read(true).write(true).create_new(true).open(name);
     let (mut file, temporary) = create_beside(path, create).map_err(|e| error(e.into()))?;
+    // Who sweeps up after runs that were killed leaves alone what is held; where there are no locks, the age of a file has to do.
+    let _ = HOLDS.then(|| file.lock());
     let written = write(&mut file).and_then(|()| {
         // On the disk before the name is: a machine that stops between leaves the old file.
         file.sync_all()?;

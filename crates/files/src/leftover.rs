@@ -1,9 +1,10 @@
 //! Temporary files that stayed: `.NAME.PROCESS-NUMBER.tmp`, see [`super::write_atomically`].
 
+use std::fs::{File, TryLockError};
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-/// What is this old and whose process is gone, nobody writes any more.
+/// What is this old nobody writes any more.
 const OLD: Duration = Duration::from_secs(600);
 
 /// Removes the files that this process was writing in `folder`.
@@ -11,14 +12,30 @@ pub fn remove_own(folder: &Path) {
     remove(folder, |name, _| process_of(name) == Some(std::process::id()));
 }
 
-/// Removes what runs left in `folder` that were killed: files of pictures whose names begin with `stem`, and attempts at
-/// writing.
-pub fn sweep(folder: &Path, stem: &str) {
+/// Removes what runs left in `folder` that were killed, by the form of its name alone: its process is gone, and nobody holds it.
+pub fn sweep(folder: &Path) {
     remove(folder, |name, modified| {
-        let is_ours = name.strip_prefix('.').is_some_and(|n| n.starts_with(stem) || n.starts_with("spectra"));
-        let is_old = SystemTime::now().duration_since(modified).is_ok_and(|age| age > OLD);
-        is_ours && is_old && process_of(name).is_some_and(|process| !is_alive(process))
+        if process_of(name).is_none_or(is_alive) {
+            return false;
+        }
+        match is_held(&folder.join(name)) {
+            Some(is_held) => !is_held,
+            // A file system that knows no locks: age has to do.
+            None => SystemTime::now().duration_since(modified).is_ok_and(|age| age > OLD),
+        }
     });
+}
+
+/// Whether a writer holds the file, whose process may have another number here than where it runs; `None` where that is not known.
+fn is_held(path: &Path) -> Option<bool> {
+    if !super::atomically::HOLDS {
+        return None;
+    }
+    match File::open(path).ok()?.try_lock() {
+        Ok(()) => Some(false),
+        Err(TryLockError::WouldBlock) => Some(true),
+        Err(TryLockError::Error(_)) => None,
+    }
 }
 
 fn remove(folder: &Path, which: impl Fn(&str, SystemTime) -> bool) {
@@ -43,7 +60,7 @@ fn process_of(name: &str) -> Option<u32> {
     rest.rsplit(['.', '-']).next()?.parse().ok()
 }
 
-/// Whether a process of that number is there; where the system does not show it, the age of the file alone counts.
+/// Whether a process of that number is there; where the system does not show it, the lock alone counts.
 fn is_alive(process: u32) -> bool {
     Path::new("/proc").join(process.to_string()).exists()
 }
@@ -53,7 +70,7 @@ mod tests {
     use super::*;
 
     fn put(folder: &Path, name: &str, age: Duration) {
-        let file = std::fs::File::create(folder.join(name)).expect("written");
+        let file = File::create(folder.join(name)).expect("written");
         file.set_modified(SystemTime::now() - age).expect("a time");
     }
 
@@ -66,22 +83,26 @@ mod tests {
         let cases = [
             (".a.exr.4294967290-0.tmp".to_owned(), hour, false),
             (".a-001.exr.4294967290-12.tmp".to_owned(), hour, false),
-            (".spectra-4294967290-0.tmp".to_owned(), hour, false),
-            (".a.exr.4294967290-1.tmp".to_owned(), Duration::ZERO, true),
+            (".spectra-4294967290-0.tmp".to_owned(), Duration::ZERO, false),
+            (".b.exr.4294967290-1.tmp".to_owned(), Duration::ZERO, false),
+            (".held.exr.4294967290-1.tmp".to_owned(), hour, true),
             (format!(".a.exr.{own}-0.tmp"), hour, !cfg!(not(target_os = "linux"))),
-            (".b.exr.4294967290-0.tmp".to_owned(), hour, true),
             ("a.exr".to_owned(), hour, true),
             (".a.tmp".to_owned(), hour, true),
+            (".a.4294967290.tmp".to_owned(), hour, true),
         ];
         for (name, age, _) in &cases {
             put(folder.path(), name, *age);
         }
-        sweep(folder.path(), "a");
+        // As a writer in another container holds it, whose processes do not show here.
+        let held = File::open(folder.path().join(".held.exr.4294967290-1.tmp")).expect("there");
+        held.lock().expect("locked");
+        sweep(folder.path());
         for (name, _, stays) in &cases {
             assert_eq!(folder.path().join(name).exists(), *stays, "{name}");
         }
         remove_own(folder.path());
         assert!(!folder.path().join(format!(".a.exr.{own}-0.tmp")).exists());
-        assert!(folder.path().join(".a.exr.4294967290-1.tmp").exists());
+        assert!(folder.path().join(".held.exr.4294967290-1.tmp").exists());
     }
 }

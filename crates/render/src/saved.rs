@@ -107,18 +107,24 @@ impl Light {
     /// # Errors
     /// What the stream has; [`io::ErrorKind::InvalidData`] where it is no light, is damaged, or of another scene.
     pub fn load(renderer: &Renderer, from: &mut dyn Read) -> io::Result<Self> {
-        /// More causes at more surfaces, or more pieces, no render has.
+        /// More causes, or more pieces, no render has.
         const MANY: u64 = 1 << 24;
+        /// Surfaces that are not the lens's own: plates before the frame, and none at all.
+        const FEW: u64 = 64;
         let bad = |text: &str| io::Error::new(io::ErrorKind::InvalidData, text.to_owned());
         let other = || bad("this light is of another scene");
         let mut form = Form::new(from);
         if form.take::<16>()? != *MAGIC {
             return Err(bad("this is no light of a render, or one of another version"));
         }
+        // What stands at the lens and around it, along ways through it that go back and forth; a count is made for each up to the last, so a number is looked at before.
+        let surfaces = 4 * renderer.scene().lens.elements.len() as u64 + FEW;
         let mut light = renderer.begin().map_err(|e| io::Error::new(io::ErrorKind::OutOfMemory, e.to_string()))?;
+        let mut lost = 0_u64;
         for _ in 0..form.next()?.min(MANY) {
             let (state, rays) = (form.next()?, form.next()?);
-            let (cause, surface) = Loss::of_state(state).filter(|(_, s)| u64::from(*s) < MANY).ok_or_else(other)?;
+            let (cause, surface) = Loss::of_state(state).filter(|_| state >> 8 <= surfaces).ok_or_else(other)?;
+            lost = lost.checked_add(rays).ok_or_else(|| bad("this light is damaged"))?;
             light.losses.add(cause, surface, rays);
         }
         let of_meters = form.next()?;

@@ -2,6 +2,7 @@
 //! section that is a bare name; and the order in which faults are told.
 
 use crate::bundled::{self, Bundled};
+use crate::slips;
 use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Value};
 use std::path::Path;
@@ -175,5 +176,8 @@ fn advise(fault: Fault, scene: &Params) -> Fault {
         let films: Vec<String> = stocks.iter().filter_map(Node::as_str).map(film_of).collect();
         return fault.hint(format!("several films at once are a list of them: `film: [{}]`", films.join(", ")));
     }
-    fault
+    match slips::hint(&fault, scene) {
+        Some(hint) => fault.hint(hint),
+        None => fault,
+    }
 }

@@ -97,6 +97,16 @@ impl Bundled {
     }
 }
 
+/// Names of the stocks that a scene is exposed on: all but those that negatives are printed on.
+#[must_use]
+pub fn camera_films() -> Vec<String> {
+    let is_print = |name: &str| {
+        spectra_data::text(&format!("spectra/film/{name}.yaml"))
+            .is_some_and(|text| text.lines().any(|line| line.trim_end() == "process: print"))
+    };
+    Stock::bundled().filter(|name| !is_print(name)).map(str::to_owned).collect()
+}
+
 /// What `typed` is the name of, or a part of one name of its kind only, the likeliest first: whole names before parts, and
 /// scenes last, which are called after what stands in them.
 #[must_use]
@@ -149,6 +159,15 @@ pub(crate) fn scene_file(typed: &str) -> Result<String, Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn camera_films_are_no_papers() {
+        let films = camera_films();
+        assert!(films.len() > 25 && films.len() < Stock::bundled().count(), "{films:?}");
+        assert!(
+            !films.iter().any(|name| ["kodak-2302", "kodak-endura-premier", "technicolor-iv"].contains(&name.as_str()))
+        );
+    }
 
     #[test]
     fn scenes_are_found_as_people_write_them() {

@@ -8,7 +8,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::exp;
-use spectra_core::params::{Faults, Length, Params, Part, Positive, StageNode, Value, keys_of};
+use spectra_core::params::{Faults, Length, Params, Part, Positive, StageNode, keys_of};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_glass::Medium;
@@ -117,9 +117,10 @@ fn one(node: &StageNode, grid: Grid, resources: &dyn Resources) -> Result<Vec<f6
     if let Some(name) = node.node().as_str() {
         return named(name);
     }
-    if !matches!(node.node().value, Value::Map(_)) {
-        let hint =
-            "such as `wratten-15`, `{file: gel.csv}`, `{mired: 131}` or `{glass: SCHOTT/N-BK7, thickness: 2 mm}`";
+    let is_known = |key: &&str| node.node().get(key).is_some();
+    if !["file", "mired", "glass"].iter().any(is_known) {
+        let hint = "such as `wratten-15`, `{mired: 131}`, `{glass: SCHOTT/N-BK7, thickness: 2 mm}`, or `{file: gel.csv}`: a table in rows \
+                    of wavelength and transmittance, `400, 0.9`";
         return Err(node.fault("this is not a filter").hint(hint).into());
     }
     if node.node().get("mired").is_some() {

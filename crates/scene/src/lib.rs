@@ -31,6 +31,7 @@ mod scene;
 mod schema;
 mod shot;
 mod sight;
+mod slips;
 
 pub use spectra_yaml as yaml;
 
@@ -50,3 +51,4 @@ pub use scene::{
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};
 pub use shot::{Developed, Shot};
 pub use sight::Search;
+pub use slips::other_films;

@@ -1,7 +1,8 @@
 //! Files for stages: beside the scene first, then among the bundled data.
 
 use crate::advice::{FileIs, other_file};
-use crate::bundled::{Bundled, other_kind};
+use crate::bundled::{Bundled, camera_films, other_kind};
+use crate::slips::other_films;
 use crate::yaml;
 use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile};
@@ -167,6 +168,7 @@ impl Resources for FileResources {
                                 Bundled::Lens.names().join(", ")
                             )
                         }
+                        ["spectra/film"] if !crate::advice::is_file_name(path) => other_films(path, &camera_films()),
                         _ => "a file is looked for beside the scene, then among the bundled ones".to_owned(),
                     }
                 });

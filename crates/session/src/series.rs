@@ -3,7 +3,7 @@
 use crate::beyond::beyond;
 use crate::check::{Look, checked, each_once};
 use crate::contact::Contact;
-use crate::files::{Files, write_report};
+use crate::files::Files;
 use crate::taken::{Taken, Unfinished, prepare};
 use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, first_frame, header, words};
 use serde_json::{Map, Value, json};
@@ -174,8 +174,8 @@ struct Work<'a> {
     contact: Option<Contact>,
     /// The picture before: what the next one shares with it is not made again.
     other: Option<Arc<Scene>>,
-    /// What is said of each picture in `SCENE-series.json`.
-    done: Vec<Value>,
+    /// What is said of each picture in `SCENE-series.json`, as text: a tree of it takes five times the memory, and there may be thousands.
+    done: Vec<Box<str>>,
     /// What was said of the files of its sources and of exposures beyond films.
     doubts: Vec<Warning>,
     report_file: String,
@@ -240,7 +240,7 @@ impl Work<'_> {
             let common = ["scene", "scene_file", "overrides", "versions", "threads", "isa"];
             said.extend(figures.into_iter().filter(|(key, _)| !common.contains(&key.as_str())));
         }
-        self.done.push(said.into());
+        self.done.push(format!("{:#}", Value::Object(said)).into());
         // Not every imager has something to show.
         if let (Some(contact), Ok(pictures)) = (&mut self.contact, shot.pictures()) {
             contact.put(place.index, pictures);
@@ -250,7 +250,7 @@ impl Work<'_> {
         self.other = Some(scene);
         if host.now_s() - self.reported_s >= REPORT_EVERY_S {
             self.reported_s = host.now_s();
-            write_report(host.folder(), &self.report_file, &self.report(&[], false))?;
+            self.write_report(&self.report(&[], false))?;
         }
         Ok(true)
     }
@@ -264,7 +264,7 @@ impl Work<'_> {
         }
         said.insert("files".to_owned(), shown.into());
         said.insert("kept".to_owned(), true.into());
-        self.done.push(said.into());
+        self.done.push(format!("{:#}", Value::Object(said)).into());
         if let Some(contact) = &mut self.contact {
             let files = picture.films.iter().zip(picture.files.shown());
             let read = |name: &str| self.host.folder().read(name, Contact::LARGEST_BYTES);
@@ -274,7 +274,7 @@ impl Work<'_> {
         }
     }
 
-    /// The content of `SCENE-series.json`.
+    /// The content of `SCENE-series.json`, without what is said of each picture.
     fn report(&self, contact: &[String], whole: bool) -> Value {
         let Self { job, host, .. } = self;
         let mut report = json!({
@@ -288,7 +288,7 @@ impl Work<'_> {
             "threads": host.threads(),
             "isa": job.isa.name(),
             "versions": job.versions,
-            "pictures": self.done,
+            "pictures": [],
         });
         if let Value::Object(map) = &mut report {
             match job.series.kind() {
@@ -328,11 +328,13 @@ impl Work<'_> {
                 sheets.push((file, bytes));
             }
         }
-        let report = self.report(&shown, whole);
-        write_report(folder, &self.report_file, &report)?;
+        let mut report = self.report(&shown, whole);
+        self.write_report(&report)?;
         shown.push(folder.shown(&self.report_file));
         // The outputs that the pictures share are those of the last one.
-        if let Some(scene) = &self.other {
+        if let Some(scene) = self.other.as_ref().filter(|scene| scene.output.iter().any(|output| output.is_of_series()))
+        {
+            report["pictures"] = self.done.iter().map(|said| said_of(said)).collect();
             let text = self.job.series.text();
             let told = Told { name, text: &text, report: &report, contact_sheets: &sheets };
             for output in scene.output.iter().filter(|output| output.is_of_series()) {
@@ -345,9 +347,32 @@ impl Work<'_> {
         Ok(shown)
     }
 
+    /// Writes the report, and what is said of each picture into its list.
+    fn write_report(&self, report: &Value) -> Result<(), SessionError> {
+        const LIST: &str = "\n  \"pictures\": [";
+        let text = format!("{report:#}\n");
+        // No text within holds a line break: this is the key.
+        let (before, behind) = text.split_once(&format!("{LIST}]")).unwrap_or((&text, ""));
+        let written = self.host.folder().file(&self.report_file, &mut |out| {
+            write!(out, "{before}")?;
+            for (i, said) in self.done.iter().enumerate() {
+                let begin = if i == 0 { LIST } else { "," };
+                write!(out, "{begin}\n    {}", said.replace('\n', "\n    "))?;
+            }
+            let end = if self.done.is_empty() { format!("{LIST}]") } else { "\n  ]".to_owned() };
+            Ok(write!(out, "{end}{behind}")?)
+        });
+        written.map_err(|fault| self.unwritten(&self.report_file, fault))
+    }
+
     fn unwritten(&self, file: &str, fault: WriteFault) -> SessionError {
         SessionError::Unwritten { file: self.host.folder().shown(file), fault, kept: String::new() }
     }
+}
+
+/// What is said of a picture, of its text.
+fn said_of(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_default()
 }
 
 /// The head of what is said of a picture.

@@ -196,6 +196,9 @@ impl SpectrumError {
 
 /// What a person may have meant by a name that nothing bears.
 fn hint_for_unknown(name: &str, candidates: &[String]) -> String {
+    if let Some(hint) = crate::common_words::meant(name) {
+        return hint;
+    }
     match candidates {
         _ if name.contains(['*', '+', '(']) => {
             "a sum or a product has spaces around its signs and a spectrum behind each: `D65 + 5000 * line:e`"

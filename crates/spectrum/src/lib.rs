@@ -24,6 +24,7 @@ mod by_name;
 mod cell;
 mod cie;
 mod color_checker;
+mod common_words;
 pub mod constants;
 mod document;
 mod emission;

@@ -121,7 +121,13 @@ impl Override {
 pub fn parse_override(argument: &str) -> Result<Override, Faults> {
     /// Longest argument that a message repeats, in bytes.
     const SHOWN: usize = 60;
-    let hint = "write `--set film.exposure=\"1/60 s\"`";
+    let is_path =
+        |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || ".-_[]".contains(c));
+    let hint = if is_path(argument) && argument.len() <= SHOWN {
+        format!("write a value behind it, without a space: `--set {argument}=VALUE`")
+    } else {
+        "write `--set film.exposure=\"1/60 s\"`".to_owned()
+    };
     let Some((path, value)) = argument.split_once('=') else {
         let file = SourceFile::new(
             if argument.len() > SHOWN { "--set".to_owned() } else { format!("--set {argument}") },

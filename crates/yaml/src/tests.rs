@@ -370,6 +370,13 @@ fn syntax_errors_have_a_place() {
         ("a:\n\tb: 1\n\tc: 2", &[(2, 1, "a tab", "spaces")]),
         ("a\nb: 2", &[(1, 1, "a key without its `:`", "key: value")]),
         ("a:1\nb: 2", &[(1, 1, "`:` without a space behind it", "write `a: 1`")]),
+        (
+            "x: {a:1, b: 2, c:d e}",
+            &[
+                (1, 5, "`:` without a space behind it", "write `a: 1`"),
+                (1, 16, "`:` without a space behind it", "write `c: d e`"),
+            ],
+        ),
         ("a: 'x", &[(1, 4, "a quote is never closed", "close it")]),
         ("a: @x", &[(1, 4, "cannot start with `@`", "quotes")]),
         ("a: 1\nb: %x", &[(2, 4, "cannot start with `%`", "quotes")]),

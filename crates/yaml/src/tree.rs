@@ -76,6 +76,10 @@ impl Tree<'_> {
             let text = self.key(key);
             let node = self.node(value, Some(span), depth + 1)?;
             let Some(text) = text else { continue };
+            if let Some(apart) = self.joined(key, value) {
+                self.report(span, "`:` without a space behind it".to_owned(), &format!("write `{apart}`"));
+                continue;
+            }
             if let Some(first) = seen.get(&text) {
                 let hint = format!("remove one of them: the first is on line {first}");
                 self.report(span, format!("the key `{}` comes twice", written(self.file, span)), &hint);
@@ -110,6 +114,18 @@ impl Tree<'_> {
                 None
             }
         }
+    }
+
+    /// What a key without a value was meant to be: `{order:0}` is a key `order:0` to YAML.
+    fn joined(&self, key: usize, value: usize) -> Option<String> {
+        let span = self.items[key].span;
+        let is_empty = self.items[value].span.len == 0 && matches!(self.items[value].item, Item::Scalar(Value::Null));
+        let text = self.file.text.get(span.offset..span.offset + span.len).filter(|_| is_empty)?;
+        let (name, given) = text.split_once(':')?;
+        let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c));
+        let is_slip = is_name && !given.is_empty() && !given.starts_with(['/', '\\', ' ']);
+        is_slip.then(|| format!("{name}: {given}"))
     }
 
     /// What an alias names; it can name an alias.

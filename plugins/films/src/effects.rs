@@ -143,6 +143,17 @@ pub(crate) struct Effects {
     first_layer: u32,
 }
 
+/// The ways to square pixels: another number of rows, or a frame of the shape that the numbers have.
+fn square_frame(size: &FrameSize) -> String {
+    let rows = (f64::from(size.width_px) * size.height_mm / size.width_mm).round();
+    let [mut common, mut rest] = [size.width_px, size.height_px];
+    while rest > 0 {
+        [common, rest] = [rest, common % rest];
+    }
+    let [across, down] = [size.width_px, size.height_px].map(|side| side / common.max(1));
+    format!("`resolution: [{}, {rows:.0}]`, or `crop: {across}:{down}` for a frame of that shape", size.width_px)
+}
+
 /// Width and height of a pixel, mm.
 pub(crate) fn pixel_mm(size: &FrameSize) -> [f64; 2] {
     [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)]
@@ -207,8 +218,11 @@ impl Effects {
         if any && (across / down - 1.0).abs() > 0.01 {
             let text =
                 format!("scatter, halation, adjacency and grain need square pixels, not {across:.5} x {down:.5} mm");
-            let hint = "a resolution of the format's shape, or `scatter: false, adjacency: false, halation: off, grain: false` for the film";
-            return Err([text, hint.to_owned()]);
+            let hint = format!(
+                "{}, or `scatter: false, adjacency: false, halation: off, grain: false` for the film",
+                square_frame(size)
+            );
+            return Err([text, hint]);
         }
         Ok(())
     }

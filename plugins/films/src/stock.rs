@@ -80,7 +80,20 @@ impl StockFilm {
         let effects = faults.take(Effects::new(&(&p).into(), params, &stock, &emulsion));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let gray_lx_s = metered_exposure_lx_s(speed);
-        let seen = seen(&p, params, context.resources, &stock, &emulsion, gray_lx_s)?;
+        // Curves that lie elsewhere than the speed says: the likeliest cause of what cannot be printed, and else a picture too light or dark.
+        let doubts = stock.doubts();
+        let seen = seen(&p, params, context.resources, &stock, &emulsion, gray_lx_s).map_err(|mut faults| {
+            for fault in faults.0.iter_mut().filter(|fault| fault.hint.is_none()) {
+                fault.hint = doubts.first().cloned();
+            }
+            faults
+        })?;
+        // The speeds of the bundled stocks are their makers', whatever the digitized curves give.
+        let is_own = p.stock.ends_with(".yaml") || p.stock.ends_with(".yml");
+        for doubt in doubts.iter().filter(|_| is_own) {
+            let (what, remedy) = doubt.split_once(": ").unwrap_or((doubt.as_str(), "see `spectra film info`"));
+            context.warn(params.fault("stock", format!("{}: {what}", stock.name)).hint(remedy));
+        }
         let frame = p.frame.map(|frame| FrameEffects::new(frame, &stock.name, p.grain_seed));
         let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
         channels.extend(meter.channel(&context.grid, own.as_ref()));

@@ -2,6 +2,7 @@
 
 use super::illuminance::relative_illuminance;
 use serde::Serialize;
+use spectra_core::math::atan2;
 use spectra_lens::{ChiefRay, Criterion, FocusSearch, Indices, Lens};
 
 /// One field point: its chief ray, where it is sharp, and how bright.
@@ -78,24 +79,52 @@ const CLOSER: usize = 6;
 /// Spatial frequency of the focus by contrast, line pairs a mm.
 pub(super) const FREQUENCY_PER_MM: f64 = 30.0;
 
+/// A field as wide as this, of a picture that reaches beyond twice the corner of 135 film, is not what the lens was made for: nothing but
+/// the size of its surfaces ends it.
+const WIDE_DEG: f64 = 80.0;
+/// From the middle of 135 film to its corner, mm.
+const CORNER_MM: f64 = 21.633;
+
+/// The largest field that is worth a look, rad, of a lens that passes light up to `largest_rad`: that one, or the corner of 135 film, where no
+/// rim keeps the field within what is of use.
+#[must_use]
+pub fn useful_field_rad(lens: &Lens, largest_rad: f64) -> f64 {
+    if largest_rad < WIDE_DEG.to_radians() {
+        return largest_rad;
+    }
+    match fields_at_heights(lens, &[CORNER_MM, 2.0 * CORNER_MM]) {
+        Ok(fields) => fields.first().map_or(largest_rad, |corner| corner.min(largest_rad)),
+        // Chief rays are there, and none of them lands so far out: a fisheye.
+        Err(height_mm) if height_mm > 0.0 => largest_rad,
+        Err(_) => {
+            let efl_mm = lens.first_order(lens.reference_nm).efl_mm.abs();
+            let reach_mm = if efl_mm.is_finite() { efl_mm } else { lens.image_gap_mm().abs() };
+            atan2(CORNER_MM, reach_mm.max(1e-3)).min(largest_rad)
+        }
+    }
+}
+
 /// How far a lens sees, and how.
 pub(super) struct Field {
     /// Largest field angle, degrees.
     pub largest_deg: Option<f64>,
     /// What limits it.
     pub limit: Option<LimitReport>,
-    /// Field points from the axis to there.
+    /// Field points from the axis to there, or to the corner of 135 film, where no rim limits the field.
     pub points: Vec<FieldReport>,
+    /// Whether they end before the largest field.
+    pub is_cut: bool,
 }
 
 /// The field of a lens in one light; `held` is the same lens with the indices of that light.
 pub(super) fn field(lens: &Lens, held: &Lens, indices: Indices) -> Field {
     let reach = held.field_limit(held.focused_mm).ok().flatten();
     let limit = reach.and_then(|r| r.limit).map(|(cause, surface)| LimitReport { cause: cause.name(), surface });
-    let largest_rad = reach.map_or(NORMAL_FIELD_DEG.to_radians(), |r| r.field_rad);
+    let largest_rad = reach.map_or(NORMAL_FIELD_DEG.to_radians(), |r| useful_field_rad(held, r.field_rad));
     let fields: Vec<f64> = (0..FIELDS).map(|i| largest_rad * i as f64 / (FIELDS - 1) as f64).collect();
     let points = field_points(lens, held, indices, &fields);
-    Field { largest_deg: reach.map(|r| r.field_rad.to_degrees()), limit, points }
+    let is_cut = reach.is_some_and(|r| largest_rad < r.field_rad);
+    Field { largest_deg: reach.map(|r| r.field_rad.to_degrees()), limit, points, is_cut }
 }
 
 /// These fields (rad, rising from 0), those of them that have a chief ray.

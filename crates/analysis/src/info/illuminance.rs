@@ -6,8 +6,10 @@ use spectra_core::workers::Alone;
 use spectra_core::{Isa, RayBatch};
 use spectra_lens::{Effort, Indices, Lens, RearPupil, Tracer, Travel};
 
-/// Rays to each point: a square of so many by so many, evenly over the pupil as the point sees it. It is right within 0.3 %.
-const CELLS: usize = 320;
+/// The pupil as a point sees it, in a square of so many cells by so many, a ray in the middle of each.
+const CELLS: usize = 80;
+/// A cell at an edge of what passes has so many rays by so many: as right as a square of all of these, within 0.3 %, with an eighth of the rays.
+const PARTS: usize = 4;
 /// Rays that are traced at a time, so that their columns stay in the caches.
 const BATCH: usize = 1024;
 
@@ -24,16 +26,17 @@ pub(super) fn relative_illuminance(lens: &Lens, indices: Indices, points_mm: &[[
     let tracer = Tracer::new(lens, indices, isa).ok()?;
     let points: Vec<DVec3> = points_mm.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect();
     let pupil = RearPupil::search_by(lens, &tracer, &points, [wavelength_nm; 2], &Alone, Effort::Draft)?;
-    let middle = |i: usize| (i as f64 + 0.5) / CELLS as f64;
-    let u: Vec<f64> = (0..CELLS * CELLS).map(|i| middle(i / CELLS)).collect();
-    let v: Vec<f64> = (0..CELLS * CELLS).map(|i| middle(i % CELLS)).collect();
+    let middle = |i: usize, of: usize| (i as f64 + 0.5) / of as f64;
+    let cells: Vec<[f64; 2]> =
+        (0..CELLS * CELLS).map(|i| [middle(i / CELLS, CELLS), middle(i % CELLS, CELLS)]).collect();
     let rays = RayBatch::new(BATCH);
     let mut rays = if tracer.polarizes() { rays.with_polarization() } else { rays };
     let mut work = tracer.work_in_place(BATCH);
-    let mut illuminance = |point: &DVec3| {
-        let mut sum = 0.0;
-        for (u, v) in u.chunks(BATCH).zip(v.chunks(BATCH)) {
-            rays.restart(u.len());
+    // The weight of what passes, of each ray.
+    let mut traced = |point: &DVec3, places: &[[f64; 2]]| {
+        let mut weights = Vec::with_capacity(places.len());
+        for places in places.chunks(BATCH) {
+            rays.restart(places.len());
             let c = rays.columns_mut();
             c.x.fill(point.x);
             c.y.fill(point.y);
@@ -43,12 +46,27 @@ pub(super) fn relative_illuminance(lens: &Lens, indices: Indices, points_mm: &[[
             c.n.fill(-1.0);
             c.weight.fill(1.0);
             c.wavelength_nm.fill(wavelength_nm);
-            pupil.aim(&mut rays, u, v, isa);
+            let [u, v] = [0, 1].map(|k| places.iter().map(|place| place[k]).collect::<Vec<f64>>());
+            pupil.aim(&mut rays, &u, &v, isa);
             tracer.trace(&mut rays, &mut work, Travel::Backward);
-            let passed = rays.weights().iter().zip(rays.states()).filter(|(_, state)| **state == ALIVE);
-            sum = passed.fold(sum, |sum, (weight, _)| sum + weight);
+            let passed = rays.weights().iter().zip(rays.states());
+            weights.extend(passed.map(|(weight, state)| (*state == ALIVE).then_some(*weight)));
         }
-        sum
+        weights
+    };
+    let mut illuminance = |point: &DVec3| {
+        let whole = traced(point, &cells);
+        let is_edge = |i: usize| {
+            let near = |i: usize| i.saturating_sub(1)..(i + 2).min(CELLS);
+            near(i / CELLS).any(|row| near(i % CELLS).any(|at| whole[row * CELLS + at].is_some() != whole[i].is_some()))
+        };
+        let (edges, inner): (Vec<usize>, Vec<usize>) = (0..whole.len()).partition(|i| is_edge(*i));
+        let part = |of: usize, i: usize| middle(of * PARTS + i, CELLS * PARTS);
+        let parts =
+            |i: usize| (0..PARTS * PARTS).map(move |k| [part(i / CELLS, k / PARTS), part(i % CELLS, k % PARTS)]);
+        let fine: Vec<[f64; 2]> = edges.into_iter().flat_map(parts).collect();
+        let inside: f64 = inner.into_iter().filter_map(|i| whole[i]).sum();
+        inside * (PARTS * PARTS) as f64 + traced(point, &fine).into_iter().flatten().sum::<f64>()
     };
     let all: Vec<f64> = points.iter().map(&mut illuminance).collect();
     let first = all.first().copied().filter(|e| *e > 0.0)?;

@@ -9,7 +9,7 @@ mod report;
 mod table;
 
 pub use compare::{Compared, Comparison};
-pub use field::{FieldReport, LimitReport};
+pub use field::{FieldReport, LimitReport, useful_field_rad};
 pub use media::AssumedMedium;
 pub use mounts::{Glass, MOUNTS, Mount, MountReport, cleared};
 pub use report::{LensReport, SurfaceReport};

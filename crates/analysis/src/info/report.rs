@@ -90,13 +90,16 @@ pub struct LensReport {
     /// What ends the last light beyond it.
     pub max_field_limit: Option<LimitReport>,
     /// Field points, by their chief rays: real ones through the center of the stop, from the axis to the largest field, or to the image height
-    /// that was asked for.
+    /// that was asked for; to the corner of 135 film where no rim keeps the field within what is of use.
     pub chief_ray_exit_angle_deg: Vec<FieldReport>,
     /// Mounts that it fits, by the distances of its glass from the image plane.
     pub mounts: Vec<MountReport>,
     /// Whether the text names all of them, and not only the common ones.
     #[serde(skip)]
     pub every_mount: bool,
+    /// Whether the field points end at the corner of 135 film, before the largest field.
+    #[serde(skip)]
+    pub is_cut: bool,
     /// First vertex to image plane, along the axis.
     pub total_track_mm: f64,
     /// First vertex to last, along the axis.
@@ -209,6 +212,7 @@ impl LensReport {
             chief_ray_exit_angle_deg: field.points,
             mounts: glass(lens).map(|glass| cleared(&glass)).unwrap_or_default(),
             every_mount: false,
+            is_cut: field.is_cut,
             total_track_mm: if lens.image_pose.is_on_axis() { lens.image_z_mm() } else { lens.image_along_axis_mm },
             vertex_length_mm: lens.elements.last().map_or(0.0, |e| e.along_axis_mm),
             // Behind the last surface the axis may bend, too.
@@ -240,6 +244,7 @@ impl LensReport {
         let held = light.hold(lens.clone());
         let fields = fields_at_heights(&held, &PARTS.map(|part| part * height_mm))?;
         self.chief_ray_exit_angle_deg = field_points(lens, &held, indices(light), &fields);
+        self.is_cut = false;
         Ok(self)
     }
 }

@@ -177,6 +177,9 @@ impl LensReport {
                 percent(p.relative_illuminance, 1, false),
             )?;
         }
+        if self.is_cut {
+            writeln!(f, "  to the corner of 135 film: no rim keeps the field within what is of use")?;
+        }
         writeln!(f)
     }
 

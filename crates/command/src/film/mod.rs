@@ -20,8 +20,8 @@ use spectra_core::params::Fault;
 use spectra_core::{Isa, names};
 use spectra_film::stock::Stock;
 use spectra_plot::{Format, PlotError};
-use spectra_scene::FileResources;
-use spectra_scene::bundled::{Bundled, other_kind};
+use spectra_scene::bundled::{Bundled, camera_films, other_kind};
+use spectra_scene::{FileResources, other_films};
 use std::path::Path;
 use std::time::Instant;
 
@@ -56,10 +56,19 @@ pub(crate) fn called(name: &str) -> Result<String, Failure> {
         let hint = match nearest(name, known.iter().map(String::as_str)) {
             _ if !several.is_empty() => format!("which one? {}", names::listed(&several, all)),
             Some(near) => format!("did you mean `{near}`?"),
-            None => other_kind(name, Bundled::Stock).unwrap_or_else(|| names::hint(name, &known, all)),
+            None if name.ends_with(".csv") => table_hint(name),
+            None => other_kind(name, Bundled::Stock).unwrap_or_else(|| other_films(name, &camera_films())),
         };
         Fault::new(format!("no film stock is called `{name}`")).hint(hint).into()
     })
+}
+
+/// What to do with a table that is asked for as a stock.
+fn table_hint(name: &str) -> String {
+    let stem = Path::new(name).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    format!(
+        "a table belongs to a stock's file: `spectra new film {stem}` writes one, whose layers name it by `sensitivity: {{file: {name}}}`"
+    )
 }
 
 fn plot(arguments: &FilmPlot) -> Outcome {

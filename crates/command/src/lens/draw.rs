@@ -7,6 +7,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
 use spectra_analysis::draw::{Fans, Ground, Sheet, View};
 use spectra_analysis::fan::FanFinder;
+use spectra_analysis::info::useful_field_rad;
 use spectra_lens::{Lens, Section};
 use spectra_plot::{Format, PlotError};
 
@@ -61,6 +62,7 @@ fn fields_deg(arguments: &LensDraw, lens: &Lens, section: Section) -> Result<Vec
     let refuse = |e| Failure::Input(format!("{}: {e}", arguments.setting.lens));
     let finder = FanFinder::new(lens, section, lens.reference_nm).map_err(refuse)?;
     let largest = finder.largest_field_rad(arguments.object.mm(), WIDEST_DEG.to_radians());
+    let largest = largest.map(|rad| useful_field_rad(lens, rad));
     // What passes at the very edge says more of the rims than of the lens: keep inside.
     Ok(std::iter::once(0.0)
         .chain(largest.filter(|f| *f > 0.0).into_iter().flat_map(|f| PARTS.map(|part| part * f.to_degrees())))

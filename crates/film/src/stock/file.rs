@@ -241,7 +241,7 @@ struct FilterFactorFile {
 pub(super) fn schema(generator: &mut SchemaGenerator) -> Schema {
     let mut whole = StockFile::json_schema(generator);
     if let Some(Value::Object(keys)) = whole.get_mut("properties") {
-        let text = "The stock whose keys hold where this file states none: a bundled one, or a file beside this.";
+        let text = "The stock whose keys, but for `maker` and `year`, hold where this file states none: a bundled one, or a file beside this.";
         keys.insert("like".to_owned(), json!({ "type": "string", "description": text }));
     }
     // A stock that is like another one states a part of this.

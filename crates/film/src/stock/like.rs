@@ -1,9 +1,9 @@
 //! A stock that is like another one, but for what its file states: `like: kodak-tri-x-400`.
 //!
 //! Keys of the file go before those of the other one. Of `layers`, a layer of the same name is changed key by key, and one of
-//! a new name is added. `name` is its own; `source` tells from what it was made unless it says otherwise.
+//! a new name is added. `name`, `maker` and `year` are its own; `source` tells from what it was made unless it says otherwise.
 
-use spectra_core::params::{Faults, Key, Node, Params, Value};
+use spectra_core::params::{Fault, Faults, Key, Node, Params, Value};
 use spectra_core::resources::{Resources, beside};
 
 /// Longest chain of stocks that are like one another.
@@ -34,6 +34,7 @@ fn follow(params: &Params, resources: &dyn Resources, left: usize) -> Result<Par
     let other = resources.document(&beside(like, name), &[super::FOLDER], &[".yaml", ".yml"]);
     let other = faults.take(other.map_err(|faults| params.place_at("like", faults)));
     let other = other.and_then(|other| faults.take(follow(&other, resources, left - 1)));
+    faults.extend(other.iter().flat_map(|other| strange_layers(params, other, name)));
     let Some(other) = faults.into_result(other)? else { return Err(Faults::new()) };
     Params::section(merged(params.node(), other.node()), params.path())
 }
@@ -45,6 +46,8 @@ fn merged(own: &Node, other: &Node) -> Node {
     for (key, value) in theirs {
         let value = match (key.text.as_str(), own.get(&key.text)) {
             ("source", None) => made_from(own, value),
+            // Who made that one and when is not said of this one.
+            ("maker" | "year", None) => continue,
             (_, None) => value.clone(),
             ("layers", Some(layers)) => layers_of(layers, value),
             (_, Some(stated)) => stated.clone(),
@@ -54,6 +57,26 @@ fn merged(own: &Node, other: &Node) -> Node {
     let new = mine.iter().filter(|(key, _)| key.text != "like" && other.get(&key.text).is_none());
     entries.extend(new.cloned());
     Node { value: Value::Map(entries), ..own.clone() }
+}
+
+/// Layers that the other stock does not have and that are not whole: a name that is another one there.
+fn strange_layers(own: &Params, other: &Params, like: &str) -> Vec<Fault> {
+    let layers = |of: &Params| match of.get("layers").map(|node| node.value.clone()) {
+        Some(Value::Seq(layers)) => layers,
+        _ => Vec::new(),
+    };
+    let name = |layer: &Node| layer.get("name").and_then(Node::as_str).map(str::to_owned);
+    let known: Vec<String> = layers(other).iter().filter_map(name).collect();
+    let strange = |(i, layer): (usize, &Node)| {
+        let name = name(layer).filter(|name| !known.contains(name))?;
+        let is_whole = ["sensitivity", "curves"].iter().all(|key| layer.get(key).is_some());
+        (!is_whole).then(|| {
+            let fault = own.fault(&format!("layers[{i}].name"), format!("`{like}` has no layer `{name}`"));
+            let s = if known.len() == 1 { "its layer is" } else { "its layers are" };
+            fault.hint(format!("{s} `{}`; a new one has `sensitivity` and `curves`", known.join("`, `")))
+        })
+    };
+    layers(own).iter().enumerate().filter_map(strange).collect()
 }
 
 /// Where the figures come from, and which of them were changed.

@@ -6,6 +6,7 @@
 //! those of Rec. 709, as the format's documentation says, which sRGB shares.
 
 use super::linear::{Choice, Linear, OPAQUE, Trouble, check_size, finite, mend, over_black};
+use super::packed;
 use super::planes::{Plane, Planes, are_of_xyz};
 use super::space;
 use exr::block::UncompressedBlock;
@@ -166,11 +167,12 @@ pub(super) fn depth_overscan(reader: impl BufRead + Seek, bytes: u64, choice: Ch
 /// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is
 /// wanted: what is not chosen takes no memory.
 pub(super) fn decode(
-    reader: impl BufRead + Seek + Send,
+    mut reader: impl BufRead + Seek + Send,
     bytes: u64,
     choice: Choice<'_>,
     lit: bool,
 ) -> Result<Linear, Trouble> {
+    packed::check(&mut reader)?;
     let reader = exr::block::read(reader, false).map_err(said)?;
     let headers = reader.headers().to_vec();
     let Chosen { light, alpha: alpha_at, depth: depth_at } = chosen(&headers, bytes, choice, lit)?;
@@ -242,7 +244,8 @@ pub(super) fn decode(
 }
 
 /// Every channel of a file of `bytes` bytes as it is, and the texts of its header; 0 where the file holds nothing of the window.
-pub(super) fn planes(reader: impl BufRead + Seek + Send, bytes: u64) -> Result<Planes, Trouble> {
+pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Result<Planes, Trouble> {
+    packed::check(&mut reader)?;
     let reader = exr::block::read(reader, false).map_err(said)?;
     let headers = reader.headers().to_vec();
     check(&headers, bytes)?;

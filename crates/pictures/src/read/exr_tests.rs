@@ -217,3 +217,25 @@ fn broken_and_hostile_files_are_refused_before_anything_is_allocated() {
         }
     }
 }
+
+/// Blocks that say that they unpack to gigabytes: the word of each number at the head of a block.
+#[test]
+fn blocks_that_promise_too_much_are_refused() {
+    let of = |i: usize| [(i as f32 * 0.37).sin() + 1.5, 0.5, i as f32 / 4096.0];
+    let mut one = layer(None, (64, 64), rgb((64, 64), of, halves));
+    one.encoding.compression = exr::compression::Compression::DWAA(Some(45.0));
+    let good = file(window(64, 64), vec![one]);
+    assert!(decode(&good, Choice::default()).is_ok());
+    // Two blocks of 32 lines: behind the table of their places stand line, size, then the numbers.
+    let place = |at: usize| good.get(at..at + 8).map(|b| u64::from_le_bytes(b.try_into().unwrap()) as usize);
+    let table = (8..good.len()).find(|at| place(*at) == Some(at + 16)).expect("a table of places");
+    let numbers = place(table).unwrap() + 8;
+    for number in [1, 6, 7, 8, 9] {
+        for promise in [1_u64 << 33, 1 << 62, u64::MAX] {
+            let mut bad = good.clone();
+            bad[numbers + 8 * number..][..8].copy_from_slice(&promise.to_le_bytes());
+            let text = trouble(decode(&bad, Choice::default())).text;
+            assert!(text.contains("unpacks to more than its pixels hold"), "{number}, {promise}: {text}");
+        }
+    }
+}

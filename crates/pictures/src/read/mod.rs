@@ -14,6 +14,7 @@ mod header;
 mod inks;
 mod jpeg;
 mod linear;
+mod packed;
 mod planes;
 mod primaries;
 mod profile;

@@ -1,5 +1,6 @@
 //! TIFF without a second copy of the picture: its strips and tiles are unpacked one by one, or to where they belong.
 
+mod sides;
 mod widened;
 
 use super::linear::Trouble;
@@ -131,10 +132,19 @@ pub(super) fn is_multiplied(reader: impl BufRead + Seek) -> Option<bool> {
 /// in front.
 ///
 /// # Errors
-/// All that it holds is a preview: in a camera's raw file the picture lies elsewhere.
+/// All that it holds is a preview: in a camera's raw file the picture lies elsewhere. Or one of its pictures is larger than any that is read.
 pub(super) fn without_preview(found: &Found) -> Result<Option<Found>, Trouble> {
     const REDUCED: u32 = 1;
     let open = || found.open().map_err(|error| Trouble::file(error.to_string()));
+    let text = "it holds a preview only: the picture of a camera's raw file is not read";
+    let raw = || {
+        Trouble::file(text).hint("develop it in a raw converter, and save it as a TIFF of 16 bits or linear OpenEXR")
+    };
+    // Canon's raw files begin with a preview that does not say so.
+    if found.read(12).is_ok_and(|begin| begin.get(8..10) == Some(b"CR")) {
+        return Err(raw());
+    }
+    sides::check(open()?)?;
     // What is wrong with the file is told where it is read.
     let Ok(mut decoder) = Decoder::new(open()?) else { return Ok(None) };
     let is_preview = |decoder: &mut Decoder<_>| {
@@ -154,8 +164,7 @@ pub(super) fn without_preview(found: &Found) -> Result<Option<Found>, Trouble> {
             return Ok(Some(Found::bytes(found.name.clone(), bytes.into())));
         }
     }
-    let text = "it holds a preview only: the picture of a camera's raw file is not read";
-    Err(Trouble::file(text).hint("develop it in a raw converter, and save it as a TIFF of 16 bits or linear OpenEXR"))
+    Err(raw())
 }
 
 /// Writes where the first picture's folder lies into the header of a file.

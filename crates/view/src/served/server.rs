@@ -10,11 +10,13 @@ use std::collections::BTreeMap;
 use std::io;
 use std::net::{Shutdown, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Connections at a time; more are turned away.
+/// Connections at a time; where there are more, those that have not asked yet make room, the oldest first, and else they are turned away.
 const MAX_CONNECTIONS: usize = 64;
+/// With those that end because they made room.
+const MOST_CONNECTIONS: usize = 2 * MAX_CONNECTIONS;
 /// Pages at a time; the one that was opened first makes room.
 const MAX_DESKS: usize = 4;
 /// A page that waits for a picture asks again after this.
@@ -36,6 +38,9 @@ pub(crate) struct Server {
     order: Option<Order>,
     desks: Mutex<(u64, BTreeMap<u64, Arc<Desk>>)>,
     connections: AtomicUsize,
+    /// Connections whose request has not come yet, by number, the oldest first. A page sends its request at once: whoever stands here for long
+    /// holds a place that others need.
+    silent: Mutex<BTreeMap<u64, TcpStream>>,
 }
 
 /// A connection among those that are counted.
@@ -52,7 +57,14 @@ impl Server {
     pub(crate) fn bind(port: u16, order: Option<Order>) -> io::Result<Self> {
         let listener = TcpListener::bind(("127.0.0.1", port))?;
         let guard = Guard::new(listener.local_addr()?.to_string())?;
-        Ok(Self { listener, guard, order, desks: Mutex::default(), connections: AtomicUsize::new(0) })
+        Ok(Self {
+            listener,
+            guard,
+            order,
+            desks: Mutex::default(),
+            connections: AtomicUsize::new(0),
+            silent: Mutex::default(),
+        })
     }
 
     /// What a person opens.
@@ -63,7 +75,9 @@ impl Server {
     /// Answers until the process ends.
     pub(crate) fn serve(self) -> io::Error {
         let server = Arc::new(self);
+        let mut number = 0_u64;
         loop {
+            number += 1;
             let mut stream = match server.listener.accept() {
                 Ok((stream, _)) => stream,
                 // A connection that ended before it was taken, or no more room for one: neither ends the server.
@@ -72,20 +86,26 @@ impl Server {
                     continue;
                 }
             };
-            if server.connections.fetch_add(1, SeqCst) >= MAX_CONNECTIONS {
+            let before = server.connections.fetch_add(1, SeqCst);
+            if before >= MAX_CONNECTIONS && (before >= MOST_CONNECTIONS || !server.makes_room()) {
                 server.connections.fetch_sub(1, SeqCst);
                 let _ = stream.set_nonblocking(true);
                 let _ = Answer::refused(503, "too many connections").send(&mut stream);
                 continue;
             }
+            // Without a second hold on it, it cannot be ended from here, and ends by the time.
+            if let Ok(held) = stream.try_clone() {
+                server.silent().insert(number, held);
+            }
             let own = Arc::clone(&server);
             let thread = std::thread::Builder::new().name("request".to_owned());
             let spawned = thread.spawn(move || {
                 let _counted = Counted(&own.connections);
-                own.answer(&mut stream);
+                own.answer(number, &mut stream);
             });
             if let Err(error) = spawned {
                 // The closure, and the connection with it, are gone.
+                server.silent().remove(&number);
                 server.connections.fetch_sub(1, SeqCst);
                 if error.kind() != io::ErrorKind::WouldBlock {
                     return error;
@@ -94,8 +114,21 @@ impl Server {
         }
     }
 
-    fn answer(&self, stream: &mut TcpStream) {
-        let answer = match http::read(stream) {
+    fn silent(&self) -> MutexGuard<'_, BTreeMap<u64, TcpStream>> {
+        self.silent.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Ends the connection that has said nothing for longest; whether there was one.
+    fn makes_room(&self) -> bool {
+        let oldest = self.silent().pop_first();
+        // Who has gone by itself makes room as well.
+        oldest.inspect(|(_, stream)| drop(stream.shutdown(Shutdown::Both))).is_some()
+    }
+
+    fn answer(&self, number: u64, stream: &mut TcpStream) {
+        let request = http::read(stream);
+        self.silent().remove(&number);
+        let answer = match request {
             Ok(request) => {
                 self.guard.look(&request).and_then(|()| self.asked(&request)).unwrap_or_else(|refused| refused)
             }

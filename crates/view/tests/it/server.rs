@@ -547,6 +547,30 @@ fn pages_do_not_disturb_each_other_and_the_oldest_makes_room() {
 }
 
 /// Each is refused or dropped, and the server answers the next one.
+/// 150 connections that ask nothing, or half of something, and come again when they are ended: the page is answered all the same.
+#[test]
+fn whoever_asks_nothing_makes_room() {
+    let browser = Browser::start().entered();
+    let is_over = std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for i in 0..150 {
+            let (host, is_over) = (&browser.host, &is_over);
+            scope.spawn(move || {
+                while !is_over.load(std::sync::atomic::Ordering::SeqCst) {
+                    let Ok(mut stream) = TcpStream::connect(host) else { continue };
+                    let _ = stream.write_all(if i % 2 == 0 { b"" } else { b"GET /page.css HT" });
+                    let _ = stream.set_read_timeout(Some(Duration::from_millis(200)));
+                    let _ = stream.read(&mut [0]);
+                }
+            });
+        }
+        std::thread::sleep(Duration::from_millis(300));
+        let answers = (0..40).filter_map(|_| browser.get("/page.css")).filter(|got| got.status == 200).count();
+        is_over.store(true, std::sync::atomic::Ordering::SeqCst);
+        assert!(answers >= 38, "{answers} of 40");
+    });
+}
+
 #[test]
 fn what_others_try_is_refused() {
     let browser = Browser::start();

@@ -283,10 +283,15 @@ impl Depth {
         let median_mm = f64::from(*all.select_nth_unstable_by(middle, f32::total_cmp).1);
         let off = |mm: f64| (mm / plane_mm).max(plane_mm / mm);
         let [least, most] = all.iter().fold([f32::INFINITY, 0.0], |[a, b]: [f32; 2], d| [a.min(*d), b.max(*d)]);
+        let is_normalised = self.kind == DepthKind::Z
+            && (f64::from(most) / self.unit_mm - 1.0).abs() < 1e-6
+            && f64::from(least) < 0.5 * self.unit_mm;
+        // Alpha, and what is normalised, as meters: all of it lies within the first one, and the plane beyond.
+        let is_within_one = is_normalised && plane_mm > f64::from(most);
         // A view into the distance has its plane in front of most things, but not of all.
         let is_view = median_mm > plane_mm && f64::from(least) < 3.0 * plane_mm;
         let near = focal_length_mm.filter(|f| f64::from(least) < NEAR * f && plane_mm > 2.0 * NEAR * f);
-        if off(median_mm) < FAR_OFF || is_view {
+        if !is_within_one && (off(median_mm) < FAR_OFF || is_view) {
             return near.map(|f| {
                 let text = format!(
                     "its nearest depth is {}, under two focal lengths of the lens ({}), while the plane of the picture stands at {}",
@@ -294,7 +299,11 @@ impl Depth {
                     length(f),
                     length(plane_mm)
                 );
-                let hint = "are its numbers in another unit, or a few of them wrong? `near: 20 cm` takes what is nearer to be there";
+                // A little beyond two focal lengths, in whole centimeters.
+                let near_cm = (0.22 * f).ceil();
+                let hint = format!(
+                    "are its numbers in another unit, or a few of them wrong? `near: {near_cm} cm` takes what is nearer to be there"
+                );
                 self.params.fault("unit", text).hint(hint).into()
             });
         }
@@ -303,9 +312,6 @@ impl Depth {
             DepthKind::Z | DepthKind::Ray => median_mm / self.unit_mm,
         };
         let stretch = self.p.scale.unwrap_or(1.0);
-        let is_normalised = self.kind == DepthKind::Z
-            && (f64::from(most) / self.unit_mm - 1.0).abs() < 1e-6
-            && f64::from(least) < 0.5 * self.unit_mm;
         // With another unit or kind the plane would lie among the things, and about the middle of them.
         let kind = if self.kind == DepthKind::Z { "" } else { ", kind: z" };
         let mut others: Vec<(String, f64)> = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("ft", 304.8)]
@@ -314,19 +320,30 @@ impl Depth {
             .map(|(unit, mm)| (format!("`unit: {unit}{kind}`"), said * stretch * mm))
             .collect();
         others.push(("`unit: m, kind: inverse`".to_owned(), 1000.0 * stretch / said));
-        let (remedy, fits) = others
+        // Where the plane stands in front of most things a view fits, too; feet and inches are asked about last.
+        let as_view = |mm: f64| mm > plane_mm && f64::from(least) * (mm / median_mm) < plane_mm;
+        let is_z = |remedy: &str| !remedy.contains("inverse");
+        let other = others
             .into_iter()
-            .filter(|(_, mm)| off(*mm) < 0.5 * FAR_OFF)
-            .min_by(|a, b| off(a.1).total_cmp(&off(b.1)))?;
+            .filter(|(remedy, mm)| off(*mm) < 0.5 * FAR_OFF || is_z(remedy) && off(*mm) < FAR_OFF && as_view(*mm))
+            .min_by(|a, b| {
+                let rank = |(remedy, mm): &(String, f64)| {
+                    let is_rare = remedy.starts_with("`unit: ft") || remedy.starts_with("`unit: in");
+                    off(*mm) * if is_rare { 4.0 } else { 1.0 }
+                };
+                rank(a).total_cmp(&rank(b))
+            });
         let text = format!(
             "half of the depth lies nearer than {}, while the plane of the picture stands at {}",
             length(median_mm),
             length(plane_mm)
         );
-        let hint = if is_normalised {
-            "its numbers run to exactly 1: normalised depth has to be written anew in meters; of alpha name another `channel`".to_owned()
-        } else {
-            format!("did you mean {remedy}? Half would lie nearer than {}", length(fits))
+        let hint = match other {
+            _ if is_normalised => {
+                "its numbers run to exactly 1: normalised depth has to be written anew in meters; of alpha name another `channel`".to_owned()
+            }
+            Some((remedy, fits)) => format!("did you mean {remedy}? Half would lie nearer than {}", length(fits)),
+            None => return None,
         };
         Some(self.params.fault("unit", text).hint(hint).into())
     }

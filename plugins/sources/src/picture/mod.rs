@@ -379,14 +379,33 @@ pub(crate) fn trouble(file: &str, trouble: &Trouble, params: &Params) -> Fault {
     fault.hint(trouble.advice())
 }
 
+/// What to write for the pictures of a numbered sequence: `plate.####.exr`, `plate.%04d.exr`, `plate.${frame}.exr`.
+fn sequence_hint(file: &str) -> Option<String> {
+    let from = file.find(['#', '%', '$', '*'])?;
+    let (mark, behind) = file[from..].split_at(1);
+    let rest = match mark {
+        "%" => behind.split_once('d')?.1,
+        "$" => behind.strip_prefix('{').and_then(|name| name.split_once('}')).map_or(behind, |(_, rest)| rest),
+        _ => behind.trim_start_matches(mark),
+    };
+    let frame = |n: u32| format!("{}{n:04}{rest}", &file[..from]);
+    Some(format!(
+        "a sequence is an animation of one picture a frame: `animation: {{frames: 2, animate: {{source.file: {{1: {}, 2: {}, \
+         interpolation: hold}}}}}}`; `film develop` without a scene reads a pattern with `####` as it is",
+        frame(1),
+        frame(2)
+    ))
+}
+
 pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Found, Fault> {
     context.resources.find(file, &["scenes"], &[], MAX_BYTES).map_err(|e| {
-        let hint = match &e {
+        let sequence = if matches!(e, ResourceError::NotFound(_)) { sequence_hint(file) } else { None };
+        let hint = sequence.unwrap_or_else(|| match &e {
             ResourceError::NotFound(near) if !near.is_empty() => format!("did you mean `{}`?", near.join("` or `")),
             ResourceError::NotFound(_) if file.contains('\\') => "write `/` between folders and file".to_owned(),
             ResourceError::NotFound(_) => "paths are relative to the folder of the scene".to_owned(),
             _ => "OpenEXR, PNG, JPEG, TIFF, WebP, BMP and Radiance HDR files are read".to_owned(),
-        };
+        });
         params.fault("file", format!("picture `{file}`: {e}")).hint(hint)
     })
 }

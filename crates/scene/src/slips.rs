@@ -1,0 +1,181 @@
+//! What people write from other programs and from cameras, and how it is written here: `source: flower.jpg`, `blades: 6`, `fov: 40 deg`.
+
+use crate::bundled::Bundled;
+use spectra_core::math::tan;
+use spectra_core::params::{Angle, Fault, Length, Node, Params, Value};
+
+/// Endings of pictures that are read.
+const PICTURES: [&str; 9] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "hdr"];
+/// Frames of rolls of film, which are asked for by the name of the film.
+const OF_120: &str = "120 film holds frames of several shapes: `6x4.5`, `6x6`, `6x7`, `6x9`, `6x12` or `6x17`";
+
+/// The hint for a fault that is such a slip.
+pub(crate) fn hint(fault: &Fault, scene: &Params) -> Option<String> {
+    let root = scene.node();
+    let key = fault.path.rsplit('.').next().unwrap_or_default();
+    let section = fault.path.split(['.', '[']).next().unwrap_or_default();
+    let at = |path: &str| root.at_path(path);
+    if fault.message.starts_with("unknown key") {
+        return unknown_key(section, key, at(&fault.path)?, root);
+    }
+    if key == "kind" && fault.message.starts_with("unknown ") {
+        let stage = fault.path.strip_suffix(".kind").unwrap_or(section);
+        return kind(stage, at(stage)?.as_str()?);
+    }
+    if fault.message.starts_with("unknown format `") {
+        let name = written(at(&fault.path)?)?;
+        return ["120", "220", "medium-format", "medium format"].contains(&name.as_str()).then(|| OF_120.to_owned());
+    }
+    if fault.path == "lens.aperture" {
+        return aperture(at("lens.aperture")?.as_str()?);
+    }
+    if key == "grain" && fault.message.starts_with("found ") {
+        let how = "the stock says how strong it is: `granularity: {rms: 11}` in a file with `like: kodak-tri-x-400`";
+        return Some(format!("`grain: false` or `grain: true`; {how}"));
+    }
+    if key == "halation" && fault.message.starts_with("unknown value") {
+        let stronger = "{entering: 0.3, transmittance: 0.35}";
+        return Some(format!(
+            "`halation: off`; left out it is the stock's; stronger or weaker: `halation: {stronger}`"
+        ));
+    }
+    let is_text_wanted = fault.hint.is_none() && fault.message.ends_with("expected a text");
+    if is_text_wanted && ["illuminant", "spectrum"].contains(&key) {
+        return Some(format!(
+            "the name of a light (`{key}: D55`), an expression (`{key}: \"blackbody:3200\"`), or a file of two columns, \
+             wavelength and value (`{key}: lamp.csv`)"
+        ));
+    }
+    if fault.hint.as_deref().is_some_and(|hint| hint.starts_with("write it as in"))
+        && let Some(percent) = at(&fault.path).and_then(written)
+        && let Some(part) = percent.strip_suffix('%').and_then(|number| number.trim().parse::<f64>().ok())
+    {
+        return Some(format!("parts of one: `{}`", part / 100.0));
+    }
+    None
+}
+
+/// A scalar as it was written.
+fn written(node: &Node) -> Option<String> {
+    match &node.value {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) => Some(number.text.clone()),
+        _ => None,
+    }
+}
+
+fn unknown_key(section: &str, key: &str, value: &Node, root: &Node) -> Option<String> {
+    let given = written(value);
+    match (section, key) {
+        ("lens", "blades" | "aperture-blades" | "iris") => {
+            let blades = given.filter(|text| text.parse::<u8>().is_ok()).unwrap_or("6".to_owned());
+            Some(format!("the blades are those of the stop: `aperture: {{shape: iris, blades: {blades}}}`"))
+        }
+        ("lens", "focal-length" | "focal_length" | "focal" | "zoom") => {
+            let lens = root.at_path("lens.file").and_then(Node::as_str).unwrap_or("LENS");
+            let to = given.map_or("85mm".to_owned(), |text| text.replace(' ', ""));
+            let to = if to.ends_with(|c: char| c.is_ascii_digit()) { format!("{to}mm") } else { to };
+            Some(format!(
+                "a lens has the focal length of its file: `spectra list lens` shows them, and `spectra lens scale {lens} --to {to} -o \
+                 scaled.yaml` writes one at another size, for `lens: {{file: scaled.yaml}}`"
+            ))
+        }
+        ("source", "fov" | "field-of-view" | "angle-of-view") => Some(width_of_view(value, root)),
+        ("lens" | "imager" | "render" | "fov", "fov" | "field-of-view" | "angle-of-view") => Some(
+            "the angle of view follows from the lens and the frame: `lens: {file: ...}` and `imager: {format: ...}`; a flat source that \
+             fills it has `width: fill`"
+                .to_owned(),
+        ),
+        (_, "sun") => Some(
+            "the sun is a source, alone or over another one: `source: {kind: sun, field: [15 deg, 9 deg], over: {kind: picture, ...}}`"
+                .to_owned(),
+        ),
+        (_, "iso") => Some("the speed is the film's: `film: {stock: kodak-tri-x-400, metering: average}`; `compensation: 1` adds a stop".to_owned()),
+        _ => None,
+    }
+}
+
+/// How wide a source is that spans this angle at its distance.
+fn width_of_view(value: &Node, root: &Node) -> String {
+    let angle = value.parse::<Angle>().ok().map(Angle::rad).filter(|rad| (0.0..std::f64::consts::PI).contains(rad));
+    let distance = root.at_path("source.distance").and_then(|node| node.parse::<Length>().ok()).map(Length::mm);
+    let width = match (angle, distance) {
+        (Some(rad), Some(mm)) => {
+            format!(", or `width: {:.0} mm`, which is this angle at its distance", 2.0 * mm * tan(rad / 2.0))
+        }
+        _ => String::new(),
+    };
+    format!("`width: fill` fills the frame of the lens{width}")
+}
+
+/// A picture, or a kind with its keys behind it, in place of a kind.
+fn kind(stage: &str, typed: &str) -> Option<String> {
+    let ending = typed.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    if stage == "source" && ending.is_some_and(|ending| PICTURES.contains(&ending.as_str())) {
+        return Some(format!(
+            "a picture is named by `source: {{kind: picture, file: {typed}, distance: 2 m, width: fill}}`"
+        ));
+    }
+    let (name, keys) = typed.split_once('{')?;
+    let keys: Vec<String> = keys
+        .trim_end_matches('}')
+        .split(',')
+        .filter_map(|pair| pair.split_once(':').map(|(key, value)| format!("{}: {}", key.trim(), value.trim())))
+        .collect();
+    let own = stage.rsplit('.').next().unwrap_or(stage);
+    (!keys.is_empty()).then(|| format!("write `{own}: {{kind: {}, {}}}`", name.trim(), keys.join(", ")))
+}
+
+/// A drawing, a shape or a number of blades in place of the map.
+fn aperture(typed: &str) -> Option<String> {
+    let ending = typed.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    if ending.is_some_and(|ending| ending == "svg" || PICTURES.contains(&ending.as_str())) {
+        return Some(format!("a drawing at the stop is `aperture: {{shape: mask, file: {typed}, width: 24 mm}}`"));
+    }
+    let number: String = typed.chars().take_while(char::is_ascii_digit).collect();
+    match (typed, number.parse::<u8>()) {
+        ("iris" | "round" | "circle" | "hexagon", _) => Some("`aperture: {shape: iris, blades: 6}`".to_owned()),
+        (_, Ok(blades)) if blades >= 3 => Some(format!("`aperture: {{shape: iris, blades: {blades}}}`")),
+        _ => None,
+    }
+}
+
+/// Films that are sold under a name of their own, and the stocks that they are.
+const SAME_FILM: [(&str, &str); 4] = [
+    ("cinestill800t", "kodak-vision3-500t-5219"),
+    ("cinestill50d", "kodak-vision3-50d-5203"),
+    ("800t", "kodak-vision3-500t-5219"),
+    ("kodak5219", "kodak-vision3-500t-5219"),
+];
+
+/// What to say of a film that is not bundled: camera films only, those first that are like it by a word or by the speed.
+#[must_use]
+pub fn other_films(typed: &str, camera: &[String]) -> String {
+    let key = spectra_core::names::normalized(typed);
+    if let Some((_, stock)) = SAME_FILM.iter().find(|(name, _)| key == *name) {
+        return format!("`{stock}` is the film that it is made of, by taking off the backing");
+    }
+    let words = |name: &str| -> Vec<String> {
+        let parts = name.to_ascii_lowercase();
+        parts.split(['-', ' ', '_']).filter(|word| word.len() > 1).map(str::to_owned).collect()
+    };
+    let digits = |word: &str| word.chars().filter(char::is_ascii_digit).collect::<String>();
+    let mine = words(typed);
+    // A word alike counts more than a speed alike.
+    let likeness = |name: &String| -> usize {
+        let theirs = words(name);
+        let same = mine.iter().filter(|word| theirs.contains(word)).count();
+        let speed =
+            mine.iter().filter(|w| digits(w).len() > 1 && theirs.iter().any(|t| digits(t) == digits(w))).count();
+        2 * same + speed
+    };
+    let mut films: Vec<&String> = camera.iter().filter(|name| likeness(name) > 0).collect();
+    films.sort_by_key(|name| std::cmp::Reverse(likeness(name)));
+    let near: Vec<String> = films.iter().take(4).map(|name| format!("`{name}`")).collect();
+    let list = Bundled::Stock.listed_by();
+    let near = match &near[..] {
+        [] => format!("known: {}", spectra_core::names::listed(camera, list)),
+        near => format!("the nearest are {}; `{list}` shows all", near.join(", ")),
+    };
+    format!("{near}; `spectra new film NAME` writes the file of another film")
+}
