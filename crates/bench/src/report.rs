@@ -163,6 +163,8 @@ pub struct LeftOut {
 pub struct Report {
     /// Name of the scene.
     pub scene: String,
+    /// The seed that all others follow from.
+    pub seed: u64,
     /// Its source.
     pub source: String,
     /// Its lens.

@@ -76,6 +76,7 @@ pub fn bench(
     let size = scene.imager.size();
     Ok(Report {
         scene: scene.name.clone(),
+        seed: run.first_seed,
         source: scene.source.describe(),
         lens: scene.lens.name.clone(),
         channels: run.names.clone(),

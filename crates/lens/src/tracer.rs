@@ -18,7 +18,7 @@ use crate::transmission::{Before, Passage, weigh_polarized};
 use crate::{Element, Lens};
 use glam::DVec3;
 use kernels::{Count, Evaluate, Leave, Reframe};
-use route::{ImagePlane, Leg, Move, route};
+use route::{ImagePlane, Leg, Move, arrives, route};
 use spectra_core::batch::{Column, Polarization};
 use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
@@ -167,7 +167,14 @@ impl Tracer {
         let absorptions = Absorptions::of(grid, &absorptions);
         let elements = lens.elements.clone();
         let layers: Vec<Vec<Layer>> = elements.iter().map(|e| e.layers.clone()).collect();
-        let image = ImagePlane { pose: lens.image_pose, along_axis_mm: lens.image_along_axis_mm };
+        let image = ImagePlane {
+            pose: lens.image_pose,
+            along_axis_mm: lens.image_along_axis_mm,
+            sense: lens
+                .elements
+                .last()
+                .map_or(1.0, |last| if last.action == Action::Reflect { -arrives(last) } else { arrives(last) }),
+        };
         let way = |travel| route(&elements, &image, &Path::through(elements.len(), travel), None);
         let (forward, backward) = (way(Travel::Forward), way(Travel::Backward));
         Ok(Self {
@@ -241,14 +248,21 @@ impl Tracer {
         /// Cosine of 30 degrees. At both sides of a plate of index 1.5 the mean of s and p light is wrong by 0.0003 there, at 60 degrees by 0.008.
         const STEEP: f64 = 0.866;
         let mut axis = DVec3::Z;
-        self.elements.iter().zip(&self.passages).any(|(element, passage)| {
+        let (mut planes, mut solids) = (0, 0);
+        for ((element, passage), coating) in self.elements.iter().zip(&self.passages).zip(&self.solid_coatings) {
             let normal = element.pose.rotation.z_axis;
-            let steep = axis.dot(normal).abs() < STEEP;
-            if element.action == Action::Reflect {
+            let is_steep = axis.dot(normal).abs() < STEEP;
+            if let Some(solid) = &element.solid {
+                axis = element.pose.then(&solid.exit).rotation.z_axis;
+                solids += usize::from(*coating != Coating::Ideal);
+            } else if element.action == Action::Reflect {
                 axis -= 2.0 * axis.dot(normal) * normal;
+            } else if element.action == Action::Refract && is_steep && *passage != Passage::All {
+                planes += 1;
             }
-            steep && element.solid.is_none() && element.action == Action::Refract && *passage != Passage::All
-        })
+        }
+        // A single prism keeps polarization by itself.
+        planes > 0 || solids > 1
     }
 
     /// As far as light of this direction comes before a surface draws its numbers; straight through where none does.
@@ -399,7 +413,8 @@ impl Tracer {
             if measures {
                 noted.note_positions(rays);
             }
-            if measures || leg.soiled.is_some() || element.onion_rings.is_some() || rays.is_polarized() {
+            let is_phased = carries_path && element.surface.has_phase();
+            if measures || is_phased || leg.soiled.is_some() || element.onion_rings.is_some() || rays.is_polarized() {
                 noted.note_directions(rays);
             }
         }

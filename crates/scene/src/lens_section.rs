@@ -17,7 +17,7 @@ use spectra_core::resources::Resources;
 use spectra_exchange::Format;
 use spectra_lens::{
     ApertureError, ApertureForm, CoatingForm, Criterion, DustForm, FocusError, FocusSearch, HazeForm, Lens, MatteBox,
-    Misalignment, ScratchesForm, SeparationForm, Shape,
+    Misalignment, ScaleError, ScratchesForm, SeparationForm, Shape,
 };
 use std::sync::Arc;
 
@@ -305,13 +305,16 @@ fn at_focal_length(lens: &Lens, wanted_mm: f64, params: &Params) -> Result<Lens,
     if !(own_mm.is_finite() && own_mm > 0.0 && own_mm < MOST_FOCAL_MM) {
         let fault =
             params.fault("focal-length", format!("{} has no focal length that it could be scaled by", lens.name));
-        return Err(fault.hint("leave it out; `spectra lens scale FILE --factor 2` scales a file by a factor"));
+        return Err(fault.hint("leave it out; `spectra lens scale FILE --by 2` scales a file by a factor"));
     }
     let factor = wanted_mm / own_mm;
     let scaled = lens.clone().scaled(factor);
     let mut scaled = scaled.map_err(|error| {
         let fault = params.fault("focal-length", format!("the lens cannot be scaled: {error}"));
-        fault.hint("leave it out, or let the surface say how it scales (`scaled`)")
+        fault.hint(match error {
+            ScaleError::Surface(..) => "leave it out; a plugin's surface says how it scales by `scaled`",
+            ScaleError::Drawing(_) => "leave it out, or draw the aperture at the size that is wanted",
+        })
     })?;
     scaled
         .notes

@@ -71,13 +71,11 @@ fn unknown_key(section: &str, key: &str, value: &Node, root: &Node) -> Option<St
             let blades = given.filter(|text| text.parse::<u8>().is_ok()).unwrap_or("6".to_owned());
             Some(format!("the blades are those of the stop: `aperture: {{shape: iris, blades: {blades}}}`"))
         }
-        ("lens", "focal-length" | "focal_length" | "focal" | "zoom") => {
-            let lens = root.at_path("lens.file").and_then(Node::as_str).unwrap_or("LENS");
+        ("lens", "focal_length" | "focal" | "zoom") => {
             let to = given.map_or("85mm".to_owned(), |text| text.replace(' ', ""));
             let to = if to.ends_with(|c: char| c.is_ascii_digit()) { format!("{to}mm") } else { to };
             Some(format!(
-                "a lens has the focal length of its file: `spectra list lens` shows them, and `spectra lens scale {lens} --to {to} -o \
-                 scaled.yaml` writes one at another size, for `lens: {{file: scaled.yaml}}`"
+                "`focal-length: {to}` scales the lens with all its lengths; `spectra list lens` shows what focal lengths there are"
             ))
         }
         ("source", "fov" | "field-of-view" | "angle-of-view") => Some(width_of_view(value, root)),
@@ -141,12 +139,8 @@ fn aperture(typed: &str) -> Option<String> {
 }
 
 /// Films that are sold under a name of their own, and the stocks that they are.
-const SAME_FILM: [(&str, &str); 4] = [
-    ("cinestill800t", "kodak-vision3-500t-5219"),
-    ("cinestill50d", "kodak-vision3-50d-5203"),
-    ("800t", "kodak-vision3-500t-5219"),
-    ("kodak5219", "kodak-vision3-500t-5219"),
-];
+const SAME_FILM: [(&str, &str); 2] =
+    [("cinestill50d", "kodak-vision3-50d-5203"), ("kodak5219", "kodak-vision3-500t-5219")];
 
 /// What to say of a film that is not bundled: camera films only, those first that are like it by a word or by the speed.
 #[must_use]

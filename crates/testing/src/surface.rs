@@ -165,6 +165,7 @@ impl SurfaceLaws {
     fn is_bent_by_its_phase(&self, surface: &dyn Surface, rays: &[Line]) {
         /// Distance between neighbors, mm: differences are good to its square.
         const STEP_MM: f64 = 1e-3;
+        let mut compared = 0;
         for indices in INDICES {
             for action in [Action::Refract, Action::Reflect] {
                 let how = Rays { indices, action, ..Rays::default() };
@@ -173,6 +174,7 @@ impl SurfaceLaws {
                     for aside in [DVec3::X, DVec3::Y].map(|axis| axis * STEP_MM) {
                         let met = how.meet(surface, &[(p - aside, d), (p, d), (p + aside, d)], Isa::detect());
                         let [Ok((a, from)), Ok((_, after)), Ok((b, to))] = met[..] else { continue };
+                        compared += 1;
                         let phase = |point, after| {
                             let of = BentRay {
                                 point,
@@ -195,6 +197,10 @@ impl SurfaceLaws {
                 }
             }
         }
+        assert!(
+            compared > rays.len() / 5,
+            "{surface:?}: only {compared} rays with neighbors go on; is the semi-diameter right?"
+        );
     }
 
     /// Other batches and other instruction sets: the same rays.
@@ -278,16 +284,23 @@ impl SurfaceLaws {
             let rays = self.some_rays(true);
             let far: Vec<Line> = rays.iter().map(|(p, d)| (*p * FACTOR, *d)).collect();
             let [own, of_larger] = [how.meet(surface, &rays, Isa::detect()), how.meet(&*larger, &far, Isa::detect())];
+            let (mut compared, mut apart) = (0, 0);
             for (i, (own, of_larger)) in own.iter().zip(&of_larger).enumerate() {
-                let same = match (own, of_larger) {
-                    (Ok((p, d)), Ok((q, e))) => {
-                        (*p * FACTOR - *q).length() < FACTOR * self.tolerance_mm && (*d - *e).length() < self.tolerance
-                    }
+                let (Ok((p, d)), Ok((q, e))) = (own, of_larger) else {
                     // A ray at the very rim may be lost by rounding.
-                    (own, of_larger) => own.is_err() == of_larger.is_err() || self.rays > 100,
+                    apart += usize::from(own.is_err() != of_larger.is_err());
+                    continue;
                 };
+                compared += 1;
+                let same =
+                    (*p * FACTOR - *q).length() < FACTOR * self.tolerance_mm && (*d - *e).length() < self.tolerance;
                 assert!(same, "{surface:?}: ray {i} ends as {own:?}; {FACTOR} times as large as {of_larger:?}");
             }
+            assert!(
+                compared > self.rays / 20 && apart <= self.rays / 100,
+                "{surface:?}: of {} rays {compared} go on at both sizes, {apart} at one of them only",
+                self.rays
+            );
         }
     }
 

@@ -347,9 +347,11 @@ fn halation(p: &Switches<'_>, params: &Params, stock: &Stock, faults: &mut Fault
         faults.push(fault.hint("leave one of the two out"));
         return none;
     }
-    let entering = own.and_then(|h| h.entering).or_else(|| of_stock.map(|h| h.scattered));
+    // What the stock's file assumes fills nothing in where only what is measured or stated counts.
+    let fills = of_stock.filter(|_| p.assumed == Assumed::On || !halation_is_assumed(stock));
+    let entering = own.and_then(|h| h.entering).or_else(|| fills.map(|h| h.scattered));
     let stated = own.and_then(|h| h.transmittance.or_else(|| h.backing.map(Backing::transmittance)));
-    let (Some(entering), Some(transmittance)) = (entering, stated.or_else(|| of_stock.map(|h| h.backing))) else {
+    let (Some(entering), Some(transmittance)) = (entering, stated.or_else(|| fills.map(|h| h.backing))) else {
         let fault =
             params.fault("halation", format!("{} does not say what light comes back from its base", stock.name));
         faults.push(fault.hint("`halation: {entering: 0.3, backing: dye}`"));

@@ -7,7 +7,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use serde::{Serialize, Serializer};
 use spectra_glass::air::{self, AirConditions, CATALOGUE_AIR};
 use spectra_glass::interface::{brewster_angle, critical_angle, fresnel};
-use spectra_glass::{Beside, Catalogue, Glass, LineTriple, Medium, ModelGlass, lines};
+use spectra_glass::{Beside, Catalogue, Category, Formula, Glass, LineTriple, Medium, ModelGlass, lines};
 use std::fmt::Write;
 
 /// Thickness for which internal transmittances are stated.
@@ -220,15 +220,21 @@ fn warnings(medium: &Medium, glass: Option<&Glass>, arguments: &GlassInfo) -> Ve
 }
 
 /// How good a coarse description of a glass is, where it is one. Two terms of Buchdahl's form, fitted to 240 glasses of SCHOTT from 400 to
-/// 700 nm, leave 3.2e-5 at the median and 6.6e-5 at the 95th percentile; the figures of a model glass are those of the guide.
+/// 700 nm, leave 3.2e-5 at the median and 6.6e-5 at the 95th percentile; the figures of an index and an Abbe number are those of the guide.
 fn expected_error(medium: &Medium) -> Option<&'static str> {
-    match medium {
-        Medium::Glass(glass) if glass.formula.name() == "Buchdahl" => {
-            Some("7e-5 in n from 400 to 700 nm (two terms, fitted)")
-        }
-        Medium::Model(_) => Some("2e-4 in n at r, 4e-4 at g, 9e-4 at h for nine of ten glasses"),
+    let model = match medium {
+        Medium::Model(model) => Some(model),
+        Medium::Glass(glass) => match &glass.formula {
+            Formula::Model(model) => Some(model),
+            formula if formula.name() == "Buchdahl" && glass.category != Category::User => {
+                return Some("7e-5 in n from 400 to 700 nm (two terms, fitted)");
+            }
+            _ => None,
+        },
         _ => None,
-    }
+    };
+    let is_coarse = model.is_some_and(|model| model.stated_lines() == 1);
+    is_coarse.then_some("2e-4 in n at r, 4e-4 at g, 9e-4 at h for nine of ten glasses")
 }
 
 /// The report as a person reads it.

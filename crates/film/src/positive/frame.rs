@@ -129,7 +129,8 @@ pub(super) fn printed(
     of_silver: &(dyn Fn(f64) -> Vec<f64> + Sync),
     planes: &[&[f32]],
 ) -> Vec<Vec<f32>> {
-    let mut printed = vec![Vec::with_capacity(planes.first().map_or(0, |plane| plane.len())); layers];
+    let places = planes.first().map_or(0, |plane| plane.len());
+    let mut printed: Vec<Vec<f32>> = (0..layers).map(|_| Vec::with_capacity(places)).collect();
     match (tables, planes) {
         (Tables::Dyes(dyes), [a, b, c]) => {
             for ((a, b), c) in a.iter().zip(*b).zip(*c) {

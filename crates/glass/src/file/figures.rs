@@ -229,8 +229,10 @@ impl Figures {
                 return Err(fault.hint("leave the other one out"));
             };
             let formula = resonance::through(n, v, lines);
-            let range = (*MODEL_NM.start(), *MODEL_NM.end());
-            let glass = Glass::new("", &format!("{label}, one resonance"), Category::User, formula, range);
+            // Nothing was measured, so nothing is beyond what was.
+            let range = (100.0, 1e6);
+            let glass =
+                Glass::new(super::OWN_MAKER, &format!("{label}, one resonance"), Category::User, formula, range);
             return Ok((Medium::Glass(glass.into()), format!("{label}, one resonance")));
         }
         let medium = match (&indices[..], &abbe[..]) {

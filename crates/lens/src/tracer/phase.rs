@@ -50,7 +50,7 @@ impl Tracer {
                     .iter()
                     .fold(self.focused_mm, |object, leg| self.behind_mm(object + leg.length_mm, leg, n));
                 let last_mm = self.elements.last().map_or(0.0, |e| e.along_axis_mm);
-                -image_mm - (self.image.along_axis_mm - last_mm)
+                -image_mm - (self.image.along_axis_mm - last_mm) * self.image.sense
             }
         };
         let before =

@@ -33,6 +33,14 @@ pub(super) struct ImagePlane {
     pub(super) pose: Pose,
     /// Length of the axis to it from the first vertex, mm.
     pub(super) along_axis_mm: f64,
+    /// Whether light that runs forward arrives along the axis, 1, or behind an odd number of mirrors against it, -1.
+    pub(super) sense: f64,
+}
+
+/// Whether light that runs forward arrives at an element along the axis, 1, or behind an odd number of mirrors, where thicknesses are
+/// negative, against it, -1.
+pub(super) fn arrives(element: &Element) -> f64 {
+    if element.along != element.reversed { 1.0 } else { -1.0 }
 }
 
 /// A path made ready: where each surface stands seen from the one before, what it does, and between which media.
@@ -86,7 +94,9 @@ pub(super) struct Leg {
 /// A path made ready; for light that is scattered at least once by these layers of elements, if there are any.
 pub(super) fn route(elements: &[Element], image: &ImagePlane, path: &Path, layers: Option<&[Vec<Layer>]>) -> Route {
     let end = |at_front: bool| if at_front { &Pose::IDENTITY } else { &image.pose };
-    let mut along_mm = if path.enters() == Travel::Forward { 0.0 } else { image.along_axis_mm };
+    // Where the light comes from along the axis, and the sense of forward light in the gap behind that place.
+    let (mut along_mm, mut forward) =
+        if path.enters() == Travel::Forward { (0.0, 1.0) } else { (image.along_axis_mm, image.sense) };
     let mut frame = end(path.enters() == Travel::Forward);
     let mut outside = 0;
     let mut legs: Vec<Leg> = Vec::with_capacity(path.steps().len());
@@ -102,8 +112,8 @@ pub(super) fn route(elements: &[Element], image: &ImagePlane, path: &Path, layer
             at: *at,
             into: Move::between(frame, &element.pose),
             length_mm: match travel {
-                Travel::Forward => element.along_axis_mm - along_mm,
-                Travel::Backward => along_mm - element.along_axis_mm,
+                Travel::Forward => (element.along_axis_mm - along_mm) * arrives(element),
+                Travel::Backward => (along_mm - element.along_axis_mm) * forward,
             },
             action: if turns { Action::Reflect } else { element.action },
             turns,
@@ -120,7 +130,7 @@ pub(super) fn route(elements: &[Element], image: &ImagePlane, path: &Path, layer
             }),
             soiled: None,
         });
-        (frame, outside, along_mm) = (&element.pose, after, element.along_axis_mm);
+        (frame, outside, along_mm, forward) = (&element.pose, after, element.along_axis_mm, arrives(element));
     }
     if let Some(layers) = layers {
         let most = |leg: &Leg| if leg.turns { 0.0 } else { Shares::most_scattered(&layers[leg.at]) };

@@ -207,7 +207,7 @@ mod tests {
     use spectra_core::resources::Found;
 
     /// Twelve patches of ink with a profile of each kind of table, and as JPEG in CMYK and YCCK, against LittleCMS 2 on the same files
-    /// (`xtask/ink_samples.py`): within a code value, 2 in the JPEG whose inks are rounded twice.
+    /// (`xtask/picture_samples.py`): within a code value, 2 in the JPEG whose inks are rounded twice.
     #[test]
     fn inks_look_as_their_profile_says() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/inks/");

@@ -103,16 +103,17 @@ impl Inks {
             return None;
         }
         let input = curves::<INKS>(lut, a)?;
-        let grid: [usize; INKS] = std::array::from_fn(|ink| lut.get(table + ink).map_or(0, |n| usize::from(*n)));
-        let size = usize::from(*lut.get(table + 16)?);
+        let grid: [usize; INKS] =
+            std::array::from_fn(|ink| lut.get(table.saturating_add(ink)).map_or(0, |n| usize::from(*n)));
+        let size = usize::from(*lut.get(table.checked_add(16)?)?);
         if !(1..=2).contains(&size) {
             return None;
         }
-        let table = Numbers { bytes: lut, size }.table(table + 20, grid)?;
+        let table = Numbers { bytes: lut, size }.table(table.checked_add(20)?, grid)?;
         let middle = if m == 0 || matrix == 0 {
             None
         } else {
-            let number = |i: usize| fixed(lut, matrix + 4 * i);
+            let number = |i: usize| fixed(lut, matrix.checked_add(4 * i)?);
             let mut rows = [[0.0; 3]; 3];
             for (i, value) in rows.as_flattened_mut().iter_mut().enumerate() {
                 *value = number(i)?;
@@ -223,10 +224,10 @@ fn curves<const N: usize>(lut: &[u8], mut at: usize) -> Option<[Vec<f64>; N]> {
             .map(|i| light(own, i as f64 / (POINTS - 1) as f64).filter(|v| v.is_finite()))
             .collect::<Option<_>>()?;
         let length = match own.get(..4)? {
-            b"curv" => 12 + 2 * long(own, 8)? as usize,
+            b"curv" => (long(own, 8)? as usize).checked_mul(2)?.checked_add(12)?,
             _ => 12 + 4 * [1, 3, 4, 5, 7].get(usize::from(*own.get(9)?))?,
         };
-        at = at.checked_add(length.next_multiple_of(4))?;
+        at = at.checked_add(length.checked_next_multiple_of(4)?)?;
     }
     Some(all)
 }

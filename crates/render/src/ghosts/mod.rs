@@ -229,11 +229,11 @@ impl Ghosts {
     }
 
     fn state(&self, capacity: usize) -> ThreadState {
-        let mut state = ThreadState::new(&self.pipeline, capacity);
-        if self.pipeline.scene.render.reflections.polarized {
-            state.rays = state.rays.with_polarization();
-        }
-        state
+        // Polarized where that is asked for, however steep the lens is.
+        let rays = RayBatch::new(capacity);
+        let rays = if self.pipeline.scene.render.reflections.polarized { rays.with_polarization() } else { rays };
+        let rays = if self.pipeline.draws { rays.with_numbers() } else { rays };
+        ThreadState { rays, ..ThreadState::new(&self.pipeline, capacity) }
     }
 
     /// Puts rays `first .. first + len` of a stream on the source, with the numbers of all dimensions.
