@@ -151,3 +151,26 @@ fn light_is_cut_into_equal_parts() {
     assert!((light.mean_mm() / (1e-6 * (400.0 + 1500.0 + 2800.0) / 8.0) - 1.0).abs() < 1e-12);
     assert_eq!(Light::of(&[[500.0, 0.0]]), None);
 }
+
+/// A frame whose pixels see one opening makes one kernel. It is the picture of zones that are kept apart, where one corner sees an opening
+/// that is larger by a five-hundredth: within a hundredth of the brightest pixel. An opening that changes over the frame is not merged.
+#[test]
+fn one_opening_makes_the_picture_of_many() {
+    let size = FrameSize { width_px: 64, height_px: 48, width_mm: 0.128, height_mm: 0.096 };
+    let points = |view: &dyn spectra_diffraction::View| {
+        let mut plane = vec![0.0_f32; 64 * 48];
+        (plane[20 * 64 + 24], plane[30 * 64 + 50]) = (1000.0, 300.0);
+        Spread::new(size, Light::line(GREEN_NM), view).expect("an opening").apply(&mut plane);
+        plane
+    };
+    let corner = |factor: f64| {
+        move |[x, y]: [f64; 2]| Some(stop(6, if x > 60.0 && y > 44.0 { 8.0 / factor } else { 8.0 }))
+    };
+    let merged = points(&corner(1.0));
+    let largest = |other: &[f32]| merged.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    let brightest = merged.iter().copied().fold(0.0, f32::max);
+    let near = largest(&points(&corner(1.002)));
+    assert!(near > 0.0 && near < 0.01 * brightest, "{near} of {brightest}");
+    let far = largest(&points(&corner(2.0)));
+    assert!(far > 0.01 * brightest, "{far} of {brightest}");
+}

@@ -82,6 +82,6 @@ fn tables_in_the_manner_of_patents_are_read() {
             }
         }
     }
-    assert_eq!(count, 28);
+    assert_eq!(count, 38);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -173,7 +173,9 @@ impl Below {
         let digits: String = name.chars().filter(char::is_ascii_digit).collect();
         let Some(term) = Term::of(&letters, digits.parse().ok()) else { return false };
         let figures: Vec<&(String, usize)> = figures.iter().filter(|(word, _)| word != "=").collect();
-        if figures.is_empty() || figures.len() > columns.len() || figures.iter().any(|(word, _)| value(word).is_none())
+        if figures.is_empty()
+            || figures.len() > columns.len()
+            || figures.iter().any(|(word, _)| value(word).is_none() && word != "-")
         {
             return false;
         }
@@ -187,7 +189,8 @@ impl Below {
         if surfaces.windows(2).any(|pair| pair[0] == pair[1]) {
             return false;
         }
-        for ((word, _), surface) in figures.into_iter().zip(surfaces) {
+        // A dash stands where a surface has no such term.
+        for ((word, _), surface) in figures.into_iter().zip(surfaces).filter(|((word, _), _)| word != "-") {
             self.set(surface, term, figure(word));
         }
         true

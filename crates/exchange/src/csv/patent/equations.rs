@@ -1,6 +1,6 @@
 //! Tables of equations: `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`, in one line or many.
 
-use super::words::{figure, is_back_focus, is_other, is_plane, is_stop_phrase};
+use super::words::{figure, is_back_focus, is_end, is_other, is_plane, is_stop_phrase};
 use super::{Found, Row, value};
 use crate::MAX_ITEMS;
 
@@ -14,6 +14,8 @@ pub(super) struct Equation {
     pub value: String,
     /// Words behind the value.
     pub words: String,
+    /// Whether an asterisk stands behind the value.
+    pub is_marked: bool,
 }
 
 /// Whether a word goes on with a figure: `e-5`, `×10^-5`.
@@ -48,6 +50,8 @@ pub(super) fn equations_of(line: &str) -> Vec<Equation> {
         }
         let text = words[..count].concat();
         let text = text.trim_end_matches([',', ';']);
+        let is_marked = text.ends_with('*');
+        let text = text.trim_end_matches('*');
         let text = if text.contains('.') { text.to_owned() } else { text.replacen(',', ".", 1) };
         let digits: String = name.chars().filter(char::is_ascii_digit).collect();
         found.push(Equation {
@@ -56,6 +60,7 @@ pub(super) fn equations_of(line: &str) -> Vec<Equation> {
             number: digits.parse().ok(),
             value: figure(&text),
             words: words[count..].join(" "),
+            is_marked,
         });
     }
     found
@@ -119,7 +124,8 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
         if line.trim().starts_with('#') {
             continue;
         }
-        if is_other(line) && found.rows.len() >= 2 || found.rows.len() > MAX_ITEMS {
+        let is_of_aspheres = line.contains("非球面") && !line.contains('=') && found.rows.len() >= 3;
+        if is_other(line) && found.rows.len() >= 2 || is_of_aspheres || found.rows.len() > MAX_ITEMS {
             found.end = at;
             break;
         }
@@ -148,6 +154,10 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
                 _ => continue,
             };
             let is_stop_word = is_stop_phrase(&equation.value);
+            // The image plane is no surface.
+            if name == "radius" && is_end(equation.words.trim_start_matches('(')) {
+                continue;
+            }
             if name == "radius" && !is_stop_word && !is_plane(&equation.value) && value(&equation.value).is_none() {
                 // A sentence about radii.
                 continue;
@@ -160,7 +170,9 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
             if name == "radius" {
                 // One row a line of the table that is typed.
                 let line = found.rows.last().map_or(at, |last: &Row| at.max(last.line + 1));
-                let is_marked = equation.written.contains('*') || equation.words.to_lowercase().contains("aspher");
+                let is_marked = equation.written.contains('*')
+                    || equation.is_marked
+                    || equation.words.to_lowercase().contains("aspher");
                 let is_stop = is_stop_phrase(&equation.words) || is_stop_word;
                 found.rows.push(Row { line, number: equation.number, is_marked, is_stop, ..Row::default() });
             }

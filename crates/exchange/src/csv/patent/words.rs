@@ -4,6 +4,9 @@ use super::Told;
 use crate::number;
 use crate::place::shown;
 
+/// Raised digits from 0 to 9, and the minus.
+const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻";
+
 /// Characters of print in those of a keyboard: minus signs, wide letters and digits, Greek letters, thin spaces.
 pub(in crate::csv) fn plain(text: &str) -> String {
     let one = |c: char| match c {
@@ -13,7 +16,18 @@ pub(in crate::csv) fn plain(text: &str) -> String {
         '\u{3bd}' | '\u{39d}' => 'v',
         _ => c,
     };
-    text.chars().map(one).collect()
+    let mut typed = String::with_capacity(text.len());
+    let mut was_raised = false;
+    for c in text.chars() {
+        // Raised digits are a power: `10⁻⁴`.
+        let raised = RAISED.chars().position(|own| own == c).and_then(|at| "0123456789-".chars().nth(at));
+        if raised.is_some() && !was_raised {
+            typed.push('^');
+        }
+        typed.push(raised.unwrap_or_else(|| one(c)));
+        was_raised = raised.is_some();
+    }
+    typed
 }
 
 /// A number as printed: a blank behind the sign, `1.2 x 10^-5`. A blank between digits is none of a number.
@@ -95,7 +109,7 @@ pub(in crate::csv) fn is_variable(cell: &str) -> bool {
 pub(super) fn gap_number(cell: Option<&str>) -> Option<u32> {
     let plain: String = cell?.to_lowercase().chars().filter(|c| !c.is_whitespace() && !"()[]".contains(*c)).collect();
     let rest = plain.strip_prefix("di").or(plain.strip_prefix('d'))?;
-    rest.parse().ok()
+    rest.trim_end_matches("variable").parse().ok()
 }
 
 /// Whether a name is that of the back focus: `BF`, `B.F.`, `s'`.
