@@ -291,7 +291,7 @@ fn slips_of_the_command_line_are_told_with_what_to_write() {
         (&["run", "gray-card", "--set", "film.stock", "tri-x"], "write `--set film.stock=tri-x`"),
         (&["check", "gray-card", "--set", "film.stock"], "`--set film.stock=VALUE`"),
         (&["film", "info", "foma.csv"], "`spectra new film foma`"),
-        (&["film", "info", "cinestill-50d"], "`kodak-vision3-50d-5203`"),
+        (&["film", "info", "cinestill-50d"], "did you mean `cinestill-800t`?"),
         (&["film", "info", "delta-3200"], "`spectra new film NAME`"),
         (&["film", "info", "fomapan-100"], "the nearest are"),
         (&["film", "develop", "a.png", "--stock", "tri-x", "--frames", "1..3"], "'plate.####.exr'"),

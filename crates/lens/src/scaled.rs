@@ -82,7 +82,7 @@ impl Aperture {
             }
             Shape::Polygon(corners) => Shape::Polygon(corners.iter().map(|corner| corner.each_ref().map(by)).collect()),
             Shape::Iris(iris) => {
-                let mut iris = iris.clone();
+                let mut iris = *iris;
                 iris.blade_radius_mm *= factor;
                 Shape::Iris(iris)
             }

@@ -138,17 +138,9 @@ fn aperture(typed: &str) -> Option<String> {
     }
 }
 
-/// Films that are sold under a name of their own, and the stocks that they are.
-const SAME_FILM: [(&str, &str); 2] =
-    [("cinestill50d", "kodak-vision3-50d-5203"), ("kodak5219", "kodak-vision3-500t-5219")];
-
 /// What to say of a film that is not bundled: camera films only, those first that are like it by a word or by the speed.
 #[must_use]
 pub fn other_films(typed: &str, camera: &[String]) -> String {
-    let key = spectra_core::names::normalized(typed);
-    if let Some((_, stock)) = SAME_FILM.iter().find(|(name, _)| key == *name) {
-        return format!("`{stock}` is the film that it is made of, by taking off the backing");
-    }
     let words = |name: &str| -> Vec<String> {
         let parts = name.to_ascii_lowercase();
         parts.split(['-', ' ', '_']).filter(|word| word.len() > 1).map(str::to_owned).collect()

@@ -163,9 +163,8 @@ fn one_opening_makes_the_picture_of_many() {
         Spread::new(size, Light::line(GREEN_NM), view).expect("an opening").apply(&mut plane);
         plane
     };
-    let corner = |factor: f64| {
-        move |[x, y]: [f64; 2]| Some(stop(6, if x > 60.0 && y > 44.0 { 8.0 / factor } else { 8.0 }))
-    };
+    let corner =
+        |factor: f64| move |[x, y]: [f64; 2]| Some(stop(6, if x > 60.0 && y > 44.0 { 8.0 / factor } else { 8.0 }));
     let merged = points(&corner(1.0));
     let largest = |other: &[f32]| merged.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     let brightest = merged.iter().copied().fold(0.0, f32::max);
