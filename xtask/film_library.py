@@ -11,8 +11,9 @@ its code. What it does to them:
   - sheets of still negatives print no spectra of single dyes, only of a midscale neutral and of unexposed film: the dyes of
     Vision3 250D, each scaled wavelength by wavelength by the same factor, so that together they make the sheet's neutral;
   - granularity over density, where the sheet has none: that of a film of the same kind, times one factor (see GRAIN);
-  - curves are moved by a few numbers, so that a gray scale is gray, and interlayer effects are assumed: xtask/fit_film_library.py
-    finds both and writes them to xtask/film_library.json. The remark of each curve says by how much it moved.
+  - curves are moved by a few numbers, so that a gray scale is gray: xtask/fit_film_library.py finds them and writes them to
+    xtask/film_library.json. The remark of each curve says by how much it moved;
+  - what layers do to each other is assumed: xtask/film_families.py.
 """
 
 import json
@@ -30,7 +31,8 @@ TUNGSTEN = "iso-7589-sensitometric-studio-tungsten"
 
 # slug: (module, name in it, name for people, maker, sheet, year, speed, light, print, backing)
 KODAK, FUJI = "Eastman Kodak", "Fujifilm"
-ENDURA, CRYSTAL, CINE = "kodak-endura-premier", "fuji-crystal-archive-dpii", "kodak-vision-2383"
+# Papers for optical printing; those for digital printers, which are steeper, are there by name.
+ENDURA, CINE = "kodak-portra-endura", "kodak-vision-2383"
 NEGATIVES = {
     "kodak-portra-160": ("kodak_portra_160", "KODAK_PORTRA_160", "Kodak Portra 160", KODAK,
                          "Kodak Professional Portra 160 Film, technical data E-4051", 2011, 160, DAYLIGHT, ENDURA),
@@ -47,16 +49,16 @@ NEGATIVES = {
     "kodak-vericolor-iii": ("kodak_vericolor_iii", "KODAK_VERICOLOR_III", "Kodak Vericolor III", KODAK,
                             "Kodak Vericolor III Professional Film, technical data", 1983, 160, DAYLIGHT, ENDURA),
     "fuji-pro-160s": ("fuji_pro_160s", "FUJI_PRO_160S", "Fujicolor Pro 160S", FUJI,
-                      "Fujicolor Pro 160S Professional, data sheet", 2004, 160, DAYLIGHT, CRYSTAL),
+                      "Fujicolor Pro 160S Professional, data sheet", 2004, 160, DAYLIGHT, ENDURA),
     "fuji-pro-400h": ("fuji_pro_400h", "FUJI_PRO_400H", "Fujicolor Pro 400H", FUJI,
-                      "Fujicolor Pro 400H Professional, data sheet", 2004, 400, DAYLIGHT, CRYSTAL),
-    "fuji-c200": ("fuji_c200", "FUJI_C200", "Fujicolor C200", FUJI, "Fujicolor C200, data sheet", 2017, 200, DAYLIGHT, CRYSTAL),
+                      "Fujicolor Pro 400H Professional, data sheet", 2004, 400, DAYLIGHT, ENDURA),
+    "fuji-c200": ("fuji_c200", "FUJI_C200", "Fujicolor C200", FUJI, "Fujicolor C200, data sheet", 2017, 200, DAYLIGHT, ENDURA),
     "fuji-superia-reala-100": ("fuji_superia_reala", "FUJI_SUPERIA_REALA", "Fujicolor Superia Reala 100", FUJI,
-                               "Fujicolor Superia Reala, data sheet", 1998, 100, DAYLIGHT, CRYSTAL),
+                               "Fujicolor Superia Reala, data sheet", 1998, 100, DAYLIGHT, ENDURA),
     "fuji-superia-x-tra-400": ("fuji_superia_xtra_400", "FUJI_SUPERIA_XTRA_400", "Fujicolor Superia X-TRA 400", FUJI,
-                               "Fujicolor Superia X-TRA 400, data sheet", 1998, 400, DAYLIGHT, CRYSTAL),
+                               "Fujicolor Superia X-TRA 400, data sheet", 1998, 400, DAYLIGHT, ENDURA),
     "fuji-natura-1600": ("fuji_natura_1600", "FUJI_NATURA_1600", "Fujicolor Natura 1600", FUJI,
-                         "Fujicolor Natura 1600, data sheet", 2003, 1600, DAYLIGHT, CRYSTAL),
+                         "Fujicolor Natura 1600, data sheet", 2003, 1600, DAYLIGHT, ENDURA),
     "kodak-vision3-50d-5203": ("kodak_5203", "KODAK_5203", "Kodak Vision3 50D 5203", KODAK,
                                "Kodak Vision3 50D Color Negative Film 5203/7203, technical data H-1-5203", 2011, 50, DAYLIGHT, CINE),
     "kodak-vision3-200t-5213": ("kodak_5213", "KODAK_5213", "Kodak Vision3 200T 5213", KODAK,
@@ -78,6 +80,8 @@ SLIDES = {
 }
 # slug: (module, name in it, name for people, maker, sheet, year, medium, lamp, LAD)
 PRINTS = {
+    "kodak-portra-endura": ("kodak_portra_endura", "KODAK_PORTRA_ENDURA", "Kodak Professional Portra Endura Paper", KODAK,
+                            "Kodak Professional Portra Endura Paper, technical data E-4021", 2002, "paper", None),
     "kodak-endura-premier": ("kodak_endura_premier", "KODAK_ENDURA_PREMIER", "Kodak Professional Endura Premier Paper", KODAK,
                              "Kodak Professional Endura Premier Paper, technical data", None, "paper", None),
     "fuji-crystal-archive-dpii": ("fuji_ca_dpII", "FUJI_CA_DPII", "Fujicolor Crystal Archive DP II", FUJI,
@@ -309,15 +313,6 @@ def mtf_remark(data):
     return bool(data.mtf) and len(data.mtf) == 1 and "The sheet has one curve for the whole film; assumed for each layer."
 
 
-LAYERS_REMARK = "Rows and columns are blue, green, red. No sheet tells it."
-
-
-def interlayer(numbers, where):
-    text = (f"Fitted so that the 18 chromatic patches of the ColorChecker, {where}, have the hue that the eye sees and about its "
-            f"chroma (xtask/fit_film_library.py). {LAYERS_REMARK}")
-    return f"interlayer:\n  assumed: true\n  remark: {base.folded(text, '    ')}\n  inhibition: {numbers['inhibition']}"
-
-
 def negative(folder, slug, numbers):
     module, _, name, maker, sheet, year, iso, light, print_stock = NEGATIVES[slug]
     data = prepared(folder, "negative", slug)
@@ -337,7 +332,7 @@ def negative(folder, slug, numbers):
               *assumed([("dyes", dye_remark(data.dyes_off)), ("granularity", grain_remark), ("mtf", mtf_remark(data))]),
               base.halation("rem-jet" if cine else "dye", base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]),
               base.ACETATE, f"minimum-density:\n  table:{base.flow(base.pairs(data.d_min_sd), '    ')}",
-              *([interlayer(numbers, f"printed on {print_stock}")] if numbers else [])],
+              base.interlayer(slug)],
         layers=layers_of(data, "negative", iso, numbers, grain))
 
 
@@ -354,7 +349,7 @@ def slide(folder, slug, numbers):
               *assumed([("granularity", grain_remark), ("mtf", mtf_remark(data))]),
               base.halation("rem-jet" if slug == "kodachrome-64" else "silver", base.ENTERS + back + base.DEPTH, layers=[0.01, 0.25, 1]), base.ACETATE, *RECIPROCITY.get(slug, []),
               base.flat_minimum(*base.minima(data)),
-              *([interlayer(numbers, "projected")] if numbers else [])],
+              base.interlayer(slug)],
         layers=layers_of(data, "slide", iso, numbers, grain))
 
 

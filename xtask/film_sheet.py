@@ -37,6 +37,42 @@ output: [png]
 # The middle of the gray card.
 SPOT = "{center: [0.89, 0.635], diameter: 0.12}"
 MADE_FOR = {"iso-7589-sensitometric-daylight": "D55", "iso-7589-sensitometric-studio-tungsten": "iso-7589-studio-tungsten"}
+# What people choose a film for, in a sentence: from what its maker says of it and what it is known for.
+CHOSEN_FOR = {
+    "cinestill-800t": "Night streets: wide red halos around lamps, cool where light is not tungsten.",
+    "fuji-c200": "Plain daylight snapshots, greens that stay fresh.",
+    "fuji-eterna-500": "Soft cinema for tungsten light, with open shadows.",
+    "fuji-natura-1600": "Rooms by lamplight without a flash; hard, with coarse grain.",
+    "fuji-pro-160s": "Weddings and portraits: the quietest skin of the negatives.",
+    "fuji-pro-400h": "Airy portraits, often overexposed: pale greens, calm skin.",
+    "fuji-provia-100f": "The slide that takes no side: neutral, fine grain.",
+    "fuji-superia-reala-100": "Fine daylight color of the 1990s, true greens.",
+    "fuji-superia-x-tra-400": "The holiday film: contrast and color in any light.",
+    "fuji-velvia-50": "Landscapes: the most saturated slide, deep shadows.",
+    "kodachrome-64": "Magazine color of the 1970s: deep reds, restrained rest, hard light.",
+    "kodak-ektachrome-100d": "Clean, cool slides, brighter color than the scene.",
+    "kodak-ektar-100": "The most saturated negative, for things rather than faces.",
+    "kodak-exr-100t-5248": "Cinema of the 1990s in the studio: dense, quiet color.",
+    "kodak-gold-200": "Warm family pictures in the sun.",
+    "kodak-portra-160": "Studio portraits: soft, natural skin.",
+    "kodak-portra-400": "The portrait film for any light: natural skin, wide latitude.",
+    "kodak-portra-800": "Portraits by lamplight.",
+    "kodak-ultramax-400": "Snapshots in any weather, cheerful color.",
+    "kodak-vericolor-iii": "Portraits of the 1980s.",
+    "kodak-vision3-200t-5213": "Cinema in the studio: clean shadows for grading.",
+    "kodak-vision3-250d-5207": "Cinema by daylight: soft, with long highlights.",
+    "kodak-vision3-500t-5219": "Cinema at night, by practical lamps.",
+    "kodak-vision3-50d-5203": "Cinema in the sun, the finest grain of the four.",
+    "blue-sensitive-plate": "The 19th century: white skies, dark lips, freckles.",
+    "panchromatic-plate": "The 1930s: all colors as grays, softly.",
+    "ilford-fp4-plus": "The all-round film for good light: smooth, fine grain.",
+    "ilford-hp5-plus": "Reportage in any light; takes any push.",
+    "ilford-ortho-plus": "Blind to red: dark lips and skies without clouds.",
+    "kodak-double-x-5222": "Black-and-white cinema since 1959: long grays, grain that is seen.",
+    "kodak-t-max-100": "The finest grain, clinical grays.",
+    "kodak-t-max-400": "Speed with fine grain.",
+    "kodak-tri-x-400": "The reportage film: gritty grain, hard when pushed.",
+}
 KINDS = (
     ("Color negatives", lambda s: len(s["layers"]) == 3 and s["process"] == "negative"),
     ("Color reversal films", lambda s: s["process"] == "reversal"),
@@ -135,7 +171,7 @@ def page(stocks, prints):
             lines.append(cells(row, lambda n: f"![{stocks[n]['name']}](images/films/{n}.png)"))
             if k == 0:
                 lines.append("|" + " --- |" * ACROSS)
-            lines.append(cells(row, lambda n: f"**{stocks[n]['name']}**<br>`{n}`<br>{facts(stocks[n])}"))
+            lines.append(cells(row, lambda n: f"**{stocks[n]['name']}**<br>`{n}`<br>{CHOSEN_FOR[n]}<br>{facts(stocks[n])}"))
         lines.append("")
     lines += ["## Three strips", "", "The film process `three-strip`: three separation negatives on Double-X, printed by dye transfer.", "",
               "![Three-strip camera](images/films/three-strip.png)", "", "## What is assumed", "",

@@ -10,7 +10,6 @@ writing of the program's, in numpy: exposures of the layers, amounts of dye from
 layers, the print, and CIELAB of what is seen, relative to the clear film.
 
 What is fitted:
-  interlayer     six inhibitions, log10 of exposure a unit of dye
   negative       of blue and red against green: p (u + 1) + q (u^2 - 1), density, u = decades from mid gray, held beyond 1
   print, slide   of blue and red against green: q (d/s) exp(1 - d/s), d the density over the minimum, s where it is largest
   slide          how far blue and red are moved along log10 exposure
@@ -46,8 +45,6 @@ HINGE = {"negative": 1.7, "slide": 1.65}
 OVER = {"negative": 20, "slide": 60}
 SPREAD = 0.005
 HUE = 2.5
-# CIECAM02's c of a dark surround over that of an average one, as crates/film/src/positive/viewing.rs has it.
-SURROUND = 0.525 / 0.69
 # Skin and leaf: the CIE's test colors 13 and 14, and the evaluation samples 15, 18 (skins) and 37 (a leaf: its reflectance rises
 # at 700 nm).
 SAMPLES = {"cie-test-colors": ("tcs13", "tcs14"), "color-evaluation-samples": ("ces15", "ces18", "ces37")}
@@ -63,7 +60,6 @@ READ = 3.0
 RAMP = {"negative": 1.0, "slide": 0.3}
 LAYERS = ("blue", "green", "red")
 DYES = ("yellow", "magenta", "cyan")
-LAD = (1.03, 1.06, 1.09)
 TOE = {"print": 0.3, "slide": 0.5}
 
 
@@ -191,16 +187,14 @@ def cielab(relative):
 
 
 class Seen:
-    """CIELAB of what passes a film, seen in the dark and shown in a lit room."""
+    """CIELAB of what passes a film: its density itself, relative to the clear film."""
 
     def __init__(self, white_passes):
         self.weights = CMF * D55 / (V * D55).sum()
-        self.white, self.black = self.weights @ white_passes, 0.0
+        self.white = self.weights @ white_passes
 
     def lab(self, passes):
-        veil = self.black / self.white[1]
-        xyz = (self.weights @ passes / self.white - veil) / (1 - veil)
-        return cielab(xyz * max(xyz[1], 1e-9) ** (SURROUND - 1))
+        return cielab(self.weights @ passes / self.white)
 
 
 def toed(curve, q, s):
@@ -241,14 +235,12 @@ class NegativeAndPrint:
         q.take_apart([toed(q.curves[0], p[10], TOE["print"]), q.curves[1], toed(q.curves[2], p[11], TOE["print"])])
         self.k = inhibition(p)
         self.eye = Seen(q.passes(np.zeros(3)))
-        aim = self.eye.weights @ q.passes(q.amounts_for(np.array(LAD), q.status, [1, 1, 1]))
-        amounts = q.amounts_for(-np.log10(self.eye.white / self.eye.white[1] * aim[1]), self.eye.weights, [1, 1, 1])
+        amounts = q.amounts_for(-np.log10(self.eye.white * 0.18), self.eye.weights, [1, 1, 1])
         third = np.digitize(BAND, (500, 590))
         parts = np.array([[np.where(third == part, s * blackbody(3200), 0) for part in range(3)] for s in q.sees])
         needed = 10 ** np.array([q.exposure_for(i, amounts[i]) for i in range(3)])
         lights = np.linalg.solve(parts @ n.passes(n.neutral(self.gray)), needed)
         self.weights = np.einsum("lpw,p->lw", parts, lights)
-        self.eye.black = self.eye.weights[1] @ self.printed(n.neutral(-9))
 
     def printed(self, amounts):
         h = np.log10(self.weights @ self.negative.passes(amounts))

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Finds the few numbers by which xtask/film_library.py mends the color of its stocks, and writes xtask/film_library.json.
+"""Finds the few numbers by which xtask/film_library.py makes the grays of its stocks gray, and writes xtask/film_library.json.
 
 Run from the root of the repository, with the wheel that import_film.py names, and numpy:
 
     VENV/bin/python xtask/fit_film_library.py WHEEL [STOCK ...]
 
 The model is that of xtask/fit_film_color.py. What is fitted, of each stock by itself:
-  negative       six inhibitions, log10 of exposure a unit of dye; of blue and red against green
+  negative       of blue and red against green
                  p (u + 1) + q (u^2 - 1) + r (u + 1) u (u - 1.2), density, u = decades from mid gray, -1 to 1.2
-  slide          six inhibitions; of blue and red three times q (t exp(1 - t))^2, t = density over the minimum over 0.4, 1.0 and 2.2,
+  slide          of blue and red three times q (t exp(1 - t))^2, t = density over the minimum over 0.4, 1.0 and 2.2,
                  and a shift along log10 exposure
   paper, print   the same without a shift (paper: 0.3, 0.9 and 1.9; film: 0.3, 1.0 and 2.4): so that the negatives that are made
                  for it, as digitized, print gray on it; Vision3 250D where there are none
-To what: hue and chroma of the 18 chromatic patches of the ColorChecker in the light that the film is made for, and a neutral
-subject in its own light, as fit_film_color.py does; every number as near to 0 as that allows.
+To what: a neutral subject in the film's own light is gray, as fit_film_color.py has it; every number as near to 0 as that allows.
+What layers do to each other leaves a gray scale alone: xtask/fit_film_families.py finds it afterwards.
 """
 
 import json
@@ -29,9 +29,10 @@ import import_film as base  # noqa: E402
 
 ORDER = (2, 1, 0)
 HINGE, SPREAD, PAPER = 1.7, 0.01, 0.05
+# crates/film/src/look.rs.
+FLARE = 0.005
 # Where a gray scale is gray within this, the curves stay as digitized.
 NEUTRAL = 1.95
-INHIBITION = 0.3
 
 
 class Film(model.Film):
@@ -76,54 +77,39 @@ class Film(model.Film):
 
 
 class Eye(model.Seen):
-    """What is seen of paper in a lit room, or of film in the dark."""
+    """What is seen of film, or of paper with FLARE of the room's light on top."""
 
     def __init__(self, clear, paper):
         super().__init__(clear)
-        self.paper = paper
+        self.flare = FLARE if paper else 0.0
 
     def lab(self, passes):
-        if not self.paper:
-            return super().lab(passes)
-        veil = self.black / self.white[1]
-        return model.cielab((self.weights @ passes / self.white - veil) / (1 - veil))
+        return model.cielab((self.weights @ passes / self.white + self.flare) / (1 + self.flare))
 
     def gray(self):
         """Luminance that is shown as mid gray."""
-        share = 0.18 if self.paper else 0.18 ** (1 / model.SURROUND)
-        return self.black + share * (self.white[1] - self.black)
+        return (0.18 * (1 + self.flare) - self.flare) * self.white[1]
 
 
 class Print:
     """A print stock, and the light that prints a negative on it."""
 
-    def __init__(self, film, paper, aim):
-        self.film, self.paper, self.aim = film, paper, aim
+    def __init__(self, film, paper):
+        self.film, self.paper = film, paper
 
     def take_apart(self, curves):
         self.film.take_apart(curves)
         self.eye = Eye(self.film.passes(np.zeros(3)), self.paper)
 
     def balance(self, negative, gray):
-        film, eye, black = self.film, self.eye, 0.0
+        film, eye = self.film, self.eye
         third = np.digitize(model.BAND, (500, 590))
         lamp = model.blackbody(3200)
         parts = np.array([[np.where(third == p, s * lamp, 0) for p in range(3)] for s in film.sees])
-        clear, unexposed = negative.passes(negative.neutral(gray)), negative.passes(negative.neutral(-9))
-        for _ in range(4):
-            eye.black = black
-            shown = eye.gray()
-            if self.aim:
-                aim = film.passes(film.amounts_for(np.array(self.aim[::-1]), film.status, [1, 1, 1]))
-                shown = (eye.weights @ aim)[1]
-            amounts = film.amounts_for(-np.log10(eye.white / eye.white[1] * shown), eye.weights, [1, 1, 1])
-            needed = 10 ** np.array([film.exposure_for(i, amounts[i]) for i in range(3)])
-            lights = np.linalg.solve(parts @ clear, needed)
-            self.weights = np.einsum("lpw,p->lw", parts, lights)
-            black = (eye.weights @ self.printed(unexposed))[1]
-            if self.aim:
-                break
-        eye.black = black
+        amounts = film.amounts_for(-np.log10(eye.white / eye.white[1] * eye.gray()), eye.weights, [1, 1, 1])
+        needed = 10 ** np.array([film.exposure_for(i, amounts[i]) for i in range(3)])
+        lights = np.linalg.solve(parts @ negative.passes(negative.neutral(gray)), needed)
+        self.weights = np.einsum("lpw,p->lw", parts, lights)
 
     def printed(self, passes):
         h = np.log10(self.weights @ passes)
@@ -150,26 +136,23 @@ class Negative:
 
     def __init__(self, film, onto):
         self.film, self.onto, self.gray = film, onto, np.log10(10 / film.iso)
-        self.start = np.array([0.1] * 6 + [0.0] * 6)
+        self.start = np.zeros(6)
 
     def numbers(self, p):
-        return {"inhibition": np.abs(model.inhibition(p)).round(2).tolist(), "blue": p[6:9].round(4).tolist(),
-                "red": p[9:12].round(4).tolist()} | ({"blue": [], "red": []} if self.hold else {})
+        return {"blue": [], "red": []} if self.hold else {"blue": p[:3].round(4).tolist(), "red": p[3:].round(4).tolist()}
 
     def set(self, p):
-        self.film.take_apart(mended(self.film, "negative", {"blue": p[6:9], "red": p[9:12]}))
-        self.k = model.inhibition(p)
+        self.film.take_apart(mended(self.film, "negative", {"blue": p[:3], "red": p[3:]}))
         self.onto.balance(self.film, self.gray)
 
     def ramp(self, stops):
         return self.onto.lab(self.film.passes(self.film.neutral(self.gray + stops * np.log10(2))))
 
-    def patch(self, reflectance):
-        x = self.film.exposures(None, reflectance)
-        return self.onto.lab(self.film.passes(self.film.developed(x, self.k)))
+    def seen(self, amounts):
+        return self.onto.lab(self.film.passes(amounts))
 
     def spread(self):
-        return np.array([INHIBITION] * 6 + [1e-7 if self.hold else SPREAD] * 6)
+        return np.array([SPREAD] * 6)
 
 
 class Slide:
@@ -177,27 +160,23 @@ class Slide:
 
     def __init__(self, film):
         self.film, self.gray = film, np.log10(10 / film.iso)
-        self.start = np.array([0.02] * 6 + [0.0] * 8)
+        self.start = np.zeros(8)
 
     def numbers(self, p):
-        return {"inhibition": np.abs(model.inhibition(p)).round(2).tolist(),
-                "blue": p[6:10].round(4).tolist(), "red": p[10:14].round(4).tolist()}
+        return {"blue": p[:4].round(4).tolist(), "red": p[4:].round(4).tolist()}
 
     def set(self, p):
-        n = {"blue": p[6:10], "red": p[10:14]}
-        self.film.take_apart(mended(self.film, "slide", n))
-        self.k = -model.inhibition(p)
+        self.film.take_apart(mended(self.film, "slide", {"blue": p[:4], "red": p[4:]}))
         self.eye = Eye(self.film.passes(np.zeros(3)), False)
 
     def ramp(self, stops):
         return self.eye.lab(self.film.passes(self.film.neutral(self.gray + stops * np.log10(2))))
 
-    def patch(self, reflectance):
-        x = self.film.exposures(None, reflectance)
-        return self.eye.lab(self.film.passes(self.film.developed(x, self.k)))
+    def seen(self, amounts):
+        return self.eye.lab(self.film.passes(amounts))
 
     def spread(self):
-        return np.array([0.1] * 6 + [SPREAD, SPREAD, SPREAD, 0.2] * 2)
+        return np.array([SPREAD, SPREAD, SPREAD, 0.2] * 2)
 
 
 class Onto:
@@ -224,18 +203,13 @@ class Onto:
         return np.array([PAPER] * 6)
 
 
-def residuals(m, p, patches, chroma_wanted):
+def residuals(m, p):
     m.set(p)
     out = []
     if isinstance(m, Onto):
         for ramp in m.ramps():
             out.extend(np.array(ramp)[1:-1, 1:].ravel())
         return np.array([*out, *(p / m.spread())])
-    for reflectance, eye in patches.values():
-        chroma = np.hypot(*eye[1:])
-        u, d = eye[1:] / chroma, m.patch(reflectance)[1:]
-        out.append((d @ u - chroma_wanted * chroma) / (1 + 0.045 * chroma))
-        out.append(model.HUE * (d[1] * u[0] - d[0] * u[1]) / (1 + 0.015 * chroma))
     for half in range(-6, 9):
         ab, stops = m.ramp(half / 2)[1:], half / 2
         inside = -2.5 <= stops <= 3.5
@@ -245,17 +219,17 @@ def residuals(m, p, patches, chroma_wanted):
     return np.array([*out, *(p / m.spread())])
 
 
-def fit(m, patches, chroma_wanted, steps=14, h=1e-3):
+def fit(m, steps=14, h=1e-3):
     """Levenberg and Marquardt's least squares."""
     p, damping = m.start.copy(), 1e-3
-    r = residuals(m, p, patches, chroma_wanted)
+    r = residuals(m, p)
     for _ in range(steps):
-        slopes = np.array([(residuals(m, p + h * e, patches, chroma_wanted) - r) / h for e in np.eye(len(p))]).T
+        slopes = np.array([(residuals(m, p + h * e) - r) / h for e in np.eye(len(p))]).T
         normal = slopes.T @ slopes
         while damping < 1e6:
             step = np.linalg.solve(normal + damping * np.diag(np.maximum(np.diag(normal), 1e-9)), -slopes.T @ r)
             try:
-                trial = residuals(m, p + step, patches, chroma_wanted)
+                trial = residuals(m, p + step)
             except (ArithmeticError, np.linalg.LinAlgError):
                 damping *= 5
                 continue
@@ -272,21 +246,12 @@ def fit(m, patches, chroma_wanted, steps=14, h=1e-3):
     return p
 
 
-def report(name, m, patches):
+def report(name, m):
     ramps = np.array([r[2:13] for r in m.ramps()] if isinstance(m, Onto) else [[m.ramp(s / 2) for s in range(-4, 7)]])
     low, high = ramps.min((0, 1)), ramps.max((0, 1))
     line = f"{name}: gray a* {low[1]:+.1f}..{high[1]:+.1f}, b* {low[2]:+.1f}..{high[2]:+.1f}"
     if not isinstance(m, Onto):
-        ratios, turns = [], {}
-        for patch, (reflectance, eye) in patches.items():
-            lab = m.patch(reflectance)
-            turn = np.degrees(np.arctan2(lab[2], lab[1]) - np.arctan2(eye[2], eye[1]))
-            turns[patch] = (turn + 180) % 360 - 180
-            ratios.append(np.hypot(*lab[1:]) / np.hypot(*eye[1:]))
-        worst = sorted(turns, key=lambda k: -abs(turns[k]))[:4]
-        line += f", chroma x {np.mean(ratios):.2f}, hue rms {np.sqrt(np.mean(np.square(list(turns.values())))):.1f}, worst "
-        line += ", ".join(f"{w} {turns[w]:+.0f}" for w in worst)
-        line += f", L* of -2, 0, +2: {', '.join(f'{m.ramp(s)[0]:.0f}' for s in (-2, 0, 2))}"
+        line += f", L* of -3 to +2: {', '.join(f'{m.ramp(s)[0]:.0f}' for s in range(-3, 3))}"
     print(line, flush=True)
     return max(np.abs(low[1:]).max(), np.abs(high[1:]).max())
 
@@ -302,70 +267,75 @@ def fitted_5207(folder, light):
     return film
 
 
+def fitted_2383(folder):
+    """2383 with the numbers of import_film.py."""
+    data = base.load(folder, "print_film.kodak_2383", "KODAK_2383")
+    onto = Print(Film(data, "status-a", None, None, True, None), False)
+    onto.take_apart([model.Curve(base.mended("print", l, p, None)[0]) for l, p in zip(("blue", "green", "red"), onto.film.points)])
+    return onto
+
+
 def keep(numbers):
     text = ",\n".join(f"  {json.dumps(k)}: {json.dumps(numbers[k])}" for k in sorted(numbers))
     library.NUMBERS.write_text("{\n" + text + "\n}\n", encoding="utf-8")
 
 
-def main():
-    folder, only = pathlib.Path(sys.argv[1]), sys.argv[2:]
-    base.prepare(folder)
+def lights():
+    """Lights and observer of the model."""
     functions = model.table("cie/cie-1931-2deg.csv")
     model.CMF = np.array([functions[k] for k in "xyz"])
     model.V, model.D55 = model.CMF[1], model.illuminant("D55")
-    lights = {name: model.illuminant(name) for name in (library.DAYLIGHT, library.TUNGSTEN)}
-    eye = (model.CMF * model.D55).sum(1)
-    checker = list(model.table("reflectances/colorchecker.csv").items())[:18]
-    patches = {n: (r, model.cielab((model.CMF * model.D55 * r).sum(1) / eye)) for n, r in checker}
+    return {name: model.illuminant(name) for name in (library.DAYLIGHT, library.TUNGSTEN)}
+
+
+def main():
+    folder, only = pathlib.Path(sys.argv[1]), sys.argv[2:]
+    base.prepare(folder)
+    known_lights = lights()
     known = json.loads(library.NUMBERS.read_text(encoding="utf-8")) if library.NUMBERS.exists() else {}
     numbers = dict(known)
-    cine = fitted_5207(folder, lights[library.DAYLIGHT])
+    cine = fitted_5207(folder, known_lights[library.DAYLIGHT])
     films = {}
     for slug, row in library.NEGATIVES.items():
         data = library.prepared(folder, "negative", slug)
-        films[slug] = Film(data, "status-m", row[6], base.pairs(data.d_min_sd), True, lights[row[7]])
+        films[slug] = Film(data, "status-m", row[6], base.pairs(data.d_min_sd), True, known_lights[row[7]])
         films[slug].take_apart(films[slug].curves)
     prints = {}
-    papers = {s: (library.prepared(folder, "print", s), row[6], row[7]) for s, row in library.PRINTS.items()}
-    for slug, (data, medium, aim) in papers.items():
-        kind = "paper" if medium == "paper" else "print"
-        onto = Print(Film(data, "status-a", None, None, True, None), medium == "paper", aim)
-        m = Onto(onto, [f for s, f in films.items() if library.NEGATIVES[s][8] == slug] or [cine], kind)
+    for slug, row in library.PRINTS.items():
+        is_paper = row[6] == "paper"
+        onto = Print(Film(library.prepared(folder, "print", slug), "status-a", None, None, True, None), is_paper)
+        m = Onto(onto, [f for s, f in films.items() if library.NEGATIVES[s][8] == slug] or [cine], "paper" if is_paper else "print")
         m.set(m.start)
-        report(f"{slug} as digitized", m, patches)
+        report(f"{slug} as digitized", m)
         if only and slug not in only and slug in known:
-            n = known[slug]
-            m.set(np.array([*n["blue"], *n["red"]]))
+            m.set(np.array([*known[slug]["blue"], *known[slug]["red"]]))
         else:
-            numbers[slug] = m.numbers(fit(m, patches, 1))
+            numbers[slug] = m.numbers(fit(m))
             keep(numbers)
-        report(slug, m, patches)
+        report(slug, m)
         prints[slug] = onto
-    data = base.load(folder, "print_film.kodak_2383", "KODAK_2383")
-    onto = Print(Film(data, "status-a", None, None, True, None), False, (1.09, 1.06, 1.03))
-    curves = [model.Curve(base.mended("print", l, p, None)[0]) for l, p in zip(("blue", "green", "red"), onto.film.points)]
-    onto.take_apart(curves)
-    prints[library.CINE] = onto
+    prints[library.CINE] = fitted_2383(folder)
     for slug, row in library.NEGATIVES.items():
         if only and slug not in only:
             continue
         m = Negative(films[slug], prints[row[8]])
         m.set(np.zeros(len(m.start)))
-        if report(f"{slug} as digitized", m, patches) <= NEUTRAL:
+        if report(f"{slug} as digitized", m) <= NEUTRAL:
             m.hold = True
-        numbers[slug] = m.numbers(fit(m, patches, 1.1))
+            numbers[slug] = m.numbers(m.start)
+        else:
+            numbers[slug] = m.numbers(fit(m))
         keep(numbers)
-        report(slug, m, patches)
+        report(slug, m)
     for slug, row in library.SLIDES.items():
         if only and slug not in only:
             continue
-        data = library.prepared(folder, "slide", slug)
-        m = Slide(Film(data, "status-a", row[6], None, False, lights[library.DAYLIGHT]))
+        m = Slide(Film(library.prepared(folder, "slide", slug), "status-a", row[6], None, False, known_lights[library.DAYLIGHT]))
         m.set(np.zeros(len(m.start)))
-        report(f"{slug} as digitized", m, patches)
-        numbers[slug] = m.numbers(fit(m, patches, 1.05))
+        report(f"{slug} as digitized", m)
+        numbers[slug] = m.numbers(fit(m))
         keep(numbers)
-        report(slug, m, patches)
+        report(slug, m)
 
 
 if __name__ == "__main__":

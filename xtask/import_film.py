@@ -34,6 +34,9 @@ import sys
 import types
 from math import exp, log, log10
 
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import film_families  # noqa: E402
+
 FILM = pathlib.Path("spectra/film")
 FILTERS = pathlib.Path("spectra/transmittances")
 LICENCE = "MIT (spectral-film-lut 0.18.13, Copyright 2026 Jan Lohse)"
@@ -41,17 +44,11 @@ CARRIED = "as digitized by spectral-film-lut 0.18.13"
 PACKAGE = "spectral_film_lut"
 
 
-# Found by xtask/fit_film_color.py. Log10 of exposure that a layer (row) loses per unit of dye in another (column); blue, green,
-# red.
-INTERLAYER = {
-    "negative": [[0, 0.28, 0.08], [0.52, 0, 0.23], [0, 0, 0]],
-    "reversal": [[0, 0, 0], [0, 0, 0.016], [0.001, 0, 0]],
-}
-# Of the negative: p, q of p (u + 1) + q (u^2 - 1), u the decades from mid gray, held beyond 1; of print and reversal film: q of
+# Found by xtask/fit_film_color.py. Of the negative: p, q of p (u + 1) + q (u^2 - 1), u the decades from mid gray, held beyond 1; of print and reversal film: q of
 # q d/s exp(1 - d/s), d the density over the minimum and s the TOE. Green stays as it is.
 NEUTRAL = {
-    "negative": {"blue": (0.017, 0.017), "red": (0, 0.007)},
-    "print": {"blue": -0.034, "red": -0.01},
+    "negative": {"blue": (0.015, 0.011), "red": (-0.006, 0.02)},
+    "print": {"blue": -0.031, "red": -0.016},
     "reversal": {"blue": -0.068, "red": -0.053},
 }
 TOE = {"print": 0.3, "reversal": 0.5}
@@ -282,10 +279,10 @@ DYES = ("cyan", "magenta", "yellow")
 LAYERS = ("red", "green", "blue")
 
 
-def interlayer(kind, remark):
+def interlayer(slug):
     """`interlayer:` of a color film."""
-    return ("interlayer:\n  assumed: true\n  remark: " + folded(remark, "    ")
-            + f"\n  inhibition: {INTERLAYER[kind]}")
+    return ("interlayer:\n  assumed: true\n  remark: " + folded(film_families.remark(slug), "    ")
+            + f"\n  inhibition: {film_families.inhibition(slug)}")
 
 
 def granularity(deviations, densities):
@@ -345,10 +342,7 @@ def color_negative(folder):
               halation("rem-jet", ENTERS + "The black backing (rem-jet) takes nearly all of it. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE,
               f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}",
-              interlayer("negative", "Fitted so that the 18 chromatic patches of the ColorChecker, three skins and two leaves, printed "
-                         "on 2383, have the hue that the eye sees and about its chroma; paints of sky, leaf and skin count twice, "
-                         "skins and a leaf themselves 3.5 times, in the sun and in shade (xtask/fit_film_color.py). Rows and columns are "
-                         "blue, green, red. No sheet tells it.")],
+              interlayer("kodak-vision3-250d-5207")],
         layers=color_layers(data, rising=True, kind="negative", stops_of=250, grainy=True),
     )
 
@@ -414,8 +408,7 @@ def reversal(folder):
               "reference-illuminant: iso-7589-sensitometric-daylight",
               halation("silver", ENTERS + "A layer of gray silver under the emulsion, bleached in processing, takes most of it. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low),
-              interlayer("reversal", "Fitted as that of kodak-vision3-250d-5207 was, but for the leaf, which counts 6.5 times and alone "
-                         "is seen in shade, too; hardly needed. Rows and columns are blue, green, red. No sheet tells it.")],
+              interlayer("kodak-ektachrome-100d")],
         layers=color_layers(data, rising=False, kind="reversal", grainy=True),
     )
 

@@ -16,6 +16,9 @@ pub enum Gamut {
     ///
     /// B. Ottosson, "A perceptual color space for image processing" (2020).
     Perceptual,
+    /// With as much white added as the most negative channel lacks, at the same luminance, and darker where a channel is above 1: colors that
+    /// are all beyond the screen, as those of a spectrum, stay apart from each other.
+    Compress,
 }
 
 /// XYZ under D65 to cone-like responses, and their cube roots to Oklab (Ottosson 2020).
@@ -61,6 +64,7 @@ pub fn into_gamut(rgb: [f64; 3], space: &RgbSpace, method: Gamut) -> [f64; 3] {
         Gamut::Clip => clip(rgb),
         Gamut::Desaturate => desaturate(rgb, space),
         Gamut::Perceptual => perceptual(rgb, space),
+        Gamut::Compress => compress(rgb, space),
     }
 }
 
@@ -73,6 +77,18 @@ fn desaturate(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
         _ => share,
     });
     clip(rgb.map(|v| grey + share * (v - grey)))
+}
+
+fn compress(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
+    let lacks = rgb.iter().fold(0.0_f64, |lacks, v| lacks.max(-v));
+    let luminance = space.luminance(rgb);
+    if luminance <= 0.0 {
+        return [0.0; 3];
+    }
+    // White has the luminance of its channels.
+    let mixed = rgb.map(|v| (v + lacks) * luminance / (luminance + lacks));
+    let largest = mixed.iter().fold(1.0_f64, |a, b| a.max(*b));
+    clip(mixed.map(|v| v / largest))
 }
 
 fn perceptual(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
@@ -98,7 +114,7 @@ mod tests {
     use super::*;
     use spectra_spectrum::Observer;
 
-    const METHODS: [Gamut; 3] = [Gamut::Clip, Gamut::Desaturate, Gamut::Perceptual];
+    const METHODS: [Gamut; 4] = [Gamut::Clip, Gamut::Desaturate, Gamut::Perceptual, Gamut::Compress];
 
     /// Values printed by Ottosson (2020) for four XYZ, to three decimals.
     #[test]
@@ -130,6 +146,30 @@ mod tests {
                     assert!(got.iter().all(|v| (0.0..=1.0).contains(v)), "{rgb:?} {m:?} {got:?}");
                 }
             }
+        }
+    }
+
+    /// Along a spectrum of equal luminance no two colors 10 nm apart are shown alike, where clipping shows whole stretches alike.
+    #[test]
+    fn a_compressed_spectrum_has_all_its_colors() {
+        let space = RgbSpace::srgb();
+        let shown = |nm: i32, method| {
+            let xyz = Observer::cie_1931_2deg().at(f64::from(nm));
+            let rgb = space.from_xyz(xyz.map(|v| 0.2 * v / xyz[1]));
+            into_gamut(rgb, space, method)
+        };
+        let least = |method| {
+            let step = |nm: i32| {
+                let (a, b) = (shown(nm, method), shown(nm + 10, method));
+                a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            };
+            (440..620).step_by(10).map(step).fold(f64::INFINITY, f64::min)
+        };
+        let [clip, compress] = [Gamut::Clip, Gamut::Compress].map(least);
+        assert!(compress > 0.005 && clip < 0.5 * compress, "{clip} {compress}");
+        for nm in (440..=640).step_by(5) {
+            let luminance = space.luminance(shown(nm, Gamut::Compress));
+            assert!(luminance < 0.2 + 1e-9, "{nm}: {luminance}");
         }
     }
 

@@ -75,6 +75,17 @@ pub trait Source: Send + Sync {
         None
     }
 
+    /// Of a picture: what `response` (a channel's, on the grid of the scene) sees of its mid gray, 18 % of white, over what it sees of
+    /// the picture in the mean. `None` of what has no white, and before [`Source::prepare`].
+    fn gray_over_mean(&self, _response: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// Whether it is a picture that was exposed already, as files of integers are: 18 % of its white is to be a mid gray.
+    fn is_exposed(&self) -> bool {
+        false
+    }
+
     /// What numbers of its files were taken for, in a few words for the summary, such as the unit of a depth; `None` where nothing is to
     /// be said.
     fn meaning(&self) -> Option<String> {
@@ -362,6 +373,17 @@ pub trait Film: Any + Send + Sync {
     /// Whether a meter in the camera chooses the exposure time from the frame.
     fn is_metered(&self) -> bool {
         false
+    }
+
+    /// Whether the camera takes a picture that was exposed already as it is: its meter is shown a mid gray of the picture in place of the
+    /// frame ([`Source::is_exposed`]).
+    fn keeps_exposure(&self) -> bool {
+        false
+    }
+
+    /// The meter that chooses the exposure time, in a word, such as `spot`; `None` where none does.
+    fn meter(&self) -> Option<&'static str> {
+        None
     }
 
     /// Whether the camera meters each frame of an animation by itself; otherwise all are exposed as the first one is metered.

@@ -23,6 +23,7 @@ pub mod emulsion;
 pub mod grain;
 pub mod halation;
 mod known;
+pub mod look;
 mod lookup;
 pub mod optics;
 pub mod positive;

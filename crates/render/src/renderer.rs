@@ -415,7 +415,30 @@ impl Renderer {
                 all.iter_mut().flatten().zip(own.iter().flatten()).for_each(|(sum, value)| *sum += value);
             }
         }
+        // A picture that is taken as it is shows the meter its mid gray.
+        for (plane, at) in all.iter_mut().zip(self.scene.meter_channels()) {
+            let mut films = self.scene.films.iter().filter(|film| film.channels.contains(&at));
+            if films.any(|film| self.scene.is_as_taken(film)) {
+                let response = &self.scene.channels[at].response;
+                let gray = self.scene.source.gray_over_mean(response).unwrap_or(1.0);
+                let mean = plane.iter().sum::<f64>() / plane.len().max(1) as f64;
+                plane.fill(gray * mean);
+            }
+        }
         Ok(all)
+    }
+
+    /// What a mid gray of the source leaves in the channels of meters.
+    fn mid_gray(&self, planes: &[ExposureChannel]) -> Option<Vec<f32>> {
+        let mut all = vec![0.0; planes.len()];
+        for at in self.scene.meter_channels() {
+            let gray = self.scene.source.gray_over_mean(&self.scene.channels[at].response)?;
+            let values = &planes.get(at)?.values;
+            let mean = values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len().max(1) as f64;
+            let shown = self.scene.films.iter().any(|f| f.channels.contains(&at) && self.scene.is_as_taken(f));
+            all[at] = (if shown { mean } else { gray * mean }) as f32;
+        }
+        Some(all)
     }
 
     /// Does what is left of a span of one estimator.
@@ -513,7 +536,9 @@ impl Renderer {
             None
         };
         let size = scene.imager.size();
+        let mid_gray = self.mid_gray(&planes);
         Ok(Rendering {
+            mid_gray,
             exposure: ExposureFrame { size, channels: planes },
             layers,
             rays: light.rays(),

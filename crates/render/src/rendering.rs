@@ -12,6 +12,9 @@ use spectra_scene::LightLayer;
 pub struct Rendering {
     /// Linear exposure per channel.
     pub exposure: ExposureFrame,
+    /// What a mid gray of the picture that is the source leaves in each channel of a meter (lx s, in the time of the recording), 0 in the
+    /// others; `None` where the source has no mid gray.
+    pub mid_gray: Option<Vec<f32>>,
     /// The same by kinds of light, and by paths of ghosts, of those of which an output of the scene holds layers.
     pub layers: Vec<LightLayer>,
     /// Rays launched toward the first or last surface; of those from the film, rays to the rim of the pupil, one for 16, are not counted.

@@ -7,7 +7,8 @@ use crate::focus::FocusLight;
 use crate::said::Said;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{ExposureChannel, ExposureFrame};
+use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
+use spectra_core::math::log10;
 use spectra_core::params::{Fault, Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
@@ -158,6 +159,9 @@ impl SceneFilm {
     }
 }
 
+/// Light of a mid gray over that of white.
+pub const MID_GRAY: f64 = spectra_film::print::MID_GRAY;
+
 /// How long a film was exposed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmTime {
@@ -171,6 +175,10 @@ pub struct FilmTime {
     pub gain: f64,
     /// Whether the meter chose it.
     pub is_metered: bool,
+    /// That meter, in a word; `None` of a stated time, or of one that was metered on another frame.
+    pub meter: Option<&'static str>,
+    /// The picture was exposed already and is taken as it is.
+    pub is_as_taken: bool,
     /// The channels of the scene that are the film's own.
     pub channels: Range<usize>,
 }
@@ -257,6 +265,29 @@ impl Scene {
         if metered.is_empty() { Vec::new() } else { (0..size.pixels() as u32).filter(is_seen).collect() }
     }
 
+    /// Whether a film takes the picture that is the source as it was exposed already.
+    #[must_use]
+    pub fn is_as_taken(&self, film: &SceneFilm) -> bool {
+        film.film.keeps_exposure() && self.source.is_exposed()
+    }
+
+    /// By how many stops more a film is exposed than it would be to the picture as it is, whose mid gray leaves `gray` (lx s, in the time
+    /// of the recording) in each channel of the scene; `None` where no meter decides or nothing is known of the gray.
+    #[must_use]
+    pub fn stops_over_file(&self, film: usize, time: &FilmTime, gray: &[f32]) -> Option<f64> {
+        let SceneFilm { film, channels, .. } = self.films.get(film)?;
+        time.meter?;
+        let size = FrameSize { width_px: 1, height_px: 1, width_mm: 1.0, height_mm: 1.0 };
+        let plane = |(channel, gray): (Channel, &f32)| ExposureChannel {
+            name: channel.name,
+            unit: channel.unit,
+            values: vec![*gray],
+        };
+        let card = film.channels().into_iter().zip(gray.get(channels.clone())?).map(plane).collect();
+        let as_it_is_s = film.metered_time_s(&ExposureFrame { size, channels: card });
+        Some(log10(time.time_s / as_it_is_s) / log10(2.0)).filter(|stops| stops.is_finite())
+    }
+
     /// How long each film was exposed that is on the imager while the frame `exposure` of the scene is recorded. The
     /// exposure that a film got is that of the frame times its gain.
     #[must_use]
@@ -274,6 +305,8 @@ impl Scene {
                 time_s,
                 gain: time_s / recorded_s,
                 is_metered: film.film.is_metered() || time_s != recorded_s,
+                meter: film.film.meter(),
+                is_as_taken: self.is_as_taken(film),
                 channels: film.channels.clone(),
             }
         };

@@ -1,7 +1,8 @@
 //! A film developed from a picture file, or from many, without a scene file: the scene is made here.
 //!
 //! The picture fills the frame: of the format's frame the largest part that has the picture's shape. White has a luminance of
-//! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. The camera meters its average.
+//! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. A photograph, a file of integers, is exposed as it
+//! was taken, once its camera's tone curve is taken back; light in floating point is metered as cameras do.
 
 use crate::made::{MADE, of_nobody};
 use crate::run::{fits, picture};
@@ -413,7 +414,7 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
         Some(time) => made.push(("film.exposure", format!("{} s", time.time_s))),
         // Who states a time wants that one; who meters beside it is told that one of them has no effect.
         None if overrides.iter().any(|text| path_of(text) == "film.exposure") => {}
-        None => made.push(("film.metering", "average".to_owned())),
+        None => made.push(("film.exposure", "metered".to_owned())),
     }
     if has_lens {
         made.push(("render.noise", "1 %".to_owned()));
@@ -422,6 +423,9 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
     let is_exr = Path::new(&plate.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
     if is_exr && !overrides.iter().any(|text| path_of(text) == "output") {
         made.push(("output", "[{kind: exr, holds: picture}]".to_owned()));
+    }
+    if header.is_for_display && !overrides.iter().any(|text| path_of(text) == "source.tone") {
+        made.push(("source.tone", "camera".to_owned()));
     }
     made.extend(plate.number.map(|number| ("render.frame", number.to_string())));
 

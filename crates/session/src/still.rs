@@ -71,13 +71,22 @@ pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, Sessio
     if still.rgb.par_iter().any(|rgb| rgb.iter().any(|v| *v < 0.0)) {
         colors.take_wide();
     }
-    let planes = colors.planes(still, &size);
+    let mut planes = colors.planes(still, &size);
+    let gray = colors.integrals([spectra_scene::MID_GRAY; 3]).into_iter().map(|v| v as f32).collect::<Vec<_>>();
+    // A picture that is taken as it is shows the meter its mid gray.
+    let meters = scene.meter_channels();
+    for film in scene.films.iter().filter(|film| scene.is_as_taken(film)) {
+        for at in film.channels.clone().filter(|at| meters.contains(at)) {
+            planes[at].fill(gray[at]);
+        }
+    }
     let channels = scene.channels.iter().zip(planes).map(|(channel, values)| ExposureChannel {
         name: channel.name.clone(),
         unit: channel.unit.clone(),
         values,
     });
     Ok(Rendering {
+        mid_gray: Some(gray),
         exposure: ExposureFrame { size, channels: channels.collect() },
         layers: Vec::new(),
         rays: 0,

@@ -5,6 +5,7 @@ use spectra_core::math::log10;
 use spectra_core::params::{Node, Value};
 use spectra_core::{Loss, shutter};
 use spectra_scene::FilmTime;
+use std::path::Path;
 
 /// Causes that say something of a picture. What the lens itself stops is none: rays are aimed at a region a little larger
 /// than its pupil, so that none is forgotten, and those beside the pupil end there.
@@ -40,7 +41,7 @@ fn of(report: &Report<'_>) -> String {
     }
     match report.times {
         [] => {}
-        times => text.push_str(&format!(", {}", times.iter().map(exposed).collect::<Vec<_>>().join(", "))),
+        _ => text.push_str(&format!(", {}", all_exposed(report))),
     }
     text.push_str(&format!(
         "; {} rays in {}, {}",
@@ -107,14 +108,40 @@ fn of(report: &Report<'_>) -> String {
 /// `6000 x 4000 pixels on 36 x 24 mm, no lens, Kodak Tri-X 400 at 1/700 s (metered)`.
 fn of_pixels(report: &Report<'_>) -> String {
     let size = report.rendering.exposure.size;
-    let times = report.times.iter().map(exposed).collect::<Vec<_>>().join(", ");
+    let times = all_exposed(report);
     let [width, height] = [size.width_mm, size.height_mm].map(|mm| rounded(&mm.to_string()));
     format!("{} x {} pixels on {width} x {height} mm, no lens, {times}", size.width_px, size.height_px)
 }
 
-/// `Kodak Tri-X 400 at 1/700 s (metered)`.
-fn exposed(time: &FilmTime) -> String {
-    let metered = if time.is_metered { " (metered)" } else { "" };
+/// How each film was exposed.
+fn all_exposed(report: &Report<'_>) -> String {
+    // A photograph that is developed has no scene to write into.
+    let has_options = crate::develop::is_picture(Path::new(&report.job.scene_file));
+    let one = |(at, time): (usize, &FilmTime)| {
+        let gray = report.rendering.mid_gray.as_deref();
+        exposed(time, gray.and_then(|gray| report.scene.stops_over_file(at, time, gray)), has_options)
+    };
+    report.times.iter().enumerate().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// `Kodak Tri-X 400 at 1/700 s (metered)`; with by how many stops the picture that is the source is exposed more than it is, and how to say
+/// otherwise: by an option of `film develop` or by a key of the scene.
+fn exposed(time: &FilmTime, stops: Option<f64>, has_options: bool) -> String {
+    let key = |stops: &str| {
+        if has_options { format!("`--exposure {stops}`") } else { format!("`film.compensation: {stops}`") }
+    };
+    // Five hundredths of a stop are nothing.
+    let moved = stops.filter(|stops| stops.abs() >= 0.05);
+    let metered = match (time.meter, moved) {
+        (Some(_), _) if time.is_as_taken => format!(" (exposed as taken; {} adds a stop)", key("1")),
+        (Some(meter), Some(stops)) => {
+            let undone = key(&format!("{:.1}", -stops));
+            format!(" (metered, {meter}: {stops:+.1} stops from the file as it is, which {undone} undoes)")
+        }
+        (Some(meter), None) => format!(" (metered, {meter})"),
+        (None, _) if time.is_metered => " (metered)".to_owned(),
+        (None, _) => String::new(),
+    };
     let named = time.name.as_ref().map_or(String::new(), |name| format!("{name}: "));
     format!("{named}{} at {}{metered}", time.film, shutter::words(time.time_s))
 }

@@ -24,6 +24,68 @@ pub enum Metering {
     Average,
     /// The mean of a round spot is.
     Spot,
+    /// The mean of the frame is, its middle counted more, and lights no more than eight times the rest.
+    Camera,
+}
+
+/// `exposure` as written in a scene.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ExposureParams {
+    /// The camera finds it.
+    Metered(MeteredWord),
+    /// For this time, s if bare.
+    Time(Positive<Time>),
+}
+
+/// The word of `exposure`.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeteredWord {
+    /// The camera finds it.
+    Metered,
+}
+
+/// What a scene says of how a film is exposed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exposed {
+    /// How the camera finds its exposure.
+    pub metering: Metering,
+    /// A picture that was exposed already is taken as it is.
+    pub keeps: bool,
+    /// The time, s, that light is recorded for: the scene's, or 1 s where the camera meters. The meter's time does not depend on it.
+    pub time_s: f64,
+    /// A stated time has no effect.
+    pub is_overruled: bool,
+}
+
+impl Exposed {
+    /// By `exposure` and `metering`, either of which may be left out.
+    pub(crate) fn new(
+        exposure: Option<ExposureParams>,
+        metering: Option<Metering>,
+        params: &Params,
+    ) -> Result<Self, Fault> {
+        let metered = |metering, keeps, is_overruled| Self { metering, keeps, time_s: 1.0, is_overruled };
+        Ok(match (exposure, metering) {
+            (Some(ExposureParams::Time(time)), None | Some(Metering::Manual)) => {
+                Self { metering: Metering::Manual, keeps: false, time_s: time.s(), is_overruled: false }
+            }
+            (Some(ExposureParams::Time(_)), Some(metering)) => metered(metering, false, true),
+            (Some(ExposureParams::Metered(_)), Some(Metering::Manual)) => {
+                let fault = params.fault("metering", "`exposure: metered` is found by the camera, not by hand");
+                return Err(fault.hint("leave `metering` out, or state a time, such as `exposure: 1/125 s`"));
+            }
+            // How the camera meters is stated, so it meters.
+            (Some(ExposureParams::Metered(_)), Some(metering)) => metered(metering, false, false),
+            (Some(ExposureParams::Metered(_)), None) => metered(Metering::Camera, true, false),
+            (None, None | Some(Metering::Manual)) => {
+                let fault = params.fault("exposure", "missing key `exposure`");
+                return Err(fault.hint("add `exposure: 1/125 s`, or let the camera find it: `exposure: metered`"));
+            }
+            (None, Some(metering)) => metered(metering, false, false),
+        })
+    }
 }
 
 /// Which frames of an animation the camera meters.
@@ -58,15 +120,6 @@ fn center() -> [f64; 2] {
 
 fn diameter() -> f64 {
     0.1
-}
-
-/// The time, s, that light is recorded for: the scene's, or 1 s where the camera meters. The meter's time does not depend on
-/// it. And whether a stated time has no effect.
-pub(crate) fn recorded_time_s(exposure: Option<Positive<Time>>, metering: Metering) -> (f64, bool) {
-    match (exposure, metering) {
-        (Some(time), Metering::Manual) => (time.s(), false),
-        (stated, _) => (1.0, stated.is_some()),
-    }
 }
 
 /// What is said where an exposure time is stated that the meter overrules.
@@ -115,12 +168,16 @@ impl Meter {
         self.metering != Metering::Manual
     }
 
+    /// The meter in a word; `None` of one that is off.
+    pub(crate) fn word(&self) -> Option<&'static str> {
+        self.is_on().then(|| self.metering.word())
+    }
+
     /// How the film is exposed, where `exposure_time_s` is the scene's time.
     pub(crate) fn words(&self, exposure_time_s: f64) -> String {
         match self.metering {
             Metering::Manual => format!("exposed for {}", shutter::words(exposure_time_s)),
-            Metering::Average => "metered (average)".to_owned(),
-            Metering::Spot => "metered (spot)".to_owned(),
+            metered => format!("metered ({})", metered.word()),
         }
     }
 
@@ -139,7 +196,7 @@ impl Meter {
     pub(crate) fn looks_at(&self, size: &FrameSize, pixel: u32) -> bool {
         match self.metering {
             Metering::Manual => false,
-            Metering::Average => true,
+            Metering::Average | Metering::Camera => true,
             Metering::Spot => {
                 let (column, row) = (pixel % size.width_px, pixel / size.width_px);
                 let x = (f64::from(column) + 0.5) / f64::from(size.width_px) - self.spot.center[0];
@@ -150,21 +207,63 @@ impl Meter {
         }
     }
 
+    /// What a pixel that it looks at counts: of a camera, 1 in the middle and a fifth in the corners.
+    fn weight(&self, size: &FrameSize, pixel: u32) -> f64 {
+        if self.metering != Metering::Camera {
+            return 1.0;
+        }
+        let along = |at: u32, of: u32| 2.0 * (f64::from(at) + 0.5) / f64::from(of) - 1.0;
+        let (x, y) = (along(pixel % size.width_px, size.width_px), along(pixel / size.width_px, size.height_px));
+        1.0 / (1.0 + 2.0 * (x * x + y * y))
+    }
+
     /// How many times longer the meter wants the frame exposed; 1 where it sees no light.
     pub(crate) fn factor(&self, exposure: &ExposureFrame) -> f64 {
         if self.metering == Metering::Manual {
             return 1.0;
         }
         let Some(channel) = exposure.channel(METER) else { return 1.0 };
-        let (mut sum, mut count) = (0.0, 0_u64);
+        // Lights would make all else dark.
+        let most = match self.metering {
+            Metering::Camera => LIGHTS * median(&channel.values),
+            _ => f32::INFINITY,
+        };
+        let most = if most > 0.0 { most } else { f32::INFINITY };
+        let (mut sum, mut all) = (0.0, 0.0);
         // Row by row in their order, in double precision: the same on any machine.
         for (pixel, value) in (0_u32..).zip(&channel.values) {
             if value.is_finite() && self.looks_at(&exposure.size, pixel) {
-                sum += f64::from(*value);
-                count += 1;
+                let weight = self.weight(&exposure.size, pixel);
+                sum += weight * f64::from(value.min(most));
+                all += weight;
             }
         }
-        let mean = sum / count.max(1) as f64;
+        let mean = if all > 0.0 { sum / all } else { 0.0 };
         if mean > 0.0 { self.target_lx_s / mean } else { 1.0 }
     }
+}
+
+/// A light counts no more than so many times the median of the frame.
+const LIGHTS: f32 = 8.0;
+
+impl Metering {
+    /// As a scene has it.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Manual => "manual",
+            Self::Average => "average",
+            Self::Spot => "spot",
+            Self::Camera => "camera",
+        }
+    }
+}
+
+/// The median of what is finite; 0 of nothing.
+fn median(values: &[f32]) -> f32 {
+    let mut all: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    if all.is_empty() {
+        return 0.0;
+    }
+    let middle = all.len() / 2;
+    *all.select_nth_unstable_by(middle, f32::total_cmp).1
 }

@@ -7,9 +7,10 @@ use spectra_core::math::log10;
 use spectra_core::params::{Faults, Params, Positive as AboveZero};
 use spectra_core::resources::Resources;
 use spectra_film::emulsion::Emulsion;
-use spectra_film::positive::{PictureWhite, Positive, PositiveError};
+use spectra_film::look::{Look, PictureWhite};
+use spectra_film::positive::{Positive, PositiveError};
 use spectra_film::print::{Paper, Print, USUAL_GRADE};
-use spectra_film::stock::{Process, Stock};
+use spectra_film::stock::{Medium, Process, Stock};
 use spectra_spectrum::{Emission, find_emission_in};
 
 /// A picture and what to call it.
@@ -53,7 +54,16 @@ pub(crate) fn seen(
     if p.scan.is_some() && view != View::Scan {
         faults.push(params.fault("scan", "this applies to scans only").hint("`view: scan`"));
     }
-    let white = PictureWhite::from(p.white.unwrap_or_default());
+    for (key, given) in [("surround", p.surround.is_some()), ("black", p.black.is_some())] {
+        if given && matches!(view, View::Scan | View::Negative) {
+            faults.push(params.fault(key, "this applies to prints and projections only").hint("leave it out"));
+        }
+    }
+    let look = Look {
+        white: p.white.unwrap_or_default().into(),
+        black: p.black.unwrap_or_default().into(),
+        surround: p.surround.unwrap_or_default().into(),
+    };
     let light = faults.take(emission(params, "light", p.light.as_deref().unwrap_or("D55"), resources));
     let lamp = match p.lamp.as_deref() {
         Some(name) => faults.take(emission(params, "lamp", name, resources)).map(Some),
@@ -74,7 +84,7 @@ pub(crate) fn seen(
     let unfit = |error: PositiveError| Faults::from(params.fault("stock", format!("{}: {error}", stock.name)));
     let positive = |picture: Positive, words: String| Seen { picture: Picture::Positive(Box::new(picture)), words };
     match view {
-        View::Print => print(p, params, resources, stock, film, gray_lx_s, &Lights { light, lamp, white }),
+        View::Print => print(p, params, resources, stock, film, gray_lx_s, &Lights { light, lamp, look }),
         View::Scan => {
             let scale = p.scan.unwrap_or_default();
             let words = match scale {
@@ -87,11 +97,12 @@ pub(crate) fn seen(
             Ok(positive(scan, words.into()))
         }
         View::Negative => {
-            let table = Positive::transmitted(stock, film, &light, PictureWhite::Lamp).map_err(unfit)?;
+            let lamp = Look { white: PictureWhite::Lamp, ..Look::default() };
+            let table = Positive::transmitted(stock, film, &light, lamp).map_err(unfit)?;
             Ok(positive(table, "the negative itself".into()))
         }
         View::Projection => {
-            let projected = Positive::transmitted(stock, film, &light, white).map_err(unfit)?;
+            let projected = Positive::transmitted(stock, film, &light, look).map_err(unfit)?;
             Ok(positive(projected, "projected".into()))
         }
     }
@@ -103,8 +114,8 @@ struct Lights {
     light: Emission,
     /// The printer's; the print stock's reference light if none is named.
     lamp: Option<Emission>,
-    /// What is shown as white.
-    white: PictureWhite,
+    /// How the print is shown.
+    look: Look,
 }
 
 fn print(
@@ -130,9 +141,12 @@ fn print(
             let fault = params.fault("stock", format!("{} needs a print stock for its colors", stock.name));
             return Err(fault.hint("`print: kodak-vision-2383`, or `view: scan`").into());
         }
-        return on_paper(p, params, stock, film, gray_lx_s);
+        return on_paper(p, params, stock, film, gray_lx_s, lights.look);
     };
     let print_stock = load_stock(&on, "print", params, resources)?;
+    if print_stock.medium == Medium::Paper {
+        no_surround(p, params)?;
+    }
     let development = match &p.print_development {
         Some(name) => name.clone(),
         None => print_stock.developments().next().unwrap_or_default().to_owned(),
@@ -140,7 +154,7 @@ fn print(
     let key = if p.print_development.is_some() { "print-development" } else { "print" };
     let emulsion = Emulsion::new(&print_stock, &development).map_err(|e| params.fault(key, e.to_string()))?;
     let lamp = lights.lamp.as_ref().unwrap_or(&print_stock.reference);
-    let positive = Positive::printed(film, gray_lx_s, &print_stock, emulsion, lamp, &lights.light, lights.white);
+    let positive = Positive::printed(film, gray_lx_s, &print_stock, emulsion, lamp, &lights.light, lights.look);
     let positive = positive.map_err(|error| {
         // Where the scene names no print stock, it is the camera film that asks for this one.
         let key = if p.print.is_some() { "print" } else { "stock" };
@@ -160,7 +174,24 @@ fn print(
     Ok(Seen { picture: Picture::Positive(Box::new(positive)), words: format!("printed on {}", print_stock.name) })
 }
 
-fn on_paper(p: &StockParams, params: &Params, stock: &Stock, film: &Emulsion, gray_lx_s: f64) -> Result<Seen, Faults> {
+/// Paper hangs in a lit room.
+fn no_surround(p: &StockParams, params: &Params) -> Result<(), Faults> {
+    if p.surround.is_none() {
+        return Ok(());
+    }
+    let fault = params.fault("surround", "a print on paper is looked at in a lit room");
+    Err(fault.hint("leave it out, or print on film: `print: kodak-vision-2383`").into())
+}
+
+fn on_paper(
+    p: &StockParams,
+    params: &Params,
+    stock: &Stock,
+    film: &Emulsion,
+    gray_lx_s: f64,
+    look: Look,
+) -> Result<Seen, Faults> {
+    no_surround(p, params)?;
     let grade = p.paper.and_then(|p| p.grade);
     let stated = match grade {
         Some(Grade::Number(grade)) => Some(grade),
@@ -178,16 +209,16 @@ fn on_paper(p: &StockParams, params: &Params, stock: &Stock, film: &Emulsion, gr
         let fault = params.fault("white", "the white of a print on paper is the paper");
         return Err(fault.hint("leave it out, or print on film: `print: kodak-2302`").into());
     }
-    let usual = Paper { range, ..Paper::default() };
+    let usual = Paper::of_range(p.paper.and_then(|p| p.range).map_or(range, AboveZero::get));
     let given = |value: Option<Option<AboveZero<f64>>>, usual: f64| value.flatten().map_or(usual, AboveZero::get);
     let paper = Paper {
-        range: given(p.paper.map(|p| p.range), usual.range),
+        range: usual.range,
         maximum_density: given(p.paper.map(|p| p.maximum_density), usual.maximum_density),
         toe: given(p.paper.map(|p| p.toe), usual.toe),
         shoulder: given(p.paper.map(|p| p.shoulder), usual.shoulder),
     };
     let gray = film.amount(0, log10(gray_lx_s));
-    let print = Print::balanced(&paper, film.amount(0, f64::NEG_INFINITY), gray);
+    let print = Print::balanced(&paper, film.amount(0, f64::NEG_INFINITY), gray, look.black);
     let key = if p.paper.is_some() { "paper" } else { "stock" };
     let print = print.map_err(|error| params.fault(key, format!("{}: {error}", stock.name)))?;
     let automatic = matches!(grade, Some(Grade::Auto(_)));
@@ -196,7 +227,7 @@ fn on_paper(p: &StockParams, params: &Params, stock: &Stock, film: &Emulsion, gr
         None if automatic => "printed on the grade of paper that suits it".to_owned(),
         None => format!("printed on paper of grade {}", stated.unwrap_or(USUAL_GRADE)),
     };
-    let picture = PaperPrint { metered: print, automatic: automatic.then_some(paper) };
+    let picture = PaperPrint { metered: print, automatic: automatic.then_some(paper), black: look.black };
     Ok(Seen { picture: Picture::Paper(Box::new(picture)), words })
 }
 

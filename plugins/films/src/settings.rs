@@ -2,11 +2,11 @@
 
 use crate::effects::{Assumed, HalationSetting, OpticsSetting, Switches};
 use crate::frame::FrameParams;
-use crate::metering::{Metered, Metering, SpotParams};
-use crate::view::{PaperParams, ScanParams, View, WhiteParams};
+use crate::metering::{ExposureParams, Metered, Metering, SpotParams};
+use crate::view::{BlackParams, PaperParams, ScanParams, SurroundParams, View, WhiteParams};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Positive, Time};
+use spectra_core::params::Positive;
 
 /// Film from a data file, developed, and printed, scanned or projected.
 ///
@@ -49,12 +49,13 @@ use spectra_core::params::{Positive, Time};
 pub struct StockParams {
     /// Name of a bundled stock, such as `ilford-ortho-plus`, or a YAML file beside the scene.
     pub stock: String,
-    /// Exposure time, s if bare; leave it out where the camera meters.
-    pub exposure: Option<Positive<Time>>,
-    /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so that the metered
-    /// area gets 10/S lx s, the exposure of a mid gray.
-    #[serde(default)]
-    pub metering: Metering,
+    /// Exposure time, s if bare; or `metered`: a picture of integers, which was exposed already, is taken as it is (18 % of its white is
+    /// a mid gray), and anything else is metered by `metering: camera`. Leave it out where `metering` says how the camera meters.
+    pub exposure: Option<ExposureParams>,
+    /// How the camera finds its exposure: `manual`, `average`, `spot`, or `camera`, the mean of the frame with its middle counted more and
+    /// lights no more than eight times the median. A metered frame is exposed so that the metered area gets 10/S lx s, the exposure of a
+    /// mid gray.
+    pub metering: Option<Metering>,
     /// Which frame of an animation is metered: the `first` one, for all of them, or `each` by itself, which may flicker; `first` if left
     /// out.
     #[serde(default)]
@@ -92,6 +93,13 @@ pub struct StockParams {
     /// What is shown as white: `film`, the clear film or print, or `lamp`, the bare light of a print on film, of a
     /// projection or of three strips, which shows the base as the gray or tint that it is; `film` if left out.
     pub white: Option<WhiteParams>,
+    /// What is shown as black: `kept`, no light, so that print or slide keeps the black that it has, on paper with half a percent of the
+    /// room's light on top (assumed), or `stretched`, the darkest of it; `kept` if left out.
+    pub black: Option<BlackParams>,
+    /// What surrounds a print on film or a projection: `average` shows the density of the film itself, mid gray as 18 %. `dark` and
+    /// `dim` show it as an eye sees it that has adapted to such a room (CIECAM02), lighter and softer; in the dark a print has the
+    /// aim densities of the laboratory. `average` if left out.
+    pub surround: Option<SurroundParams>,
     /// Whether the emulsion scatters light, if the stock's file states its MTF; `true` if left out.
     pub scatter: Option<bool>,
     /// Whether edges stand out in development, if the MTF in the stock's file exceeds 1; `true` if left out.

@@ -3,7 +3,7 @@
 use crate::beyond::{beyond, ends};
 use crate::effects::{Assumed, Effects, mtf50, pixel_mm};
 use crate::frame::{FrameEffects, Laid};
-use crate::metering::{METER, Meter, Metered, Metering, overruled, recorded_time_s};
+use crate::metering::{Exposed, METER, Meter, Metered, Metering, overruled};
 use crate::seen::seen;
 use crate::settings::StockParams;
 use crate::stocks::load_stock;
@@ -37,6 +37,7 @@ pub struct StockFilm {
     exposure_time_s: f64,
     /// An exposure time was stated, and the camera meters.
     is_overruled: bool,
+    keeps_exposure: bool,
     meters: Metered,
     meter: Meter,
     effects: Effects,
@@ -64,17 +65,17 @@ impl StockFilm {
             let fault = params.fault("stock", format!("{} is not a camera film", stock.name));
             return Err(fault.hint("a print stock is named at `print`").into());
         };
-        if p.exposure.is_none() && p.metering == Metering::Manual {
-            let fault = params.fault("exposure", "missing key `exposure`");
-            faults.push(fault.hint("add `exposure: 1/125 s`, or let the camera find it: `metering: average`"));
-        }
+        let exposed = faults.take(Exposed::new(p.exposure, p.metering, params).map_err(Faults::from));
+        let metering = exposed.map_or(Metering::Average, |exposed| exposed.metering);
         let developed = faults.take(develop_as(&p, params, &stock));
         let speed = p.iso.map_or(iso * pow(2.0, p.push.unwrap_or(0.0)), Positive::get);
-        let meter = Meter::new(params, p.metering, p.spot, speed, p.compensation);
+        let meter = Meter::new(params, metering, p.spot, speed, p.compensation);
         let meter = faults.take(meter.map_err(Faults::from));
         let blind = |error| Faults::from(params.fault("stock", format!("{}: {error}", stock.name)));
         let channels = faults.take(stock.channels(&context.grid).map_err(blind));
-        let (Some((emulsion, development)), Some(meter), Some(mut channels)) = (developed, meter, channels) else {
+        let (Some((emulsion, development)), Some(exposed), Some(meter), Some(mut channels)) =
+            (developed, exposed, meter, channels)
+        else {
             return Err(faults);
         };
         let effects = faults.take(Effects::new(&(&p).into(), params, &stock, &emulsion));
@@ -97,7 +98,7 @@ impl StockFilm {
         let frame = p.frame.map(|frame| FrameEffects::new(frame, &stock.name, p.grain_seed));
         let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
         channels.extend(meter.channel(&context.grid, own.as_ref()));
-        let (exposure_time_s, is_overruled) = recorded_time_s(p.exposure, p.metering);
+        let (exposure_time_s, is_overruled) = (exposed.time_s, exposed.is_overruled);
         let (picture, words) = (seen.picture, seen.words);
         Ok(Self {
             stock,
@@ -106,6 +107,7 @@ impl StockFilm {
             channels,
             exposure_time_s,
             is_overruled,
+            keeps_exposure: exposed.keeps,
             meters: p.meter,
             meter,
             effects,
@@ -330,6 +332,14 @@ impl Film for StockFilm {
 
     fn is_metered(&self) -> bool {
         self.meter.is_on()
+    }
+
+    fn keeps_exposure(&self) -> bool {
+        self.keeps_exposure
+    }
+
+    fn meter(&self) -> Option<&'static str> {
+        self.meter.word()
     }
 
     fn meters_each_frame(&self) -> bool {

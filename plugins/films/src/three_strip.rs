@@ -1,19 +1,20 @@
 //! `film: three-strip`, three separation negatives behind a beam splitter, printed by dye transfer.
 
 use crate::effects::{Assumed, Effects, HalationSetting, Off, OpticsSetting, Switches, mtf50, pixel_mm};
-use crate::metering::{METER, Meter, Metered, Metering, SpotParams, overruled, recorded_time_s};
+use crate::metering::{Exposed, ExposureParams, METER, Meter, Metered, Metering, SpotParams, overruled};
 use crate::stocks::load_stock;
-use crate::view::WhiteParams;
+use crate::view::{BlackParams, SurroundParams, WhiteParams};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, Wanted};
 use spectra_core::names;
-use spectra_core::params::{Faults, Params, Positive as AboveZero, Time};
+use spectra_core::params::{Faults, Params, Positive as AboveZero};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Channel};
 use spectra_core::stage::Film;
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
+use spectra_film::look::Look;
 use spectra_film::optics::Optics;
 use spectra_film::positive::Positive;
 use spectra_film::print::metered_exposure_lx_s;
@@ -51,12 +52,13 @@ use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmitt
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ThreeStripParams {
-    /// Exposure time, s if bare; leave it out where the camera meters.
-    pub exposure: Option<AboveZero<Time>>,
-    /// How the camera finds its exposure: `manual`, `average` or `spot`. A metered frame is exposed so that the metered
-    /// area gets 10/S lx s, the exposure of a mid gray.
-    #[serde(default)]
-    pub metering: Metering,
+    /// Exposure time, s if bare; or `metered`: a picture of integers, which was exposed already, is taken as it is (18 % of its white is
+    /// a mid gray), and anything else is metered by `metering: camera`. Leave it out where `metering` says how the camera meters.
+    pub exposure: Option<ExposureParams>,
+    /// How the camera finds its exposure: `manual`, `average`, `spot`, or `camera`, the mean of the frame with its middle counted more and
+    /// lights no more than eight times the median. A metered frame is exposed so that the metered area gets 10/S lx s, the exposure of a
+    /// mid gray.
+    pub metering: Option<Metering>,
     /// Which frame of an animation is metered: the `first` one, for all of them, or `each` by itself, which may flicker; `first` if left
     /// out.
     #[serde(default)]
@@ -77,6 +79,13 @@ pub struct ThreeStripParams {
     /// What is shown as white: `film`, the clear print, or `lamp`, the bare light.
     #[serde(default)]
     pub white: WhiteParams,
+    /// What is shown as black: `kept`, no light, so that the print keeps the black that it has, or `stretched`, the darkest of it.
+    #[serde(default)]
+    pub black: BlackParams,
+    /// What surrounds the print: `average` shows its own density, mid gray as 18 %; `dark` and `dim` as an eye sees it that has adapted
+    /// to such a room (CIECAM02), lighter and softer.
+    #[serde(default)]
+    pub surround: SurroundParams,
     /// The print, with its dyes and the curves of its matrices: a bundled stock or a YAML file beside the scene, of
     /// layers called blue, green and red.
     #[serde(default = "technicolor")]
@@ -160,6 +169,7 @@ pub struct ThreeStrip {
     exposure_time_s: f64,
     /// An exposure time was stated, and the camera meters.
     is_overruled: bool,
+    keeps_exposure: bool,
     meters: Metered,
     meter: Meter,
     positive: Positive,
@@ -193,11 +203,9 @@ impl ThreeStrip {
         let p: ThreeStripParams = params.parse()?;
         let iso = p.iso.map_or(SPEED, AboveZero::get);
         let mut faults = Faults::new();
-        if p.exposure.is_none() && p.metering == Metering::Manual {
-            let fault = params.fault("exposure", "missing key `exposure`");
-            faults.push(fault.hint("add `exposure: 1/60 s`, or let the camera find it: `metering: average`"));
-        }
-        let meter = Meter::new(params, p.metering, p.spot, iso, p.compensation);
+        let exposed = faults.take(Exposed::new(p.exposure, p.metering, params).map_err(Faults::from));
+        let metering = exposed.map_or(Metering::Average, |exposed| exposed.metering);
+        let meter = Meter::new(params, metering, p.spot, iso, p.compensation);
         let meter = faults.take(meter.map_err(Faults::from));
         let light = |key: &str, name: &str| {
             find_emission_in(name, context.resources).map_err(|error| error.faults(|text| params.fault(key, text)))
@@ -210,7 +218,9 @@ impl ThreeStrip {
             .zip([&p.blue, &p.green, &p.red])
             .map(|(name, record)| faults.take(Record::new(name, record, params, context)));
         let records: Vec<Option<Record>> = records.collect();
-        let (Some(meter), Some(balance), Some(view), Some(print)) = (meter, balance, view, print) else {
+        let (Some(exposed), Some(meter), Some(balance), Some(view), Some(print)) =
+            (exposed, meter, balance, view, print)
+        else {
             return Err(faults);
         };
         let Some(records) = records.into_iter().collect::<Option<Vec<Record>>>() else { return Err(faults) };
@@ -235,11 +245,12 @@ impl ThreeStrip {
             channel.response.iter_mut().for_each(|r| *r *= scale);
         }
         let grays = [0, 1, 2].map(|i| metered_exposure_lx_s(records[i].iso));
-        let positive = Positive::from_separations(&film, &grays, &print, printed, &view, p.white.into());
+        let look = Look { white: p.white.into(), black: p.black.into(), surround: p.surround.into() };
+        let positive = Positive::from_separations(&film, &grays, &print, printed, &view, look);
         let positive = positive.map_err(|e| params.fault("print", e.to_string()))?;
         let stocks: Vec<&str> = records.iter().map(|r| r.name.as_str()).collect();
         let words = format!("three-strip camera, ISO {iso} ({}), printed as {}", stocks.join(", "), print.name);
-        let (exposure_time_s, is_overruled) = recorded_time_s(p.exposure, p.metering);
+        let (exposure_time_s, is_overruled) = (exposed.time_s, exposed.is_overruled);
         let mut developed = Vec::new();
         let mut effects = Vec::new();
         for (i, record) in records.iter().enumerate() {
@@ -273,6 +284,7 @@ impl ThreeStrip {
             channels,
             exposure_time_s,
             is_overruled,
+            keeps_exposure: exposed.keeps,
             meters: p.meter,
             meter,
             positive,
@@ -400,6 +412,14 @@ impl Film for ThreeStrip {
 
     fn is_metered(&self) -> bool {
         self.meter.is_on()
+    }
+
+    fn keeps_exposure(&self) -> bool {
+        self.keeps_exposure
+    }
+
+    fn meter(&self) -> Option<&'static str> {
+        self.meter.word()
     }
 
     fn meters_each_frame(&self) -> bool {

@@ -2,6 +2,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod balance;
 mod detector;
 mod film;
 mod formats;

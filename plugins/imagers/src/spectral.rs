@@ -1,5 +1,6 @@
 //! `imager: spectral`: a plane that records the spectrum itself, one channel a band.
 
+use crate::balance::{Balance, WhiteBalance};
 use crate::detector::DetectorPlane;
 use crate::params::Frame;
 use crate::plane::Plane;
@@ -46,6 +47,10 @@ pub struct SpectralParams {
     /// First and last wavelength, nm if bare; 380 to 780 nm if absent.
     #[serde(default)]
     range: Option<[Wavelength; 2]>,
+    /// The light that the picture shows as white, as of the imager `xyz`: a light by name, `{temperature: 3200 K}` or `auto-gray`. The
+    /// channels stay as they are; without it the picture has the tint of its light.
+    #[serde(default)]
+    white_balance: Option<WhiteBalance>,
 }
 
 /// Most bands.
@@ -59,6 +64,7 @@ pub struct Bands {
     channels: Vec<Channel>,
     /// CIE XYZ, lux, of one unit in each band.
     xyz: Vec<[f64; 3]>,
+    balance: Balance,
 }
 
 /// A plane of spectrographs.
@@ -81,7 +87,14 @@ impl SpectralPlane {
             let middle = format!("{:.1}", low + 0.5 * width_nm).replace('.', ",");
             channels.push(Channel { name: format!("S0.{middle}nm"), unit: "W.m^-2.nm^-1".into(), response });
         }
-        Self::of(plane, Bands { channels, xyz }, None)
+        Self::of(plane, Bands { channels, xyz, balance: Balance::Screen }, None)
+    }
+
+    /// The same, whose picture shows another light as white.
+    #[must_use]
+    pub fn with_balance(mut self, balance: Balance) -> Self {
+        self.response.balance = balance;
+        self
     }
 }
 
@@ -116,7 +129,8 @@ impl Response for Bands {
                 .collect(),
         });
         let frame = ExposureFrame { size: exposure.size, channels: channels.collect() };
-        finish_xyz(&frame, White::default(), Gamut::Desaturate, None, wanted).ok()
+        let adapted = self.balance.matrix(&frame);
+        finish_xyz(&frame, White::default(), Gamut::Desaturate, adapted.as_ref(), wanted).ok()
     }
 }
 
@@ -124,6 +138,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     let parsed: SpectralParams = params.parse()?;
     let mut faults = Faults::new();
     let plane = faults.take(parsed.frame.plane(params, context));
+    let balance = faults.take(WhiteBalance::read(parsed.white_balance.as_ref(), params, context));
     let SpectralParams { bands, range, .. } = parsed;
     let bands = bands.get();
     let [first, last] = range.map_or([380.0, 780.0], |range| range.map(|w| w.nm()));
@@ -137,8 +152,9 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
             grid.step_nm
         )));
     }
-    let Some(plane) = plane.filter(|_| faults.is_empty()) else { return Err(faults) };
-    Ok(Box::new(SpectralPlane::new(plane, grid, bands as usize, first, last)))
+    let (Some(plane), Some(balance)) = (plane.filter(|_| faults.is_empty()), balance) else { return Err(faults) };
+    let imager = SpectralPlane::new(plane, grid, bands as usize, first, last);
+    Ok(Box::new(imager.with_balance(balance)))
 }
 
 spectra_core::register!(imager "spectral": SpectralParams, build);

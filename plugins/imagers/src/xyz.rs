@@ -1,20 +1,20 @@
 //! `imager: xyz`, a plane that measures CIE 1931 XYZ in absolute units: a perfect tristimulus colorimeter.
 
+use crate::balance::{Balance, WhiteBalance};
 use crate::detector::DetectorPlane;
 use crate::params::Frame;
 use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_color::matrix::Matrix;
-use spectra_color::{Adaptation, Gamut, RgbSpace};
+use spectra_color::Gamut;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, Wanted};
-use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Temperature, Time};
+use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Time};
 use spectra_core::registry::Context;
-use spectra_core::spectral::{BAND, Channel, Grid};
+use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Imager, Response};
 use spectra_film::display::{White, finish_xyz};
+use spectra_spectrum::Observer;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
-use spectra_spectrum::{Observer, find_emission_in};
 
 /// A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.
 ///
@@ -50,7 +50,8 @@ pub struct XyzParams {
     #[serde(default)]
     white: Option<String>,
     /// What becomes of colors that a screen cannot show: `desaturate` (luminance stays, the default), `perceptual`
-    /// (hue and lightness as they are seen stay) or `clip` (each of red, green and blue by itself: vivid).
+    /// (hue and lightness as they are seen stay), `compress` (with white added until they fit: the colors of a spectrum stay apart) or
+    /// `clip` (each of red, green and blue by itself: vivid).
     #[serde(default)]
     gamut: Option<GamutMapping>,
     /// The light that the picture shows as white: the name of a light or a file (`D55`, `A`, `"blackbody:3200"`), a
@@ -60,60 +61,6 @@ pub struct XyzParams {
     white_balance: Option<WhiteBalance>,
 }
 
-/// What is shown as white.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged)]
-#[schemars(inline)]
-enum WhiteBalance {
-    /// A light, or `auto-gray`.
-    Named(String),
-    /// A light of a temperature.
-    Of(OfTemperature),
-}
-
-/// A light by its temperature.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(inline)]
-struct OfTemperature {
-    /// Its correlated color temperature, K if bare.
-    #[schemars(range(min = 1000, max = 25000))]
-    temperature: Temperature,
-}
-
-/// What the eye behind the picture is adapted to.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Balance {
-    /// The screen's white: nothing is balanced.
-    #[default]
-    Screen,
-    /// A white of these XYZ.
-    White([f64; 3]),
-    /// The mean of the frame.
-    AutoGray,
-}
-
-impl Balance {
-    /// From XYZ of the frame to XYZ under D65 (CAT02); `None` where nothing is to be done, or nothing is lit.
-    fn matrix(self, frame: &ExposureFrame) -> Option<Matrix> {
-        let white = match self {
-            Self::Screen => return None,
-            Self::White(white) => white,
-            Self::AutoGray => {
-                let lit = |v: &&f32| v.is_finite() && **v > 0.0;
-                // One after the other: the same sum on any number of threads.
-                let sum = |name: &str| {
-                    Some(frame.channel(name)?.values.iter().filter(lit).fold(0.0, |sum, v| sum + f64::from(*v)))
-                };
-                [sum("X")?, sum("Y")?, sum("Z")?]
-            }
-        };
-        let one = white.map(|v| v / white[1]);
-        let matrix = Adaptation::Cat02.matrix(one, RgbSpace::srgb().white_xyz());
-        matrix.iter().flatten().all(|v| v.is_finite()).then_some(matrix)
-    }
-}
-
 /// What becomes of colors that a screen cannot show.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -121,6 +68,7 @@ impl Balance {
 enum GamutMapping {
     Desaturate,
     Perceptual,
+    Compress,
     Clip,
 }
 
@@ -200,42 +148,16 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     let gamut = match gamut {
         None | Some(GamutMapping::Desaturate) => Gamut::Desaturate,
         Some(GamutMapping::Perceptual) => Gamut::Perceptual,
+        Some(GamutMapping::Compress) => Gamut::Compress,
         Some(GamutMapping::Clip) => Gamut::Clip,
     };
-    let balance = match &white_balance {
-        None => Some(Balance::Screen),
-        Some(balance) => faults.take(balanced(params, balance, context)),
-    };
+    let balance = faults.take(WhiteBalance::read(white_balance.as_ref(), params, context));
     let (Some(plane), Some(white), Some(balance)) = (plane, white, balance) else {
         return Err(faults);
     };
     let imager = XyzPlane::new(plane, &context.grid, exposure.map(|t| t.s()), white);
     let imager = imager.with_gamut(gamut).with_balance(balance);
     faults.into_result(Box::new(imager))
-}
-
-/// Up to here, K, a light of a temperature is that of a black body; CIE 015 has no daylight below it.
-const WARMEST_DAYLIGHT_K: f64 = 4000.0;
-
-/// The light that is shown as white.
-fn balanced(params: &Params, balance: &WhiteBalance, context: &Context<'_>) -> Result<Balance, Faults> {
-    let name = match balance {
-        WhiteBalance::Named(name) if name == "auto-gray" => return Ok(Balance::AutoGray),
-        WhiteBalance::Named(name) => name.clone(),
-        WhiteBalance::Of(OfTemperature { temperature }) => {
-            let kelvin = temperature.kelvin();
-            let kind = if kelvin < WARMEST_DAYLIGHT_K { "blackbody" } else { "daylight" };
-            format!("{kind}:{kelvin}")
-        }
-    };
-    let key = "white-balance";
-    let light = find_emission_in(&name, context.resources).map_err(|e| e.faults(|text| params.fault(key, text)))?;
-    let xyz = Observer::cie_1931_2deg().xyz_of_power(&light.to_power(&BAND));
-    if !(xyz[1] > 0.0 && xyz.iter().all(|v| v.is_finite())) {
-        let fault = params.fault(key, format!("`{name}` is dark to the eye"));
-        return Err(fault.hint("another light, such as D55, or `auto-gray`").into());
-    }
-    Ok(Balance::White(xyz))
 }
 
 /// White in the unit of the channels, whose dimension depends on whether there is an exposure time.

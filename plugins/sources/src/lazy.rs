@@ -20,6 +20,8 @@ pub(crate) struct Lazy {
     /// Whether the real one emits rays.
     emits: bool,
     still: Option<StillReader>,
+    /// Of a picture: mid gray as a part of white, and whether it was exposed already.
+    picture: Option<(f64, bool)>,
     doubts: OnceLock<Vec<Warning>>,
 }
 
@@ -30,12 +32,26 @@ impl Lazy {
         emits: bool,
         reader: impl Fn() -> Read<Box<dyn Source>> + Send + Sync + 'static,
     ) -> Self {
-        Self { stand_in, reader: Box::new(reader), read: OnceLock::new(), emits, still: None, doubts: OnceLock::new() }
+        Self {
+            stand_in,
+            reader: Box::new(reader),
+            read: OnceLock::new(),
+            emits,
+            still: None,
+            picture: None,
+            doubts: OnceLock::new(),
+        }
     }
 
     /// The same, a flat picture whose pixels are read by `still`.
     pub(crate) fn with_still(self, still: impl Fn() -> Read<Still> + Send + Sync + 'static) -> Self {
         Self { still: Some(Box::new(still)), ..self }
+    }
+
+    /// The same, a picture whose mid gray is `gray` of white, the light of the stand-in; `is_exposed` if it was taken by a camera that found
+    /// its exposure.
+    pub(crate) fn of_picture(self, gray: f64, is_exposed: bool) -> Self {
+        Self { picture: Some((gray, is_exposed)), ..self }
     }
 
     fn now(&self) -> &dyn Source {
@@ -79,6 +95,14 @@ impl Source for Lazy {
     }
     fn split(&self) -> Option<Split<'_>> {
         self.now().split()
+    }
+    fn gray_over_mean(&self, response: &[f64]) -> Option<f64> {
+        let (gray, _) = self.picture?;
+        let [white, mean] = [&*self.stand_in, &**self.read.get()?].map(|source| source.spectrum().seen_by(response));
+        Some(gray * white / mean).filter(|ratio| ratio.is_finite())
+    }
+    fn is_exposed(&self) -> bool {
+        self.picture.is_some_and(|(_, is_exposed)| is_exposed)
     }
     fn still(&self) -> Option<Result<Still, Faults>> {
         let read = self.still.as_ref()?();

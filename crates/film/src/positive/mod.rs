@@ -9,10 +9,11 @@ mod scan;
 mod viewing;
 
 pub use scan::{DENSITY_OF_ONE, ScanScale};
-pub use viewing::{DARK_TO_AVERAGE, PictureWhite, Viewing, on_band};
+pub use viewing::{Viewing, on_band};
 
 use crate::deposit::Deposit;
 use crate::emulsion::Emulsion;
+use crate::look::{Look, PictureBlack, PictureWhite};
 use crate::stock::{Medium, Process, Stock};
 use frame::Tables;
 use printing::Printing;
@@ -64,32 +65,27 @@ enum Way {
 }
 
 impl Positive {
-    /// The film itself in transmitted light: a negative on a light table (the bare light is white), or a slide, projected in
-    /// the dark.
+    /// The film itself in transmitted light: a negative on a light table (the bare light is white), or a slide, projected.
     ///
     /// # Errors
     /// [`PositiveError::DarkLight`].
-    pub fn transmitted(
-        stock: &Stock,
-        film: &Emulsion,
-        light: &Emission,
-        white: PictureWhite,
-    ) -> Result<Self, PositiveError> {
+    pub fn transmitted(stock: &Stock, film: &Emulsion, light: &Emission, look: Look) -> Result<Self, PositiveError> {
         let mut viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
         if stock.process == Process::Reversal {
-            viewing = viewing.in_the_dark();
-            if white == PictureWhite::Film {
-                let clear: Vec<f64> = (0..film.layers()).map(|i| film.range(i).0).collect();
-                let clear = viewing.xyz(film.deposit(), &clear);
-                viewing = viewing.between(0.0, clear);
-            }
+            let of = |end: fn((f64, f64)) -> f64| {
+                let amounts: Vec<f64> = (0..film.layers()).map(|i| end(film.range(i))).collect();
+                viewing.xyz(film.deposit(), &amounts)
+            };
+            let white = if look.white == PictureWhite::Film { of(|range| range.0) } else { viewing.white() };
+            let black = if look.black == PictureBlack::Stretched { of(|range| range.1)[1] } else { 0.0 };
+            viewing = viewing.between(black, white).surrounded(look.surround);
         }
         Ok(Self::of(film, Way::Look(viewing)))
     }
 
     /// Printed on `print` (developed as `printed`) by a printer whose lamp has the spectrum `lamp`, balanced for a mid gray
-    /// subject that left `gray_lx_s` on the negative (to the aim densities of the print stock, where it has such), and
-    /// looked at in `light`: projected in the dark, or on paper in a lit room.
+    /// subject that left `gray_lx_s` on the negative, and looked at in `light`. The gray is shown as 18 % of white; in a dark surround
+    /// it has the aim densities of the print stock, where it has such.
     ///
     /// # Errors
     /// [`PositiveError`].
@@ -100,13 +96,13 @@ impl Positive {
         printed: Emulsion,
         lamp: &Emission,
         light: &Emission,
-        white: PictureWhite,
+        look: Look,
     ) -> Result<Self, PositiveError> {
-        let viewing = seen(print, light)?;
+        let viewing = seen(print, light, look)?;
         let gray = film.neutral(spectra_core::math::log10(gray_lx_s));
         let unexposed = film.neutral(f64::NEG_INFINITY);
         let printing =
-            Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, Some(lamp), viewing, white)?;
+            Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, Some(lamp), viewing, look)?;
         Ok(Self::of(film, Way::Print(Box::new(printing))))
     }
 
@@ -122,16 +118,16 @@ impl Positive {
         print: &Stock,
         printed: Emulsion,
         light: &Emission,
-        white: PictureWhite,
+        look: Look,
     ) -> Result<Self, PositiveError> {
         if film.layers() != 3 || printed.layers() != 3 {
             return Err(PositiveError::NoPrintStock { stock: print.name.clone() });
         }
-        let viewing = seen(print, light)?;
+        let viewing = seen(print, light, look)?;
         let gray: Vec<f64> =
             gray_lx_s.iter().enumerate().map(|(i, h)| film.amount(i, spectra_core::math::log10(*h))).collect();
         let unexposed = film.neutral(f64::NEG_INFINITY);
-        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, None, viewing, white)?;
+        let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, None, viewing, look)?;
         Ok(Self::of(film, Way::Print(Box::new(printing))))
     }
 
@@ -271,11 +267,12 @@ pub enum Reach {
     Open,
 }
 
-/// How a print is looked at.
-fn seen(print: &Stock, light: &Emission) -> Result<Viewing, PositiveError> {
+/// How a print is looked at. Paper reflects light of the room besides, unless its ends are stretched.
+fn seen(print: &Stock, light: &Emission, look: Look) -> Result<Viewing, PositiveError> {
     let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
     Ok(match print.medium {
-        Medium::Film => viewing.in_the_dark(),
+        Medium::Film => viewing.surrounded(look.surround),
+        Medium::Paper if look.black == PictureBlack::Kept => viewing.with_flare(),
         Medium::Paper => viewing,
     })
 }

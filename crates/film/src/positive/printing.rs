@@ -1,9 +1,10 @@
 //! The printing light, and the exposure that a negative leaves of it on a print stock.
 
 use super::PositiveError;
-use super::viewing::{PictureWhite, Viewing, on_band};
+use super::viewing::{Viewing, on_band};
 use crate::deposit::{Deposit, third};
 use crate::emulsion::Emulsion;
+use crate::look::{Look, PictureBlack, PictureWhite, Surround};
 use crate::print::MID_GRAY;
 use crate::stock::{AimDensity, Process, Stock};
 use spectra_core::math::{log10, pow};
@@ -26,9 +27,9 @@ pub(super) struct Printing {
 }
 
 impl Printing {
-    /// Sets the printing light so that a negative of the amounts `gray` prints as a gray of the color of white: as dense to the
-    /// eye as the aim densities of the print stock are, or else shown as [`MID_GRAY`]. White is the clear print or the lamp,
-    /// black the print of a negative of the amounts `unexposed`.
+    /// Sets the printing light so that a negative of the amounts `gray` prints as a gray of the color of white: shown as
+    /// [`MID_GRAY`], or in the dark as dense to the eye as the aim densities of the print stock are. White is the clear print or the
+    /// lamp; black, where it is stretched, the print of a negative of the amounts `unexposed`.
     ///
     /// A print stock of three layers is printed by an additive lamp house: `lamp` parted at 500 and 590 nm, each part with a
     /// strength of its own; one of a single layer by the whole of `lamp`. Without a lamp, each layer is printed alone, from a
@@ -41,7 +42,7 @@ impl Printing {
         emulsion: Emulsion,
         lamp: Option<&Emission>,
         viewing: Viewing,
-        white: PictureWhite,
+        look: Look,
     ) -> Result<Self, PositiveError> {
         if stock.process != Process::Print {
             return Err(PositiveError::NoPrintStock { stock: stock.name.clone() });
@@ -61,7 +62,7 @@ impl Printing {
         };
         let parts: Vec<Vec<Vec<f64>>> =
             (0..layers).map(|layer| (0..layers).map(|p| sensitivity(layer, p)).collect()).collect();
-        let clear = match white {
+        let clear = match look.white {
             PictureWhite::Film => {
                 viewing.xyz(emulsion.deposit(), &(0..layers).map(|i| emulsion.range(i).0).collect::<Vec<_>>())
             }
@@ -69,13 +70,13 @@ impl Printing {
         };
         let unbalanced = |reason: &'static str| PositiveError::Unbalanced { stock: stock.name.clone(), reason };
         let aim = match stock.aim_density {
-            Some(aim) => Some(
+            Some(aim) if look.surround == Surround::Dark => Some(
                 aimed(stock, &emulsion, aim, &viewing)
                     .ok_or_else(|| unbalanced("its dyes do not reach its aim densities"))?,
             ),
-            None => None,
+            _ => None,
         };
-        let mut black = 0.0;
+        let (mut black, mut darkest) = (0.0, 0.0);
         let mut printing = None;
         // Black depends on the light and the light on black, but little: each pass is some hundred times closer.
         for _ in 0..8 {
@@ -103,7 +104,8 @@ impl Printing {
                 names: stock.layers.iter().map(|layer| layer.name.clone()).collect(),
                 filters: stock.filters(),
             };
-            let next = now.viewing.xyz(now.emulsion.deposit(), &now.printed(negative, unexposed))[1];
+            darkest = now.viewing.xyz(now.emulsion.deposit(), &now.printed(negative, unexposed))[1];
+            let next = if look.black == PictureBlack::Stretched { darkest } else { 0.0 };
             let moved = (next - black).abs();
             black = next;
             printing = Some(Self { viewing: now.viewing.clone().between(black, clear), ..now });
@@ -112,7 +114,7 @@ impl Printing {
             }
         }
         let printing = printing.ok_or_else(|| unbalanced("no light was found"))?;
-        if printing.gray_luminance(negative, gray) <= black + 0.02 * (clear[1] - black) {
+        if printing.gray_luminance(negative, gray) <= darkest + 0.02 * (clear[1] - darkest) {
             return Err(unbalanced("its mid gray is hardly denser than unexposed film"));
         }
         Ok(printing)

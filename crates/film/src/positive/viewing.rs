@@ -3,22 +3,13 @@
 use super::Reach;
 use super::frame::ROW;
 use crate::deposit::Deposit;
+use crate::look::{FLARE, Surround};
 use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, Gamut, RgbSpace, into_gamut};
 use spectra_core::math::{exp2_single, log2_single, pow};
 use spectra_core::spectral::BAND;
 use spectra_spectrum::{Emission, Observer};
 use std::f32::consts::LOG2_10;
-
-/// What is shown as white.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PictureWhite {
-    /// The clear film or print: a picture as one looks at it.
-    #[default]
-    Film,
-    /// The bare light: what the film holds back of it is seen.
-    Lamp,
-}
 
 /// Power of a light on the points of the band; a line is split between its two neighbors.
 #[must_use]
@@ -34,7 +25,7 @@ pub fn on_band(light: &Emission) -> Vec<f64> {
     all
 }
 
-/// A film looked at in transmitted light, by an eye adapted to the whitest there is.
+/// A film or a print looked at, by an eye adapted to the whitest there is.
 #[derive(Clone, Debug)]
 pub struct Viewing {
     /// CIE 1931 functions times the light, so that Y of the bare light is 1.
@@ -44,16 +35,12 @@ pub struct Viewing {
     to_rgb: Matrix,
     /// Luminance of what is taken for black, relative to the bare light.
     black: f64,
-    /// Seen in the dark, where a picture looks lighter and softer than the same in a lit room.
-    is_in_the_dark: bool,
+    /// Light that the surface reflects besides, as a part of white.
+    flare: f64,
+    surround: Surround,
 }
 
-/// Exponent of luminance by which a picture seen in a dark surround is shown on a screen in a lit one: the ratio of c, the
-/// impact of the surround, 0.525 in the dark to 0.69 in an average surround (CIE 159:2004, CIECAM02, table 1). Chromaticities
-/// stay, as in the system gamma of ITU-R BT.2100.
-pub const DARK_TO_AVERAGE: f64 = 0.525 / 0.69;
-
-/// Luminances between which [`DARK_TO_AVERAGE`] is taken at its word; beyond, what it does to the nearer end.
+/// Luminances between which the exponent of [`Surround`] is taken at its word; beyond, what it does to the nearer end.
 const SURROUND: (f64, f64) = (1.0 / (1 << 24) as f64, 16.0);
 
 impl Viewing {
@@ -69,7 +56,7 @@ impl Viewing {
         let weights: Vec<Vec<f64>> =
             functions.iter().map(|f| f.iter().zip(&power).map(|(f, p)| f * p / sum).collect()).collect();
         let white = [0, 1, 2].map(|i| weights[i].iter().sum());
-        Some(Self { weights, white, to_rgb: to_rgb(white), black: 0.0, is_in_the_dark: false })
+        Some(Self { weights, white, to_rgb: to_rgb(white), black: 0.0, flare: 0.0, surround: Surround::Average })
     }
 
     /// The same with an eye that takes a film of the XYZ `white` for white, as one does of a slide in the dark and of a
@@ -79,16 +66,30 @@ impl Viewing {
         Self { black, white, to_rgb: to_rgb(white), ..self }
     }
 
-    /// The same, seen in the dark, as projections are: shown with [`DARK_TO_AVERAGE`].
+    /// The same in another surround.
     #[must_use]
-    pub fn in_the_dark(self) -> Self {
-        Self { is_in_the_dark: true, ..self }
+    pub fn surrounded(self, surround: Surround) -> Self {
+        Self { surround, ..self }
+    }
+
+    /// The same, of a surface that reflects [`FLARE`] of the room's light besides.
+    #[must_use]
+    pub fn with_flare(self) -> Self {
+        Self { flare: FLARE, ..self }
     }
 
     /// The luminance, as a share of white over black, that is shown as `shown`, both in linear light.
     #[must_use]
     pub fn share_shown_as(&self, shown: f64) -> f64 {
-        if self.is_in_the_dark { pow(shown, 1.0 / DARK_TO_AVERAGE) } else { shown }
+        pow(shown, 1.0 / self.surround.exponent()) * (1.0 + self.flare) - self.flare
+    }
+
+    /// What XYZ are multiplied by, and the part of white that is added then: black is taken off as so much of white, since it is a veil
+    /// over the whole picture, and flare is added.
+    fn scale(&self) -> (f64, f64) {
+        let veil = self.black / self.white[1];
+        let times = 1.0 / ((1.0 - veil) * (1.0 + self.flare));
+        (times, self.flare / (1.0 + self.flare) - veil * times)
     }
 
     /// What weighs transmittances into XYZ.
@@ -132,21 +133,20 @@ impl Viewing {
         }
     }
 
-    /// XYZ as an eye in an average surround would have to meet them to see the same: black taken off, the surround allowed
-    /// for, white still [`Viewing::white`].
+    /// XYZ as an eye in an average surround would have to meet them to see the same: black taken off, flare added, the surround
+    /// allowed for, white still [`Viewing::white`].
     #[must_use]
     #[inline]
     pub fn seen(&self, xyz: [f64; 3]) -> [f64; 3] {
-        // Taken off as so much of white: black is a veil over the whole picture.
-        let veil = self.black / self.white[1];
+        let (times, added) = self.scale();
         let mut seen = xyz;
         for (v, white) in seen.iter_mut().zip(&self.white) {
-            *v = (*v - veil * white) / (1.0 - veil);
+            *v = *v * times + added * white;
         }
-        if self.is_in_the_dark {
+        if self.surround != Surround::Average {
             let luminance = seen[1] / self.white[1];
             let held = luminance.clamp(SURROUND.0, SURROUND.1);
-            let factor = if luminance > 0.0 { pow(held, DARK_TO_AVERAGE - 1.0) } else { 0.0 };
+            let factor = if luminance > 0.0 { pow(held, self.surround.exponent() - 1.0) } else { 0.0 };
             seen.iter_mut().for_each(|v| *v *= factor);
         }
         seen
@@ -157,9 +157,9 @@ impl Viewing {
     /// [`Viewing::shown_in`] for a row of places whose densities of XYZ are `row`, which is work space from then on.
     #[inline(always)]
     pub(super) fn shown_row(&self, row: &mut [[f32; ROW]; 3], reach: Reach, to: &mut [[f32; 3]]) {
-        let veil = self.black / self.white[1];
-        let black = self.white.map(|white| (veil * white) as f32);
-        let over_black = (1.0 / (1.0 - veil)) as f32;
+        let (times, added) = self.scale();
+        let (times, added) = (times as f32, self.white.map(|white| (added * white) as f32));
+        let exponent = (self.surround.exponent() - 1.0) as f32;
         let per_white = (1.0 / self.white[1]) as f32;
         let matrix = self.to_rgb.map(|row| row.map(|v| v as f32));
         let luminance =
@@ -167,12 +167,12 @@ impl Viewing {
         let (least, most) = (SURROUND.0 as f32, SURROUND.1 as f32);
         let [x, y, z] = row;
         for ((x, y), z) in x.iter_mut().zip(y.iter_mut()).zip(z.iter_mut()) {
-            let light = |d: f32, black: f32| (exp2_single(-LOG2_10 * d) - black) * over_black;
-            let mut seen = [light(*x, black[0]), light(*y, black[1]), light(*z, black[2])];
-            if self.is_in_the_dark {
+            let light = |d: f32, added: f32| exp2_single(-LOG2_10 * d) * times + added;
+            let mut seen = [light(*x, added[0]), light(*y, added[1]), light(*z, added[2])];
+            if self.surround != Surround::Average {
                 let y = seen[1] * per_white;
                 let held = y.max(least).min(most);
-                let factor = exp2_single(log2_single(held) * (DARK_TO_AVERAGE as f32 - 1.0));
+                let factor = exp2_single(log2_single(held) * exponent);
                 let factor = if y > 0.0 { factor } else { 0.0 };
                 seen = [seen[0] * factor, seen[1] * factor, seen[2] * factor];
             }

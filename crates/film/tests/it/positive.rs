@@ -2,7 +2,8 @@
 
 use spectra_core::math::{log10, pow};
 use spectra_film::emulsion::Emulsion;
-use spectra_film::positive::{PictureWhite, Positive, PositiveError, ScanScale};
+use spectra_film::look::{Look, PictureBlack, PictureWhite, Surround};
+use spectra_film::positive::{Positive, PositiveError, ScanScale};
 use spectra_film::stock::Stock;
 use spectra_scene::FileResources;
 use spectra_spectrum::{BAND, Emission, find_reflectance, illuminant};
@@ -23,13 +24,18 @@ fn d55() -> Emission {
 }
 
 const GRAY_LX_S: f64 = 10.0 / 250.0;
+/// The bare light is white.
+const LAMP: Look = Look { white: PictureWhite::Lamp, black: PictureBlack::Kept, surround: Surround::Average };
 
 fn printed() -> (Emulsion, Positive) {
+    looked_at(Look::default())
+}
+
+fn looked_at(look: Look) -> (Emulsion, Positive) {
     let (_, negative) = usual("kodak-vision3-250d-5207");
     let (print, developed) = usual("kodak-vision-2383");
     let lamp = print.reference.clone();
-    let positive =
-        Positive::printed(&negative, GRAY_LX_S, &print, developed, &lamp, &d55(), PictureWhite::Film).expect("prints");
+    let positive = Positive::printed(&negative, GRAY_LX_S, &print, developed, &lamp, &d55(), look).expect("prints");
     (negative, positive)
 }
 
@@ -65,13 +71,16 @@ fn a_step_wedge_recovers_the_curves_of_the_sheet() {
     }
 }
 
-/// Mid gray of the meter's exposure is printed neutral, to the aim densities of the print stock, which are seen as 18.7 %;
-/// unexposed film prints black, and the clear print is white.
+/// Mid gray of the meter's exposure is printed neutral and shown as 18 % of white; in a dark surround it has the aim densities of the
+/// print stock, which an eye there sees as 18.7 % of white. Unexposed film prints black, and the clear print is white.
 #[test]
 fn a_mid_gray_prints_neutral() {
+    let dark = looked_at(Look { surround: Surround::Dark, ..Look::default() });
+    for ((negative, positive), want) in [(printed(), 0.18), (dark, 0.1873)] {
+        let gray = positive.shown(&negative.neutral(log10(GRAY_LX_S)));
+        assert!(gray.iter().all(|v| (v - want).abs() < 2e-4), "{want}: {gray:?}");
+    }
     let (negative, positive) = printed();
-    let gray = positive.shown(&negative.neutral(log10(GRAY_LX_S)));
-    assert!(gray.iter().all(|v| (v - 0.1869).abs() < 1e-4), "{gray:?}");
     let black = positive.shown(&negative.neutral(f64::NEG_INFINITY));
     assert!(black.iter().all(|v| *v < 0.003), "{black:?}");
     let mut before = 0.0;
@@ -106,7 +115,7 @@ fn colors_keep_their_names() {
     let light = illuminant("iso-7589-photographic-daylight").expect("bundled");
     let (negative_stock, negative) = usual("kodak-vision3-250d-5207");
     let (slide_stock, slide) = usual("kodak-ektachrome-100d");
-    let projected = Positive::transmitted(&slide_stock, &slide, &d55(), PictureWhite::Film).expect("shows");
+    let projected = Positive::transmitted(&slide_stock, &slide, &d55(), Look::default()).expect("shows");
     let scan = Positive::scanned(&negative_stock, &negative, GRAY_LX_S, ScanScale::Picture).expect("scans");
     let (_, print) = printed();
     let gray = find_reflectance("colorchecker#neutral-5").expect("bundled");
@@ -164,7 +173,7 @@ fn frames_are_shown_as_their_places_are() {
     let (negative, print) = printed();
     let negative_stock = stock("kodak-vision3-250d-5207");
     let scan = Positive::scanned(&negative_stock, &negative, GRAY_LX_S, ScanScale::Picture).expect("scans");
-    let table = Positive::transmitted(&negative_stock, &negative, &d55(), PictureWhite::Lamp).expect("shows");
+    let table = Positive::transmitted(&negative_stock, &negative, &d55(), LAMP).expect("shows");
     // A lattice of amounts that falls between the steps of the tables.
     let mut planes = [const { Vec::new() }; 3];
     for i in 0..1000_u32 {
@@ -190,11 +199,11 @@ fn frames_are_shown_as_their_places_are() {
 #[test]
 fn black_and_white_prints_on_either_print_stock() {
     let (_, negative) = usual("kodak-double-x-5222");
-    for (name, mid) in [("kodak-2302", 0.18), ("kodak-vision-2383", 0.1869)] {
+    for (name, mid) in [("kodak-2302", 0.18), ("kodak-vision-2383", 0.18)] {
         let (print, developed) = usual(name);
         let lamp = print.reference.clone();
         let positive =
-            Positive::printed(&negative, 0.04, &print, developed, &lamp, &d55(), PictureWhite::Film).expect("prints");
+            Positive::printed(&negative, 0.04, &print, developed, &lamp, &d55(), Look::default()).expect("prints");
         let gray = positive.shown(&negative.neutral(log10(0.04)));
         assert!(gray.iter().all(|v| (v - mid).abs() < 1e-4), "{name}: {gray:?}");
         let plane: Vec<f32> = (0..400).map(|i| 0.25 + i as f32 * 0.003).collect();
@@ -204,7 +213,7 @@ fn black_and_white_prints_on_either_print_stock() {
         }
     }
     let (camera, developed) = usual("kodak-tri-x-400");
-    let fault = Positive::printed(&negative, 0.04, &camera, developed, &d55(), &d55(), PictureWhite::Film)
+    let fault = Positive::printed(&negative, 0.04, &camera, developed, &d55(), &d55(), Look::default())
         .expect_err("no print stock");
     assert!(matches!(fault, PositiveError::NoPrintStock { .. }));
 }

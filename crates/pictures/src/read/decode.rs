@@ -165,6 +165,8 @@ pub(super) fn native_header<'a>(
     let tags = Tags::of(found, format, &mut decoder);
     let clips = tags.is_long || !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
     let pixel_aspect = seen(tags.pixel_aspect, turned);
+    let said = choice.transfer.map(Encoding::named).transpose()?;
+    let encoding = said.or_else(|| tags.encoding.clone()).unwrap_or(Encoding::Curve(Transfer::Srgb));
     // Somebody who states the curve has seen to it.
     let doubts = tags.doubt.filter(|_| choice.transfer.is_none()).into_iter().collect();
     Ok(Ok(Header {
@@ -173,6 +175,7 @@ pub(super) fn native_header<'a>(
         overscan: [0; 2],
         pixel_aspect,
         clips,
+        is_for_display: clips && encoding.is_for_display(),
         is_jpeg: format == ImageFormat::Jpeg,
         doubts,
     }))

@@ -81,6 +81,15 @@ impl Encoding {
         }
     }
 
+    /// Whether it is a curve of displays, which photographs are made for: not of light itself, and of no logarithm.
+    pub(super) fn is_for_display(&self) -> bool {
+        match self {
+            Self::Curve(Transfer::Linear) | Self::Cineon | Self::AcesCct | Self::Pq => false,
+            Self::Curve(_) => true,
+            Self::Gamma(_) | Self::Sampled(_) => self.decode(0.5) < 0.4,
+        }
+    }
+
     /// Light of all code values of integers.
     pub(super) fn table(&self, levels: usize) -> Vec<f32> {
         (0..levels).map(|i| self.decode(i as f64 / (levels - 1) as f64).max(0.0) as f32).collect()

@@ -154,7 +154,16 @@ pub(super) fn header(
     });
     let overscan = if fits { overscan } else { [0; 2] };
     let doubts = doubt.filter(|_| light.len() == 3).into_iter().chain(uneven).chain(left).collect();
-    Ok(super::header::Header { width, height, overscan, pixel_aspect, clips: false, is_jpeg: false, doubts })
+    Ok(super::header::Header {
+        width,
+        height,
+        overscan,
+        pixel_aspect,
+        clips: false,
+        is_for_display: false,
+        is_jpeg: false,
+        doubts,
+    })
 }
 
 /// How far the chosen depth of a file of `bytes` bytes reaches beyond the display window.

@@ -39,7 +39,7 @@ pub(super) fn decode(found: &Found, choice: Choice<'_>, said: Option<Encoding>) 
 
 /// What the library says of a file before it reads its pixels.
 pub(super) fn header(found: &Found, choice: Choice<'_>, said: Option<Encoding>) -> Result<Header, Trouble> {
-    let (picture, _) = read(found, choice.name, said, false)?;
+    let (picture, encoding) = read(found, choice.name, said, false)?;
     let ([width, height], pixel_aspect) = seen(&picture);
     Ok(Header {
         width,
@@ -47,6 +47,7 @@ pub(super) fn header(found: &Found, choice: Choice<'_>, said: Option<Encoding>) 
         overscan: [0; 2],
         pixel_aspect,
         clips: picture.integers,
+        is_for_display: picture.integers && encoding.is_for_display(),
         is_jpeg: false,
         doubts: Vec::new(),
     })

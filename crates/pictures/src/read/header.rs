@@ -15,6 +15,8 @@ pub struct Header {
     pub pixel_aspect: f64,
     /// Whether its values are integers, which clip.
     pub clips: bool,
+    /// Whether its values are encoded for a display, as those of photographs are: neither light nor its logarithm.
+    pub is_for_display: bool,
     /// Whether it is a JPEG.
     pub is_jpeg: bool,
     /// What it says that a person should know before believing the picture.

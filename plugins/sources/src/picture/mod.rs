@@ -12,6 +12,7 @@ mod narrowing;
 mod places;
 mod planes;
 mod spot;
+mod tone;
 
 use crate::flat::Flat;
 use crate::frame::{Edge, Placed, Width};
@@ -35,6 +36,7 @@ use spectra_core::stage::{ColorModel, Source, Still};
 use spectra_core::view::View;
 use spectra_pictures::read::{self, Choice, Header, Linear, Trouble};
 use std::sync::Arc;
+use tone::CameraTone;
 
 /// Largest picture file, bytes.
 const MAX_BYTES: u64 = 1 << 30;
@@ -79,6 +81,10 @@ struct PictureParams {
     /// How code values are encoded: linear, srgb, rec709 or cineon; as the file says, or else srgb of integers and linear
     /// of floating point, if absent.
     transfer: Option<String>,
+    /// What was done to the light before it was encoded: `camera`, the tone curve of a camera, which is taken back channel by channel (18 %
+    /// gray stays, and white lies 2.96 stops above it), or `none`. Of integers that are encoded for a display only; `none` if absent, but
+    /// `camera` of such files in `spectra film develop`.
+    tone: Option<Tone>,
     /// The layer of an OpenEXR file; its plain R, G and B if absent.
     layer: Option<String>,
     /// Distance of its plane from the first vertex, mm if bare.
@@ -103,6 +109,17 @@ struct PictureParams {
     depth: Option<Part<depth::DepthParams>>,
     /// Guesses the light of the clipped highlights of integer files; nothing is guessed if absent.
     recover_highlights: Option<RecoverParams>,
+}
+
+/// `tone` as written.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+enum Tone {
+    /// The curve of a camera.
+    Camera,
+    /// Light itself.
+    #[default]
+    None,
 }
 
 /// `recover-highlights`: see [`highlights`].
@@ -170,6 +187,12 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
             faults.push(fault.hint("leave `recover-highlights` out"));
         }
     }
+    let tone = p.tone.unwrap_or_default();
+    if let (Tone::Camera, Some(header)) = (tone, header.as_ref().filter(|header| !header.is_for_display)) {
+        let holds = if header.clips { "light or its logarithm" } else { "floating point" };
+        let fault = params.fault("tone", format!("`{}` holds {holds}, which no camera has given a tone curve", p.file));
+        faults.push(fault.hint("leave `tone` out"));
+    }
     let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
     let distance_mm = p.distance.mm();
     let aspect = header.as_ref().map_or(1.0, Header::aspect);
@@ -203,6 +226,11 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let (file, making) = (Arc::clone(&file), Arc::clone(&making));
         move |overscan: [u32; 2]| -> Result<Linear, Faults> {
             let mut linear = file.read(overscan)?;
+            if tone == Tone::Camera {
+                let curve = CameraTone::new();
+                curve.take_back(&mut linear.rgb);
+                linear.clipped_at = linear.clipped_at.map(|at| curve.value(at));
+            }
             if let (Some(stops), Some(clipped_at)) = (recover_stops, linear.clipped_at) {
                 highlights::recover(&mut linear.rgb, linear.width as usize, clipped_at, stops);
             }
@@ -241,6 +269,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let deep = |map| DeepPicture::new(map, Arc::clone(&field), plane_mm, eye_mm, ends_mm, Arc::clone(&meaning));
         Ok((with_halves(map, emits, deep), doubts))
     });
+    let lazy = lazy.of_picture(tone::MID_GRAY, header.clips);
     Ok(Box::new(if is_flat { lazy.with_still(still) } else { lazy }))
 }
 
