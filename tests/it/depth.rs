@@ -429,3 +429,82 @@ fn mistaken_depths_are_asked_about() {
         }
     }
 }
+
+/// A bright card at 1 m before a dark wall at 8 m, its edge slanted and antialiased, as a renderer writes it: with the depth of one sample
+/// a pixel, with averaged depth, and as two layers.
+fn card(folder: &Path) {
+    const SIZE: (usize, usize) = (64, 32);
+    let share: Vec<f32> = (0..SIZE.0 * SIZE.1)
+        .map(|i| {
+            let near = |k: usize| {
+                let (x, y) = (i % SIZE.0 * 16 + k % 16, i / SIZE.0 * 16 + k / 16);
+                (x as f64) < 32.0 * 16.0 + 0.23 * (y as f64 - 256.0)
+            };
+            (0..256).filter(|k| near(*k)).count() as f32 / 256.0
+        })
+        .collect();
+    let mixed = |front: f32, back: f32| -> Vec<f32> { share.iter().map(|s| s * front + (1.0 - s) * back).collect() };
+    let light = |front: f32, back: f32| ["R", "G", "B"].map(|name| (name, mixed(front, back)));
+    let with = |more: (&'static str, Vec<f32>)| [light(1.0, 0.05).to_vec(), vec![more]].concat();
+    let sampled = share.iter().map(|s| if *s >= 0.5 { 1.0 } else { 8.0 }).collect();
+    exr_file(&folder.join("sampled.exr"), SIZE, &with(("Z", sampled)));
+    exr_file(&folder.join("averaged.exr"), SIZE, &with(("Z", mixed(1.0, 8.0))));
+    exr_file(&folder.join("card.exr"), SIZE, &[light(1.0, 0.0).to_vec(), vec![("A", share.clone())]].concat());
+    exr_file(&folder.join("wall.exr"), SIZE, &light(0.05, 0.05));
+    let plate =
+        |name: &str| format!("{{kind: picture, file: {name}.exr, distance: 1 m, width: 200, depth: {{unit: m}}}}");
+    let layers = "{kind: layers, layers: [{file: card.exr, distance: 1 m, width: 200}, {file: wall.exr, distance: 8 m, width: 1600}]}";
+    for (name, source) in
+        [("sampled", plate("sampled")), ("averaged", plate("averaged")), ("card-layers", layers.to_owned())]
+    {
+        let text = format!(
+            "spectra: 1\nsource: {source}\nlens: {{file: thin.yaml, focus: 1 m}}\n\
+             imager: {{kind: xyz, width: 4, height: 2, resolution: [{COLUMNS}, 20]}}\n\
+             render: {{samples: 256, seed: 3, direction: backward}}\n"
+        );
+        std::fs::write(folder.join(format!("{name}.yaml")), text).expect("written");
+    }
+}
+
+/// A renderer averages color over a pixel, and cannot average depth: what the pixels on the edge of a card in focus hold of it is not
+/// blurred with the wall behind.
+#[test]
+fn mixed_pixels_of_a_plate_leave_no_rim() {
+    let files = Files::new();
+    card(files.folder.path());
+    let layers = files.columns("card-layers", &[]);
+    // The edge goes over some three pixels of the plate in the frame, and each of these over 1.6 columns; the rim over three more.
+    let first = COLUMNS / 2 + 4;
+    for name in ["sampled", "averaged"] {
+        let ratio = |set: &[&str]| {
+            let seen = files.columns(name, set);
+            (first..COLUMNS).map(|c| seen[c] / layers[c]).fold(0.0, f64::max)
+        };
+        let (clean, as_is) = (ratio(&[]), ratio(&["source.depth.edges=as-is"]));
+        println!("{name}: light beside the card at most {clean:.3} of that of layers, {as_is:.3} as it is");
+        assert!(clean < 1.02 && as_is > 1.1, "{name}: {clean} {as_is}");
+        // In the card and on its edge it is as in layers, too.
+        let seen = files.columns(name, &[]);
+        for column in 4..COLUMNS {
+            let off = seen[column] - layers[column];
+            assert!(off.abs() < 0.02 * layers[4], "{name} column {column}: {} {}", seen[column], layers[column]);
+        }
+    }
+}
+
+/// The same light by rays from what shines, through pixels that are covered in part, with either side in focus.
+#[test]
+fn mixed_pixels_are_the_same_from_the_source() {
+    let files = Files::new();
+    card(files.folder.path());
+    let fours = |columns: Vec<f64>| columns.chunks(4).map(|four| four.iter().sum::<f64>() / 4.0).collect::<Vec<_>>();
+    for focus in ["lens.focus=1 m", "lens.focus=8 m"] {
+        let backward = fours(files.columns("sampled", &[focus]));
+        let many = ["render.direction=forward", "render.rays=3000000", focus];
+        let forward = fours(files.columns("sampled", &many));
+        // The first ones see what starts beside the plate's border.
+        for (k, (forward, backward)) in forward.iter().zip(&backward).enumerate() {
+            assert!((forward / backward - 1.0).abs() < 0.03, "{focus}, {k}: {forward} {backward}");
+        }
+    }
+}

@@ -1,5 +1,6 @@
 //! The depth of a picture, from what a file says to millimetres along the axis.
 
+use super::edges::Mixed;
 use super::planes::{self, Pixels};
 use super::{find, trouble};
 use schemars::JsonSchema;
@@ -32,6 +33,10 @@ pub(super) struct DepthParams {
     /// Depths of neighbors that differ by more than this part, 0 to 1, belong to different things; 5 % if absent.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     edge: Option<Ratio>,
+    /// What becomes of pixels at edges that hold a mixture of two things, since a renderer averages color and not depth: `clean` takes them
+    /// apart, so that the near thing covers its share of the pixel and what is behind goes on there; `as-is` leaves the mixture at the depth
+    /// that the file says. `clean` if absent; a picture without such pixels is the same with both.
+    edges: Option<Edges>,
     /// Distance of the center of projection behind the first vertex, mm if bare; at the vertex if absent.
     eye: Option<Length>,
 }
@@ -43,9 +48,20 @@ pub(super) struct Depth {
     unit_mm: f64,
     kind: DepthKind,
     pub edge: f64,
+    /// Whether mixed pixels at edges are taken apart.
+    pub cleans_edges: bool,
     pub eye_mm: f64,
     /// The file of its own.
     found: Option<Found>,
+}
+
+/// What becomes of mixed pixels.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+enum Edges {
+    Clean,
+    AsIs,
 }
 
 /// The units that depth channels come in.
@@ -103,7 +119,8 @@ impl Depth {
         let eye_mm = p.eye.map_or(0.0, Length::mm);
         let found = p.file.as_ref().and_then(|file| faults.take(find(file, &params, context)));
         faults.into_result(())?;
-        Ok(Self { unit_mm, kind: p.kind.unwrap_or(DepthKind::Z), edge, eye_mm, found, params, p })
+        let (kind, cleans_edges) = (p.kind.unwrap_or(DepthKind::Z), p.edges != Some(Edges::AsIs));
+        Ok(Self { unit_mm, kind, edge, cleans_edges, eye_mm, found, params, p })
     }
 
     /// The channel, where the picture's own file holds it.
@@ -200,8 +217,9 @@ impl Depth {
         faults.into_result(depth)
     }
 
-    /// What its numbers are taken for, for the summary: channel, kind, unit and factor, and which of them are assumed.
-    pub(super) fn describe(&self) -> String {
+    /// What its numbers are taken for, for the summary: channel, kind, unit and factor, which of them are assumed, and how many of
+    /// the picture's pixels were mixed.
+    pub(super) fn describe(&self, pixels: usize, mixed: Option<&Mixed>) -> String {
         let unit = match self.p.unit {
             None => "mm, assumed",
             Some(DepthUnit::Mm) => "mm",
@@ -217,7 +235,10 @@ impl Depth {
         };
         let assumed = if self.p.kind.is_none() { ", assumed" } else { "" };
         let scale = self.p.scale.map(|scale| format!(" times {scale}")).unwrap_or_default();
-        format!("`{}`{scale} in {unit}; {kind}{assumed}", self.name())
+        let mixed = mixed.map(|mixed| {
+            format!("; {:.2} % of its pixels, mixed at edges, taken apart", 100.0 * mixed.parted as f64 / pixels as f64)
+        });
+        format!("`{}`{scale} in {unit}; {kind}{assumed}{}", self.name(), mixed.unwrap_or_default())
     }
 
     /// How far the depth reaches beyond the picture, at most as far as the picture does itself, `overscan` pixels.

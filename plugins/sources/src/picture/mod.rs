@@ -1,8 +1,10 @@
 //! `kind: picture`: a picture file on a plane at a distance, or with the depth that it states.
 
+mod backdrop;
 mod bounds;
 mod deep;
 mod depth;
+mod edges;
 mod field;
 mod gamut;
 mod highlights;
@@ -12,6 +14,7 @@ mod narrowing;
 mod places;
 mod planes;
 mod spot;
+mod starts;
 mod tone;
 
 use crate::flat::Flat;
@@ -19,8 +22,10 @@ use crate::frame::{Edge, Placed, Width};
 use crate::halves::{Half, Halves};
 use crate::lazy::Lazy;
 use crate::white;
+use backdrop::Backdrop;
 use deep::DeepPicture;
 use depth::Depth;
+use edges::Mixed;
 use field::HeightField;
 use lights::Lights;
 use map::{Importance, PictureMap};
@@ -52,6 +57,9 @@ const MAX_BYTES: u64 = 1 << 30;
 /// With `depth` each pixel stands at its own distance, in the perspective of the camera that took the picture: what is
 /// out of focus is blurred, and edges cover what lies behind them. Where a picture in depth was never seen, behind an
 /// edge, there is nothing to show; `kind: layers` knows what is there.
+///
+/// A renderer averages color over a pixel, so the pixels on an edge hold light of two things at one depth. They are taken apart: the near
+/// thing covers its share of such a pixel, and what is behind goes on there. `depth: {edges: as-is}` leaves them as they are.
 ///
 /// # Example
 /// ```yaml
@@ -248,25 +256,36 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         }
     };
     let lazy = Lazy::new(Box::new(stand_in), emits, move || {
-        let linear = pixels(overscan)?;
+        let mut linear = pixels(overscan)?;
         let mut doubts = file.doubts(&linear);
         let Some(depth) = &depth else {
             let map = making.map(linear, &file.name);
             return Ok((with_halves(map, emits, |texture| Flat { texture, distance_mm }), doubts));
         };
         let plane_mm = distance_mm + depth.eye_mm;
-        let all = depth.of(&linear, plane_mm, width_mm, overscan)?;
+        let mut all = depth.of(&linear, plane_mm, width_mm, overscan)?;
         let size_px = [linear.width, linear.height];
         let pixels = Pixels { size_px, aspect: linear.pixel_aspect, pixel_mm: width_mm / f64::from(linear.width) };
         doubts
             .extend(depth.doubt(&all, plane_mm, focal_length_mm).or_else(|| depth.doubt_kind(&all, plane_mm, pixels)));
-        let map = making.map(linear, &file.name);
+        // The picture's own depths are not needed any more.
+        linear.depth = None;
+        let width_px = linear.width as usize;
+        let mixed = match depth.cleans_edges {
+            true => edges::part(&mut linear.rgb, &mut all, width_px, depth.edge),
+            false => None,
+        };
+        let meaning: Arc<str> = depth.describe(all.len(), mixed.as_ref()).into();
+        let map = assemble(linear, &file.name, &making, mixed.as_ref());
+        let behind = mixed.map(|mixed| Arc::new(Backdrop::new(mixed, &*making.model, &all, width_px, depth.edge)));
         let ends = all.iter().fold([f32::INFINITY, 0.0_f32], |[a, b], d| [a.min(*d), b.max(*d)]);
         let field = Arc::new(HeightField::new(map.width_px, map.height_px, &all, depth.edge));
         let eye_mm = depth.eye_mm;
         let ends_mm = ends.map(f64::from);
-        let meaning: Arc<str> = depth.describe().into();
-        let deep = |map| DeepPicture::new(map, Arc::clone(&field), plane_mm, eye_mm, ends_mm, Arc::clone(&meaning));
+        let deep = |map| {
+            let fields = (Arc::clone(&field), behind.clone());
+            DeepPicture::new(map, fields, plane_mm, eye_mm, ends_mm, Arc::clone(&meaning))
+        };
         Ok((with_halves(map, emits, deep), doubts))
     });
     let lazy = lazy.of_picture(tone::MID_GRAY, header.clips);
@@ -381,7 +400,7 @@ impl Making {
 
     /// The picture on its plane; its pixels are turned into what the color model needs of them where they lie.
     pub(crate) fn map(&self, linear: Linear, name: &str) -> PictureMap {
-        assemble(linear, name, self)
+        assemble(linear, name, self, None)
     }
 }
 
@@ -445,28 +464,39 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
     (0.2126 * r + 0.7152 * g + 0.0722 * b).max(0.0721 * r.max(g).max(b))
 }
 
-fn assemble(linear: Linear, name: &str, making: &Making) -> PictureMap {
+/// The picture on its plane; of mixed pixels `rgb` holds what is in front.
+fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) -> PictureMap {
     let (width, height) = (linear.width as usize, linear.height as usize);
     let model = &making.model;
     let scale = making.scale();
     let mut rgb = linear.rgb;
     let pixels = rgb.len() as f64;
+    let behind = |cell: usize| mixed.and_then(|mixed| mixed.cells.place(cell).map(|place| &mixed.behind[place]));
+    // What a pixel shines with as a whole, and the brighter of what is in front and behind: either may be a light.
+    let whole = |cell: usize| match behind(cell) {
+        None => rgb[cell],
+        Some(behind) => [0, 1, 2].map(|k| behind.rgb[k] + (rgb[cell][k] - behind.rgb[k]) * behind.opacity),
+    };
+    let bright = |cell: usize| {
+        let front = brightness(rgb[cell]);
+        behind(cell).map_or(front, |behind| front.max(brightness(behind.rgb)))
+    };
     let mut mean = [0.0_f64; 3];
-    for pixel in &rgb {
-        for (sum, value) in mean.iter_mut().zip(pixel) {
-            *sum += f64::from(*value) / pixels;
+    for cell in 0..rgb.len() {
+        for (sum, value) in mean.iter_mut().zip(whole(cell)) {
+            *sum += f64::from(value) / pixels;
         }
     }
-    let mean_brightness = rgb.iter().map(|p| f64::from(brightness(*p))).sum::<f64>() / pixels;
-    let peak = rgb.iter().fold(0.0_f32, |a, p| a.max(brightness(*p)));
-    let importance = Arc::new(Importance::new(width, height, |i| brightness(rgb[i])));
-    let all = if f64::from(peak) > mean_brightness { rgb.iter().map(|p| brightness(*p)).collect() } else { Vec::new() };
+    let mean_brightness = (0..rgb.len()).map(|cell| f64::from(brightness(whole(cell)))).sum::<f64>() / pixels;
+    let peak = (0..rgb.len()).fold(0.0_f32, |a, cell| a.max(bright(cell)));
+    let importance = Arc::new(Importance::new(width, height, bright));
+    let all = if f64::from(peak) > mean_brightness { (0..rgb.len()).map(bright).collect() } else { Vec::new() };
     let lights = if all.is_empty() { None } else { lights::find(width, &all) };
     let lights = lights.map(|found| {
         let mut sums = [[0.0_f64; 3]; 2];
-        for (pixel, level) in rgb.iter().zip(&found.level) {
+        for (cell, level) in found.level.iter().enumerate() {
             let sum = &mut sums[usize::from(*level == 0.0)];
-            sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += f64::from(*value) / pixels);
+            sum.iter_mut().zip(whole(cell)).for_each(|(sum, value)| *sum += f64::from(value) / pixels);
         }
         Arc::new(Lights {
             places: LightPlaces::new(width, &all, &found.level),
