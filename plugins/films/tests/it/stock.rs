@@ -214,15 +214,14 @@ fn long_exposures_count_as_the_sheet_says() {
 /// the red layer alone makes it red.
 #[test]
 fn color_negative_prints_in_color() {
-    // A print is timed to the aim densities of its stock, a little lighter than 18 %.
-    for (view, mid) in [("print", 0.1869), ("scan", 0.18)] {
+    for view in ["print", "scan"] {
         let film = build(&format!("stock: kodak-vision3-250d-5207\nexposure: 1/60 s\nview: {view}\n")).expect("sound");
         let names: Vec<String> = film.channels().iter().map(|c| c.name.clone()).collect();
         assert_eq!(names, ["blue", "green", "red"]);
         let planes = [vec![0.04, 0.02, 0.0], vec![0.04, 0.02, 0.0], vec![0.04, 0.08, 0.0]];
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let rgb = film.develop(&frame_of(&names, &planes)).expect("complete").rgb;
-        assert!(rgb[0].iter().all(|v| (v - mid).abs() < 2e-3), "{view}: {:?}", rgb[0]);
+        assert!(rgb[0].iter().all(|v| (v - 0.18).abs() < 2e-3), "{view}: {:?}", rgb[0]);
         assert!(rgb[1][0] > 2.0 * rgb[1][1] && rgb[1][0] > 2.0 * rgb[1][2], "{view}: {:?}", rgb[1]);
         assert!(rgb[2].iter().all(|v| *v < 0.01), "{view}: {:?}", rgb[2]);
     }
@@ -245,8 +244,9 @@ fn an_automatic_print_is_made_for_the_frame() {
     let mut print = shown(&automatic, &chart);
     print.sort_by(f32::total_cmp);
     let (black, white) = (lightness(print[2]), lightness(print[997]));
-    let paper = lightness((10_f32.powf(-2.1) + 0.005) / 1.005);
-    assert!(black <= paper + 1.0 && white >= 97.0, "{black} {paper} {white}");
+    // ISO 6846: a paper's range of exposures ends where its density over white is nine tenths of the largest. Flare is 0.5 %.
+    let range_end = lightness((10_f32.powf(-0.9 * 2.1) + 0.005) / 1.005);
+    assert!((black - range_end).abs() < 0.5 && white >= 96.0, "{black} {range_end} {white}");
     let flat: Vec<f32> = (0..1000).map(|i| 0.025 * (0.9 + 0.2 * i as f32 / 1000.0)).collect();
     assert_eq!(shown(&automatic, &flat), shown(&metered, &flat));
     assert!(automatic.describe().contains("grade of paper that suits it"), "{}", automatic.describe());
@@ -319,7 +319,8 @@ fn a_camera_holds_lights_back() {
         film.metered_time_s(&frame_of(&["panchromatic", "meter"], &[plane.clone(), plane]))
     };
     let gray = vec![0.05; 1000];
-    assert_eq!(time(&of("camera"), gray.clone()), time(&of("average"), gray));
+    let [camera, average] = ["camera", "average"].map(|metering| time(&of(metering), gray.clone()));
+    assert!((camera / average - 1.0).abs() < 1e-12, "{camera} {average}");
     // A row of 1000 pixels: weights 1/(1 + 2 x^2) for x from -1 to 1, of the only row y is 0.
     let mut lights = vec![0.05_f32; 1000];
     lights[..20].fill(50.0);
