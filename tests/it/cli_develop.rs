@@ -327,7 +327,7 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     put(at("plates/plate.0009.png"), 120, 80, |_, _| [60; 3]);
     std::fs::write(at("plates/plate.0010.png"), b"broken").expect("written");
     let said = refused(folder.path(), &["plates", "--stock", "tri-x", "--format", "super-8", "-o", "out/"], 1);
-    assert!(said.contains("metered on the first") && said.contains("3 of 4 pictures"), "{said}");
+    assert!(said.contains("exposed as the first is") && said.contains("3 of 4 pictures"), "{said}");
     assert!(said.contains("`plates/plate.0010.png` is not developed"), "{said}");
     let frames = [7, 8, 9].map(|n| read(at(&format!("out/plate.{n:04}.png"))));
     let [a, b, dark] = frames.each_ref().map(mean);
@@ -336,7 +336,7 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     assert!(differ * 2 > frames[0].as_raw().len(), "{differ} values differ");
     assert!((a - b).abs() < 1.0 && dark < a - 20.0, "{a} {b} {dark}");
 
-    // What is there stays, and what is missing is still metered on the first.
+    // What is there stays, and what is missing is still exposed as the first is.
     std::fs::remove_file(at("out/plate.0009.png")).expect("removed");
     let rest = ["plates/plate.000#.png", "--stock", "tri-x", "--format", "super-8", "--skip-existing", "-o", "out/"];
     // An empty file is none.

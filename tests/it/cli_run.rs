@@ -496,7 +496,7 @@ fn a_metered_scene_is_that_of_the_metered_time() {
             "{exact}: {written}"
         );
         let words = spectra_core::shutter::words(time_s);
-        assert!(said.contains(&format!("at {words} (metered)")), "{words}: {said}");
+        assert!(said.contains(&format!("at {words} (metered, average)")), "{words}: {said}");
         // The meter's mean is the 10/S lx s of a mid gray.
         let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;
         assert!(lx_s.is_none_or(|lx_s| (mean / lx_s - 1.0).abs() < 1e-6), "{mean}");

@@ -238,7 +238,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
         &format!(
             "{}, {}",
             words::counted(plates.len() as u64, "picture"),
-            if job.meter_each { "each metered" } else { "metered on the first" }
+            if job.meter_each { "each metered" } else { "exposed as the first is" }
         ),
         &json!({ "event": "series", "pictures": plates.len(), "metered": if job.meter_each { "each" } else { "first" } }),
     ));
@@ -269,7 +269,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             }
             if metered.is_none() {
                 let text = format!(
-                    "`{}` is metered in place of the first picture, and those after it are exposed as it is",
+                    "`{}` sets the exposure in place of the first picture, and those after it are exposed as it is",
                     plate.file
                 );
                 host.hear(Event::Warning(&Warning::from(text)));
@@ -414,6 +414,8 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
         Some(time) => made.push(("film.exposure", format!("{} s", time.time_s))),
         // Who states a time wants that one; who meters beside it is told that one of them has no effect.
         None if overrides.iter().any(|text| path_of(text) == "film.exposure") => {}
+        // Metered on request, photographs too, which are exposed as taken otherwise.
+        None if job.meter_each => made.push(("film.metering", "camera".to_owned())),
         None => made.push(("film.exposure", "metered".to_owned())),
     }
     if has_lens {

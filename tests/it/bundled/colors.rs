@@ -79,6 +79,12 @@ fn darker(tones: &Plane, block: &Block, dark: &str, light: &str, most: f64) -> F
     Found::below(&format!("{dark} over {light}"), a / b, most)
 }
 
+/// What a picture on paper shows over the black of the paper itself, a density of 2.1 under a flare of 0.5 %.
+fn over_paper_black(tones: &Plane) -> Plane {
+    const BLACK: f64 = (0.007_943_3 + 0.005) / 1.005;
+    tones.with(tones, |value, _| value - BLACK)
+}
+
 /// Grays fall from white to black: a positive.
 fn falling(tones: &Plane, block: &Block) -> Found {
     let steps = GRAYS.map(|name| tones.mean(block.window(name)));
@@ -217,7 +223,7 @@ pub const FILMS: &[Promise] = &[
             let last = response.iter().rposition(|value| *value > 0.01 * most).expect("it sees something");
             vec![
                 Found::within("ends at nm", t[0].scene.grid.wavelength_nm(last), 565.0, 5.0),
-                darker(&tones, &OF_CHART, "red", DARK_GRAY, 0.5),
+                darker(&over_paper_black(&tones), &OF_CHART, "red", DARK_GRAY, 0.5),
                 lighter(&tones, &OF_CHART, "blue", DARK_GRAY, 2.0),
                 reflected(&t[0], &OF_CHART, "D65"),
             ]

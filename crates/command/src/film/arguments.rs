@@ -112,13 +112,13 @@ pub(crate) struct FilmLamp {
 #[derive(Debug, Args)]
 #[command(
     long_about = "Develop a picture, or a sequence of them, on a film stock.\n\n\
-        The picture fills the frame, whatever its shape; its exposure is metered (--exposure shifts it); scatter, halation, \
-        adjacency, grain and the print, scan or projection are those of a scene with this stock. Without --lens no ray \
+        The picture fills the frame, whatever its shape. A photograph (a file of integers) is exposed as it was taken, light in \
+        floating point is metered as a camera does, and --exposure shifts either. Scatter, halation, adjacency, grain and the print, scan or projection are those of a scene with this stock. Without --lens no ray \
         is traced: each pixel of the picture exposes the same pixel of the film. With --lens the picture stands 3 m in \
         front of that lens, wide open unless --f-number says otherwise, and is rendered to 1 % of noise.\n\n\
         PICTURE is an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file. Several pictures, a folder, or a numbered sequence \
-        (plate.####.exr, plate.%04d.exr) are developed one by one, with other grain in each, metered on the first \
-        unless --meter each; -o is then a folder, or a sequence such as out/####.tiff. A picture that fails does not \
+        (plate.####.exr, plate.%04d.exr) are developed one by one, with other grain in each, exposed as the first is \
+        unless --meter each meters every one; -o is then a folder, or a sequence such as out/####.tiff. A picture that fails does not \
         stop the others. Existing files are replaced.\n\n\
         An .exr file holds the picture in linear light (R, G, B, the primaries of sRGB). --set 'output=[{kind: exr, holds: picture, \
         space: acescg}]' takes another space, --set output=[exr] the light that exposes the film, before any of this.\n\n\
@@ -202,7 +202,7 @@ pub(crate) enum Switch {
 /// The keys of a scene's film.
 #[derive(Debug, Args)]
 pub(crate) struct FilmKeys {
-    /// Stops by which the picture is exposed more than the meter says (+1, -0.5).
+    /// Stops by which the picture is exposed more than the meter says, or more than it was taken (+1, -0.5).
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     pub exposure: Option<String>,
     /// The speed that the meter is set to; the stock's if not given.
