@@ -5,6 +5,7 @@ mod bounds;
 mod deep;
 mod depth;
 mod edges;
+mod emitted;
 mod field;
 mod gamut;
 mod highlights;
