@@ -128,11 +128,10 @@ impl Print {
         let (mut left, mut right) = (gray_density, gray_density + 2.0 * paper.range);
         let above = |light: f64| of_light(light).picture(gray_density) > MID_GRAY;
         let is_between = above(left) && !above(right);
-        while is_between {
-            let middle = 0.5 * (left + right);
-            if middle <= left || middle >= right {
-                break;
-            }
+        // Until they are neighbors.
+        let between =
+            |left: f64, right: f64| Some(0.5 * (left + right)).filter(|middle| left < *middle && *middle < right);
+        while let Some(middle) = between(left, right).filter(|_| is_between) {
             if above(middle) {
                 left = middle;
             } else {
