@@ -7,8 +7,9 @@ Run from the root of the repository, after xtask/fit_film_library.py, with the u
 
 What is fitted: six inhibitions for each family of film_families.py, and a strength for each class in it.
 To what: of each film, printed or projected as usual, in the light that it is made for,
-  the hue that the eye sees of the 18 chromatic patches of the ColorChecker, those of sky, leaf and skins COUNT times, and beyond
-  WITHIN degrees more, of the films that people compare most (COMPARED) twice as much;
+  the hue that the eye sees of the 18 chromatic patches of the ColorChecker, those of sky, leaf, skins and the two oranges, which are wood,
+  brick and hair in photographs, COUNT times, and beyond WITHIN degrees (oranges 3 more) more, of the films that people compare most
+  (COMPARED) twice as much, and of 5207, whose bound is 2 less, eight times;
   the mean saturation that film_families.py has for the class;
   every number as near to 0 as that allows.
 """
@@ -29,11 +30,11 @@ import fit_film_library as grays  # noqa: E402
 import import_film as base  # noqa: E402
 
 PLACES = ((0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1))
-FAMILIAR = ("dark-skin", "light-skin", "blue-sky", "foliage")
+FAMILIAR = ("dark-skin", "light-skin", "blue-sky", "foliage", "orange", "orange-yellow")
 COMPARED = ("fuji-velvia-50", "kodak-ektar-100", "kodak-ektachrome-100d", "kodak-gold-200", "kodak-vision3-250d-5207", "kodak-portra-400",
             "fuji-pro-400h", "kodachrome-64")
 # Weights: of a turn of DEGREES, of how often familiar colors count, of a degree beyond WITHIN, of saturation, of a number.
-DEGREES, TURNED, COUNT, WITHIN, BEYOND, SATURATED, SPREAD = 8, 0.7, 3, 9, 1, 120, 1
+DEGREES, TURNED, COUNT, WITHIN, BEYOND, SATURATED, SPREAD = 8, 0.7, 2, 9, 1, 120, 1
 # Classes whose strength is 1.
 UNIT = ("portrait", "Kodachrome")
 
@@ -133,8 +134,9 @@ class Colors:
             sine = np.degrees((d[1] * u[0] - d[0] * u[1]) / max(np.hypot(*d), 1e-3))
             out.append(TURNED * (COUNT if name in FAMILIAR else 1) * sine / DEGREES)
             if name in FAMILIAR:
-                over = max(abs(turn(lab, eye)) - (WITHIN - 2 if "5207" in self.slug else WITHIN), 0)
-                out.append(BEYOND * (2 if self.slug in COMPARED else 1) * np.sign(sine) * over)
+                within = WITHIN + 3 if name.startswith("orange") else WITHIN
+                over = max(abs(turn(lab, eye)) - (within - 2 if "5207" in self.slug else within), 0)
+                out.append(BEYOND * (8 if "5207" in self.slug else 2 if self.slug in COMPARED else 1) * np.sign(sine) * over)
         out.append(SATURATED * (self.saturation(labs) - self.wanted))
         return np.array(out)
 
