@@ -235,12 +235,17 @@ pub(crate) struct OwnSteps {
 }
 
 impl OwnSteps {
-    /// `None` for frames that are too large.
+    /// Whether a frame is small enough.
+    pub(crate) fn suit([columns, rows]: [usize; 2], channels: usize) -> bool {
+        (columns + 1) * (rows + 1) * channels <= MOST_STEPS
+    }
+
+    /// `None` for frames that are too large, and where memory does not suffice.
     pub(crate) fn new(frame: [usize; 2], channels: usize, filters: Option<Arc<[u8]>>) -> Option<Self> {
-        let many = (frame[0] + 1) * (frame[1] + 1) * channels;
-        if many > MOST_STEPS {
+        if !Self::suit(frame, channels) {
             return None;
         }
+        let many = (frame[0] + 1) * (frame[1] + 1) * channels;
         let mut steps = Vec::new();
         steps.try_reserve_exact(many).ok()?;
         steps.resize(many, 0);

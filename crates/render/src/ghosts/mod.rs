@@ -32,7 +32,7 @@ use crate::forward::source_points;
 use crate::no_number::Step;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::sums::{ExactSums, OwnSteps, OwnSums, scale_for};
+use crate::sums::{ExactSums, OwnSums, scale_for};
 use crate::{Done, Workers};
 use aims::Aims;
 use glam::DVec3;
@@ -521,11 +521,7 @@ impl Estimator for Ghosts {
     fn scratch(&self) -> Scratch {
         let mut state = self.state(self.pipeline.scene.render.batch);
         match &self.spreading {
-            Some(spreading) => {
-                let size = self.pipeline.scene.imager.size();
-                let frame = [size.width_px, size.height_px].map(|side| side as usize);
-                state.steps = OwnSteps::new(frame, self.pipeline.recorded.len(), spreading.filters());
-            }
+            Some(spreading) => state.steps = spreading.steps(self),
             None => state.own = OwnSums::new(self.cells()),
         }
         Scratch(state)

@@ -1,21 +1,27 @@
 //! Light of ghosts as it lands: each ray's integers in shares that add up to them, over the pixels of its footprint.
 
-use super::footprint::{Box, Footprint, Ground, shared};
+use super::footprint::{Box, Footprint, Ground, MOST_HALF, shared};
 use super::probes::{self, Found};
 use super::width::{self, Width};
 use super::{Ghosts, Landed};
 use crate::error::RenderError;
 use crate::pipeline::{Pipeline, ThreadState};
-use crate::sums::ExactSums;
+use crate::sums::{ExactSums, OwnSteps};
 use crate::{Workers, veil};
 use spectra_core::batch::pixel_and_channel;
 use std::sync::Arc;
+
+/// How far footprints reach to each side at most in frames so large that each pixel's share is added by itself: as many additions as a
+/// ray's path takes time for.
+const LARGE_FRAME_HALF: f64 = 2.0;
 
 /// What spreading needs, found once for a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Spreading {
     ground: Ground,
     width: Width,
+    /// How far footprints reach to each side at most.
+    most_half: f64,
     /// Of each path by the zones of the source.
     nets: Vec<Vec<Found>>,
     /// Of a mosaic the channel of each pixel, by its place among those recorded.
@@ -31,7 +37,14 @@ impl Spreading {
         }
         let size = ghosts.pipeline.scene.imager.size();
         let (nets, filters) = (probes::nets(ghosts, workers)?, filters(&ghosts.pipeline));
-        Ok(Some(Self { ground: Ground::new(size.width_px, size.height_px), width, nets, filters }))
+        let is_small = OwnSteps::suit(frame(ghosts), ghosts.pipeline.recorded.len());
+        let most_half = if is_small { MOST_HALF } else { LARGE_FRAME_HALF };
+        Ok(Some(Self { ground: Ground::new(size.width_px, size.height_px), width, most_half, nets, filters }))
+    }
+
+    /// Sums of a thread for such shares; `None` where shares are added to those of all threads one by one.
+    pub fn steps(&self, ghosts: &Ghosts) -> Option<OwnSteps> {
+        OwnSteps::new(frame(ghosts), ghosts.pipeline.recorded.len(), self.filters.clone())
     }
 
     /// Adds what the rays of a batch of a path bring, in a sample of this number, to the cells of all paths and to those that begin with
@@ -44,7 +57,7 @@ impl Spreading {
         own_cells: Option<usize>,
         sums: &ExactSums,
     ) {
-        let half = self.width.of_sample(sample);
+        let half = self.width.of_sample(sample).min(self.most_half);
         let ThreadState { rays, integers, steps, .. } = state;
         let (mut shares, mut left) = (vec![0; integers.len()], vec![0; integers.len()]);
         for (i, (tag, landed)) in rays.tags().iter().zip(landed).enumerate() {
@@ -94,11 +107,12 @@ impl Spreading {
         self.ground.each_box(pixel, footprint, |pixels| add(pixels, shares));
         add(self.ground.one(pixel), left);
     }
+}
 
-    /// Of a mosaic the channel of each pixel.
-    pub fn filters(&self) -> Option<Arc<[u8]>> {
-        self.filters.clone()
-    }
+/// Columns and rows of the frame.
+fn frame(ghosts: &Ghosts) -> [usize; 2] {
+    let size = ghosts.pipeline.scene.imager.size();
+    [size.width_px, size.height_px].map(|side| side as usize)
 }
 
 /// Of a mosaic the channel of each pixel.
