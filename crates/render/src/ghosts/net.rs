@@ -16,9 +16,8 @@ const MESHES: f64 = 3.0;
 /// Edges are looked for so many meshes away, folds so many.
 const EDGES_WITHIN: i64 = 4;
 const FOLDS_WITHIN: i64 = 8;
-/// Rays up to this far beyond an edge, pixels, are taken to be at it: the source is no point, and the edge is elsewhere for them. Footprints of those
-/// farther beyond, and of rays through places that nobody knows, reach this far at most: such light is dim, and its edges are as wide as the source.
-const BEYOND: f64 = 6.0;
+/// Footprints of rays beyond an edge, and of rays through places that nobody knows, reach this far at most, pixels: the source is no point and light has many colors,
+/// so such edges are elsewhere for them, and as wide as that.
 const UNKNOWN: f64 = 6.0;
 /// Of the way to a fold a footprint covers this part.
 const OF_FOLD: f64 = 0.5;
@@ -109,13 +108,13 @@ impl Net {
         for (edge, line) in edges.iter_mut().zip(mesh.lines).filter(|(_, line)| *line != NONE) {
             let line = &self.lines[line as usize];
             let away = line.away(place);
-            if away < -BEYOND {
-                // An edge that is elsewhere for this ray.
-                return Footprint::new(half.min(UNKNOWN), [None; 2]);
+            if away < 0.0 {
+                // The edge is elsewhere for this ray. No light comes back over the one that is known, as none goes out over that.
+                return Footprint::new(half.min(-away).min(UNKNOWN), [None; 2]);
             }
             // Columns count the other way from x, rows the way of y.
             let ([x, y], [cos, sin]) = (line.out, turn);
-            *edge = Some(Edge { out: [x * cos + y * sin, y * cos - x * sin], away: away.max(0.0) });
+            *edge = Some(Edge { out: [x * cos + y * sin, y * cos - x * sin], away });
         }
         if let [Some(a), Some(b)] = edges
             && b.away < a.away
