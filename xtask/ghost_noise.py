@@ -31,6 +31,8 @@ SCENES = {"sun-biotar": (0.55, 1.0), "sun-zoom": (0.55, 1.0), "night-street": (0
 PATHS = 12
 SIDE = 16
 FAR = 8
+# Blocks with less light than this, of the median, are not looked at.
+DARK = 0.01
 COLORS = ("red", "green", "blue")
 
 
@@ -145,6 +147,9 @@ def report(program, scene, times):
     rows = blocks(many).shape[1]
     part = np.zeros(blocks(many).shape[1:3], bool)
     part[int(low * rows) : int(high * rows)] = True
+    # Where hardly any light comes there is nothing to be a part of.
+    light = blocks(many).mean(-1).min(0)
+    part &= light > DARK * np.median(light)
     edge = edges(many)
     print(f"{scene}: {part.sum()} blocks, {(part & edge).sum()} of them near edges")
     for name, image in (("footprint", ours), ("none", plain)):
