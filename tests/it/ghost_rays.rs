@@ -8,7 +8,7 @@ use spectra_render::{GhostRays, Renderer, Threads};
 use spectra_scene::Scene;
 use std::sync::Arc;
 
-/// The sun near the edge of the frame through a bare Biotar.
+/// The sun near the edge of the frame through a bare Biotar. The light of a ray stays in its pixel: footprints of few samples are as wide as these parts are.
 fn scene(pixels: [u32; 2], samples: u32) -> Scene {
     let [width, height] = pixels;
     let text = format!(
@@ -16,7 +16,7 @@ fn scene(pixels: [u32; 2], samples: u32) -> Scene {
          source: {{kind: sun, field: [18.5 deg, 11 deg], illuminance: 60000 lx, spectrum: 'blackbody:5400'}}\n\
          lens: {{file: zeiss-biotar-50-f1.4, f-number: 4, focus: infinity, coating: bare, aperture: {{shape: iris, blades: 8}}}}\n\
          imager: {{kind: xyz, width: 36, height: 24, resolution: [{width}, {height}]}}\n\
-         render: {{samples: {samples}, rays: 1000, reflections: {{order: 2}}}}\n"
+         render: {{samples: {samples}, rays: 1000, reflections: {{order: 2, spread: none}}}}\n"
     );
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scene.yaml");

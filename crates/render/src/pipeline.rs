@@ -2,7 +2,7 @@
 
 use crate::error::RenderError;
 use crate::response::Responses;
-use crate::sums::OwnSums;
+use crate::sums::{OwnSteps, OwnSums};
 use spectra_core::batch::Column;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
@@ -188,6 +188,8 @@ pub(crate) struct ThreadState {
     pub integers: Vec<Vec<i64>>,
     /// What was summed and not yet added to the sums of all threads, of an estimator that sums so.
     pub own: Option<OwnSums>,
+    /// The same of an estimator whose rays add to pixels in a row.
+    pub steps: Option<OwnSteps>,
     /// Rays that brought light to the imager.
     pub detected: u64,
 }
@@ -203,6 +205,7 @@ impl ThreadState {
             values: vec![0.0; capacity],
             integers: vec![vec![0; capacity]; pipeline.responses.channels()],
             own: None,
+            steps: None,
             detected: 0,
         }
     }

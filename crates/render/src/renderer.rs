@@ -490,9 +490,12 @@ impl Renderer {
             }
             if let Some(own) = &mut scratch.0.own {
                 own.give(&part.sums);
-                if part.sums.overflowed() {
-                    fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
-                }
+            }
+            if let Some(own) = &mut scratch.0.steps {
+                own.give(&part.sums);
+            }
+            if part.sums.overflowed() {
+                fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
             }
             let mut all = counted.lock().unwrap_or_else(PoisonError::into_inner);
             all.0.merge(&scratch.0.work.losses);

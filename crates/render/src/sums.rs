@@ -3,6 +3,7 @@
 use spectra_core::batch::pixel_and_channel;
 use std::hint::black_box;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 
 /// Bits given to the largest contribution that a pilot run saw. With 2^32 of them in one pixel the
@@ -117,6 +118,8 @@ impl ExactSums {
 /// Cells of which each thread sums by itself: 8 MB. A locked addition takes as long as twenty plain ones, but for larger frames both
 /// wait for memory.
 const MOST_OWN: usize = 1 << 20;
+/// The same where each ray adds to many cells: 64 MB.
+const MOST_STEPS: usize = 1 << 23;
 /// What a thread's own cell may hold before it goes to the shared one, which is below [`LIMIT`] then.
 const OWN_LIMIT: u64 = 1 << 60;
 
@@ -217,6 +220,90 @@ impl OwnSums {
     }
 }
 
+/// The sums of one thread where rays add the same to boxes of pixels: kept as steps from each pixel to the next, along rows and along
+/// columns, so that a box takes four additions a channel, however large it is.
+pub(crate) struct OwnSteps {
+    /// One more a row, and one more row, than there are pixels.
+    steps: Vec<i64>,
+    /// Columns, rows.
+    frame: [usize; 2],
+    channels: usize,
+    /// Of a mosaic the one channel that each pixel has.
+    filters: Option<Arc<[u8]>>,
+    /// What any cell got at most since they were given away last.
+    most: u64,
+}
+
+impl OwnSteps {
+    /// Whether a frame is small enough.
+    pub(crate) fn suit([columns, rows]: [usize; 2], channels: usize) -> bool {
+        (columns + 1) * (rows + 1) * channels <= MOST_STEPS
+    }
+
+    /// `None` for frames that are too large, and where memory does not suffice.
+    pub(crate) fn new(frame: [usize; 2], channels: usize, filters: Option<Arc<[u8]>>) -> Option<Self> {
+        if !Self::suit(frame, channels) {
+            return None;
+        }
+        let many = (frame[0] + 1) * (frame[1] + 1) * channels;
+        let mut steps = Vec::new();
+        steps.try_reserve_exact(many).ok()?;
+        steps.resize(many, 0);
+        Some(Self { steps, frame, channels, filters, most: 0 })
+    }
+
+    /// Makes room for a ray that brings so much at most to any cell.
+    #[inline]
+    pub(crate) fn make_room(&mut self, most: u64, sums: &ExactSums) {
+        self.most += most;
+        if self.most >= OWN_LIMIT {
+            self.give(sums);
+            self.most = most;
+        }
+    }
+
+    /// Adds the same to each pixel of a box, from one column and row to another, one integer a channel.
+    #[inline]
+    pub(crate) fn add_box(&mut self, [[left, right], [low, high]]: [[usize; 2]; 2], shares: &[i64]) {
+        let row = (self.frame[0] + 1) * self.channels;
+        for (first, sign) in [(low * row, 1), ((high + 1) * row, -1)] {
+            for (column, sign) in [(left, sign), (right + 1, -sign)] {
+                let at = first + column * self.channels;
+                self.steps[at..at + self.channels]
+                    .iter_mut()
+                    .zip(shares)
+                    .for_each(|(step, share)| *step += sign * share);
+            }
+        }
+    }
+
+    /// Gives all of it to the sums of all threads; on a mosaic each pixel has what its own channel got.
+    pub(crate) fn give(&mut self, sums: &ExactSums) {
+        let [columns, rows] = self.frame;
+        let (row, channels) = ((columns + 1) * self.channels, self.channels);
+        // Steps along a row, of all rows so far.
+        let mut along = vec![0_i64; row];
+        for (at, steps) in self.steps.chunks_exact_mut(row).enumerate() {
+            along.iter_mut().zip(steps).for_each(|(along, step)| *along += std::mem::take(step));
+            if at == rows {
+                break;
+            }
+            for channel in 0..channels {
+                let mut value = 0;
+                for column in 0..columns {
+                    value += along[column * channels + channel];
+                    let pixel = at * columns + column;
+                    let has = self.filters.as_ref().is_none_or(|filters| usize::from(filters[pixel]) == channel);
+                    if value != 0 && has {
+                        sums.merge(pixel * channels + channel, value);
+                    }
+                }
+            }
+        }
+        self.most = 0;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -295,6 +382,36 @@ mod tests {
         assert!(!far.overflowed());
         own.add(&[0; 2 * MOST_RAYS], from_ref(&largest), &[0], &far);
         assert!(far.overflowed());
+    }
+
+    #[test]
+    fn boxes_of_pixels_are_kept_as_steps() {
+        let (frame, channels) = ([9, 7], 3);
+        let filters: Arc<[u8]> = (0..63).map(|pixel| (pixel % 9 % 2 + pixel / 9 % 2) as u8).collect();
+        for filters in [None, Some(filters)] {
+            let [got, want] = [0, 0].map(|_| ExactSums::new(63 * channels).expect("memory"));
+            let mut own = OwnSteps::new(frame, channels, filters.clone()).expect("small");
+            for k in 0..200_usize {
+                let [left, low] = [k * 5 % 9, k * 3 % 7];
+                let pixels = [[left, (left + k % 4).min(8)], [low, (low + k % 3).min(6)]];
+                let shares = [k as i64, -(k as i64), 1 << 40];
+                own.make_room(1 << 58, &got);
+                own.add_box(pixels, &shares);
+                for pixel in (0..63).filter(|p| {
+                    (pixels[0][0]..=pixels[0][1]).contains(&(p % 9)) && (pixels[1][0]..=pixels[1][1]).contains(&(p / 9))
+                }) {
+                    let has =
+                        |channel: usize| filters.as_ref().is_none_or(|filters| usize::from(filters[pixel]) == channel);
+                    (0..channels)
+                        .filter(|channel| has(*channel))
+                        .for_each(|channel| want.add(pixel * channels + channel, shares[channel]));
+                }
+            }
+            own.give(&got);
+            own.give(&got);
+            assert!((0..63 * channels).all(|cell| got.get(cell) == want.get(cell)) && !got.overflowed());
+        }
+        assert!(OwnSteps::new([MOST_STEPS, 1], 1, None).is_none());
     }
 
     fn tag(pixel: u32, only: Option<u32>) -> u32 {

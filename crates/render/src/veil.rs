@@ -481,6 +481,12 @@ fn interior(pipeline: &Pipeline, frame: &Frame, matter: StrayMatter) -> Result<I
     Ok(interior.map_err(|e| RenderError::Glare(e.to_string()))?.with_imager_at(frame.middle))
 }
 
+/// The channel that each pixel of a mosaic has; `None` of an imager whose pixels have all of them.
+pub(crate) fn filters(pipeline: &Pipeline) -> Option<Vec<u8>> {
+    let gains = gains(pipeline);
+    gains.iter().any(|gain| gain.only != 0).then(|| gains.iter().map(|gain| gain.only.saturating_sub(1)).collect())
+}
+
 /// What each pixel makes of light along the normal in the middle of the band.
 fn gains(pipeline: &Pipeline) -> Vec<PixelGain> {
     const BATCH: usize = 4096;

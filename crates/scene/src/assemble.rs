@@ -9,8 +9,8 @@ use crate::lens_section::{LensSection, SetLens, held_lens, size_hint};
 use crate::resources::read_yaml;
 use crate::said::Said;
 use crate::{
-    ConePattern, Direction, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, doubts, films, lamps,
-    landing, language, output, responses, sight, yaml,
+    ConePattern, Direction, GhostSpread, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, doubts,
+    films, lamps, landing, language, output, responses, sight, yaml,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -196,6 +196,10 @@ struct ReflectionsSection {
     /// Follow the polarization that light gets at each surface: slower, and truer by some percent at steep angles. Not if absent.
     #[serde(default)]
     polarized: bool,
+    /// How the light of a ray lands: spread over its footprint, the part of the frame that it stands for, so that ghosts are smooth; or all
+    /// of it in the pixel that it meets (`none`), noisier, and the reference that footprints are tested by. `footprint` if absent.
+    #[serde(default)]
+    spread: GhostSpread,
 }
 
 /// Fresnel's reflectance of gelatin of index 1.52 along the normal.
@@ -558,6 +562,7 @@ fn render_settings(
             imager: s.reflections.imager.map_or(GELATIN, Ratio::number),
             imager_stated: s.reflections.imager.is_some(),
             polarized: s.reflections.polarized,
+            spread: s.reflections.spread,
         },
         glare,
         diffraction: s.diffraction,

@@ -46,7 +46,8 @@ pub use negatives::Negatives;
 pub use output::{Holds, Output, OutputEntry, Told};
 pub use resources::{FileResources, NO_LENS, NO_LENS_F_NUMBER};
 pub use scene::{
-    ConePattern, Direction, FilmTime, Lights, MID_GRAY, NumberFamily, Reflections, RenderSettings, Scene, SceneFilm,
+    ConePattern, Direction, FilmTime, GhostSpread, Lights, MID_GRAY, NumberFamily, Reflections, RenderSettings, Scene,
+    SceneFilm,
 };
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};
 pub use shot::{Developed, Shot};

@@ -58,6 +58,20 @@ pub struct Reflections {
     pub imager_stated: bool,
     /// Whether light is polarized by what it passes and is reflected by.
     pub polarized: bool,
+    /// How much of the frame the light of a ray is spread over.
+    pub spread: GhostSpread,
+}
+
+/// How the light of a ray that was reflected lands.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(inline)]
+pub enum GhostSpread {
+    /// Over the part of the frame that it stands for.
+    #[default]
+    Footprint,
+    /// In the one pixel that it meets.
+    None,
 }
 
 /// How forward rays are spread over the front of the lens.

@@ -1,7 +1,9 @@
 //! Where on the front of the lens the rays of a batch go.
 
+use super::Landed;
 use super::density::ABREAST;
 use super::guide::{Aim, Guide};
+use super::probes::azimuth;
 use glam::DVec3;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::{Loss, RayBatch};
@@ -13,21 +15,48 @@ pub(super) struct Aims {
     zones: Vec<usize>,
     places: [Vec<f64>; 2],
     densities: Vec<f64>,
+    /// Where around the axis rays begin, where that was noted.
+    azimuths: Vec<[f64; 2]>,
 }
 
 impl Aims {
     /// Drawn by two numbers for each ray, by the guide of its zone.
     pub fn drawn(guides: &[Guide], zones: Vec<usize>, numbers: [&[f64]; 2], isa: Isa) -> Self {
         let len = zones.len();
-        let mut own = Self { zones, places: [vec![0.0; len], vec![0.0; len]], densities: vec![0.0; len] };
+        let mut own =
+            Self { zones, places: [vec![0.0; len], vec![0.0; len]], densities: vec![0.0; len], azimuths: Vec::new() };
         isa.run(Draw { guides, numbers, aims: &mut own });
         own
+    }
+
+    /// At these places.
+    pub fn at(places: &[[f64; 2]]) -> Self {
+        let axis = |axis: usize| places.iter().map(|place| place[axis]).collect();
+        let len = places.len();
+        Self { zones: vec![0; len], places: [axis(0), axis(1)], densities: vec![0.25; len], azimuths: Vec::new() }
+    }
+
+    /// Where a ray goes in: its zone, its place, and where around the axis its source lies, if it was noted.
+    pub fn landed(&self, ray: usize) -> Landed {
+        let azimuth = self.azimuths.get(ray).copied().unwrap_or([0.0, 1.0]);
+        Landed { zone: self.zones[ray], place: [self.places[0][ray], self.places[1][ray]], azimuth }
+    }
+
+    /// Notes where around the axis rays begin.
+    pub fn note_azimuths(&mut self, rays: &RayBatch) {
+        let [x, y, _] = rays.positions();
+        self.azimuths = x.iter().zip(y).map(|(x, y)| azimuth(*x, *y)).collect();
     }
 
     /// Of light that sets its directions itself: its own numbers.
     pub fn of_numbers([a, b]: [&[f64]; 2]) -> Self {
         let place = |numbers: &[f64]| numbers.iter().map(|number| 2.0 * number - 1.0).collect();
-        Self { zones: vec![0; a.len()], places: [place(a), place(b)], densities: vec![0.25; a.len()] }
+        Self {
+            zones: vec![0; a.len()],
+            places: [place(a), place(b)],
+            densities: vec![0.25; a.len()],
+            azimuths: Vec::new(),
+        }
     }
 
     /// The zone and the aim of each ray.

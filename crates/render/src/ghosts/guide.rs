@@ -51,7 +51,7 @@ impl Part {
 
     /// The place that the tree counts so.
     #[inline(always)]
-    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ([low_x, low_y], [high_x, high_y]) = (self.low, self.high);
         [low_x + (high_x - low_x) * x, low_y + (high_y - low_y) * y]
     }

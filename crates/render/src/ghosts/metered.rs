@@ -14,7 +14,8 @@ impl Ghosts {
     pub(super) fn of_meters(&self, workers: &dyn Workers) -> Option<Result<Self, RenderError>> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         let numbers = self.of_seed(pipeline.seed ^ meter::SEED);
-        let own = Self { pipeline, plan: Arc::new(self.plan.together()), numbers, scale: 1.0 };
+        // Meters see means, which footprints leave as they are.
+        let own = Self { pipeline, plan: Arc::new(self.plan.together()), spreading: None, numbers, scale: 1.0 };
         Some(own.pilot_scale(workers).map(|scale| Self { scale, ..own }))
     }
 

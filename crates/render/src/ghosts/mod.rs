@@ -8,14 +8,19 @@
 mod account;
 mod aims;
 mod density;
+mod footprint;
 mod guide;
 mod metered;
+mod net;
 mod pilot;
+mod probes;
 mod seen;
 mod shares;
 mod sight;
 mod spread;
+mod spreading;
 mod tree;
+mod width;
 mod zones;
 
 pub use account::{GhostPath, LightLedger};
@@ -34,10 +39,13 @@ use glam::DVec3;
 use guide::Guide;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
+use spectra_core::loss::ALIVE;
 use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Receive};
 use spectra_core::workers::each_of;
 use spectra_lens::{FrontOpening, Indices, Path, Route, Tracer, Travel};
+use spectra_scene::GhostSpread;
+use spreading::Spreading;
 use std::ops::Range;
 use std::sync::Arc;
 use zones::Zones;
@@ -119,9 +127,20 @@ struct Plan {
     apart: Vec<Vec<usize>>,
 }
 
+/// Where a ray that landed went in: its zone, and its place on the front.
+#[derive(Clone, Copy, Debug)]
+struct Landed {
+    zone: usize,
+    place: [f64; 2],
+    /// Where around the axis its source lies: a unit vector.
+    azimuth: [f64; 2],
+}
+
 pub(crate) struct Ghosts {
     pipeline: Arc<Pipeline>,
     plan: Arc<Plan>,
+    /// `None` where all light of a ray stays in the pixel that it meets.
+    spreading: Option<Arc<Spreading>>,
     numbers: Numbers,
     scale: f64,
 }
@@ -178,7 +197,8 @@ impl Ghosts {
         let ways: Vec<Way> = Path::ghosts(count, &surfaces, 2).into_iter().map(&way).collect();
         let zones = zones.clone();
         let plan = Plan::new(opening, zones, ways);
-        let mut own = Self { pipeline: Arc::clone(&pipeline), plan: Arc::new(plan), numbers, scale: 1.0 };
+        let (pipeline, plan) = (Arc::clone(&pipeline), Arc::new(plan));
+        let mut own = Self { pipeline, plan, spreading: None, numbers, scale: 1.0 };
         let order = reflections.order.unwrap_or(2);
         let mut ledger = None;
         if order > 2 {
@@ -207,6 +227,9 @@ impl Ghosts {
         let a_sample = own.rays_a_sample(matters, found.brightest);
         own.plan = Arc::new(own.shared_out(found.ways, a_sample, ledger));
         own.scale = own.pilot_scale(workers)?;
+        if reflections.spread == GhostSpread::Footprint {
+            own.spreading = Spreading::of(&own, workers)?.map(Arc::new);
+        }
         own.numbers = own.of_seed(own.pipeline.seed);
         Ok(Some(own))
     }
@@ -263,7 +286,10 @@ impl Ghosts {
         let [x, y, z] = rays.positions();
         let zone = |i: usize| self.plan.zones.of(DVec3::new(x[i], y[i], z[i])).min(guides.len() - 1);
         let zones = if guides.len() == 1 { vec![0; x.len()] } else { (0..x.len()).map(zone).collect() };
-        let aims = Aims::drawn(guides, zones, numbers, self.pipeline.isa);
+        let mut aims = Aims::drawn(guides, zones, numbers, self.pipeline.isa);
+        if self.spreading.is_some() {
+            aims.note_azimuths(rays);
+        }
         aims.send(rays, *opening, self.pipeline.isa);
         aims
     }
@@ -275,41 +301,48 @@ impl Ghosts {
         guides: &[Guide],
         span: (u64, u64, usize),
         mut look: impl FnMut(Step, &RayBatch),
-    ) {
+    ) -> Aims {
         self.place(state, span, &mut look);
         let [.., a, b] = &state.numbers;
-        self.aim(&mut state.rays, guides, [a, b].map(|numbers| numbers.slice(span.2)));
+        let aims = self.aim(&mut state.rays, guides, [a, b].map(|numbers| numbers.slice(span.2)));
         if self.plan.opening.is_some() {
             look(Step::Pupil, &state.rays);
         }
         self.emit().radiate(&mut state.rays, self.pipeline.isa);
         look(Step::Source, &state.rays);
+        aims
     }
 
-    /// From the front to the pixels.
-    fn finish(&self, state: &mut ThreadState, route: &Route, mut look: impl FnMut(Step, &RayBatch)) {
+    /// From the front to the pixels. The number of each ray of the batch that it was.
+    fn finish(&self, state: &mut ThreadState, route: &Route, mut look: impl FnMut(Step, &RayBatch)) -> Vec<u32> {
         let isa = self.pipeline.isa;
+        (0..).zip(state.rays.columns_mut().tag).for_each(|(number, tag)| *tag = number);
         self.pipeline.tracer.follow(route, &mut state.rays, &mut state.work);
+        let numbers = state.rays.tags().to_vec();
         look(Step::Lens, &state.rays);
         state.rays.set_stage(StageKey::IMAGER);
         self.receive().receive(&mut state.rays, isa);
         look(Step::Imager, &state.rays);
         state.settle(isa);
+        numbers
     }
 
-    /// Traces rays `first .. first + len` of a path; what arrived is left in the batch, pixels in the tags.
+    /// Traces rays `first .. first + len` of a path; what arrived is left in the batch, pixels in the tags. Where each of them went in.
     fn batch(
         &self,
         state: &mut ThreadState,
         at: usize,
         (first, len): (u64, usize),
         mut look: impl FnMut(Step, &RayBatch),
-    ) {
+    ) -> Vec<Landed> {
         let way = &self.plan.ways[at];
-        self.start(state, &way.guides, (at as u64 + 1, first, len), &mut look);
-        self.finish(state, &way.route, &mut look);
+        let aims = self.start(state, &way.guides, (at as u64 + 1, first, len), &mut look);
+        let numbers = self.finish(state, &way.route, &mut look);
+        let alive = numbers.iter().zip(state.rays.states()).filter(|(_, state)| **state == ALIVE);
+        let landed = alive.map(|(number, _)| aims.landed(*number as usize)).collect();
         state.rays.compact();
         state.rays.weighing().weight.iter_mut().for_each(|weight| *weight *= way.boost);
+        landed
     }
 
     /// What each ray of a batch brings to each channel, ray by ray.
@@ -409,11 +442,16 @@ impl Ghosts {
         for (at, way) in self.plan.ways.iter().enumerate() {
             let all = block * way.rays..(block + 1) * way.rays;
             for (first, len) in spans(all, state.rays.capacity()) {
-                self.batch(state, at, (first, len), |_, _| {});
+                let landed = self.batch(state, at, (first, len), |_, _| {});
                 if !state.contributions(&self.pipeline, self.scale) {
                     let (mut blame, mut again) = (Blame::default(), self.state(state.rays.capacity()));
                     self.batch(&mut again, at, (first, len), |step, rays| blame.look(step, rays));
                     return Unit { rays, error: Some(blame.error(&self.pipeline, &mut again, self.scale)) };
+                }
+                rays += len as u64;
+                if let Some(spreading) = &self.spreading {
+                    spreading.add(state, (at, block / self.plan.blocks_a_sample), &landed, way.own_cells, sums);
+                    continue;
                 }
                 let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
                 match &mut state.own {
@@ -423,7 +461,6 @@ impl Ghosts {
                 if let Some(first) = way.own_cells {
                     sums.add_rays(first, tags, &state.integers, recorded);
                 }
-                rays += len as u64;
             }
         }
         Unit { rays, error: None }
@@ -469,7 +506,8 @@ impl Estimator for Ghosts {
 
     fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
         let (pipeline, plan) = (Arc::new(self.pipeline.of_seed(picture)), self.plan.clone());
-        Box::new(Self { pipeline, plan, numbers: self.of_seed(seed), scale: self.scale })
+        let spreading = self.spreading.clone();
+        Box::new(Self { pipeline, plan, spreading, numbers: self.of_seed(seed), scale: self.scale })
     }
 
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
@@ -482,7 +520,10 @@ impl Estimator for Ghosts {
 
     fn scratch(&self) -> Scratch {
         let mut state = self.state(self.pipeline.scene.render.batch);
-        state.own = OwnSums::new(self.cells());
+        match &self.spreading {
+            Some(spreading) => state.steps = spreading.steps(self),
+            None => state.own = OwnSums::new(self.cells()),
+        }
         Scratch(state)
     }
 

@@ -44,6 +44,23 @@ impl Zones {
         self.rings * self.sectors
     }
 
+    /// Of some points, for each zone one in its middle, if any of them lies in it.
+    pub fn middles(&self, points: &[DVec3]) -> Vec<Option<DVec3>> {
+        let unit = |point: &DVec3| (*point - self.eye).normalize_or(DVec3::NEG_Z);
+        // Around the axis all places of a ring are alike.
+        let turned = |point: &DVec3| {
+            let unit = unit(point);
+            if self.rings > 1 && self.sectors == 1 { DVec3::new(unit.truncate().length(), 0.0, unit.z) } else { unit }
+        };
+        let middle = |zone: usize| {
+            let own = || points.iter().filter(move |point| self.of(**point) == zone);
+            let mean = own().map(turned).sum::<DVec3>() / own().count().max(1) as f64;
+            let away = |point: &DVec3| turned(point).distance_squared(mean);
+            own().min_by(|a, b| away(a).total_cmp(&away(b))).copied()
+        };
+        (0..self.count()).map(middle).collect()
+    }
+
     /// That of a point.
     #[inline]
     pub fn of(&self, point: DVec3) -> usize {

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""How smooth ghosts are, and how true: footprints against rays that add to one pixel each, at the defaults of three scenes.
+
+    python3 xtask/ghost_noise.py target/release/spectra [--times 30] [SCENE ...]
+
+Needs numpy. Of each scene the layer of the ghosts alone is rendered with `render.reflections.spread` `footprint` and `none`, and with
+`none` and so many times the samples (the reference, nearly all of the time). Printed, in red, green, blue:
+
+noise      standard deviation about the plane fitted to each block of 16 x 16 pixels, as a part of the block's mean: the median of blocks
+           over 8 pixels from edges and caustics, and the 90th percentile
+means      block means of footprints over those of the reference, less 1: root of the mean square, and the part of blocks within 2 %;
+           beside it the same of `none` by as many rays
+totals     light of each of the strongest paths with more than 1 % of the ghosts, footprints over `none` by the same rays, less 1
+edges      blur that best turns the reference into the footprints in blocks with edges: sigma of a Gaussian, pixels
+seconds    of processor time, both ways, without layers of single paths
+"""
+
+import argparse
+import resource
+import struct
+import subprocess
+import tempfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+# The part of the frame that is looked at: grass below the sky, sky above the street; the whole of the zoom's frame has grass or sky.
+SCENES = {"sun-biotar": (0.55, 1.0), "sun-zoom": (0.55, 1.0), "night-street": (0.0, 0.4)}
+PATHS = 12
+SIDE = 16
+FAR = 8
+# Blocks with less light than this, of the median, are not looked at.
+DARK = 0.01
+COLORS = ("red", "green", "blue")
+
+
+def layers(path):
+    """Channels of an EXR of scan lines of 32-bit floats, uncompressed or ZIP."""
+    data = path.read_bytes()
+    at, header = 8, {}
+    while data[at]:
+        end = data.index(0, at)
+        name, at = data[at:end].decode(), end + 1
+        at = data.index(0, at) + 1
+        (size,) = struct.unpack_from("<i", data, at)
+        header[name] = data[at + 4 : at + 4 + size]
+        at += 4 + size
+    at += 1
+    names, k = [], 0
+    while header["channels"][k]:
+        end = header["channels"].index(0, k)
+        names.append(header["channels"][k:end].decode())
+        k = end + 17
+    x0, y0, x1, y1 = struct.unpack("<4i", header["dataWindow"])
+    width, height = x1 - x0 + 1, y1 - y0 + 1
+    lines = {0: 1, 2: 1, 3: 16}[header["compression"][0]]
+    rows = []
+    for offset in struct.unpack_from(f"<{-(-height // lines)}Q", data, at):
+        y, size = struct.unpack_from("<ii", data, offset)
+        raw = data[offset + 8 : offset + 8 + size]
+        full = min(lines, y1 - y + 1) * width * len(names) * 4
+        if size < full:
+            steps = np.frombuffer(zlib.decompress(raw), np.uint8).astype(np.int64)
+            steps[1:] -= 128
+            plain = (np.cumsum(steps) & 255).astype(np.uint8)
+            half = (full + 1) // 2
+            joined = np.empty(full, np.uint8)
+            joined[0::2], joined[1::2] = plain[:half], plain[half:]
+            raw = joined.tobytes()
+        rows.append(np.frombuffer(raw, "<f4").reshape(-1, len(names), width))
+    planes = np.concatenate(rows).astype(float)
+    return {name: planes[:, at] for at, name in enumerate(names)}
+
+
+def rendered(program, scene, folder, *sets, paths=PATHS):
+    """The layers of a scene, and the processor time."""
+    output = f"output=[{{kind: exr, layers: [direct, ghosts], ghost-paths: {paths}}}]"
+    command = [program, "run", scene, "--set", "sweep=null", "--set", output, "-o", folder]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command + [a for s in sets for a in ("--set", s)], cwd=ROOT, check=True, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    (path,) = Path(folder).glob("*.exr")
+    return layers(path), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def ghosts(planes):
+    """Light of all ghosts, one plane a color, and that of each path."""
+    paths = sorted({name.rsplit(".", 1)[0] for name in planes if "ghost" in name.lower()})
+    each = {path: np.stack([planes[f"{path}.{color}"] for color in COLORS]) for path in paths}
+    whole = each.pop("ghosts") if "ghosts" in each else sum(each.values())
+    return whole, each
+
+
+def blocks(image):
+    """Of each whole block of an image, color by color: its pixels."""
+    colors, height, width = image.shape
+    rows, columns = height // SIDE, width // SIDE
+    cut = image[:, : rows * SIDE, : columns * SIDE].reshape(colors, rows, SIDE, columns, SIDE)
+    return cut.transpose(0, 1, 3, 2, 4).reshape(colors, rows, columns, SIDE * SIDE)
+
+
+def noise(image):
+    """Standard deviation about a plane over the mean, block by block."""
+    y, x = np.mgrid[:SIDE, :SIDE] - (SIDE - 1) / 2
+    plane, _ = np.linalg.qr(np.stack([np.ones(SIDE * SIDE), x.ravel(), y.ravel()], 1))
+    pixels = blocks(image)
+    left = pixels - (pixels @ plane) @ plane.T
+    return left.std(-1) / np.maximum(pixels.mean(-1), 1e-30)
+
+
+def blurred(image, sigma):
+    if sigma == 0:
+        return image
+    reach = int(4 * sigma) + 1
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    weights /= weights.sum()
+    for axis in (1, 2):
+        padded = np.pad(image, [(0, 0)] + [(reach, reach) if a == axis else (0, 0) for a in (1, 2)], "symmetric")
+        image = sum(w * np.take(padded, range(k, k + image.shape[axis]), axis) for k, w in enumerate(weights))
+    return image
+
+
+def edges(reference):
+    """Blocks that an edge or a caustic runs through or near: the reference, slightly blurred, bends there by more than its noise."""
+    smooth = blurred(reference, 2.0).sum(0)
+    step = np.maximum(np.abs(np.gradient(smooth, axis=0)), np.abs(np.gradient(smooth, axis=1)))
+    is_edge = step > 0.04 * np.maximum(smooth, 1e-30)
+    near = blurred(is_edge[None].astype(float), FAR / 2)[0] > 0.02
+    return blocks(near[None].astype(float))[0].max(-1) > 0
+
+
+def shown(values, digits=2):
+    return ", ".join(f"{100 * v:.{digits}f} %" for v in values)
+
+
+def report(program, scene, times):
+    low, high = SCENES[scene]
+    samples = next(int(w.split(":")[1].strip(" ,}")) for w in (ROOT / f"scenes/{scene}.yaml").read_text().split("{") if w.startswith("samples"))
+    with tempfile.TemporaryDirectory() as a, tempfile.TemporaryDirectory() as b, tempfile.TemporaryDirectory() as c:
+        none = "render.reflections.spread=none"
+        seconds, before = (rendered(program, scene, c, *sets, paths=0)[1] for sets in ([], [none]))
+        (ours, _), (plain, _) = rendered(program, scene, a), rendered(program, scene, b, none)
+        many, _ = rendered(program, scene, c, none, f"render.samples={times * samples}")
+    (ours, by_path), (plain, plain_paths), (many, _) = map(ghosts, (ours, plain, many))
+    rows = blocks(many).shape[1]
+    part = np.zeros(blocks(many).shape[1:3], bool)
+    part[int(low * rows) : int(high * rows)] = True
+    # Where hardly any light comes there is nothing to be a part of.
+    light = blocks(many).mean(-1).min(0)
+    part &= light > DARK * np.median(light)
+    edge = edges(many)
+    print(f"{scene}: {part.sum()} blocks, {(part & edge).sum()} of them near edges")
+    for name, image in (("footprint", ours), ("none", plain)):
+        found = noise(image)[:, part & ~edge]
+        print(f"  noise   {name}: {shown(np.median(found, 1))}; 90th percentile {shown(np.percentile(found, 90, 1))}")
+    want = blocks(many).mean(-1)[:, part]
+    for name, image in (("footprint", ours), ("none", plain)):
+        apart = blocks(image).mean(-1)[:, part] / np.maximum(want, 1e-30) - 1
+        within = (np.abs(apart) < 0.02).mean(1)
+        print(f"  means   {name}: {shown(np.sqrt((apart**2).mean(1)))}; within 2 %: {shown(within, 0)}; mean {shown(apart.mean(1))}")
+    share = plain.sum()
+    for path, light in by_path.items():
+        total = plain_paths[path].sum((1, 2))
+        if total.sum() > 0.01 * share:
+            print(f"  totals  {path}: {shown(light.sum((1, 2)) / total - 1, 5)}")
+    where = np.kron(edge & part, np.ones((SIDE, SIDE), bool))
+    cut = lambda image: image[:, : where.shape[0], : where.shape[1]][:, where]
+    sigmas = np.arange(0, 4.1, 0.25)
+    errors = [((cut(blurred(many, s)) - cut(ours)) ** 2).sum() for s in sigmas]
+    print(f"  edges   blurred by {sigmas[int(np.argmin(errors))]:.2f} pixels")
+    print(f"  seconds {seconds:.1f}, before {before:.1f}: {seconds / before:.2f}", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("scenes", nargs="*", default=list(SCENES))
+    parser.add_argument("--times", type=int, default=30)
+    chosen = parser.parse_args()
+    for scene in chosen.scenes or SCENES:
+        report(str(Path(chosen.program).resolve()), scene, chosen.times)
+
+
+main()
