@@ -2,6 +2,7 @@
 
 use crate::error::RenderError;
 use crate::response::Responses;
+use crate::spots::Before;
 use crate::sums::OwnSums;
 use spectra_core::batch::Column;
 use spectra_core::isa::Vectorized;
@@ -188,6 +189,8 @@ pub(crate) struct ThreadState {
     pub integers: Vec<Vec<i64>>,
     /// What was summed and not yet added to the sums of all threads, of an estimator that sums so.
     pub own: Option<OwnSums>,
+    /// Rays as they came from the lens, of an estimator that spreads their light.
+    pub before: Before,
     /// Rays that brought light to the imager.
     pub detected: u64,
 }
@@ -203,6 +206,7 @@ impl ThreadState {
             values: vec![0.0; capacity],
             integers: vec![vec![0; capacity]; pipeline.responses.channels()],
             own: None,
+            before: Before::default(),
             detected: 0,
         }
     }

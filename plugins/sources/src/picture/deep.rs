@@ -12,6 +12,7 @@ use super::backdrop::Backdrop;
 use super::field::{HeightField, Hit};
 use super::map::PictureMap;
 use super::narrowing::{Line, Lines, SIDE_BY_SIDE};
+// A circle with `starts.rs`: what rays start on is found once for a picture, which keeps it, and they start on that picture.
 use super::starts::{MOST_CELLS, Starts};
 use crate::flat::Texture;
 use crate::halves::Half;
