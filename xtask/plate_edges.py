@@ -187,4 +187,5 @@ def main():
         threads(program, folder, x, y)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -192,3 +192,35 @@ fn bits_are_the_same_however_it_runs() {
         assert_eq!(run(2, isa, "100"), want);
     }
 }
+
+/// Lamps of one pixel on black, far out of focus: each ray's light is spread over the image of its lamp. The disk is the one of rays that
+/// start anywhere in the lamp, and noise between two seeds is at most that of six times as many of those.
+#[test]
+fn lamps_of_one_pixel_are_spread_over_their_images() {
+    let common = [
+        "source.width=5.9 m",
+        "imager={kind: xyz, width: 4 mm, height: 4 mm, shift: [1.5 mm, 0.4 mm], resolution: 60}",
+        "render.reflections.order=0",
+    ];
+    let of = |direction: &str, rays: &str| {
+        let settings: Vec<&str> = common.iter().copied().chain([direction, rays]).collect();
+        let scene = statistics::load(&crate::common::repository("scenes/onion-rings.yaml"), &settings);
+        let renderer = ready(scene);
+        let runs = [5, 6].map(|seed| rendered(&renderer.reseeded(seed)));
+        let [a, b] = runs.each_ref().map(statistics::pixels);
+        let lit = |i: &usize| a[*i] + b[*i] > 0.5 * (a[60 * 30 + 30] + b[60 * 30 + 30]);
+        let lit: Vec<usize> = (0..a.len()).filter(lit).collect();
+        let noise = lit.iter().map(|i| ((a[*i] - b[*i]) / (a[*i] + b[*i])).powi(2)).sum::<f64>() / lit.len() as f64;
+        let [a, b] = runs.each_ref().map(|run| statistics::regions(run, 2, 2));
+        let means: Vec<f64> = a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect();
+        ((2.0 * noise).sqrt(), means)
+    };
+    let (spread, means) = of("render.direction=forward", "render.rays=400000");
+    let (plain, wanted) = of("render.direction=both", "render.rays=2400000");
+    println!("noise {spread:.4}, {plain:.4}; {means:?} {wanted:?}");
+    assert!(spread < plain, "noise {spread} and {plain}");
+    let all = wanted.iter().sum::<f64>() / wanted.len() as f64;
+    for (mean, wanted) in means.iter().zip(&wanted) {
+        assert!((mean - wanted).abs() < 0.025 * all, "{mean} and {wanted} lx");
+    }
+}

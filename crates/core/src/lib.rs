@@ -37,4 +37,4 @@ pub use batch::RayBatch;
 pub use glam;
 pub use isa::Isa;
 pub use loss::{Loss, LossCounts};
-pub use spectra_numerics::{isa, math};
+pub use spectra_numerics::{isa, linear, math};

@@ -132,6 +132,17 @@ pub trait Emit: Send + Sync {
     /// one per ray.
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa);
 
+    /// Half the width and height of the spots that all of its light comes from, mm across the axis, where it is made of such: each fades from
+    /// its middle along both sides as a straight line, and a ray from the middle carries what one from anywhere in the spot does.
+    fn spots_mm(&self) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// As [`Emit::place`], with each ray in the middle of a spot, for which it stands: for sources that have [`Emit::spots_mm`].
+    fn place_in_middle(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
+        self.place(rays, u, v, isa);
+    }
+
     /// Whether [`Emit::place`] also writes the directions, as for a beam. Such rays are not aimed at the lens, and their weight
     /// is spectral flux times 1e6 (W nm^-1, W on a line).
     fn is_directed(&self) -> bool {

@@ -7,6 +7,7 @@ use crate::meter;
 use crate::no_number::Step;
 use crate::pilot::{self, PILOT_SEED};
 use crate::pipeline::{Pipeline, SCATTER, Share, ThreadState};
+use crate::spots::{Land, PLACES, Spots};
 use crate::sums::{ExactSums, OwnSums, PILOT_RAYS};
 use crate::{Done, Workers};
 use glam::DVec3;
@@ -33,6 +34,8 @@ pub(crate) struct Forward {
     pupil: Option<Arc<FrontPupil>>,
     numbers: Numbers,
     cone: Numbers,
+    /// How the spots are imaged that the source is made of, where each ray stands for all of one.
+    spots: Option<Arc<Spots>>,
     /// Of the sums.
     scale: f64,
     /// Rays for each sample of all pixels, where the scene does not state how many there are in all.
@@ -41,7 +44,7 @@ pub(crate) struct Forward {
 
 /// Rays of lights for each sample of a pixel that they reach, where the scene does not state how many there are: as a pixel's
 /// samples backward fill the pupil evenly, and rays that land where they will do not.
-const LIGHTS_A_SAMPLE: f64 = 16.0;
+const LIGHTS_A_SAMPLE: f64 = 12.0;
 /// Rays that say where lights land, and the parts of the frame that they are counted in, across and down.
 const CENSUS: usize = 1 << 16;
 const PARTS: [usize; 2] = [48, 32];
@@ -60,6 +63,7 @@ impl Forward {
         if own.pipeline.share == Share::Lights && !own.pipeline.scene.render.rays_stated {
             own.a_sample = Some(own.lights_a_sample());
         }
+        own.spots = own.spots().map(Arc::new);
         own.scaled(seed)
     }
 
@@ -108,7 +112,8 @@ impl Forward {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
         let seed = pipeline.seed ^ meter::SEED;
-        Some(Self { pupil: self.pupil.clone(), numbers, cone, scale: 1.0, pipeline, a_sample: None }.scaled(seed))
+        let pupil = self.pupil.clone();
+        Some(Self { pupil, numbers, cone, spots: None, scale: 1.0, pipeline, a_sample: None }.scaled(seed))
     }
 
     /// With the numbers of the pilot, and no scale.
@@ -127,7 +132,18 @@ impl Forward {
             let pupil = FrontPupil::search_by(&scene.lens, &pipeline.tracer, &points, band_nm, workers, effort);
             Some(Arc::new(pupil.ok_or_else(|| RenderError::no_pupil(workers))?))
         };
-        Ok(Self { pupil, numbers, cone, scale: 1.0, pipeline, a_sample: None })
+        Ok(Self { pupil, numbers, cone, spots: None, scale: 1.0, pipeline, a_sample: None })
+    }
+
+    /// How the spots are imaged that the source is made of, if it is.
+    fn spots(&self) -> Option<Spots> {
+        let half_mm = self.emit().spots_mm()?;
+        let planes_mm = [-self.pipeline.source().distance_mm(), self.pupil.as_ref()?.eye_z_mm()];
+        let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
+        // Rays from the middle of spots, aimed.
+        self.aim(&mut state, 0, PILOT_RAYS as usize, true, &mut |_, _| {});
+        let pixel_mm = self.pipeline.scene.imager.size().pixel_area_mm2().sqrt();
+        Spots::look(half_mm, planes_mm, &state.rays, &self.pipeline.tracer, pixel_mm)
     }
 
     fn emit(&self) -> &dyn Emit {
@@ -160,6 +176,43 @@ impl Forward {
         len: usize,
         look: &mut impl FnMut(Step, &RayBatch),
     ) {
+        self.lens_steps(state, first, len, self.spots.is_some(), look);
+        self.arrive(state, look);
+        state.rays.compact();
+    }
+
+    #[inline(always)]
+    fn lens_steps(
+        &self,
+        state: &mut ThreadState,
+        first: u64,
+        len: usize,
+        in_middle: bool,
+        look: &mut impl FnMut(Step, &RayBatch),
+    ) {
+        self.aim(state, first, len, in_middle, look);
+        self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
+        look(Step::Lens, &state.rays);
+    }
+
+    #[inline(always)]
+    fn arrive(&self, state: &mut ThreadState, look: &mut impl FnMut(Step, &RayBatch)) {
+        let isa = self.pipeline.isa;
+        state.rays.set_stage(StageKey::IMAGER);
+        self.receive().receive(&mut state.rays, isa);
+        look(Step::Imager, &state.rays);
+        state.settle(isa);
+    }
+
+    #[inline(always)]
+    fn aim(
+        &self,
+        state: &mut ThreadState,
+        first: u64,
+        len: usize,
+        in_middle: bool,
+        look: &mut impl FnMut(Step, &RayBatch),
+    ) {
         let isa = self.pipeline.isa;
         for (dimension, column) in state.numbers.iter_mut().enumerate() {
             let numbers = if dimension >= Dimension::PupilU as usize { &self.cone } else { &self.numbers };
@@ -172,7 +225,11 @@ impl Forward {
         state.rays.set_stage(StageKey::SOURCE);
         let [_, u, v, a, b] = &state.numbers;
         let emit = self.emit();
-        emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        if in_middle {
+            emit.place_in_middle(&mut state.rays, u.slice(len), v.slice(len), isa);
+        } else {
+            emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        }
         look(Step::Source, &state.rays);
         let rings = self.pipeline.scene.render.cone == ConePattern::Rings;
         let pattern = if rings { AimPattern::Rings } else { AimPattern::Disk };
@@ -185,13 +242,6 @@ impl Forward {
         let ended = state.rays.len() - state.rays.alive();
         state.drop_dark(ended);
         look(Step::Source, &state.rays);
-        self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
-        look(Step::Lens, &state.rays);
-        state.rays.set_stage(StageKey::IMAGER);
-        self.receive().receive(&mut state.rays, isa);
-        look(Step::Imager, &state.rays);
-        state.settle(isa);
-        state.rays.compact();
     }
 
     /// Adds a unit of paths to the sums. Gives the number of paths added, and why they are not all, where a contribution is
@@ -207,22 +257,59 @@ impl Forward {
         let mut at = first;
         while at < first + paths {
             let len = batch.min(first + paths - at);
-            self.batch(state, at, len as usize);
-            if !state.contributions(&self.pipeline, self.scale) {
+            let is_good = match &self.spots {
+                Some(spots) => self.spread(state, at, len as usize, spots, sums),
+                None => {
+                    self.batch(state, at, len as usize);
+                    self.add(state, sums)
+                }
+            };
+            if !is_good {
                 // Anew: places of rays that ended in another batch are nobody's fault.
                 let mut blame = Blame::default();
                 let mut again = ThreadState::new(&self.pipeline, state.rays.capacity());
                 self.steps(&mut again, at, len as usize, &mut |step, rays| blame.look(step, rays));
                 return (at - first, Some(blame.error(&self.pipeline, &mut again, self.scale)));
             }
-            let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
-            match &mut state.own {
-                Some(own) => own.add(tags, &state.integers, recorded, sums),
-                None => sums.add_rays(0, tags, &state.integers, recorded),
-            }
             at += len;
         }
         (paths, None)
+    }
+
+    /// Adds what the rays of a batch contribute; false where a contribution is no number or does not fit, and nothing is added.
+    fn add(&self, state: &mut ThreadState, sums: &ExactSums) -> bool {
+        if !state.contributions(&self.pipeline, self.scale) {
+            return false;
+        }
+        let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
+        match &mut state.own {
+            Some(own) => own.add(tags, &state.integers, recorded, sums),
+            None => sums.add_rays(0, tags, &state.integers, recorded),
+        }
+        true
+    }
+
+    /// Traces paths as [`Forward::batch`] and adds the light of each to all the places that it is spread over. They are booked once.
+    fn spread(&self, state: &mut ThreadState, first: u64, len: usize, spots: &Spots, sums: &ExactSums) -> bool {
+        self.lens_steps(state, first, len, true, &mut |_, _| {});
+        state.rays.compact();
+        let mut before = std::mem::take(&mut state.before);
+        spots.keep(&state.rays, &mut before);
+        let mut is_good = true;
+        for number in 0..PLACES {
+            let booked = (number > 0).then(|| (state.work.losses.clone(), state.detected));
+            self.pipeline.isa.run(Land { number, before: &before, rays: &mut state.rays });
+            self.arrive(state, &mut |_, _| {});
+            is_good &= self.add(state, sums);
+            if let Some((losses, detected)) = booked {
+                (state.work.losses, state.detected) = (losses, detected);
+            }
+            if !is_good {
+                break;
+            }
+        }
+        state.before = before;
+        is_good
     }
 }
 
@@ -256,7 +343,8 @@ impl Estimator for Forward {
     fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
         let (numbers, cone) = Self::numbers(&self.pipeline, seed);
         let (pipeline, pupil) = (Arc::new(self.pipeline.of_seed(picture)), self.pupil.clone());
-        Box::new(Self { pipeline, pupil, numbers, cone, scale: self.scale, a_sample: self.a_sample })
+        let (spots, scale, a_sample) = (self.spots.clone(), self.scale, self.a_sample);
+        Box::new(Self { pipeline, pupil, numbers, cone, spots, scale, a_sample })
     }
 
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {

@@ -30,6 +30,7 @@ mod renderer;
 mod rendering;
 mod response;
 mod saved;
+mod spots;
 mod sums;
 mod tiles;
 mod veil;

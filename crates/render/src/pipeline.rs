@@ -2,6 +2,7 @@
 
 use crate::error::RenderError;
 use crate::response::Responses;
+use crate::spots::Before;
 use crate::sums::{OwnSteps, OwnSums};
 use spectra_core::batch::Column;
 use spectra_core::isa::Vectorized;
@@ -190,6 +191,8 @@ pub(crate) struct ThreadState {
     pub own: Option<OwnSums>,
     /// The same of an estimator whose rays add to pixels in a row.
     pub steps: Option<OwnSteps>,
+    /// Rays as they came from the lens, of an estimator that spreads their light.
+    pub before: Before,
     /// Rays that brought light to the imager.
     pub detected: u64,
 }
@@ -206,6 +209,7 @@ impl ThreadState {
             integers: vec![vec![0; capacity]; pipeline.responses.channels()],
             own: None,
             steps: None,
+            before: Before::default(),
             detected: 0,
         }
     }

@@ -15,6 +15,16 @@ pub(crate) trait Texture: Send + Sync {
     /// fair sample (one over the density), mm^2.
     fn draw(&self, u: f64, v: f64) -> (f64, f64, f64);
 
+    /// Half the width and height of the spots that it is made of, if it is: see [`Emit::spots_mm`].
+    fn spots_mm(&self) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// As [`Texture::draw`], in the middle of a spot.
+    fn draw_middle(&self, u: f64, v: f64) -> (f64, f64, f64) {
+        self.draw(u, v)
+    }
+
     /// Whether there is nothing beyond its border: what has none cannot emit from all of it.
     fn is_bounded(&self) -> bool {
         true
@@ -74,16 +84,32 @@ impl<T: Texture> Source for Flat<T> {
     }
 }
 
-impl<T: Texture> Emit for Flat<T> {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
+impl<T: Texture> Flat<T> {
+    /// Starts rays at the places that are drawn.
+    #[inline(always)]
+    fn start(&self, rays: &mut RayBatch, isa: Isa, drawn: impl Fn(usize) -> (f64, f64, f64)) {
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
-            let (x, y, area) = self.texture.draw(u[i], v[i]);
+            let (x, y, area) = drawn(i);
             (c.x[i], c.y[i], c.z[i]) = (x, y, -self.distance_mm);
             c.weight[i] *= area;
         }
         let at = Places { x_mm: c.x, y_mm: c.y, wavelength_nm: c.wavelength_nm, line: c.line };
         self.texture.shine(at, c.weight, isa);
+    }
+}
+
+impl<T: Texture> Emit for Flat<T> {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
+        self.start(rays, isa, |i| self.texture.draw(u[i], v[i]));
+    }
+
+    fn spots_mm(&self) -> Option<[f64; 2]> {
+        self.texture.spots_mm()
+    }
+
+    fn place_in_middle(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
+        self.start(rays, isa, |i| self.texture.draw_middle(u[i], v[i]));
     }
 
     fn radiate(&self, rays: &mut RayBatch, isa: Isa) {

@@ -4,7 +4,7 @@ use crate::flat::{Places, Texture};
 use crate::frame::Edge;
 use crate::halves::Half;
 use crate::picture::lights::Lights;
-use crate::picture::spot::{Spot, along};
+use crate::picture::spot::{Spot, along, tent};
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
@@ -27,6 +27,8 @@ pub(crate) struct PictureMap {
     pub mean: SpectralPower,
     pub peak_over_mean: f64,
     pub importance: Arc<Importance>,
+    /// Whether all that shines are pixels with nothing but black around each.
+    pub is_lamps: bool,
     /// Its bright pixels, if there are any.
     pub lights: Option<Arc<Lights>>,
     /// Which light of it this is.
@@ -169,10 +171,16 @@ impl Texture for PictureMap {
     }
 
     fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
-        let (column, row, inverse) = self.draw_place(u, v);
-        let x = (column / self.width_px as f64 - 0.5) * self.width_mm;
-        let y = (0.5 - row / self.height_px as f64) * self.height_mm;
-        (x, y, inverse * self.width_mm * self.height_mm)
+        self.drawn(self.draw_place(u, v))
+    }
+
+    fn spots_mm(&self) -> Option<[f64; 2]> {
+        let pixel_mm = [self.width_mm / self.width_px as f64, self.height_mm / self.height_px as f64];
+        (self.is_lamps && self.half == Half::Whole).then_some(pixel_mm)
+    }
+
+    fn draw_middle(&self, u: f64, v: f64) -> (f64, f64, f64) {
+        self.drawn(self.importance.draw_middle(u, v))
     }
 
     fn is_bounded(&self) -> bool {
@@ -192,6 +200,15 @@ impl Texture for PictureMap {
             "picture {} ({} x {} pixels, {:.1} x {:.1} mm)",
             self.name, self.width_px, self.height_px, self.width_mm, self.height_mm
         )
+    }
+}
+
+impl PictureMap {
+    /// A place of the picture on its plane, mm, and the area that it stands for, mm^2.
+    fn drawn(&self, (column, row, inverse): (f64, f64, f64)) -> (f64, f64, f64) {
+        let x = (column / self.width_px as f64 - 0.5) * self.width_mm;
+        let y = (0.5 - row / self.height_px as f64) * self.height_mm;
+        (x, y, inverse * self.width_mm * self.height_mm)
     }
 }
 
@@ -245,7 +262,11 @@ impl Vectorized for Look<'_> {
 /// Most cells of an [`Importance`]: those of a larger picture hold several pixels.
 const MAX_CELLS: usize = 1 << 22;
 
-/// Draws places in proportion to brightness, row first, then column: monotone, so strata stay strata.
+/// Draws places in proportion to light, row first, then column: monotone from cell to cell, so strata stay strata.
+///
+/// Light is linear between the centers of cells, which is the sum of a tent over each, as high as the cell is bright. So a cell is
+/// drawn by what it weighs and a place under its tent: the density is linear between cells as the light is, and what a ray carries
+/// from a lamp of one cell does not depend on where on the lamp it starts.
 pub(crate) struct Importance {
     /// Pixels of the picture, across and down.
     size_px: [f64; 2],
@@ -271,46 +292,61 @@ impl Importance {
         Self { size_px, cell_px: cell as f64, ..Self::of_cells(cells, &sums) }
     }
 
-    /// From the brightness of each cell. Half of the places are drawn by the mean of a cell's neighborhood, since light is smooth
-    /// between pixels: where any light is, the density is positive. The other half fall evenly on all such cells, so that what
-    /// is dark gets its share, too.
+    /// From the brightness of each cell. Half of the weight is by brightness; the other half is the same for all cells with light, so
+    /// that what is dark gets its share, too.
     fn of_cells([width, height]: [usize; 2], brightness: &[f32]) -> Self {
+        let lit = brightness.iter().filter(|cell| **cell > 0.0).count();
+        let all = brightness.iter().map(|cell| f64::from(cell.max(0.0))).sum::<f64>();
+        let even = if lit > 0 { all / lit as f64 } else { 0.0 };
         let mut columns = Vec::with_capacity(height);
         let mut sums = Vec::with_capacity(height);
-        let mut lines = vec![0.0_f64; width * height];
-        for (row, line) in lines.chunks_exact_mut(width).enumerate() {
-            let (above, below) = (row.saturating_sub(1), (row + 1).min(height - 1));
-            for (column, cell) in line.iter_mut().enumerate() {
-                let (left, right) = (column.saturating_sub(1), (column + 1).min(width - 1));
-                let mut sum = 0.0;
-                for r in [above, row, below] {
-                    for c in [left, column, right] {
-                        sum += f64::from(brightness[r * width + c]);
-                    }
-                }
-                *cell = sum.max(0.0);
+        let mut line = vec![0.0_f64; width];
+        for row in brightness.chunks_exact(width) {
+            for (cell, bright) in line.iter_mut().zip(row) {
+                *cell = if *bright > 0.0 { f64::from(*bright) + even } else { 0.0 };
             }
-        }
-        let lit = lines.iter().filter(|cell| **cell > 0.0).count();
-        let even = if lit > 0 { lines.iter().sum::<f64>() / lit as f64 } else { 0.0 };
-        for line in lines.chunks_exact_mut(width) {
-            line.iter_mut().filter(|cell| **cell > 0.0).for_each(|cell| *cell += even);
             sums.push(line.iter().sum());
-            columns.push(Cumulative::new(line));
+            columns.push(Cumulative::new(&line));
         }
         Self { size_px: [width as f64, height as f64], cell_px: 1.0, rows: Cumulative::new(&sums), columns }
     }
 
     /// Column and row (pixels, fractional) and one over the density relative to uniform.
     pub(crate) fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
-        let (row, row_density) = self.rows.draw(v);
-        let index = (row as usize).min(self.columns.len() - 1);
-        let (column, column_density) = self.columns[index].draw(u);
-        // Cells at the right and lower rim may reach beyond the picture, where nothing shines: densities count all of them.
-        let all = self.columns.len() as f64 * self.columns[index].cells() as f64 * self.cell_px * self.cell_px;
-        let share = all / (self.size_px[0] * self.size_px[1]);
-        (column * self.cell_px, row * self.cell_px, share / (row_density * column_density))
+        self.place(u, v, tent)
     }
+
+    /// The same in the middle of a cell.
+    pub(crate) fn draw_middle(&self, u: f64, v: f64) -> (f64, f64, f64) {
+        self.place(u, v, |cell, _, _| cell as f64 + 0.5)
+    }
+
+    #[inline(always)]
+    fn place(&self, u: f64, v: f64, under: impl Fn(usize, f64, usize) -> f64) -> (f64, f64, f64) {
+        let cells = [self.columns[0].cells(), self.columns.len()];
+        let (row, down) = self.rows.draw(v);
+        let (column, across) = self.columns[row].draw(u);
+        let place = [under(column, across, cells[0]), under(row, down, cells[1])];
+        let density = Spot::of(place, cells).mix(|cell| {
+            let (column, row) = (cell % cells[0], cell / cells[0]);
+            [(self.rows.mass(row) * self.columns[row].mass(column)) as f32]
+        });
+        // Cells at the right and lower rim may reach beyond the picture, where nothing shines: densities count all of them.
+        let share = self.cell_px * self.cell_px / (self.size_px[0] * self.size_px[1]);
+        (place[0] * self.cell_px, place[1] * self.cell_px, share / f64::from(density[0]))
+    }
+}
+
+/// Whether all that is bright in a picture of this width are pixels with nothing but black around each, and none at the rim.
+pub(super) fn are_lamps(width: usize, brightness: impl Fn(usize) -> f32, pixels: usize) -> bool {
+    let height = pixels / width;
+    let is_lamp = |cell: usize| {
+        let (column, row) = (cell % width, cell / width);
+        let inside = column > 0 && row > 0 && column + 1 < width && row + 1 < height;
+        let dark = |at: usize| at == cell || brightness(at) == 0.0;
+        inside && (row - 1..=row + 1).all(|r| (column - 1..=column + 1).all(|c| dark(r * width + c)))
+    };
+    pixels <= MAX_CELLS && (0..pixels).all(|cell| brightness(cell) == 0.0 || is_lamp(cell))
 }
 
 /// A piecewise constant density over cells of width 1, by its cumulative sums and a guide table.
@@ -350,17 +386,21 @@ impl Cumulative {
         self.sums.len() - 1
     }
 
-    /// A place in [0, cells), and the density there relative to uniform.
-    fn draw(&self, u: f64) -> (f64, f64) {
+    /// How likely a cell is.
+    #[inline(always)]
+    fn mass(&self, cell: usize) -> f64 {
+        f64::from(self.sums[cell + 1]) - f64::from(self.sums[cell])
+    }
+
+    /// A cell, and how far in [0, 1) the number lies between those of the cells beside it.
+    fn draw(&self, u: f64) -> (usize, f64) {
         let cells = self.sums.len() - 1;
         let mut cell = usize::from(self.guide[((u * cells as f64) as usize).min(cells - 1)]);
         while cell + 1 < cells && f64::from(self.sums[cell + 1]) <= u {
             cell += 1;
         }
-        let (a, b) = (f64::from(self.sums[cell]), f64::from(self.sums[cell + 1]));
-        let mass = b - a;
-        let part = if mass > 0.0 { ((u - a) / mass).clamp(0.0, 1.0) } else { 0.5 };
-        (cell as f64 + part, mass * cells as f64)
+        let (from, mass) = (f64::from(self.sums[cell]), self.mass(cell));
+        (cell, if mass > 0.0 { ((u - from) / mass).clamp(0.0, 1.0) } else { 0.5 })
     }
 }
 
@@ -368,8 +408,8 @@ impl Cumulative {
 mod tests {
     use super::*;
 
-    /// Integral of any function over the picture by drawing, against the sum over pixels: the mean of
-    /// f / density must be the mean of f, dark rows and columns included.
+    /// Integral of any light over the picture by drawing, against the sum over pixels: the mean of f / density must be the mean of f,
+    /// dark rows and columns included.
     #[test]
     fn importance_is_unbiased() {
         let (width, height) = (7, 5);
@@ -379,8 +419,8 @@ mod tests {
         brightness[4 * width] = 1.0;
         let importance = Importance::new(width, height, |i| brightness[i]);
         let f = |column: f64, row: f64| {
-            let (c, r) = ((column as usize).min(width - 1), (row as usize).min(height - 1));
-            f64::from(brightness[r * width + c])
+            let spot = Spot::of([column, row], [width, height]);
+            f64::from(spot.mix(|cell| [brightness[cell].sqrt()])[0])
         };
         let n = 400;
         let mut sum = 0.0;
@@ -392,7 +432,23 @@ mod tests {
             }
         }
         let mean = sum / f64::from(n * n);
-        let want = brightness.iter().map(|b| f64::from(*b)).sum::<f64>() / (width * height) as f64;
+        let want = brightness.iter().map(|b| f64::from(b.sqrt())).sum::<f64>() / (width * height) as f64;
         assert!((mean / want - 1.0).abs() < 0.01, "{mean} {want}");
+    }
+
+    /// A ray from a lamp of one pixel on black carries the same light wherever it starts, and none starts where there is no light. Drawn
+    /// evenly over the pixels around, four of nine rays carried light, and that four times as noisy as their number said.
+    #[test]
+    fn rays_from_a_lamp_of_one_pixel_carry_alike() {
+        let (width, height) = (9, 7);
+        let brightness = |cell: usize| if cell == 3 * width + 4 { 2.0_f32 } else { 0.0 };
+        let importance = Importance::new(width, height, brightness);
+        for k in 0..64 * 64 {
+            let at = |k: usize| (k as f64 + 0.5) / 64.0;
+            let (column, row, inverse) = importance.draw(at(k % 64), at(k / 64));
+            let light = f64::from(Spot::of([column, row], [width, height]).mix(|cell| [brightness(cell)])[0]);
+            let mean = 2.0 / (width * height) as f64;
+            assert!((light * inverse / mean - 1.0).abs() < 1e-5, "{column} {row}: {}", light * inverse);
+        }
     }
 }

@@ -29,7 +29,7 @@ use depth::Depth;
 use edges::Mixed;
 use field::HeightField;
 use lights::Lights;
-use map::{Importance, PictureMap};
+use map::{Importance, PictureMap, are_lamps};
 use places::LightPlaces;
 use planes::Pixels;
 use schemars::JsonSchema;
@@ -491,6 +491,7 @@ fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) 
     let mean_brightness = (0..rgb.len()).map(|cell| f64::from(brightness(whole(cell)))).sum::<f64>() / pixels;
     let peak = (0..rgb.len()).fold(0.0_f32, |a, cell| a.max(bright(cell)));
     let importance = Arc::new(Importance::new(width, height, bright));
+    let is_lamps = are_lamps(width, bright, rgb.len());
     let all = if f64::from(peak) > mean_brightness { (0..rgb.len()).map(bright).collect() } else { Vec::new() };
     let lights = if all.is_empty() { None } else { lights::find(width, &all) };
     let lights = lights.map(|found| {
@@ -500,7 +501,7 @@ fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) 
             sum.iter_mut().zip(whole(cell)).for_each(|(sum, value)| *sum += f64::from(value) / pixels);
         }
         Arc::new(Lights {
-            places: LightPlaces::new(width, &all, &found.level),
+            places: LightPlaces::new(width, &found.level),
             touched: lights::touched(width, &found.level),
             level: found.level,
             mean: sums.map(|sum| model.spectrum(sum).scaled(scale)),
@@ -520,6 +521,7 @@ fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) 
         mean: model.spectrum(mean).scaled(scale),
         peak_over_mean: if mean_brightness > 0.0 { f64::from(peak) / mean_brightness } else { 1.0 },
         importance,
+        is_lamps,
         lights,
         half: Half::Whole,
         scale,

@@ -2,77 +2,70 @@
 //!
 //! What a pixel of the frame owes a light out of focus is as noisy as the rays are few that the light sent there. A small lamp that
 //! is as far out of focus as a large one fills as large a disk with less light: drawn by power alone it would be grain beside a
-//! smooth disk. So a third of the rays goes by power, a third by area, and a third falls on all lights alike, whatever their size:
+//! smooth disk. So some of the rays go by power, some by area, and the most fall on all lights alike, whatever their size ([`PARTS`]):
 //! none of the three is far from the best where lamps are sharp, far out of focus, or large and uneven.
+//!
+//! As [`super::map::Importance`] does, it draws a pixel and a place under its tent: between a lamp of one pixel and its dark neighbors
+//! the density falls as the light.
 
-use super::spot::Spot;
+use super::spot::{Spot, tent};
 
-/// Places a side of a cell that its light is summed over.
-const PLACES: usize = 4;
+/// The parts of the rays that go by power, by area, and on all lights alike.
+const PARTS: [f64; 3] = [0.3, 0.3, 0.4];
+/// Pixels as bright as this part of the brightest of their light count with all of their area.
+const BRIGHT: f32 = 0.25;
 
-/// The cells that have light of lights, one light after the other, and how likely each is.
+/// The pixels of lights, one light after the other, and how likely each is.
 pub(crate) struct LightPlaces {
-    width: usize,
+    size: [usize; 2],
     cells: Vec<u32>,
-    /// Up to and with each cell; the last is 1.
+    /// Up to and with each pixel, times `total`.
     sums: Vec<f64>,
-    /// For each of as many equal parts of [0, 1) the cell that its lower end lies in.
+    /// For each of as many equal parts of [0, 1) the pixel that its lower end lies in.
     guide: Vec<u32>,
-    /// Of the picture.
-    pixels: f64,
+    /// Of all pixels of the picture, times `total`: 0 where none of the lights is.
+    masses: Vec<f32>,
+    total: f64,
 }
 
 impl LightPlaces {
-    /// From the brightness of each pixel, and its level as a light ([`super::lights::Lights::level`]).
-    pub(super) fn new(width: usize, brightness: &[f32], level: &[f32]) -> Self {
+    /// From the level of each pixel as a light ([`super::lights::Lights::level`]).
+    pub(super) fn new(width: usize, level: &[f32]) -> Self {
         let height = level.len() / width;
-        // A light that is black counts as if it had its level: its neighborhood may have light.
-        let bright = |cell: usize| if level[cell] > 0.0 { level[cell] } else { brightness[cell].max(0.0) };
         let mut groups = Groups::new(width, height);
         for cell in (0..level.len()).filter(|cell| level[*cell] > 0.0) {
             groups.add(cell);
         }
-        let mut all = Vec::new();
         let groups = groups.ordered();
-        for (number, group) in groups.iter().enumerate() {
-            for &cell in group {
-                let (mut power, mut part) = (0.0, 0.0);
-                for at in 0..PLACES * PLACES {
-                    let offset = |k: usize| (k as f64 + 0.5) / PLACES as f64;
-                    let (column, row) = ((cell % width) as f64, (cell / width) as f64);
-                    let place = [column + offset(at % PLACES), row + offset(at / PLACES)];
-                    let spot = Spot::of(place, [width, height]);
-                    let share = f64::from(spot.mix(|cell| [f32::from(u8::from(level[cell] > 0.0))])[0]);
-                    power += share * f64::from(spot.mix(|cell| [bright(cell)])[0]);
-                    part += share;
-                }
-                all.push((cell, number, power, part));
+        let mut all = Vec::new();
+        for group in &groups {
+            let peak = group.iter().fold(0.0_f32, |peak, cell| peak.max(level[*cell]));
+            let power: f64 = group.iter().map(|cell| f64::from(level[*cell])).sum();
+            for &cell in group.iter().filter(|cell| level[**cell] > 0.0) {
+                let own = f64::from(level[cell]);
+                let part = f64::from((level[cell] / (BRIGHT * peak)).min(1.0));
+                all.push((cell, own, part, own / power));
             }
         }
-        let mut of_group = vec![0.0; groups.len()];
-        all.iter().for_each(|(_, number, power, _)| of_group[*number] += power);
-        let (power, area) = all.iter().fold((0.0, 0.0), |(a, b), (_, _, power, part)| (a + power, b + part));
-        let mut sum = 0.0;
-        let mut sums: Vec<f64> = Vec::with_capacity(all.len());
-        for (_, number, own, part) in &all {
-            let alike = own / of_group[*number] / groups.len() as f64;
-            sum += (own / power + part / area + alike) / 3.0;
-            sums.push(sum);
-        }
-        sums.iter_mut().for_each(|s| *s /= sum);
-        if let Some(last) = sums.last_mut() {
-            *last = 1.0;
+        let (power, area) = all.iter().fold((0.0, 0.0), |(a, b), (_, power, part, _)| (a + power, b + part));
+        let (mut sums, mut masses, mut total) = (Vec::with_capacity(all.len()), vec![0.0_f32; level.len()], 0.0);
+        for (cell, own, part, alike) in &all {
+            let [by_power, by_area, on_all] = PARTS;
+            let mass = by_power * own / power + by_area * part / area + on_all * alike / groups.len() as f64;
+            masses[*cell] = mass as f32;
+            total += f64::from(masses[*cell]);
+            sums.push(total);
         }
         let mut guide = Vec::with_capacity(sums.len());
         let mut at = 0;
         for part in 0..sums.len() {
-            while at + 1 < sums.len() && sums[at] <= part as f64 / sums.len() as f64 {
+            while at + 1 < sums.len() && sums[at] <= part as f64 / sums.len() as f64 * total {
                 at += 1;
             }
             guide.push(at as u32);
         }
         let cells = all.iter().map(|(cell, ..)| *cell as u32).collect();
-        Self { width, cells, sums, guide, pixels: level.len() as f64 }
+        Self { size: [width, height], cells, sums, guide, masses, total }
     }
 
     /// Column and row (pixels, fractional) and one over the density relative to uniform.
@@ -80,14 +73,18 @@ impl LightPlaces {
     pub(crate) fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
         let many = self.sums.len();
         let mut at = self.guide[((u * many as f64) as usize).min(many - 1)] as usize;
+        let u = u * self.total;
         while at + 1 < many && self.sums[at] <= u {
             at += 1;
         }
         let from = if at > 0 { self.sums[at - 1] } else { 0.0 };
         let mass = self.sums[at] - from;
         let part = if mass > 0.0 { ((u - from) / mass).clamp(0.0, 1.0) } else { 0.5 };
+        let [width, height] = self.size;
         let cell = self.cells[at] as usize;
-        ((cell % self.width) as f64 + part, (cell / self.width) as f64 + v, 1.0 / (mass * self.pixels))
+        let place = [tent(cell % width, part, width), tent(cell / width, v, height)];
+        let density = f64::from(Spot::of(place, self.size).mix(|cell| [self.masses[cell]])[0]);
+        (place[0], place[1], self.total / (density * (width * height) as f64))
     }
 }
 
@@ -162,7 +159,7 @@ mod tests {
     #[test]
     fn draws_stand_for_all_light() {
         let (brightness, level) = lamps();
-        let places = LightPlaces::new(WIDTH, &brightness, &level);
+        let places = LightPlaces::new(WIDTH, &level);
         let light = |column: f64, row: f64| {
             let spot = Spot::of([column, row], [WIDTH, 30]);
             let share = spot.mix(|cell| [f32::from(u8::from(level[cell] > 0.0))])[0];
@@ -188,5 +185,26 @@ mod tests {
         let part = drawn as f64 / (n * n) as f64;
         assert!(part > 0.25 && part < 0.45, "{part}");
         assert!((dark as f64) < 0.1 * (n * n) as f64, "{dark}");
+    }
+
+    /// What a ray from a lamp of one pixel carries does not depend on where in the lamp it starts, but for its dim neighbors. Drawn evenly over
+    /// pixels, rays differed so much that their light was as noisy as that of less than half of them.
+    #[test]
+    fn rays_from_a_lamp_of_one_pixel_carry_alike() {
+        let mut brightness = vec![0.01_f32; WIDTH * 30];
+        brightness[10 * WIDTH + 20] = 50.0;
+        let level = super::super::lights::find(WIDTH, &brightness).expect("a lamp").level;
+        let places = LightPlaces::new(WIDTH, &level);
+        let (mut first, mut second, n) = (0.0, 0.0, 64);
+        for k in 0..n * n {
+            let at = |k: usize| (k as f64 + 0.5) / n as f64;
+            let (column, row, inverse) = places.draw(at(k % n), at(k / n));
+            let spot = Spot::of([column, row], [WIDTH, 30]);
+            let share = spot.mix(|cell| [f32::from(u8::from(level[cell] > 0.0))])[0];
+            let carried = f64::from(share * spot.mix(|cell| [brightness[cell]])[0]) * inverse;
+            (first, second) = (first + carried, second + carried * carried);
+        }
+        let times = second * (n * n) as f64 / (first * first);
+        assert!(times < 1.05, "the variance of all over that of equal ones {times}");
     }
 }

@@ -12,6 +12,19 @@ pub(super) fn along(place: f64, pixels: usize) -> (u32, f32) {
     (pixel, (from_first - below) as f32)
 }
 
+/// A place under the tent of a cell of a side, which reaches to the centers of its neighbors; the outermost are flat toward the rim. `part`
+/// is even in [0, 1).
+#[inline(always)]
+pub(super) fn tent(cell: usize, part: f64, cells: usize) -> f64 {
+    let at_rim = if part < 0.5 { cell == 0 } else { cell + 1 == cells };
+    let from_center = match (at_rim, part < 0.5) {
+        (true, _) => part - 0.5,
+        (false, true) => (2.0 * part).sqrt() - 1.0,
+        (false, false) => 1.0 - (2.0 * (1.0 - part)).sqrt(),
+    };
+    cell as f64 + 0.5 + from_center
+}
+
 /// Four pixels, and how far a place lies from the upper left one of them toward the others.
 pub(crate) struct Spot {
     cells: [usize; 4],
