@@ -8,15 +8,21 @@ use spectra_render::{GhostRays, Renderer, Threads};
 use spectra_scene::Scene;
 use std::sync::Arc;
 
-/// The sun near the edge of the frame through a bare Biotar. The light of a ray stays in its pixel: footprints of few samples are as wide as these parts are.
+/// The sun near the edge of the frame through a bare Biotar. The light of a ray stays in its pixel: footprints of few samples are as wide as
+/// the parts of the frame that these tests look at.
 fn scene(pixels: [u32; 2], samples: u32) -> Scene {
+    spread_scene(pixels, samples, "none")
+}
+
+/// The same with the light of rays spread in a way.
+fn spread_scene(pixels: [u32; 2], samples: u32, spread: &str) -> Scene {
     let [width, height] = pixels;
     let text = format!(
         "spectra: 1\n\
          source: {{kind: sun, field: [18.5 deg, 11 deg], illuminance: 60000 lx, spectrum: 'blackbody:5400'}}\n\
          lens: {{file: zeiss-biotar-50-f1.4, f-number: 4, focus: infinity, coating: bare, aperture: {{shape: iris, blades: 8}}}}\n\
          imager: {{kind: xyz, width: 36, height: 24, resolution: [{width}, {height}]}}\n\
-         render: {{samples: {samples}, rays: 1000, reflections: {{order: 2, spread: none}}}}\n"
+         render: {{samples: {samples}, rays: 1000, reflections: {{order: 2, spread: {spread}}}}}\n"
     );
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scene.yaml");
@@ -74,4 +80,28 @@ fn no_block_is_left_with_much_more_noise_than_others() {
     let worst = noise.iter().fold(0.0_f64, |most, noise| most.max(*noise));
     println!("{} blocks, the worst has {:.2} %", noise.len(), 100.0 * worst);
     assert!(noise.len() > 140 && worst < 0.03, "{} blocks, {worst}", noise.len());
+}
+
+/// Spread over footprints, the light of the same rays is as much in all, and pixels differ from the mean of their two neighbors in the row a tenth as
+/// much: where the noise of independent pixels is, smooth light has none.
+#[test]
+fn footprints_keep_all_light_and_smooth_it() {
+    const PIXELS: [u32; 2] = [480, 320];
+    let of = |spread: &str| {
+        let all = blocks(spread_scene(PIXELS, 8, spread), GhostRays::Found, 1, std::iter::once(1));
+        all.into_iter().next().expect("one seed")
+    };
+    let [plain, spread] = ["none", "footprint"].map(of);
+    let sum = |values: &[f64]| values.iter().sum::<f64>();
+    let (before, after) = (sum(&plain), sum(&spread));
+    // To the last bit of the sums; exposures are rounded to single precision.
+    assert!((after / before - 1.0).abs() < 1e-6, "{before} {after}");
+    let rough = |values: &[f64]| {
+        let rows = values.chunks_exact(PIXELS[0] as usize);
+        let bends = rows.flat_map(|row| row.windows(3).map(|at| (at[1] - 0.5 * (at[0] + at[2])).abs()));
+        bends.sum::<f64>() / sum(values)
+    };
+    let (before, after) = (rough(&plain), rough(&spread));
+    println!("neighbors differ by {before:.3} of the light, spread by {after:.3}");
+    assert!(after < 0.1 * before, "{before} {after}");
 }
