@@ -3,7 +3,6 @@
 use super::Landed;
 use super::density::ABREAST;
 use super::guide::{Aim, Guide};
-use super::probes::azimuth;
 use glam::DVec3;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::{Loss, RayBatch};
@@ -178,4 +177,11 @@ fn send(
         weight[i] *= if is_outside { stands_for } else { 1.0 };
         state[i] = if is_outside { state[i] } else { inside };
     }
+}
+
+/// Where around the axis a point lies: a unit vector.
+#[inline]
+pub(super) fn azimuth(x: f64, y: f64) -> [f64; 2] {
+    let away = (x * x + y * y).sqrt();
+    if away > 0.0 { [x / away, y / away] } else { [0.0, 1.0] }
 }

@@ -1,6 +1,6 @@
 //! Probes: rays from one point of each zone of the source that find the nets of all paths.
 
-use super::aims::Aims;
+use super::aims::{Aims, azimuth};
 use super::footprint::Footprint;
 use super::net::Net;
 use super::{ESTIMATOR, Ghosts, Guide, Landed, Way};
@@ -72,13 +72,6 @@ pub(super) fn nets(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Vec<Vec<Fou
             Ok(way.guides.iter().zip(&starts).map(net).collect())
         },
     )
-}
-
-/// Where around the axis a point lies: a unit vector.
-#[inline]
-pub(super) fn azimuth(x: f64, y: f64) -> [f64; 2] {
-    let away = (x * x + y * y).sqrt();
-    if away > 0.0 { [x / away, y / away] } else { [0.0, 1.0] }
 }
 
 /// For each zone a point in its middle; the wavelength in the middle of those that are drawn.
