@@ -8,8 +8,8 @@ Run from the root of the repository, after xtask/fit_film_library.py, with the u
 What is fitted: six inhibitions for each family of film_families.py, and a strength for each class in it.
 To what: of each film, printed or projected as usual, in the light that it is made for,
   the hue that the eye sees of the 18 chromatic patches of the ColorChecker, those of sky, leaf, skins and the two oranges, which are wood,
-  brick and hair in photographs, COUNT times, and beyond WITHIN degrees (oranges 3 more) more, of the films that people compare most
-  (COMPARED) twice as much, and of 5207, whose bound is 2 less, eight times;
+  brick and hair in photographs, COUNT times, and beyond WITHIN degrees (oranges 6 more) more, of the films that people compare most
+  (COMPARED) twice as much, and of 5207, whose bound is 3 less, eight times;
   the mean saturation that film_families.py has for the class;
   every number as near to 0 as that allows.
 """
@@ -134,8 +134,8 @@ class Colors:
             sine = np.degrees((d[1] * u[0] - d[0] * u[1]) / max(np.hypot(*d), 1e-3))
             out.append(TURNED * (COUNT if name in FAMILIAR else 1) * sine / DEGREES)
             if name in FAMILIAR:
-                within = WITHIN + 3 if name.startswith("orange") else WITHIN
-                over = max(abs(turn(lab, eye)) - (within - 2 if "5207" in self.slug else within), 0)
+                within = WITHIN + 6 if name.startswith("orange") else WITHIN
+                over = max(abs(turn(lab, eye)) - (within - 3 if "5207" in self.slug else within), 0)
                 out.append(BEYOND * (8 if "5207" in self.slug else 2 if self.slug in COMPARED else 1) * np.sign(sine) * over)
         out.append(SATURATED * (self.saturation(labs) - self.wanted))
         return np.array(out)

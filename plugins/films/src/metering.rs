@@ -32,10 +32,10 @@ pub enum Metering {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ExposureParams {
-    /// The camera finds it.
-    Metered(MeteredWord),
     /// For this time, s if bare.
     Time(Positive<Time>),
+    /// The camera finds it.
+    Metered(MeteredWord),
 }
 
 /// The word of `exposure`.
