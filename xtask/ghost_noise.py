@@ -17,13 +17,13 @@ seconds    of processor time, both ways, without layers of single paths
 
 import argparse
 import resource
-import struct
 import subprocess
 import tempfile
-import zlib
 from pathlib import Path
 
 import numpy as np
+
+import exr_lines
 
 ROOT = Path(__file__).resolve().parent.parent
 # The part of the frame that is looked at: grass below the sky, sky above the street; the whole of the zoom's frame has grass or sky.
@@ -36,44 +36,6 @@ DARK = 0.01
 COLORS = ("red", "green", "blue")
 
 
-def layers(path):
-    """Channels of an EXR of scan lines of 32-bit floats, uncompressed or ZIP."""
-    data = path.read_bytes()
-    at, header = 8, {}
-    while data[at]:
-        end = data.index(0, at)
-        name, at = data[at:end].decode(), end + 1
-        at = data.index(0, at) + 1
-        (size,) = struct.unpack_from("<i", data, at)
-        header[name] = data[at + 4 : at + 4 + size]
-        at += 4 + size
-    at += 1
-    names, k = [], 0
-    while header["channels"][k]:
-        end = header["channels"].index(0, k)
-        names.append(header["channels"][k:end].decode())
-        k = end + 17
-    x0, y0, x1, y1 = struct.unpack("<4i", header["dataWindow"])
-    width, height = x1 - x0 + 1, y1 - y0 + 1
-    lines = {0: 1, 2: 1, 3: 16}[header["compression"][0]]
-    rows = []
-    for offset in struct.unpack_from(f"<{-(-height // lines)}Q", data, at):
-        y, size = struct.unpack_from("<ii", data, offset)
-        raw = data[offset + 8 : offset + 8 + size]
-        full = min(lines, y1 - y + 1) * width * len(names) * 4
-        if size < full:
-            steps = np.frombuffer(zlib.decompress(raw), np.uint8).astype(np.int64)
-            steps[1:] -= 128
-            plain = (np.cumsum(steps) & 255).astype(np.uint8)
-            half = (full + 1) // 2
-            joined = np.empty(full, np.uint8)
-            joined[0::2], joined[1::2] = plain[:half], plain[half:]
-            raw = joined.tobytes()
-        rows.append(np.frombuffer(raw, "<f4").reshape(-1, len(names), width))
-    planes = np.concatenate(rows).astype(float)
-    return {name: planes[:, at] for at, name in enumerate(names)}
-
-
 def rendered(program, scene, folder, *sets, paths=PATHS):
     """The layers of a scene, and the processor time."""
     output = f"output=[{{kind: exr, layers: [direct, ghosts], ghost-paths: {paths}}}]"
@@ -82,7 +44,7 @@ def rendered(program, scene, folder, *sets, paths=PATHS):
     subprocess.run(command + [a for s in sets for a in ("--set", s)], cwd=ROOT, check=True, capture_output=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     (path,) = Path(folder).glob("*.exr")
-    return layers(path), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return exr_lines.read(path), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def ghosts(planes):

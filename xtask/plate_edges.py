@@ -16,14 +16,13 @@ Each as the program reads it, and with `depth: {edges: as-is}`. With FOLDER the 
 import contextlib
 import io
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
 
 import numpy as np
 
+import exr_lines
 import half_exr
 
 WIDTH, HEIGHT, FINE = 600, 400, 16
@@ -42,39 +41,6 @@ LAYERS = (
     "{kind: layers, luminance: 300 cd/m2, layers: [{file: card.exr, distance: 1 m, width: 84 cm}, "
     "{file: wall.exr, distance: 8 m, width: 672 cm}]}"
 )
-
-
-def read(path):
-    """The channels of an EXR of scan lines in 32-bit floats, uncompressed or ZIP."""
-    data = path.read_bytes()
-    at, header = 8, {}
-    while data[at]:
-        end = data.index(0, at)
-        name, at = data[at:end].decode(), end + 1
-        at = data.index(0, at) + 1
-        (size,) = struct.unpack_from("<i", data, at)
-        header[name] = data[at + 4 : at + 4 + size]
-        at += 4 + size
-    names, k = [], 0
-    while header["channels"][k]:
-        end = header["channels"].index(0, k)
-        names.append(header["channels"][k:end].decode())
-        k = end + 17
-    x0, y0, x1, y1 = struct.unpack("<4i", header["dataWindow"])
-    width, height = x1 - x0 + 1, y1 - y0 + 1
-    lines = {0: 1, 2: 1, 3: 16}[header["compression"][0]]
-    planes = np.zeros((height, len(names), width), np.float32)
-    for offset in struct.unpack_from(f"<{-(-height // lines)}Q", data, at + 1):
-        y, size = struct.unpack_from("<ii", data, offset)
-        raw, rows = data[offset + 8 : offset + 8 + size], min(lines, y1 - y + 1)
-        if size < 4 * rows * width * len(names):
-            flat = np.cumsum(np.frombuffer(zlib.decompress(raw), np.uint8).astype(np.int64) - 128) + 128
-            half = (len(flat) + 1) // 2
-            joined = np.empty(len(flat), np.uint8)
-            joined[0::2], joined[1::2] = flat[:half] & 255, flat[half:] & 255
-            raw = joined.tobytes()
-        planes[y - y0 : y - y0 + rows] = np.frombuffer(raw, "<f4").reshape(rows, len(names), width)
-    return {name: planes[:, i] for i, name in enumerate(names)}
 
 
 def plate(path, near, front, back, averaged=False, cover=False):
@@ -98,7 +64,7 @@ def render(program, folder, name, source, focus, samples):
     done = subprocess.run([program, "run", str(scene), "-q", "-o", str(folder)], capture_output=True, text=True)
     if done.returncode:
         sys.exit(done.stderr)
-    return read(folder / f"{name}.exr")["Y"].astype(float)
+    return exr_lines.read(folder / f"{name}.exr")["Y"]
 
 
 def source(name, distance, depth):

@@ -21,8 +21,8 @@ import tempfile
 
 import numpy as np
 
+import exr_lines
 import half_exr
-from plate_edges import read
 
 WINDOW = """spectra: 1
 source: {{kind: picture, file: window.exr, distance: 6 m, width: fill, illuminant: D65, luminance: 200 cd/m2}}
@@ -43,7 +43,7 @@ def run(program, folder, scene, *settings):
     done = subprocess.run([program, "run", str(scene), "-q", *more, "-o", str(out)], capture_output=True, text=True)
     if done.returncode:
         sys.exit(done.stderr)
-    return {name: plane.astype(float) for name, plane in read(out / f"{name}.exr").items()}
+    return exr_lines.read(out / f"{name}.exr")
 
 
 def about_rings(plane, inside, middle, y, x):

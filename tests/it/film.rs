@@ -95,10 +95,8 @@ fn orthochromatic_negatives_have_dark_reds_and_light_blues() {
     }
 }
 
-/// A photograph of dark leaves keeps its hue on Ektachrome within 8 degrees: by default pictures are smooth reflectances. As sums of
-/// the screen's primaries they turn brown there, by 21 degrees. 5207 is 13 degrees greener than the photograph: its red layer sees to
-/// 680 nm, where real leaves shine and a smooth green does not (the ColorChecker's foliage, measured, is 3 degrees off), and the
-/// interlayer effects of its family are not fitted to make up for that.
+/// A photograph of dark leaves keeps its hue on film within 8 degrees: by default pictures are smooth reflectances. As sums of
+/// the screen's primaries they turn brown: by 21 degrees on Ektachrome.
 #[test]
 fn leaves_of_a_photograph_stay_green() {
     let leaf = [72_u8, 80, 38];
@@ -125,10 +123,10 @@ fn leaves_of_a_photograph_stay_green() {
         let mean = |c: usize| picture.rgb.iter().map(|p| f64::from(p[c])).sum::<f64>() / picture.rgb.len() as f64;
         hue([mean(0), mean(1), mean(2)]) - wanted
     };
-    for (stock, most) in [("kodak-vision3-250d-5207", 14.0), ("kodak-ektachrome-100d", 8.0)] {
+    for stock in ["kodak-vision3-250d-5207", "kodak-ektachrome-100d"] {
         let usual = turned(stock, "");
         println!("{stock}: {usual:+.1}");
-        assert!((-8.0..=most).contains(&usual), "{stock}: {usual:+.1}");
+        assert!(usual.abs() <= 8.0, "{stock}: {usual:+.1}");
     }
     let brown = turned("kodak-ektachrome-100d", ", color: {kind: primaries}");
     assert!(brown < -15.0, "{brown:+.1}");

@@ -201,7 +201,8 @@ fn films_are_as_saturated_as_those_of_their_class() {
     assert!(of(&high, f64::max) / of(&low, f64::min) >= 1.25);
 }
 
-/// Sky, leaf and skins of the ColorChecker within 12 degrees on the films that people compare most, and Vision3 250D's within 10.
+/// Sky, leaf and skins of the ColorChecker within 12 degrees on the films that people compare most, and Vision3 250D's within 10,
+/// to a tenth of a degree.
 #[test]
 fn skies_leaves_and_skins_keep_their_hue() {
     for name in [
@@ -214,7 +215,7 @@ fn skies_leaves_and_skins_keep_their_hue() {
         "fuji-pro-400h",
         "kodachrome-64",
     ] {
-        let (chain, most) = (Chain::of(name), if name.ends_with("5207") { 10.5 } else { 12.0 });
+        let (chain, most) = (Chain::of(name), if name.ends_with("5207") { 10.05 } else { 12.0 });
         for patch_name in ["dark-skin", "light-skin", "blue-sky", "foliage"] {
             let factor = patch(patch_name);
             let turn = against(chain.surface(&factor), eye(&factor)).1;
@@ -224,12 +225,24 @@ fn skies_leaves_and_skins_keep_their_hue() {
     }
 }
 
-/// Skins, leaves and skies that no fit has seen.
+/// Skins, leaves and skies that no fit has seen, within 8 degrees but for those named: what the sheets and one matrix for the family of a
+/// film make of them.
 #[test]
 fn what_the_fit_has_not_seen_keeps_its_hue() {
-    for (name, chain) in [("print", Chain::negative(Look::default())), ("slide", Chain::slide())] {
+    let print = [("skin-17", 11.0)];
+    let slide = [
+        ("skin-16", 9.5),
+        ("leaf-80", 13.0),
+        ("leaf-86", 15.5),
+        ("leaf-87", 15.0),
+        ("leaf-88", 14.0),
+        ("leaf-89", 11.0),
+    ];
+    let chains = [("print", Chain::negative(Look::default()), &print[..]), ("slide", Chain::slide(), &slide[..])];
+    for (name, chain, but_for) in chains {
         for (what, turn) in turns(&chain) {
-            assert!(turn.abs() <= 17.0, "{name}, {what}: {turn:+.1} degrees");
+            let most = but_for.iter().find(|(other, _)| *other == what).map_or(8.0, |(_, most)| *most);
+            assert!(turn.abs() <= most, "{name}, {what}: {turn:+.1} degrees, not {most}");
         }
     }
 }
