@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How smooth ghosts are, and how true: footprints against rays that add to one pixel each, at the defaults of three scenes.
 
-    python3 xtask/ghost_noise.py target/release/spectra [--times 30] [SCENE ...]
+    python3 xtask/ghost_noise.py target/release/spectra [SCENE ...] [--times 30]
 
 Needs numpy. Of each scene the layer of the ghosts alone is rendered with `render.reflections.spread` `footprint` and `none`, and with
 `none` and so many times the samples (the reference, nearly all of the time). Printed, in red, green, blue:
@@ -16,6 +16,7 @@ seconds    of processor time, both ways, without layers of single paths
 """
 
 import argparse
+import re
 import resource
 import subprocess
 import tempfile
@@ -38,7 +39,7 @@ COLORS = ("red", "green", "blue")
 
 def rendered(program, scene, folder, *sets, paths=PATHS):
     """The layers of a scene, and the processor time."""
-    output = f"output=[{{kind: exr, layers: [direct, ghosts], ghost-paths: {paths}}}]"
+    output = f"output=[{{kind: exr, layers: [direct, ghosts]{f', ghost-paths: {paths}' if paths else ''}}}]"
     command = [program, "run", scene, "--set", "sweep=null", "--set", output, "-o", folder]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(command + [a for s in sets for a in ("--set", s)], cwd=ROOT, check=True, capture_output=True)
@@ -99,7 +100,8 @@ def shown(values, digits=2):
 
 def report(program, scene, times):
     low, high = SCENES[scene]
-    samples = next(int(w.split(":")[1].strip(" ,}")) for w in (ROOT / f"scenes/{scene}.yaml").read_text().split("{") if w.startswith("samples"))
+    text = (ROOT / f"scenes/{scene}.yaml").read_text()
+    samples = int(re.search(r"^render: .*samples: (\d+)", text, re.M).group(1))
     with tempfile.TemporaryDirectory() as a, tempfile.TemporaryDirectory() as b, tempfile.TemporaryDirectory() as c:
         none = "render.reflections.spread=none"
         seconds, before = (rendered(program, scene, c, *sets, paths=0)[1] for sets in ([], [none]))

@@ -15,6 +15,8 @@ fn card(overrides: &[&str]) -> Renderer {
         "lens.focus={distance: 1 m, by: paraxial}",
         "lens.f-number=f/4",
         "imager={kind: xyz, width: 15, height: 10, resolution: [15, 10]}",
+        // Unbiased pixel by pixel, which footprints are not.
+        "render.reflections.spread=none",
     ];
     ready(statistics::load(&repository("scenes/gray-card.yaml"), &[&common[..], overrides].concat()))
 }
@@ -116,4 +118,51 @@ fn the_books_of_a_sun_close() {
     let booked = ledger.detected_w() + ledger.lost_w() + ledger.not_traced_w;
     assert!((booked / ledger.emitted_w - 1.0).abs() < 1e-9, "{ledger:?}");
     assert!(ledger.scattered_w > 0.05 * ledger.emitted_w && ledger.absorbed_w > 0.0, "{ledger:?}");
+}
+
+/// The glow of the sun through haze: spread over footprints it has as much light, its neighbors differ by a fifth of what they did at most, and
+/// parts of the frame have the light of unspread rays within a hundredth, and 4 standard errors of both.
+#[test]
+fn glow_is_smooth_and_true() {
+    const PIXELS: usize = 120;
+    const SEEDS: u64 = 8;
+    let glow = |spread: &str, rays: &str| {
+        let settings = [
+            "source={kind: sun, field: [9 deg, 5 deg], illuminance: 60000 lx, spectrum: 'blackbody:5400'}",
+            "lens.focus=infinity",
+            "lens.f-number=f/4",
+            "lens.haze={share: 2 %}",
+            "imager={kind: xyz, width: 36, height: 24, resolution: [120, 80]}",
+            "render.direction=forward",
+            "render.samples=64",
+            spread,
+            rays,
+        ];
+        ready(statistics::load(&repository("scenes/gray-card.yaml"), &settings))
+    };
+    let spread = glow("render.reflections.spread=footprint", "render.rays=200000");
+    let plain = glow("render.reflections.spread=none", "render.rays=200000");
+    let [a, b] = [&spread, &plain].map(|renderer| y(&rendered(renderer)));
+    let sum = |values: &[f64]| values.iter().sum::<f64>();
+    assert!((sum(&a) / sum(&b) - 1.0).abs() < 1e-6, "{} {}", sum(&a), sum(&b));
+    // Away from the sun's own image: the lower half.
+    let rough = |values: &[f64]| {
+        let rows = values[values.len() / 2..].chunks_exact(PIXELS);
+        rows.flat_map(|row| row.windows(3).map(|at| (at[1] - 0.5 * (at[0] + at[2])).abs())).sum::<f64>()
+    };
+    println!("neighbors differ by {:.4} of what they do unspread", rough(&a) / rough(&b));
+    assert!(rough(&a) < 0.2 * rough(&b), "{} {}", rough(&a), rough(&b));
+    let parts =
+        |renderer: &Renderer| estimates(&over_seeds(renderer, 1..1 + SEEDS, |run| statistics::regions(run, 12, 8)));
+    let many = glow("render.reflections.spread=none", "render.rays=1600000");
+    for (at, (own, plain)) in parts(&spread).iter().zip(parts(&many)).enumerate() {
+        let bound = 0.01 * plain.mean + 4.0 * own.error.hypot(plain.error);
+        println!(
+            "{at}: {:.3e}, {:+.4}, known to {:.4}",
+            plain.mean,
+            own.mean / plain.mean - 1.0,
+            plain.error / plain.mean
+        );
+        assert!((own.mean - plain.mean).abs() < bound, "part {at}: {own:?} {plain:?}");
+    }
 }

@@ -170,7 +170,27 @@ const COORDINATE: [usize; SOBOL_DIMENSIONS] = {
     all
 };
 
-fn point_reversed(coordinate: usize, mut index: u32) -> u32 {
+/// A coordinate of the Sobol point `index`, its bits reversed.
+///
+/// The first two have closed forms. The first is the index. In the second, bit `j` is the parity of the index's bits whose numbers have
+/// all the bits of `j` (Pascal's triangle modulo 2), which five steps sum up, one for each bit of such a number.
+#[inline]
+fn point_reversed(coordinate: usize, index: u32) -> u32 {
+    match coordinate {
+        0 => index,
+        1 => {
+            let mut x = index;
+            x ^= (x & 0xaaaa_aaaa) >> 1;
+            x ^= (x & 0xcccc_cccc) >> 2;
+            x ^= (x & 0xf0f0_f0f0) >> 4;
+            x ^= (x & 0xff00_ff00) >> 8;
+            x ^ (x >> 16)
+        }
+        _ => by_directions(coordinate, index),
+    }
+}
+
+fn by_directions(coordinate: usize, mut index: u32) -> u32 {
     let mut x = 0;
     let mut k = 0;
     while index != 0 {
@@ -500,6 +520,19 @@ impl rand::rand_core::TryRng for SampleRng {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn closed_forms_of_sobol_coordinates_are_those_of_the_table() {
+        for coordinate in 0..SOBOL_DIMENSIONS {
+            for index in (0..4096).chain((0..4096).map(|i: u32| i.wrapping_mul(0x9e37_79b9))) {
+                assert_eq!(
+                    point_reversed(coordinate, index),
+                    by_directions(coordinate, index),
+                    "{coordinate}, {index}"
+                );
+            }
+        }
+    }
 
     #[test]
     fn numbers_do_not_depend_on_the_cut_or_the_tier() {

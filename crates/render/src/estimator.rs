@@ -41,6 +41,12 @@ pub trait Estimator: Send + Sync {
     /// Does one unit of a span of samples of these tiles.
     fn run(&self, samples: &Range<u64>, tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit;
 
+    /// The noise that a pixel of its light is expected to have after so many samples, as a part of that light, in the median over the frame;
+    /// `None` of an estimator that does not look.
+    fn expected_noise(&self, _samples: u64) -> Option<f64> {
+        None
+    }
+
     /// What one unit of each pixel's sums is worth, in W/m2 times the exposure time. `rays` were launched in all.
     fn weights(&self, done: &Done, rays: u64, time_s: f64) -> Vec<f64>;
 

@@ -3,6 +3,7 @@
 use crate::blame::Blame;
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
+use crate::haze::Haze;
 use crate::meter;
 use crate::no_number::Step;
 use crate::pilot::{self, PILOT_SEED};
@@ -36,6 +37,8 @@ pub(crate) struct Forward {
     cone: Numbers,
     /// How the spots are imaged that the source is made of, where each ray stands for all of one.
     spots: Option<Arc<Spots>>,
+    /// How light is spread that the lens scatters, if it is that.
+    haze: Option<Arc<Haze>>,
     /// Of the sums.
     scale: f64,
     /// Rays for each sample of all pixels, where the scene does not state how many there are in all.
@@ -45,6 +48,8 @@ pub(crate) struct Forward {
 /// Rays of lights for each sample of a pixel that they reach, where the scene does not state how many there are: as a pixel's
 /// samples backward fill the pupil evenly, and rays that land where they will do not.
 const LIGHTS_A_SAMPLE: f64 = 12.0;
+/// The same of light that the lens scatters: each ray's is spread over many pixels.
+const SCATTERED_A_SAMPLE: f64 = 2.0;
 /// Rays that say where lights land, and the parts of the frame that they are counted in, across and down.
 const CENSUS: usize = 1 << 16;
 const PARTS: [usize; 2] = [48, 32];
@@ -63,7 +68,11 @@ impl Forward {
         if own.pipeline.share == Share::Lights && !own.pipeline.scene.render.rays_stated {
             own.a_sample = Some(own.lights_a_sample());
         }
-        own.spots = own.spots().map(Arc::new);
+        if own.pipeline.scattered {
+            own.haze = Haze::of(&own.pipeline, &own.aimed_rays(false))?.map(Arc::new);
+        } else {
+            own.spots = own.spots().map(Arc::new);
+        }
         own.scaled(seed)
     }
 
@@ -91,7 +100,8 @@ impl Forward {
         } else {
             let landed = landed as f64;
             let reached = if pairs > 0 { landed * (landed - 1.0) / pairs as f64 / counts.len() as f64 } else { 1.0 };
-            let each = LIGHTS_A_SAMPLE * reached.min(1.0) * CENSUS as f64 / landed;
+            let a_sample = if self.pipeline.scattered { SCATTERED_A_SAMPLE } else { LIGHTS_A_SAMPLE };
+            let each = a_sample * reached.min(1.0) * CENSUS as f64 / landed;
             each.clamp(LEAST_LIGHTS, MOST_LIGHTS)
         };
         ((a_pixel * pixels) as u64).max(1)
@@ -113,7 +123,7 @@ impl Forward {
         let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
         let seed = pipeline.seed ^ meter::SEED;
         let pupil = self.pupil.clone();
-        Some(Self { pupil, numbers, cone, spots: None, scale: 1.0, pipeline, a_sample: None }.scaled(seed))
+        Some(Self { pupil, numbers, cone, spots: None, haze: None, scale: 1.0, pipeline, a_sample: None }.scaled(seed))
     }
 
     /// With the numbers of the pilot, and no scale.
@@ -132,18 +142,22 @@ impl Forward {
             let pupil = FrontPupil::search_by(&scene.lens, &pipeline.tracer, &points, band_nm, workers, effort);
             Some(Arc::new(pupil.ok_or_else(|| RenderError::no_pupil(workers))?))
         };
-        Ok(Self { pupil, numbers, cone, spots: None, scale: 1.0, pipeline, a_sample: None })
+        Ok(Self { pupil, numbers, cone, spots: None, haze: None, scale: 1.0, pipeline, a_sample: None })
     }
 
     /// How the spots are imaged that the source is made of, if it is.
     fn spots(&self) -> Option<Spots> {
         let half_mm = self.emit().spots_mm()?;
         let planes_mm = [-self.pipeline.source().distance_mm(), self.pupil.as_ref()?.eye_z_mm()];
-        let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
-        // Rays from the middle of spots, aimed.
-        self.aim(&mut state, 0, PILOT_RAYS as usize, true, &mut |_, _| {});
         let pixel_mm = self.pipeline.scene.imager.size().pixel_area_mm2().sqrt();
-        Spots::look(half_mm, planes_mm, &state.rays, &self.pipeline.tracer, pixel_mm)
+        Spots::look(half_mm, planes_mm, &self.aimed_rays(true), &self.pipeline.tracer, pixel_mm)
+    }
+
+    /// Some rays of the pilot's numbers, aimed; from the middle of spots if that is asked for.
+    fn aimed_rays(&self, in_middle: bool) -> RayBatch {
+        let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
+        self.aim(&mut state, 0, PILOT_RAYS as usize, in_middle, &mut |_, _| {});
+        state.rays
     }
 
     fn emit(&self) -> &dyn Emit {
@@ -220,6 +234,7 @@ impl Forward {
             numbers.fill_rotated(isa, STREAM, first, group, dimension as u32, column.slice_mut(len));
         }
         state.draw_wavelengths(&self.pipeline, len);
+        (0..).zip(state.rays.columns_mut().tag).for_each(|(number, tag)| *tag = number);
         look(Step::Wavelengths, &state.rays);
         state.rays.number(0, &self.numbers, ESTIMATOR, STREAM, first);
         state.rays.set_stage(StageKey::SOURCE);
@@ -257,9 +272,10 @@ impl Forward {
         let mut at = first;
         while at < first + paths {
             let len = batch.min(first + paths - at);
-            let is_good = match &self.spots {
-                Some(spots) => self.spread(state, at, len as usize, spots, sums),
-                None => {
+            let is_good = match (&self.spots, &self.haze) {
+                (Some(spots), _) => self.spread(state, at, len as usize, spots, sums),
+                (None, Some(haze)) => self.scatter(state, at, len as usize, haze, sums),
+                (None, None) => {
                     self.batch(state, at, len as usize);
                     self.add(state, sums)
                 }
@@ -311,6 +327,34 @@ impl Forward {
         state.before = before;
         is_good
     }
+
+    /// Traces paths as [`Forward::batch`] and spreads the light of each over a part of the way that it was scattered by.
+    fn scatter(&self, state: &mut ThreadState, first: u64, len: usize, haze: &Haze, sums: &ExactSums) -> bool {
+        self.aim(state, first, len, false, &mut |_, _| {});
+        let numbers = state.rays.tags().to_vec();
+        (0..).zip(state.rays.columns_mut().tag).for_each(|(at, tag)| *tag = at);
+        let unscattered = haze.unscattered(&state.rays);
+        self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Forward);
+        state.rays.compact();
+        let (left, moved_px) = (state.rays.tags().to_vec(), haze.moved_px(&state.rays, &unscattered));
+        let number = |i: usize| first + u64::from(numbers[left[i] as usize]);
+        self.arrive(state, &mut |_, _| {});
+        if !state.contributions(&self.pipeline, self.scale) {
+            return false;
+        }
+        let footprint = |i: usize| haze.footprint(moved_px[i], self.sample_of(number(i)));
+        haze.spreader.add(state, footprint, None, sums);
+        true
+    }
+
+    /// The sample that a path belongs to.
+    fn sample_of(&self, path: u64) -> u64 {
+        let render = &self.pipeline.scene.render;
+        match self.a_sample {
+            Some(rays) => path / rays,
+            None => (u128::from(path) * u128::from(render.samples) / u128::from(render.rays.max(1))) as u64,
+        }
+    }
 }
 
 impl Forward {
@@ -343,8 +387,8 @@ impl Estimator for Forward {
     fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
         let (numbers, cone) = Self::numbers(&self.pipeline, seed);
         let (pipeline, pupil) = (Arc::new(self.pipeline.of_seed(picture)), self.pupil.clone());
-        let (spots, scale, a_sample) = (self.spots.clone(), self.scale, self.a_sample);
-        Box::new(Self { pipeline, pupil, numbers, cone, spots, scale, a_sample })
+        let (spots, haze, scale, a_sample) = (self.spots.clone(), self.haze.clone(), self.scale, self.a_sample);
+        Box::new(Self { pipeline, pupil, numbers, cone, spots, haze, scale, a_sample })
     }
 
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
@@ -358,7 +402,10 @@ impl Estimator for Forward {
 
     fn scratch(&self) -> Scratch {
         let mut state = ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch);
-        state.own = OwnSums::new(self.pipeline.scene.imager.size().pixels() * self.pipeline.recorded.len());
+        match &self.haze {
+            Some(haze) => state.steps = haze.spreader.steps(),
+            None => state.own = OwnSums::new(self.pipeline.scene.imager.size().pixels() * self.pipeline.recorded.len()),
+        }
         Scratch(state)
     }
 

@@ -128,6 +128,11 @@ impl Pipeline {
         Ok(Some(Self { draws: true, scattered: true, ..self.with_tracer(tracer) }))
     }
 
+    /// The lens as if nothing lay on it that scatters.
+    pub(crate) fn clean_tracer(&self) -> Result<Tracer, RenderError> {
+        tracer(&self.scene, self.isa)
+    }
+
     /// What is traced of the source.
     pub(crate) fn source(&self) -> &dyn Source {
         self.share.of(&self.scene)

@@ -11,7 +11,7 @@ use crate::light::{Light, Part};
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
 use crate::pipeline::{Pipeline, Share, ThreadState};
-use crate::rendering::Rendering;
+use crate::rendering::{GhostNoise, Rendering};
 use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, PILOT_RAYS};
 use crate::veil::{self, Veil};
 use crate::{Alone, Control, Effort, RenderError, Workers};
@@ -551,10 +551,27 @@ impl Renderer {
             partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
             noise: self.noise(light),
             ledger: self.ledger.clone(),
+            ghost_noise: self.ghost_noise(light.samples()),
             glare: self.glare_of(light, &weights),
             diffraction,
             warnings: Vec::new(),
         })
+    }
+
+    /// How noisy ghosts are expected to be after so many samples.
+    fn ghost_noise(&self, samples: u64) -> Option<GhostNoise> {
+        const MOST: u64 = 1 << 16;
+        let halves = self.halves();
+        let expected = |samples: u64| {
+            let of_half = self.estimators().find_map(|e| e.expected_noise((samples / halves).max(1)));
+            of_half.map(|noise| noise / (halves as f64).sqrt())
+        };
+        let noise = expected(samples)?;
+        let more = || std::iter::successors(Some(samples.max(1)), |samples| Some(samples + samples.div_ceil(4)));
+        let is_clean = |samples: &u64| expected(*samples).is_some_and(|noise| noise <= GhostNoise::CLEAN);
+        let clean_samples =
+            if noise > GhostNoise::CLEAN { more().take_while(|samples| *samples <= MOST).find(is_clean) } else { None };
+        Some(GhostNoise { noise, clean_samples })
     }
 
     /// Whether diffraction matters by itself.

@@ -31,10 +31,26 @@ pub struct Rendering {
     pub estimators: Vec<&'static str>,
     /// Where the light of the source's lights goes, if ghosts are traced.
     pub ledger: Option<LightLedger>,
+    /// How noisy ghosts are expected to be, where their light is spread over footprints.
+    pub ghost_noise: Option<GhostNoise>,
     /// What part of the exposure of the whole frame, all channels together, is veiling glare, where it is asked for.
     pub glare: Option<f64>,
     /// What diffraction did to each channel of the picture, where the scene asks for it.
     pub diffraction: Option<Vec<Diffracted>>,
     /// What a person should know before believing the picture, and what to write.
     pub warnings: Vec<String>,
+}
+
+/// The expected noise of ghosts: that of a pixel, as a part of the ghosts' light there, in the median over the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GhostNoise {
+    /// Of this picture.
+    pub noise: f64,
+    /// The samples a pixel that would bring [`GhostNoise::CLEAN`], where this picture has more noise than that.
+    pub clean_samples: Option<u64>,
+}
+
+impl GhostNoise {
+    /// Ghosts with no more noise than this look smooth.
+    pub const CLEAN: f64 = 0.04;
 }

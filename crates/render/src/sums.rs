@@ -118,8 +118,10 @@ impl ExactSums {
 /// Cells of which each thread sums by itself: 8 MB. A locked addition takes as long as twenty plain ones, but for larger frames both
 /// wait for memory.
 const MOST_OWN: usize = 1 << 20;
-/// The same where each ray adds to many cells: 64 MB.
+/// The same where each ray adds to many cells: 100 MB.
 const MOST_STEPS: usize = 1 << 23;
+/// More than what the shares of one ray leave: fewer units than its footprint has pixels.
+const MOST_REST: i32 = 1 << 10;
 /// What a thread's own cell may hold before it goes to the shared one, which is below [`LIMIT`] then.
 const OWN_LIMIT: u64 = 1 << 60;
 
@@ -230,8 +232,11 @@ pub(crate) struct OwnSteps {
     channels: usize,
     /// Of a mosaic the one channel that each pixel has.
     filters: Option<Arc<[u8]>>,
-    /// What any cell got at most since they were given away last.
+    /// What single pixels got beside: less than [`MOST_REST`] a ray.
+    rest: Vec<i32>,
+    /// What any cell got at most since they were given away last, and from how many rays.
     most: u64,
+    rays: i32,
 }
 
 impl OwnSteps {
@@ -246,33 +251,67 @@ impl OwnSteps {
             return None;
         }
         let many = (frame[0] + 1) * (frame[1] + 1) * channels;
-        let mut steps = Vec::new();
+        let (mut steps, mut rest) = (Vec::new(), Vec::new());
         steps.try_reserve_exact(many).ok()?;
         steps.resize(many, 0);
-        Some(Self { steps, frame, channels, filters, most: 0 })
+        rest.try_reserve_exact(frame[0] * frame[1] * channels).ok()?;
+        rest.resize(frame[0] * frame[1] * channels, 0);
+        Some(Self { steps, frame, channels, filters, rest, most: 0, rays: 0 })
     }
 
     /// Makes room for a ray that brings so much at most to any cell.
     #[inline]
     pub(crate) fn make_room(&mut self, most: u64, sums: &ExactSums) {
         self.most += most;
-        if self.most >= OWN_LIMIT {
+        self.rays += 1;
+        if self.most >= OWN_LIMIT || self.rays > i32::MAX / MOST_REST {
             self.give(sums);
-            self.most = most;
+            (self.most, self.rays) = (most, 1);
         }
+    }
+
+    /// Adds what the shares of a ray leave to a pixel, one integer a channel.
+    #[inline]
+    pub(crate) fn add_rest(&mut self, pixel: usize, rest: &[i64]) {
+        let at = pixel * self.channels;
+        let cells = self.rest[at..at + self.channels].iter_mut();
+        cells.zip(rest).for_each(|(cell, rest)| *cell += *rest as i32);
     }
 
     /// Adds the same to each pixel of a box, from one column and row to another, one integer a channel.
     #[inline]
     pub(crate) fn add_box(&mut self, [[left, right], [low, high]]: [[usize; 2]; 2], shares: &[i64]) {
-        let row = (self.frame[0] + 1) * self.channels;
-        for (first, sign) in [(low * row, 1), ((high + 1) * row, -1)] {
-            for (column, sign) in [(left, sign), (right + 1, -sign)] {
-                let at = first + column * self.channels;
-                self.steps[at..at + self.channels]
-                    .iter_mut()
-                    .zip(shares)
-                    .for_each(|(step, share)| *step += sign * share);
+        match *shares {
+            [a] => self.add_box_of([a], left..right + 1, low..high + 1),
+            [a, b, c] => self.add_box_of([a, b, c], left..right + 1, low..high + 1),
+            [a, b, c, d] => self.add_box_of([a, b, c, d], left..right + 1, low..high + 1),
+            _ => {
+                for (channel, share) in shares.iter().enumerate() {
+                    for (row, share) in [(low, *share), (high + 1, -share)] {
+                        let at = |column: usize| (row * (self.frame[0] + 1) + column) * self.channels + channel;
+                        let (first, behind) = (at(left), at(right + 1));
+                        self.steps[first] += share;
+                        self.steps[behind] -= share;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The same for a number of channels that the compiler knows.
+    #[inline]
+    fn add_box_of<const CHANNELS: usize>(
+        &mut self,
+        shares: [i64; CHANNELS],
+        columns: Range<usize>,
+        rows: Range<usize>,
+    ) {
+        let (cells, _) = self.steps.as_chunks_mut::<CHANNELS>();
+        for (row, sign) in [(rows.start, 1), (rows.end, -1)] {
+            let first = row * (self.frame[0] + 1);
+            for (column, sign) in [(columns.start, sign), (columns.end, -sign)] {
+                let cell = &mut cells[first + column];
+                (0..CHANNELS).for_each(|channel| cell[channel] += sign * shares[channel]);
             }
         }
     }
@@ -293,14 +332,16 @@ impl OwnSteps {
                 for column in 0..columns {
                     value += along[column * channels + channel];
                     let pixel = at * columns + column;
+                    let cell = pixel * channels + channel;
                     let has = self.filters.as_ref().is_none_or(|filters| usize::from(filters[pixel]) == channel);
-                    if value != 0 && has {
-                        sums.merge(pixel * channels + channel, value);
+                    let whole = value + i64::from(std::mem::take(&mut self.rest[cell]));
+                    if whole != 0 && has {
+                        sums.merge(cell, whole);
                     }
                 }
             }
         }
-        self.most = 0;
+        (self.most, self.rays) = (0, 0);
     }
 }
 
@@ -397,6 +438,8 @@ mod tests {
                 let shares = [k as i64, -(k as i64), 1 << 40];
                 own.make_room(1 << 58, &got);
                 own.add_box(pixels, &shares);
+                let rest = [k as i64 % 7, -(k as i64 % 5), 1];
+                own.add_rest(low * 9 + left, &rest);
                 for pixel in (0..63).filter(|p| {
                     (pixels[0][0]..=pixels[0][1]).contains(&(p % 9)) && (pixels[1][0]..=pixels[1][1]).contains(&(p / 9))
                 }) {
@@ -405,6 +448,9 @@ mod tests {
                     (0..channels)
                         .filter(|channel| has(*channel))
                         .for_each(|channel| want.add(pixel * channels + channel, shares[channel]));
+                    (0..channels)
+                        .filter(|channel| has(*channel) && pixel == low * 9 + left)
+                        .for_each(|channel| want.add(pixel * channels + channel, rest[channel]));
                 }
             }
             own.give(&got);

@@ -53,6 +53,7 @@ impl Report<'_> {
             })),
             "lost": self.lost(),
             "ledger": rendering.ledger.as_ref().map(|ledger| self.ledger(ledger)),
+            "ghost_noise": rendering.ghost_noise.map(|n| n.noise),
             "glare": settings.glare.map(|of| json!({
                 "share": rendering.glare, "paint": of.paint, "imager": of.imager, "imager_mirror": of.imager_mirror,
             })),

@@ -97,6 +97,7 @@ pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, Sessio
         estimators: Vec::new(),
         warnings: Vec::new(),
         ledger: None,
+        ghost_noise: None,
         glare: None,
         diffraction: None,
     })

@@ -4,6 +4,7 @@ use crate::{LightFrom, Report, words};
 use spectra_core::math::log10;
 use spectra_core::params::{Node, Value};
 use spectra_core::{Loss, shutter};
+use spectra_render::GhostNoise;
 use spectra_scene::FilmTime;
 use std::path::Path;
 
@@ -74,6 +75,10 @@ fn of(report: &Report<'_>) -> String {
             share(ledger.not_traced_w),
             if ledger.order > 2 { "four" } else { "two" }
         ));
+        if let Some(GhostNoise { noise, clean_samples: Some(samples) }) = rendering.ghost_noise {
+            let [own, clean] = [noise, GhostNoise::CLEAN].map(spectra_render::percent);
+            text.push_str(&format!(", with about {own} of noise ({clean} with `render.samples: {samples}`)"));
+        }
     }
     if let Some(glare) = rendering.glare {
         text.push_str(&format!(", veiling glare is {} of all light on the frame", spectra_render::percent(glare)));

@@ -59,7 +59,8 @@ pub(crate) fn scatter(rays: &mut RayBatch, place: &Place, meeting: &Meeting<'_>)
     let len = rays.len();
     rays.set_stage(FIRST);
     let c = rays.columns_mut();
-    let first: Vec<Option<f64>> = (0..len).map(|i| c.numbers.of(i).map(|numbers| numbers.number(0))).collect();
+    let first: Vec<Option<f64>> =
+        (0..len).map(|i| c.numbers.of(i).filter(|_| c.state[i] == ALIVE).map(|numbers| numbers.number(0))).collect();
     rays.set_stage(place.stage);
     let c = rays.columns_mut();
     let mut ended = 0;

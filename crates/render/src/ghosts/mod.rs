@@ -8,7 +8,6 @@
 mod account;
 mod aims;
 mod density;
-mod footprint;
 mod guide;
 mod metered;
 mod net;
@@ -71,7 +70,7 @@ const SEED: u64 = 0x6768_6f73_7473;
 
 /// Rays for each pixel and sample, and in all of a sample at least for each path. Where ghosts are traced because lights are bright,
 /// dim ones get fewer, as the brightest block is to the mean of the frame.
-const RAYS_A_PIXEL: f64 = 1.0;
+const RAYS_A_PIXEL: f64 = 0.9;
 const LEAST_A_PIXEL: f64 = 0.125;
 const LEAST_A_PATH: u64 = 64;
 /// Rays of a unit of work: some milliseconds.
@@ -521,7 +520,7 @@ impl Estimator for Ghosts {
     fn scratch(&self) -> Scratch {
         let mut state = self.state(self.pipeline.scene.render.batch);
         match &self.spreading {
-            Some(spreading) => state.steps = spreading.steps(self),
+            Some(spreading) => state.steps = spreading.spreader.steps(),
             None => state.own = OwnSums::new(self.cells()),
         }
         Scratch(state)
@@ -529,6 +528,10 @@ impl Estimator for Ghosts {
 
     fn run(&self, samples: &Range<u64>, _tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
         self.block(&mut scratch.0, samples.start * self.plan.blocks_a_sample + unit, sums)
+    }
+
+    fn expected_noise(&self, samples: u64) -> Option<f64> {
+        self.spreading.as_ref().map(|spreading| spreading.width.noise(samples, spreading.spreader.most_half))
     }
 
     fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {

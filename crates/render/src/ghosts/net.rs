@@ -4,8 +4,8 @@
 //! beside light that arrives (an edge of the ghost: the image of a rim or of the stop), and where the map folds (a caustic). A footprint
 //! is no larger than a few meshes of the net, for as far is the map known to be straight; it ends at edges and is small near folds.
 
-use super::footprint::{Edge, Footprint, MOST_HALF};
 use super::guide::Part;
+use crate::footprint::{Edge, Footprint, MOST_HALF};
 
 /// Meshes across and up.
 pub(super) const SIDE: usize = 32;
@@ -19,6 +19,8 @@ const FOLDS_WITHIN: i64 = 8;
 /// Footprints of rays beyond an edge, and of rays through places that nobody knows, reach this far at most, pixels: the source is no point and light has many colors,
 /// so such edges are elsewhere for them, and as wide as that.
 const UNKNOWN: f64 = 6.0;
+/// How far footprints of rays that land beyond the edge reach, as a part of how far beyond it they do.
+const BEYOND: f64 = 2.0;
 /// Of the way to a fold a footprint covers this part.
 const OF_FOLD: f64 = 0.5;
 /// Two edges whose directions have more than this in common are one, bent.
@@ -109,8 +111,8 @@ impl Net {
             let line = &self.lines[line as usize];
             let away = line.away(place);
             if away < 0.0 {
-                // The edge is elsewhere for this ray. No light comes back over the one that is known, as none goes out over that.
-                return Footprint::new(half.min(-away).min(UNKNOWN), [None; 2]);
+                // The edge is elsewhere for this ray, at least as far beyond the known one as it lands, and as much blurred.
+                return Footprint::new(half.min(BEYOND * -away).min(UNKNOWN), [None; 2]);
             }
             // Columns count the other way from x, rows the way of y.
             let ([x, y], [cos, sin]) = (line.out, turn);

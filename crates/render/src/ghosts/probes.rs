@@ -1,11 +1,11 @@
 //! Probes: rays from one point of each zone of the source that find the nets of all paths.
 
 use super::aims::{Aims, azimuth};
-use super::footprint::Footprint;
 use super::net::Net;
 use super::{ESTIMATOR, Ghosts, Guide, Landed, Way};
 use crate::Workers;
 use crate::error::RenderError;
+use crate::footprint::Footprint;
 use crate::pipeline::ThreadState;
 use glam::DVec3;
 use spectra_core::loss::ALIVE;

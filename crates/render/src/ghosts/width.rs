@@ -1,16 +1,16 @@
 //! How wide footprints have to be: by how noisy ghosts are where each ray adds to one pixel.
 
-use super::footprint::MOST_HALF;
 use super::{Ghosts, SCALE_RAYS, spans};
 use crate::Workers;
 use crate::error::RenderError;
+use crate::footprint::MOST_HALF;
 use crate::pipeline::ThreadState;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::workers::each_of;
 
 /// The noise of a pixel that footprints are to leave in a picture of so many samples, as a part of the light. Neighbors share most of it:
 /// about the plane through 16 x 16 pixels it is some six tenths of that.
-const NOISE: f64 = 0.027;
+const NOISE: f64 = 0.021;
 const SAMPLES: f64 = 64.0;
 /// Of the samples before that, whose footprints are larger, the noise is less by this factor in all (squared).
 const EARLIER: f64 = 2.0 / 3.0;
@@ -36,6 +36,15 @@ impl Width {
     /// many samples there will be, so light that goes on has the bits of light in one go.
     pub fn of_sample(&self, sample: u64) -> f64 {
         (0.5 * (self.side * (SAMPLES / (sample + 1) as f64).sqrt().sqrt() - 1.0)).clamp(0.0, MOST_HALF)
+    }
+
+    /// The noise that is left of a pixel, as a part of its light, in a picture of so many samples whose footprints reach no farther than
+    /// `most_half` to each side.
+    pub fn noise(&self, samples: u64, most_half: f64) -> f64 {
+        let variance = self.side * self.side * SAMPLES * NOISE * NOISE / EARLIER;
+        let pixels = |sample: u64| (2.0 * self.of_sample(sample).min(most_half) + 1.0).powi(2);
+        let left: f64 = (0..samples).map(|sample| variance / pixels(sample)).sum();
+        left.sqrt() / samples.max(1) as f64
     }
 
     pub fn is_none(&self) -> bool {
@@ -114,10 +123,9 @@ mod tests {
         let width = Width::for_noise(2.0);
         let halves = [0, 15, 63, 255, 1 << 20].map(|sample| width.of_sample(sample));
         assert!(halves.is_sorted_by(|a, b| a >= b) && halves[0] < MOST_HALF && halves[4] == 0.0, "{halves:?}");
-        // The noise that is left, by the areas.
-        let pixels = |sample: u64| (2.0 * width.of_sample(sample) + 1.0).powi(2);
-        let left: f64 = (0..64).map(|sample| 2.0 / pixels(sample)).sum::<f64>() / 4096.0;
-        assert!((left.sqrt() / NOISE - 1.0).abs() < 0.01, "{left}");
+        // The noise that is left, by the areas, and that of single pixels.
+        assert!((width.noise(64, MOST_HALF) / NOISE - 1.0).abs() < 0.01, "{}", width.noise(64, MOST_HALF));
+        assert!((width.noise(50, 0.0) / (2.0_f64 / 50.0).sqrt() - 1.0).abs() < 1e-9);
         assert_eq!(Width::for_noise(1e3).of_sample(0), MOST_HALF);
         assert!(Width::for_noise(0.0).is_none());
     }

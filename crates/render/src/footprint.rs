@@ -5,13 +5,13 @@
 //! is folded along rows or columns, whichever the edge lies more across: what counts is how far from the edge it comes to lie.
 
 /// The most pixels to each side.
-pub(super) const MOST_HALF: f64 = 14.0;
+pub(crate) const MOST_HALF: f64 = 14.0;
 /// An edge is folded along rows or columns that it lies across by this part of a turn at least (the cosine); near another one footprints are smaller.
 const ACROSS: f64 = 0.5;
 
 /// An edge of a ghost, as seen from where a ray lands: a line across the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Edge {
+pub(crate) struct Edge {
     /// Unit vector across it, out of the ghost: columns, rows.
     pub out: [f64; 2],
     /// How far away it is, pixels, not less than 0.
@@ -27,7 +27,7 @@ impl Edge {
 
 /// Where the light of a ray goes, around the pixel that it meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Footprint {
+pub(crate) struct Footprint {
     /// Pixels to each side.
     pub half: i64,
     /// The edges of its ghost that are near, the nearest first.
@@ -82,11 +82,11 @@ impl Footprint {
 }
 
 /// Pixels of a frame, each from one to another: columns, rows.
-pub(super) type Box = [[usize; 2]; 2];
+pub(crate) type Box = [[usize; 2]; 2];
 
 /// A frame on which light is spread.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ground {
+pub(crate) struct Ground {
     /// Columns, rows.
     size: [i64; 2],
 }
@@ -188,7 +188,7 @@ fn below(number: f64) -> i64 {
 
 /// An integer in as many equal shares, and what is left for the pixel that the ray meets.
 #[inline]
-pub(super) fn shared(value: i64, pixels: i64) -> (i64, i64) {
+pub(crate) fn shared(value: i64, pixels: i64) -> (i64, i64) {
     let share = value / pixels;
     (share, value - share * pixels)
 }
