@@ -5,8 +5,9 @@
 - noise-lights.exr: the same at dusk, with 70 lamps on the wall, disks of 1 to 6 pixels and 30 to 150 times white.
 - noise-street.exr: a street at night: road, houses with lit windows, lamps to 400, headlamps to 3000 times white.
 
-One sample a pixel, so that every pixel's color and depth belong to one thing. R, G, B (linear, Rec. 709) and Z as 16-bit
-floats of 8 significant bits, ZIP compressed. Needs nothing but Python 3, and takes a minute.
+Color of the two with depth is the mean of nine samples of a pixel, and depth is that of the one in its middle, as renderers do it;
+the street has one sample a pixel. R, G, B (linear, Rec. 709) and Z as 16-bit floats of 8 significant bits, ZIP compressed. Needs nothing
+but Python 3, and takes some minutes.
 
     python3 xtask/noise_scenes.py
 """
@@ -18,6 +19,7 @@ import random
 import half_exr
 
 WIDTH, HEIGHT = 600, 400
+SAMPLES = 3  # of a pixel, across and down
 PLANE, ACROSS, WALL = 1.5, 0.52, 8.0  # m: the picture is ACROSS wide on the plane at PLANE
 LIGHT = (-0.55, 0.62, 0.56)  # toward the key light; +z toward the camera
 
@@ -166,17 +168,21 @@ def garden(x, y):
     return mixed(green, (0.62, 0.75, 0.95), sky)
 
 
+def sample(behind, column, row):
+    """Color and depth at a place of the picture, in pixels."""
+    x, y = (column - 0.5 * WIDTH) / WIDTH * ACROSS, (0.5 * HEIGHT - row) / WIDTH * ACROSS
+    return subject(x, y) or (behind(x, y, column, row), WALL)
+
+
+def pixel(behind, column, row):
+    steps = [(k + 0.5) / SAMPLES for k in range(SAMPLES)]
+    all_of_it = [sample(behind, column + across, row + down) for down in steps for across in steps]
+    color = [sum(color[k] for color, _ in all_of_it) / len(all_of_it) for k in range(3)]
+    return (*map(eight_bits, color), all_of_it[len(all_of_it) // 2][1])
+
+
 def portrait(behind):
-    rows = []
-    for row in range(HEIGHT):
-        y = (0.5 * HEIGHT - row - 0.5) / WIDTH * ACROSS
-        line = []
-        for column in range(WIDTH):
-            x = (column + 0.5 - 0.5 * WIDTH) / WIDTH * ACROSS
-            color, z = subject(x, y) or (behind(x, y, column, row), WALL)
-            line.append((*map(eight_bits, color), z))
-        rows.append(line)
-    return rows
+    return [[pixel(behind, column, row) for column in range(WIDTH)] for row in range(HEIGHT)]
 
 
 def lamps():
@@ -195,7 +201,7 @@ def lights():
     def behind(x, y, column, row):
         color = scaled(garden(x, y), 0.25)
         for at, down, radius, light in strung:
-            away = math.hypot(column + 0.5 - at, row + 0.5 - down)
+            away = math.hypot(column - at, row - down)
             if away < radius + 0.5:
                 color = mixed(color, light, min(1.0, radius + 0.5 - away))
         return color

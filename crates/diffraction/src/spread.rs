@@ -131,6 +131,15 @@ pub struct Spread<'a> {
     kernels: Vec<PixelSpread>,
 }
 
+/// Takes what is less than nothing off the rest: a star darkens nothing. Kernels of lenses with aberrations are the difference of two, and
+/// less than nothing beside their middle where that is not exact; beside a sun the sky would turn black.
+fn lighten(light: &mut [f64]) {
+    let (mut above, mut below) = (0.0, 0.0);
+    light.iter().for_each(|v| *(if *v > 0.0 { &mut above } else { &mut below }) += v);
+    let part = if above > 0.0 { f64::max((above + below) / above, 0.0) } else { 0.0 };
+    light.iter_mut().for_each(|v| *v = part * v.max(0.0));
+}
+
 impl<'a> Spread<'a> {
     /// For a channel's light on a frame. `None` where the middle of the frame sees no opening.
     #[must_use]
@@ -251,16 +260,19 @@ impl<'a> Spread<'a> {
             return Account::default();
         }
         let bright = self.bright(plane);
-        let mut spread = self.cores(plane, &bright);
-        self.stars(plane, &bright, &mut spread);
         let mut rest = plane.to_vec();
         let mut stars = vec![0.0_f32; rest.len()];
         for at in &bright {
             std::mem::swap(&mut rest[*at], &mut stars[*at]);
         }
+        let mut spread = self.cores(&rest, &bright);
         self.cells(&rest, true, &self.cells[0], &mut spread);
         if !bright.is_empty() {
-            self.cells(&stars, false, &self.cells[1], &mut spread);
+            let mut of_stars = self.cores(&stars, &bright);
+            self.stars(plane, &bright, &mut of_stars);
+            self.cells(&stars, false, &self.cells[1], &mut of_stars);
+            lighten(&mut of_stars);
+            spread.par_iter_mut().zip(&of_stars).for_each(|(to, star)| *to += star);
         }
         plane.par_iter_mut().zip(&spread).for_each(|(to, v)| *to = v.max(0.0) as f32);
         let after: f64 = spread.iter().sum();

@@ -8,6 +8,8 @@
 pub(crate) const MOST_HALF: f64 = 14.0;
 /// An edge is folded along rows or columns that it lies across by this part of a turn at least (the cosine); near another one footprints are smaller.
 const ACROSS: f64 = 0.5;
+/// In a corner between two edges a footprint reaches this far all the same, pixels: single rays would be colored dots.
+const LEAST_IN_CORNER: i64 = 1;
 
 /// An edge of a ghost, as seen from where a ray lands: a line across the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +51,7 @@ impl Footprint {
         if let [Some(_), Some(second)] = own.edges
             && second.out[own.axis()].abs() < ACROSS
         {
-            own.half = own.half.min(below(second.room()));
+            own.half = own.half.min(below(second.room()).max(LEAST_IN_CORNER));
             own.edges[1] = None;
         }
         own

@@ -48,8 +48,8 @@ pub(crate) struct Forward {
 /// Rays of lights for each sample of a pixel that they reach, where the scene does not state how many there are: as a pixel's
 /// samples backward fill the pupil evenly, and rays that land where they will do not.
 const LIGHTS_A_SAMPLE: f64 = 12.0;
-/// The same of light that the lens scatters: each ray's is spread over many pixels.
-const SCATTERED_A_SAMPLE: f64 = 2.0;
+/// The same of light that haze scatters: each ray's is spread over many pixels.
+const HAZE_A_SAMPLE: f64 = 2.0;
 /// Rays that say where lights land, and the parts of the frame that they are counted in, across and down.
 const CENSUS: usize = 1 << 16;
 const PARTS: [usize; 2] = [48, 32];
@@ -68,9 +68,9 @@ impl Forward {
         if own.pipeline.share == Share::Lights && !own.pipeline.scene.render.rays_stated {
             own.a_sample = Some(own.lights_a_sample());
         }
-        if own.pipeline.scattered {
+        if Haze::suits(&own.pipeline) {
             own.haze = Haze::of(&own.pipeline, &own.aimed_rays(false))?.map(Arc::new);
-        } else {
+        } else if !own.pipeline.scattered {
             own.spots = own.spots().map(Arc::new);
         }
         own.scaled(seed)
@@ -100,7 +100,7 @@ impl Forward {
         } else {
             let landed = landed as f64;
             let reached = if pairs > 0 { landed * (landed - 1.0) / pairs as f64 / counts.len() as f64 } else { 1.0 };
-            let a_sample = if self.pipeline.scattered { SCATTERED_A_SAMPLE } else { LIGHTS_A_SAMPLE };
+            let a_sample = if Haze::suits(&self.pipeline) { HAZE_A_SAMPLE } else { LIGHTS_A_SAMPLE };
             let each = a_sample * reached.min(1.0) * CENSUS as f64 / landed;
             each.clamp(LEAST_LIGHTS, MOST_LIGHTS)
         };

@@ -1,6 +1,6 @@
-//! Haze without noise: light of lamps that the lens scatters, spread as it lands.
+//! Haze without noise: light of lamps that haze on the lens scatters, spread as it lands.
 //!
-//! Model: each ray of a lamp is traced twice, once as dust, haze and scratches scatter it and once as it goes without them. The farther
+//! Model: each ray of a lamp is traced twice, once as haze scatters it and once as it goes without. The farther
 //! apart the two land, the smoother the glow is there: what glass scatters falls off as a power of the angle. So the scattered light is spread
 //! over a square whose half side is a fixed part of that distance ([`OF_WAY`]). For a glow that falls with the power n of the distance
 //! that changes its light by about (n - 2)^2 / 6 times the square of that part: 1.5 % for n = 4. A later sample has smaller squares, so
@@ -9,7 +9,7 @@
 //! A ray that without haze is lost at a rim would have landed where a linear map says that holds for the others; how far the map is off them
 //! is taken off its distance.
 //!
-//! Limits: the plate itself is traced from the imager and needs none of this.
+//! Limits: the rings of dust and the streaks of scratches are not smooth; where either lies on the lens nothing is spread. The plate itself is traced from the imager and needs none of this.
 
 use crate::error::RenderError;
 use crate::footprint::Footprint;
@@ -79,10 +79,17 @@ pub(crate) struct Landing {
 }
 
 impl Haze {
-    /// For a scene whose lens scatters, by some rays that are aimed at it; `None` where the scene wants all light of a ray in the pixel
-    /// that it meets.
+    /// Whether the light of rays is spread.
+    pub fn suits(pipeline: &Pipeline) -> bool {
+        let scene = &pipeline.scene;
+        let is_asked_for = scene.render.reflections.spread == GhostSpread::Footprint;
+        pipeline.scattered && is_asked_for && scene.lens.scatters_smoothly()
+    }
+
+    /// For a scene whose lens scatters, by some rays that are aimed at it; `None` where its light is not smooth, or the scene wants all
+    /// light of a ray in the pixel that it meets.
     pub fn of(pipeline: &Pipeline, aimed: &RayBatch) -> Result<Option<Self>, RenderError> {
-        if pipeline.scene.render.reflections.spread != GhostSpread::Footprint {
+        if !Self::suits(pipeline) {
             return Ok(None);
         }
         let size = pipeline.scene.imager.size();

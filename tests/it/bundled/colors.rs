@@ -257,7 +257,7 @@ pub const EYES: &[Promise] = &[
     Promise {
         scene: "night-vision",
         pictures: &[first(SMALL)],
-        says: "by V'(lambda) red is nearly black and blue is light",
+        says: "by V'(lambda) red is darker than blue",
         held: |t| {
             // To the eye by day red is 1.3 times as light as this gray, and blue two thirds as light.
             let light = t[0].channel("scotopic");

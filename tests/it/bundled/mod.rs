@@ -18,8 +18,7 @@ use std::path::{Path, PathBuf};
 use taken::{Take, Taken};
 
 /// Scenes of which something has to be said, and why.
-const EXCEPTIONS: [(&str, &str); 1] =
-    [("false-color", "it is about light beyond 700 nm, and nobody measured the glass of its lens there")];
+const EXCEPTIONS: [(&str, &str); 0] = [];
 
 /// The same, once they are rendered.
 const EXCEPTIONS_OF_RENDER: [(&str, &str); 1] =

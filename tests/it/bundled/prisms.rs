@@ -159,7 +159,7 @@ pub const PRISMS: &[Promise] = &[
             "imager={kind: xyz, width: 3 mm, height: 1.2 mm, shift: [-15.5 mm, 0], resolution: 240}",
             "render.samples=96",
         ])],
-        says: "every color made of three lines: lateral color splits the chart into three sharp pictures",
+        says: "every color made of three lines: lateral color splits the chart into three pictures",
         held: parted,
     },
 ];

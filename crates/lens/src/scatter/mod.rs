@@ -25,6 +25,13 @@ impl Lens {
         self.elements.iter().flat_map(|e| &e.layers).any(|layer| layer.scattered > 0.0)
     }
 
+    /// Whether all that scatters light on it is haze, whose light has no rings or streaks.
+    #[must_use]
+    pub fn scatters_smoothly(&self) -> bool {
+        let is_smooth = |layer: &Layer| layer.scattered <= 0.0 || matches!(layer.lobe, Lobe::Harvey { .. });
+        self.scatters() && self.elements.iter().flat_map(|e| &e.layers).all(is_smooth)
+    }
+
     /// The same lens with this layer on all outer surfaces, where glass or a mirror meets a gas, whatever they state of its kind.
     #[must_use]
     pub fn with_layer(mut self, layer: &Layer) -> Self {

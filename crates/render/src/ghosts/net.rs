@@ -23,6 +23,10 @@ const UNKNOWN: f64 = 6.0;
 const BEYOND: f64 = 2.0;
 /// Of the way to a fold a footprint covers this part.
 const OF_FOLD: f64 = 0.5;
+/// At a fold itself, where light is squeezed in one direction alone, they reach this far at least, pixels, and those of rays just
+/// beyond an edge this far: single rays would be colored dots.
+const LEAST_AT_FOLD: f64 = 2.0;
+const LEAST_BEYOND: f64 = 1.0;
 /// Two edges whose directions have more than this in common are one, bent.
 const SAME: f64 = 0.7;
 
@@ -112,7 +116,7 @@ impl Net {
             let away = line.away(place);
             if away < 0.0 {
                 // The edge is elsewhere for this ray, at least as far beyond the known one as it lands, and as much blurred.
-                return Footprint::new(half.min(BEYOND * -away).min(UNKNOWN), [None; 2]);
+                return Footprint::new(half.min((BEYOND * -away).max(LEAST_BEYOND)).min(UNKNOWN), [None; 2]);
             }
             // Columns count the other way from x, rows the way of y.
             let ([x, y], [cos, sin]) = (line.out, turn);
@@ -142,12 +146,17 @@ impl Map {
         self.across[0] * self.up[1] - self.across[1] * self.up[0]
     }
 
-    /// By how much a step of one mesh moves light at least.
-    fn shortest(&self) -> f64 {
+    /// By how much a step of one mesh moves light at most.
+    fn longest(&self) -> f64 {
         let [a, b, c, d] = [self.across[0], self.up[0], self.across[1], self.up[1]];
         let (sum, product) = (a * a + b * b + c * c + d * d, self.determinant());
-        let large = 0.5 * (sum + (sum * sum - 4.0 * product * product).max(0.0).sqrt());
-        if large > 0.0 { product.abs() / large.sqrt() } else { 0.0 }
+        (0.5 * (sum + (sum * sum - 4.0 * product * product).max(0.0).sqrt())).sqrt()
+    }
+
+    /// By how much it does at least.
+    fn shortest(&self) -> f64 {
+        let longest = self.longest();
+        if longest > 0.0 { self.determinant().abs() / longest } else { 0.0 }
     }
 
     fn half_diagonal(&self) -> f64 {
@@ -222,7 +231,7 @@ impl Survey {
                 }
             }
         }
-        half
+        half.max(LEAST_AT_FOLD.min(MESHES * map.longest()))
     }
 
     /// Edges around a mesh: how far away the nearest place of each stretch is from its middle, and the line that it lies on.
@@ -412,7 +421,7 @@ mod tests {
         for x in [-0.6, -0.2, 0.1, 0.2, 0.3, 0.5, 0.8] {
             let half = net.footprint([x, 0.3], 10.0, STRAIGHT).half as f64;
             let away = 300.0 * (x - 0.25) * (x - 0.25);
-            assert!(half <= 0.5 * away + 1.0, "{x}: {half} of {away}");
+            assert!(half <= (0.5 * away).max(LEAST_AT_FOLD) + 1.0, "{x}: {half} of {away}");
         }
         assert!(net.footprint([-0.6, 0.3], 10.0, STRAIGHT).half == 10);
     }

@@ -123,16 +123,17 @@ impl DeepPicture {
         if !hit.guessed && self.field.is_smooth(hit.cell) {
             return self.map.color(&spot);
         }
-        let own = self.map.coefficients[hit.cell];
         let is_whole = self.map.half == Half::Whole;
         if hit.guessed {
+            let cell = self.field.goes_on(hit);
             // A light does not go on behind what stands before it: as far as the guess goes it would shine in place of a background.
-            if self.map.is_light(hit.cell) {
+            if self.map.is_light(cell) {
                 return ([0.0; 3], 0.0);
             }
-            let share = if is_whole { 1.0 } else { self.map.share(&spot, |_| hit.cell) };
-            return (own, share);
+            let share = if is_whole { 1.0 } else { self.map.share(&spot, |_| cell) };
+            return (self.map.coefficients[cell], share);
         }
+        let own = self.map.coefficients[hit.cell];
         let of = |cell| if self.field.together(hit.cell, cell) { cell } else { hit.cell };
         let color =
             spot.mix(|cell| if self.field.together(hit.cell, cell) { self.map.coefficients[cell] } else { own });
@@ -153,9 +154,9 @@ impl DeepPicture {
         let spot = self.map.spot(hit.place);
         let color = |cell: usize| behind.color(cell).unwrap_or(self.map.coefficients[cell]);
         if hit.guessed {
-            let is_light = self.map.is_light(hit.cell);
-            let share = if is_light { 0.0 } else { self.map.share(&spot, |_| hit.cell) };
-            return (color(hit.cell), share);
+            let cell = behind.field.goes_on(hit);
+            let share = if self.map.is_light(cell) { 0.0 } else { self.map.share(&spot, |_| cell) };
+            return (color(cell), share);
         }
         let of = |cell| if behind.field.together(hit.cell, cell) { cell } else { hit.cell };
         (spot.mix(|cell| color(of(cell))), self.map.share(&spot, of))

@@ -58,6 +58,9 @@ const STEP: f64 = 1e-3;
 const ROUNDING: f64 = 1e-12;
 /// A line is looked at no more often.
 const MOST_LOOKS: usize = 16;
+/// Pixels across a step within which the background is looked for that goes on behind it.
+const MOST_ACROSS: usize = 64;
+
 impl HeightField {
     /// `depth_mm` is positive and finite; neighbors whose depths differ by more than the part `edge` belong to
     /// different things.
@@ -242,6 +245,30 @@ impl HeightField {
             None => (self.cell_at(line.at(w_in)), w_in),
         };
         self.walk::<true>(line, cell, near, w_end)
+    }
+
+    /// The pixel whose color stands for what a ray meets, where that is a guess: of the background that the ray left at a step, the one
+    /// beside the hidden place, straight across the step. The pixel at the step itself would do for rays that go straight back; others go
+    /// on to other rows (or columns), and what crosses the edge there must not be drawn sharp beside it.
+    #[inline]
+    pub(super) fn goes_on(&self, hit: &Hit) -> usize {
+        let Some(wall) = hit.wall.filter(|_| hit.guessed) else { return hit.cell };
+        let (axis, is_backward) = (usize::from(wall.side / 2), wall.side % 2 == 1);
+        let size = [self.width, self.height];
+        let mut at = [hit.cell % self.width, hit.cell / self.width];
+        at[1 - axis] = (hit.place[1 - axis].max(0.0) as usize).min(size[1 - axis] - 1);
+        for _ in 0..MOST_ACROSS {
+            let cell = at[1] * self.width + at[0];
+            if self.together(hit.cell, cell) {
+                return cell;
+            }
+            // Away from what stands nearer.
+            if is_backward && at[axis] == 0 || !is_backward && at[axis] + 1 == size[axis] {
+                break;
+            }
+            at[axis] = if is_backward { at[axis] - 1 } else { at[axis] + 1 };
+        }
+        hit.cell
     }
 
     /// Part of a line that lies over the picture, from in front of everything to the farthest: its ends in w.
@@ -494,6 +521,24 @@ mod tests {
             assert_eq!(far.guessed, column < 4.0, "{slope} {far:?}");
             assert!((far.place[0] - column).abs() < 1e-6);
         }
+    }
+
+    /// A ray that goes behind the edge and on to other rows meets the background of those rows.
+    #[test]
+    fn what_is_hidden_is_guessed_from_beside_it() {
+        let depth: Vec<f32> = (0..48).map(|i| if i % 8 < 4 { 1000.0 } else { 2000.0 }).collect();
+        let (field, mut rows) = (HeightField::new(8, 6, &depth, 0.05), Vec::new());
+        for per_w in [-3000.0, 0.0, 3000.0] {
+            let mut line = through(4.001, 1000.0, 2000.0);
+            // Through the middle of row 2 at the plane of the foreground.
+            (line.at_infinity[1], line.per_w[1]) = (2.5 - per_w / 1000.0, per_w);
+            let hit = field.hit(&line).expect("the background");
+            assert!(hit.guessed && hit.cell / 8 == 2, "{hit:?}");
+            let cell = field.goes_on(&hit);
+            assert_eq!(cell % 8, 4);
+            rows.push(cell / 8);
+        }
+        assert_eq!(rows, [4, 2, 1]);
     }
 
     /// A slanted plane has steps between its pixels; a ray slips through none of them.

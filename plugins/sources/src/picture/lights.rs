@@ -39,6 +39,8 @@ pub(crate) struct Lights {
 /// What is known of the pixels before their spectra are.
 pub(super) struct Found {
     pub level: Vec<f32>,
+    /// What is no brighter than this is a light only as the neighbor of one.
+    pub limit: f32,
     pub peak_over_mean: [f64; 2],
     pub pays: bool,
 }
@@ -108,7 +110,7 @@ pub(super) fn find(width: usize, brightness: &[f32]) -> Option<Found> {
     let least = LEAST * (lights[0] / lights[3]) as f32;
     level.iter_mut().zip(brightness).filter(|(level, _)| **level > 0.0).for_each(|(level, b)| *level = b.max(least));
     let peak_over_mean = moments.map(|[sum, _, peak, count]| if sum > 0.0 { peak * count / sum } else { 1.0 });
-    Some(Found { level, peak_over_mean, pays: one >= PAYS * two })
+    Some(Found { level, limit, peak_over_mean, pays: one >= PAYS * two })
 }
 
 #[cfg(test)]

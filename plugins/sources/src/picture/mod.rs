@@ -501,7 +501,7 @@ fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) 
             sum.iter_mut().zip(whole(cell)).for_each(|(sum, value)| *sum += f64::from(value) / pixels);
         }
         Arc::new(Lights {
-            places: LightPlaces::new(width, &found.level),
+            places: LightPlaces::new(width, &found.level, found.limit),
             touched: lights::touched(width, &found.level),
             level: found.level,
             mean: sums.map(|sum| model.spectrum(sum).scaled(scale)),

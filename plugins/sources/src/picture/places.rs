@@ -3,7 +3,8 @@
 //! What a pixel of the frame owes a light out of focus is as noisy as the rays are few that the light sent there. A small lamp that
 //! is as far out of focus as a large one fills as large a disk with less light: drawn by power alone it would be grain beside a
 //! smooth disk. So some of the rays go by power, some by area, and the most fall on all lights alike, whatever their size ([`PARTS`]):
-//! none of the three is far from the best where lamps are sharp, far out of focus, or large and uneven.
+//! none of the three is far from the best where lamps are sharp, far out of focus, or large and uneven. A lit window that touches a lamp
+//! a thousand times as bright is a light of its own ([`MUCH_DIMMER`]): as a part of the lamp it would have no rays.
 //!
 //! As [`super::map::Importance`] does, it draws a pixel and a place under its tent: between a lamp of one pixel and its dark neighbors
 //! the density falls as the light.
@@ -14,6 +15,10 @@ use super::spot::{Spot, tent};
 const PARTS: [f64; 3] = [0.3, 0.3, 0.4];
 /// Pixels as bright as this part of the brightest of their light count with all of their area.
 const BRIGHT: f32 = 0.25;
+/// Pixels dimmer than this part of the brightest of their light, and lights by themselves, are another light.
+const MUCH_DIMMER: f32 = 1.0 / 64.0;
+/// Pixels that such a light has at least to count as much as others: fewer may be the soft edge of a lamp.
+const WINDOW: f64 = 32.0;
 
 /// The pixels of lights, one light after the other, and how likely each is.
 pub(crate) struct LightPlaces {
@@ -29,29 +34,38 @@ pub(crate) struct LightPlaces {
 }
 
 impl LightPlaces {
-    /// From the level of each pixel as a light ([`super::lights::Lights::level`]).
-    pub(super) fn new(width: usize, level: &[f32]) -> Self {
+    /// From the level of each pixel as a light ([`super::lights::Lights::level`]); pixels no brighter than `limit` are lights as neighbors
+    /// of others alone.
+    pub(super) fn new(width: usize, level: &[f32], limit: f32) -> Self {
         let height = level.len() / width;
         let mut groups = Groups::new(width, height);
         for cell in (0..level.len()).filter(|cell| level[*cell] > 0.0) {
             groups.add(cell);
         }
-        let groups = groups.ordered();
-        let mut all = Vec::new();
-        for group in &groups {
+        let (mut all, mut alike) = (Vec::new(), 0.0);
+        let mut left: Vec<(Vec<usize>, bool)> = groups.ordered().into_iter().map(|group| (group, false)).collect();
+        left.reverse();
+        while let Some((group, is_dimmer)) = left.pop() {
             let peak = group.iter().fold(0.0_f32, |peak, cell| peak.max(level[*cell]));
+            let is_apart = |cell: &usize| level[*cell] > limit && level[*cell] < MUCH_DIMMER * peak;
+            let (dimmer, group): (Vec<usize>, Vec<usize>) = group.into_iter().partition(is_apart);
+            let mut apart = Groups::new(width, height);
+            dimmer.iter().for_each(|cell| apart.inside[*cell] = true);
+            left.extend(apart.ordered().into_iter().rev().map(|group| (group, true)));
+            let weight = if is_dimmer { (group.len() as f64 / WINDOW).min(1.0) } else { 1.0 };
+            alike += weight;
             let power: f64 = group.iter().map(|cell| f64::from(level[*cell])).sum();
             for &cell in group.iter().filter(|cell| level[**cell] > 0.0) {
                 let own = f64::from(level[cell]);
                 let part = f64::from((level[cell] / (BRIGHT * peak)).min(1.0));
-                all.push((cell, own, part, own / power));
+                all.push((cell, own, part, weight * own / power));
             }
         }
         let (power, area) = all.iter().fold((0.0, 0.0), |(a, b), (_, power, part, _)| (a + power, b + part));
         let (mut sums, mut masses, mut total) = (Vec::with_capacity(all.len()), vec![0.0_f32; level.len()], 0.0);
-        for (cell, own, part, alike) in &all {
+        for (cell, own, part, of_all) in &all {
             let [by_power, by_area, on_all] = PARTS;
-            let mass = by_power * own / power + by_area * part / area + on_all * alike / groups.len() as f64;
+            let mass = by_power * own / power + by_area * part / area + on_all * of_all / alike;
             masses[*cell] = mass as f32;
             total += f64::from(masses[*cell]);
             sums.push(total);
@@ -144,22 +158,42 @@ mod tests {
 
     const WIDTH: usize = 40;
 
+    fn places(brightness: &[f32]) -> (LightPlaces, Vec<f32>) {
+        let found = super::super::lights::find(WIDTH, brightness).expect("lamps");
+        (LightPlaces::new(WIDTH, &found.level, found.limit), found.level)
+    }
+
     /// A lamp of one bright pixel and a dim one of sixteen, in a corner.
-    fn lamps() -> (Vec<f32>, Vec<f32>) {
+    fn lamps() -> Vec<f32> {
         let mut brightness: Vec<f32> = (0..WIDTH * 30).map(|i| 0.1 + 0.05 * (i % 7) as f32).collect();
         brightness[10 * WIDTH + 20] = 50.0;
         for cell in 0..16 {
             brightness[(26 + cell / 4) * WIDTH + 36 + cell % 4] = 20.0;
         }
-        let level = super::super::lights::find(WIDTH, &brightness).expect("lamps").level;
-        (brightness, level)
+        brightness
+    }
+
+    /// A window that touches a lamp a thousand times as bright is drawn about as often as one that stands alone.
+    #[test]
+    fn a_window_beside_a_lamp_is_drawn() {
+        let drawn = |first: usize| {
+            let mut brightness = vec![0.01_f32; WIDTH * 30];
+            (0..4).for_each(|cell| brightness[(10 + cell / 2) * WIDTH + 20 + cell % 2] = 400.0);
+            let window: Vec<usize> = (0..48).map(|cell| (12 + cell / 6) * WIDTH + first + cell % 6).collect();
+            window.iter().for_each(|cell| brightness[*cell] = 0.4);
+            let (places, _) = places(&brightness);
+            let least = window.iter().map(|cell| places.masses[*cell]).fold(f32::INFINITY, f32::min);
+            f64::from(least) / places.total
+        };
+        let (touching, alone) = (drawn(18), drawn(30));
+        assert!(touching > 0.7 * alone && touching > 0.3 / 48.0, "{touching} {alone}");
     }
 
     /// What is drawn, each place by one over its density, adds up to the lights' light, in all and of each lamp.
     #[test]
     fn draws_stand_for_all_light() {
-        let (brightness, level) = lamps();
-        let places = LightPlaces::new(WIDTH, &level);
+        let brightness = lamps();
+        let (places, level) = places(&brightness);
         let light = |column: f64, row: f64| {
             let spot = Spot::of([column, row], [WIDTH, 30]);
             let share = spot.mix(|cell| [f32::from(u8::from(level[cell] > 0.0))])[0];
@@ -193,8 +227,7 @@ mod tests {
     fn rays_from_a_lamp_of_one_pixel_carry_alike() {
         let mut brightness = vec![0.01_f32; WIDTH * 30];
         brightness[10 * WIDTH + 20] = 50.0;
-        let level = super::super::lights::find(WIDTH, &brightness).expect("a lamp").level;
-        let places = LightPlaces::new(WIDTH, &level);
+        let (places, level) = places(&brightness);
         let (mut first, mut second, n) = (0.0, 0.0, 64);
         for k in 0..n * n {
             let at = |k: usize| (k as f64 + 0.5) / n as f64;
