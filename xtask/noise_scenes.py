@@ -5,8 +5,8 @@
 - noise-lights.exr: the same at dusk, with 70 lamps on the wall, disks of 1 to 6 pixels and 30 to 150 times white.
 - noise-street.exr: a street at night: road, houses with lit windows, lamps to 400, headlamps to 3000 times white.
 
-Color of the portrait is the mean of nine samples of a pixel, and depth is that of the one in its middle, as renderers do it; the others
-have one sample a pixel. R, G, B (linear, Rec. 709) and Z as 16-bit floats of 8 significant bits, ZIP compressed. Needs nothing
+Color of the two with depth is the mean of nine samples of a pixel, and depth is that of the one in its middle, as renderers do it;
+the street has one sample a pixel. R, G, B (linear, Rec. 709) and Z as 16-bit floats of 8 significant bits, ZIP compressed. Needs nothing
 but Python 3, and takes some minutes.
 
     python3 xtask/noise_scenes.py
@@ -19,7 +19,7 @@ import random
 import half_exr
 
 WIDTH, HEIGHT = 600, 400
-SAMPLES = 3  # of a pixel of the portrait, across and down
+SAMPLES = 3  # of a pixel, across and down
 PLANE, ACROSS, WALL = 1.5, 0.52, 8.0  # m: the picture is ACROSS wide on the plane at PLANE
 LIGHT = (-0.55, 0.62, 0.56)  # toward the key light; +z toward the camera
 
@@ -174,15 +174,15 @@ def sample(behind, column, row):
     return subject(x, y) or (behind(x, y, column, row), WALL)
 
 
-def pixel(behind, samples, column, row):
-    steps = [(k + 0.5) / samples for k in range(samples)]
+def pixel(behind, column, row):
+    steps = [(k + 0.5) / SAMPLES for k in range(SAMPLES)]
     all_of_it = [sample(behind, column + across, row + down) for down in steps for across in steps]
     color = [sum(color[k] for color, _ in all_of_it) / len(all_of_it) for k in range(3)]
     return (*map(eight_bits, color), all_of_it[len(all_of_it) // 2][1])
 
 
-def portrait(behind, samples):
-    return [[pixel(behind, samples, column, row) for column in range(WIDTH)] for row in range(HEIGHT)]
+def portrait(behind):
+    return [[pixel(behind, column, row) for column in range(WIDTH)] for row in range(HEIGHT)]
 
 
 def lamps():
@@ -297,9 +297,9 @@ def street():
 def main():
     folder = pathlib.Path(__file__).resolve().parent.parent / "scenes"
     comment = "Synthetic, by xtask/noise_scenes.py; CC0-1.0"
-    deep = {"noise-portrait": (lambda x, y, *_: garden(x, y), SAMPLES), "noise-lights": (lights(), 1)}
-    for name, (behind, samples) in deep.items():
-        rows = [[(b, g, r, z) for r, g, b, z in row] for row in portrait(behind, samples)]
+    deep = {"noise-portrait": lambda x, y, *_: garden(x, y), "noise-lights": lights()}
+    for name, behind in deep.items():
+        rows = [[(b, g, r, z) for r, g, b, z in row] for row in portrait(behind)]
         half_exr.write(folder / f"{name}.exr", comment, "BGRZ", rows)
     rows = [[pixel[::-1] for pixel in row] for row in street()]
     half_exr.write(folder / "noise-street.exr", comment, "BGR", rows)

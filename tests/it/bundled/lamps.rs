@@ -198,6 +198,14 @@ pub const LAMPS: &[Promise] = &[
         held: |t| {
             let mut all = disks(&t[0]);
             all.push(Found::is("backward and forward", t[0].rendering.estimators == ["backward", "forward"]));
+            // Hair hides all of this lamp but its rim; its disk was gone, but for a bright line along the hair.
+            let light = t[0].light();
+            let (disk, beside) = (([6.7, 5.1], [0.4; 2]), ([7.4, 6.4], [0.3; 2]));
+            all.push(Found::above(
+                "disk of a lamp beside hair over the wall",
+                light.mean(disk) / light.mean(beside),
+                2.0,
+            ));
             all
         },
     },

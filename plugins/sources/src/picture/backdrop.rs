@@ -1,7 +1,7 @@
 //! What lies behind the mixed pixels of a picture with depth, for rays that come through them.
 
 use super::edges::{Mixed, Sparse};
-use super::field::HeightField;
+use super::field::{HeightField, Hit};
 use super::spot::Spot;
 use spectra_core::stage::ColorModel;
 
@@ -34,6 +34,17 @@ impl Backdrop {
     #[inline(always)]
     pub(super) fn has(&self, cell: usize) -> bool {
         self.cells.has(cell)
+    }
+
+    /// Whether what is guessed for a ray that goes behind the edge of a near thing need not be: where it ends lies a mixed pixel, or one that
+    /// touches it, of which it is known what is behind. A lamp whose rim alone is to be seen beside hair shines all the same.
+    #[inline(always)]
+    pub(super) fn shows(&self, hit: &Hit) -> bool {
+        if !hit.guessed {
+            return false;
+        }
+        let cell = self.field.cell(hit.place);
+        self.has(cell) && self.field.together(hit.cell, cell)
     }
 
     /// The color behind a pixel, if it is a mixed one.

@@ -143,7 +143,13 @@ impl DeepPicture {
     /// How much of the light that a ray carries comes from what it meets first; the rest comes through a mixed pixel from behind.
     #[inline(always)]
     pub(super) fn opacity(&self, hit: &Hit) -> f32 {
-        let Some(behind) = self.behind.as_ref().filter(|behind| behind.has(hit.cell)) else { return 1.0 };
+        let Some(behind) = &self.behind else { return 1.0 };
+        if behind.shows(hit) {
+            return 0.0;
+        }
+        if !behind.has(hit.cell) {
+            return 1.0;
+        }
         let opacity =
             if hit.guessed { behind.opacity_of(hit.cell) } else { behind.opacity(hit.cell, &self.map.spot(hit.place)) };
         opacity.unwrap_or(1.0)

@@ -316,6 +316,13 @@ impl HeightField {
         [(column as i32 as usize).min(self.width - 1), (row as i32 as usize).min(self.height - 1)]
     }
 
+    /// The same by its number.
+    #[inline(always)]
+    pub(super) fn cell(&self, place: [f64; 2]) -> usize {
+        let [column, row] = self.cell_at(place);
+        row * self.width + column
+    }
+
     /// Where a line that comes from in front of everything has anything beside it first: the pixel that it is over there, and w.
     /// `None` where that is where it begins, or too close to a border for rounding to say which pixel it is over.
     #[inline(always)]
