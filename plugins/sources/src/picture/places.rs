@@ -43,15 +43,14 @@ impl LightPlaces {
             groups.add(cell);
         }
         let (mut all, mut alike) = (Vec::new(), 0.0);
-        let mut left: Vec<(Vec<usize>, bool)> = groups.ordered().into_iter().map(|group| (group, false)).collect();
-        left.reverse();
+        let lights = groups.ordered(0..level.len());
+        let mut left: Vec<(Vec<usize>, bool)> = lights.into_iter().rev().map(|group| (group, false)).collect();
         while let Some((group, is_dimmer)) = left.pop() {
             let peak = group.iter().fold(0.0_f32, |peak, cell| peak.max(level[*cell]));
             let is_apart = |cell: &usize| level[*cell] > limit && level[*cell] < MUCH_DIMMER * peak;
             let (dimmer, group): (Vec<usize>, Vec<usize>) = group.into_iter().partition(is_apart);
-            let mut apart = Groups::new(width, height);
-            dimmer.iter().for_each(|cell| apart.inside[*cell] = true);
-            left.extend(apart.ordered().into_iter().rev().map(|group| (group, true)));
+            dimmer.iter().for_each(|cell| groups.inside[*cell] = true);
+            left.extend(groups.ordered(dimmer.into_iter()).into_iter().rev().map(|group| (group, true)));
             let weight = if is_dimmer { (group.len() as f64 / WINDOW).min(1.0) } else { 1.0 };
             alike += weight;
             let power: f64 = group.iter().map(|cell| f64::from(level[*cell])).sum();
@@ -129,10 +128,10 @@ impl Groups {
         }
     }
 
-    /// Each group row by row, by the first pixel of each.
-    fn ordered(mut self) -> Vec<Vec<usize>> {
+    /// Takes out the groups that some pixels, in rising order, belong to: each row by row, by the first pixel of each.
+    fn ordered(&mut self, pixels: impl Iterator<Item = usize>) -> Vec<Vec<usize>> {
         let mut groups = Vec::new();
-        for first in 0..self.inside.len() {
+        for first in pixels {
             if !std::mem::take(&mut self.inside[first]) {
                 continue;
             }
