@@ -1,17 +1,17 @@
-//! Writes a sorted table of the repository's data files, their bytes compiled in.
+//! Writes a sorted table of the repository's data files, with their bytes compiled in.
 //!
-//! What is bundled: everything under `spectra/`, `lenses/*` and the YAML files under `scenes/` with their pictures.
-//! Hidden files and editors' backups are left out, and for WebAssembly large pictures: a page is loaded before anything is seen, and
-//! the scenes that it offers have none.
+//! Bundled are all files under `spectra/`, all under `lenses/`, and the YAML files under `scenes/` with their pictures. Hidden
+//! files and editors' backups are left out. Builds for WebAssembly also leave out large pictures, because a page must load before
+//! anything is visible, and the scenes that it offers have none.
 
 use std::env;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a page has of large pictures: none above this, bytes.
+/// Largest picture bundled for a web page, bytes.
 const MOST_OF_A_PAGE: u64 = 200_000;
-/// Folder of the repository, and the endings taken from it (none: every file).
+/// Folders of the repository, and the extensions taken from each (none: every file).
 const FOLDERS: [(&str, &[&str]); 3] = [("spectra", &[]), ("lenses", &[]), ("scenes", &["yaml", "yml", "exr", "svg"])];
 
 fn collect(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
@@ -39,7 +39,7 @@ fn collect(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    // Its true path: the same by whatever link this crate was found, so that it is not built once more.
+    // The canonical path is the same through any link to this crate, so the crate is not built once more.
     let root = fs::canonicalize("../..").expect("this crate lies in a repository");
     let mut files = Vec::new();
     for (folder, endings) in FOLDERS {

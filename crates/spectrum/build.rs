@@ -1,4 +1,4 @@
-//! Nothing to do: the manifest's `links` needs a build script.
+//! Build script that does nothing: the key `links` in the manifest requires one.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -1,26 +1,26 @@
-//! Packs the sources that a build of the program or of a plugin needs: manifests, the lock file, `src/` and `build.rs` of
-//! every crate. Tests, benches, examples and documents are left out, and so is the data, which the program holds already.
+//! Packs the sources that a build of the program or of a plugin needs: manifests, the lock file, `src/` and `build.rs` of every
+//! crate. Tests, benches, examples and documents are left out. The data is left out, too, because the program holds it already.
 //!
-//! The archive depends on nothing but names and contents, so that the same sources give the same bytes anywhere, also
-//! where they were unpacked from such an archive.
+//! The archive depends only on names and contents, so the same sources give the same bytes anywhere, even if they were unpacked
+//! from such an archive.
 
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Files of the root.
+/// Files packed from the root of the repository.
 const ROOT: [&str; 5] = ["Cargo.toml", "Cargo.lock", "LICENSE-APACHE", "LICENSE-MIT", "NOTICE"];
-/// Folders of crates.
+/// Folders that hold crates.
 const FOLDERS: [&str; 2] = ["crates", "plugins"];
-/// Folders inside of a crate, and of `plugins`, that a build does not need.
+/// Folders inside a crate, and inside `plugins`, that a build does not need.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "docs", "target"];
 
 fn main() -> io::Result<()> {
     println!("cargo:rerun-if-changed=build.rs");
-    // Its true path: the same by whatever link this crate was found, so that it is not built once more.
+    // The canonical path is the same through any link to this crate, so the crate is not built once more.
     let root = fs::canonicalize("../..")?;
     let mut files = Vec::new();
-    // Built from a registry there is nothing around this crate: the archive stays empty, which its user is told.
+    // In a build from a registry nothing surrounds this crate. The archive stays empty, and users of it get an error.
     if root.join("crates/core/Cargo.toml").is_file() && root.join("Cargo.lock").is_file() {
         files.extend(ROOT.map(|name| root.join(name)).into_iter().filter(|path| path.is_file()));
         collect(&root.join("src"), &mut files)?;
@@ -34,7 +34,7 @@ fn main() -> io::Result<()> {
     fs::write(out.join("sources.tar.zz"), if named.is_empty() { Vec::new() } else { pack(&named)? })
 }
 
-/// Its path below the root, with forward slashes.
+/// Returns the path below the root, with forward slashes.
 fn name(root: &Path, path: &Path) -> String {
     let inside = path.strip_prefix(root).expect("collected below the root");
     inside
@@ -44,7 +44,7 @@ fn name(root: &Path, path: &Path) -> String {
         .join("/")
 }
 
-/// All files of a folder but what is hidden, an editor's, or left out.
+/// Collects all files of a folder except hidden files, editors' backups and folders that are left out.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     println!("cargo:rerun-if-changed={}", folder.display());
     for entry in fs::read_dir(folder)? {
@@ -66,7 +66,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether a folder is a crate's own, or `plugins`: a module may be called `tests`.
+/// Returns whether a folder is the root of a crate, or `plugins`. Deeper inside, a module may be called `tests`.
 fn is_beside_sources(folder: &Path) -> bool {
     folder.join("Cargo.toml").is_file() || folder.file_name().is_some_and(|name| name == "plugins")
 }
@@ -91,7 +91,7 @@ fn pack(files: &[(String, PathBuf)]) -> io::Result<Vec<u8>> {
     packer.finish()
 }
 
-/// The manifest without `[[bench]]` sections: cargo refuses one whose file is not there.
+/// Returns the manifest without `[[bench]]` sections, because cargo refuses those whose file is missing.
 fn without_benches(manifest: &str) -> String {
     let mut kept = String::new();
     let mut in_bench = false;

@@ -20,14 +20,14 @@ fn bridge() {
         println!("cargo::error={HINT}");
         std::process::exit(1);
     };
-    // The version is checked by the compiler, from the headers that it really finds.
+    // The compiler checks the version, from the headers that it really finds.
     let library = pkg_config::Config::new().cargo_metadata(false).probe("OpenImageIO");
     let library = library.unwrap_or_else(|e| stop(e.to_string()));
     let mut build = cxx_build::bridge("src/bridge.rs");
     build.file("src/bridge.cc").std("c++17").flag_if_supported("-Wno-deprecated-declarations");
     build.includes(&library.include_paths);
     build.try_compile("spectra-oiio").unwrap_or_else(|e| stop(e.to_string()));
-    // After the bridge, which needs it: linkers go from left to right.
+    // These flags follow the bridge, which needs the library: linkers go from left to right.
     for path in &library.link_paths {
         println!("cargo::rustc-link-search=native={}", path.display());
     }

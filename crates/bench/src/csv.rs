@@ -1,10 +1,9 @@
-//! The report as a table for a spreadsheet.
+//! Reports as CSV for a spreadsheet.
 
 use crate::report::Report;
 
-/// CSV (RFC 4180, lines end with LF), one row a strategy, measure, kind of numbers and number of samples. Errors are
-/// relative; `bias_*` are those of the channel that is furthest off in standard errors; empty where there is nothing
-/// to say.
+/// Formats a report as CSV (RFC 4180, lines end with LF), one row for each strategy, measure, kind of numbers and number of samples. Errors
+/// are relative. The `bias_*` columns are of the channel whose bias is largest in standard errors. A field without a value is empty.
 #[must_use]
 pub fn csv(report: &Report) -> String {
     let mut text = String::from(
@@ -36,8 +35,8 @@ pub fn csv(report: &Report) -> String {
     text
 }
 
-/// CSV of each seed by itself, one row a strategy, measure, kind of numbers, number of samples and seed: its relative RMS error, and the
-/// signed relative error of each channel's light, empty where a channel sees none.
+/// Formats each seed as a CSV row: one for each strategy, measure, kind of numbers, number of samples and seed. A row has the relative RMS
+/// error, and the signed relative error of each channel's light, which is empty for channels that record none.
 #[must_use]
 pub fn seeds_csv(report: &Report) -> String {
     let channels: Vec<String> = report.channels.iter().map(|name| quoted(&format!("relative_error {name}"))).collect();

@@ -1,11 +1,13 @@
-//! One Gaussian term of every factor as a strategy: samples that have no wavelength.
+//! A strategy whose samples have no wavelength: one Gaussian term of every factor.
 //!
-//! What a pixel gets is an integral over the wavelength of the source's light times what the film sees (filters are folded into
-//! that). Each is a sum of signed Gaussian terms and of what their fit leaves over; of each one is drawn in proportion to the size
-//! of its own integral, and the integral of the product of both is known exactly: nothing is biased, and nothing is evaluated at a
-//! wavelength. It asks that nothing on the way depends on the wavelength: no glass, no coating, and one spectrum for the whole
-//! source. Rays must still be handed some wavelength; all get the same one, at which source and film are largest, and weigh what
-//! makes source times film there the integral.
+//! The exposure of a pixel is the integral over wavelength of the source's light times the response of the film, into which filters are
+//! folded. Each of these two factors is a sum of signed Gaussian terms and of a remainder that the fit leaves over. A sample draws one term
+//! or remainder of each factor in proportion to the size of its own integral. The integral of the product of the two is known exactly, so
+//! that the estimate is unbiased and nothing is evaluated at a wavelength.
+//!
+//! The strategy requires that nothing on the way depends on the wavelength: no glass, no coating, and one spectrum for the whole source.
+//! Rays must still carry some wavelength. All get the one at which source times film is largest, and a weight that turns source times film
+//! there into the integral.
 
 use crate::BenchError;
 use crate::strategy::EVERY_FACTOR;
@@ -19,24 +21,24 @@ use spectra_scene::Scene;
 use spectra_spectrum::{GaussianMixture, Outside, Scale, Shape, Tabulated, fit_gaussians};
 use std::sync::Arc;
 
-/// The strategy, fitted to a system.
+/// The strategy fitted to a system.
 #[derive(Clone, Debug)]
 pub(crate) struct EveryFactor {
     wavelength_nm: f64,
-    /// Source times film there.
+    /// Source times film at this wavelength.
     seen_there: f64,
-    /// Upper ends of the parts of [0, 1) of the source's terms and of the film's, the last of them what is left over.
+    /// Cumulative probabilities of the source's terms and of the film's, which divide [0, 1). The last one may be that of the remainder.
     upper: [Vec<f64>; 2],
-    /// For each pair the integral of its product over its probability, by the source's term first.
+    /// Integral of the product of each pair of terms divided by its probability, ordered by the source's term first.
     values: Vec<f64>,
     probabilities: Vec<f64>,
 }
 
-/// A factor as terms.
+/// A factor as Gaussian terms and a remainder.
 struct Factor {
     mixture: GaussianMixture,
     shape: Shape,
-    /// Probabilities of its terms, and of what is left over, if anything is.
+    /// Probabilities of the terms, and of the remainder if there is one.
     shares: Vec<f64>,
     has_rest: bool,
 }
@@ -49,7 +51,7 @@ impl Factor {
         let left: Vec<f64> = grid.wavelengths_nm().zip(values).map(|(w, v)| (v - mixture.at(w)).abs()).collect();
         let mut shares: Vec<f64> = mixture.terms().iter().map(|t| t.band_integral(min_nm, max_nm).abs()).collect();
         let (sum, rest) = (shares.iter().sum::<f64>(), grid.integrate(&left));
-        // Less than that is rounding, and would be drawn too rarely for its own good.
+        // A smaller remainder is rounding, and would be drawn too rarely to be useful.
         let has_rest = rest > 1e-9 * sum;
         if has_rest {
             shares.push(rest);
@@ -75,17 +77,17 @@ impl Factor {
 }
 
 impl EveryFactor {
-    /// By `terms` Gaussians fitted to the source, and as many to the one channel.
+    /// Fits `terms` Gaussians to the source, and as many to the single channel.
     ///
     /// # Errors
-    /// Why it cannot sample the system.
+    /// Message why the strategy cannot sample the system.
     pub(crate) fn new(system: &SystemResponse, terms: usize) -> Result<Self, String> {
         let [channel] = &system.channels[..] else {
             let count = system.channels.len();
-            return Err(format!("a sample is one number, for one channel, and the scene records {count}"));
+            return Err(format!("a sample is one number for one channel, but the scene records {count} channels"));
         };
         if !system.source.lines.is_empty() {
-            return Err("the source has spectral lines, which are no Gaussian terms".to_owned());
+            return Err("the source has spectral lines, which are not Gaussian terms".to_owned());
         }
         let grid = system.grid;
         let source = Factor::new(&grid, &system.source.continuum, terms).map_err(|e| format!("the source: {e}"))?;
@@ -98,7 +100,7 @@ impl EveryFactor {
         let by_source: Vec<f64> = (film.mixture.terms().iter())
             .map(|t| source.shape.times(&Shape::mixture(GaussianMixture::new(vec![*t]))).integral(min_nm, max_nm, 1.0))
             .collect();
-        // What is left over of one is what is left of the whole integral once the terms are taken away.
+        // The integral with a remainder is the whole integral minus the integrals with the terms.
         let mut integrals = Vec::new();
         let mut column_sums = vec![0.0; film.shares.len()];
         for (i, a) in source.mixture.terms().iter().enumerate() {
@@ -118,8 +120,9 @@ impl EveryFactor {
             }
             integrals.extend(row);
         }
-        // A scene holds spectra as tables, straight between their points; of two Gaussians that differs from their own integral by some
-        // h^2 / 6 / (s^2 + t^2), for points h apart and standard deviations s and t. The integral is that of the scene.
+        // Rescale to the integral of the scene. A scene stores spectra as tables with straight lines between points. The integral of a
+        // product of two Gaussians then differs from the exact one by about h^2 / 6 / (s^2 + t^2). Here h is the distance of the points,
+        // and s and t are the standard deviations.
         let of_terms = integrals.iter().sum::<f64>();
         if of_terms > 0.0 {
             integrals.iter_mut().for_each(|value| *value *= all / of_terms);
@@ -130,7 +133,7 @@ impl EveryFactor {
         let seen = |i: usize| system.source.continuum[i] * channel.response[i];
         let there = (0..grid.count).max_by(|a, b| seen(*a).total_cmp(&seen(*b))).unwrap_or(0);
         if !(seen(there) > 0.0) {
-            return Err("the film sees nothing of the source".to_owned());
+            return Err("the film is not sensitive to any light of the source".to_owned());
         }
         Ok(Self {
             wavelength_nm: grid.wavelength_nm(there),
@@ -141,7 +144,7 @@ impl EveryFactor {
         })
     }
 
-    /// Mean and standard deviation of one sample of the spectral integral, by all choices.
+    /// Mean and standard deviation of one sample of the spectral integral, over all choices.
     pub(crate) fn moments(&self) -> (f64, f64) {
         let with = || self.values.iter().zip(&self.probabilities);
         let mean: f64 = with().map(|(v, p)| p * v).sum();
@@ -159,7 +162,7 @@ impl WavelengthDensity for EveryFactor {
             (at, ((u - from) / (upper[at] - from)).clamp(0.0, 1.0))
         };
         for (((u, nm), line), weight) in u.iter().zip(wavelength_nm).zip(line).zip(weight) {
-            // One number for both: what is left of it within the first part chooses the second.
+            // One random number serves both: its position within the first part chooses the second.
             let (i, rest) = pick(source, *u);
             let (j, _) = pick(film, rest);
             (*nm, *line) = (self.wavelength_nm, CONTINUUM);
@@ -167,7 +170,7 @@ impl WavelengthDensity for EveryFactor {
         }
     }
 
-    /// None is drawn.
+    /// Density of wavelengths: always 0, because none is drawn.
     fn density_per_nm(&self, _wavelength_nm: f64) -> f64 {
         0.0
     }
@@ -177,7 +180,7 @@ impl WavelengthDensity for EveryFactor {
     }
 }
 
-/// Every ray at one wavelength, with the weight that makes source times film 1 there.
+/// A probe that sends every ray at one wavelength, with the weight that makes source times film 1 there.
 struct Probe {
     wavelength_nm: f64,
     weight: f64,
@@ -205,16 +208,16 @@ impl WavelengthDensity for Probe {
     }
 }
 
-/// Samples a pixel of a probe.
+/// Number of samples per pixel of a probe.
 const PROBE_SAMPLES: u32 = 4;
-/// Largest difference of two probes over the largest exposure: what the rounding of sums leaves, many times over.
+/// Largest difference of two probes, relative to the largest exposure: many times what the rounding of sums leaves.
 const SAME: f64 = 1e-4;
 
-/// What on the way from source to film needs a wavelength, if anything does: by name where the lens says it, else by tracing the scene
-/// in light of single wavelengths, which must all give the same picture.
+/// Returns what depends on the wavelength between source and film, if anything does. Effects of the lens are named. Otherwise the scene is
+/// traced at single wavelengths, which must all give the same picture.
 ///
 /// # Errors
-/// [`BenchError::Render`] where the scene cannot be traced.
+/// [`BenchError::Render`] if the scene cannot be traced.
 pub(crate) fn needs_wavelength(
     scene: &Scene,
     system: &SystemResponse,
@@ -243,8 +246,8 @@ pub(crate) fn needs_wavelength(
             let apart = values.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             if f64::from(apart) > SAME * f64::from(largest) {
                 return Ok(Some(format!(
-                    "the picture is another one in light of {nm} nm than of {wavelength_nm} nm: the colors of the source, \
-                     or what stands before the film, depend on the wavelength"
+                    "the picture at {nm} nm differs from that at {wavelength_nm} nm: the colors of the source, \
+                     or something in front of the film, depend on the wavelength"
                 )));
             }
         } else {
@@ -254,7 +257,7 @@ pub(crate) fn needs_wavelength(
     Ok(None)
 }
 
-/// The first of a lens that bends or dims light by its wavelength.
+/// Describes the first surface of the lens that refracts or attenuates light depending on its wavelength.
 fn of_lens(scene: &Scene) -> Option<String> {
     let lens = &scene.lens;
     let (from, to) = (scene.grid.start_nm, scene.grid.end_nm());
@@ -264,7 +267,7 @@ fn of_lens(scene: &Scene) -> Option<String> {
         if element.action == Action::Refract && before != after && (ratio(from) - ratio(to)).abs() > 1e-12 {
             let glass = &lens.media[if lens.media[after].label == "air" { before } else { after }].label;
             return Some(format!(
-                "surface {} ({}) of {} refracts at {glass}, which has an index for a wavelength, not for a term",
+                "surface {} ({}) of {} refracts at {glass}, whose index depends on the wavelength",
                 i + 1,
                 element.kind,
                 lens.name
@@ -290,7 +293,7 @@ mod tests {
         SystemResponse { grid: BAND, source: find_emission(light).expect("bundled").to_power(&BAND), channels }
     }
 
-    /// What the fits leave over is followed too: the mean is the integral, the scatter that of all choices.
+    /// The remainders of the fits are included: the mean is the integral, and the scatter is that over all choices.
     #[test]
     fn the_mean_is_the_integral_and_the_scatter_as_computed() {
         for (light, film) in [("D65", "ilford-ortho-plus"), ("A", "v-lambda-1924"), ("FL2", "ilford-ortho-plus")] {
@@ -299,7 +302,7 @@ mod tests {
             let exact = system.source.seen_by(&system.channels[0].response);
             let (mean, deviation) = strategy.moments();
             assert!((mean / exact - 1.0).abs() < 1e-12, "{light}: {mean} {exact}");
-            // All numbers at even distances: sums are integrals over them.
+            // Use equidistant numbers, so that sums are integrals over them.
             let count = 1 << 18;
             let u: Vec<f64> = (0..count).map(|i| (f64::from(i) + 0.5) / f64::from(count)).collect();
             let (mut nm, mut line, mut weight) = (vec![0.0; u.len()], vec![0; u.len()], vec![1.0; u.len()]);

@@ -1,4 +1,4 @@
-//! The scene as it is rendered: every pixel against a reference.
+//! Measures rendered scenes: every pixel against a reference.
 
 use crate::BenchError;
 use crate::colors::White;
@@ -10,10 +10,11 @@ use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::Scene;
 use std::time::Instant;
 
-/// Renders of the reference.
+/// Number of renders averaged for the reference.
 pub(crate) const RENDERS: u32 = 8;
 
-/// A render of `samples` samples a pixel for each seed, and the seconds that its light took. The scene is made ready once.
+/// Renders the scene with `samples` samples per pixel for each seed. Returns each render with the seconds of tracing; the scene is prepared
+/// only once.
 pub(crate) fn renders(
     scene: &mut Scene,
     strategy: &str,
@@ -34,22 +35,22 @@ pub(crate) fn renders(
     seeds.map(one).collect()
 }
 
-/// The mean of some renders, and how well it is known.
+/// The mean of several renders, with its uncertainty.
 #[derive(Debug)]
 pub(crate) struct Truth {
-    /// Exposure of each pixel, each channel.
+    /// Exposure of each pixel, for each channel.
     planes: Vec<Vec<f64>>,
-    /// Sum over pixels of the squared exposure, each channel.
+    /// Sum over pixels of the squared exposure, for each channel.
     power: Vec<f64>,
-    /// Sum over pixels of the variance of the mean, each channel.
+    /// Sum over pixels of the variance of the mean, for each channel.
     variance: Vec<f64>,
-    /// Sum over pixels, each channel, and the relative variance of it.
+    /// Sum of the exposure over pixels, and the relative variance of that sum, for each channel.
     totals: Vec<f64>,
     total_variance: Vec<f64>,
 }
 
 impl Truth {
-    /// From renders of other seeds; two at least.
+    /// Averages renders with different seeds; at least two.
     pub(crate) fn of(renders: &[ExposureFrame]) -> Self {
         let channels = renders[0].channels.len();
         let many = renders.len() as f64;
@@ -76,17 +77,17 @@ impl Truth {
         truth
     }
 
-    /// Channels that recorded any light.
+    /// Returns the channels that recorded any light.
     pub(crate) fn seen(&self) -> Vec<usize> {
         (0..self.planes.len()).filter(|c| self.power[*c] > 0.0 && self.totals[*c] != 0.0).collect()
     }
 
-    /// Relative RMS error of the truth itself over those channels.
+    /// Relative RMS error of the mean itself over these channels.
     pub(crate) fn error(&self, seen: &[usize]) -> f64 {
         (seen.iter().map(|c| self.variance[*c] / self.power[*c]).sum::<f64>() / seen.len() as f64).sqrt()
     }
 
-    /// Compares renders of one strategy. `light` is the color of the source, where the channels `xyz` are X, Y, Z.
+    /// Compares renders of one strategy with the truth. `light` is the color of the source, given if the channels `xyz` are X, Y, Z.
     pub(crate) fn compare(
         &self,
         renders: &[ExposureFrame],
@@ -97,7 +98,8 @@ impl Truth {
             let of = |c: &usize| {
                 let pairs = self.planes[*c].iter().zip(&render.channels[*c].values);
                 let sum: f64 = pairs.map(|(a, b)| (f64::from(*b) - a) * (f64::from(*b) - a)).sum();
-                // Render and truth are independent: their squared difference holds the variance of both.
+                // Subtract the variance of the truth: render and truth are independent, so their squared difference contains the variance
+                // of both.
                 (sum - self.variance[*c]) / self.power[*c]
             };
             seen.iter().map(of).sum::<f64>() / seen.len() as f64

@@ -1,8 +1,8 @@
-//! How clean ghosts are after how much time, and what the search for their rays gains.
+//! Measures how clean ghosts are after how much time, and what the search for their rays gains.
 //!
-//! Of a scene the ghosts alone are rendered, with several seeds, once as its pictures have them and once with as many rays for
-//! each path all over the front. What is judged are blocks of [`SIDE`] x [`SIDE`] pixels that have more than [`DIM`] of the
-//! brightest one: the scatter of a block's sum between the seeds, over its mean.
+//! Only the ghosts of a scene are rendered, with several seeds. They are rendered once as in its pictures, and once with the same number of
+//! rays for each path, spread over the whole front. Blocks of [`SIDE`] x [`SIDE`] pixels with more than [`DIM`] of the light of the
+//! brightest one are judged. The noise of a block is the scatter of its sum between the seeds, divided by its mean.
 
 use crate::BenchError;
 use serde::Serialize;
@@ -14,77 +14,78 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Pixels a side of the blocks.
+/// Side of the blocks, pixels.
 const SIDE: usize = 32;
-/// Blocks that have less than this part of the brightest are not judged.
+/// Blocks with less than this fraction of the light of the brightest are not judged.
 const DIM: f64 = 1e-4;
-/// The noise that a time is given for.
+/// Target noise: the time to reach it is reported.
 const CLEAN: f64 = 0.02;
 
-/// What is measured of each scene.
+/// Settings of a measurement of ghosts.
 #[derive(Clone, Copy, Debug)]
 pub struct GhostSettings {
-    /// Seeds, 2 at least.
+    /// Number of seeds, at least 2.
     pub seeds: u64,
-    /// Threads to render on.
+    /// Number of threads for rendering.
     pub threads: usize,
-    /// Instruction set.
+    /// Instruction set to use.
     pub isa: Isa,
-    /// Seconds that the processors have spent on this program so far, all threads together; `None` where nobody says. Other
-    /// programs that run meanwhile do not count, as they do by the clock.
+    /// Returns the processor time that this program has used so far, s, over all threads; `None` if the system does not report it. Unlike
+    /// the clock, it does not count other programs that run at the same time.
     pub processor_s: fn() -> Option<f64>,
 }
 
-/// How clean one way to share out rays is.
+/// Noise of ghosts for one way to distribute rays.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct GhostNoise {
-    /// Rays, and seconds before the first of them: pilot, books.
+    /// Number of rays traced with each seed.
     pub rays: u64,
-    /// Seconds before the first ray.
+    /// Preparation time before the first ray (pilot, ledger), s.
     pub ready_s: f64,
-    /// Seconds of tracing, a mean over the seeds.
+    /// Time of tracing, averaged over the seeds, s.
     pub trace_s: f64,
-    /// Blocks that are judged.
+    /// Number of blocks that are judged.
     pub blocks: usize,
-    /// The root of the mean square of their noise.
+    /// Root mean square of the relative noise of the blocks.
     pub rms: f64,
-    /// The noise that 95 % of them stay below.
+    /// 95th percentile of the relative noise of the blocks.
     pub most: f64,
-    /// The noise of the worst; of many blocks and few seeds it is found too large.
+    /// Relative noise of the worst block; overestimated for many blocks and few seeds.
     pub worst: f64,
-    /// The root of the mean square of the noise of single pixels, in the middle one of the blocks.
+    /// Relative noise of single pixels: root mean square within a block, median over the blocks.
     pub pixel: f64,
 }
 
-/// What was measured of a scene.
+/// Results of the measurement of one scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct GhostRow {
     /// Name of the scene.
     pub scene: String,
-    /// Paths of ghosts.
+    /// Number of ghost paths.
     pub paths: usize,
-    /// Pixels across and down.
+    /// Width and height of the frame, pixels.
     pub pixels: [u32; 2],
-    /// Samples.
+    /// Number of samples.
     pub samples: u32,
-    /// The channel whose noise it is.
+    /// Name of the channel whose noise is reported.
     pub channel: String,
-    /// Whether seconds are those of processors, not of the clock.
+    /// Whether times are processor times instead of clock times.
     pub processor_time: bool,
-    /// As pictures have them.
+    /// Noise with rays distributed by the search, as in pictures.
     pub found: GhostNoise,
-    /// With as many rays for each path, all over the front.
+    /// Noise with the same number of rays for each path, spread over the whole front.
     pub even: GhostNoise,
-    /// How many times longer those take to the same noise (root of the mean square over the blocks), preparations left out.
+    /// Factor by which `even` takes longer than `found` to the same noise (root mean square over the blocks), without preparation.
     pub gain: f64,
-    /// Seconds to 2 %, with all that comes before the first ray: of 95 % of the blocks.
+    /// Time to reach 2 % noise in 95 % of the blocks with `found`, including preparation, s.
     pub clean_s: f64,
 }
 
-/// Measures a scene file with `overrides` (texts `path=value`). `tell` is given a line on what is being measured.
+/// Measures the noise of ghosts in a scene file with `overrides` (texts `path=value`). `tell` receives a line about the current
+/// measurement.
 ///
 /// # Errors
-/// [`BenchError`].
+/// [`BenchError`]: fewer than 2 seeds, an invalid scene, no ghosts or no light, or a failed render.
 pub fn ghosts(
     path: &Path,
     overrides: &[String],
@@ -92,7 +93,7 @@ pub fn ghosts(
     tell: &mut dyn FnMut(&str),
 ) -> Result<GhostRow, BenchError> {
     if settings.seeds < 2 {
-        return Err(BenchError::Settings("seeds: 2 at least, or there is no scatter to judge by"));
+        return Err(BenchError::Settings("seeds: give at least 2, because errors are judged by their scatter"));
     }
     let scene = spectra_scene::load(path, overrides)?;
     let mut paths = 0;
@@ -101,12 +102,12 @@ pub fn ghosts(
         tell(&format!("{}: {words}", scene.name));
         let (noise, frames, count) = rendered(&scene, rays, settings)?;
         paths = count;
-        // Both are judged in the blocks that the clean one says are bright.
+        // Judge both in the blocks that are bright in the first, cleaner one.
         let blocks = judged.get_or_insert_with(|| Blocks::of(&frames));
         noise.judged(blocks, &frames).ok_or(BenchError::Dark)
     };
-    let found = one(GhostRays::Found, "rays where the search says")?;
-    let even = one(GhostRays::Even, "rays all over the front")?;
+    let found = one(GhostRays::Found, "rays distributed by the search")?;
+    let even = one(GhostRays::Even, "rays spread over the whole front")?;
     let size = scene.imager.size();
     Ok(GhostRow {
         scene: scene.name.clone(),
@@ -122,7 +123,7 @@ pub fn ghosts(
     })
 }
 
-/// The ghosts of a scene by each seed.
+/// Renders the ghosts of a scene with each seed. Returns the times and numbers of rays, the frames, and the number of paths.
 fn rendered(
     scene: &Scene,
     rays: GhostRays,
@@ -160,11 +161,11 @@ fn rendered(
     Ok((noise, frames, paths))
 }
 
-/// The blocks that are judged, by their pixels.
+/// The blocks that are judged.
 struct Blocks {
     channel: usize,
     name: String,
-    /// Of each the light by the rays that the search shares out, and its pixels.
+    /// Mean light of each block with the rays of the search, and its pixels.
     pixels: Vec<(f64, Vec<usize>)>,
 }
 
@@ -203,7 +204,7 @@ fn variance(values: &[f64]) -> f64 {
 impl GhostNoise {
     fn judged(self, blocks: &Blocks, frames: &[ExposureFrame]) -> Option<Self> {
         let channel = blocks.channel;
-        // Both ways are judged by the light of the clean one: rays that are spread evenly may miss a block with every seed.
+        // Divide by the light of the cleaner way for both: rays that are spread evenly may miss a block with every seed.
         let of_block = |(light, pixels): &(f64, Vec<usize>)| {
             let sums: Vec<f64> = frames.iter().map(|frame| light_of(frame, channel, pixels)).collect();
             let of_pixel = |pixel: &usize| {
@@ -229,13 +230,13 @@ impl GhostNoise {
     }
 }
 
-/// A table of some rows, in Markdown; `machine` says what they were measured on.
+/// Formats rows as a Markdown table; `machine` describes what they were measured on.
 #[must_use]
 pub fn ghost_table(rows: &[GhostRow], settings: &GhostSettings, machine: &str) -> String {
     let unit = if rows.iter().all(|row| row.processor_time) { "CPU s" } else { "s" };
     let mut text = format!(
         "{machine}\n{} seeds; noise of {SIDE} x {SIDE} pixels above {DIM:e} of the brightest: root of the mean square, 95 %, worst\n\n\
-         | scene | rays | M | {unit} before | {unit} | blocks | noise, % | a pixel, % | gain | {unit} to {} % |\n\
+         | scene | rays | M | {unit} before | {unit} | blocks | noise, % | pixel noise, % | gain | {unit} to {} % |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
         settings.seeds,
         100.0 * CLEAN
@@ -256,7 +257,7 @@ pub fn ghost_table(rows: &[GhostRow], settings: &GhostSettings, machine: &str) -
             )
         };
         text.push_str(&line("found", &row.found, &format!("{:.1} | {:.1}", row.gain, row.clean_s)));
-        text.push_str(&line("all over", &row.even, "1 | "));
+        text.push_str(&line("even", &row.even, "1 | "));
     }
     text
 }

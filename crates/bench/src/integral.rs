@@ -1,4 +1,4 @@
-//! The spectral integral alone: wavelengths drawn, source and responses evaluated, no lens.
+//! Measures the spectral integral alone: draws wavelengths and evaluates source and responses, without a lens.
 
 use crate::colors::White;
 use crate::report::NumberKind;
@@ -9,27 +9,27 @@ use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::WavelengthDensity;
 use std::time::Instant;
 
-/// What was measured at one number of samples.
+/// Errors measured at one number of samples.
 #[derive(Debug)]
 pub(crate) struct Measured {
-    /// Squared relative error, mean over channels; one a seed.
+    /// Squared relative error, averaged over channels, for each seed.
     pub squared: Vec<f64>,
-    /// Relative error of each channel's light, one a seed.
+    /// Relative error of each channel's light, for each seed.
     pub relative: Vec<Vec<f64>>,
-    /// Relative variance of the truth, each channel.
+    /// Relative variance of the reference, for each channel.
     pub truth_variance: Vec<f64>,
-    /// Shortest time of all samples, s.
+    /// Shortest time over the seeds for all samples, s.
     pub seconds: f64,
-    /// Mean CIEDE2000.
+    /// Mean CIEDE2000 over the seeds, if the channels are X, Y, Z.
     pub ciede2000: Option<f64>,
 }
 
-/// The exact exposures of a system: the truth.
+/// Returns the exact exposure of each channel by quadrature: the truth.
 pub(crate) fn exact(system: &SystemResponse) -> Vec<f64> {
     system.channels.iter().map(|c| system.source.seen_by(&c.response)).collect()
 }
 
-/// Which numbers, and which of them.
+/// Kind, count and seeds of the numbers to draw.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Draws {
     pub kind: NumberKind,
@@ -38,7 +38,7 @@ pub(crate) struct Draws {
     pub first_seed: u64,
 }
 
-/// Integrates by `density`. `seen` are the channels that see any of the light, `xyz` those that are X, Y, Z.
+/// Integrates with wavelengths drawn from `density`. `seen` are the channels that see any of the light; `xyz` are those that are X, Y, Z.
 pub(crate) fn measure(
     system: &SystemResponse,
     density: &dyn WavelengthDensity,
@@ -87,7 +87,7 @@ pub(crate) fn measure(
     measured
 }
 
-/// Samples of one integral.
+/// The samples of one integral.
 struct Columns {
     u: Vec<f64>,
     wavelength_nm: Vec<f64>,
@@ -106,7 +106,7 @@ impl Columns {
         density.draw(&self.u, &mut self.wavelength_nm, &mut self.line, &mut self.weight, isa);
     }
 
-    /// The mean over samples of source times response, each channel.
+    /// Computes for each channel the mean over samples of source times response.
     fn expose(&mut self, system: &SystemResponse, estimates: &mut [f64]) {
         let (grid, source) = (system.grid, &system.source);
         for ((weight, line), nm) in self.weight.iter_mut().zip(&self.line).zip(&self.wavelength_nm) {

@@ -1,16 +1,15 @@
-//! Wavelength strategies against each other: error against samples and against time.
+//! Comparison of wavelength strategies: error against number of samples and against time.
 //!
-//! [`bench()`] takes a scene and measures every strategy on it in two ways: the spectral integral alone (the exposure of
-//! each channel, against exact quadrature), and the scene as it is rendered (every pixel, against a reference render
-//! of many more samples). What comes out is a [`Report`]: [`table`] shows it to a person, [`csv()`] to a spreadsheet,
-//! [`picture()`] draws it, and `serde` writes it as JSON.
+//! [`bench()`] takes a scene and measures every strategy on it in two ways. One is the spectral integral alone: the exposure of each
+//! channel, compared with exact quadrature. The other is the rendered scene: every pixel, compared with a reference render with many more
+//! samples. The result is a [`Report`]: [`table`] formats it as text, [`csv()`] for a spreadsheet, [`picture()`] draws it, and `serde`
+//! writes it as JSON.
 //!
-//! Errors are relative root-mean-square errors of linear exposure over seeds. Their 95 % intervals, and those of the
-//! slopes, are percentiles of a bootstrap over the seeds (B. Efron, Annals of Statistics 7, 1 (1979)): seeds are
-//! independent, pixels and channels are not, so the seed is what is drawn again.
-
+//! Errors are relative root-mean-square errors of linear exposure over seeds. Their 95 % intervals, and those of the slopes, are
+//! percentiles of a bootstrap over the seeds (B. Efron, Annals of Statistics 7, 1 (1979)). The bootstrap resamples seeds because seeds are
+//! independent, while pixels and channels are not.
 //!
-//! [`noise()`] measures something else: how long the scene takes until it is clean, by each estimator.
+//! [`noise()`] measures how long a scene takes to become clean with each estimator. [`ghosts()`] measures the same for ghosts.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

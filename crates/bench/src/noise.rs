@@ -1,8 +1,8 @@
-//! How long a clean picture takes: noise between independent seeds, against time.
+//! Measures how long a clean picture takes: the noise between independent seeds as a function of time.
 //!
-//! A scene is rendered with as many samples as the time allows (the largest power of two), and as many by each further seed. In
-//! every square of [`SIDE`] x [`SIDE`] pixels the noise of luminance is the root of the pixels' mean variance over their mean.
-//! What it is after another time, and when it is 1 %, follows from its falling with the root of the samples.
+//! The first seed renders a scene with as many samples as the time allows (the largest power of two). Each further seed uses the same
+//! number. In every square of [`SIDE`] x [`SIDE`] pixels the noise is the root of the mean variance of the pixels divided by their mean
+//! luminance. Noise falls with the root of the samples. This gives the noise after another time, and the time to reach 1 %.
 
 use crate::BenchError;
 use serde::Serialize;
@@ -14,62 +14,62 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Pixels a side of the squares that noise is measured in.
+/// Side of the squares in which noise is measured, pixels.
 const SIDE: usize = 8;
-/// Squares that hold less than this part of the mean light are not judged: nothing is seen there.
+/// Squares with less than this fraction of the mean light are not judged, because noise is not visible there.
 const DARK: f64 = 1e-3;
-/// The noise that a time is given for.
+/// Target noise: the time to reach it is reported.
 const CLEAN: f64 = 0.01;
-/// Most samples.
+/// Largest number of samples.
 const MOST: u64 = 1 << 20;
 
-/// What is measured of each scene.
+/// Settings of a noise measurement.
 #[derive(Clone, Debug)]
 pub struct NoiseSettings {
-    /// Seeds, 2 at least.
+    /// Number of seeds, at least 2.
     pub seeds: u64,
-    /// Seconds of tracing for each seed.
+    /// Time of tracing for each seed, s.
     pub seconds: f64,
-    /// Values of `render.direction` that are tried.
+    /// Values of `render.direction` to measure.
     pub directions: Vec<String>,
-    /// Threads to render on.
+    /// Number of threads for rendering.
     pub threads: usize,
-    /// Instruction set.
+    /// Instruction set to use.
     pub isa: Isa,
 }
 
-/// The noise of a scene by one choice of estimators.
+/// Noise of a scene for one value of `render.direction`.
 #[derive(Clone, Debug, Serialize)]
 pub struct NoiseRow {
     /// Name of the scene.
     pub scene: String,
-    /// What `render.direction` said.
+    /// Value of `render.direction` that was set.
     pub direction: String,
-    /// The estimators that it came to.
+    /// Estimators that the renderer used for it.
     pub estimators: Vec<&'static str>,
-    /// The channel whose noise it is.
+    /// Name of the channel whose noise is reported.
     pub channel: String,
-    /// Samples a pixel, or as many forward rays.
+    /// Number of samples per pixel, or of forward rays per pixel.
     pub samples: u64,
-    /// Seconds before the first ray: pupils, pilots.
+    /// Preparation time before the first ray (pupils, pilots), s.
     pub ready_s: f64,
-    /// Seconds of tracing, a mean over the seeds.
+    /// Time of tracing, averaged over the seeds, s.
     pub seconds: f64,
-    /// Rays a second.
+    /// Number of rays per second.
     pub rays_per_s: f64,
-    /// Noise at these samples: the median over the squares, and what 95 % of them stay below.
+    /// Relative noise at these samples: the median and the 95th percentile over the squares.
     pub noise: [f64; 2],
-    /// The same after the seconds that were asked for.
+    /// Relative noise after the requested time: the median and the 95th percentile over the squares.
     pub noise_then: [f64; 2],
-    /// Seconds to 1 %: of the median, and of 95 % of the squares.
+    /// Time to reach 1 % noise, s: for the median and for 95 % of the squares.
     pub clean_s: [f64; 2],
 }
 
-/// Measures a scene file with `overrides` (texts `path=value`) by each direction; those that it cannot be rendered by are left
-/// out. `tell` is given a line on what is being measured.
+/// Measures a scene file with `overrides` (texts `path=value`) for each direction. Directions in which it cannot be rendered are left out.
+/// `tell` receives a line about the current measurement.
 ///
 /// # Errors
-/// [`BenchError`].
+/// [`BenchError`]: fewer than 2 seeds, an invalid scene, no recorded light, or a failed render.
 pub fn noise(
     path: &Path,
     overrides: &[String],
@@ -77,9 +77,9 @@ pub fn noise(
     tell: &mut dyn FnMut(&str),
 ) -> Result<Vec<NoiseRow>, BenchError> {
     if settings.seeds < 2 {
-        return Err(BenchError::Settings("seeds: 2 at least, or there is no scatter to judge by"));
+        return Err(BenchError::Settings("seeds: give at least 2, because errors are judged by their scatter"));
     }
-    // What is wrong whatever the direction is said as it is.
+    // Load the scene as it is first, to report errors that do not depend on the direction.
     spectra_scene::load(path, overrides)?;
     let mut rows = Vec::new();
     for direction in &settings.directions {
@@ -107,7 +107,7 @@ fn row(scene: Scene, direction: &str, settings: &NoiseSettings) -> Result<NoiseR
         let mut light: Light = renderer.begin().map_err(failed)?;
         let begun = Instant::now();
         if samples == 0 {
-            // The first seed finds how many there is time for.
+            // The first seed determines how many samples the time allows.
             samples = 1;
             renderer.advance(&mut light, samples, &workers, &control).map_err(failed)?;
             while samples < MOST && 2.0 * begun.elapsed().as_secs_f64() <= settings.seconds {
@@ -141,12 +141,12 @@ fn row(scene: Scene, direction: &str, settings: &NoiseSettings) -> Result<NoiseR
     })
 }
 
-/// Luminance, or else the first channel.
+/// Returns the index of the luminance channel, or of the first channel if there is none.
 fn channel(frame: &ExposureFrame) -> usize {
     frame.channels.iter().position(|c| c.name == "Y").unwrap_or(0)
 }
 
-/// Median and 95th percentile of the noise of the squares; `None` where no square has light.
+/// Returns the median and the 95th percentile of the noise of the squares; `None` if no square has light.
 fn of_squares(frames: &[ExposureFrame], channel: usize) -> Option<[f64; 2]> {
     let many = frames.len() as f64;
     let (width, height) = (frames[0].size.width_px as usize, frames[0].size.height_px as usize);
@@ -175,7 +175,7 @@ fn of_squares(frames: &[ExposureFrame], channel: usize) -> Option<[f64; 2]> {
     Some([at(0.5)?, at(0.95)?])
 }
 
-/// A table of some rows, in Markdown; `machine` says what they were measured on.
+/// Formats rows as a Markdown table; `machine` describes what they were measured on.
 #[must_use]
 pub fn noise_table(rows: &[NoiseRow], settings: &NoiseSettings, machine: &str) -> String {
     let then = settings.seconds;

@@ -1,4 +1,4 @@
-//! The report as a picture: error against samples and against time, in log-log.
+//! Figure of a report: error against samples and against time, in log-log scale.
 
 use crate::report::{Measure, Report, Series};
 use crate::statistics::ROUNDING;
@@ -12,11 +12,11 @@ const PANEL_HEIGHT: f64 = 300.0;
 const TOP: f64 = 62.0;
 const BETWEEN: f64 = 78.0;
 const LEGEND_LINE: f64 = 20.0;
-/// The second half of the colors is dashed, so that all strategies differ.
+/// Dash patterns: once the colors are used up they repeat with the next pattern, so that all strategies differ.
 const DASHES: [&[f64]; 3] = [&[], &[7.0, 4.0], &[2.0, 3.0]];
 
-/// Draws the errors with their 95 % intervals: of the integral (with the scene's numbers) above, of the scene below;
-/// against samples on the left, against time on the right.
+/// Draws the errors with their 95 % intervals. The upper row shows the integral (with the scene's numbers), the lower one the scene; errors
+/// are plotted against samples on the left and against time on the right.
 #[must_use]
 pub fn picture(report: &Report) -> Canvas {
     let own = report.series.first().map(|s| s.numbers);
@@ -48,9 +48,9 @@ pub fn picture(report: &Report) -> Canvas {
             let frame = Rect::new(left, top, left + PANEL_WIDTH, top + PANEL_HEIGHT);
             let (label, x): (_, fn(&Series, usize) -> f64) = match (column, measure) {
                 (0, Measure::Integral) => ("samples", |s, i| f64::from(s.points[i].samples)),
-                (0, Measure::Scene) => ("samples a pixel", |s, i| f64::from(s.points[i].samples)),
+                (0, Measure::Scene) => ("samples per pixel", |s, i| f64::from(s.points[i].samples)),
                 (_, Measure::Integral) => ("time / s", |s, i| s.points[i].seconds),
-                (_, Measure::Scene) => ("time of a frame / s", |s, i| s.points[i].seconds),
+                (_, Measure::Scene) => ("time per frame / s", |s, i| s.points[i].seconds),
             };
             panel(&mut canvas, frame, series, label, x);
             canvas.text([left, top - 8.0], what, &TextStyle::new(13.0));
@@ -83,14 +83,14 @@ fn legend(canvas: &mut Canvas, top: f64, series: &[&Series]) {
     }
 }
 
-/// A decimal logarithm.
+/// A logarithmic axis, base 10.
 struct Log {
     from: f64,
     to: f64,
 }
 
 impl Log {
-    /// That holds all values, with some room; `None` without any.
+    /// Creates an axis that contains all values with some margin; `None` without values.
     fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let (from, to) = values
             .map(libm::log10)
@@ -103,7 +103,7 @@ impl Log {
         (libm::log10(value) - self.from) / (self.to - self.from)
     }
 
-    /// Powers of ten within.
+    /// Iterates over the powers of ten on the axis.
     fn decades(&self) -> impl Iterator<Item = i32> + use<> {
         self.from.ceil() as i32..=self.to.floor() as i32
     }
@@ -112,7 +112,7 @@ impl Log {
 fn panel(canvas: &mut Canvas, frame: Rect, series: &[&Series], label: &str, x: fn(&Series, usize) -> f64) {
     let shown = || series.iter().flat_map(|s| s.points.iter().enumerate().map(move |(i, p)| (s, i, p)));
     let shown = || shown().filter(|(_, _, p)| p.error.value > ROUNDING);
-    // An interval that reaches down to 0 (after the reference's own noise is taken off) ends at the frame.
+    // Cut an interval that reaches down to 0, because the noise of the reference was subtracted, at the frame.
     let (Some(across), Some(up)) = (
         Log::of(shown().map(|(s, i, _)| x(s, i))),
         Log::of(shown().flat_map(|(_, _, p)| [p.error.low.max(0.5 * p.error.value), p.error.high])),

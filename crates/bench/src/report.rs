@@ -1,19 +1,19 @@
-//! What a benchmark gives.
+//! Results of a benchmark.
 
 use serde::Serialize;
 
-/// What the error was measured on.
+/// The quantity whose error was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Measure {
-    /// The exposure of each channel by the spectrum alone; the truth is exact quadrature.
+    /// Exposure of each channel from the spectrum alone, compared with exact quadrature.
     Integral,
-    /// Every pixel of the rendered scene; the truth is a reference render.
+    /// Every pixel of the rendered scene, compared with a reference render.
     Scene,
 }
 
 impl Measure {
-    /// Name in tables and files.
+    /// Name of the measure in tables and files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -23,22 +23,22 @@ impl Measure {
     }
 }
 
-/// Which numbers the wavelengths were drawn with.
+/// Kind of numbers from which the wavelengths were drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NumberKind {
     /// Owen-scrambled Sobol points. In the one dimension of the wavelength, 2^k of them are 2^k jittered strata.
     Sobol,
-    /// A shifted lattice.
+    /// Points of a shifted lattice.
     Lattice,
     /// Independent random numbers.
     Random,
-    /// Jittered strata, as many as there are samples.
+    /// Jittered strata, one for each sample.
     Stratified,
 }
 
 impl NumberKind {
-    /// Name in tables and files, as a scene has it.
+    /// Name of the kind in tables and files, as written in a scene.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -50,85 +50,85 @@ impl NumberKind {
     }
 }
 
-/// A value between the ends of its 95 % interval.
+/// A value with the ends of its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// The value itself.
+    /// The value.
     pub value: f64,
-    /// Lower end.
+    /// Lower end of the interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the interval.
     pub high: f64,
 }
 
-/// How far the mean over seeds is from the truth.
+/// Bias of one channel: deviation of the mean over seeds from the truth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChannelBias {
-    /// Channel.
+    /// Name of the channel.
     pub channel: String,
-    /// Mean of the relative error.
+    /// Mean of the relative error over seeds.
     pub relative: f64,
-    /// The same in standard errors of that mean (and of the reference, where there is one).
+    /// Mean relative error in standard errors of that mean (and of the reference, if there is one).
     pub standard_errors: f64,
 }
 
-/// One number of samples.
+/// Results for one number of samples.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
-    /// Samples of the integral; of a pixel, in a scene (forward: rays a pixel of the frame).
+    /// Number of samples of the integral, or samples per pixel in a scene (forward: rays per pixel of the frame).
     pub samples: u32,
-    /// Relative RMS error of linear exposure: root of the mean over seeds and channels of the squared error. Of a
-    /// scene, the sum over pixels of the squared error is taken relative to the sum of the squared exposure.
+    /// Relative RMS error of linear exposure: root of the mean over seeds and channels of the squared error. For a scene the squared error
+    /// summed over pixels is divided by the squared exposure summed over pixels.
     pub error: Interval,
-    /// Time that these samples take, s, from [`Series::ns_a_sample`]; of a scene, samples of all pixels.
+    /// Time for these samples, s, from [`Series::ns_a_sample`]; for a scene, for the samples of all pixels.
     pub seconds: f64,
-    /// Mean against the truth, each channel; of a scene, of the whole frame's light.
+    /// Bias of each channel; for a scene, bias of the light of the whole frame.
     pub bias: Vec<ChannelBias>,
-    /// Mean CIEDE2000 to the truth, over seeds and pixels; where the channels are X, Y, Z. The lightest pixel of the
-    /// truth has Y = 100, and the light itself is the white.
+    /// Mean CIEDE2000 relative to the truth, over seeds and pixels, if the channels are X, Y, Z. The lightest pixel of the truth has Y =
+    /// 100, and the light source is the white.
     pub ciede2000: Option<f64>,
-    /// Each seed by itself: [`crate::seeds_csv`] has them; too many for JSON.
+    /// Results of each seed. [`crate::seeds_csv`] writes them; JSON leaves them out because they are too many.
     #[serde(skip)]
     pub by_seed: Vec<OfSeed>,
 }
 
-/// What one seed gave.
+/// Result of a single seed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OfSeed {
-    /// The seed.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// Its relative RMS error over channels, and pixels of a scene.
+    /// Relative RMS error of this seed over channels, and over pixels of a scene.
     pub error: f64,
-    /// Relative error of the light of each channel, with its sign, in the order of [`Point::bias`].
+    /// Signed relative error of the light of each channel, in the order of [`Point::bias`].
     pub relative: Vec<f64>,
 }
 
-/// One strategy, measured in one way.
+/// Results of one strategy by one measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// The strategy, with the parameters that differ from its usual ones.
+    /// Strategy, with the parameters that differ from the defaults.
     pub strategy: String,
-    /// What was measured.
+    /// Quantity whose error was measured.
     pub measure: Measure,
-    /// Numbers that it was measured with.
+    /// Kind of numbers used.
     pub numbers: NumberKind,
-    /// Seeds.
+    /// Number of seeds.
     pub seeds: usize,
-    /// Exponent of the error against samples, by least squares in log-log; `None` where less than two errors are
-    /// above rounding (1e-12).
+    /// Exponent of the error as a function of samples, fitted by least squares in log-log; `None` if fewer than two errors are above
+    /// rounding (1e-12).
     pub slope: Option<Interval>,
-    /// Time of one sample, ns: the shortest of all seeds at the largest number of samples, threads together.
+    /// Time of one sample, ns: the shortest over all seeds at the largest number of samples, with all threads together.
     pub ns_a_sample: f64,
-    /// Error over that of the first strategy at the same (largest) number of samples.
+    /// Error divided by that of the first strategy at the same (largest) number of samples.
     pub ratio_at_equal_samples: Option<f64>,
-    /// The same at the time that the first strategy takes for it, carried there along this strategy's slope.
+    /// Error divided by that of the first strategy at equal time, extrapolated along this strategy's slope.
     pub ratio_at_equal_time: Option<f64>,
-    /// Numbers of samples, rising.
+    /// Results for each number of samples, rising.
     pub points: Vec<Point>,
 }
 
 impl Series {
-    /// The largest bias over channels and numbers of samples, in standard errors.
+    /// Returns the largest bias over channels and numbers of samples, in standard errors.
     #[must_use]
     pub fn largest_bias(&self) -> f64 {
         let all = self.points.iter().flat_map(|p| &p.bias);
@@ -136,57 +136,58 @@ impl Series {
     }
 }
 
-/// What the pixels of a scene are compared with.
+/// The reference render that the pixels of a scene are compared with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reference {
-    /// Strategy.
+    /// Strategy of the reference.
     pub strategy: String,
-    /// Renders, each of its own seed, whose mean it is.
+    /// Number of averaged renders, each with its own seed.
     pub renders: u32,
-    /// Samples of each render.
+    /// Number of samples of each render.
     pub samples: u32,
-    /// Its own relative RMS error, by the scatter of its renders; taken off the squared errors of the strategies.
+    /// Relative RMS error of the reference itself, from the scatter of its renders. Its square is subtracted from the squared errors of the
+    /// strategies.
     pub error: f64,
 }
 
-/// A strategy that cannot sample the scene.
+/// A strategy that cannot sample the scene and was skipped.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOut {
-    /// The strategy.
+    /// Name of the strategy.
     pub strategy: String,
-    /// Why.
+    /// Reason why the strategy was skipped.
     pub reason: String,
 }
 
-/// What a benchmark gives.
+/// Results of a benchmark of one scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// Name of the scene.
     pub scene: String,
-    /// The seed that all others follow from.
+    /// Seed from which all others are derived.
     pub seed: u64,
-    /// Its source.
+    /// Description of the source.
     pub source: String,
-    /// Its lens.
+    /// Name of the lens.
     pub lens: String,
-    /// What is recorded.
+    /// Names of the recorded channels.
     pub channels: Vec<String>,
-    /// Pixels across.
+    /// Width of the frame, pixels.
     pub width_px: u32,
-    /// Pixels down.
+    /// Height of the frame, pixels.
     pub height_px: u32,
-    /// `forward` or `backward`.
+    /// Direction of rendering: `forward` or `backward`.
     pub direction: &'static str,
-    /// Threads that scenes were rendered on.
+    /// Number of threads used for rendering.
     pub threads: usize,
-    /// Instruction set.
+    /// Instruction set used.
     pub isa: &'static str,
-    /// Where the 95 % intervals come from.
+    /// Description of how the 95 % intervals were computed.
     pub intervals: &'static str,
-    /// What the pixels are compared with; `None` where only the integral was measured.
+    /// Reference of the rendered scene; `None` if only the integral was measured.
     pub reference: Option<Reference>,
-    /// The measurements: by measure and numbers, then in the order of the strategies.
+    /// Results, ordered by measure and numbers, then in the order of the strategies.
     pub series: Vec<Series>,
-    /// Strategies that were not measured.
+    /// Strategies that were skipped.
     pub left_out: Vec<LeftOut>,
 }

@@ -1,4 +1,4 @@
-//! The benchmark: every strategy, every number of samples, every seed.
+//! Runs the benchmark: every strategy, every number of samples, every seed.
 
 use crate::every_factor::{EveryFactor, needs_wavelength};
 use crate::frame::{RENDERS, Truth, renders};
@@ -14,41 +14,41 @@ use spectra_scene::{Direction, NumberFamily, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
-/// How a benchmark is run.
+/// Settings of a benchmark.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Seeds of each render, 2 at least.
+    /// Number of seeds of each render, at least 2.
     pub seeds: usize,
-    /// Seeds of each integral, 2 at least: it is so much quicker than a render that it can have many more.
+    /// Number of seeds of each integral, at least 2. An integral is so much faster than a render that it can have many more.
     pub integral_seeds: usize,
-    /// The seed that all others follow from; that of the scene if `None`.
+    /// Seed from which all others are derived; that of the scene if `None`.
     pub seed: Option<u64>,
-    /// Numbers of samples, each from 1 to 2^20; powers of two keep Sobol points even.
+    /// Numbers of samples, each from 1 to 2^20. Powers of two keep Sobol points evenly distributed.
     pub samples: Vec<u32>,
-    /// Strategies to compare, the first of which the others are related to; all registered ones if empty.
+    /// Strategies to compare; the others are compared with the first one. All registered ones if empty.
     pub strategies: Vec<Strategy>,
-    /// Whether the scene is rendered too, or the integral measured alone.
+    /// Whether to render the scene as well; otherwise only the integral is measured.
     pub render: bool,
-    /// What is recorded in place of the scene's channels, on its grid; then the integral is measured alone, for no
-    /// imager of the scene has them.
+    /// Channels recorded instead of the scene's, on its grid. If given, only the integral is measured, because no imager of the scene has
+    /// these channels.
     pub response: Option<Vec<Channel>>,
-    /// Threads to render on.
+    /// Number of threads for rendering.
     pub threads: usize,
-    /// Instruction set.
+    /// Instruction set to use.
     pub isa: Isa,
 }
 
-/// Most samples.
+/// Largest number of samples.
 const MOST: u32 = 1 << 20;
 
-/// Between the seeds of one number of samples and the next, so that none is used twice.
+/// Distance between the first seeds of consecutive numbers of samples, so that none is used twice.
 const SEED_STRIDE: u64 = 1 << 32;
 
-/// Measures the strategies on a scene file with `overrides` (texts `path=value`). `tell` is given a line on what is
-/// being measured, now and then.
+/// Measures the strategies on a scene file with `overrides` (texts `path=value`). `tell` receives a line about the current measurement now
+/// and then.
 ///
 /// # Errors
-/// [`BenchError`].
+/// [`BenchError`]: invalid settings, scene or strategies, no recorded light, or a failed render.
 pub fn bench(
     path: &Path,
     overrides: &[String],
@@ -92,29 +92,29 @@ pub fn bench(
     })
 }
 
-/// Numbers of samples, rising, each once.
+/// Returns the numbers of samples in rising order without duplicates, and checks them and the seeds.
 fn checked(settings: &Settings) -> Result<Vec<u32>, BenchError> {
     let mut samples = settings.samples.clone();
     samples.sort_unstable();
     samples.dedup();
     if samples.is_empty() || samples.iter().any(|n| !(1..=MOST).contains(n)) {
-        return Err(BenchError::Settings("samples: one number at least, each from 1 to 1048576"));
+        return Err(BenchError::Settings("samples: give at least one number, each from 1 to 1048576"));
     }
     if settings.seeds < 2 || settings.integral_seeds < 2 {
-        return Err(BenchError::Settings("seeds: 2 at least, or there is no scatter to judge by"));
+        return Err(BenchError::Settings("seeds: give at least 2, because errors are judged by their scatter"));
     }
     Ok(samples)
 }
 
-/// A strategy, fitted.
+/// A strategy with its scene and its fitted wavelength density.
 struct Entrant {
     strategy: Strategy,
     scene: Scene,
     density: Shared,
 }
 
-/// A strategy that was fitted once for all renders of the scene: a fit of Gaussian terms takes longer than a small
-/// render.
+/// A wavelength density shared by all renders of the scene. It is fitted only once, because a fit of Gaussian terms takes longer than a
+/// small render.
 #[derive(Clone)]
 struct Shared(Arc<dyn WavelengthDensity>);
 
@@ -154,7 +154,7 @@ struct Run<'a> {
     left_out: Vec<LeftOut>,
 }
 
-/// One term of every factor as a strategy, or why the scene needs a wavelength.
+/// Prepares the strategy that draws one term of every factor, or says why the scene needs a wavelength.
 fn every_factor(
     strategy: &Strategy,
     scene: &Scene,
@@ -166,7 +166,7 @@ fn every_factor(
         Ok(every) => every,
         Err(reason) => return Ok(Err(reason)),
     };
-    // Of the integral alone no scene is traced.
+    // Skip the check if only the integral is measured, because then no scene is traced.
     if settings.render
         && settings.response.is_none()
         && let Some(reason) = needs_wavelength(scene, system, settings.threads, settings.isa)?
@@ -174,7 +174,7 @@ fn every_factor(
         return Ok(Err(reason));
     }
     let (mean, deviation) = every.moments();
-    tell(&format!("{}: by all its choices a sample scatters by {:.4} of the mean", strategy.label(), deviation / mean));
+    tell(&format!("{}: over all choices, a sample scatters by {:.4} of the mean", strategy.label(), deviation / mean));
     let density = Shared(Arc::new(every));
     let mut scene = scene.clone();
     scene.sampler = Arc::new(density.clone());
@@ -214,7 +214,7 @@ impl<'a> Run<'a> {
             if strategy.is_every_factor() {
                 match every_factor(strategy, scene, &system, settings, tell)? {
                     Ok(entrant) => entrants.push(entrant),
-                    // Nobody asked for it by name, and most scenes have a lens.
+                    // Skip silently: the user did not name it, and most scenes have a lens.
                     Err(_) if settings.strategies.is_empty() => {}
                     Err(reason) => left_out.push(LeftOut { strategy: strategy.label(), reason }),
                 }
@@ -224,7 +224,7 @@ impl<'a> Run<'a> {
             let overrides: Vec<String> = overrides.iter().cloned().chain(replacement).collect();
             let mut scene = match spectra_scene::load(path, &overrides) {
                 Ok(scene) => scene,
-                // Nobody asked for it by name: what it lacks is worth a word, not an end.
+                // Report it and continue: the user did not name this strategy.
                 Err(faults) if settings.strategies.is_empty() => {
                     left_out.push(LeftOut { strategy: strategy.label(), reason: faults.to_string() });
                     continue;
@@ -247,7 +247,7 @@ impl<'a> Run<'a> {
         Ok(Self { settings, samples, system, seen, names, first_seed, entrants, left_out })
     }
 
-    /// First seed of the `at`-th number of samples: none is shared with another, so that errors are independent.
+    /// First seed of the `at`-th number of samples. No two numbers share a seed, so that their errors are independent.
     fn seed(&self, at: usize) -> u64 {
         self.first_seed.wrapping_add((at as u64 + 1).wrapping_mul(SEED_STRIDE))
     }
@@ -263,7 +263,7 @@ impl<'a> Run<'a> {
         self.series(entrant, Measure::Integral, kind, &self.seen, &measured, 1.0)
     }
 
-    /// Renders the scene by all strategies, and the reference that they are compared with.
+    /// Renders the scene with all strategies, and the reference that they are compared with.
     fn scene(
         &mut self,
         kind: NumberKind,
@@ -272,10 +272,10 @@ impl<'a> Run<'a> {
     ) -> Result<Reference, BenchError> {
         let Settings { threads, isa, seeds, .. } = *self.settings;
         let most = self.samples[self.samples.len() - 1];
-        // Of all strategies the one that scenes take by themselves; else the first that was asked for.
+        // The reference uses the first strategy: the default one if all are compared, else the first requested one.
         let label = self.entrants[0].strategy.label();
         let many = most.saturating_mul(2);
-        tell(&format!("reference: {RENDERS} renders of {many} samples a pixel by {label}"));
+        tell(&format!("reference: {RENDERS} renders of {many} samples per pixel with {label}"));
         let (first_seed, scene) = (self.first_seed, &mut self.entrants[0].scene);
         let of_reference = (0..u64::from(RENDERS)).map(|render| first_seed.wrapping_add(render));
         let (frames, _): (Vec<_>, Vec<_>) =
@@ -308,7 +308,7 @@ impl<'a> Run<'a> {
         Ok(Reference { strategy: label, renders: RENDERS, samples: many, error: truth.error(&seen) })
     }
 
-    /// `pixels` share each sample.
+    /// Builds the series of one strategy from its measurements. Each of `pixels` pixels receives all samples.
     fn series(
         &self,
         entrant: &Entrant,
@@ -334,7 +334,7 @@ impl<'a> Run<'a> {
                 .enumerate()
                 .map(|(seed, squared)| OfSeed {
                     seed: self.seed(at).wrapping_add(seed as u64),
-                    // What the reference's own noise adds is taken off squares, which may leave less than nothing.
+                    // Clamp at 0: subtracting the noise of the reference may leave a negative square.
                     error: squared.max(0.0).sqrt(),
                     relative: measured[at].relative.iter().map(|of_channel| of_channel[seed]).collect(),
                 })
@@ -360,7 +360,7 @@ fn bias(channel: &str, measured: &Measured, at: usize) -> ChannelBias {
     ChannelBias { channel: channel.to_owned(), relative, standard_errors }
 }
 
-/// Relates each series to the first of them, and adds them to the others.
+/// Computes the ratios of each series to the first one, and appends the series to `to`.
 fn related(to: &mut Vec<Series>, series: impl Iterator<Item = Series>) {
     let mut first: Option<(f64, f64)> = None;
     for mut one in series {
@@ -369,7 +369,7 @@ fn related(to: &mut Vec<Series>, series: impl Iterator<Item = Series>) {
         if base > crate::statistics::ROUNDING {
             let ratio = error / base;
             one.ratio_at_equal_samples = Some(ratio);
-            // In the time of the first, base_ns / ns times as many samples are drawn.
+            // Extrapolate: in the time of the first strategy this one draws base_ns / ns times as many samples.
             one.ratio_at_equal_time = one
                 .slope
                 .map(|slope| ratio * libm::pow(base_ns / one.ns_a_sample, slope.value))

@@ -1,36 +1,33 @@
-//! Errors over seeds, with intervals.
+//! Errors over seeds with confidence intervals.
 
 use crate::report::Interval;
-use spectra_core::numbers::mix64;
+use spectra_core::numbers::SplitMix64;
 
-/// Relative errors below this are rounding, not sampling.
+/// Relative errors below this are due to rounding, not to sampling.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
-/// Resamples of the bootstrap.
+/// Number of resamples of the bootstrap.
 const RESAMPLES: usize = 1000;
 
-/// Errors at each number of samples, and the slope, all with their 95 % intervals.
+/// Errors for each number of samples, and the slope, all with 95 % intervals.
 #[derive(Debug)]
 pub(crate) struct Fitted {
     pub errors: Vec<Interval>,
     pub slope: Option<Interval>,
 }
 
-/// From squared errors, one list over seeds for each number of samples.
+/// Computes errors and slope from squared errors: for each number of samples a list over seeds.
 pub(crate) fn fit(samples: &[u32], squared: &[Vec<f64>]) -> Fitted {
     let errors: Vec<f64> = squared.iter().map(|s| root_mean(s.iter().copied(), s.len())).collect();
     let slope = slope(samples, &errors);
     let mut again = vec![Vec::with_capacity(RESAMPLES); squared.len()];
     let mut slopes = Vec::with_capacity(RESAMPLES);
-    let mut state = 0_u64;
+    let mut random = SplitMix64::new(0);
     let mut one = vec![0.0; squared.len()];
     for _ in 0..RESAMPLES {
         for (at, seeds) in squared.iter().enumerate() {
             let many = seeds.len() as u64;
-            let draws = (0..many).map(|_| {
-                state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-                seeds[((u128::from(mix64(state)) * u128::from(many)) >> 64) as usize]
-            });
+            let draws = (0..many).map(|_| seeds[((u128::from(random.bits()) * u128::from(many)) >> 64) as usize]);
             one[at] = root_mean(draws, seeds.len());
             again[at].push(one[at]);
         }
@@ -40,12 +37,12 @@ pub(crate) fn fit(samples: &[u32], squared: &[Vec<f64>]) -> Fitted {
     Fitted { errors, slope: slope.map(|s| interval(s, &mut slopes)) }
 }
 
-/// Root of a mean square; 0 where taking off the reference's own noise left less than nothing.
+/// Root of a mean square; 0 if subtracting the noise of the reference left a negative value.
 fn root_mean(squares: impl Iterator<Item = f64>, many: usize) -> f64 {
     (squares.sum::<f64>() / many.max(1) as f64).max(0.0).sqrt()
 }
 
-/// The middle 95 % of resampled values around a value.
+/// Returns a value with the middle 95 % of its resampled values.
 fn interval(value: f64, again: &mut [f64]) -> Interval {
     again.sort_by(f64::total_cmp);
     let at = |share: f64| again.get((share * (again.len().saturating_sub(1)) as f64).round() as usize);
@@ -53,7 +50,7 @@ fn interval(value: f64, again: &mut [f64]) -> Interval {
     Interval { value, low: low.min(value), high: high.max(value) }
 }
 
-/// Least squares of log error against log samples; `None` where less than two errors are above rounding.
+/// Fits log error against log samples by least squares; `None` if fewer than two errors are above rounding.
 fn slope(samples: &[u32], errors: &[f64]) -> Option<f64> {
     let points: Vec<(f64, f64)> = samples
         .iter()
@@ -68,7 +65,7 @@ fn slope(samples: &[u32], errors: &[f64]) -> Option<f64> {
     (points.len() >= 2 && spread > 0.0).then(|| both / spread)
 }
 
-/// Mean and variance of the mean, by the scatter of the values.
+/// Mean, and variance of the mean estimated from the scatter of the values.
 pub(crate) fn mean_and_variance_of_mean(values: &[f64]) -> (f64, f64) {
     let many = values.len() as f64;
     let mean = values.iter().sum::<f64>() / many;
@@ -76,7 +73,7 @@ pub(crate) fn mean_and_variance_of_mean(values: &[f64]) -> (f64, f64) {
     (mean, scatter / (many * (many - 1.0).max(1.0)))
 }
 
-/// A relative deviation in standard errors; deviations by rounding count as none.
+/// A relative deviation in standard errors; deviations due to rounding count as nearly zero.
 pub(crate) fn in_standard_errors(relative: f64, variance: f64) -> f64 {
     relative / variance.sqrt().max(ROUNDING)
 }
@@ -96,13 +93,13 @@ mod tests {
         assert_eq!(slope(&samples, &[0.1, 0.0, 0.0, 1e-15]), None);
     }
 
-    /// The interval of a root mean square holds the truth in some 95 of 100 cases: for 40 seeds of one normal variate
-    /// a percentile bootstrap is known to fall short by a few.
+    /// The interval of a root mean square includes the truth in about 95 of 100 cases. For 40 seeds of one normal variate a percentile
+    /// bootstrap is known to fall short by a few.
     #[test]
     fn intervals_hold_the_truth() {
         let mut held = 0;
         for trial in 0..400 {
-            // Sum of twelve uniform variates: mean 6, variance 1.
+            // Approximate a normal variate by the sum of twelve uniform ones: mean 6, variance 1.
             let squares: Vec<f64> = (0..40)
                 .map(|i| (0..12).map(|d| Numbers::random(3).one(trial, i, d)).sum::<f64>() - 6.0)
                 .map(|v| v * v)

@@ -1,4 +1,4 @@
-//! Which strategies are compared, and with which parameters.
+//! The strategies to compare and their parameters.
 
 use crate::BenchError;
 use spectra_core::registry::{Entry, Stage};
@@ -6,17 +6,17 @@ use spectra_core::spectral::{BAND, SystemResponse};
 use spectra_core::stage::WavelengthSampler;
 use spectra_scene::{Scene, yaml};
 
-/// A strategy as written: a `kind` of the `wavelengths` section, and its other keys.
+/// A wavelength strategy: a `kind` of the `wavelengths` section, and its other keys.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strategy {
-    /// Its kind.
+    /// Registered name of the strategy.
     pub kind: String,
-    /// The other keys, as a YAML map has them between its braces; `None` for those of the scene, or the usual ones.
+    /// The other keys, written as between the braces of a YAML map; `None` for those of the scene, or the defaults.
     pub keys: Option<String>,
 }
 
 impl Strategy {
-    /// Its name in tables.
+    /// Label of the strategy in tables: its kind and its keys.
     #[must_use]
     pub fn label(&self) -> String {
         match &self.keys {
@@ -26,23 +26,24 @@ impl Strategy {
     }
 }
 
-/// What follows one Gaussian term of every factor: no strategy of a scene, which would have to have a wavelength.
+/// Name of the strategy that draws one Gaussian term of every factor. It cannot be used in a scene, whose strategies must draw a
+/// wavelength.
 pub(crate) const EVERY_FACTOR: &str = "one-term-of-every-factor";
 
 impl Strategy {
-    /// Whether it follows one term of every factor.
+    /// Whether this strategy draws one term of every factor.
     pub(crate) fn is_every_factor(&self) -> bool {
         self.kind == EVERY_FACTOR
     }
 
-    /// How many terms it has of each factor: 6, or its key `terms`.
+    /// Returns the number of terms for each factor: its key `terms`, or 6 by default.
     pub(crate) fn terms(&self) -> Result<usize, BenchError> {
         let Some(keys) = &self.keys else { return Ok(6) };
         let terms = keys.strip_prefix("terms").map(str::trim_start).and_then(|rest| rest.strip_prefix(':'));
         let terms = terms.and_then(|text| text.trim().parse().ok()).filter(|terms| (1..=32).contains(terms));
         let wrong = || {
             BenchError::Strategy(format!(
-                "`{}`: its one key is `terms`, 1 to 32: {EVERY_FACTOR}{{terms: 6}}",
+                "`{}`: its only key is `terms`, 1 to 32: {EVERY_FACTOR}{{terms: 6}}",
                 self.label()
             ))
         };
@@ -50,10 +51,10 @@ impl Strategy {
     }
 }
 
-/// Reads strategies, separated by commas: `uniform, truncated-gaussian{center: 550, sigma: 60}`.
+/// Parses strategies separated by commas: `uniform, truncated-gaussian{center: 550, sigma: 60}`.
 ///
 /// # Errors
-/// [`BenchError::Strategy`]: braces that do not match, a name that is not registered, one that comes twice.
+/// [`BenchError::Strategy`]: unbalanced braces, a name that is not registered, or a strategy that appears twice.
 pub fn parse_list(text: &str) -> Result<Vec<Strategy>, BenchError> {
     let names: Vec<&str> = registered().into_iter().chain([EVERY_FACTOR]).collect();
     let mut found: Vec<Strategy> = Vec::new();
@@ -74,14 +75,14 @@ pub fn parse_list(text: &str) -> Result<Vec<Strategy>, BenchError> {
         }
         let strategy = Strategy { kind: kind.to_owned(), keys: keys.map(str::to_owned) };
         if found.contains(&strategy) {
-            return Err(BenchError::Strategy(format!("`{}` comes twice", strategy.label())));
+            return Err(BenchError::Strategy(format!("`{}` appears twice", strategy.label())));
         }
         found.push(strategy);
     }
     Ok(found)
 }
 
-/// Parts between the commas that stand in no braces, brackets or quotes.
+/// Splits at the commas outside braces, brackets and quotes.
 fn split(text: &str) -> Result<Vec<&str>, BenchError> {
     let (mut parts, mut depth, mut quote, mut from) = (Vec::new(), 0_i32, None, 0);
     for (at, c) in text.char_indices() {
@@ -105,7 +106,7 @@ fn split(text: &str) -> Result<Vec<&str>, BenchError> {
     Ok(parts)
 }
 
-/// Names of all registered strategies, sorted.
+/// Returns the names of all registered strategies, sorted.
 fn registered() -> Vec<&'static str> {
     let mut names: Vec<&str> = entries().iter().map(|e| e.name).collect();
     names.sort_unstable();
@@ -116,25 +117,25 @@ fn entries() -> Vec<&'static Entry<dyn WavelengthSampler>> {
     <dyn WavelengthSampler as Stage>::entries()
 }
 
-/// The strategy that a scene takes by itself.
+/// Returns the default strategy of a scene.
 fn usual() -> Option<&'static str> {
     entries().iter().find(|e| e.default).map(|e| e.name)
 }
 
-/// All registered strategies, the one that scenes take by themselves first.
+/// Returns all registered strategies, the default first.
 pub(crate) fn all() -> Vec<Strategy> {
     let mut names = registered();
     names.sort_by_key(|n| Some(*n) != usual());
-    // Last, where nothing in the scene needs a wavelength.
+    // Put it last: it is used only if nothing in the scene depends on the wavelength.
     names.push(EVERY_FACTOR);
     names.into_iter().map(|kind| Strategy { kind: kind.to_owned(), keys: None }).collect()
 }
 
-/// What the scene file says, with `overrides` applied.
+/// Values of the scene file, with `overrides` applied.
 pub(crate) struct Said {
-    /// Its own strategy.
+    /// Strategy of the scene.
     kind: Option<String>,
-    /// What its source shines by.
+    /// Spectrum of the source.
     light: Option<String>,
 }
 
@@ -152,8 +153,8 @@ impl Said {
     }
 }
 
-/// The strategy with the keys that it needs, and the override that puts it into the scene: `None` where it is the
-/// scene's own.
+/// Returns the strategy with the keys that it needs, and the override that puts it into the scene; `None` if it is the scene's own
+/// strategy.
 pub(crate) fn resolve(
     strategy: &Strategy,
     said: &Said,
@@ -175,15 +176,15 @@ pub(crate) fn resolve(
     (Strategy { kind: strategy.kind.clone(), keys }, Some(format!("wavelengths={{{map}}}")))
 }
 
-/// Keys without which a strategy cannot be: of the scene's light and channels.
+/// Returns keys that a strategy requires, derived from the light and the channels of the scene.
 fn needed(kind: &str, said: &Said, system: &SystemResponse) -> Option<String> {
     match kind {
-        // Center and standard deviation of the light that the channels see.
+        // Use the mean and standard deviation of the light that the channels see.
         "truncated-gaussian" => {
             let (center_nm, sigma_nm) = moments(system)?;
             Some(format!("center: {center_nm:.0} nm, sigma: {:.0} nm", sigma_nm.max(1.0)))
         }
-        // In proportion to the source alone.
+        // Draw in proportion to the source alone.
         "inverse-transform" => {
             let light = said.light.as_deref().unwrap_or("D65");
             Some(format!("spectrum: \"{}\"", light.replace(['"', '\\'], "")))
@@ -192,7 +193,7 @@ fn needed(kind: &str, said: &Said, system: &SystemResponse) -> Option<String> {
     }
 }
 
-/// Mean and standard deviation of the wavelength of the light that the channels see together, nm.
+/// Mean and standard deviation, nm, of the wavelength of the light that the channels see together.
 fn moments(system: &SystemResponse) -> Option<(f64, f64)> {
     let seen = system.summed_response();
     let weighted = |f: &dyn Fn(f64) -> f64| {
@@ -229,14 +230,14 @@ mod tests {
         assert!(all.len() >= 2);
     }
 
-    /// A flat light seen by a triangle of 400 nm to 600 nm: mean 500, variance of a symmetric triangle h^2/6.
+    /// A constant light seen by a triangle from 400 nm to 600 nm: mean 500 nm, and the variance of a symmetric triangle, h^2/6.
     #[test]
     fn moments_of_a_triangle() {
         let response: Vec<f64> = BAND.wavelengths_nm().map(|w| (1.0 - (w - 500.0).abs() / 100.0).max(0.0)).collect();
         let source = SpectralPower { grid: BAND, continuum: vec![1.0; BAND.count], lines: Vec::new() };
         let channels = vec![Channel { name: "t".into(), unit: "1".into(), response }].into();
         let (mean, sigma) = moments(&SystemResponse { grid: BAND, source, channels }).unwrap();
-        // The second moment is integrated linearly between nanometres: 1/6 nm^2 beside it.
+        // Allow for the second moment, which is integrated linearly between nanometers: an error of 1/6 nm^2.
         assert!((mean - 500.0).abs() < 1e-9 && (sigma - (1e4 / 6.0_f64).sqrt()).abs() < 0.01, "{mean} {sigma}");
     }
 }

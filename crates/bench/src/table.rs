@@ -1,9 +1,9 @@
-//! The report as a person reads it on a terminal.
+//! Reports as tables for a terminal.
 
 use crate::report::{Interval, Measure, Report, Series};
 use crate::statistics::ROUNDING;
 
-/// Tables of relative RMS errors: one a measure and kind of numbers, a row a strategy.
+/// Formats a report as tables of relative RMS errors: one table for each measure and kind of numbers, one row for each strategy.
 #[must_use]
 pub fn table(report: &Report) -> String {
     let mut text = format!(
@@ -72,7 +72,7 @@ fn error(value: f64) -> String {
     if value > ROUNDING { format!("{value:.2e}") } else { "exact".to_owned() }
 }
 
-/// The interval as parts of its value: `-4 +5 %`.
+/// Formats an interval relative to its value: `-4 +5 %`.
 fn within(error: Interval) -> String {
     if error.value > ROUNDING {
         let percent = |end: f64| 100.0 * (end / error.value - 1.0);
@@ -91,7 +91,7 @@ fn ratio(value: Option<f64>) -> String {
     }
 }
 
-/// Columns of equal width, the first one to the left.
+/// Aligns the columns; the first one to the left, the others to the right.
 fn aligned(rows: &[Vec<String>]) -> String {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();

@@ -1,19 +1,19 @@
-//! The logarithmic curve of ACES for grading.
+//! The logarithmic ACEScct curve for color grading.
 
 use libm::{exp2, log2};
 
-/// Linear light at which the curve goes from straight to logarithmic, and slope and offset of its straight part (Academy S-2016-001).
+/// Linear light at which the curve changes from straight to logarithmic, and slope and offset of its straight part (Academy S-2016-001).
 const BREAK: f64 = 0.007_812_5;
 const SLOPE: f64 = 10.540_237_741_654_5;
 const OFFSET: f64 = 0.072_905_534_195_835_5;
 
-/// The ACEScct value of linear light in AP1 primaries (Academy S-2016-001, ACEScct): 0.18 is 0.4136, 1 is 0.5548, and 222 is 1.
+/// Encodes linear light in AP1 primaries as an ACEScct value (Academy S-2016-001): 0.18 gives 0.4136, 1 gives 0.5548 and 222 gives 1.
 #[must_use]
 pub fn aces_cct(linear: f64) -> f64 {
     if linear <= BREAK { SLOPE * linear + OFFSET } else { (log2(linear) + 9.72) / 17.52 }
 }
 
-/// The linear light of an ACEScct value.
+/// Decodes an ACEScct value to linear light: the inverse of [`aces_cct`].
 #[must_use]
 pub fn from_aces_cct(value: f64) -> f64 {
     let straight = SLOPE * BREAK + OFFSET;
@@ -24,7 +24,7 @@ pub fn from_aces_cct(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Values of colour-science 0.4.7, `log_encoding_ACEScct`.
+    /// Reference values from colour-science 0.4.7, `log_encoding_ACEScct`.
     #[test]
     fn the_curve_is_that_of_the_standard() {
         for (linear, want) in [

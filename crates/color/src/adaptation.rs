@@ -1,20 +1,20 @@
-//! How a color looks the same under another white.
+//! Chromatic adaptation: finds the color that looks the same under another white.
 
 use crate::matrix::{Matrix, apply, inverse, product};
 
-/// A von Kries transform: the cone-like responses in which whites are scaled.
+/// A von Kries transform, named by the cone-like responses in which whites are scaled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Adaptation {
-    /// K. M. Lam (1985), Bradford, in its linear form (ICC.1:2010, annex E).
+    /// Bradford (K. M. Lam, 1985) in its linear form (ICC.1:2010, annex E).
     Bradford,
-    /// CIECAM02 (CIE 159:2004).
+    /// CAT02, the transform of CIECAM02 (CIE 159:2004).
     Cat02,
-    /// CAM16, C. Li et al., Color Res. Appl. 42, 703 (2017).
+    /// CAT16, the transform of CAM16 (C. Li et al., Color Res. Appl. 42, 703 (2017)).
     Cat16,
 }
 
 impl Adaptation {
-    /// Responses from XYZ.
+    /// Returns the matrix from XYZ to the cone-like responses.
     #[must_use]
     pub fn responses_from_xyz(self) -> Matrix {
         match self {
@@ -28,7 +28,7 @@ impl Adaptation {
         }
     }
 
-    /// Matrix from XYZ under the white `from` to XYZ under the white `to`, for complete adaptation.
+    /// Returns the matrix from XYZ under the white `from` to XYZ under the white `to`, for complete adaptation.
     #[must_use]
     pub fn matrix(self, from: [f64; 3], to: [f64; 3]) -> Matrix {
         let m = self.responses_from_xyz();
@@ -37,7 +37,7 @@ impl Adaptation {
         product(&inverse(&m), &scaled)
     }
 
-    /// `xyz` under the white `from`, as it looks the same under the white `to`.
+    /// Converts `xyz`, seen under the white `from`, to the XYZ that looks the same under the white `to`. Adaptation is complete.
     #[must_use]
     pub fn adapt(self, xyz: [f64; 3], from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
         apply(&self.matrix(from, to), xyz)
@@ -51,8 +51,8 @@ mod tests {
     const D65: [f64; 3] = [0.95047, 1.0, 1.08883];
     const D50: [f64; 3] = [0.96422, 1.0, 0.82521];
 
-    /// D65 to D50 by Bradford as published by B. Lindbloom (brucelindbloom.com, chromatic adaptation), from the
-    /// same two whites.
+    /// Compares D65 to D50 by Bradford with the matrix that B. Lindbloom publishes (brucelindbloom.com, chromatic adaptation) for the same
+    /// two whites.
     #[test]
     fn bradford_from_d65_to_d50() {
         let want = [
@@ -78,7 +78,7 @@ mod tests {
         }
     }
 
-    /// (0.2065, 0.1200, 0.0514) from D65 to D50, computed with colour-science 0.4.7.
+    /// Compares (0.2065, 0.1200, 0.0514), adapted from D65 to D50, with colour-science 0.4.7.
     #[test]
     fn cat02_and_cat16_agree_with_an_independent_program() {
         for (a, want) in [

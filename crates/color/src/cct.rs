@@ -1,4 +1,4 @@
-//! Correlated color temperature.
+//! Correlated color temperature of a chromaticity.
 
 use spectra_core::spectral::{BAND, SpectralPower};
 use spectra_spectrum::{Observer, planck_radiance};
@@ -9,25 +9,25 @@ use std::sync::OnceLock;
 pub struct Cct {
     /// Temperature of the black body whose chromaticity is nearest in the CIE 1960 diagram, K.
     pub kelvin: f64,
-    /// Distance to it in that diagram; positive above the locus (greenish).
+    /// Distance from that black body in the CIE 1960 diagram; positive above the locus (greenish).
     pub duv: f64,
 }
 
-/// Largest distance at which the temperature means anything (CIE 15:2004, 9.5).
+/// Largest distance from the locus at which a color temperature is meaningful (CIE 15:2004, 9.5).
 const LARGEST_DUV: f64 = 0.05;
-/// Reciprocal temperatures searched, per MK: 1 000 000 K to 800 K.
+/// Range of reciprocal temperatures that is searched, per MK: 1 000 000 K to 800 K.
 const MIRED: (f64, f64) = (1.0, 1250.0);
-/// Points of the first search; the locus bends slowly enough that the nearest one has the nearest temperature beside it.
+/// Number of points of the coarse search. The locus bends so slowly that the best temperature lies next to the nearest of these points.
 const POINTS: usize = 251;
 
-/// CIE 1960 u, v of the chromaticity x, y.
+/// Converts the CIE 1931 chromaticity x, y to CIE 1960 u, v.
 #[must_use]
 pub fn uv_1960(xy: [f64; 2]) -> [f64; 2] {
     let d = -2.0 * xy[0] + 12.0 * xy[1] + 3.0;
     [4.0 * xy[0] / d, 6.0 * xy[1] / d]
 }
 
-/// XYZ of a black body on the 1931 observer, 350-830 nm by 1 nm; no factor.
+/// XYZ of a black body for the 1931 observer, 350-830 nm in steps of 1 nm, without a normalizing factor.
 fn planckian_xyz(temperature_k: f64) -> [f64; 3] {
     let continuum = BAND.wavelengths_nm().map(|w| planck_radiance(w, temperature_k)).collect();
     Observer::cie_1931_2deg().xyz_of_power(&SpectralPower { grid: BAND, continuum, lines: Vec::new() })
@@ -47,10 +47,10 @@ fn locus() -> &'static [[f64; 2]] {
     ONE.get_or_init(|| (0..POINTS).map(|i| planckian_uv(mired_of(i))).collect())
 }
 
-/// Correlated color temperature of the chromaticity `xy` by its definition: the nearest point of the Planckian locus
-/// on the CIE 1960 diagram, with the exact radiation constants.
+/// Computes the correlated color temperature of the chromaticity `xy` by its definition.
+/// This is the temperature at the nearest point of the Planckian locus on the CIE 1960 diagram, with the exact radiation constants.
 ///
-/// `None` beyond 0.05 from the locus, and outside of 800 K to 1 000 000 K.
+/// Returns `None` farther than 0.05 from the locus and outside 800 K to 1 000 000 K.
 #[must_use]
 pub fn cct(xy: [f64; 2]) -> Option<Cct> {
     let [u, v] = uv_1960(xy);
@@ -59,8 +59,8 @@ pub fn cct(xy: [f64; 2]) -> Option<Cct> {
     if nearest == 0 || nearest == POINTS - 1 || !square(locus()[nearest]).is_finite() {
         return None;
     }
-    // Where the distance is least, its derivative along the locus changes sign: bisection on the derivative finds
-    // the place to full precision, where comparing distances would stop at half the digits.
+    // Where the distance is smallest, its derivative along the locus changes sign. Bisection on the derivative finds this point to full
+    // precision; comparing distances would lose half the digits.
     let slope = |mired: f64| {
         let step = 1e-3 * mired;
         let (before, at, after) = (planckian_uv(mired - step), planckian_uv(mired), planckian_uv(mired + step));
@@ -83,7 +83,7 @@ mod tests {
     use crate::chromaticity;
     use spectra_spectrum::Emission;
 
-    /// Planckian chromaticities, 1 nm sums 360-830 nm, computed independently.
+    /// Compares Planckian chromaticities with independently computed 1 nm sums over 360-830 nm.
     #[test]
     fn planckian_chromaticities() {
         for (kelvin, x, y) in [

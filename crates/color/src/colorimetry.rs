@@ -1,29 +1,29 @@
-//! Color values of light and of matter.
+//! Tristimulus values, chromaticity and CIE Lab of lights, surfaces and filters.
 
 use spectra_core::spectral::{BAND, Line};
 use spectra_spectrum::{Emission, Observer, Reflectance, Transmittance};
 
-/// Chromaticity x, y; `None` for no light.
+/// Returns the chromaticity x, y of `xyz`; `None` if X + Y + Z is not positive and finite.
 #[must_use]
 pub fn chromaticity(xyz: [f64; 3]) -> Option<[f64; 2]> {
     let sum = xyz[0] + xyz[1] + xyz[2];
     (sum > 0.0 && sum.is_finite()).then(|| [xyz[0] / sum, xyz[1] / sum])
 }
 
-/// XYZ of a light, scaled to Y = 100; `None` where the observer sees nothing.
+/// Computes XYZ of a light, scaled to Y = 100; `None` if the observer sees none of it.
 #[must_use]
 pub fn xyz_of_light(light: &Emission, observer: &Observer) -> Option<[f64; 3]> {
     let xyz = observer.xyz(light);
     (xyz[1] > 0.0 && xyz[1].is_finite()).then(|| xyz.map(|v| 100.0 * v / xyz[1]))
 }
 
-/// XYZ of a surface under `light`, where the perfect diffuser has Y = 100; `None` where there is no light to see by.
+/// Computes XYZ of a surface under `light`, where the perfect diffuser has Y = 100; `None` if the observer sees no light.
 #[must_use]
 pub fn xyz_of_reflectance(surface: &Reflectance, light: &Emission, observer: &Observer) -> Option<[f64; 3]> {
     xyz_of_matter(|w| surface.at(w), &surface.on_grid(&BAND), light, observer)
 }
 
-/// XYZ of a filter before `light`, where no filter has Y = 100; `None` where there is no light to see by.
+/// Computes XYZ of `light` seen through a filter, where `light` alone has Y = 100; `None` if the observer sees no light.
 #[must_use]
 pub fn xyz_of_transmittance(filter: &Transmittance, light: &Emission, observer: &Observer) -> Option<[f64; 3]> {
     xyz_of_matter(|w| filter.at(w), &filter.on_grid(&BAND), light, observer)
@@ -38,7 +38,7 @@ fn xyz_of_matter(at: impl Fn(f64) -> f64, on_band: &[f64], light: &Emission, obs
     (full > 0.0 && full.is_finite()).then(|| observer.xyz_of_power(&seen).map(|v| 100.0 * v / full))
 }
 
-/// CIE 1976 L*, a*, b* of `xyz` against `white`, both on the same scale (CIE 15:2004, 8.2.1).
+/// Converts `xyz` to CIE 1976 L*, a*, b* relative to `white`; both are on the same scale (CIE 15:2004, 8.2.1).
 #[must_use]
 pub fn lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     let f = |t: f64| {
@@ -48,7 +48,7 @@ pub fn lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// XYZ of `lab` against `white`: the inverse of [`lab`].
+/// Converts CIE 1976 L*, a*, b* to XYZ on the scale of `white`: the inverse of [`lab()`].
 #[must_use]
 pub fn xyz_of_lab(lab: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     let inverse = |f: f64| {

@@ -1,19 +1,20 @@
-//! Colors as an eye sees them that lacks one kind of cones.
+//! Simulation of color vision deficiency: colors as seen by an eye that lacks one kind of cone.
 
-/// Which cones are missing.
+/// The kind of cone that an eye lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Deficiency {
-    /// The long ones: reds are dark, and red and green look alike. About 1 % of men.
+    /// No long-wavelength cones: reds are dark, and red and green look alike. About 1 % of men.
     Protan,
-    /// The medium ones: red and green look alike. About 1 % of men, and another 5 % in part.
+    /// No medium-wavelength cones: red and green look alike. About 1 % of men, and another 5 % in part.
     Deutan,
-    /// The short ones: blue and green, and yellow and violet, look alike. Rare.
+    /// No short-wavelength cones: blue and green look alike, and so do yellow and violet. Rare.
     Tritan,
 }
 
 impl Deficiency {
-    /// From linear sRGB to linear sRGB: G. M. Machado, M. M. Oliveira, L. A. F. Fernandes, "A physiologically-based model for simulation
-    /// of color vision deficiency", IEEE Transactions on Visualization and Computer Graphics 15, 1291 (2009), severity 1.
+    /// Matrix from linear sRGB to the linear sRGB that this eye sees, at severity 1.
+    /// Source: G. M. Machado, M. M. Oliveira, L. A. F. Fernandes, "A physiologically-based model for simulation of color vision
+    /// deficiency", IEEE Transactions on Visualization and Computer Graphics 15, 1291 (2009).
     const fn matrix(self) -> [[f64; 3]; 3] {
         match self {
             Self::Protan => {
@@ -28,13 +29,13 @@ impl Deficiency {
         }
     }
 
-    /// A color in linear sRGB as such an eye would have it, in linear sRGB that may lie a little outside of 0 to 1.
+    /// Converts a color in linear sRGB to the one that this eye sees, in linear sRGB. Results may lie slightly outside 0 to 1.
     #[must_use]
     pub fn seen(self, linear_srgb: [f64; 3]) -> [f64; 3] {
         crate::matrix::apply(&self.matrix(), linear_srgb)
     }
 
-    /// The same of code values of sRGB.
+    /// Converts 8-bit sRGB code values to the code values of what this eye sees, clipped to the gamut.
     #[must_use]
     pub fn seen_srgb8(self, code: [u8; 3]) -> [u8; 3] {
         let srgb = crate::RgbSpace::srgb();
@@ -47,7 +48,7 @@ impl Deficiency {
 mod tests {
     use super::*;
 
-    /// Grays stay what they are (rows sum to 1), and the pair that the eye confuses comes closer.
+    /// Grays do not change (rows sum to 1), and two colors that the eye confuses come closer.
     #[test]
     fn grays_stay_and_confused_colors_meet() {
         for eye in [Deficiency::Protan, Deficiency::Deutan, Deficiency::Tritan] {

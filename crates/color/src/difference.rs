@@ -1,11 +1,11 @@
-//! How different two colors look.
+//! CIEDE2000, the CIE formula for the perceived difference of two colors.
 
 use std::f64::consts::PI;
 
-/// CIEDE2000 between two colors in CIE Lab, with all parametric factors 1.
+/// Computes the CIEDE2000 difference of two colors in CIE Lab, with all parametric factors 1.
 ///
-/// M. R. Luo, G. Cui, B. Rigg, Color Res. Appl. 26, 340 (2001); hue arithmetic after G. Sharma, W. Wu, E. N. Dalal,
-/// "The CIEDE2000 color-difference formula: implementation notes", Color Res. Appl. 30, 21 (2005).
+/// M. R. Luo, G. Cui, B. Rigg, Color Res. Appl. 26, 340 (2001). Hue arithmetic follows G. Sharma, W. Wu, E. N. Dalal, "The CIEDE2000
+/// color-difference formula: implementation notes", Color Res. Appl. 30, 21 (2005).
 #[must_use]
 pub fn ciede2000(first: [f64; 3], second: [f64; 3]) -> f64 {
     let chroma = |a: f64, b: f64| (a * a + b * b).sqrt();
@@ -48,11 +48,11 @@ pub fn ciede2000(first: [f64; 3], second: [f64; 3]) -> f64 {
     let sl = 1.0 + 0.015 * light / (20.0 + light).sqrt();
     let (sc, sh) = (1.0 + 0.045 * c, 1.0 + 0.015 * c * t);
     let (dl, dc, dh) = (dl / sl, dc / sc, dh / sh);
-    // Rounding can take the form, which is never negative, a hair below 0.
+    // The quadratic form is never negative, but rounding can take it slightly below 0.
     (dl * dl + dc * dc + dh * dh + rotation * dc * dh).max(0.0).sqrt()
 }
 
-/// sqrt(c^7 / (c^7 + 25^7)).
+/// Returns sqrt(c^7 / (c^7 + 25^7)).
 fn seventh(c: f64) -> f64 {
     let c7 = c * c * c * c * c * c * c;
     (c7 / (c7 + 6_103_515_625.0)).sqrt()
@@ -62,7 +62,7 @@ fn seventh(c: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// All 34 pairs of Sharma, Wu and Dalal (2005), table 1, to the four decimals printed.
+    /// Compares all 34 pairs of Sharma, Wu and Dalal (2005), table 1, to the four decimals printed.
     #[test]
     fn sharma_pairs() {
         let rows = include_str!("../tests/data/ciede2000-sharma.csv").lines().filter(|l| !l.starts_with(['#', 'L']));
@@ -83,7 +83,7 @@ mod tests {
         for lab in [[50.0, 2.5, 0.0], [0.0; 3], [100.0, -80.0, 30.0]] {
             assert_eq!(ciede2000(lab, lab), 0.0);
         }
-        // Black to white: L alone, and S_L is 1 at the mean of 50.
+        // Black to white differ in L alone, and S_L is 1 at the mean of 50.
         assert!((ciede2000([0.0; 3], [100.0, 0.0, 0.0]) - 100.0).abs() < 1e-12);
     }
 }

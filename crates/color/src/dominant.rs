@@ -3,18 +3,19 @@
 use spectra_spectrum::Observer;
 use std::sync::OnceLock;
 
-/// The spectral color that, mixed with white, gives a color.
+/// The spectral color that, mixed with white, gives a certain color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dominant {
-    /// Dominant wavelength, nm; for a purple the complementary one.
+    /// Dominant wavelength, nm; for a purple, the complementary wavelength.
     pub wavelength_nm: f64,
-    /// Whether the color is a purple: on the other side of white from that wavelength.
+    /// Whether the color is a purple, which lies on the far side of white from `wavelength_nm`.
     pub complementary: bool,
     /// Excitation purity: 0 at white, 1 on the spectral locus or the line of purples.
     pub purity: f64,
 }
 
-/// Where the locus has a direction of its own: beyond, the functions keep their ratios, and rounding makes it turn.
+/// Wavelength range of the locus, nm, in which chromaticity changes. Outside it the color matching functions keep their ratios, and
+/// rounding would give the locus random directions.
 const LOCUS_NM: (u32, u32) = (380, 699);
 
 fn locus() -> &'static [(f64, [f64; 2])] {
@@ -29,8 +30,8 @@ fn locus() -> &'static [(f64, [f64; 2])] {
     })
 }
 
-/// Where the ray from `from` along `along` crosses the segment from `a` to `b`: (distance in lengths of `along`, share
-/// of the way from a to b).
+/// Finds where the ray from `from` along `along` crosses the segment from `a` to `b`. Returns the distance in lengths of `along` and the
+/// fraction of the way from `a` to `b`.
 fn crossing(from: [f64; 2], along: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Option<(f64, f64)> {
     let edge = [b[0] - a[0], b[1] - a[1]];
     let to = [a[0] - from[0], a[1] - from[1]];
@@ -47,9 +48,9 @@ fn on_locus(from: [f64; 2], along: [f64; 2]) -> Option<(f64, f64)> {
     })
 }
 
-/// Dominant wavelength of the chromaticity `xy` seen against `white_xy`, on the CIE 1931 locus between 380 and 699 nm.
+/// Computes the dominant wavelength of the chromaticity `xy` seen against `white_xy`, on the CIE 1931 locus between 380 and 699 nm.
 ///
-/// `None` if the two are the same within 1e-6, or the white lies outside of the diagram.
+/// Returns `None` if both coordinates agree within 1e-6, or if the white lies outside the diagram.
 #[must_use]
 pub fn dominant_wavelength(xy: [f64; 2], white_xy: [f64; 2]) -> Option<Dominant> {
     let along = [xy[0] - white_xy[0], xy[1] - white_xy[1]];
@@ -59,7 +60,7 @@ pub fn dominant_wavelength(xy: [f64; 2], white_xy: [f64; 2]) -> Option<Dominant>
     let (first, last) = (locus()[0].1, locus()[locus().len() - 1].1);
     let on_purples = |along| crossing(white_xy, along, last, first).map(|(distance, _)| distance);
     let back = along.map(|c| -c);
-    // From a white within, each way ends once on the rim: on the locus, or on the line of purples.
+    // From a white inside the diagram each direction meets its boundary once: on the locus, or on the line of purples.
     if let Some((distance, wavelength_nm)) = on_locus(white_xy, along) {
         let within = on_locus(white_xy, back).is_some() || on_purples(back).is_some();
         return within.then_some(Dominant { wavelength_nm, complementary: false, purity: 1.0 / distance });
@@ -94,7 +95,7 @@ mod tests {
         }
     }
 
-    /// The sRGB primaries under D65: whole nanometres by colour-science 0.4.7.
+    /// Compares the sRGB primaries under D65 with colour-science 0.4.7, which gives whole nanometers.
     #[test]
     fn srgb_primaries() {
         for (xy, want) in [([0.64, 0.33], 611.0), ([0.30, 0.60], 549.0), ([0.15, 0.06], 464.0)] {
@@ -106,7 +107,7 @@ mod tests {
     #[test]
     fn purples_have_a_complement() {
         let got = dominant_wavelength([0.32, 0.15], D65).expect("not white");
-        // 549 nm by colour-science 0.4.7, which gives whole nanometres.
+        // colour-science 0.4.7 gives 549 nm, in whole nanometers.
         assert!(got.complementary && (got.wavelength_nm - 549.0).abs() < 0.6, "{got:?}");
         assert!((0.0..1.0).contains(&got.purity));
     }

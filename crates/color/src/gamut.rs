@@ -1,27 +1,27 @@
-//! What to show for a color that the screen cannot show.
+//! Gamut mapping: brings a color that a screen cannot show into its gamut.
 
 use crate::adaptation::Adaptation;
 use crate::matrix::{Matrix, apply, inverse};
 use crate::rgb::RgbSpace;
 
-/// Ways to bring linear RGB into 0 to 1.
+/// Methods of bringing linear RGB into the range 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Gamut {
-    /// Each channel by itself: fast, bends hue and lightness.
+    /// Clips each channel separately: fast, but changes hue and lightness.
     #[default]
     Clip,
-    /// Toward the grey of the same luminance until it fits: keeps luminance, bends hue as mixing with white does.
+    /// Moves toward the gray of the same luminance until the color fits. Keeps luminance; changes hue as mixing with white does.
     Desaturate,
-    /// Toward that grey along constant lightness and hue of Oklab: keeps the hue that one sees.
+    /// Moves toward the gray of the same lightness at constant lightness and hue in Oklab: keeps the perceived hue.
     ///
     /// B. Ottosson, "A perceptual color space for image processing" (2020).
     Perceptual,
-    /// With as much white added as the most negative channel lacks, at the same luminance, and darker where a channel is above 1: colors that
-    /// are all beyond the screen, as those of a spectrum, stay apart from each other.
+    /// Adds as much white as the most negative channel lacks, at the same luminance, and darkens colors with a channel above 1.
+    /// Colors that all lie outside the gamut, for example those of a spectrum, remain distinct from each other.
     Compress,
 }
 
-/// XYZ under D65 to cone-like responses, and their cube roots to Oklab (Ottosson 2020).
+/// Matrices from XYZ under D65 to cone-like responses, and from their cube roots to Oklab (Ottosson 2020).
 const RESPONSES: Matrix = [
     [0.818_933_010_1, 0.361_866_742_4, -0.128_859_713_7],
     [0.032_984_543_6, 0.929_311_871_5, 0.036_145_638_7],
@@ -33,20 +33,20 @@ const OKLAB: Matrix = [
     [0.025_904_037_1, 0.782_771_766_2, -0.808_675_766_0],
 ];
 
-/// Oklab of `xyz` under D65, Y of white 1.
+/// Converts `xyz` under D65, where white has Y = 1, to Oklab.
 #[must_use]
 pub fn oklab(xyz: [f64; 3]) -> [f64; 3] {
     apply(&OKLAB, apply(&RESPONSES, xyz).map(libm::cbrt))
 }
 
-/// XYZ under D65 of Oklab.
+/// Converts Oklab to XYZ under D65, where white has Y = 1.
 #[must_use]
 pub fn xyz_of_oklab(lab: [f64; 3]) -> [f64; 3] {
     apply(&inverse(&RESPONSES), apply(&inverse(&OKLAB), lab).map(|v| v * v * v))
 }
 
 fn fits(rgb: [f64; 3]) -> bool {
-    // Room for the rounding of a matrix there and back.
+    // The tolerance covers the rounding of a matrix and its inverse.
     rgb.iter().all(|v| (-1e-12..=1.0 + 1e-12).contains(v))
 }
 
@@ -54,7 +54,8 @@ fn clip(rgb: [f64; 3]) -> [f64; 3] {
     rgb.map(|v| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) })
 }
 
-/// Linear RGB of `space` brought into 0 to 1. Colors within are left as they are; NaN becomes 0.
+/// Brings linear RGB of `space` into the range 0 to 1 by `method`. Colors inside do not change; NaN becomes 0. Colors with a value that is
+/// not finite are clipped.
 #[must_use]
 pub fn into_gamut(rgb: [f64; 3], space: &RgbSpace, method: Gamut) -> [f64; 3] {
     if fits(rgb) || method == Gamut::Clip || rgb.iter().any(|v| !v.is_finite()) {
@@ -70,7 +71,7 @@ pub fn into_gamut(rgb: [f64; 3], space: &RgbSpace, method: Gamut) -> [f64; 3] {
 
 fn desaturate(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
     let grey = space.luminance(rgb).clamp(0.0, 1.0);
-    // The largest share of color that keeps every channel within 0 to 1.
+    // Largest fraction of the color that keeps every channel within 0 to 1.
     let share = rgb.iter().fold(1.0_f64, |share, v| match v - grey {
         d if d > 0.0 => share.min((1.0 - grey) / d),
         d if d < 0.0 => share.min(-grey / d),
@@ -85,7 +86,7 @@ fn compress(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
     if luminance <= 0.0 {
         return [0.0; 3];
     }
-    // White has the luminance of its channels.
+    // White of value `lacks` has the luminance `lacks`.
     let mixed = rgb.map(|v| (v + lacks) * luminance / (luminance + lacks));
     let largest = mixed.iter().fold(1.0_f64, |a, b| a.max(*b));
     clip(mixed.map(|v| v / largest))
@@ -101,7 +102,7 @@ fn perceptual(rgb: [f64; 3], space: &RgbSpace) -> [f64; 3] {
         space.from_xyz(Adaptation::Bradford.adapt(xyz, d65, white))
     };
     let (mut low, mut high) = (0.0, 1.0);
-    // 40 halvings: a chroma within 1e-12 of the surface of the gamut.
+    // 40 halvings give the chroma within 1e-12 of the gamut surface.
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
         if fits(at(middle)) { low = middle } else { high = middle }
@@ -116,7 +117,7 @@ mod tests {
 
     const METHODS: [Gamut; 4] = [Gamut::Clip, Gamut::Desaturate, Gamut::Perceptual, Gamut::Compress];
 
-    /// Values printed by Ottosson (2020) for four XYZ, to three decimals.
+    /// Compares four XYZ with the Oklab values that Ottosson (2020) prints to three decimals.
     #[test]
     fn oklab_of_published_colors() {
         for (xyz, want) in [
@@ -149,8 +150,7 @@ mod tests {
         }
     }
 
-    /// Along a spectrum whose largest channel is 0.5 no two colors 10 nm apart are shown alike, where clipping shows stretches of pure
-    /// primaries.
+    /// A spectrum whose largest channel is 0.5 keeps all colors that are 10 nm apart distinct; clipping shows stretches of pure primaries.
     #[test]
     fn a_compressed_spectrum_has_all_its_colors() {
         let space = RgbSpace::srgb();

@@ -1,7 +1,8 @@
-//! Color: from spectra to what an eye or a screen sees.
+//! Color: converts spectra to what an eye or a screen sees.
 //!
-//! XYZ of lights and of what they fall on, chromaticities, correlated temperature, dominant wavelength, CIE Lab and its
-//! differences, adaptation, spaces of red, green and blue, and how a color is brought into their gamut.
+//! The crate computes XYZ of lights, surfaces and filters, chromaticities, correlated color temperature, dominant wavelength, CIE Lab and
+//! color differences.
+//! It also holds chromatic adaptation, RGB color spaces and gamut mapping.
 //!
 //! ```
 //! use spectra_color::{lab, xyz_of_light, xyz_of_reflectance};

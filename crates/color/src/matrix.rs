@@ -1,21 +1,21 @@
-//! Matrices of three rows and columns, by rows.
+//! Functions for 3 x 3 matrices, stored by rows.
 
-/// Three rows of three.
+/// A 3 x 3 matrix, stored by rows.
 pub type Matrix = [[f64; 3]; 3];
 
-/// Matrix times column.
+/// Multiplies the matrix `m` by the column `v`.
 #[must_use]
 pub fn apply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
     m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// Product: first `b`, then `a`.
+/// Multiplies two matrices: the product applies `b` first, then `a`.
 #[must_use]
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     a.map(|row| [0, 1, 2].map(|j| row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j]))
 }
 
-/// Inverse by cofactors; not finite for a singular matrix.
+/// Inverts a matrix by cofactors; the result is not finite if `m` is singular.
 #[must_use]
 pub fn inverse(m: &Matrix) -> Matrix {
     let cofactor = |i: usize, j: usize| {

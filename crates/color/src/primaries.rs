@@ -1,12 +1,14 @@
 //! Three emission spectra whose colors are exactly the primaries of sRGB.
 //!
-//! Any spectrum has one color, but a color has many spectra. Here the three are searched together: of all that are
-//! nowhere negative, fall to 0 at both ends of the band and have the XYZ of the primaries, those with the least integral
-//! of squared slope, that of their sum counted threefold, so that white is no comb of three bands but a smooth light.
+//! A color has infinitely many spectra. This module searches for all three spectra together, among those that are nowhere negative, fall to
+//! 0 at both ends of the band and have the XYZ of the primaries.
+//! It takes the spectra with the smallest integral of squared slope. The slope of their sum counts three times, so that white is a smooth
+//! spectrum and not a comb of three bands.
 //!
-//! The spectra are cubic B-splines with a knot every 10 nm; slopes are taken between neighboring coefficients, which are
-//! nowhere negative either. That is a quadratic program of 135 unknowns with nine equations, solved to roundoff by
-//! holding at 0 what would fall below, and letting go what would rise.
+//! The spectra are cubic B-splines with a knot every 10 nm. Slopes are differences of neighboring coefficients, and no coefficient is
+//! negative.
+//! This is a quadratic program of 135 unknowns with nine equations. An active-set method solves it to roundoff: it holds coefficients at 0
+//! that would become negative, and releases those that would rise.
 
 use crate::rgb::RgbSpace;
 use spectra_core::spectral::BAND;
@@ -14,21 +16,20 @@ use spectra_numerics::linear;
 use spectra_spectrum::{Emission, Observer, Outside, Scale, SpectrumError, Tabulated};
 use std::sync::OnceLock;
 
-/// Distance of knots, nm, and number of splines that lie on the band as a whole.
+/// Distance between knots, nm, and number of splines that lie wholly on the band.
 const KNOT_NM: f64 = 10.0;
 const SPLINES: usize = 45;
-/// Unknowns: the coefficients of red, green and blue, one after the other; and equations.
+/// Numbers of unknowns (the coefficients of red, green and blue, in this order) and of equations.
 const UNKNOWNS: usize = 3 * SPLINES;
 const EQUATIONS: usize = 9;
-/// How much the slope of the sum counts beside that of each.
+/// Weight of the slope of the sum, relative to the slope of each spectrum.
 const WEIGHT_OF_SUM: f64 = 3.0;
-/// More rounds than ever needed: 10 are.
+/// Limit on the number of rounds, far above the 10 that are needed.
 const MAX_ROUNDS: usize = 100;
 
-/// Emission spectra of the red, green and blue primaries of sRGB (CIE 1931, 350-830 nm by 1 nm).
+/// Returns emission spectra of the red, green and blue primaries of sRGB (CIE 1931, 350-830 nm in steps of 1 nm).
 ///
-/// Their sums with linear sRGB values as weights have exactly the color that those values mean, Y of white being 1: see
-/// [`srgb_light`].
+/// Their sum, weighted by linear sRGB values, has exactly the color of these values, where white has Y = 1. See [`srgb_light`].
 #[must_use]
 pub fn srgb_primaries() -> &'static [Emission; 3] {
     static ONE: OnceLock<[Emission; 3]> = OnceLock::new();
@@ -41,7 +42,7 @@ pub fn srgb_primaries() -> &'static [Emission; 3] {
     })
 }
 
-/// Light of the color `linear_srgb`: the sum of the three primaries, each times its value.
+/// Returns light of the color `linear_srgb`: the sum of the three primaries, each multiplied by its value.
 ///
 /// # Errors
 /// [`SpectrumError::OutOfRange`] if a value is negative or not finite.
@@ -51,7 +52,7 @@ pub fn srgb_light(linear_srgb: [f64; 3]) -> Result<Emission, SpectrumError> {
     Ok(red.scaled(r)? + green.scaled(g)? + blue.scaled(b)?)
 }
 
-/// Cubic B-spline of knots 1 apart around 0.
+/// Evaluates the cubic B-spline around 0 whose knots are 1 apart.
 fn spline(t: f64) -> f64 {
     let t = t.abs();
     if t < 1.0 {
@@ -63,16 +64,16 @@ fn spline(t: f64) -> f64 {
     }
 }
 
-/// Spline `k` on the band.
+/// Samples spline `k` at the wavelengths of the band.
 fn on_band(k: usize) -> impl Iterator<Item = f64> {
-    // The first rises from the start of the band, two knots below its center.
+    // The first spline starts at the start of the band, two knots below its center.
     let center = BAND.start_nm + KNOT_NM * (k + 2) as f64;
     (0..BAND.count).map(move |i| spline((BAND.wavelength_nm(i) - center) / KNOT_NM))
 }
 
 fn spectra(space: &RgbSpace) -> [Vec<f64>; 3] {
     let functions = Observer::cie_1931_2deg().on_grid(&BAND);
-    // XYZ of each spline, by the sum over the points that defines them.
+    // XYZ of each spline, by the defining sum over the points of the band.
     let xyz: Vec<[f64; 3]> = (0..SPLINES)
         .map(|k| {
             let seen = |f: &Vec<f64>| on_band(k).zip(f).map(|(b, f)| b * f).sum::<f64>() * BAND.step_nm;
@@ -90,7 +91,7 @@ fn spectra(space: &RgbSpace) -> [Vec<f64>; 3] {
     })
 }
 
-/// Half the second derivative of the slopes: how coefficients `i` and `j` meet.
+/// Half the second derivative of the roughness with respect to the coefficients `i` and `j`.
 fn roughness(i: usize, j: usize) -> f64 {
     let (a, b) = (i % SPLINES, j % SPLINES);
     let neighbors = match a.abs_diff(b) {
@@ -102,9 +103,9 @@ fn roughness(i: usize, j: usize) -> f64 {
     neighbors * (same + WEIGHT_OF_SUM)
 }
 
-/// Coefficients of least roughness whose spectra have the XYZ in the columns of `wanted`.
+/// Finds the coefficients of least roughness whose spectra have the XYZ in the columns of `wanted`.
 fn program(xyz: &[[f64; 3]], wanted: &[[f64; 3]; 3]) -> Vec<f64> {
-    // Equation 3 c + x asks for component x of channel c.
+    // Equation 3 c + x fixes component x of channel c.
     let equation = |e: usize, i: usize| if i / SPLINES == e / 3 { xyz[i % SPLINES][e % 3] } else { 0.0 };
     let mut held = [false; UNKNOWNS];
     for _ in 0..MAX_ROUNDS {
@@ -132,14 +133,14 @@ fn program(xyz: &[[f64; 3]], wanted: &[[f64; 3]; 3]) -> Vec<f64> {
             below.iter().for_each(|i| held[*i] = true);
             continue;
         }
-        // What a held coefficient would cost: negative where it would gain by rising.
+        // Rate at which the roughness changes if a held coefficient rises; negative if it should be released.
         let cost = |i: usize| {
             let slope: f64 = (0..UNKNOWNS).map(|j| roughness(i, j) * coefficients[j]).sum();
             slope + (0..EQUATIONS).map(|e| equation(e, i) * solution[n + e]).sum::<f64>()
         };
         let held_now = (0..UNKNOWNS).filter(|i| held[*i]).map(|i| (i, cost(i)));
         match held_now.min_by(|a, b| a.1.total_cmp(&b.1)) {
-            // Coefficients are about 0.01, so is the cost of a step.
+            // Coefficients are about 0.01, and so is the cost of a step.
             Some((i, cost)) if cost < -1e-12 => held[i] = false,
             _ => return coefficients,
         }
@@ -152,7 +153,7 @@ mod tests {
     use super::*;
     use crate::chromaticity;
 
-    /// IEC 61966-2-1: primaries (.64, .33), (.30, .60), (.15, .06), white D65 (.3127, .3290), luminances adding up to 1.
+    /// Checks IEC 61966-2-1: primaries (.64, .33), (.30, .60), (.15, .06), white D65 (.3127, .3290), luminances that add up to 1.
     #[test]
     fn primaries_and_white_are_those_of_srgb() {
         let observer = Observer::cie_1931_2deg();
@@ -170,7 +171,7 @@ mod tests {
         assert!((white[1] - 1.0).abs() < 1e-12, "{white:?}");
     }
 
-    /// Linear RGB to light to XYZ and back: 1e-9 everywhere in the cube, and beyond 1.
+    /// Converts linear RGB to light to XYZ and back: agrees within 1e-9 everywhere in the cube, and above 1.
     #[test]
     fn srgb_round_trip_is_exact() {
         let observer = Observer::cie_1931_2deg();
@@ -191,7 +192,8 @@ mod tests {
         assert!(worst < 1e-9, "{worst:e}");
     }
 
-    /// Nowhere negative, zero at the ends of the band, and without a jump: at 1 nm never more than 3 % of the peak.
+    /// The primaries are nowhere negative, zero at the ends of the band, and without jumps: steps of 1 nm change by at most 3 % of the
+    /// peak.
     #[test]
     fn primaries_are_smooth_light() {
         for (light, range) in srgb_primaries().iter().zip([600.0..700.0, 500.0..560.0, 430.0..470.0]) {
@@ -203,7 +205,7 @@ mod tests {
             assert!(values[0] == 0.0 && values[BAND.count - 1] < 1e-15 * peak);
             assert!(values.windows(2).all(|w| (w[1] - w[0]).abs() < 0.03 * peak));
         }
-        // Their sum has no gap: within the range that is seen well, never under two thirds of its mean.
+        // The sum of the primaries has no gap: over the well-visible range it never falls below two thirds of its mean.
         let white = srgb_light([1.0; 3]).expect("valid").on_grid(&BAND);
         let seen = &white[70..330];
         let mean = seen.iter().sum::<f64>() / seen.len() as f64;

@@ -1,30 +1,34 @@
-//! The colors that light can have: which lie beyond sRGB, how far, and where those go that no light has.
+//! Real colors: which colors outside sRGB light can have, and where the others are moved.
 //!
-//! A color is real if its chromaticity lies within the spectral locus and the line of purples (CIE 1931, 2 degrees). Smooth spectra
-//! reach all but the last [`MARGIN`] of that. A color nearer to the rim, or beyond it, moves in xy toward D65 until it is within reach,
-//! and keeps its luminance.
+//! A color is real if its chromaticity lies inside the spectral locus and the line of purples (CIE 1931, 2 degrees). Smooth spectra reach
+//! this whole area except for its last [`MARGIN`].
+//! The boundary of the reachable colors lies this far inside. A color beyond the boundary moves in xy toward D65 until it lies on the
+//! boundary, and keeps its luminance.
 //!
-//! Colors of linear sRGB with a negative value lie between the triangle of sRGB and that rim. [`RealColors::place`] says where: in which
-//! direction from white, and how far from the triangle (0) to the rim (1). Tables of spectra are kept over these two numbers.
+//! Reachable colors of linear sRGB with a negative value lie between the sRGB triangle and this boundary. [`RealColors::place`] computes
+//! where: the direction from white, and the depth from the triangle (0) to the boundary (1).
+//! Tables of spectra are indexed by these two numbers.
 
 use crate::rgb::{RgbSpace, xyz_of_xy};
 use spectra_core::stage::ColorGamut;
 use spectra_spectrum::Observer;
 use std::sync::OnceLock;
 
-/// Distance in xy from the spectral locus and the line of purples that colors keep.
+/// Smallest distance of a reachable color from the spectral locus and the line of purples, in xy.
 pub const MARGIN: f64 = 0.001;
 
 /// A color brought into a gamut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitted {
-    /// Linear light, sRGB primaries.
+    /// The color in linear sRGB.
     pub rgb: [f64; 3],
-    /// How far it moved, a distance in xy; 0 where it stayed. Infinite where it became black, having no luminance.
+    /// Distance moved in xy, at most 1; 0 if the color did not move. Infinite if the color became black because its luminance was not
+    /// positive.
     pub moved: f64,
 }
 
-/// A color of linear sRGB brought into `gamut`: toward D65 in xy, luminance kept. A color of negative luminance becomes black.
+/// Brings a color of linear sRGB into `gamut`: moves it in xy toward D65 and keeps its luminance. A color whose luminance is not positive
+/// becomes black.
 #[must_use]
 pub fn fit(rgb: [f64; 3], gamut: ColorGamut) -> Fitted {
     if rgb.iter().all(|v| *v >= 0.0) {
@@ -43,34 +47,34 @@ pub fn fit(rgb: [f64; 3], gamut: ColorGamut) -> Fitted {
     if gamut == ColorGamut::Srgb {
         fitted = fitted.map(|v| v.max(0.0));
     }
-    // What has no chromaticity is beyond the whole diagram.
+    // A color without a chromaticity counts as beyond the whole diagram.
     Fitted { rgb: fitted, moved: (line.distance(1.0) - line.distance(end)).min(1.0) }
 }
 
-/// Where a color beyond sRGB lies.
+/// Position of a color outside sRGB, relative to the triangle of sRGB and the boundary of the real colors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The direction before it, counted from 0, and how far it lies toward the next one, 0 to 1.
+    /// Index of the direction before the color, from 0. [`Place::along`] says how far the color lies toward the next direction.
     pub direction: usize,
-    /// See [`Place::direction`].
+    /// How far the color lies from [`Place::direction`] toward the next direction, 0 to 1.
     pub along: f64,
-    /// 0 on the triangle of sRGB, 1 on the rim.
+    /// Depth of the color: 0 on the sRGB triangle, 1 on the boundary.
     pub depth: f64,
-    /// Its largest value of red, green and blue, moved onto the rim where it lay beyond.
+    /// Largest of the red, green and blue values. A color beyond the boundary is moved onto it first.
     pub largest: f64,
 }
 
-/// Directions from white, each with the point of the rim that it leads to.
+/// Directions from white, each with the point of the boundary that it meets.
 #[derive(Clone, Debug)]
 pub struct RealColors {
     /// Turn of each direction, rising from 0 to 4.
     turns: Vec<f64>,
-    /// From white to the rim, in xy.
+    /// Vectors from white to the boundary, in xy.
     rim: Vec<[f64; 2]>,
 }
 
 impl RealColors {
-    /// The rim seen in these directions, given by their turns ([`RealColors::turn`]); 0 and 4, which are one, are added.
+    /// Samples the boundary in the directions with these turns (see [`RealColors::turn`]). Adds 0 and 4, which are the same direction.
     #[must_use]
     pub fn new(turns: impl IntoIterator<Item = f64>) -> Self {
         let mut turns: Vec<f64> =
@@ -81,7 +85,7 @@ impl RealColors {
         Self { turns, rim }
     }
 
-    /// Even turns, and those of the corners of sRGB, where the way to the rim has a kink.
+    /// Samples the boundary in `count` evenly spaced turns and in the directions of the sRGB corners, where the depth has a kink.
     #[must_use]
     pub fn even(count: usize) -> Self {
         let white = RgbSpace::srgb().white_xy;
@@ -89,13 +93,13 @@ impl RealColors {
         Self::new((0..count).map(|i| 4.0 * i as f64 / count as f64).chain(corners))
     }
 
-    /// Turns of its directions, from 0 to 4.
+    /// Turns of the directions, rising from 0 to 4.
     #[must_use]
     pub fn turns(&self) -> &[f64] {
         &self.turns
     }
 
-    /// Where a color of linear sRGB with a negative value lies; `None` where it has no luminance.
+    /// Finds the position of a linear sRGB color that has a negative value; `None` if its luminance is not positive.
     #[must_use]
     pub fn place(&self, rgb: [f64; 3]) -> Option<Place> {
         let line = Line::new(rgb)?;
@@ -111,7 +115,8 @@ impl RealColors {
         Some(Place { direction, along, depth, largest: r.max(g).max(b) })
     }
 
-    /// The direction before a line, how far it lies toward the next, and its place on the chord of the rim between both.
+    /// Finds the direction before a line, how far the line lies toward the next one, and the parameter at which it meets the chord between
+    /// both.
     fn toward(&self, line: &Line) -> (usize, f64, f64) {
         let turn = Self::turn(line.toward);
         let direction = self.turns.partition_point(|t| *t <= turn).clamp(1, self.turns.len() - 1) - 1;
@@ -121,19 +126,19 @@ impl RealColors {
         (direction, along, line.place_of(self.rim_between(direction, along)))
     }
 
-    /// The rim between a direction and the next one, on the chord, from white in xy.
+    /// Vector in xy from white to the boundary between a direction and the next one, on the chord.
     fn rim_between(&self, direction: usize, along: f64) -> [f64; 2] {
         let [a, b] = [self.rim[direction], self.rim[direction + 1]];
         [a[0] + (b[0] - a[0]) * along, a[1] + (b[1] - a[1]) * along]
     }
 
-    /// Chords that lie within reach, by which most colors are known to do so, too.
+    /// Coarse directions whose chords lie inside the boundary. They suffice to show that most colors are reachable.
     fn rough() -> &'static Self {
         static ONE: OnceLock<RealColors> = OnceLock::new();
         ONE.get_or_init(|| Self::even(360))
     }
 
-    /// The color in a direction, by its turn, at `depth`, scaled to a largest value of 1.
+    /// Returns the color in the direction `turn` at `depth`, in linear sRGB, scaled so that its largest value is 1.
     #[must_use]
     pub fn color(turn: f64, depth: f64) -> [f64; 3] {
         let srgb = RgbSpace::srgb();
@@ -146,7 +151,7 @@ impl RealColors {
         rgb.map(|v| v / largest)
     }
 
-    /// A direction in xy as a number from 0 (+x) by 1 (+y), 2 (-x), 3 (-y) to 4.
+    /// Converts a direction in xy to a turn: a number that rises from 0 (+x) through 1 (+y), 2 (-x) and 3 (-y) to 4.
     #[must_use]
     pub fn turn([x, y]: [f64; 2]) -> f64 {
         let part = x / (x.abs() + y.abs());
@@ -159,7 +164,7 @@ impl RealColors {
         Self::exact(along)
     }
 
-    /// From white to the rim in the direction `along`.
+    /// Vector in xy from white to the boundary in the direction `along`.
     fn exact(along: [f64; 2]) -> [f64; 2] {
         let share = edges().iter().fold(f64::INFINITY, |share, edge| {
             let toward = edge.inward[0] * along[0] + edge.inward[1] * along[1];
@@ -169,15 +174,15 @@ impl RealColors {
     }
 }
 
-/// The line from white through a color beyond sRGB, at constant luminance: 0 is white, 1 the color.
+/// The line from white through a color outside sRGB, at constant luminance. Its parameter is 0 at white and 1 at the color.
 struct Line {
     rgb: [f64; 3],
     luminance: f64,
-    /// X + Y + Z of the color, and of white of its luminance. The former may be negative of a color that no light has.
+    /// X + Y + Z of the color, and of white of the same luminance. The former may be negative for a color that no light has.
     sums: [f64; 2],
-    /// From white toward the color in xy, times that of the color's `sums`.
+    /// Vector from white to the color in xy, multiplied by X + Y + Z of the color.
     toward: [f64; 2],
-    /// Where it leaves sRGB.
+    /// Parameter at which the line leaves sRGB.
     border: f64,
 }
 
@@ -194,19 +199,19 @@ impl Line {
         Some(Self { rgb, luminance, sums: [sum, white], toward, border: luminance / (luminance - least) })
     }
 
-    /// The color there.
+    /// The color at the parameter `place`, in linear sRGB.
     fn at(&self, place: f64) -> [f64; 3] {
         self.rgb.map(|v| self.luminance + place * (v - self.luminance))
     }
 
-    /// Distance of a place from white in xy; infinite where it has no chromaticity.
+    /// Distance in xy from white to the parameter `place`; infinite if there is no chromaticity.
     fn distance(&self, place: f64) -> f64 {
         let [sum, white] = self.sums;
         let sum = white + place * (sum - white);
         if sum > 0.0 { place * length(self.toward) / sum } else { f64::INFINITY }
     }
 
-    /// The place of a point in this direction, given from white in xy; infinite where the line does not come so far.
+    /// Parameter of a point in this direction, given as a vector from white in xy; infinite if the line does not reach it.
     fn place_of(&self, point: [f64; 2]) -> f64 {
         let [sum, white] = self.sums;
         let dot = |a: [f64; 2]| a[0] * self.toward[0] + a[1] * self.toward[1];
@@ -224,15 +229,15 @@ fn length(a: [f64; 2]) -> f64 {
     (a[0] * a[0] + a[1] * a[1]).sqrt()
 }
 
-/// A side of the polygon within reach.
+/// A side of the polygon of reachable chromaticities.
 struct Edge {
-    /// Unit vector.
+    /// Inward normal, a unit vector.
     inward: [f64; 2],
-    /// Distance from white.
+    /// Distance of the side from white, in xy.
     from_white: f64,
 }
 
-/// The sides of the convex hull of the spectral locus, moved inward by [`MARGIN`].
+/// Sides of the convex hull of the spectral locus, moved inward by [`MARGIN`].
 fn edges() -> &'static [Edge] {
     static ONE: OnceLock<Vec<Edge>> = OnceLock::new();
     ONE.get_or_init(|| {
@@ -255,7 +260,7 @@ fn edges() -> &'static [Edge] {
     })
 }
 
-/// Corners of the convex hull, counterclockwise (A. M. Andrew, Information Processing Letters 9, 216, 1979).
+/// Returns the corners of the convex hull, counterclockwise (A. M. Andrew, Information Processing Letters 9, 216, 1979).
 fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
@@ -290,8 +295,9 @@ mod tests {
         RgbSpace::srgb().from_xyz(Observer::cie_1931_2deg().at(nm))
     }
 
-    /// Spectral light moves by the margin over the cosine between the way to white and the rim's normal: a thousandth and little more; a
-    /// little less about 450 nm, where the locus lies inside of its hull.
+    /// Spectral light moves by the margin divided by the cosine between the direction to white and the normal of the boundary: a little
+    /// more than a thousandth.
+    /// Near 450 nm it moves a little less, because the locus lies inside its hull there.
     #[test]
     fn spectral_light_moves_by_the_margin() {
         let luminance = |rgb| RgbSpace::srgb().luminance(rgb);
@@ -302,13 +308,14 @@ mod tests {
             assert!((luminance(moved.rgb) / luminance(rgb) - 1.0).abs() < 1e-9, "{nm}");
             let [a, b] = [xy(rgb), xy(moved.rgb)];
             assert!((length([a[0] - b[0], a[1] - b[1]]) - moved.moved).abs() < 1e-12, "{nm}");
-            // Once within reach it stays.
+            // A reachable color does not move.
             assert!(fit(moved.rgb.map(|v| v * 3.0), ColorGamut::Real).moved < 1e-12, "{nm}");
         }
     }
 
-    /// Primaries of wide spaces by their published chromaticities: the red of Rec. 2020 is the light of 630 nm, its green that of 532 nm,
-    /// its blue that of 467 nm; those of ACEScg are imaginary, and of P3 the red alone is nearer to the locus than the margin.
+    /// Fits primaries of wide spaces by their published chromaticities. Those of Rec. 2020 are light of 630 nm, 532 nm and 467 nm; those of
+    /// ACEScg are imaginary.
+    /// Of Display P3, only the red is nearer to the locus than the margin.
     #[test]
     fn primaries_of_wide_spaces() {
         let moved = |space: &RgbSpace| {
@@ -334,7 +341,7 @@ mod tests {
         for gamut in [ColorGamut::Srgb, ColorGamut::Real] {
             assert_eq!(fit([0.2, 0.0, 7.0], gamut), Fitted { rgb: [0.2, 0.0, 7.0], moved: 0.0 });
             assert_eq!(fit([0.1, -0.5, 0.2], gamut), Fitted { rgb: [0.0; 3], moved: f64::INFINITY });
-            // Of positive luminance, but X + Y + Z is negative: moved as what lies just before it is.
+            // Its luminance is positive, but X + Y + Z is negative. The color moves as one just before this limit does.
             let [before, beyond] = [-0.44, -0.46].map(|blue| fit([0.2, 0.2, blue], gamut));
             assert!(
                 beyond.moved == 1.0 && (RgbSpace::srgb().luminance(beyond.rgb) - 0.1524).abs() < 1e-3,
@@ -344,7 +351,7 @@ mod tests {
         }
     }
 
-    /// A place leads back to the color that it was found for.
+    /// A position leads back to the color from which it was computed.
     #[test]
     fn places_lead_to_their_colors() {
         let real = RealColors::even(360);
@@ -357,9 +364,9 @@ mod tests {
                 }
                 let place = real.place(color.map(|v| 5.0 * v)).expect("light");
                 assert!(place.direction == i || share == 0.0, "{turn} {place:?}");
-                // The rim between two directions is a chord of the curve.
+                // The boundary between two directions is a chord of the curve.
                 assert!((place.depth - depth).abs() < 0.01, "{turn} {depth} {place:?}");
-                // What lies beyond it moves onto it, and is less deep a violet at the sharp corner there.
+                // A color beyond the chord moves onto it. Near the sharp corner at violet this changes the color.
                 let largest = (place.largest / 5.0 - 1.0).abs();
                 assert!(largest < 0.005 || place.depth == 1.0, "{turn} {depth} {place:?}");
             }

@@ -1,4 +1,4 @@
-//! Color rendering: how alike the colors of test samples look under a lamp and under a reference light of its color temperature.
+//! Color rendering: compares the colors of test samples under a lamp with those under a reference light of its color temperature.
 
 use crate::adaptation::Adaptation;
 use crate::cct::{cct, uv_1960};
@@ -10,20 +10,20 @@ use std::sync::OnceLock;
 /// The CIE color rendering indices of a lamp.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorRendering {
-    /// General index Ra: the mean of the first eight special ones; 100 is the reference.
+    /// General index Ra: the mean of the first eight special indices; 100 for the reference.
     pub ra: f64,
-    /// Special indices R1 to R14.
+    /// Special indices R1 to R14, in order.
     pub special: Vec<f64>,
     /// Correlated color temperature of the lamp and of its reference, K.
     pub kelvin: f64,
 }
 
-/// The fidelity of a lamp to its reference.
+/// The color fidelity of a lamp relative to its reference (CIE 224:2017).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fidelity {
     /// Fidelity index Rf, 0 to 100.
     pub rf: f64,
-    /// Of each of the 99 samples, 0 to 100.
+    /// Fidelity of each of the 99 samples, 0 to 100.
     pub samples: Vec<f64>,
 }
 
@@ -36,25 +36,25 @@ fn samples(table: &str, column: impl Fn(usize) -> String, count: usize) -> Vec<R
         .collect()
 }
 
-/// The fourteen test colors of CIE 13.3-1995.
+/// Returns the fourteen test colors of CIE 13.3-1995.
 #[must_use]
 pub fn cie_test_colors() -> &'static [Reflectance] {
     static ONE: OnceLock<Vec<Reflectance>> = OnceLock::new();
     ONE.get_or_init(|| samples("spectra/reflectances/cie-test-colors.csv", |i| format!("tcs{i:02}"), 14))
 }
 
-/// The 99 color evaluation samples of CIE 224:2017 and ANSI/IES TM-30.
+/// Returns the 99 color evaluation samples of CIE 224:2017 and ANSI/IES TM-30.
 #[must_use]
 pub fn color_evaluation_samples() -> &'static [Reflectance] {
     static ONE: OnceLock<Vec<Reflectance>> = OnceLock::new();
     ONE.get_or_init(|| samples("spectra/reflectances/color-evaluation-samples.csv", |i| format!("ces{i:02}"), 99))
 }
 
-/// The general and the special color rendering indices of `light` (CIE 13.3-1995), on 350-830 nm by 1 nm, lines at their own
-/// wavelengths.
+/// Computes the general and special color rendering indices of `light` (CIE 13.3-1995), on 350-830 nm in steps of 1 nm. Spectral lines keep
+/// their own wavelengths.
 ///
-/// `None` for a light without a correlated color temperature, and above 25 000 K, where there is no daylight to compare with.
-/// The reference is a black body below 5000 K and CIE daylight from there on.
+/// The reference is a black body below 5000 K and CIE daylight from there on. Returns `None` for a light without a correlated color
+/// temperature, and above 25 000 K, where CIE daylight is not defined.
 #[must_use]
 pub fn color_rendering(light: &Emission) -> Option<ColorRendering> {
     let observer = Observer::cie_1931_2deg();
@@ -64,7 +64,7 @@ pub fn color_rendering(light: &Emission) -> Option<ColorRendering> {
     let reference_white = xyz_of_light(&reference, observer)?;
     let uv = |xyz: [f64; 3]| chromaticity(xyz).map(uv_1960);
     let (test_uv, reference_uv) = (uv(test_white)?, uv(reference_white)?);
-    // CIE 13.3-1995, 5.7: adaptation of the von Kries type, in the coordinates of the CIE 1960 diagram.
+    // CIE 13.3-1995, 5.7: adaptation of the von Kries type in the coordinates of the CIE 1960 diagram.
     let c = |[u, v]: [f64; 2]| (4.0 - u - 10.0 * v) / v;
     let d = |[u, v]: [f64; 2]| (1.708 * v + 0.404 - 1.481 * u) / v;
     let (c_ratio, d_ratio) = (c(reference_uv) / c(test_uv), d(reference_uv) / d(test_uv));
@@ -73,7 +73,7 @@ pub fn color_rendering(light: &Emission) -> Option<ColorRendering> {
         let divisor = 16.518 + 1.481 * c - d;
         [(10.872 + 0.404 * c - 4.0 * d) / divisor, 5.52 / divisor]
     };
-    // CIE 1964 U* V* W*.
+    // CIE 1964 U*, V*, W*.
     let uvw = |y: f64, [u, v]: [f64; 2]| {
         let w = 25.0 * libm::cbrt(y) - 17.0;
         [13.0 * w * (u - reference_uv[0]), 13.0 * w * (v - reference_uv[1]), w]
@@ -89,11 +89,12 @@ pub fn color_rendering(light: &Emission) -> Option<ColorRendering> {
     Some(ColorRendering { ra: special[..8].iter().sum::<f64>() / 8.0, special, kelvin })
 }
 
-/// The color fidelity index Rf of `light` (CIE 224:2017, ANSI/IES TM-30-18 and later), on 380-780 nm: at the points of a light that is
-/// tabulated by 5 nm, as the CIE has it, else by 1 nm; lines at their own wavelengths.
+/// Computes the color fidelity index Rf of `light` (CIE 224:2017, ANSI/IES TM-30-18 and later), on 380-780 nm.
+/// The step is 5 nm for a light without lines that is tabulated every 5 nm, as the CIE specifies, and otherwise 1 nm. Spectral lines keep
+/// their own wavelengths.
 ///
-/// `None` as [`color_rendering`]. The reference is a black body up to 4000 K, CIE daylight from 5000 K on, and a mixture of both
-/// of equal luminance between.
+/// The reference is a black body up to 4000 K, CIE daylight from 5000 K on, and between them a mixture of both at equal luminance. Returns
+/// `None` for a light without a correlated color temperature, and above 25 000 K.
 #[must_use]
 pub fn fidelity(light: &Emission) -> Option<Fidelity> {
     let by_five = light.lines().is_empty() && light.continuum().is_some_and(|c| c.spacing_nm() == 5.0);
@@ -124,7 +125,7 @@ pub fn fidelity(light: &Emission) -> Option<Fidelity> {
     Some(Fidelity { rf: fidelity_index(mean), samples: apart.into_iter().map(fidelity_index).collect() })
 }
 
-/// CIE 224:2017, 4.6: from a color difference (CAM02-UCS, or the mean of several) to an index from 100 down to 0.
+/// Converts a color difference in CAM02-UCS, or the mean of several, to a fidelity index from 100 down to 0 (CIE 224:2017, 4.6).
 #[must_use]
 pub fn fidelity_index(difference: f64) -> f64 {
     10.0 * libm::log1p(libm::exp((100.0 - 6.73 * difference) / 10.0))
@@ -148,9 +149,9 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// J', a', b' of CAM02-UCS of `xyz` seen against `white`, both with 100 for white, as CIE 224:2017 has them: adapting luminance 100
-/// cd/m2, background 20, average surround, complete adaptation (CIE 159:2004; M. R. Luo, G. Cui, C. Li, Color Research &
-/// Application 31, 320 (2006)).
+/// Computes J', a', b' of CAM02-UCS for `xyz` seen against `white`, where white has Y = 100.
+/// The viewing conditions are those of CIE 224:2017: adapting luminance 100 cd/m2, background 20, average surround, complete adaptation.
+/// Sources: CIE 159:2004; M. R. Luo, G. Cui, C. Li, Color Research & Application 31, 320 (2006).
 #[must_use]
 pub fn cam02_ucs(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     const ADAPTING_CD_M2: f64 = 100.0;
@@ -165,7 +166,7 @@ pub fn cam02_ucs(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     let n_bb = 0.725 * libm::pow(1.0 / n, 0.2);
     let z = 1.48 + n.sqrt();
     let cat02 = Adaptation::Cat02;
-    // Adapted to equal energy, in the cones of Hunt, Pointer and Estevez, compressed.
+    // Adapts to equal energy, then compresses the cone responses of Hunt, Pointer and Estevez.
     let cones = |xyz: [f64; 3]| {
         let [x, y, z] = cat02.adapt(xyz, white, [white[1]; 3]);
         let hpe = [0.38971 * x + 0.68898 * y - 0.07868 * z, -0.22981 * x + 1.18340 * y + 0.04641 * z, z];
@@ -187,14 +188,15 @@ pub fn cam02_ucs(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     [1.7 * lightness / (1.0 + 0.007 * lightness), bent * libm::cos(hue), bent * libm::sin(hue)]
 }
 
-/// Luminous efficacy of `light`, lm/W: what of its power over 350-830 nm is seen; `None` of no power.
+/// Computes the luminous efficacy of `light`, lm/W: luminance divided by power over 350-830 nm. `None` if the power is not positive and
+/// finite.
 #[must_use]
 pub fn luminous_efficacy(light: &Emission) -> Option<f64> {
     let power = light.power(&BAND);
     (power > 0.0 && power.is_finite()).then(|| light.luminance() / power)
 }
 
-/// CIE 1976 u', v' of the chromaticity x, y.
+/// Converts the CIE 1931 chromaticity x, y to CIE 1976 u', v'.
 #[must_use]
 pub fn uv_1976(xy: [f64; 2]) -> [f64; 2] {
     let [u, v] = uv_1960(xy);
@@ -206,7 +208,7 @@ mod tests {
     use super::*;
     use spectra_spectrum::find_emission;
 
-    /// The reference is itself; colour-science has the values of the lamps.
+    /// A reference light renders fully, by definition. Values of real lamps are compared with colour-science below.
     #[test]
     fn references_render_fully() {
         for name in ["blackbody:2856", "A", "D65", "D50", "daylight:7000"] {
@@ -221,7 +223,7 @@ mod tests {
         }
     }
 
-    /// CIE 13.3 and CIE 224 by colour-science 0.4.7 on F1 to F12, see `xtask/import_colour_science.py`: within 0.05.
+    /// Compares CIE 13.3 and CIE 224 on F1 to F12 with colour-science 0.4.7 (see `xtask/import_colour_science.py`): within 0.05.
     #[test]
     fn lamps_render_as_an_independent_program_has_it() {
         let mut worst = [0.0_f64; 2];

@@ -1,16 +1,16 @@
-//! RGB color spaces: matrices from their primaries, transfer curves.
+//! RGB color spaces: matrices from primaries, and transfer curves.
 
 use crate::matrix::{Matrix, apply, inverse};
 use std::sync::OnceLock;
 
-/// Curve from linear light to the code value of a picture file.
+/// A curve from linear light to the code values of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transfer {
-    /// None: code value is linear light.
+    /// No curve: the code value is linear light.
     Linear,
-    /// IEC 61966-2-1 (sRGB).
+    /// The curve of sRGB (IEC 61966-2-1).
     Srgb,
-    /// ITU-R BT.2020, with the constants of full precision.
+    /// The curve of ITU-R BT.2020, with constants of full precision.
     Rec2020,
 }
 
@@ -19,7 +19,7 @@ const REC2020_ALPHA: f64 = 1.099_296_826_809_442_9;
 const REC2020_BETA: f64 = 0.018_053_968_510_807_807;
 
 impl Transfer {
-    /// Code value of `linear` light; odd, so that negative values keep their size.
+    /// Encodes `linear` light as a code value. The curve is odd: negative values keep their magnitude.
     #[must_use]
     pub fn encode(self, linear: f64) -> f64 {
         let x = linear.abs();
@@ -33,7 +33,7 @@ impl Transfer {
         y.copysign(linear)
     }
 
-    /// Linear light of the code value `encoded`; odd.
+    /// Decodes the code value `encoded` to linear light. The curve is odd: negative values keep their magnitude.
     #[must_use]
     pub fn decode(self, encoded: f64) -> f64 {
         let y = encoded.abs();
@@ -48,25 +48,25 @@ impl Transfer {
     }
 }
 
-/// An RGB color space on the CIE 1931 observer.
+/// An RGB color space for the CIE 1931 2-degree observer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RgbSpace {
-    /// Its name.
+    /// Name of the space.
     pub name: &'static str,
     /// Chromaticities x, y of red, green and blue.
     pub primaries_xy: [[f64; 2]; 3],
-    /// Chromaticity of white.
+    /// Chromaticity x, y of white.
     pub white_xy: [f64; 2],
-    /// Curve of its picture files.
+    /// Transfer curve of picture files in this space.
     pub transfer: Transfer,
-    /// Linear RGB to XYZ, Y of white 1.
+    /// Matrix from linear RGB to XYZ, where white has Y = 1.
     pub xyz_from_rgb: Matrix,
-    /// XYZ to linear RGB.
+    /// Matrix from XYZ, where white has Y = 1, to linear RGB.
     pub rgb_from_xyz: Matrix,
 }
 
 impl RgbSpace {
-    /// A space from its primaries and white; white is RGB (1, 1, 1) with Y = 1.
+    /// Builds a space from its primaries and white; white is RGB (1, 1, 1) with Y = 1.
     #[must_use]
     pub fn new(name: &'static str, primaries_xy: [[f64; 2]; 3], white_xy: [f64; 2], transfer: Transfer) -> Self {
         let columns = primaries_xy.map(|xy| xyz_of_xy(xy, 1.0));
@@ -76,7 +76,7 @@ impl RgbSpace {
         Self { name, primaries_xy, white_xy, transfer, rgb_from_xyz: inverse(&xyz_from_rgb), xyz_from_rgb }
     }
 
-    /// sRGB, IEC 61966-2-1:1999: primaries of ITU-R BT.709, white D65 (0.3127, 0.3290).
+    /// Returns sRGB, IEC 61966-2-1:1999: primaries of ITU-R BT.709, white D65 (0.3127, 0.3290).
     pub fn srgb() -> &'static Self {
         static ONE: OnceLock<RgbSpace> = OnceLock::new();
         ONE.get_or_init(|| {
@@ -84,7 +84,7 @@ impl RgbSpace {
         })
     }
 
-    /// Rec. 2020, ITU-R BT.2020-2: primaries of 630, 532 and 467 nm, white D65.
+    /// Returns Rec. 2020, ITU-R BT.2020-2: primaries of 630, 532 and 467 nm, white D65.
     pub fn rec2020() -> &'static Self {
         static ONE: OnceLock<RgbSpace> = OnceLock::new();
         ONE.get_or_init(|| {
@@ -93,7 +93,7 @@ impl RgbSpace {
         })
     }
 
-    /// ACEScg, S-2014-004: primaries AP1, the white of ACES near D60 (0.32168, 0.33767), linear.
+    /// Returns ACEScg, S-2014-004: primaries AP1, the ACES white near D60 (0.32168, 0.33767), linear.
     pub fn aces_cg() -> &'static Self {
         static ONE: OnceLock<RgbSpace> = OnceLock::new();
         ONE.get_or_init(|| {
@@ -102,7 +102,7 @@ impl RgbSpace {
         })
     }
 
-    /// Display P3: primaries of the digital cinema (SMPTE RP 431-2) with the white D65 and the curve of sRGB (Apple, 2017).
+    /// Returns Display P3: the digital cinema primaries (SMPTE RP 431-2) with the white D65 and the curve of sRGB (Apple, 2017).
     pub fn display_p3() -> &'static Self {
         static ONE: OnceLock<RgbSpace> = OnceLock::new();
         ONE.get_or_init(|| {
@@ -111,63 +111,63 @@ impl RgbSpace {
         })
     }
 
-    /// The spaces of a chromaticity diagram.
+    /// Returns the spaces that a chromaticity diagram shows: sRGB, Rec. 2020 and ACEScg.
     #[must_use]
     pub fn all() -> [&'static Self; 3] {
         [Self::srgb(), Self::rec2020(), Self::aces_cg()]
     }
 
-    /// XYZ of white, Y = 1.
+    /// XYZ of white, with Y = 1.
     #[must_use]
     pub fn white_xyz(&self) -> [f64; 3] {
         xyz_of_xy(self.white_xy, 1.0)
     }
 
-    /// Linear RGB of `xyz`, where Y = 1 is white; no adaptation; negative outside of the gamut.
+    /// Converts `xyz`, where white has Y = 1, to linear RGB without adaptation. Values are negative outside the gamut.
     #[must_use]
     pub fn from_xyz(&self, xyz: [f64; 3]) -> [f64; 3] {
         apply(&self.rgb_from_xyz, xyz)
     }
 
-    /// XYZ of linear RGB, where white has Y = 1.
+    /// Converts linear RGB to XYZ, where white has Y = 1.
     #[must_use]
     pub fn to_xyz(&self, rgb: [f64; 3]) -> [f64; 3] {
         apply(&self.xyz_from_rgb, rgb)
     }
 
-    /// Relative luminance Y of linear RGB.
+    /// Relative luminance Y of linear RGB; 1 for white.
     #[must_use]
     pub fn luminance(&self, rgb: [f64; 3]) -> f64 {
         self.to_xyz(rgb)[1]
     }
 
-    /// Code values of linear RGB.
+    /// Encodes linear RGB as code values.
     #[must_use]
     pub fn encode(&self, rgb: [f64; 3]) -> [f64; 3] {
         rgb.map(|v| self.transfer.encode(v))
     }
 
-    /// Linear RGB of code values.
+    /// Decodes code values to linear RGB.
     #[must_use]
     pub fn decode(&self, encoded: [f64; 3]) -> [f64; 3] {
         encoded.map(|v| self.transfer.decode(v))
     }
 }
 
-/// XYZ of the chromaticity `xy` at luminance `y`.
+/// Returns XYZ of the chromaticity `xy` at luminance `y`.
 #[must_use]
 pub fn xyz_of_xy(xy: [f64; 2], y: f64) -> [f64; 3] {
     [xy[0] / xy[1] * y, y, (1.0 - xy[0] - xy[1]) / xy[1] * y]
 }
 
-/// A value of 0 to 1 in 8 bits: 1 is 255, rounded to nearest; clipped.
+/// Converts a value of 0 to 1 to 8 bits: 1 becomes 255; rounds to nearest and clips. NaN becomes 0.
 #[must_use]
 pub fn to_u8(value: f64) -> u8 {
-    // The cast saturates, and takes NaN to 0.
+    // The cast saturates and converts NaN to 0.
     (value * 255.0 + 0.5).floor() as u8
 }
 
-/// A value of 8 bits as 0 to 1: 255 is 1.
+/// Converts an 8-bit value to 0 to 1: 255 becomes 1.
 #[must_use]
 pub fn from_u8(value: u8) -> f64 {
     f64::from(value) / 255.0
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// IEC 61966-2-1 prints four digits; ITU-R BT.2020 the luminance row; S-2014-004 ten digits.
+    /// Compares the matrices with the standards: IEC 61966-2-1 prints four digits, ITU-R BT.2020 the luminance row, S-2014-004 ten digits.
     #[test]
     fn matrices_are_those_of_the_standards() {
         let srgb = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
@@ -209,7 +209,7 @@ mod tests {
         close(&RgbSpace::display_p3().xyz_from_rgb, &p3, 1e-9);
     }
 
-    /// The sRGB matrix on the 1931 functions at 575 nm, computed independently.
+    /// Compares the sRGB values of the 1931 functions at 575 nm with an independent computation.
     #[test]
     fn srgb_of_575_nm() {
         let rgb = RgbSpace::srgb().from_xyz(spectra_spectrum::Observer::cie_1931_2deg().at(575.0));
@@ -218,7 +218,7 @@ mod tests {
         }
     }
 
-    /// IEC 61966-2-1: 0.5 in code is 0.2140 in light; mid grey 0.18 is 0.4614 in code.
+    /// Checks values of IEC 61966-2-1: code value 0.5 is 0.2140 in light; mid gray 0.18 is code value 0.4614.
     #[test]
     fn transfer_curves_are_those_of_the_standards_and_invert() {
         assert!((Transfer::Srgb.decode(0.5) - 0.214_041_14).abs() < 1e-8);
@@ -228,7 +228,7 @@ mod tests {
             assert!((t.encode(1.0) - 1.0).abs() < 1e-15 && t.encode(0.0) == 0.0);
             for i in -300..=300 {
                 let x = f64::from(i) / 200.0;
-                // The sRGB standard rounds its constants: its two branches miss each other by 3e-8.
+                // The sRGB standard rounds its constants: its two branches differ by 3e-8 where they meet.
                 assert!((t.decode(t.encode(x)) - x).abs() < 1e-8, "{t:?} {x}");
             }
         }

@@ -1,48 +1,47 @@
-//! From a color to a spectrum and back to the color that an eye sees: how far a model is off.
+//! Round trip from a color to a spectrum and back to the color that an eye sees: measures the error of a color model.
 
 use crate::rgb::{RgbSpace, from_u8};
 use spectra_core::stage::ColorModel;
 use spectra_spectrum::Observer;
 
-/// A model whose colors can be looked at: its spectra, seen by the CIE 1931 observer, as sRGB in which its own white has a
-/// luminance of 1.
+/// Shows the colors of a model: the CIE 1931 observer sees its spectra, and the result is sRGB in which the model's white has luminance 1.
 pub struct RoundTrip<'a> {
     model: &'a dyn ColorModel,
-    /// Luminance of white.
+    /// Luminance Y of the model's white.
     white: f64,
 }
 
-/// How far a model's colors are off, over a grid of 8-bit colors.
+/// Color errors of a model over a grid of 8-bit colors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundTripErrors {
-    /// Largest difference of a channel, 255ths.
+    /// Largest error of a channel, in code values of 0 to 255.
     pub largest: f64,
-    /// Mean difference of a channel, 255ths.
+    /// Mean error of a channel, in code values of 0 to 255.
     pub mean: f64,
-    /// The color that is furthest off, 8 bits.
+    /// The color with the largest error, 8 bits per channel.
     pub worst: [u8; 3],
-    /// What it comes back as, code values of 0 to 255, clipped.
+    /// What the color in `worst` comes back as: code values of 0 to 255, clipped.
     pub worst_back: [f64; 3],
-    /// Largest code value of green, 0 to 255, of a pure red that has none: the phantom.
+    /// Phantom green: the largest green code value, 0 to 255, that comes back from a pure red without green and blue.
     pub phantom_green: f64,
 }
 
 impl<'a> RoundTrip<'a> {
-    /// A model's round trip; `None` where its white has no visible light.
+    /// Builds the round trip of a model; `None` if its white has no visible light.
     #[must_use]
     pub fn new(model: &'a dyn ColorModel) -> Option<Self> {
         let white = Observer::cie_1931_2deg().xyz_of_power(&model.spectrum([1.0; 3]))[1];
         (white > 0.0 && white.is_finite()).then_some(Self { model, white })
     }
 
-    /// Linear sRGB of what linear sRGB comes back as; negative where it is outside of the gamut.
+    /// Returns the linear sRGB that `linear_srgb` comes back as; values are negative outside the gamut.
     #[must_use]
     pub fn linear(&self, linear_srgb: [f64; 3]) -> [f64; 3] {
         let xyz = Observer::cie_1931_2deg().xyz_of_power(&self.model.spectrum(linear_srgb));
         RgbSpace::srgb().from_xyz(xyz.map(|v| v / self.white))
     }
 
-    /// Code values of 0 to 255 that an 8-bit color comes back as, clipped as a screen clips, not rounded.
+    /// Returns the code values, 0 to 255, that an 8-bit color comes back as: clipped as a screen clips, not rounded.
     #[must_use]
     pub fn code(&self, rgb: [u8; 3]) -> [f64; 3] {
         let srgb = RgbSpace::srgb();
@@ -50,7 +49,8 @@ impl<'a> RoundTrip<'a> {
         back.map(|v| 255.0 * v.clamp(0.0, 1.0))
     }
 
-    /// Its errors over all 8-bit colors in steps of `step` a channel (1 to 255), 255 included where the steps meet it.
+    /// Computes the errors over all 8-bit colors in steps of `step` per channel (1 to 255). The grid includes 255 only if `step` divides
+    /// it.
     #[must_use]
     pub fn errors(&self, step: u8) -> RoundTripErrors {
         let levels = || (0..=255_u8).step_by(usize::from(step.max(1)));

@@ -1,12 +1,12 @@
-//! The color in which a screen shows a single wavelength.
+//! Screen colors of single wavelengths.
 
 use crate::rgb::{RgbSpace, to_u8};
 use spectra_spectrum::Observer;
 
-/// Linear RGB of monochromatic light: the matrix of `space` on the CIE 1931 functions, negative channels set to 0,
-/// scaled so that the brightest is 1. Black where the observer sees nothing.
+/// Computes linear RGB of monochromatic light: the CIE 1931 color matching functions in `space`, with negative channels set to 0, scaled so
+/// that the brightest is 1. Black if the observer sees nothing.
 ///
-/// Hue is kept, true intensity is not: weigh it by the luminous efficiency where that matters.
+/// The color keeps the hue but not the true intensity. Multiply by the luminous efficiency if that matters.
 #[must_use]
 pub fn spectral_color_linear(wavelength_nm: f64, space: &RgbSpace) -> [f64; 3] {
     let rgb = space.from_xyz(Observer::cie_1931_2deg().at(wavelength_nm)).map(|v| v.max(0.0));
@@ -14,13 +14,13 @@ pub fn spectral_color_linear(wavelength_nm: f64, space: &RgbSpace) -> [f64; 3] {
     if brightest > 0.0 { rgb.map(|v| v / brightest) } else { [0.0; 3] }
 }
 
-/// The same with the transfer curve of `space`: code values for a picture file.
+/// Computes code values of monochromatic light for a picture file: [`spectral_color_linear`] with the transfer curve of `space`.
 #[must_use]
 pub fn spectral_color_encoded(wavelength_nm: f64, space: &RgbSpace) -> [f64; 3] {
     space.encode(spectral_color_linear(wavelength_nm, space))
 }
 
-/// What a screen shows: sRGB code values of 8 bits.
+/// Computes the 8-bit sRGB code values of monochromatic light, as a screen shows it.
 #[must_use]
 pub fn spectral_color_srgb8(wavelength_nm: f64) -> [u8; 3] {
     spectral_color_encoded(wavelength_nm, RgbSpace::srgb()).map(to_u8)
@@ -30,8 +30,8 @@ pub fn spectral_color_srgb8(wavelength_nm: f64) -> [u8; 3] {
 mod tests {
     use super::*;
 
-    /// Computed independently from the CIE 1931 functions; the linear column is the table of a published
-    /// dispersion study, which held linear values to be what a screen shows.
+    /// Compares with an independent computation from the CIE 1931 functions. The linear column is the table of a published dispersion
+    /// study, which took linear values for what a screen shows.
     #[test]
     fn spectral_colors() {
         for (nm, linear, shown) in [

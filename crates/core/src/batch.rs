@@ -11,42 +11,45 @@ use crate::loss::{ALIVE, Loss};
 use crate::numbers::{Numbers, RayColumns, StageKey, StageNumbers};
 use std::ops::Range;
 
-/// The line number of a ray whose wavelength was drawn from a continuum.
+/// Line number of a ray whose wavelength was drawn from a continuum instead of a spectral line.
 pub const CONTINUUM: u32 = u32::MAX;
 
-/// Bits of a tag that hold the pixel's number. The bits above them name the one channel that the ray adds to, counted from 1;
-/// 0 means all channels.
+/// Number of low bits of a tag that hold the pixel number. The bits above them name the only channel that the ray adds to,
+/// counted from 1; 0 means all channels.
 pub const PIXEL_BITS: u32 = 28;
 
-/// The tag of a ray that adds to one channel of a pixel only, because its light passed that channel's filter of a mosaic.
+/// Returns the tag of a ray that adds only to channel `only_channel` (from 0) of a pixel, because its light passed that
+/// channel's filter of a mosaic.
 #[inline(always)]
 #[must_use]
 pub fn tag_of(pixel: u32, only_channel: u32) -> u32 {
     pixel | (only_channel + 1) << PIXEL_BITS
 }
 
-/// The pixel of a tag, and the only channel that the ray adds to, if it is not all of them.
+/// Splits a tag into the pixel number and the only channel that the ray adds to (from 0); the channel is `None` if the ray adds
+/// to all.
 #[inline(always)]
 #[must_use]
 pub fn pixel_and_channel(tag: u32) -> (u32, Option<u32>) {
     (tag & ((1 << PIXEL_BITS) - 1), (tag >> PIXEL_BITS).checked_sub(1))
 }
 
-/// A batch of rays, one array a column. Columns are reached through methods, so new ones can be added without touching a plugin.
+/// A batch of rays, with one array per column. Methods give access to the columns, so new columns can be added without changing
+/// plugins.
 ///
 /// | column | unit | meaning |
 /// |---|---|---|
-/// | `x y z` | mm | a point of the ray, in the frame that the holder states |
+/// | `x y z` | mm | a point on the ray, in the frame that the owner of the batch states |
 /// | `l m n` | 1 | unit direction |
 /// | `wavelength_nm` | nm | wavelength in air, as glass catalogues state it |
-/// | `line` | | number of the source's spectral line that was drawn, or [`CONTINUUM`] |
+/// | `line` | | number of the spectral line of the source that was drawn, or [`CONTINUUM`] |
 /// | `index` | 1 | refractive index of the medium that the ray is in |
 /// | `weight` | see [`crate::stage`] | flux forward, throughput backward |
 /// | `state` | | [`ALIVE`], or cause and surface of the loss ([`Loss::state`]) |
 /// | `tag` | | the input row, path or pixel that the ray belongs to |
 /// | `optical_path_mm` | mm | on request: [`RayBatch::with_optical_path`] |
-/// | `polarization` | 1 | on request: Stokes numbers and their axis, [`RayBatch::with_polarization`] |
-/// | `numbers` | | on request: what stages draw, [`RayBatch::with_numbers`] |
+/// | `polarization` | 1 | on request: Stokes parameters and their axis, [`RayBatch::with_polarization`] |
+/// | `numbers` | | on request: random numbers for stages, [`RayBatch::with_numbers`] |
 #[derive(Clone, Debug)]
 pub struct RayBatch {
     len: usize,
@@ -67,27 +70,27 @@ pub struct RayBatch {
     line: Vec<u32>,
     tag: Vec<u32>,
     surface: u32,
-    /// Of [`RayBatch::compact`].
+    /// Runs of living rays; [`RayBatch::compact`] reuses this allocation.
     stretches: Vec<Range<usize>>,
     scratch: Scratch,
 }
 
-/// What the two loops of a surface pass to each other.
+/// Columns that the two loops of a surface pass to each other.
 #[derive(Clone, Debug)]
 struct Scratch {
-    /// x^2 + y^2, mm^2; stays valid from surface to surface until somebody else writes positions.
+    /// x^2 + y^2, mm^2. Stays valid from surface to surface until other code writes positions.
     radius2: Column<f64>,
     radius2_is_true: bool,
-    /// Between the loops the cosine of incidence; afterwards how far the ray is from ending.
+    /// Cosine of incidence between the loops; afterwards the margin by which the ray passes, negative or NaN if it ends.
     cosine_then_margin: Column<f64>,
     valid: Column<f64>,
-    /// Of shapes that rays come to by steps what they keep; afterwards as [`Weighing::versine`].
+    /// Value that a shape with a stepwise intersection keeps between steps; afterwards [`Weighing::versine`].
     kept_then_versine: Column<f64>,
-    /// Of such shapes the size of the last step; afterwards as [`Weighing::way_mm`].
+    /// Size of the last step of a stepwise intersection, mm; afterwards [`Weighing::way_mm`].
     step_then_way: Column<f64>,
 }
 
-/// See [`Scratch`].
+/// Mutable slices of the columns of [`Scratch`].
 pub(crate) struct ScratchColumns<'a> {
     pub radius2: &'a mut [f64],
     pub cosine_then_margin: &'a mut [f64],
@@ -96,14 +99,14 @@ pub(crate) struct ScratchColumns<'a> {
     pub step_then_way: &'a mut [f64],
 }
 
-/// All columns of a batch, to read and write at once.
+/// Mutable access to all columns of a batch at once.
 #[derive(Debug)]
 pub struct Columns<'a> {
-    /// Position, mm.
+    /// Position along x, mm.
     pub x: &'a mut [f64],
-    /// Position, mm.
+    /// Position along y, mm.
     pub y: &'a mut [f64],
-    /// Position, mm.
+    /// Position along z, mm.
     pub z: &'a mut [f64],
     /// Direction cosine along x.
     pub l: &'a mut [f64],
@@ -115,24 +118,24 @@ pub struct Columns<'a> {
     pub wavelength_nm: &'a mut [f64],
     /// Refractive index of the medium the ray is in.
     pub index: &'a mut [f64],
-    /// Flux or throughput.
+    /// Weight: flux forward, throughput backward.
     pub weight: &'a mut [f64],
-    /// Alive, or cause and surface of the loss.
+    /// State: [`ALIVE`], or cause and surface of the loss.
     pub state: &'a mut [u64],
-    /// Spectral line drawn, or [`CONTINUUM`].
+    /// Number of the spectral line that was drawn, or [`CONTINUUM`].
     pub line: &'a mut [u32],
-    /// Row, path or pixel.
+    /// Tag: the input row, path or pixel that the ray belongs to.
     pub tag: &'a mut [u32],
     /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
     pub optical_path_mm: &'a mut [f64],
     /// State of polarization; empty unless the batch carries it.
     pub polarization: Polarization<'a>,
-    /// What the stage at work may draw, ray by ray.
+    /// Random numbers that the current stage may draw, ray by ray.
     pub numbers: StageNumbers<'a>,
 }
 
-/// What the weight of a ray may depend on, and the weights, to write: whoever only weighs rays leaves them where they
-/// are, and what is known of their places stays known.
+/// Read access to the columns that the weight of a ray may depend on, and write access to the weights. Code that only changes
+/// weights leaves the rays in place, so cached values of their positions stay valid.
 #[derive(Debug)]
 pub struct Weighing<'a> {
     /// Positions, mm.
@@ -141,14 +144,16 @@ pub struct Weighing<'a> {
     pub direction: [&'a [f64]; 3],
     /// Wavelengths, nm.
     pub wavelength_nm: &'a [f64],
-    /// Alive, or cause and surface of the loss.
+    /// State: [`ALIVE`], or cause and surface of the loss.
     pub state: &'a [u64],
-    /// How far each living ray came to the last surface, mm, negative where it ran backward; to write for whoever worked it out. Known if the
-    /// surface notes it ([`notes_meeting`](crate::surface::Surface::notes_meeting)).
+    /// Distance that each living ray traveled to the last surface, mm; negative if it ran backward. Valid if the surface
+    /// records it ([`notes_meeting`](crate::surface::Surface::notes_meeting)); code that computes the distance itself may store
+    /// it here.
     pub way_mm: &'a mut [f64],
-    /// Versine, 1 - cos, of the angle by which that surface bent it; known likewise, where the surface bends light at all.
+    /// Versine, 1 - cos, of the angle by which the last surface deflected each ray. Valid under the same condition as `way_mm`,
+    /// if the surface deflects light at all.
     pub versine: &'a mut [f64],
-    /// Flux or throughput.
+    /// Weight: flux forward, throughput backward.
     pub weight: &'a mut [f64],
     /// Optical path since [`RayBatch::restart`], mm; empty unless the batch carries it.
     pub optical_path_mm: &'a mut [f64],
@@ -157,7 +162,7 @@ pub struct Weighing<'a> {
 }
 
 impl RayBatch {
-    /// An empty batch with room for `capacity` rays.
+    /// Creates an empty batch with room for `capacity` rays.
     #[must_use]
     pub fn new(capacity: usize) -> Self {
         let column = || Column::<f64>::new(capacity);
@@ -192,35 +197,35 @@ impl RayBatch {
         }
     }
 
-    /// The same, with a column for the optical path: the sum of index times distance (negative where a surface lies behind the
-    /// one before), mm.
+    /// Creates an empty batch that also carries the optical path: the sum of index times distance, mm. A distance is negative
+    /// if a surface lies behind the one before.
     #[must_use]
     pub fn with_optical_path(capacity: usize) -> Self {
         Self { optical_path_mm: Some(Column::new(capacity)), ..Self::new(capacity) }
     }
 
-    /// The same, with the state of polarization of each ray: unpolarized at first. What a lens passes and reflects then follows
-    /// each ray's own state, and changes it. Without it light is unpolarized at every surface.
+    /// Adds the state of polarization of each ray, unpolarized at first. Each surface of a lens then transmits and reflects
+    /// according to that state, and changes it. Without this column, light is unpolarized at every surface.
     #[must_use]
     pub fn with_polarization(self) -> Self {
         Self { polarization: Some(PolarizationColumns::new(self.capacity)), ..self }
     }
 
-    /// Whether rays carry a state of polarization.
+    /// Returns whether rays carry a state of polarization.
     #[must_use]
     pub fn is_polarized(&self) -> bool {
         self.polarization.is_some()
     }
 
-    /// The same, with what a stage needs to draw numbers: two columns more. Rays have numbers once they got their places in a
-    /// sequence, [`RayBatch::number`].
+    /// Adds the two columns that a stage needs to draw random numbers. Rays have numbers once [`RayBatch::number`] has given
+    /// them their places in a sequence.
     #[must_use]
     pub fn with_numbers(self) -> Self {
         Self { numbers: Some(RayColumns::new(self.capacity)), ..self }
     }
 
-    /// Makes rays `from ..` samples `first`, `first + 1`, ... of `stream`, of the estimator of that name: from now on stages draw
-    /// from `numbers` by that place, whatever becomes of the batch. Does nothing in a batch without
+    /// Assigns rays `from ..` to samples `first`, `first + 1`, ... of `stream`, for the estimator of this name. From then on,
+    /// stages draw from `numbers` at that place, whatever happens to the batch. Does nothing if the batch was made without
     /// [`RayBatch::with_numbers`].
     pub fn number(&mut self, from: usize, numbers: &Numbers, estimator: &str, stream: u64, first: u64) {
         if let Some(columns) = &mut self.numbers {
@@ -228,15 +233,15 @@ impl RayBatch {
         }
     }
 
-    /// Says which stage draws from now on.
+    /// Sets the stage that draws random numbers from now on.
     pub fn set_stage(&mut self, stage: StageKey) {
         if let Some(columns) = &mut self.numbers {
             columns.stage = stage;
         }
     }
 
-    /// Starts over with `len` rays: alive, of weight 1, in air, on no spectral line. Positions, directions and wavelengths
-    /// keep old values; the caller writes them.
+    /// Restarts the batch with `len` rays that are alive, have weight 1, are in air and are on no spectral line. Positions,
+    /// directions and wavelengths keep their old values; the caller overwrites them.
     ///
     /// # Panics
     /// If `len` exceeds the capacity, which the caller chose.
@@ -263,13 +268,13 @@ impl RayBatch {
         self.len
     }
 
-    /// Whether the batch holds no rays.
+    /// Returns whether the batch holds no rays.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The most rays it can hold.
+    /// Largest number of rays that the batch can hold.
     #[must_use]
     pub fn capacity(&self) -> usize {
         self.capacity
@@ -281,19 +286,19 @@ impl RayBatch {
         self.surface
     }
 
-    /// Sets the surface that the living rays passed last.
+    /// Sets the number of the surface that the living rays passed last.
     pub fn set_surface(&mut self, surface: u32) {
         self.surface = surface;
     }
 
-    /// All columns at once, writable.
+    /// Returns all columns at once, writable.
     #[inline(always)]
     pub fn columns_mut(&mut self) -> Columns<'_> {
         self.scratch.radius2_is_true = false;
         self.split().0
     }
 
-    /// The weights, writable, and what they may depend on.
+    /// Returns the weights, writable, and the columns that they may depend on.
     #[inline(always)]
     pub fn weighing(&mut self) -> Weighing<'_> {
         let (c, s) = self.split();
@@ -310,7 +315,7 @@ impl RayBatch {
         }
     }
 
-    /// All columns, and those that the loops of a surface share, with x^2 + y^2 up to date.
+    /// Returns all columns, and the scratch columns that the loops of a surface share, with x^2 + y^2 up to date.
     #[inline(always)]
     pub(crate) fn columns_and_scratch_mut(&mut self) -> (Columns<'_>, ScratchColumns<'_>) {
         if !self.scratch.radius2_is_true {
@@ -353,35 +358,35 @@ impl RayBatch {
         (columns, scratch)
     }
 
-    /// Positions, mm.
+    /// Positions x, y and z of the rays, mm.
     #[inline]
     #[must_use]
     pub fn positions(&self) -> [&[f64]; 3] {
         [self.x.slice(self.len), self.y.slice(self.len), self.z.slice(self.len)]
     }
 
-    /// Unit directions.
+    /// Direction cosines l, m and n of the rays.
     #[inline]
     #[must_use]
     pub fn directions(&self) -> [&[f64]; 3] {
         [self.l.slice(self.len), self.m.slice(self.len), self.n.slice(self.len)]
     }
 
-    /// Wavelengths, nm.
+    /// Wavelengths of the rays, nm.
     #[inline]
     #[must_use]
     pub fn wavelengths_nm(&self) -> &[f64] {
         self.wavelength_nm.slice(self.len)
     }
 
-    /// Weights.
+    /// Weights of the rays: flux forward, throughput backward.
     #[inline]
     #[must_use]
     pub fn weights(&self) -> &[f64] {
         self.weight.slice(self.len)
     }
 
-    /// States: [`ALIVE`], or cause and surface of the loss.
+    /// States of the rays: [`ALIVE`], or cause and surface of the loss.
     #[inline]
     #[must_use]
     pub fn states(&self) -> &[u64] {
@@ -394,13 +399,13 @@ impl RayBatch {
         self.optical_path_mm.as_ref().map(|column| column.slice(self.len))
     }
 
-    /// Spectral lines drawn, or [`CONTINUUM`].
+    /// Numbers of the spectral lines that were drawn, or [`CONTINUUM`].
     #[must_use]
     pub fn lines(&self) -> &[u32] {
         &self.line[..self.len]
     }
 
-    /// Rows, paths or pixels.
+    /// Tags of the rays: input rows, paths or pixels.
     #[inline]
     #[must_use]
     pub fn tags(&self) -> &[u32] {
@@ -419,7 +424,7 @@ impl RayBatch {
         self.states().iter().filter(|s| **s == ALIVE).count()
     }
 
-    /// Drops the rays that have ended and keeps the order of the rest. Returns how many are left.
+    /// Removes the rays that have ended and keeps the order of the others. Returns how many are left.
     pub fn compact(&mut self) -> usize {
         let len = self.len;
         let Some(first) = self.states().iter().position(|state| *state != ALIVE) else { return len };
@@ -456,10 +461,10 @@ impl RayBatch {
     }
 }
 
-/// A stretch of at most this many is moved one by one.
+/// Runs of at most this many rays are moved ray by ray.
 const SHORT: usize = 8;
 
-/// Moves the values of `stretches` behind the first `to`, in their order.
+/// Moves the values of `stretches`, in their order, to index `to` and the places after it.
 #[inline(always)]
 fn close_up<T: Copy>(column: &mut [T], mut to: usize, stretches: &[Range<usize>]) {
     for stretch in stretches {
@@ -507,7 +512,7 @@ mod tests {
         assert_eq!(batch.alive(), 4);
     }
 
-    /// Stretches of any length, at the beginning and at the end, all or none of them.
+    /// Runs of any length, at the beginning and at the end; all rays or none.
     #[test]
     fn compaction_closes_up_any_gaps() {
         for kind in 0..7_usize {

@@ -2,7 +2,7 @@
 
 use crate::spectral::Grid;
 
-/// One plate.
+/// A plane-parallel plate in front of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoverPlate {
     /// Thickness, mm.
@@ -14,9 +14,9 @@ pub struct CoverPlate {
 /// Cover glass, filters, low-pass plates: everything parallel to the frame and in front of it. The gaps between plates and their
 /// order make no difference.
 ///
-/// A ray leaves a plate of thickness t and index n in the direction in which it entered, but lands t (tan i - tan i') short of
-/// where it was heading, toward where it came from (i' from Snell's law). Near the axis the image moves t (1 - 1/n) away from the
-/// lens.
+/// A ray leaves a plate of thickness t and index n in the direction in which it entered. It lands t (tan i - tan i') short of
+/// where it was heading, toward where it came from (i' from Snell's law). Near the axis the image moves t (1 - 1/n) away from
+/// the lens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoverStack {
     grid: Grid,
@@ -24,28 +24,28 @@ pub struct CoverStack {
 }
 
 impl CoverStack {
-    /// Plates with their indices on a grid.
+    /// Creates a stack of plates with their indices on a grid.
     #[must_use]
     pub fn new(grid: &Grid, plates: Vec<CoverPlate>) -> Self {
         Self { grid: *grid, plates }
     }
 
-    /// The same plates, with every index fixed at its value at one wavelength, nm.
+    /// Returns the same plates with every index fixed at its value at one wavelength, nm.
     #[must_use]
     pub fn held_at(&self, wavelength_nm: f64) -> Self {
         let held = |p: &CoverPlate| CoverPlate { index: vec![self.index(p, wavelength_nm); self.grid.count], ..*p };
         Self { grid: self.grid, plates: self.plates.iter().map(held).collect() }
     }
 
-    /// How far the plates move the image near the axis, mm away from the lens, at a wavelength, nm.
+    /// Distance by which the plates move the image near the axis, mm away from the lens, at a wavelength, nm.
     #[must_use]
     pub fn shift_mm(&self, wavelength_nm: f64) -> f64 {
         self.depth_mm(0.0, wavelength_nm)
     }
 
-    /// How far the plates move the point where light meets the frame, mm along the normal and away from the lens, for light whose
-    /// slope to the normal is `slope` (the tangent of the angle). On the frame it lands `slope` times this distance to the side,
-    /// toward where it came from.
+    /// Distance by which the plates move the point where light meets the frame, mm along the normal and away from the lens.
+    /// `slope` is the tangent of the angle between light and normal; the wavelength is in nm. On the frame the light lands
+    /// `slope` times this distance to the side, toward where it came from.
     #[must_use]
     pub fn depth_mm(&self, slope: f64, wavelength_nm: f64) -> f64 {
         let cos2 = 1.0 / (1.0 + slope * slope);
@@ -57,7 +57,7 @@ impl CoverStack {
         self.plates.iter().map(one).sum()
     }
 
-    /// Outside the band, the value at its end.
+    /// Index of a plate at a wavelength, at least 1; outside the band the value at its end.
     fn index(&self, plate: &CoverPlate, wavelength_nm: f64) -> f64 {
         let inside = wavelength_nm.clamp(self.grid.start_nm, self.grid.end_nm());
         self.grid.interpolate(&plate.index, inside).max(1.0)

@@ -16,7 +16,7 @@ pub struct FrameSize {
 }
 
 impl FrameSize {
-    /// Number of pixels.
+    /// Number of pixels of the frame.
     #[must_use]
     pub fn pixels(&self) -> usize {
         self.width_px as usize * self.height_px as usize
@@ -28,7 +28,7 @@ impl FrameSize {
         self.width_mm / f64::from(self.width_px) * (self.height_mm / f64::from(self.height_px))
     }
 
-    /// The pixel (row-major, from the top row of the upright picture) at a point on the film, or `None` outside the
+    /// Returns the pixel (row-major, from the top row of the upright picture) at a point on the film, mm, or `None` outside the
     /// frame. A lens rotates its image by half a turn, so columns count against x and rows count along y.
     #[inline(always)]
     #[must_use]
@@ -40,7 +40,7 @@ impl FrameSize {
         inside.then(|| row as u32 * self.width_px + column as u32)
     }
 
-    /// The point on the film, mm, at (`u`, `v`) in [0, 1]^2 of a pixel; the inverse of [`FrameSize::pixel_at`].
+    /// Returns the point on the film, mm, at (`u`, `v`) in [0, 1]^2 of a pixel; the inverse of [`FrameSize::pixel_at`].
     #[inline(always)]
     #[must_use]
     pub fn point_of(&self, pixel: u32, u: f64, v: f64) -> (f64, f64) {
@@ -56,7 +56,7 @@ impl FrameSize {
 /// Linear exposure per channel and pixel, before any characteristic curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExposureFrame {
-    /// Size.
+    /// Size of the frame.
     pub size: FrameSize,
     /// One plane per channel, row-major, upright.
     pub channels: Vec<ExposureChannel>,
@@ -74,28 +74,28 @@ pub struct ExposureChannel {
 }
 
 impl ExposureFrame {
-    /// The channel of that name.
+    /// Returns the channel of this name, if there is one.
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&ExposureChannel> {
         self.channels.iter().find(|c| c.name == name)
     }
 
-    /// The values of these channels, in this order; `None` if one is missing.
+    /// Returns the values of these channels, in this order; `None` if one is missing.
     #[must_use]
     pub fn planes(&self, channels: &[Channel]) -> Option<Vec<&[f32]>> {
         channels.iter().map(|c| self.channel(&c.name).map(|plane| &plane.values[..])).collect()
     }
 
-    /// The values of the channel of that name, one per pixel.
+    /// Returns the values of the channel of this name, one per pixel.
     ///
     /// # Errors
-    /// The name of the missing channel, in the form that [`crate::stage::Film::develop`] returns.
+    /// A sentence that names the missing channel, in the form that [`crate::stage::Film::develop`] returns.
     pub fn values(&self, name: &str) -> Result<&[f32], String> {
         self.channel(name).map(|c| &c.values[..]).ok_or_else(|| format!("the exposure has no channel `{name}`"))
     }
 
-    /// A number of its bits: 64-bit FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo) of the size in pixels, and of each channel's name
-    /// and values, little-endian. Two renders with the same number have the same bits, unless somebody went out of their way.
+    /// Hashes the frame: 64-bit FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo) of the size in pixels, and of each channel's name and
+    /// values, little-endian. Two renders with the same hash have the same bits, unless somebody constructed a collision.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
         let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
@@ -126,27 +126,27 @@ pub struct DisplayPicture {
 }
 
 impl DisplayPicture {
-    /// A picture of one channel of a frame: `color` turns each value into linear light in sRGB primaries.
+    /// Makes a picture from one channel of a frame: `color` turns each value into linear light in sRGB primaries.
     #[must_use]
     pub fn of(size: FrameSize, values: &[f32], color: impl FnMut(&f32) -> [f32; 3]) -> Self {
         Self { width_px: size.width_px, height_px: size.height_px, rgb: values.iter().map(color).collect() }
     }
 }
 
-/// What the values of a picture stand for (ISO 22028-1 calls it the image state).
+/// The meaning of the values of a picture (ISO 22028-1 calls it the image state).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImageState {
-    /// In proportion to the light of the scene.
+    /// Values are proportional to the light of the scene.
     SceneReferred,
-    /// The light that a print, a projection or a screen sends.
+    /// Values are the light that a print, a projection or a screen sends.
     #[default]
     DisplayReferred,
-    /// No light: densities on a scale, which no program should take for a color.
+    /// Values are densities on a scale, not light; no program should take them for a color.
     Data,
 }
 
 impl ImageState {
-    /// In words, for the header of a file.
+    /// Name of the state, for the header of a file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -157,53 +157,52 @@ impl ImageState {
     }
 }
 
-/// What is wanted of a picture beside what a screen shows.
+/// Data requested of a picture in addition to what a screen shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
-    /// The same in no gamut.
+    /// The picture without conversion to a gamut; see [`Beside::open`].
     pub open: bool,
     /// Exposure and density, layer by layer.
     pub layers: bool,
 }
 
-/// A finished picture: what a screen shows, and what is known beside it.
+/// A finished picture: what a screen shows, and additional data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
-    /// For a screen.
+    /// The picture for a screen.
     pub shown: DisplayPicture,
-    /// Beside it.
+    /// Additional data of the picture.
     pub beside: Beside,
 }
 
-/// What is known of a picture beside what a screen shows.
+/// Data of a picture in addition to what a screen shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Beside {
-    /// The same picture, as far as it is known, brought into no gamut: values below 0 are colors that sRGB cannot have, values above 1
-    /// light beyond white. Of [`ImageState::Data`], the values of the scale themselves. `None` where it is not known, or not
-    /// wanted.
+    /// The picture without conversion to a gamut: values below 0 are colors that sRGB cannot have, values above 1 are light
+    /// beyond white. For [`ImageState::Data`], the values of the scale themselves. `None` if unknown or not wanted.
     pub open: Option<DisplayPicture>,
-    /// Layers by their names (`exposure.red`, `density.red`), of the picture's size; none where they are not wanted, or unknown.
+    /// Layers by their names (`exposure.red`, `density.red`), of the picture's size; empty if unknown or not wanted.
     pub layers: Vec<ExposureChannel>,
-    /// What the value 1 stands for, such as `0.4 lx s`, where it stands for an amount of light.
+    /// Amount of light that the value 1 stands for, such as `0.4 lx s`, if it stands for one.
     pub white: Option<String>,
 }
 
 impl Finished {
-    /// Of which only what a screen shows is known.
+    /// Wraps a picture for a screen, without additional data.
     #[must_use]
     pub fn of(shown: DisplayPicture) -> Self {
         Self { shown, beside: Beside::default() }
     }
 }
 
-/// What a sensor's analog-to-digital converter delivers: one number per pixel, and what a raw converter needs to develop them.
+/// The output of a sensor's analog-to-digital converter: one number per pixel, and what a raw converter needs to develop them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RawFrame {
     /// Pixels across.
     pub width_px: u32,
     /// Pixels down.
     pub height_px: u32,
-    /// Row-major, upright.
+    /// Values, row-major, upright.
     pub values: Vec<u16>,
     /// Colors of the filters, 2 x 2 in rows from the upper left: 0 red, 1 green, 2 blue. `None`: no filters.
     pub pattern: Option<[u8; 4]>,
@@ -211,25 +210,24 @@ pub struct RawFrame {
     pub black_level: u16,
     /// Value at which the converter saturates.
     pub white_level: u16,
-    /// What the filters' colors mean, for one light or for two, the one of lower color temperature first; none without
-    /// filters.
+    /// Meaning of the filters' colors, for one light or for two, the one of lower color temperature first; empty without filters.
     pub colors: Vec<RawColor>,
     /// The camera's red, green and blue of white; the largest is 1.
     pub neutral: [f64; 3],
-    /// The light of white: its EXIF number (`LightSource`), such as 21 for D65; 255 is any other.
+    /// Illuminant of white, as an EXIF number (`LightSource`), such as 21 for D65; 255 is any other.
     pub illuminant: u16,
     /// Noise of the values; `None` where there is none.
     pub noise: Option<RawNoise>,
-    /// By how many stops a converter should brighten (above 0) or darken the picture, so that an exposure by the meter at
+    /// Stops by which a converter should brighten (above 0) or darken the picture, so that an exposure by the meter at
     /// [`RawFrame::iso`] looks as it should.
     pub baseline_exposure_stops: f64,
     /// Width and height of a pixel, mm.
     pub pixel_mm: [f64; 2],
-    /// Maker for the file.
+    /// Name of the maker, for the file.
     pub maker: String,
-    /// Model for the file.
+    /// Name of the model, for the file.
     pub model: String,
-    /// What sets cameras of other colors apart, for programs that keep color profiles by name.
+    /// Model name that is unique to cameras with these colors, for programs that keep color profiles by name.
     pub unique_model: String,
     /// Exposure time, s.
     pub exposure_time_s: f64,
@@ -237,24 +235,24 @@ pub struct RawFrame {
     pub iso: f64,
 }
 
-/// What a camera's colors mean in one light.
+/// The meaning of a camera's colors in one light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RawColor {
-    /// The light: its EXIF number (`LightSource`), such as 17 for A and 21 for D65.
+    /// The light, as an EXIF number (`LightSource`), such as 17 for A and 21 for D65.
     pub illuminant: u16,
-    /// Rows give the camera's red, green and blue from XYZ of the scene.
+    /// Matrix whose rows give the camera's red, green and blue from XYZ of the scene.
     pub camera_from_xyz: [[f64; 3]; 3],
-    /// Rows give XYZ as it looks the same under D50, white (0.9643, 1, 0.8251), from the camera's red, green and blue,
-    /// each divided by that of white.
+    /// Matrix whose rows give XYZ adapted to D50, white (0.9643, 1, 0.8251), from the camera's red, green and blue, each
+    /// divided by that of white.
     pub d50_from_balanced: [[f64; 3]; 3],
 }
 
 /// Noise of a raw value. With x = (value - black) / (white - black) on average, x has the variance scale x + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RawNoise {
-    /// What photons add.
+    /// Variance per x that photons add.
     pub scale: f64,
-    /// What reading and rounding add.
+    /// Variance that reading and rounding add.
     pub offset: f64,
 }
 

@@ -4,12 +4,19 @@
 //! re-exported from `spectra-numerics`.
 //!
 //! # Conventions
-//! - Lengths are in millimetres, wavelengths in nanometres, angles in radians, times in seconds. A bare `f64` that
-//!   crosses a public border carries its unit in its name.
-//! - +z runs from the object toward the imager, +y is up. A radius of curvature is positive where its centre lies at larger z.
-//! - A lens's frame has its origin at the vertex of the first surface; a surface's own frame has it at that surface's vertex.
-//! - Everything that travels with light does so in batches ([`RayBatch`]), so a call through a trait object costs nothing per ray.
+//! - Lengths are in millimeters, wavelengths in nanometers, angles in radians, times in seconds. A bare `f64` in a public
+//!   interface carries its unit in its name.
+//! - +z runs from the object toward the imager, +y is up. A radius of curvature is positive if its center lies at larger z.
+//! - The frame of a lens has its origin at the vertex of the first surface; the frame of a surface has it at the vertex of that
+//!   surface.
+//! - Geometry is computed in `f64`. Rays are passed in batches ([`RayBatch`]: structure of arrays behind accessors), so a call through
+//!   a trait object costs nothing per ray. Losses are counted by cause and surface.
 //! - Random numbers, files and the instruction set reach a stage only through its arguments.
+//! - The band of light is 350 to 830 nm unless a scene states another: film is sensitive below 380 nm ([`spectral::BAND`]).
+//! - Light is absolute: radiance in W m^-2 sr^-1 nm^-1, exposure in lux seconds. A film channel is scaled so that the stock's
+//!   reference illuminant gives its photometric lux seconds. Exposure stays linear until film curves act, once, on the whole frame.
+//! - Picture files show the upright, unmirrored subject; coordinates on the film are turned by half a turn ([`frame::FrameSize`]).
+//! - Keys of files are kebab-case without units. Keys of JSON figures are snake_case with units.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

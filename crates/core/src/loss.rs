@@ -1,4 +1,4 @@
-//! Where light is lost: why a ray ended, at which surface, and how many rays did.
+//! Losses of light: why a ray ended, at which surface, and how many rays did.
 
 /// Why a ray ended before it reached the other side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -6,15 +6,15 @@
 pub enum Loss {
     /// The ray does not hit the surface.
     Missed = 1,
-    /// It hits the surface outside its clear aperture.
+    /// The ray hits the surface outside its clear aperture.
     Vignetted = 2,
-    /// Total internal reflection at a surface that should refract.
+    /// The ray is totally reflected at a surface that should refract.
     TotalReflection = 3,
-    /// Absorbed by a black surface or a filter.
+    /// The ray is absorbed by a black surface or a filter.
     Absorbed = 4,
-    /// It passed the lens but missed the imager's frame.
+    /// The ray passed the lens but missed the imager's frame.
     OutOfFrame = 5,
-    /// It carries no light: traced backward, it misses the picture in front of the lens, or meets black.
+    /// The ray carries no light: traced backward, it misses the picture in front of the lens, or meets black.
     Unlit = 6,
 }
 
@@ -22,11 +22,11 @@ pub enum Loss {
 pub const ALIVE: u64 = 0;
 
 impl Loss {
-    /// All causes.
+    /// All causes of a loss.
     pub const ALL: [Self; 6] =
         [Self::Missed, Self::Vignetted, Self::TotalReflection, Self::Absorbed, Self::OutOfFrame, Self::Unlit];
 
-    /// The short name used in tables and JSON.
+    /// Short name of the cause, used in tables and JSON.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -39,14 +39,14 @@ impl Loss {
         }
     }
 
-    /// The state of a ray that ends for this cause at `surface` (1-based; 0 where no surface applies).
+    /// Returns the state of a ray that ends for this cause at `surface` (1-based; 0 if no surface applies).
     #[inline(always)]
     #[must_use]
     pub fn state(self, surface: u32) -> u64 {
         (u64::from(surface) << 8) | self as u64
     }
 
-    /// Cause and surface of a state; `None` while the ray is alive.
+    /// Splits a state into cause and surface; `None` while the ray is alive.
     #[inline]
     #[must_use]
     pub fn of_state(state: u64) -> Option<(Self, u32)> {
@@ -55,7 +55,7 @@ impl Loss {
     }
 }
 
-/// How many rays ended, by surface and cause. Counts add up exactly, in any order.
+/// Numbers of rays that ended, by surface and cause. Counts add up exactly, in any order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LossCounts {
     /// One row per surface number (0: no surface), one column per cause.
@@ -81,14 +81,14 @@ impl LossCounts {
         }
     }
 
-    /// Adds the counts of another.
+    /// Adds the counts of `other` to these.
     pub fn merge(&mut self, other: &Self) {
         for (surface, cause, many) in other.iter() {
             self.add(cause, surface, many);
         }
     }
 
-    /// The counts that are not zero: (surface, cause, rays).
+    /// Iterates over the counts that are not zero: (surface, cause, rays).
     pub fn iter(&self) -> impl Iterator<Item = (u32, Loss, u64)> + '_ {
         self.rows.iter().enumerate().flat_map(|(surface, row)| {
             Loss::ALL
@@ -104,7 +104,7 @@ impl LossCounts {
         self.rows.iter().map(|row| row[cause as usize]).sum()
     }
 
-    /// Number of rays that ended.
+    /// Number of rays that ended, over all causes and surfaces.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.rows.iter().flatten().sum()

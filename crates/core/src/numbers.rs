@@ -1,7 +1,8 @@
 //! Numbers for sampling: a pure function of (seed, stream, sample, dimension).
 //!
-//! Backward, the stream is the pixel, or its rays to the rim of the pupil, and the sample counts within it; forward, there is one
-//! stream and the sample is the path. There is no state, so the numbers are the same however the work is divided.
+//! In backward rendering a stream is a pixel, or the rays of a pixel to the rim of the pupil, and samples count within it. In
+//! forward rendering there is one stream, and a sample is a path. There is no state, so the numbers are the same however the
+//! work is divided.
 //!
 //! [`Numbers::sobol`] draws from Owen-scrambled Sobol points: direction numbers by S. Joe and F. Y. Kuo,
 //! "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30
@@ -12,19 +13,25 @@
 //! [`Numbers::random`] draws independent numbers with the SplitMix64 finalizer; [`Numbers::stratified`] draws jittered numbers,
 //! one in each of n equal parts, in a separate order for each dimension.
 //!
-//! A path has five [`Dimension`]s. A stage that chooses draws further ones from the rays themselves, see [`RayNumbers`].
+//! A path has five [`Dimension`]s, the first five of one Sobol sequence. Wavelength and pupil have its first three coordinates,
+//! which are the most even together: what a lens does with a point depends on all three at once. The wavelength's place is the
+//! same in all of its 64 strata, mirrored from each to the next. An error that the slope of a spectrum makes in one stratum is
+//! compensated in its neighbor.
+//!
+//! A stage that makes random choices draws further numbers from the rays; see [`RayNumbers`].
 
 mod stage;
 
 pub(crate) use stage::RayColumns;
 pub use stage::{RayNumbers, StageKey, StageNumbers};
 
+pub use spectra_numerics::hash::{GOLDEN, SplitMix64, mix64, unit};
 pub use spectra_numerics::poisson::quantile as poisson;
 
 use crate::isa::{Isa, Vectorized};
 
-/// The dimensions of a path, by what their numbers decide. The wavelength has a dimension of its own, so that strategies can be
-/// compared with equal numbers everywhere else.
+/// Dimensions of a path, named after what their numbers decide. The wavelength has a dimension of its own, so that strategies
+/// can be compared with equal numbers everywhere else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Dimension {
@@ -53,50 +60,39 @@ pub(crate) enum Kind {
     Stratified(u32),
 }
 
-/// Generator of the lattice, a whole number of 1 / 2^32 a dimension: the best of 79 with random last bits, by the error of random
-/// vignetted integrands at 16 to 256 points.
+/// Generating vector of the lattice, in units of 1 / 2^32 per dimension. It is the best of 79 vectors with random last bits, by
+/// the error of random vignetted integrands at 16 to 256 points.
 const LATTICE: [u32; 5] = [1, 136_980_787, 1_326_550_667, 3_009_221_399, 872_425_555];
 
-/// A family of numbers in [0, 1).
+/// A family of sampling numbers in [0, 1).
 #[derive(Clone, Debug)]
 pub struct Numbers {
     kind: Kind,
     seed: u64,
-    /// Low eight bits of each dimension's points.
+    /// Contribution of the low eight bits of the index to the points of each dimension.
     low: Box<[[u32; 256]; SOBOL_DIMENSIONS]>,
 }
 
-/// The SplitMix64 finalizer (G. Steele, D. Lea, C. Flood, OOPSLA 2014).
-#[inline(always)]
-#[must_use]
-pub const fn mix64(mut x: u64) -> u64 {
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
-}
-
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// The seed of one frame of an animation, from the seed of the whole. It depends on nothing else, so a frame rendered alone has
-/// the same numbers as in the sequence.
+/// Derives the seed of one frame of an animation from the seed of the whole. It depends on nothing else, so a frame rendered
+/// alone has the same numbers as in the sequence.
 #[must_use]
 pub fn seed_of_frame(seed: u64, frame: u64) -> u64 {
     mix64(mix64(seed.wrapping_add(GOLDEN)) ^ mix64(frame.wrapping_mul(GOLDEN)).rotate_left(32))
 }
 
-/// The upper 52 bits as a number in [0, 1): the same bits on every tier, without converting integers.
+/// Converts the upper 52 bits to a number in [0, 1): the same bits on every tier, without an integer conversion.
 #[inline(always)]
 fn unit_from_u64(x: u64) -> f64 {
     f64::from_bits((x >> 12) | 0x3ff0_0000_0000_0000) - 1.0
 }
 
-/// 32 bits as the centre of their cell in [0, 1).
+/// Converts 32 bits to the center of their cell in [0, 1).
 #[inline(always)]
 fn unit_from_u32(x: u32) -> f64 {
     f64::from_bits((u64::from(x) << 20) | 0x3ff0_0000_0008_0000) - 1.0
 }
 
-/// Nested uniform scrambling of the bits of `x`, which are given in reverse; the result is in the usual order.
+/// Scrambles the bits of `x` by nested uniform scrambling. The bits of `x` are reversed; the result is in the usual order.
 #[inline(always)]
 fn owen_scramble_reversed(x: u32, seed: u32) -> u32 {
     let mut x = x ^ x.wrapping_mul(0x3d20_adea);
@@ -159,8 +155,9 @@ const fn directions() -> [[u32; 32]; SOBOL_DIMENSIONS] {
     all
 }
 
-/// Which Sobol coordinate a dimension has. The first three are the evenest together, and what a lens draws depends most on wavelength
-/// and pupil together: with place before pupil a picture on color film takes 1.16 times as many samples to the same noise.
+/// Sobol coordinate of each dimension. The first three coordinates are the most even together, and what a lens draws depends
+/// most on wavelength and pupil together. With place before pupil, a picture on color film takes 1.16 times as many samples for
+/// the same noise.
 const COORDINATE: [usize; SOBOL_DIMENSIONS] = {
     let mut all = [0, 1, 2, 3, 4, 5, 6, 7];
     all[Dimension::PupilU as usize] = 1;
@@ -170,10 +167,11 @@ const COORDINATE: [usize; SOBOL_DIMENSIONS] = {
     all
 };
 
-/// A coordinate of the Sobol point `index`, its bits reversed.
+/// Returns a coordinate of the Sobol point `index`, with its bits reversed.
 ///
-/// The first two have closed forms. The first is the index. In the second, bit `j` is the parity of the index's bits whose numbers have
-/// all the bits of `j` (Pascal's triangle modulo 2), which five steps sum up, one for each bit of such a number.
+/// The first two coordinates have closed forms. The first is the index. In the second, bit `j` is the parity of those bits of
+/// the index whose numbers contain all bits of `j` (Pascal's triangle modulo 2). Five steps compute it, one for each bit of a
+/// bit number.
 #[inline]
 fn point_reversed(coordinate: usize, index: u32) -> u32 {
     match coordinate {
@@ -209,37 +207,38 @@ impl Numbers {
         Self { kind, seed: mix64(seed.wrapping_add(GOLDEN)), low: Box::new(low) }
     }
 
-    /// Owen-scrambled Sobol points: the samples of a stream fill the space evenly. Wavelengths are mirrored between 64 strata, which
-    /// smooth light gains from.
+    /// Creates Owen-scrambled Sobol points: the samples of a stream fill the space evenly. Wavelengths are mirrored between 64
+    /// strata, which reduces the noise of smooth light.
     #[must_use]
     pub fn sobol(seed: u64) -> Self {
         Self::new(Kind::Sobol, seed)
     }
 
-    /// A rank-1 lattice in the five [`Dimension`]s, its points in the order of the radical inverse so that every power of two of
-    /// them is a lattice, too; each stream and dimension has a shift of its own. Evener than Sobol points where the light is smooth.
+    /// Creates a rank-1 lattice in the five [`Dimension`]s. Its points come in the order of the radical inverse, so that every
+    /// power of two of them is a lattice, too. Each stream and dimension has its own shift. More even than Sobol points if the
+    /// light is smooth.
     #[must_use]
     pub fn lattice(seed: u64) -> Self {
         Self::new(Kind::Lattice, seed)
     }
 
-    /// Independent random numbers.
+    /// Creates independent random numbers.
     #[must_use]
     pub fn random(seed: u64) -> Self {
         Self::new(Kind::Random, seed)
     }
 
-    /// Jittered strata: of every `strata` consecutive samples (from a multiple of it on), one lies in each of that many equal
-    /// parts of [0, 1), at an independent position. The order differs between dimensions and streams.
+    /// Creates jittered strata. Of every `strata` consecutive samples (starting at a multiple of `strata`), one lies in each of
+    /// that many equal parts of [0, 1), at an independent position. The order differs between dimensions and streams.
     ///
-    /// A number depends on (seed, stream, sample, dimension) and on the number of strata, which is best equal to the number of
-    /// samples in a stream. 0 counts as 1, which gives independent numbers.
+    /// A number depends on (seed, stream, sample, dimension) and on the number of strata. The best number of strata is the
+    /// number of samples in a stream. 0 counts as 1, which gives independent numbers.
     #[must_use]
     pub fn stratified(seed: u64, strata: u32) -> Self {
         Self::new(Kind::Stratified(strata.max(1)), seed)
     }
 
-    /// Independent numbers with the same seed, for the parts of a path that must not be stratified.
+    /// Returns independent numbers with the same seed, for the parts of a path that must not be stratified.
     #[must_use]
     pub fn as_random(&self) -> Self {
         Self { kind: Kind::Random, ..self.clone() }
@@ -268,7 +267,7 @@ impl Numbers {
         self.fill_sobol(isa, std::iter::once(Stretch { stream, first, count: out.len() }), d, out);
     }
 
-    /// Writes the numbers of stretches of samples one behind the other, as [`Numbers::fill_rotated`] those of each.
+    /// Writes the numbers of several runs of samples one after the other, each as [`Numbers::fill_rotated`] writes it.
     ///
     /// # Panics
     /// If `out` has no room for all of them.
@@ -291,7 +290,8 @@ impl Numbers {
         }
     }
 
-    /// Samples of a pixel are few: points and keys of many stretches are gathered, and scrambled together.
+    /// Writes the Sobol numbers of several runs. A pixel has few samples, so points and keys of many runs are gathered and
+    /// scrambled together.
     fn fill_sobol(&self, isa: Isa, stretches: impl Iterator<Item = Stretch>, d: usize, out: &mut [f64]) {
         let (mut points, mut keys, mut gathered, mut written) = ([0_u32; TOGETHER], [0_u32; TOGETHER], 0, 0);
         let scramble = |points: &[u32], keys: &[u32], out: &mut [f64]| {
@@ -325,9 +325,9 @@ impl Numbers {
         scramble(&points[..gathered], &keys[..gathered], &mut out[written..written + gathered]);
     }
 
-    /// Writes numbers that `group` consecutive samples share, rotated: sample i has the number of i / group, shifted by (i mod
-    /// group) / group around [0, 1). A group covers [0, 1) evenly, each of its numbers is as uniform as the shared one, and each
-    /// is still a function of (seed, stream, sample, dimension). A group of 1 (or 0) is [`Numbers::fill`].
+    /// Writes numbers that `group` consecutive samples share, rotated among them: sample i has number i / group, shifted by (i
+    /// mod group) / group around [0, 1). A group covers [0, 1) evenly. Each of its numbers is as uniform as the shared one, and
+    /// each is still a function of (seed, stream, sample, dimension). A group of 1 (or 0) is [`Numbers::fill`].
     pub fn fill_rotated(&self, isa: Isa, stream: u64, first: u64, group: u32, dimension: u32, out: &mut [f64]) {
         if group <= 1 {
             return self.fill(isa, stream, first, dimension, out);
@@ -337,14 +337,14 @@ impl Numbers {
         let at = |i: usize| first.wrapping_add(i as u64);
         let groups = (at(last) / size - base) as usize + 1;
         self.fill(isa, stream, base, dimension, &mut out[..groups]);
-        // From the end: a sample stands behind the number of its group, or where it is.
+        // From the end, because the number of a group stands at or before the samples of that group.
         for i in (0..out.len()).rev() {
             let moved = out[(at(i) / size - base) as usize] + (at(i) % size) as f64 / f64::from(group);
             out[i] = if moved < 1.0 { moved } else { moved - 1.0 };
         }
     }
 
-    /// One number, the same as from [`Numbers::fill`].
+    /// Returns one number, equal to the one that [`Numbers::fill`] writes.
     #[must_use]
     pub fn one(&self, stream: u64, sample: u64, dimension: u32) -> f64 {
         let mut out = [0.0];
@@ -353,7 +353,7 @@ impl Numbers {
     }
 }
 
-/// One number in each of `strata` parts, block by block.
+/// Writes one number in each of `strata` parts, block by block.
 fn fill_strata(key: u64, first: u64, strata: u32, out: &mut [f64]) {
     const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
     let many = u64::from(strata);
@@ -362,7 +362,7 @@ fn fill_strata(key: u64, first: u64, strata: u32, out: &mut [f64]) {
         let sample = first.wrapping_add(i as u64);
         if block != Some(sample / many) {
             block = Some(sample / many);
-            // The order of one block says nothing of that of the next, and nothing of the jitter.
+            // The order of one block is independent of that of the next, and of the jitter.
             order = mix64(key ^ mix64((sample / many).wrapping_add(0x0bad_0def_ace5_0f0a)));
         }
         let stratum = shuffled((sample % many) as u32, strata, order);
@@ -371,9 +371,9 @@ fn fill_strata(key: u64, first: u64, strata: u32, out: &mut [f64]) {
     }
 }
 
-/// The position of item `at` of `many` in a permutation that `key` selects; no two items get the same position.
-/// Applies invertible steps on as many bits as `many` needs, and repeats them while the position is beyond the last one. Such a
-/// walk stays on one cycle of a permutation, so no position occurs twice.
+/// Returns the position of item `at` of `many` in a permutation that `key` selects; no two items get the same position. Applies
+/// invertible steps on as many bits as `many` needs, and repeats them while the position is out of range. This walk stays on
+/// one cycle of a permutation, so no position occurs twice.
 fn shuffled(at: u32, many: u32, key: u64) -> u32 {
     let bits = 32 - (many - 1).leading_zeros();
     if bits == 0 {
@@ -433,21 +433,21 @@ impl Vectorized for FillLattice<'_> {
     }
 }
 
-/// Samples of a stream: so many, from the first on.
+/// A run of consecutive samples of a stream.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
-    /// The stream.
+    /// Number of the stream.
     pub stream: u64,
-    /// Its first sample.
+    /// First sample of the run.
     pub first: u64,
-    /// How many.
+    /// Number of samples.
     pub count: usize,
 }
 
-/// Points that are scrambled together.
+/// Number of points that are scrambled together.
 const TOGETHER: usize = 256;
 
-/// Makes numbers of points, whose bits are given in reverse, by a key each.
+/// Scrambles points into numbers, each with its own key. The bits of the points are reversed.
 struct Scramble<'a> {
     points: &'a [u32],
     keys: &'a [u32],
@@ -464,12 +464,14 @@ impl Vectorized for Scramble<'_> {
     }
 }
 
-/// Bits of a [`ScrambleMirrored`] number that are scrambled, so 64 strata. With 32 of them wavelength and pupil together are less even
-/// (a picture takes 1.07 times as many samples to the same noise), with 256 little is gained before there are as many samples.
+/// Number of bits of a [`ScrambleMirrored`] number that are scrambled, which gives 64 strata. With 32 strata, wavelength and
+/// pupil together are less even (a picture takes 1.07 times as many samples for the same noise). With 256, little is gained
+/// before there are as many samples.
 const SCRAMBLED_BITS: u32 = 6;
 
-/// The same with the strata scrambled, but with one place in all of them, mirrored from each to the next: what the slope of a smooth
-/// function makes wrong in one is made good in its neighbor. With fewer than 64 samples the numbers are as even as others.
+/// Scrambles points into numbers by strata only. The place within the stratum is common to all strata, mirrored from each to
+/// the next. The error that the slope of a smooth function causes in one stratum thus cancels in its neighbor. With fewer than
+/// 64 samples the numbers are as even as others.
 struct ScrambleMirrored<'a> {
     points: &'a [u32],
     keys: &'a [u32],
@@ -490,7 +492,7 @@ impl Vectorized for ScrambleMirrored<'_> {
     }
 }
 
-/// A random generator that belongs to one event of one ray; see [`RayNumbers::generator`].
+/// A random number generator that belongs to one event of one ray; see [`RayNumbers::generator`].
 #[derive(Clone, Debug)]
 pub struct SampleRng {
     state: u64,

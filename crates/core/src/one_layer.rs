@@ -5,12 +5,12 @@ use crate::registry::Context;
 use crate::spectral::Channel;
 use crate::stage::Film;
 
-/// A pixel of a frame: what noise that differs from pixel to pixel is made from.
+/// A pixel of a frame, from which a film can derive noise that differs from pixel to pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Its number, row-major from the top left of the upright picture.
+    /// Number of the pixel, row-major from the top left of the upright picture.
     pub index: u64,
-    /// Its area on the film, mm^2.
+    /// Area of the pixel on the film, mm^2.
     pub area_mm2: f64,
     /// Frame number in an animation; 0 for a single picture.
     pub frame: u64,
@@ -35,9 +35,9 @@ pub struct OneLayer<T> {
 }
 
 impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync> OneLayer<T> {
-    /// A film called `name`. `sees` is its response to spectral irradiance (W m^-2 nm^-1) at a wavelength (nm): the integral
-    /// of irradiance times response, times `exposure_time_s`, is the exposure in `unit`. `tone` turns the exposure of a pixel
-    /// into linear light (sRGB primaries; 1 is the screen's white).
+    /// Creates a film called `name`. `sees` is its response to spectral irradiance (W m^-2 nm^-1) at a wavelength (nm): the
+    /// integral of irradiance times response, times `exposure_time_s`, is the exposure in `unit`. `tone` turns the exposure of
+    /// a pixel into linear light (sRGB primaries; 1 is the screen's white).
     #[must_use]
     pub fn new(
         name: &str,

@@ -1,4 +1,4 @@
-//! What nearly every plugin needs: `use spectra_core::prelude::*;`.
+//! The items that nearly every plugin needs: `use spectra_core::prelude::*;`.
 
 pub use crate::frame::{DisplayPicture, ExposureFrame, FrameSize};
 pub use crate::one_layer::{OneLayer, Pixel};

@@ -5,14 +5,14 @@ use std::borrow::Cow;
 use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 
-/// What went wrong with a file.
+/// Error of finding or reading a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ResourceError {
-    /// No such file, neither beside the scene nor bundled; holds similar names.
+    /// There is no such file, neither beside the scene nor bundled; holds similar names.
     NotFound(Vec<String>),
-    /// It is larger than the caller's limit, bytes: (found, limit).
+    /// The file is larger than the caller's limit: (found, limit), bytes.
     TooLarge(u64, u64),
-    /// The operating system's error.
+    /// Error of the operating system.
     Io(String),
 }
 
@@ -28,21 +28,21 @@ impl std::fmt::Display for ResourceError {
 
 impl std::error::Error for ResourceError {}
 
-/// A file that was found.
+/// A file that was found and read.
 #[derive(Clone, Debug)]
 pub struct Resource {
-    /// Its name in messages: a path, or `bundled:...`.
+    /// Name of the file in messages: a path, or `bundled:...`.
     pub name: String,
-    /// Its folder on disk, against which paths inside it are resolved; `None` when bundled.
+    /// Folder of the file on disk, against which paths inside the file are resolved; `None` if bundled.
     pub folder: Option<PathBuf>,
-    /// The content.
+    /// Content of the file.
     pub bytes: Cow<'static, [u8]>,
 }
 
-/// A file that was found and not read.
+/// A file that was found but not read.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// How to name it to a person: a path, or `bundled:...`.
+    /// Name of the file in messages: a path, or `bundled:...`.
     pub name: String,
     content: Content,
 }
@@ -53,25 +53,25 @@ enum Content {
     Bytes(Cow<'static, [u8]>),
 }
 
-/// What a decoder reads from.
+/// A seekable reader, as decoders need it.
 pub trait ReadSeek: BufRead + Seek + Send {}
 
 impl<R: BufRead + Seek + Send> ReadSeek for R {}
 
 impl Found {
-    /// A file on disk.
+    /// Creates a reference to a file on disk.
     #[must_use]
     pub fn on_disk(name: String, path: PathBuf) -> Self {
         Self { name, content: Content::OnDisk(path) }
     }
 
-    /// Bytes that are there already.
+    /// Creates a file from bytes in memory.
     #[must_use]
     pub fn bytes(name: String, bytes: Cow<'static, [u8]>) -> Self {
         Self { name, content: Content::Bytes(bytes) }
     }
 
-    /// Where it lies on disk; `None` of bytes that are there already.
+    /// Path of the file on disk; `None` for bytes in memory.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         match &self.content {
@@ -80,7 +80,7 @@ impl Found {
         }
     }
 
-    /// Its size, bytes.
+    /// Size of the file, bytes.
     ///
     /// # Errors
     /// [`ResourceError::Io`].
@@ -91,7 +91,7 @@ impl Found {
         }
     }
 
-    /// For reading parts of it.
+    /// Opens the file for reading parts of it.
     ///
     /// # Errors
     /// [`ResourceError::Io`].
@@ -102,7 +102,7 @@ impl Found {
         })
     }
 
-    /// All of it, or as much of its start.
+    /// Reads the file, or its first `at_most_bytes` bytes if it is larger.
     ///
     /// # Errors
     /// [`ResourceError::Io`].
@@ -117,17 +117,17 @@ fn io(error: std::io::Error) -> ResourceError {
     ResourceError::Io(error.to_string())
 }
 
-/// Finds files for stages.
+/// Access to the files that stages ask for.
 pub trait Resources: Send + Sync {
-    /// Reads `path`: as given relative to the scene's folder, else bundled under one of `folders`
-    /// (such as `lenses`), with each of `endings` (such as `.yaml`) tried too.
+    /// Reads `path`: as given relative to the scene's folder, else bundled under one of `folders` (such as `lenses`). Each of
+    /// `endings` (such as `.yaml`) is tried, too.
     ///
     /// # Errors
     /// [`ResourceError`].
     fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64)
     -> Result<Resource, ResourceError>;
 
-    /// Finds a file as [`Resources::read`] does, without reading it: for large ones.
+    /// Finds a file like [`Resources::read`], without reading it; for large files.
     ///
     /// # Errors
     /// [`ResourceError`].
@@ -138,13 +138,14 @@ pub trait Resources: Send + Sync {
     /// Reads and parses a YAML document (a lens, a film stock), found as by [`Resources::read`].
     ///
     /// # Errors
-    /// What is wrong with the file or its syntax, with the place in that file. If the file itself is not found the fault has
-    /// no place: attach it to the key that named the file.
+    /// The faults of the file or its syntax, with the place in that file. If the file itself is not found, the fault has no
+    /// place: attach it to the key that named the file.
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults>;
 }
 
-/// The path to give to [`Resources::read`] for a file that the value `node` names: relative to the file in which the value is
-/// written, if that is on disk; else as written, which is relative to the scene.
+/// Returns the path to pass to [`Resources::read`] for a file that the value `node` names. If that file exists relative to the
+/// file in which the value is written, the result is its absolute path. Otherwise it is the path as written, which is relative
+/// to the scene.
 #[must_use]
 pub fn beside(node: &Node, path: &str) -> String {
     let there = node.file.folder().map(|folder| folder.join(path)).filter(|there| there.is_file());

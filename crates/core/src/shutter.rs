@@ -3,8 +3,9 @@
 /// Largest distance of 1/t from a whole number that still counts as that number, relative and absolute.
 const WHOLE: (f64, f64) = (1e-6, 1e-3);
 
-/// An exposure time in words: `1/125 s`, `1/700 s`, `0.4 s`, `2 s`. One over a whole number is shown as it is, any other
-/// time rounded to what a shutter can tell apart (two digits below 0.3 s, three above). Beyond 1e-7 s and 1e5 s as a number.
+/// Formats an exposure time in seconds as a photographer writes it: `1/125 s`, `1/700 s`, `0.4 s`, `2 s`. One over a whole
+/// number is shown exactly. Other times are rounded to what a shutter can distinguish: two digits below 0.3 s, three from there
+/// on. Below 1e-7 s and from 1e5 s on, the time is shown as a plain number.
 #[must_use]
 pub fn words(seconds: f64) -> String {
     if !(1e-7..1e5).contains(&seconds) {
@@ -30,12 +31,12 @@ pub fn words(seconds: f64) -> String {
     }
 }
 
-/// A number rounded to so many digits that count.
+/// Rounds a number to `count` significant digits.
 fn digits(value: f64, count: usize) -> f64 {
     format!("{value:.*e}", count - 1).parse().unwrap_or(value)
 }
 
-/// `1.20e-9` as `1.2e-9`.
+/// Drops trailing zeros of the mantissa: `1.20e-9` becomes `1.2e-9`.
 fn short(text: &str) -> String {
     match text.split_once('e') {
         Some((number, power)) => format!("{}e{power}", number.trim_end_matches('0').trim_end_matches('.')),
@@ -90,7 +91,7 @@ mod tests {
         assert_eq!(times.map(words), wanted);
     }
 
-    /// A word is never farther from the time than a third of a third-stop.
+    /// The text is never farther from the time than a third of a third-stop.
     #[test]
     fn words_stay_near_the_time() {
         for i in 0..4000 {

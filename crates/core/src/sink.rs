@@ -1,19 +1,20 @@
-//! Where results go.
+//! Destinations of results: a folder, an archive, memory.
 
 use std::io::{Cursor, Read, Seek, Write};
 use std::sync::{Mutex, PoisonError};
 
-/// What a file is written into. Formats come back to their heads, and read what they wrote.
+/// A destination that a file is written to. It can seek and read, because some formats return to their headers and read back
+/// what they wrote.
 pub trait Out: Read + Write + Seek {}
 
 impl<T: Read + Write + Seek> Out for T {}
 
-/// What went wrong while the content of a file was written.
+/// Error that occurred while the content of a file was written.
 #[derive(Debug)]
 pub enum WriteFault {
-    /// The system refused.
+    /// Error of the operating system.
     Io(std::io::Error),
-    /// Why the format cannot hold the content.
+    /// Reason why the format cannot hold the content.
     Format(String),
 }
 
@@ -32,24 +33,24 @@ impl std::fmt::Display for WriteFault {
     }
 }
 
-/// Writes the content of a file.
+/// Callback that writes the content of a file.
 pub type Content<'a> = &'a mut dyn FnMut(&mut dyn Out) -> Result<(), WriteFault>;
 
-/// Takes files by their names: a folder, an archive, memory. Each is there whole or not at all.
+/// A destination for files with names: a folder, an archive, memory. Each file is stored whole or not at all.
 pub trait Sink: Sync {
-    /// Takes one file.
+    /// Stores one file under `name`.
     ///
     /// # Errors
-    /// What `content` has, or the place that the files go to.
+    /// The error of `content`, or of the destination.
     fn file(&self, name: &str, content: Content<'_>) -> Result<(), WriteFault>;
 }
 
-/// Files in memory, in the order in which they came.
+/// Files kept in memory, in the order in which they were stored.
 #[derive(Debug, Default)]
 pub struct Memory(Mutex<Vec<(String, Vec<u8>)>>);
 
 impl Memory {
-    /// The files with their names.
+    /// Returns the names and contents of the files.
     #[must_use]
     pub fn into_files(self) -> Vec<(String, Vec<u8>)> {
         self.0.into_inner().unwrap_or_else(PoisonError::into_inner)

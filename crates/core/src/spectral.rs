@@ -1,4 +1,4 @@
-//! Spectra as one stage hands them to the next: sampled over the band.
+//! Sampled spectra over the band, as one stage passes them to the next.
 
 use spectra_numerics::table;
 use std::sync::Arc;
@@ -18,34 +18,34 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Last wavelength, nm.
+    /// Last wavelength of the grid, nm.
     #[inline]
     #[must_use]
     pub fn end_nm(&self) -> f64 {
         self.start_nm + self.step_nm * (self.count - 1) as f64
     }
 
-    /// Wavelength `i`, nm.
+    /// Wavelength `i` of the grid, nm.
     #[inline]
     #[must_use]
     pub fn wavelength_nm(&self, i: usize) -> f64 {
         self.start_nm + self.step_nm * i as f64
     }
 
-    /// All wavelengths, nm.
+    /// Iterates over all wavelengths, nm.
     #[inline]
     pub fn wavelengths_nm(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.count).map(|i| self.wavelength_nm(i))
     }
 
-    /// Whether `wavelength_nm` lies on the band, its ends included.
+    /// Returns whether `wavelength_nm` lies on the band, ends included.
     #[inline]
     #[must_use]
     pub fn contains(&self, wavelength_nm: f64) -> bool {
         wavelength_nm >= self.start_nm && wavelength_nm <= self.end_nm()
     }
 
-    /// Value of a table on this grid at `wavelength_nm`: linear between points, 0 outside the band.
+    /// Returns the value of a table on this grid at `wavelength_nm`: linear between points, 0 outside the band.
     #[inline(always)]
     #[must_use]
     pub fn interpolate(&self, table: &[f64], wavelength_nm: f64) -> f64 {
@@ -57,19 +57,19 @@ impl Grid {
         table::linear(&table[..self.count], p)
     }
 
-    /// Integral over the band of the product of two tables, each linear between points; exact.
+    /// Integrates the product of two tables over the band, exactly. Each table is linear between points.
     #[must_use]
     pub fn integrate_product(&self, a: &[f64], b: &[f64]) -> f64 {
         let mut sum = 0.0;
         for i in 0..self.count - 1 {
-            // Simpson's rule is exact for the quadratic that the product of two lines is.
+            // Simpson's rule is exact, because the product of two lines is a quadratic.
             let mid = 0.25 * (a[i] + a[i + 1]) * (b[i] + b[i + 1]);
             sum += a[i] * b[i] + 4.0 * mid + a[i + 1] * b[i + 1];
         }
         sum * self.step_nm / 6.0
     }
 
-    /// Integral over the band of a table that is linear between points; exact.
+    /// Integrates a table over the band, exactly. The table is linear between points.
     #[must_use]
     pub fn integrate(&self, a: &[f64]) -> f64 {
         let inner: f64 = a[1..self.count - 1].iter().sum();
@@ -77,7 +77,7 @@ impl Grid {
     }
 }
 
-/// A spectral line.
+/// A spectral line with its power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
     /// Wavelength in air, nm.
@@ -86,25 +86,25 @@ pub struct Line {
     pub power: f64,
 }
 
-/// Emitted light: a continuum per nanometre on a grid, and lines beside it.
+/// Emitted light: a continuum per nanometer on a grid, plus spectral lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectralPower {
     /// The grid of the continuum.
     pub grid: Grid,
-    /// Power per nanometre at each point, linear between them.
+    /// Power per nanometer at each point, linear between points.
     pub continuum: Vec<f64>,
     /// Spectral lines; those outside the band are ignored.
     pub lines: Vec<Line>,
 }
 
 impl SpectralPower {
-    /// No light.
+    /// Returns a spectrum without any light.
     #[must_use]
     pub fn dark(grid: Grid) -> Self {
         Self { grid, continuum: vec![0.0; grid.count], lines: Vec::new() }
     }
 
-    /// This power times `factor`.
+    /// Returns this spectrum times `factor`, lines included.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -114,14 +114,14 @@ impl SpectralPower {
         }
     }
 
-    /// Power seen through a response on the same grid: integral of the product, lines included.
+    /// Returns the power seen through a response on the same grid: the integral of the product, lines included.
     #[must_use]
     pub fn seen_by(&self, response: &[f64]) -> f64 {
         let lines: f64 = self.lines.iter().map(|l| l.power * self.grid.interpolate(response, l.wavelength_nm)).sum();
         self.grid.integrate_product(&self.continuum, response) + lines
     }
 
-    /// Whether there is no power at all.
+    /// Returns whether there is no power at all.
     #[must_use]
     pub fn is_dark(&self) -> bool {
         self.continuum.iter().all(|v| *v == 0.0) && self.lines.iter().all(|l| l.power == 0.0)
@@ -131,28 +131,28 @@ impl SpectralPower {
 /// One recorded channel, such as X of XYZ or a layer of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Short name; names the channel in the EXR.
+    /// Short name, also that of the channel in the EXR.
     pub name: String,
     /// Unit of the recorded exposure, such as `lx s`.
     pub unit: String,
-    /// Response per unit of spectral irradiance (W m^-2 nm^-1) at each point of the grid, so that
-    /// the integral of irradiance times response is in `unit` (times the exposure time where the unit has one).
+    /// Response per unit of spectral irradiance (W m^-2 nm^-1) at each point of the grid. The integral of irradiance times
+    /// response is in `unit` (after multiplication by the exposure time, if the unit contains a time).
     pub response: Vec<f64>,
 }
 
-/// What a wavelength sampler needs to know about the system.
+/// The system as a wavelength sampler needs to know it: band, source and channels.
 #[derive(Clone, Debug)]
 pub struct SystemResponse {
     /// The band and its grid.
     pub grid: Grid,
-    /// What the source emits into the lens, on any scale.
+    /// Light that the source emits into the lens, on any scale.
     pub source: SpectralPower,
     /// The recorded channels.
     pub channels: Arc<[Channel]>,
 }
 
 impl SystemResponse {
-    /// Sum of the channels' responses, each scaled to a peak of 1 so that every channel counts.
+    /// Returns the sum of the absolute responses of all channels, each scaled to a peak of 1 so that every channel counts.
     #[must_use]
     pub fn summed_response(&self) -> Vec<f64> {
         let mut sum = vec![0.0; self.grid.count];

@@ -1,18 +1,18 @@
-//! What a camera's frame sees in front of the lens.
+//! Lines of sight: what a camera's frame sees in front of the lens.
 
 /// A line of sight, in the frame of the lens: where it crosses the plane z = 0, and its slope in front of that plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// The point of the frame that it comes from, as a number that differs from point to point.
+    /// Number of the point of the frame that this line of sight comes from.
     pub point: usize,
     /// x and y on the plane z = 0, mm.
     pub start_mm: [f64; 2],
-    /// Sideways shift, mm, per mm toward the object.
+    /// Sideways shift in x and y, mm, per mm toward the object.
     pub slope: [f64; 2],
 }
 
 impl Sight {
-    /// Where it crosses the plane `distance_mm` in front of the first vertex, mm.
+    /// Returns x and y, mm, at which this line of sight crosses the plane `distance_mm` in front of the first vertex.
     #[must_use]
     pub fn at_mm(&self, distance_mm: f64) -> [f64; 2] {
         [0, 1].map(|k| self.start_mm[k] + self.slope[k] * distance_mm)
@@ -24,40 +24,41 @@ impl Sight {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct View {
     sights: Vec<Sight>,
-    /// Points of the frame with a line of sight that runs backward, so that they cannot see a plane.
+    /// Points of the frame with a line of sight at 90 degrees to the axis or more; they cannot see a plane.
     beside: Vec<usize>,
-    /// Focal length of the lens, mm, where it is known.
+    /// Focal length of the lens, mm, if known.
     focal_length_mm: Option<f64>,
 }
 
 impl View {
-    /// From its lines of sight, those of one point in a row. `beside`: the points with a line of sight at 90 degrees to the axis
-    /// or more.
+    /// Creates a view from lines of sight, in which those of one point are adjacent. `beside` lists the points with a line of
+    /// sight at 90 degrees to the axis or more.
     #[must_use]
     pub fn new(sights: Vec<Sight>, beside: Vec<usize>) -> Self {
         Self { sights, beside, focal_length_mm: None }
     }
 
-    /// The same view, through a lens of this focal length, mm.
+    /// Sets the focal length of the lens, mm. The sign is dropped, and a value that is not finite counts as unknown.
     #[must_use]
     pub fn with_focal_length(self, mm: f64) -> Self {
         Self { focal_length_mm: Some(mm.abs()).filter(|mm| mm.is_finite()), ..self }
     }
 
-    /// Focal length of the lens, mm, positive; `None` where it is not known, or infinite.
+    /// Focal length of the lens, mm, positive; `None` if it is unknown or infinite.
     #[must_use]
     pub fn focal_length_mm(&self) -> Option<f64> {
         self.focal_length_mm
     }
 
-    /// Whether a plane across the axis can fill the frame. It cannot if the lens looks to the side or behind.
+    /// Returns whether a plane perpendicular to the axis can fill the frame. It cannot if the lens looks to the side or behind,
+    /// or if there are no lines of sight.
     #[must_use]
     pub fn fits_a_plane(&self) -> bool {
         self.beside.is_empty() && !self.sights.is_empty()
     }
 
-    /// Half the width and height, mm, of the smallest rectangle centered on a point (mm) of the plane `distance_mm` in front of
-    /// the first vertex that contains everything the frame sees there. `None` if there is no such rectangle.
+    /// Returns half the width and height, mm, of the smallest rectangle around `center_mm` that contains everything the frame
+    /// sees on the plane `distance_mm` in front of the first vertex. `None` if there is no such rectangle.
     #[must_use]
     pub fn half_size_mm(&self, distance_mm: f64, center_mm: [f64; 2]) -> Option<[f64; 2]> {
         if !self.fits_a_plane() {
@@ -73,8 +74,8 @@ impl View {
         half.iter().all(|h| h.is_finite()).then_some(half)
     }
 
-    /// Among the points of the frame that see anything through the lens, the share that gets half of its light or more from
-    /// places where `is_seen` is false; `None` if there are no such points.
+    /// Returns the share of frame points that get half of their light or more from places where `is_seen` is false. Only points
+    /// that see anything through the lens count; `None` if there are none.
     #[must_use]
     pub fn share_missed(&self, is_seen: impl Fn(&Sight) -> bool) -> Option<f64> {
         let (mut points, mut missed) = (0_usize, 0_usize);

@@ -1,21 +1,21 @@
-//! Who does the work: threads belong to the program that renders, not to the engine.
+//! Worker threads: they belong to the program that renders, not to the engine.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-/// Some threads.
+/// A set of worker threads that run the same closure.
 pub trait Workers: Sync {
-    /// Calls `work` once on each of them, and returns when all calls have.
+    /// Calls `work` once on each thread, and returns when all calls have returned.
     fn each(&self, work: &(dyn Fn() + Sync));
 
-    /// Whether whoever asked does not want the result any more. Once it is true it stays so. Work that heeds it ends early, with
+    /// Returns whether the caller no longer wants the result. Once true, it stays true. Work that checks this ends early, with
     /// an error of its own.
     fn should_stop(&self) -> bool {
         false
     }
 }
 
-/// The thread that asks.
+/// Workers that consist of the calling thread only.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Alone;
 
@@ -25,10 +25,11 @@ impl Workers for Alone {
     }
 }
 
-/// Does so many pieces of work, each on one of the workers, who has columns of its own; gives their results in order.
+/// Runs `work` for each of `pieces` pieces on the workers, and returns the results in order. Each worker makes its own state
+/// with `fresh` and passes it to `work`.
 ///
 /// # Errors
-/// The first one, in the order of the pieces, of those that were met before the work stopped.
+/// The first error, in the order of the pieces, among those that occurred before the work stopped.
 pub fn each_of<S, T: Send, E: Send>(
     workers: &dyn Workers,
     pieces: usize,

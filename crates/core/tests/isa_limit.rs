@@ -1,4 +1,5 @@
-//! What `SPECTRA_ISA` asks for holds in the whole process. A test program of its own: the limit cannot be taken back.
+//! The limit that `SPECTRA_ISA` sets holds in the whole process. This test is a program of its own, because the limit cannot be
+//! taken back.
 
 use spectra_core::Isa;
 
@@ -13,6 +14,6 @@ fn nothing_runs_wider_than_the_limit() {
             assert_eq!(wider.allowed(), *isa, "{}", wider.name());
         }
     }
-    // A limit does not hide what the machine has: a name that is known is no fault.
+    // A limit does not hide what the machine has: `by_name` still accepts its names.
     assert_eq!(Isa::by_name(machine[machine.len() - 1].name()).as_ref(), machine.last().ok_or(&String::new()));
 }

@@ -1,8 +1,7 @@
 //! Bundled measured data, lenses and scenes, compiled into the binary.
 //!
 //! A file is named by its path in the repository, with forward slashes: `spectra/illuminants/D65.csv`,
-//! `lenses/zeiss-biotar-50-f1.4.yaml`, `scenes/biotar-ortho.yaml`. So an installed program needs no data
-//! folder.
+//! `lenses/zeiss-biotar-50-f1.4.yaml`, `scenes/biotar-ortho.yaml`. An installed program therefore needs no data folder.
 //!
 //! ```
 //! let text = spectra_data::text("spectra/illuminants/D65.csv").unwrap();
@@ -18,20 +17,20 @@ pub use licenses::{License, licenses};
 
 include!(concat!(env!("OUT_DIR"), "/files.rs"));
 
-/// Content of the bundled file `path`; `None` if there is none of that name.
+/// Returns the content of the bundled file `path`; `None` if there is no such file.
 #[must_use]
 pub fn get(path: &str) -> Option<&'static [u8]> {
     let at = FILES.binary_search_by(|(name, _)| (*name).cmp(path)).ok()?;
     Some(FILES[at].1)
 }
 
-/// Content of the bundled file `path` as text; `None` if there is none, or it is not UTF-8.
+/// Returns the content of the bundled file `path` as text; `None` if there is no such file, or it is not UTF-8.
 #[must_use]
 pub fn text(path: &str) -> Option<&'static str> {
     std::str::from_utf8(get(path)?).ok()
 }
 
-/// Names of all bundled files that begin with `prefix`, in sorted order.
+/// Returns the names of all bundled files that begin with `prefix`, in sorted order.
 pub fn list(prefix: &str) -> impl Iterator<Item = &'static str> + use<'_> {
     let first = FILES.partition_point(|(name, _)| *name < prefix);
     FILES[first..].iter().map(|(name, _)| *name).take_while(move |name| name.starts_with(prefix))

@@ -1,19 +1,19 @@
-//! Who made the bundled data, and under which terms.
+//! Sources and licenses of the bundled data.
 
 use crate::{FILES, text};
 
-/// One source and its terms, with the files that come from it.
+/// A source and its terms, with the files that come from it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct License {
     /// Terms as the file states them, such as `CC0-1.0`.
     pub license: String,
-    /// Publication or catalogue the figures come from.
+    /// Publication or catalogue that the numbers come from.
     pub source: String,
-    /// Bundled files, by path in the repository, sorted.
+    /// Paths in the repository of the bundled files, sorted.
     pub files: Vec<&'static str>,
 }
 
-/// The value of `key` in a line such as `# key: value` (CSV) or `key: value` (YAML at its first level).
+/// Returns the value of `key` in a line such as `# key: value` (CSV) or `key: value` (YAML at its first level).
 fn value<'a>(line: &'a str, key: &str) -> Option<&'a str> {
     let line = line.strip_prefix('#').map_or(line, str::trim_start);
     let value = line.strip_prefix(key)?.strip_prefix(':')?.trim();
@@ -22,7 +22,8 @@ fn value<'a>(line: &'a str, key: &str) -> Option<&'a str> {
     Some(quoted.unwrap_or(value)).filter(|v| !v.is_empty())
 }
 
-/// A line `!source MARK TEXT` of a catalogue that joins several sources, each text naming its terms.
+/// Returns terms and source from a line `!source MARK TEXT` of a catalogue that joins several sources, each text naming its
+/// terms.
 fn catalogue_source(line: &str) -> Option<(&str, &str)> {
     const TERMS: [&str; 6] = ["CC0 1.0", "CC-BY 4.0", "MIT", "Apache-2.0", "BSD-3", "BSD-2"];
     let (_, source) = line.strip_prefix("!source ")?.split_once(' ')?;
@@ -30,16 +31,16 @@ fn catalogue_source(line: &str) -> Option<(&str, &str)> {
     Some((terms, source.trim()))
 }
 
-/// License and source of every bundled file that states them, one entry for each pair, sorted.
+/// Returns license and source of every bundled file that states them, one entry for each pair, sorted.
 ///
-/// The first `license` and the first `source` among the first 60 lines of a file count, or else every line
-/// `!source MARK TEXT` there.
+/// Counts the first `license` and the first `source` among the first 60 lines of a file, and every line `!source MARK TEXT`
+/// there.
 #[must_use]
 pub fn licenses() -> Vec<License> {
     let mut all: Vec<License> = Vec::new();
     for (name, _) in FILES {
         let Some(text) = text(name) else { continue };
-        // Terms stand at the head of a file; data rows below need no search.
+        // Terms stand at the head of a file; the data rows below are not searched.
         let head: Vec<&str> = text.lines().take(60).collect();
         let license = head.iter().find_map(|l| value(l, "license").or_else(|| value(l, "licence")));
         let source = head.iter().find_map(|l| value(l, "source"));

@@ -1,6 +1,6 @@
-//! Bytes to text: UTF-8, UTF-16 of either order with or without a mark, or Latin-1.
+//! Decoding of text: UTF-8, UTF-16 in either byte order with or without a byte order mark, or Latin-1.
 
-/// The text of a file.
+/// Decodes the bytes of a file as text. Invalid UTF-16 becomes the replacement character.
 #[must_use]
 pub fn text(bytes: &[u8]) -> String {
     match bytes {
@@ -8,7 +8,7 @@ pub fn text(bytes: &[u8]) -> String {
         [0xfe, 0xff, rest @ ..] => utf16(rest, u16::from_be_bytes),
         [0xef, 0xbb, 0xbf, rest @ ..] => eight_bit(rest),
         _ => {
-            // Text of a lens file is nearly all ASCII: in UTF-16 every other byte is then 0.
+            // The text of a lens file is nearly all ASCII: in UTF-16 every other byte is then 0.
             let start = &bytes[..bytes.len().min(64)];
             let zeros = |offset: usize| start.iter().skip(offset).step_by(2).filter(|b| **b == 0).count();
             let most = start.len() / 4 + 1;
@@ -31,7 +31,7 @@ fn utf16(bytes: &[u8], order: fn([u8; 2]) -> u16) -> String {
 fn eight_bit(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
-        // ISO 8859-1: each byte is the character of that number.
+        // Decode as ISO 8859-1: each byte is the character of that number.
         Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
     }
 }

@@ -1,19 +1,20 @@
-//! Glasses by the names that other programs give them.
+//! Lookup of glasses by the names that other programs give them.
 
 use crate::prescription::Medium;
 use spectra_glass::lines::F;
 use spectra_glass::{Catalogue, FindError, Glass};
 
-/// Largest difference between a stated index and that of the glass of this name, if it is to be that glass.
+/// Largest difference between a stated index and that of a catalog glass for the two to be the same glass.
 const SAME_INDEX: f64 = 0.002;
 
-/// Differences in nd and Vd of a glass whose figures were written with all digits, and with those that catalogues print.
+/// Differences in nd and Vd within which a glass is identified by its figures: for figures with all digits, and for the digits that
+/// catalogs print.
 const SAME_FIGURES: [(f64, f64); 2] = [(1e-9, 1e-6), (6e-6, 6e-3)];
 
-/// Makers in the order in which they are meant where a name has several and the file does not say.
+/// Makers by priority, for a name that several makers use if the file does not say which is meant.
 const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA", "NHG", "LZOS", "CORNING"];
 
-/// Names of the miscellaneous catalogues of design programs, and ours.
+/// Names in the miscellaneous catalogs of design programs, and the corresponding names here.
 const EVERYDAY: [(&str, &str); 28] = [
     ("SILICA", "silica"),
     ("F_SILICA", "silica"),
@@ -46,26 +47,26 @@ const EVERYDAY: [(&str, &str); 28] = [
     ("LIF", "LiF/Li"),
 ];
 
-/// A user's own catalogue of glasses, from an AGF file.
+/// A user's own glass catalog, read from an AGF file.
 #[derive(Clone, Debug)]
 pub struct OwnCatalogue {
-    /// The file, as a lens file names it.
+    /// Name of the file as written in a lens file.
     pub file: String,
-    /// What it holds.
+    /// Glasses of the catalog.
     pub glasses: Vec<Glass>,
 }
 
-/// Where the names of a file's glasses are looked for, in this order; then among all that are bundled.
+/// Catalogs in which the names of a file's glasses are searched, in this order, before all bundled ones.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Catalogues<'a> {
-    /// The user's own.
+    /// The user's own catalogs.
     pub(crate) own: &'a [OwnCatalogue],
-    /// Makers whose catalogues the file names.
+    /// Makers whose catalogs the file names.
     pub(crate) makers: &'a [&'static str],
 }
 
 impl Catalogues<'_> {
-    /// The name in a lens file of a glass of the user's own catalogues.
+    /// Returns the glass of the user's own catalogs with this name, as named in a lens file.
     fn own(&self, name: &str, stated: Option<(f64, f64)>) -> Option<Medium> {
         let fits = |glass: &&Glass| glass.name.eq_ignore_ascii_case(name) && fits(glass, stated);
         let of = |own: &OwnCatalogue| own.glasses.iter().find(fits).map(|glass| format!("{}#{}", own.file, glass.name));
@@ -73,12 +74,12 @@ impl Catalogues<'_> {
     }
 }
 
-/// Whether a glass may be that of which a file states nd and Vd.
+/// Whether a glass is compatible with the nd that a file states.
 fn fits(glass: &Glass, stated: Option<(f64, f64)>) -> bool {
     stated.is_none_or(|(nd, _)| (nd - glass.nd()).abs() <= SAME_INDEX)
 }
 
-/// The one of several glasses of a name that a file means: by its figures where they tell, else the first that fits.
+/// Chooses among several glasses of one name: by the stated figures if they identify one, else the first compatible one.
 fn chosen(named: &[Glass], stated: Option<(f64, f64)>) -> Option<&Glass> {
     let agrees = |glass: &&Glass, (most_nd, most_vd): (f64, f64)| {
         stated.is_some_and(|(nd, vd)| (nd - glass.nd()).abs() <= most_nd && (vd - glass.vd()).abs() <= most_vd)
@@ -87,17 +88,17 @@ fn chosen(named: &[Glass], stated: Option<(f64, f64)>) -> Option<&Glass> {
     by_figures.or_else(|| named.iter().find(|glass| fits(glass, stated)))
 }
 
-/// A medium, and what must be told of it: whether light goes another way, and the words.
+/// A medium and an optional note: whether the medium changes the path of light, and the text.
 pub(crate) struct Found {
     pub(crate) medium: Medium,
     pub(crate) note: Option<(bool, String)>,
 }
 
-/// Our name of the maker of a catalogue of a design program: `OHARA_2010`, `OLD_SCHO`, `NIKON-HIKARI`; `None` for
-/// collections such as MISC.
+/// Returns the maker that a catalog of a design program belongs to: `OHARA_2010`, `OLD_SCHO`, `NIKON-HIKARI`. `None` for collections such
+/// as MISC.
 pub(crate) fn maker_of_catalogue(catalogue: &str) -> Option<&'static str> {
     let name = catalogue.to_ascii_uppercase();
-    // The first letters are what old programs with short file names keep.
+    // Match the first letters, which is what old programs with short file names keep.
     let marks: [(&str, &str); 12] = [
         ("SCHO", "SCHOTT"),
         ("OHAR", "OHARA"),
@@ -115,15 +116,14 @@ pub(crate) fn maker_of_catalogue(catalogue: &str) -> Option<&'static str> {
     marks.iter().find(|(mark, _)| name.contains(mark)).map(|(_, maker)| *maker)
 }
 
-/// The name in a design program's miscellaneous catalogue of a medium of ours that no maker has.
+/// Returns the name in a design program's miscellaneous catalog of a medium that belongs to no maker.
 pub(crate) fn everyday_name(full_name: &str) -> Option<&'static str> {
     let catalogue = Catalogue::bundled();
     let same = |ours: &str| catalogue.find(ours).is_ok_and(|glass| glass.full_name() == full_name);
     EVERYDAY.iter().find(|(_, ours)| same(ours)).map(|(theirs, _)| *theirs)
 }
 
-/// The medium of a name, as near to what the file means as our catalogue has it. `stated` are nd and Vd that the file
-/// gives beside the name.
+/// Finds the medium in the catalogs that is nearest to what the file means. `stated` are the nd and Vd that the file gives with the name.
 pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, catalogues: Catalogues<'_>) -> Found {
     let quiet = |medium| Found { medium, note: None };
     if name.eq_ignore_ascii_case("air") {
@@ -143,7 +143,7 @@ pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, catalogues: Catalo
         }
         None => match stated {
             Some((nd, vd)) => {
-                let text = format!("glass {name} is in no catalogue here: carried by its nd {nd} and Vd {vd}");
+                let text = format!("glass {name} is not in any catalog: carried by its nd {nd} and Vd {vd}");
                 let Found { medium, note } = model(nd, vd);
                 Found { medium, note: note.or(Some((false, text))) }
             }
@@ -152,8 +152,8 @@ pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, catalogues: Catalo
                 note: Some((
                     true,
                     format!(
-                        "glass {name} is in no catalogue here, and the file states no index: write one, or import with a \
-                         catalogue that has it (`spectra lens import --agf FILE`)"
+                        "glass {name} is not in any catalog, and the file states no index: write one, or import with a \
+                         catalog that has the glass (`spectra lens import --agf FILE`)"
                     ),
                 )),
             },
@@ -161,7 +161,7 @@ pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, catalogues: Catalo
     }
 }
 
-/// A glass of which an index and an Abbe number are known.
+/// Returns a glass that is defined by nd and Vd; without dispersion if Vd is not usable.
 pub(crate) fn model(nd: f64, vd: f64) -> Found {
     if nd == 1.0 {
         return Found { medium: Medium::Air, note: None };
@@ -173,7 +173,8 @@ pub(crate) fn model(nd: f64, vd: f64) -> Found {
     Found { medium: Medium::Model { nd, vd: None, ng: None }, note }
 }
 
-/// The same with a deviation of its relative partial dispersion of g and F from the normal line: ng = nF + (P + deviation) (nF - nC).
+/// Returns a glass defined by nd, Vd and the deviation of its relative partial dispersion of g and F from the normal line: ng = nF + (P +
+/// deviation) (nF - nC).
 pub(crate) fn model_off_normal(nd: f64, vd: f64, deviation: f64) -> Found {
     let mut found = model(nd, vd);
     if deviation != 0.0 {
@@ -182,15 +183,14 @@ pub(crate) fn model_off_normal(nd: f64, vd: f64, deviation: f64) -> Found {
                 *ng = dispersed(*nd, *vd).map(|(nf, spread)| rounded(nf + (normal_partial(*vd) + deviation) * spread));
             }
             _ => {
-                found.note =
-                    Some((true, format!("a deviation of {deviation} from the normal line, without dispersion")))
+                found.note = Some((true, format!("a deviation of {deviation} from the normal line, but no dispersion")))
             }
         }
     }
     found
 }
 
-/// How far a glass of these figures lies off the normal line; 0 where no index at g is stated.
+/// Returns the deviation of a glass with these figures from the normal line; 0 if no index at g is stated.
 pub(crate) fn deviation(nd: f64, vd: Option<f64>, ng: Option<f64>) -> f64 {
     let off = |vd: f64, ng: f64| {
         let (nf, spread) = dispersed(nd, vd)?;
@@ -199,7 +199,7 @@ pub(crate) fn deviation(nd: f64, vd: Option<f64>, ng: Option<f64>) -> f64 {
     vd.zip(ng).and_then(|(vd, ng)| off(vd, ng)).unwrap_or(0.0)
 }
 
-/// Index at F and nF - nC of a glass of which no more is known than nd and Vd.
+/// Returns nF and nF - nC of a glass that is defined by nd and Vd alone.
 fn dispersed(nd: f64, vd: f64) -> Option<(f64, f64)> {
     let nf = spectra_glass::Medium::from_nd_vd(nd, vd)?.index(F.wavelength_nm);
     Some((nf, (nd - 1.0) / vd))
@@ -210,21 +210,21 @@ fn normal_partial(vd: f64) -> f64 {
     0.6438 - 0.001_682 * vd
 }
 
-/// To eight decimals: more would be invented.
+/// Rounds to eight decimals, because more would not be meaningful.
 fn rounded(value: f64) -> f64 {
     format!("{value:.8}").parse().unwrap_or(value)
 }
 
-/// The glass of a name, and what a person should know of the choice.
+/// Finds the glass of a name, with a note about the choice if one is needed.
 fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glass, Option<(bool, String)>)> {
     let catalogue = Catalogue::bundled();
-    // A name that nobody has is asked for again and again in some files: what is near it is not looked for.
+    // Skip the search for similar names: some files ask for an unknown name many times.
     let by = |full: &str| match stated {
         _ if !catalogue.knows(full) => Err(FindError::Unknown { name: full.to_owned(), nearest: Vec::new() }),
         Some((nd, vd)) => catalogue.find_with(full, nd, (vd > 0.0).then_some(vd)),
         None => catalogue.find(full),
     };
-    // The prefix of a catalogue says more than the list of all catalogues.
+    // The prefix of a catalog counts more than the list of all catalogs.
     let prefixed = name.get(..3).is_some_and(|prefix| prefix.eq_ignore_ascii_case("LZ_"));
     let named: Vec<Glass> = match prefixed {
         true => Vec::new(),
@@ -234,10 +234,10 @@ fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glas
         return Some((glass.clone(), None));
     }
     if let Some(glass) = named.first() {
-        // Another maker's glass of this name has the stated index.
+        // Use another maker's glass of this name if it has the stated index.
         return match by(name) {
             Ok(other) if fits(&other, stated) => {
-                let text = format!("{name} is taken as {}, which has the stated index", other.full_name());
+                let text = format!("{name} is read as {}, which has the stated index", other.full_name());
                 Some((other, Some((false, text))))
             }
             _ => Some((glass.clone(), None)),
@@ -248,25 +248,25 @@ fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glas
         Err(FindError::Ambiguous { candidates, .. }) => {
             let of = |maker: &&str| candidates.iter().find(|c| c.full_name.starts_with(&format!("{maker}/")));
             let chosen = makers.iter().chain(&USUAL).find_map(of).or(candidates.first())?;
-            let text = format!("{name} is the name of {} glasses: {} is taken", candidates.len(), chosen.full_name);
+            let text = format!("{name} is the name of {} glasses: {} is used", candidates.len(), chosen.full_name);
             catalogue.find(&chosen.full_name).ok().map(|glass| (glass, Some((false, text))))
         }
         Err(FindError::Unknown { .. }) => {
             // Molding changes an index in the third decimal.
             if let Some(raw) = name.strip_suffix("_MOLD").filter(|_| stated.is_none()) {
                 let (glass, _) = find(raw, None, makers)?;
-                let text = format!("{name} is taken as {} before molding", glass.full_name());
+                let text = format!("{name} is read as {} before molding", glass.full_name());
                 return Some((glass, Some((true, text))));
             }
             let (_, ours) = EVERYDAY.iter().find(|(theirs, _)| name.eq_ignore_ascii_case(theirs))?;
             let glass = catalogue.find(ours).ok()?;
-            let text = format!("{name} is taken as {}", glass.full_name());
+            let text = format!("{name} is read as {}", glass.full_name());
             Some((glass, Some((false, text))))
         }
     }
 }
 
-/// The glass, with the stated figures where they are its own.
+/// Returns the glass with the stated figures if they are compatible with it; otherwise without them, and with a note.
 fn with_stated(glass: &Glass, stated: Option<(f64, f64)>) -> Found {
     let name = glass.full_name();
     match stated {
@@ -275,7 +275,7 @@ fn with_stated(glass: &Glass, stated: Option<(f64, f64)>) -> Found {
             note: None,
         },
         Some((nd, _)) => {
-            let text = format!("{name} has nd {:.5}; the file's {nd} beside its name is left out", glass.nd());
+            let text = format!("{name} has nd {:.5}; the nd {nd} stated in the file is ignored", glass.nd());
             Found { medium: Medium::Glass { name, nd: None, vd: None }, note: Some((false, text)) }
         }
         None => Found { medium: Medium::Glass { name, nd: None, vd: None }, note: None },
@@ -311,7 +311,7 @@ mod tests {
         }
     }
 
-    /// Of glasses of one name, the first catalogue has it; but where a file states figures to the last digit, the glass that has them.
+    /// Among glasses of one name the first catalog has precedence, unless the file states figures to the last digit, which then decide.
     #[test]
     fn figures_choose_among_makers() {
         let catalogue = Catalogue::bundled();

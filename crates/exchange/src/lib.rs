@@ -1,16 +1,16 @@
-//! Lens files of other programs.
+//! Lens files of other programs: reading and writing.
 //!
-//! - [`read`] takes the bytes of a `.zmx` (Zemax OpticStudio), `.seq` (CODE V) or `.csv` file and gives a
-//!   [`Prescription`]: what all of these programs mean by a lens, in millimeters, with a [`Note`] for everything that could
-//!   not be carried. Nothing is dropped without a word.
-//! - [`yaml::write`] makes a lens file of it, with the notes as comments; [`yaml::read`] goes the other way.
-//! - [`zmx::write`] makes a `.zmx` of it.
+//! - [`read`] parses the bytes of a `.zmx` (Zemax OpticStudio), `.seq` (CODE V) or `.csv` file into a [`Prescription`]: what all of these
+//!   programs mean by a lens, in millimeters. Everything that could not be carried over is listed as a [`Note`]; nothing is dropped
+//!   silently.
+//! - [`yaml::write`] writes a prescription as a lens file, with the notes as comments; [`yaml::read`] does the reverse.
+//! - [`zmx::write`] writes a prescription as a `.zmx` file.
 //!
-//! The object and the image surface of those programs are no surfaces of a lens here: the object's distance is a remark, and
-//! the thickness behind the last surface is the gap to the image plane. What only chooses rays (fields, wavelengths,
-//! vignetting factors) becomes a remark; what limits light (an aperture record, a semi-diameter that was typed in, the stop of a file
-//! that floats by its size) clips. An entrance pupil diameter, an f-number and a numerical aperture limit the beam there as the
-//! rim of the stop does here: the stop gets the size of their paraxial marginal ray.
+//! The object and image surfaces of those programs are not surfaces of a lens here. The object distance becomes a remark, and the thickness
+//! behind the last surface is the gap to the image plane. Data that only select rays (fields, wavelengths, vignetting factors) become
+//! remarks. Data that limit light become clear apertures: an aperture record, a semi-diameter that was typed in, the stop of a file that
+//! floats by its size. In those programs an entrance pupil diameter, an f-number or a numerical aperture limits the beam as the rim of the
+//! stop does here. The stop therefore gets the size of the paraxial marginal ray.
 //!
 //! ```
 //! use spectra_exchange::{Format, read, yaml};
@@ -47,25 +47,25 @@ pub use prescription::{
 
 use spectra_core::params::Faults;
 
-/// Largest file that is read, bytes; UTF-16 doubles the size of a text.
+/// Largest file that is read, bytes (16 MiB). UTF-16 doubles the size of a text.
 pub const MAX_BYTES: u64 = 16 << 20;
 
-/// Most surfaces and breaks that are read from one file.
+/// Largest number of surfaces and coordinate breaks read from one file.
 pub const MAX_ITEMS: usize = 2000;
 
-/// A kind of lens file.
+/// A lens file format of another program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Zemax OpticStudio, sequential.
+    /// Zemax OpticStudio, sequential mode.
     Zmx,
-    /// CODE V, sequential commands.
+    /// CODE V, sequential command file.
     Seq,
-    /// A table, one row a surface.
+    /// A table with one row per surface.
     Csv,
 }
 
 impl Format {
-    /// By the ending of a file's name, in upper or lower case.
+    /// Returns the format for the extension of a file name, in upper or lower case; `None` if it is unknown.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         let (_, ending) = name.rsplit_once('.')?;
@@ -77,50 +77,50 @@ impl Format {
         }
     }
 
-    /// What to write in such a file, so that a surface limits the light: for a hint.
+    /// Returns a hint that says what to write in such a file so that a surface limits the light.
     #[must_use]
     pub fn how_to_clip(self) -> &'static str {
         match self {
             Self::Zmx => {
-                "in the .zmx, write an aperture at a surface (`CLAP 0 RADIUS 0`) or 1 behind its semi-diameter (`DIAM RADIUS 1`), or size \
-                 its beam (`ENPD DIAMETER`); or convert it by `spectra lens import` and state `semi-diameter` in the lens file"
+                "in the .zmx, add an aperture to a surface (`CLAP 0 RADIUS 0`) or a 1 after its semi-diameter (`DIAM RADIUS 1`), or state \
+                 the size of the beam (`ENPD DIAMETER`); or convert it with `spectra lens import` and state `semi-diameter` in the lens file"
             }
             Self::Seq => {
-                "in the .seq, write an aperture behind a surface (`CIR RADIUS`), or size the beam (`EPD DIAMETER`) and mark the stop (`STO`); \
-                 or convert it by `spectra lens import` and state `semi-diameter` in the lens file"
+                "in the .seq, add an aperture after a surface (`CIR RADIUS`), or state the size of the beam (`EPD DIAMETER`) and mark the stop \
+                 (`STO`); or convert it with `spectra lens import` and state `semi-diameter` in the lens file"
             }
-            Self::Csv => "fill a column `semi-diameter` in the table, at least for the first surface",
+            Self::Csv => "fill in a column `semi-diameter` in the table, at least for the first surface",
         }
     }
 
-    /// What to write in such a file, so that a surface is the stop: for a hint.
+    /// Returns a hint that says what to write in such a file so that a surface is the stop.
     #[must_use]
     pub fn how_to_stop(self) -> &'static str {
         match self {
-            Self::Zmx => "in the .zmx, write `STOP` among the lines of the surface (`SURF`) that is the stop",
-            Self::Seq => "in the .seq, write `STO` behind the surface that is the stop",
-            Self::Csv => "in the table, write `stop` in a column `type`, in the row of the stop",
+            Self::Zmx => "in the .zmx, write `STOP` in the block of the surface (`SURF`) that is the stop",
+            Self::Seq => "in the .seq, write `STO` after the surface that is the stop",
+            Self::Csv => "in the table, write `stop` in the column `type`, in the row of the stop",
         }
     }
 }
 
-/// Reads a lens; `name` is how faults name the file.
+/// Reads a lens file. `name` is the name of the file in error messages.
 ///
 /// # Errors
-/// The file is no lens of this format: too large, no surfaces, a figure that is no number. All faults at once,
-/// with line and column.
+/// The file is not a lens of this format: too large, without surfaces, or with a value that is not a number. All faults are reported at
+/// once, with line and column.
 pub fn read(format: Format, name: &str, bytes: &[u8]) -> Result<Prescription, Faults> {
     read_with(format, name, bytes, &[])
 }
 
-/// Reads a lens whose glasses are looked for in these catalogues first.
+/// Reads a lens file and searches for its glasses in the catalogs `own` first. `name` is the name of the file in error messages.
 ///
 /// # Errors
-/// Those of [`read`].
+/// The same as for [`read`].
 pub fn read_with(format: Format, name: &str, bytes: &[u8], own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
     if bytes.len() as u64 > MAX_BYTES {
         let fault =
-            spectra_core::params::Fault::new(format!("{name}: {} bytes, at most {MAX_BYTES} are read", bytes.len()));
+            spectra_core::params::Fault::new(format!("{name}: {} bytes; at most {MAX_BYTES} can be read", bytes.len()));
         return Err(fault.into());
     }
     let text = decode::text(bytes);

@@ -1,6 +1,6 @@
-//! Numbers of lens files: read, scaled, and written with as few digits as mean them exactly.
+//! Numbers in lens files: parsing, scaling, and writing with the fewest digits that represent them exactly.
 
-/// A number as other programs write it: `1.5`, `.5`, `5.`, `+1E-3`, `1d-3`; infinite where it says so. Not `nan`.
+/// Parses a number as other programs write it: `1.5`, `.5`, `5.`, `+1E-3`, `1d-3`, or a word for infinity. `nan` is rejected.
 pub(crate) fn parse(word: &str) -> Option<f64> {
     let plain = word.strip_prefix(['+', '-']).unwrap_or(word);
     let sign = if word.starts_with('-') { -1.0 } else { 1.0 };
@@ -12,15 +12,15 @@ pub(crate) fn parse(word: &str) -> Option<f64> {
     }
     let number: f64 = match plain.parse() {
         Ok(number) => number,
-        // Fortran's double precision.
+        // Accept the exponent letter of Fortran's double precision.
         Err(_) => plain.replacen(['d', 'D'], "e", 1).parse().ok()?,
     };
     Some(sign * number)
 }
 
-/// The radius (mm) of a curvature stated per `unit_mm`: of all radii that give back this curvature within two units in its last place
-/// (what writing it with 16 digits leaves), the one of the fewest digits, since that is what was typed in. Infinite
-/// for 0.
+/// Converts a curvature per `unit_mm` to a radius, mm; 0 gives infinity. Among all radii that reproduce the curvature within two units in
+/// its last place, it returns the one with the fewest digits, since that is what was typed in. Two units are the error of writing the
+/// curvature with 16 digits.
 pub(crate) fn radius_mm(curvature: f64, unit_mm: f64) -> f64 {
     if curvature == 0.0 {
         return f64::INFINITY;
@@ -36,7 +36,7 @@ pub(crate) fn radius_mm(curvature: f64, unit_mm: f64) -> f64 {
     plain * unit_mm
 }
 
-/// Shortest spelling that reads back as the same number; with an exponent where that is shorter.
+/// Returns the shortest text that reads back as the same number, with an exponent for very small and large numbers.
 pub(crate) fn shortest(number: f64) -> String {
     if number == 0.0 {
         return "0".to_owned();

@@ -1,9 +1,9 @@
-//! Places in a text file, for faults.
+//! Positions in a text file, for error messages.
 
 use spectra_core::params::{Fault, SourceFile, Span};
 use std::sync::Arc;
 
-/// A file whose lines are looked at one by one.
+/// A text file whose parts can be located in error messages.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
     file: Arc<SourceFile>,
@@ -14,12 +14,12 @@ impl Source {
         Self { file: Arc::new(SourceFile::new(name, text)) }
     }
 
-    /// The text.
+    /// Text of the file.
     pub(crate) fn text(&self) -> &str {
         &self.file.text
     }
 
-    /// A fault at a word of the text: a slice of [`Source::text`].
+    /// Creates a fault at a word of the text, which must be a slice of [`Source::text`].
     pub(crate) fn fault(&self, word: &str, message: impl Into<String>) -> Fault {
         let text = self.text();
         let offset = (word.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize);
@@ -35,15 +35,15 @@ impl Source {
         Fault::new(message).at(Arc::clone(&self.file), span)
     }
 
-    /// A fault of the whole file.
+    /// Creates a fault that concerns the whole file.
     pub(crate) fn fault_here(&self, message: impl Into<String>) -> Fault {
         Fault::new(message).at(Arc::clone(&self.file), Span::default())
     }
 }
 
-/// A user's text on one line, of bounded length, for a note.
+/// Shortens a user's text to one line of bounded length, for a note.
 pub(crate) fn shown(text: &str) -> String {
-    /// Longest piece that is repeated, characters.
+    /// Largest number of characters that are repeated.
     const LONGEST: usize = 80;
     let mut out: String = text.trim().chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if text.trim().chars().nth(LONGEST).is_some() {

@@ -1,48 +1,48 @@
-//! What all programs mean by a lens, in millimeters and degrees.
+//! The prescription of a lens: what all programs mean by a lens, in millimeters and degrees.
 
-/// A lens as a file states it.
+/// A lens as stated by a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prescription {
-    /// Name for people; may be empty.
+    /// Name of the lens; may be empty.
     pub name: String,
-    /// Maker, where known.
+    /// Maker, if known.
     pub maker: Option<String>,
-    /// Patent and example, where known.
+    /// Patent and example, if known.
     pub patent: Option<String>,
-    /// Year of design, where known.
+    /// Year of design, if known.
     pub year: Option<i32>,
-    /// Spectral line of stated indices, where it is not d.
+    /// Spectral line of the stated indices, if it is not d.
     pub reference_line: Option<String>,
-    /// Surfaces and coordinate breaks, in the order of the light. The object and the image are none of them.
+    /// Surfaces and coordinate breaks, in the order of the light, without the object and the image.
     pub items: Vec<Item>,
-    /// Wavelengths that the file asks for.
+    /// Wavelengths listed in the file.
     pub wavelengths: Vec<Wavelength>,
-    /// Which of them is the primary one.
+    /// Index of the primary wavelength.
     pub primary: Option<usize>,
-    /// Fields that the file asks for.
+    /// Field points listed in the file.
     pub fields: Option<Fields>,
-    /// What sets the size of the beam in the file.
+    /// Quantity that sets the size of the beam in the file.
     pub system_aperture: Option<SystemAperture>,
     /// Distance of the object in front of the first surface, mm; `None` is infinity.
     pub object_distance_mm: Option<f64>,
-    /// Where the sizes that clip come from, as a lens file of ours says it: `stated`, `computed`, `guessed`, or `fitted to ...`.
+    /// Origin of the clear sizes, as written in a lens file: `stated`, `computed`, `guessed`, or `fitted to ...`.
     pub rims: Option<String>,
-    /// Whether the size of the stop is that of the beam that the file asks for, and not a figure of its own.
+    /// Whether the size of the stop was computed from the beam of the file, instead of being stated.
     pub stop_is_computed: bool,
-    /// What else is worth telling of the file.
+    /// Further remarks on the file.
     pub remarks: Vec<String>,
-    /// What could not be carried.
+    /// Everything that could not be carried over.
     pub left_out: Vec<Note>,
 }
 
-/// Something that could not be carried.
+/// A note about something that could not be carried over.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// Line of the file, from 1; 0 where there is no line.
+    /// Line of the file, from 1; 0 if no line applies.
     pub line: usize,
-    /// What it is, one line.
+    /// Description, one line.
     pub text: String,
-    /// Whether light goes another way without it than in the program that wrote the file.
+    /// Whether light takes another path without it than in the program that wrote the file.
     pub alters: bool,
 }
 
@@ -55,12 +55,12 @@ impl std::fmt::Display for Note {
     }
 }
 
-/// One step along the axis.
+/// One step along the axis of a lens.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
-    /// A surface.
+    /// A surface of the lens.
     Surface(Box<Surface>),
-    /// The axis moves for everything that follows.
+    /// A coordinate break, which moves the axis for everything that follows.
     Break(CoordinateBreak),
 }
 
@@ -74,7 +74,7 @@ impl Item {
         }
     }
 
-    /// The same, to be changed.
+    /// Mutable reference to the distance to the next item, mm.
     pub(crate) fn thickness_mm_mut(&mut self) -> &mut f64 {
         match self {
             Self::Surface(surface) => &mut surface.thickness_mm,
@@ -83,12 +83,12 @@ impl Item {
     }
 }
 
-/// A move of the axis.
+/// A coordinate break: a move of the axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoordinateBreak {
-    /// Where to and by which angles.
+    /// Shift and rotation of the axis.
     pub by: Displacement,
-    /// Rotate about z, y, x in that order, then shift; instead of shift, then rotate about x, y, z.
+    /// Order: if true, rotate about z, y, x in that order, then shift; if false, shift, then rotate about x, y, z.
     pub tilt_first: bool,
     /// Distance to the next item along the new z axis, mm.
     pub thickness_mm: f64,
@@ -104,73 +104,73 @@ pub struct Displacement {
 }
 
 impl Displacement {
-    /// Whether nothing is displaced.
+    /// Whether shift and rotation are zero.
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.decenter_mm == [0.0; 2] && self.tilt_deg == [0.0; 3]
     }
 }
 
-/// A surface in its place.
+/// A surface with its position, medium and apertures.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// Its form.
+    /// Shape of the surface.
     pub shape: Shape,
-    /// Distance to the next vertex, mm; of the last surface, to the image plane.
+    /// Distance to the next vertex, mm; for the last surface, to the image plane.
     pub thickness_mm: f64,
-    /// Medium behind it; of a mirror, the one in front goes on whatever this says.
+    /// Medium behind the surface. A mirror ignores it: the medium in front continues.
     pub medium: Medium,
-    /// Whether it reflects.
+    /// Whether the surface reflects.
     pub mirror: bool,
-    /// Whether it is the aperture stop (also of [`Shape::Stop`]).
+    /// Whether the surface is the aperture stop (true for [`Shape::Stop`] too).
     pub stop: bool,
-    /// Radius outside of which light is stopped, mm.
+    /// Clear semi-diameter beyond which light is blocked, mm.
     pub semi_diameter_mm: Option<f64>,
-    /// Edge of the element for drawing, mm; stops nothing.
+    /// Semi-diameter of the element's edge for drawings, mm; it does not block light.
     pub outer_semi_diameter_mm: Option<f64>,
-    /// What light must pass besides.
+    /// Further apertures that light must pass.
     pub apertures: Vec<Aperture>,
-    /// Displacement of this surface alone, followers are not moved.
+    /// Displacement of this surface alone; the following ones are not moved.
     pub displacement: Displacement,
-    /// What the file says of it in words; may be empty.
+    /// Comment of the file on this surface; may be empty.
     pub comment: String,
 }
 
-/// Form of a surface; lengths in mm, coefficients in mm^(1-power). A radius is positive where its center lies at larger z.
+/// Shape of a surface. Lengths are in mm, coefficients in mm^(1-power). A radius is positive if its center lies at larger z.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs, reason = "the fields are those of the kinds of the same names in a lens file")]
 pub enum Shape {
-    /// Flat.
+    /// A flat surface.
     #[default]
     Plane,
-    /// An aperture stop that bends nothing.
+    /// An aperture stop without optical power.
     Stop,
     Sphere {
         radius: f64,
     },
-    /// Infinite radius is a plane.
+    /// A conic section of revolution; an infinite radius is a plane.
     Conic {
         radius: f64,
         conic: f64,
     },
-    /// Coefficients of r^2, r^4, ...
+    /// A conic with terms of even powers; coefficients of r^2, r^4, ...
     EvenAsphere {
         radius: f64,
         conic: f64,
         coefficients: Vec<f64>,
     },
-    /// Coefficients of r, r^2, r^3, ...
+    /// A conic with terms of all powers; coefficients of r, r^2, r^3, ...
     OddAsphere {
         radius: f64,
         conic: f64,
         coefficients: Vec<f64>,
     },
-    /// The straight lines run along x (`along_x`) or along y.
+    /// A cylinder whose straight lines run along x (`along_x`) or along y.
     Cylinder {
         radius: f64,
         along_x: bool,
     },
-    /// Curve z(y) with terms y^2, y^4, ..., turned about a line parallel to y at `rotation_radius`.
+    /// A curve z(y) with terms y^2, y^4, ..., rotated about a line parallel to y at the distance `rotation_radius`.
     Toroid {
         radius: f64,
         conic: f64,
@@ -183,7 +183,7 @@ pub enum Shape {
         conic_x: f64,
         conic_y: f64,
     },
-    /// Tangents of the angles in x-z and y-z: z = x tan_x + y tan_y.
+    /// A tilted plane given by the tangents of its angles in x-z and y-z: z = x tan_x + y tan_y.
     TiltedPlane {
         tan_x: f64,
         tan_y: f64,
@@ -191,7 +191,7 @@ pub enum Shape {
     ThinLens {
         focal_length: f64,
     },
-    /// Lines perpendicular to the direction `direction_deg` from +y.
+    /// A grating whose lines are perpendicular to the direction `direction_deg`, measured from +y.
     Grating {
         lines_per_mm: f64,
         order: f64,
@@ -199,7 +199,7 @@ pub enum Shape {
         conic: f64,
         direction_deg: f64,
     },
-    /// Coefficients in mm of sag, the first one is piston.
+    /// A conic with Zernike terms; coefficients in mm of sag, the first one being piston.
     Zernike {
         radius: f64,
         conic: f64,
@@ -207,14 +207,14 @@ pub enum Shape {
         coefficients: Vec<f64>,
         ordering: Ordering,
     },
-    /// A kind of our own that no other program knows.
+    /// A kind of surface of this program that no other program has.
     Other {
         kind: String,
     },
 }
 
 impl Shape {
-    /// A sphere, a conic or a plane, whichever is the simplest; a curvature of 0 or an infinite radius is a plane.
+    /// Returns a plane, a sphere or a conic, whichever is the simplest. An infinite radius gives a plane.
     #[must_use]
     pub fn conic(radius: f64, conic: f64) -> Self {
         if radius.is_infinite() {
@@ -227,115 +227,115 @@ impl Shape {
     }
 }
 
-/// Order of Zernike terms.
+/// Ordering and normalization of Zernike terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ordering {
-    /// Noll's, orthonormal.
+    /// Noll's ordering, orthonormal.
     Noll,
-    /// Fringe (University of Arizona), amplitude 1 at the edge.
+    /// Fringe ordering (University of Arizona), amplitude 1 at the edge.
     Fringe,
 }
 
-/// A medium behind a surface.
+/// The medium behind a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Medium {
-    /// Air.
+    /// Air, with the index 1.
     #[default]
     Air,
-    /// A glass of our catalogue by its full name, with the figures that the file states beside it.
+    /// A glass of the catalog by its full name, with the figures that the file states for it.
     Glass {
-        /// `SCHOTT/N-BK7`.
+        /// Full name, such as `SCHOTT/N-BK7`.
         name: String,
-        /// Index at d, where the file states one that fits.
+        /// Index at d, if the file states a compatible one.
         nd: Option<f64>,
-        /// Abbe number, where the file states one that fits.
+        /// Abbe number, if the file states a compatible one.
         vd: Option<f64>,
     },
-    /// A glass of which figures are known only.
+    /// A glass that is defined by figures alone.
     Model {
         /// Index at d.
         nd: f64,
-        /// Abbe number; without one there is no dispersion.
+        /// Abbe number; `None` means no dispersion.
         vd: Option<f64>,
-        /// Index at g, where more is known of its dispersion.
+        /// Index at g, if the dispersion is known better.
         ng: Option<f64>,
     },
-    /// A name that no catalogue has, without figures: a person must say what it is.
+    /// A glass name that no catalog has, without figures; the user must define it.
     Unknown {
-        /// As the file has it.
+        /// Name as written in the file.
         name: String,
     },
 }
 
-/// Something that light must pass.
+/// An aperture that light must pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aperture {
-    /// Its outline.
+    /// Outline of the aperture.
     pub shape: ApertureShape,
-    /// Its center, mm.
+    /// Center of the aperture, mm.
     pub center_mm: [f64; 2],
-    /// Blocks inside instead of outside.
+    /// Whether the aperture blocks light inside instead of outside.
     pub obscures: bool,
 }
 
 /// Outline of an aperture, mm.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ApertureShape {
-    /// Between two radii.
+    /// A ring between two radii.
     Ring {
         /// Inner radius.
         inner: f64,
         /// Outer radius.
         outer: f64,
     },
-    /// Sides parallel to x and y.
+    /// A rectangle with sides parallel to x and y.
     Rectangle {
-        /// Half of its width along x.
+        /// Half of the width along x.
         half_width: f64,
-        /// Half of its height along y.
+        /// Half of the height along y.
         half_height: f64,
     },
-    /// Axes parallel to x and y.
+    /// An ellipse with axes parallel to x and y.
     Ellipse {
-        /// Half axis along x.
+        /// Semi-axis along x.
         half_width: f64,
-        /// Half axis along y.
+        /// Semi-axis along y.
         half_height: f64,
     },
-    /// Corners in order.
+    /// A polygon with its corners in order.
     Polygon {
-        /// Corners.
+        /// Corners, mm.
         points: Vec<[f64; 2]>,
     },
-    /// One of ours that no other program knows.
+    /// An aperture of this program that no other program has.
     Other {
-        /// Its name.
+        /// Name of the aperture's shape.
         name: String,
     },
 }
 
-/// A wavelength that a file asks for.
+/// A wavelength listed in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wavelength {
-    /// nm.
+    /// Wavelength, nm.
     pub nm: f64,
     /// Relative weight.
     pub weight: f64,
 }
 
-/// Points of the field that a file asks for.
+/// Field points listed in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fields {
-    /// What the numbers are.
+    /// Meaning of the coordinates.
     pub kind: FieldKind,
-    /// (x, y) each: degrees or mm.
+    /// Coordinates (x, y) of each point: degrees or mm.
     pub points: Vec<[f64; 2]>,
 }
 
-/// What field numbers are.
+/// Meaning of field coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldKind {
-    /// Degrees.
+    /// Field angles, degrees.
     Angle,
     /// Height in object space, mm.
     ObjectHeight,
@@ -345,28 +345,28 @@ pub enum FieldKind {
     RealImageHeight,
 }
 
-/// What sets the size of the beam.
+/// The quantity that sets the size of the beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SystemAperture {
     /// Diameter of the entrance pupil, mm.
     EntrancePupilDiameter(f64),
-    /// Image space f-number.
+    /// Image-space f-number.
     FNumber(f64),
     /// Numerical aperture in object space.
     ObjectNumericalAperture(f64),
     /// Numerical aperture in image space.
     ImageNumericalAperture(f64),
-    /// The size of the stop.
+    /// Size of the stop, which the surface of the stop states.
     StopSize,
 }
 
 impl Prescription {
-    /// Notes something that could not be carried.
+    /// Adds a note about something that could not be carried over.
     pub(crate) fn leave_out(&mut self, line: usize, alters: bool, text: impl Into<String>) {
         self.left_out.push(Note { line, text: text.into(), alters });
     }
 
-    /// Surfaces alone.
+    /// Iterates over the surfaces, without coordinate breaks.
     pub fn surfaces(&self) -> impl Iterator<Item = &Surface> {
         self.items.iter().filter_map(|item| match item {
             Item::Surface(surface) => Some(&**surface),

@@ -1,12 +1,12 @@
-//! The wavelength at which a file's program states focal lengths and focus.
+//! The reference wavelength: the one at which the other program states focal lengths and focus.
 
 use crate::prescription::{Item, Medium, Prescription};
 use spectra_glass::{Catalogue, Line, lines};
 
-/// The primary wavelength becomes the reference line of the lens, where all of its glasses are known there by name: figures that are
-/// stated at d beside such a name are left out.
+/// Makes the primary wavelength the reference line of the lens, if all of its glasses are known there by name. Indices stated at d next to
+/// such a name are then removed.
 pub(crate) fn set(lens: &mut Prescription) {
-    // Of several wavelengths none is the primary one where the file does not say it.
+    // If there are several wavelengths and the file names none, none is the primary one.
     let at = lens.primary.or((lens.wavelengths.len() == 1).then_some(0));
     let Some(line) = at.and_then(|at| lens.wavelengths.get(at)).and_then(|w| near(w.nm)) else { return };
     let media = || lens.surfaces().map(|surface| &surface.medium);
@@ -23,7 +23,7 @@ pub(crate) fn set(lens: &mut Prescription) {
     }
 }
 
-/// The spectral line that a file means, to the digits that files have; any other wavelength as it is.
+/// Returns the spectral line nearest to a wavelength within the precision of lens files, or the exact wavelength as a line.
 fn near(nm: f64) -> Option<Line> {
     const DIGITS_NM: f64 = 0.06;
     let named = ["d", "D", "e", "F", "F'", "C", "C'", "g", "h"].into_iter().filter_map(lines::by_name);
@@ -31,7 +31,7 @@ fn near(nm: f64) -> Option<Line> {
     close.or_else(|| Line::at(nm))
 }
 
-/// Whether the index of a medium at a line is that of its name.
+/// Whether the index of a medium at a line follows from its name.
 fn is_known(medium: &Medium, line: Line) -> bool {
     let covers = |(from, to): (f64, f64)| (from..=to).contains(&line.wavelength_nm);
     match medium {

@@ -1,12 +1,12 @@
-//! A prescription at another size: all lengths times a factor, so that angles, f-number and glasses stay.
+//! Scaling of a prescription: all lengths times a factor, while angles, f-number and glasses stay the same.
 
 use crate::{Aperture, ApertureShape, Displacement, FieldKind, Item, Prescription, Shape, Surface, SystemAperture};
 
 impl Prescription {
-    /// The prescription with all its lengths times `factor`: radii, gaps, rims, apertures, displacements; a coefficient of r^k times
-    /// `factor`^(1-k). Patents state many lenses for a focal length of 1 or 100.
+    /// Returns the prescription with all lengths times `factor`: radii, gaps, rims, apertures and displacements. A coefficient of r^k is
+    /// multiplied by `factor`^(1-k). Patents state many lenses for a focal length of 1 or 100.
     ///
-    /// What depends on wavelengths does not scale: a grating keeps its lines per mm.
+    /// Quantities that relate to wavelengths do not scale: a grating keeps its lines per mm.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         for item in &mut self.items {
@@ -40,7 +40,7 @@ fn scale_surface(surface: &mut Surface, factor: f64) {
     scale_displacement(&mut surface.displacement, factor);
 }
 
-/// Coefficients of r^first, r^(first + step), ... in mm^(1-power).
+/// Scales coefficients of r^first, r^(first + step), ..., which are in mm^(1-power).
 fn scale_powers(coefficients: &mut [f64], first: i32, step: i32, factor: f64) {
     for (at, coefficient) in coefficients.iter_mut().enumerate() {
         let power = 1 - first - step * at as i32;
@@ -104,7 +104,7 @@ fn scale_aperture(aperture: &mut Aperture, factor: f64) {
 mod tests {
     use super::*;
 
-    /// The sag of an asphere by its definition.
+    /// Sag of an asphere from its definition.
     fn sag(radius: f64, conic: f64, terms: &[(i32, f64)], r: f64) -> f64 {
         let c = 1.0 / radius;
         let quadric = c * r * r / (1.0 + (1.0 - (1.0 + conic) * c * c * r * r).sqrt());

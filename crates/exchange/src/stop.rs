@@ -1,18 +1,18 @@
-//! The size of the stop where a file states that of the beam.
+//! The size of the stop, computed from the size of the beam that a file states.
 //!
-//! Other programs launch rays to fill the entrance pupil: its diameter, an f-number or a numerical aperture limits the light as the
-//! rim of the stop does. A lens file has that rim. Its size is the height of the paraxial marginal ray:
-//! n' u' = n u - y (n' - n) c at each surface, with the sign of n turned by each mirror.
+//! Other programs launch rays that fill the entrance pupil: its diameter, an f-number or a numerical aperture limits the light as the rim
+//! of the stop does. A lens file needs that rim. Its size is the height of the paraxial marginal ray:
+//! n' u' = n u - y (n' - n) c at each surface, where each mirror reverses the sign of n.
 
 use crate::number::shortest;
 use crate::prescription::{Item, Medium, Prescription, Shape, Surface, SystemAperture};
 use spectra_glass::{Catalogue, lines};
 
-/// By how much the size may be below that of an aperture on the stop and still be the same.
+/// Relative tolerance within which the computed size and the size of an aperture on the stop are the same.
 const SAME: f64 = 1e-4;
 
-/// Gives the stop the size that the file's beam has there. Where that cannot be found, the beam is noted as not carried, at
-/// `line`; `mark` is how the file would call a surface its stop.
+/// Gives the stop the size that the file's beam has there. If it cannot be computed, the beam is noted as not carried, at `line`. `mark` is
+/// the word by which the file marks a surface as its stop.
 pub(crate) fn size(lens: &mut Prescription, line: usize, mark: &str) {
     let stated = match lens.system_aperture {
         None | Some(SystemAperture::StopSize) => return,
@@ -31,31 +31,31 @@ pub(crate) fn size(lens: &mut Prescription, line: usize, mark: &str) {
                 && limit(stop, size)
             {
                 let text = format!(
-                    "The semi-diameter {} mm of the stop is that of the paraxial marginal ray.",
+                    "The stop's semi-diameter of {} mm is the height of the paraxial marginal ray.",
                     shortest(size)
                 );
                 lens.remarks.push(text);
                 lens.stop_is_computed = true;
             }
         }
-        Err(why) => lens.leave_out(line, true, format!("{stated} limits nothing: {why}")),
+        Err(why) => lens.leave_out(line, true, format!("{stated} does not limit the light: {why}")),
     }
 }
 
-/// Narrows a stop to a size; false where it is as narrow already.
+/// Narrows a stop to a size; returns false if it is as narrow already.
 fn limit(stop: &mut Surface, size: f64) -> bool {
     let own = stop.semi_diameter_mm;
     if own.is_some_and(|own| own <= size * (1.0 + SAME)) {
         return false;
     }
-    // What is wider goes on being the edge of the element.
+    // Keep a larger size as the edge of the element.
     let edge = stop.outer_semi_diameter_mm.unwrap_or(0.0).max(own.unwrap_or(0.0));
     stop.semi_diameter_mm = Some(size);
     stop.outer_semi_diameter_mm = (edge > size).then_some(edge);
     true
 }
 
-/// The stop among the items and its semi-diameter; or else why there is none, and what to write.
+/// Returns the index of the stop among the items and its semi-diameter, or the reason why there is none with a hint what to write.
 fn semi_diameter_mm(lens: &Prescription, mark: &str) -> Result<(usize, f64), String> {
     const WRITE: &str = "write `semi-diameter: ...` at the stop of the imported lens file";
     let is_stop = |item: &Item| matches!(item, Item::Surface(surface) if surface.stop);
@@ -69,7 +69,7 @@ fn semi_diameter_mm(lens: &Prescription, mark: &str) -> Result<(usize, f64), Str
         .or(Some(lens.wavelengths.len() / 2))
         .and_then(|at| lens.wavelengths.get(at))
         .map_or(lines::D.wavelength_nm, |wavelength| wavelength.nm);
-    // Along the axis in front of the first surface, and from a point of the axis on it.
+    // Trace one ray parallel to the axis, and one from the axial point of the first surface.
     let (high, steep) = (trace(lens, stop, nm, [1.0, 0.0]), trace(lens, stop, nm, [0.0, 1.0]));
     let (high, steep) = match (high, steep) {
         (Ok(high), Ok(steep)) => (high, steep),
@@ -82,12 +82,12 @@ fn semi_diameter_mm(lens: &Prescription, mark: &str) -> Result<(usize, f64), Str
     if high.bends_before_stop && is_decentered(&lens.items[..=stop]) {
         return Err(format!("surfaces in front of the stop are decentered; {WRITE}"));
     }
-    // A ray from the point of the object on the axis, per slope there: at the stop, and n u at the image.
+    // Ray from the axial object point, per unit slope there: height at the stop, and n u at the image.
     let from_object =
         lens.object_distance_mm.map(|d| (d * high.at_stop + steep.at_stop, d * high.behind + steep.behind));
     let size = match (lens.system_aperture, from_object) {
         (Some(SystemAperture::EntrancePupilDiameter(d)), _) => high.at_stop * d / 2.0,
-        // The focal length over the diameter of the pupil, wherever the object is.
+        // Focal length over pupil diameter, wherever the object is.
         (Some(SystemAperture::FNumber(n)), _) => high.at_stop / (2.0 * n * high.behind),
         (Some(SystemAperture::ObjectNumericalAperture(_)), None) => {
             return Err(format!("the object is at infinity; {WRITE}"));
@@ -99,22 +99,22 @@ fn semi_diameter_mm(lens: &Prescription, mark: &str) -> Result<(usize, f64), Str
         (Some(SystemAperture::ImageNumericalAperture(na)), Some((at_stop, behind))) => at_stop * na / behind,
         (Some(SystemAperture::StopSize) | None, _) => f64::NAN,
     };
-    // To ten digits: more would be invented.
+    // Round to ten digits, because more would not be meaningful.
     let size: f64 = format!("{:.9e}", size.abs()).parse().unwrap_or(f64::NAN);
-    if size > 0.0 && size.is_finite() { Ok((stop, size)) } else { Err(format!("no paraxial ray has it; {WRITE}")) }
+    if size > 0.0 && size.is_finite() { Ok((stop, size)) } else { Err(format!("no paraxial ray fits; {WRITE}")) }
 }
 
-/// A paraxial ray.
+/// A paraxial ray through the lens.
 struct Ray {
     /// Height at the stop, mm.
     at_stop: f64,
-    /// n u behind the last surface.
+    /// Product n u behind the last surface.
     behind: f64,
-    /// Whether a surface in front of the stop, or the stop itself, has power.
+    /// Whether a surface in front of the stop has power.
     bends_before_stop: bool,
 }
 
-/// Follows a paraxial ray from the first vertex; the name of a glass without an index where there is one.
+/// Traces a paraxial ray from the first vertex. The error is the name of a glass without an index.
 fn trace(lens: &Prescription, stop: usize, nm: f64, [mut y, mut slope]: [f64; 2]) -> Result<Ray, String> {
     let (mut n, mut at_stop, mut bends_before_stop) = (1.0_f64, 0.0, false);
     for (at, item) in lens.items.iter().enumerate() {
@@ -134,7 +134,7 @@ fn trace(lens: &Prescription, stop: usize, nm: f64, [mut y, mut slope]: [f64; 2]
     Ok(Ray { at_stop, behind: n * slope, bends_before_stop })
 }
 
-/// Curvature at the vertex in y-z, 1/mm, and the power of an ideal lens.
+/// Returns the curvature at the vertex in y-z, 1/mm, and the power of an ideal lens, 1/mm.
 fn bend(shape: &Shape) -> (f64, f64) {
     let square = |coefficients: &[f64], at: usize| 2.0 * coefficients.get(at).copied().unwrap_or(0.0);
     match shape {
@@ -169,7 +169,7 @@ fn index(medium: &Medium, nm: f64) -> Result<f64, String> {
     index.ok_or(name)
 }
 
-/// Whether something of these stands beside the axis.
+/// Whether any of these items is decentered.
 fn is_decentered(items: &[Item]) -> bool {
     items.iter().any(|item| match item {
         Item::Surface(surface) => surface.displacement.decenter_mm != [0.0; 2],

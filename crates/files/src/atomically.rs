@@ -1,4 +1,4 @@
-//! A file appears under its name only when it is complete.
+//! Files that appear under their name only when they are complete.
 
 use crate::temporary::create_beside;
 use crate::{WriteError, WriteFault};
@@ -6,11 +6,11 @@ use spectra_core::sink::{Content, Sink};
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 
-/// Whether writers lock what they write: where a lock is only a word among those who ask for it.
+/// Whether writers lock the files that they write: only on Unix, where locks are advisory and do not block other programs.
 pub(crate) const HOLDS: bool = cfg!(unix);
 
-/// Lets `write` fill a temporary file in the folder of `path`, then gives it that name. Where `write` or
-/// the system fails, an older file of that name stays as it was and the temporary one is removed.
+/// Lets `write` fill a temporary file in the folder of `path`, then renames it to `path`. If `write` or the system fails, an
+/// older file of that name remains unchanged, and the temporary file is removed.
 ///
 /// # Errors
 /// [`WriteError`], which names `path`.
@@ -24,22 +24,22 @@ pub fn write_atomically(
     };
     let create = |name: &Path| OpenOptions::new().read(true).write(true).create_new(true).open(name);
     let (mut file, temporary) = create_beside(path, create).map_err(|e| error(e.into()))?;
-    // Who sweeps up after runs that were killed leaves alone what is held; where there are no locks, the age of a file has to do.
+    // The lock keeps a cleanup after killed runs from removing this file. Without locks the cleanup goes by the age of the file.
     let _ = HOLDS.then(|| file.lock());
     let written = write(&mut file).and_then(|()| {
-        // On the disk before the name is: a machine that stops between leaves the old file.
+        // The content reaches the disk before the name does: if the machine stops in between, the old file remains.
         file.sync_all()?;
         drop(file);
         Ok(std::fs::rename(&temporary, path)?)
     });
     written.map_err(|fault| {
-        // What removal says adds nothing to the fault that is reported.
+        // The reported fault matters more than a failure of the removal.
         let _ = std::fs::remove_file(&temporary);
         error(fault)
     })
 }
 
-/// A folder on disk that takes files, each as [`write_atomically`] writes it.
+/// A folder on disk that writes each file with [`write_atomically`].
 #[derive(Clone, Debug)]
 pub struct Folder(pub PathBuf);
 
@@ -52,7 +52,7 @@ impl Sink for Folder {
     }
 }
 
-/// Copies a file with its rights to `path`, as [`write_atomically`] writes one.
+/// Copies a file with its permissions to `path`, as [`write_atomically`] does.
 ///
 /// # Errors
 /// [`WriteError`], which names `path`.

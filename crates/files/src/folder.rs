@@ -1,25 +1,25 @@
-//! A folder appears under its name only when all of its files are in it.
+//! Folders that appear under their name only when they are complete.
 
 use crate::WriteError;
 use crate::temporary::create_beside;
 use std::io;
 use std::path::Path;
 
-/// Makes the folder `path`, whose parent is there and which is not there itself, with `files` in it: name, in which `/`
-/// stands between folders, and text.
+/// Creates the folder `path` with `files` in it: names, with `/` between folders, and texts. The parent of `path` must exist, and
+/// `path` itself must not.
 ///
 /// # Errors
-/// [`WriteError::Io`], which names `path`; nothing is left of it then.
+/// [`WriteError::Io`], which names `path`; nothing of the folder remains then.
 pub fn write_folder(path: &Path, files: &[(&str, String)]) -> Result<(), WriteError> {
     let error = |cause| WriteError::Io { path: path.into(), cause };
     let create = |name: &Path| std::fs::create_dir(name);
     let ((), temporary) = create_beside(path, create).map_err(error)?;
     let written = fill(&temporary, files).and_then(|()| {
-        // Renaming would take the place of an empty folder that somebody has made meanwhile.
+        // A rename would replace an empty folder that another process has made meanwhile.
         if path.exists() { Err(io::ErrorKind::AlreadyExists.into()) } else { std::fs::rename(&temporary, path) }
     });
     written.map_err(|cause| {
-        // What removal says adds nothing to the fault that is reported.
+        // The reported fault matters more than a failure of the removal.
         let _ = std::fs::remove_dir_all(&temporary);
         error(cause)
     })

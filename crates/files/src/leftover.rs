@@ -1,10 +1,10 @@
-//! Temporary files that stayed: `.NAME.PROCESS-NUMBER.tmp`, see [`super::write_atomically`].
+//! Cleanup of leftover temporary files `.NAME.PROCESS-NUMBER.tmp`, see [`super::write_atomically`].
 
 use std::fs::{File, TryLockError};
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-/// What is this old nobody writes any more.
+/// Age from which nobody is expected to write a file any more.
 const OLD: Duration = Duration::from_secs(600);
 
 /// Removes the files that this process was writing in `folder`.
@@ -12,7 +12,8 @@ pub fn remove_own(folder: &Path) {
     remove(folder, |name, _| process_of(name) == Some(std::process::id()));
 }
 
-/// Removes what runs left in `folder` that were killed, by the form of its name alone: its process is gone, and nobody holds it.
+/// Removes temporary files in `folder`, known by their names, that killed runs have left: their process is gone, and nobody holds
+/// them.
 pub fn sweep(folder: &Path) {
     remove(folder, |name, modified| {
         if process_of(name).is_none_or(is_alive) {
@@ -20,13 +21,14 @@ pub fn sweep(folder: &Path) {
         }
         match is_held(&folder.join(name)) {
             Some(is_held) => !is_held,
-            // A file system that knows no locks: age has to do.
+            // A file system without locks: the age of the file decides.
             None => SystemTime::now().duration_since(modified).is_ok_and(|age| age > OLD),
         }
     });
 }
 
-/// Whether a writer holds the file, whose process may have another number here than where it runs; `None` where that is not known.
+/// Returns whether a writer holds the file; `None` if that is not known. Inside a container the writer's process may have another
+/// number.
 fn is_held(path: &Path) -> Option<bool> {
     if !super::atomically::HOLDS {
         return None;
@@ -47,20 +49,20 @@ fn remove(folder: &Path, which: impl Fn(&str, SystemTime) -> bool) {
         }
         let modified = entry.metadata().and_then(|data| data.modified()).unwrap_or_else(|_| SystemTime::now());
         if which(&name, modified) {
-            // A file that stays does no harm.
+            // A file that remains does no harm.
             let _ = std::fs::remove_file(entry.path());
         }
     }
 }
 
-/// The process in the name of a temporary file.
+/// Returns the process number in the name of a temporary file.
 fn process_of(name: &str) -> Option<u32> {
     let (rest, number) = name.strip_suffix(".tmp")?.rsplit_once('-')?;
     number.parse::<u64>().ok()?;
     rest.rsplit(['.', '-']).next()?.parse().ok()
 }
 
-/// Whether a process of that number is there; where the system does not show it, the lock alone counts.
+/// Returns whether a process of that number exists. Where the system does not show that, only the lock counts.
 fn is_alive(process: u32) -> bool {
     Path::new("/proc").join(process.to_string()).exists()
 }
@@ -79,7 +81,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let own = std::process::id();
         let hour = Duration::from_secs(3600);
-        // A process of that number cannot be.
+        // No process can have this number.
         let cases = [
             (".a.exr.4294967290-0.tmp".to_owned(), hour, false),
             (".a-001.exr.4294967290-12.tmp".to_owned(), hour, false),
@@ -94,7 +96,7 @@ mod tests {
         for (name, age, _) in &cases {
             put(folder.path(), name, *age);
         }
-        // As a writer in another container holds it, whose processes do not show here.
+        // This imitates a writer in another container, whose processes are not visible here.
         let held = File::open(folder.path().join(".held.exr.4294967290-1.tmp")).expect("there");
         held.lock().expect("locked");
         sweep(folder.path());

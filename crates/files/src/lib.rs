@@ -1,11 +1,11 @@
-//! Bytes to disk: a file or a folder appears under its name whole, or not at all.
+//! Writing to disk: a file or a folder appears under its name complete, or not at all.
 //!
 //! - [`write_atomically`]: a file that is filled by a function;
-//! - [`copy_atomically`]: a copy of a file, with its rights;
+//! - [`copy_atomically`]: a copy of a file, with its permissions;
 //! - [`write_folder`]: a new folder with files in it.
 //!
-//! The only room of the engine that writes to a disk. What is under way has a hidden temporary name in the same folder,
-//! `.NAME.PROCESS-NUMBER.tmp`, so that the last step is a renaming; a failure removes it.
+//! This is the only crate of the engine that writes to a disk. A file in progress has a hidden temporary name in the same folder,
+//! `.NAME.PROCESS-NUMBER.tmp`, so that the last step is a rename. After a failure it is removed.
 //!
 //! ```
 //! # fn main() -> Result<(), spectra_files::WriteError> {
@@ -30,23 +30,23 @@ pub use spectra_core::sink::WriteFault;
 
 use std::path::PathBuf;
 
-/// A file that could not be written.
+/// Error of a file that could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The system refused: no such folder, no right, disk full.
+    /// The system refused: no such folder, no permission, disk full.
     #[error("{}: cannot be written: {cause}", path.display())]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The system's word.
+        /// Error of the system.
         cause: std::io::Error,
     },
     /// The format cannot hold the content.
     #[error("{}: cannot be written: {cause}", path.display())]
     Format {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Reason, as text.
         cause: String,
     },
 }

@@ -1,10 +1,10 @@
-//! Names of what is under way: `.NAME.PROCESS-NUMBER.tmp`, beside what it is to become.
+//! Temporary names of files in progress: `.NAME.PROCESS-NUMBER.tmp`, beside the final name.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Makes something new under a temporary name beside `path`, and returns both.
+/// Creates something under a temporary name beside `path`, and returns both.
 pub(crate) fn create_beside<T>(path: &Path, create: impl Fn(&Path) -> io::Result<T>) -> io::Result<(T, PathBuf)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let Some(name) = path.file_name() else {
@@ -17,7 +17,7 @@ pub(crate) fn create_beside<T>(path: &Path, create: impl Fn(&Path) -> io::Result
         let temporary = path.with_file_name(hidden);
         match create(&temporary) {
             Ok(made) => return Ok((made, temporary)),
-            // Left by a process of the same number that was killed: take the next name.
+            // A killed process with the same number has left this file, so the next name is tried.
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
             Err(e) => return Err(e),
         }

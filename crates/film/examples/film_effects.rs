@@ -1,4 +1,5 @@
-//! How long halation, scatter, adjacency and grain take on a frame, and what they look like: `film_effects FOLDER [MEGAPIXELS]`.
+//! Measures the time that halation, scatter, adjacency and grain take on a frame, and writes example pictures: `film_effects FOLDER
+//! [MEGAPIXELS]`.
 
 use spectra_film::adjacency::{Adjacency, Edges};
 use spectra_film::grain::Grain;
@@ -27,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = Path::new(arguments.get(1).map_or(".", String::as_str));
     let grain = Grain::calibrated(17.0, 35.0, 1, 0)?;
     for pitch_um in [0.25, 1.0, 3.0, 6.0, 7.3, 24.0] {
-        // An even gray and steps of density, at this zoom.
+        // An even gray and steps of density, at this pixel size.
         let (width, height) = (512, 384);
         let mut plane: Vec<f32> = (0..width * height)
             .map(|k| if k / width < 256 { 0.8 } else { 0.1 + 0.25 * (k % width / 64) as f32 })

@@ -1,17 +1,18 @@
-//! Adjacency: edges that development makes stand out.
+//! Adjacency effects: development makes edges stand out.
 //!
-//! Where much silver is developed the developer tires and gives off bromide; both diffuse. So beside a dense place less is
-//! developed than there would be, at a dense place's border more: a line of overshoot on either side of an edge (E. Mackie's
-//! lines; C. E. K. Mees and T. H. James, "The Theory of the Photographic Process", 3rd edition, 1966, on adjacency effects), and a response to fine
-//! patterns above 1. Large even areas keep the densities of the characteristic curve, which was measured on such.
+//! Where much silver develops, the developer is exhausted and releases bromide; both diffuse. So less develops next to a dense area, and
+//! more at the border of the dense area.
+//! This gives a line of overshoot on either side of an edge (E. Mackie's lines; C. E. K. Mees and T. H. James, "The Theory of the
+//! Photographic Process", 3rd edition, 1966, on adjacency effects), and a response to fine patterns above 1.
+//! Large even areas keep the densities of the characteristic curve, which was measured on such areas.
 //!
-//! What has diffused from a point lies about it as K0(r / l), the solution of diffusion with loss in a layer; with the
-//! amount D of silver or dye, the change is
+//! The products that diffuse from a point are distributed as K0(r / l), the solution of diffusion with loss in a layer. With the amount D
+//! of silver or dye, the change is
 //!
 //! gain * (D - D * K0),
 //!
-//! and a sine of the frequency f is developed 1 + gain (1 - 1 / (1 + (2 pi l f)^2)) times as strong. There is no less than no silver
-//! and no more than all of it: near either end of the curve the change d is held to d / (1 + |d| / room).
+//! and a sine of the frequency f is developed 1 + gain (1 - 1 / (1 + (2 pi l f)^2)) times as strongly. There cannot be less than no silver
+//! or more than all of it: near either end of the curve the change d is reduced to d / (1 + |d| / room).
 
 use crate::cells::{BOTH_WAYS, Cells, with_margin};
 use crate::known::Known;
@@ -21,28 +22,28 @@ use spectra_numerics::convolve::{Convolver, Kernel};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Kernels on a plane, by their length in mm.
+/// Cache of diffusion kernels on a plane, by the diffusion length in mm.
 static DIFFUSIONS: Known<(f64, Raster), Diffusion> = Known::new();
 
-/// How strong and how wide the effect is.
+/// Strength and width of the adjacency effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adjacency {
-    /// Largest gain of the contrast of fine patterns, from 0 on.
+    /// Largest gain of contrast of fine patterns, 0 or more.
     pub gain: f64,
-    /// Length over which diffusion reaches, mm, above 0.
+    /// Diffusion length, mm, above 0.
     pub length_mm: f64,
 }
 
-/// Part of what diffuses that may be beyond the kernel; and the most pixels that it reaches.
+/// Fraction of the diffusing products that may lie outside the kernel, and largest radius of the kernel, pixels.
 const BEYOND: f64 = 1e-4;
 const LONGEST: usize = 1000;
 
-/// Cells are as wide as the length of diffusion holds so many of them, at least: what they lose of the finest patterns has
-/// diffused to a tenth, and is within 0.01 of the gain.
+/// Smallest number of cells per diffusion length; cells are as wide as this allows. Diffusion has reduced the fine patterns that cells lose
+/// to a tenth, so the error is within 0.01 of the gain.
 const CELLS_A_LENGTH: f64 = 2.0;
 
 impl Adjacency {
-    /// What a sine of `frequency` cycles/mm is developed to, over what it would be without.
+    /// Returns the developed contrast of a sine of `frequency` cycles/mm, relative to development without adjacency effects.
     #[must_use]
     pub fn response(&self, frequency: f64) -> f64 {
         let x = 2.0 * PI * self.length_mm * frequency;
@@ -50,11 +51,12 @@ impl Adjacency {
     }
 }
 
-/// What diffuses, on planes of one size.
+/// Diffusion kernel prepared for planes of one size.
 enum Diffusion {
-    /// From pixel to pixel.
+    /// Diffusion from pixel to pixel.
     Pixels(Convolver<f32>, FromFrame),
-    /// From cell to cell that are so many pixels wide; and of each cell the part of what diffuses there that comes from the frame.
+    /// Diffusion from cell to cell: the width of a cell in pixels, the convolution, and for each cell the fraction of the kernel that lies
+    /// on the frame.
     Cells(usize, Convolver<f32>, Vec<f32>),
 }
 
@@ -74,8 +76,8 @@ impl Diffusion {
     }
 }
 
-/// The part of what diffuses to a pixel that comes from the frame, over that in the middle of a large frame: 1 but near the border. So
-/// a small frame holds it.
+/// Fraction of the kernel around each pixel that lies on the frame: 1 except near the border. Interior pixels are equal, so a small frame
+/// can hold all values.
 struct FromFrame {
     frame: [usize; 2],
     small: [usize; 2],
@@ -91,7 +93,7 @@ impl FromFrame {
         let whole = kernel.sum() as f32;
         Convolver::<f32>::new(kernel, small[0], small[1]).apply(&even, &mut parts, |to, v| *to = v / whole);
         if small == [most; 2] {
-            // But for rounding: what is far from the border is not to change at all.
+            // Rounding must not change pixels far from the border at all.
             parts[most * kernel.radius() + kernel.radius()] = 1.0;
         }
         Self { frame, small, parts }
@@ -108,7 +110,7 @@ impl FromFrame {
     }
 }
 
-/// The effect on planes of one size.
+/// The adjacency effect on planes of one size.
 ///
 /// ```
 /// use spectra_film::adjacency::{Adjacency, Edges};
@@ -146,7 +148,7 @@ impl Edges {
             if cell_px == 1 {
                 return Diffusion::on_pixels(&kernel, raster);
             }
-            // A cell is wider than a pixel, whose twelfth the kernel has, too.
+            // A cell is wider than a pixel; the kernel already contains the variance of a twelfth of a squared pixel.
             let wide = cell_px as f64;
             let kernel = kernel.sharpened(BOTH_WAYS + (1.0 - 1.0 / (wide * wide)) / 24.0);
             Diffusion::on_cells(&kernel, raster, cell_px)
@@ -154,12 +156,13 @@ impl Edges {
         Self { raster: *raster, gain: adjacency.gain, diffusion }
     }
 
-    /// Applies the effect to a plane of amounts (density of silver, or dye), in place. Beside the frame lies film as dense as what is
-    /// next to it: mounts and masks cover the border that a camera's gate leaves. Amounts stay within `range`, the ends of the
-    /// curve; `clear` is that of the unexposed film. Takes memory for one more plane, or half of one where pixels are fine.
+    /// Applies the effect to a plane of amounts (density of silver, or dye), in place. Film outside the frame is taken to be as dense as
+    /// the frame's border, since mounts and masks cover the border that a camera's gate leaves.
+    /// `range` holds the ends of the curve, within which amounts stay; `clear` is the amount of unexposed film. Needs memory for one more
+    /// plane, or half of one if pixels are fine.
     ///
     /// # Panics
-    /// If the plane has another number of pixels than the raster.
+    /// If the number of pixels of the plane differs from that of the raster.
     pub fn apply(&self, amounts: &mut [f32], clear: f64, range: (f64, f64)) {
         assert_eq!(amounts.len(), self.raster.pixels(), "the plane has the size that was prepared for");
         let (gain, (low, high)) = (self.gain, range);
@@ -192,7 +195,7 @@ impl Edges {
 mod tests {
     use super::*;
 
-    /// On cells an edge, a dot and fine texture are developed as on the pixels themselves, wherever they lie on the cells.
+    /// On cells, an edge, a dot and fine texture develop as on pixels, wherever they lie on the cells.
     #[test]
     fn cells_do_what_pixels_do() {
         let (width, height, pitch_mm) = (301, 203, 0.004);
@@ -218,7 +221,7 @@ mod tests {
         assert!(most(&plane, &want) > 0.05 && most(&got, &want) < 0.003);
     }
 
-    /// An even frame stays even up to its border, on pixels and on cells of them.
+    /// An even frame stays even up to its border, on pixels and on cells.
     #[test]
     fn a_frame_has_no_rim() {
         for length_mm in [0.006, 0.05] {

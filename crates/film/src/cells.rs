@@ -1,26 +1,25 @@
-//! Planes of cells that are some pixels wide: what is smooth is computed on them.
+//! Planes of cells that are several pixels wide, on which smooth quantities are computed.
 //!
-//! A value is shared out to the cells around it and interpolated between cells, both linearly by distance. Each spreads it by a sixth of
-//! a squared cell along either axis, which a kernel can have taken off beforehand ([`Kernel::sharpened`]).
+//! A value is shared out to the cells around it, and cells are interpolated at pixels, both linearly by distance. Each of the two blurs by
+//! a variance of a sixth of a squared cell along either axis. A kernel can compensate for that beforehand ([`Kernel::sharpened`]).
 //!
 //! [`Kernel::sharpened`]: spectra_numerics::convolve::Kernel::sharpened
 
 use rayon::prelude::*;
 use spectra_numerics::convolve::Convolver;
 
-/// Cells beside the frame, so that there is something to interpolate with at its border.
+/// Number of cells around the frame, so that its border can be interpolated.
 pub(crate) const MARGIN: usize = 2;
 
-/// Cells of `cell_px` along an axis of `pixels`, [`MARGIN`] included.
+/// Number of cells of `cell_px` along an axis of `pixels`, including [`MARGIN`] on both sides.
 pub(crate) fn with_margin(pixels: usize, cell_px: usize) -> usize {
     pixels.div_ceil(cell_px) + 2 * MARGIN
 }
 
-/// What spreading by sharing out to cells and interpolating between them takes, as what half of the variance along an axis is over a
-/// squared cell.
+/// Blur by sharing out and interpolation together: half of the variance along an axis, divided by the squared cell width.
 pub(crate) const BOTH_WAYS: f64 = 1.0 / 6.0;
 
-/// A plane of cells, with [`MARGIN`] around the frame.
+/// A plane of cells, including [`MARGIN`] around the frame.
 pub(crate) struct Cells {
     cell_px: usize,
     width: usize,
@@ -28,8 +27,8 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// The mean of `value` of a frame's pixels, shared out to cells of `cell_px` pixels so that the sum and the center of gravity stay.
-    /// What is no number is 0.
+    /// Averages `value` of a frame's pixels over cells of `cell_px` pixels; sum and center of gravity are kept. Values that are not finite
+    /// count as 0.
     pub(crate) fn of_pixels(
         plane: &[f32],
         frame: [usize; 2],
@@ -39,7 +38,7 @@ impl Cells {
         Self::shared(plane, frame[0], 0, frame, [1, cell_px], value)
     }
 
-    /// The same of these cells, which belong to a frame of `frame` pixels, to cells `step` times as wide.
+    /// Averages these cells, which belong to a frame of `frame` pixels, over cells that are `step` times as wide.
     pub(crate) fn gathered(&self, frame: [usize; 2], step: usize) -> Self {
         Self::shared(&self.values, self.width, MARGIN, frame, [self.cell_px, step], |v| v)
     }
@@ -61,7 +60,7 @@ impl Cells {
         let area = (step * step) as f64;
         let mut values = vec![0.0_f32; width * height];
         values.par_chunks_mut(width).enumerate().for_each(|(row, line)| {
-            // Rows that share with this one lie next to each other.
+            // Rows that share with this one are adjacent.
             let begin = rows.partition_point(|(j, _)| j + 1 < row);
             let end = rows.partition_point(|(j, _)| *j <= row);
             let mut sums = vec![0.0_f64; fine_width];
@@ -82,32 +81,32 @@ impl Cells {
         Self { cell_px, width, values }
     }
 
-    /// The column or row left of the place `x` (center of a pixel or cell, in units of these cells from the frame's
-    /// border), and the part of its neighbor.
+    /// Returns the column or row before the place `x`, and the weight of the next one. `x` is the center of a pixel or cell, in units of
+    /// these cells from the frame's border.
     fn place(x: f64) -> (usize, f32) {
         let p = x - 0.5 + MARGIN as f64;
         let k = p.floor();
         (k as usize, (p - k) as f32)
     }
 
-    /// Convolves the cells, margin included.
+    /// Convolves the cells, including the margin.
     pub(crate) fn convolve(&mut self, convolver: &Convolver<f32>) {
         let source = std::mem::take(&mut self.values);
         self.values = vec![0.0; source.len()];
         convolver.apply(&source, &mut self.values, |to, v| *to = v);
     }
 
-    /// Cell by cell, margin included.
+    /// Returns the values of all cells, including the margin.
     pub(crate) fn into_values(self) -> Vec<f32> {
         self.values
     }
 
-    /// Divides each cell, margin included.
+    /// Divides the cells by `by`, including the margin.
     pub(crate) fn divide(&mut self, by: &[f32]) {
         self.values.iter_mut().zip(by).for_each(|(value, by)| *value /= by);
     }
 
-    /// Gives these cells, linear between their centers, to one line of what is finer.
+    /// Passes the values of these cells, interpolated between their centers, to one line of a finer grid.
     fn over_line(&self, y: f64, columns: &[(usize, f32)], line: &mut [f32], write: impl Fn(&mut f32, f32)) {
         let (j, v) = Self::place(y);
         let (upper, lower) = (&self.values[j * self.width..][..self.width], &self.values[(j + 1) * self.width..]);
@@ -118,12 +117,12 @@ impl Cells {
         }
     }
 
-    /// Where the columns of a plane of `width` pixels lie on the cells.
+    /// Returns the cell positions of the columns of a plane of `width` pixels.
     pub(crate) fn columns(&self, width: usize) -> Vec<(usize, f32)> {
         (0..width).map(|i| Self::place((i as f64 + 0.5) / self.cell_px as f64)).collect()
     }
 
-    /// Gives what the cells have at each pixel of the row `row` to `write`, with the pixel.
+    /// Calls `write` with each pixel of the row `row` and the interpolated value of the cells there.
     pub(crate) fn over_row(
         &self,
         row: usize,
@@ -134,13 +133,13 @@ impl Cells {
         self.over_line((row as f64 + 0.5) / self.cell_px as f64, columns, line, write);
     }
 
-    /// Gives what the cells have at each pixel of a plane of `width` columns to `write`, with the pixel.
+    /// Calls `write` with each pixel of a plane of `width` columns and the interpolated value of the cells there.
     pub(crate) fn over_pixels(&self, plane: &mut [f32], width: usize, write: impl Fn(&mut f32, f32) + Sync) {
         let columns = self.columns(width);
         plane.par_chunks_mut(width).enumerate().for_each(|(row, line)| self.over_row(row, &columns, line, &write));
     }
 
-    /// Adds these cells to those of a finer level, `step` of which make one, its margin included.
+    /// Adds these cells to those of a finer level, including its margin. A cell is `step` finer cells wide.
     pub(crate) fn add_to_cells(&self, finer: &mut Self, step: usize) {
         let center = |k: usize| (k as f64 + 0.5 - MARGIN as f64) / step as f64;
         let columns: Vec<_> = (0..finer.width).map(|i| Self::place(center(i))).collect();

@@ -1,20 +1,20 @@
-//! A smooth function of three amounts, sampled once and read off for every pixel of a frame.
+//! A smooth function of three amounts, sampled once and looked up for every pixel of a frame.
 
 use rayon::prelude::*;
 
-/// Three functions of three arguments, sampled on equal steps, linear in each argument between samples, held beyond the ends.
+/// Three functions of three arguments, sampled at equal steps, linear in each argument between samples, constant beyond the ends.
 #[derive(Clone, Debug)]
 pub(crate) struct Cube {
     low: [f32; 3],
     per_step: [f32; 3],
     steps: usize,
-    /// The fourth is there to be loaded with the others.
+    /// Samples; the fourth value only makes them load together.
     values: Vec<[f32; 4]>,
 }
 
 impl Cube {
-    /// Samples on `steps + 1` places of each argument between the ends in `ranges`. `slab` gets the index of the first
-    /// argument and writes the samples of the other two, the last one running fastest.
+    /// Samples at `steps + 1` places of each argument between the ends in `ranges`. `slab` gets the index of the first argument and writes
+    /// the samples of the other two; the last one varies fastest.
     pub(crate) fn by_slabs(
         ranges: [(f64, f64); 3],
         steps: usize,
@@ -27,7 +27,7 @@ impl Cube {
         Self { low: ranges.map(|r| r.0 as f32), per_step, steps, values }
     }
 
-    /// The three functions at `x`, and a fourth value of no meaning: four are computed as fast as one.
+    /// Interpolates the three functions at `x`. The fourth value has no meaning: four are computed as fast as three.
     #[inline(always)]
     pub(crate) fn at(&self, x: [f32; 3]) -> [f32; 4] {
         let last = self.steps as f32;
@@ -35,7 +35,7 @@ impl Cube {
         let mut part = [0.0; 3];
         for k in 0..3 {
             let p = ((x[k] - self.low[k]) * self.per_step[k]).max(0.0).min(last);
-            // A few hundred steps at most.
+            // There are at most a few hundred steps.
             let i = (p as i32).min(self.steps as i32 - 1);
             (index[k], part[k]) = (i as usize, p - i as f32);
         }
@@ -48,10 +48,10 @@ impl Cube {
     }
 }
 
-/// Two samples that follow each other along the last argument.
+/// Two consecutive samples along the last argument.
 type Two = [f32; 8];
 
-// Every pixel comes by here: functions, since closures over arrays are left uninlined.
+// These run for every pixel and are functions, because closures over arrays are not inlined.
 #[inline(always)]
 fn mix(mut a: Two, b: Two, t: f32) -> Two {
     for (a, b) in a.iter_mut().zip(b) {
@@ -60,7 +60,7 @@ fn mix(mut a: Two, b: Two, t: f32) -> Two {
     a
 }
 
-/// Between those at the beginning and those a place on along the second argument.
+/// Interpolates along the second argument, between the samples at the start and those one step on.
 #[inline(always)]
 fn edge(values: &[[f32; 4]], places: usize, part: f32) -> Two {
     let values = values[..places + 2].as_flattened();
@@ -72,7 +72,7 @@ fn edge(values: &[[f32; 4]], places: usize, part: f32) -> Two {
 mod tests {
     use super::*;
 
-    /// Multilinear functions are met exactly, also beyond the ends, where they are held.
+    /// Multilinear functions are reproduced exactly, and held constant beyond the ends.
     #[test]
     fn multilinear_functions_are_exact() {
         let f = |x: f32, y: f32, z: f32| [x, 1.0 + x * y, x * y * z - z];

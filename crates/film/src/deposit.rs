@@ -1,4 +1,4 @@
-//! What a developed film holds back, wavelength by wavelength: dyes or silver, over its base.
+//! Spectral transmittance of a developed film: dyes or silver on its base.
 
 use crate::stock::Stock;
 use spectra_core::math::{exp, log10};
@@ -6,10 +6,10 @@ use spectra_core::spectral::BAND;
 use spectra_numerics::linear;
 use std::f64::consts::LN_10;
 
-/// The spectral density of a developed film as a function of the amounts in its layers, on the band of 350-830 nm by 1 nm.
+/// The spectral density of a developed film as a function of the amounts in its layers, on the band of 350-830 nm in steps of 1 nm.
 ///
-/// Amounts of dye are counted in units of the stock's dye tables, over the minimum density. Of silver there is one layer:
-/// its amount is the visual density, base and fog included, the same at all wavelengths.
+/// Amounts of dye are in units of the stock's dye tables, above the minimum density. A silver film has one layer: its amount is the visual
+/// density, including base and fog, equal at all wavelengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deposit {
     base: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct Deposit {
 }
 
 impl Deposit {
-    /// That of a stock.
+    /// Builds the spectral density of a stock.
     #[must_use]
     pub fn of(stock: &Stock) -> Self {
         let flat = |value: f64| vec![value; BAND.count];
@@ -27,48 +27,48 @@ impl Deposit {
         Self { base, per_unit: stock.layers.iter().map(dye).collect() }
     }
 
-    /// Three separation negatives, each of which is printed alone: as if each held back one third of the spectrum and
-    /// nothing else, in the order blue, green, red.
+    /// Builds three separation negatives, each of which is printed separately: each absorbs only its third of the spectrum, in the order
+    /// blue, green, red.
     #[must_use]
     pub(crate) fn separations() -> Self {
         let part = |record: usize| BAND.wavelengths_nm().map(|w| if third(w) == record { 1.0 } else { 0.0 }).collect();
         Self { base: vec![0.0; BAND.count], per_unit: (0..3).map(part).collect() }
     }
 
-    /// How many layers it has.
+    /// Number of layers of the film.
     #[must_use]
     pub fn layers(&self) -> usize {
         self.per_unit.len()
     }
 
-    /// Transmittance of layer `layer` alone at an amount, without the base.
+    /// Returns the transmittance of layer `layer` alone at an amount, without the base, at each wavelength of the band.
     #[must_use]
     pub fn layer_transmittance(&self, layer: usize, amount: f64) -> Vec<f64> {
         self.per_unit[layer].iter().map(|d| exp(-LN_10 * amount * d)).collect()
     }
 
-    /// Transmittance of the base alone.
+    /// Returns the transmittance of the base alone, at each wavelength of the band.
     #[must_use]
     pub fn base_transmittance(&self) -> Vec<f64> {
         self.base.iter().map(|d| exp(-LN_10 * d)).collect()
     }
 
-    /// Transmittance of the whole; `amounts` are one a layer.
+    /// Returns the transmittance of the whole film, at each wavelength of the band; `amounts` has one value per layer.
     #[must_use]
     pub fn transmittance(&self, amounts: &[f64]) -> Vec<f64> {
         let density = |i: usize| self.base[i] + self.per_unit.iter().zip(amounts).map(|(d, a)| d[i] * a).sum::<f64>();
         (0..self.base.len()).map(|i| exp(-LN_10 * density(i))).collect()
     }
 
-    /// What passes to each of several receivers: the sum over the band of weight times transmittance.
+    /// Returns the light that reaches each of several receivers: the sum over the band of weight times transmittance.
     #[must_use]
     pub fn seen(&self, amounts: &[f64], weights: &[Vec<f64>]) -> Vec<f64> {
         let passes = self.transmittance(amounts);
         weights.iter().map(|w| w.iter().zip(&passes).map(|(w, t)| w * t).sum()).collect()
     }
 
-    /// The amounts that make each of as many receivers as layers see the density (-log10 of what passes) in `wanted`, by
-    /// Newton's method from `start`; `None` where there are no such amounts.
+    /// Finds the amounts for which each receiver measures the density in `wanted` (-log10 of its light), by Newton's method from `start`.
+    /// There are as many receivers as layers. Returns `None` if there are no such amounts.
     #[must_use]
     pub fn amounts_for(&self, wanted: &[f64], weights: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
         const STEPS: usize = 60;
@@ -76,7 +76,7 @@ impl Deposit {
         let mut amounts = start.to_vec();
         for _ in 0..STEPS {
             let passes = self.transmittance(&amounts);
-            // Rows: derivatives of each receiver's density to the amounts, and what is missing.
+            // Rows: derivatives of each receiver's density with respect to the amounts, and the missing density.
             let (mut slopes, mut missing) = (Vec::with_capacity(n * n), Vec::with_capacity(n));
             for (weight, wanted) in weights.iter().zip(wanted) {
                 let sum: f64 = weight.iter().zip(&passes).map(|(w, t)| w * t).sum();
@@ -87,7 +87,7 @@ impl Deposit {
             }
             let step = linear::solve(&slopes, &missing)?;
             let largest = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-            // Far from the answer, no more than half a unit at once.
+            // Far from the solution, a step is at most half a unit.
             let damping = if largest > 0.5 { 0.5 / largest } else { 1.0 };
             amounts.iter_mut().zip(&step).for_each(|(a, s)| *a += damping * s);
             if largest < 1e-12 {
@@ -98,10 +98,10 @@ impl Deposit {
     }
 }
 
-/// Where an additive printer parts its lamp into blue, green and red, nm.
+/// Wavelengths at which an additive printer splits its lamp into blue, green and red, nm.
 const THIRDS_NM: [f64; 2] = [500.0, 590.0];
 
-/// Which part of the lamp a wavelength is in: 0 blue, 1 green, 2 red.
+/// Part of the lamp to which a wavelength belongs: 0 blue, 1 green, 2 red.
 pub(crate) fn third(wavelength_nm: f64) -> usize {
     THIRDS_NM.iter().filter(|edge| wavelength_nm >= **edge).count()
 }
@@ -110,7 +110,7 @@ pub(crate) fn third(wavelength_nm: f64) -> usize {
 mod tests {
     use super::*;
 
-    /// Dyes that overlap: what Newton finds gives the densities asked for, and narrow receivers read Beer's law.
+    /// Newton's method finds amounts of overlapping dyes with the wanted densities, and narrow receivers follow Beer's law.
     #[test]
     fn amounts_are_found_from_densities() {
         let bell = |center: f64, width: f64| -> Vec<f64> {

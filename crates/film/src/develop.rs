@@ -1,36 +1,36 @@
-//! From exposure to density: the latent image, made visible.
+//! Development: turns exposure into density.
 //!
-//! The chain is exposure in lx s -> reciprocity -> amounts of each layer. What happens to the light inside of
-//! the film comes before the curve, what happens to the silver after it, each on the whole frame.
+//! The chain is exposure in lx s -> reciprocity -> amounts in each layer. Effects on the light inside the film come before the curve,
+//! effects on the silver after it, each on the whole frame.
 
 use crate::display::{MissingChannel, channel};
 use crate::emulsion::Emulsion;
 use crate::stock::Stock;
 use spectra_core::frame::{ExposureFrame, FrameSize};
 
-/// What is in one layer, pixel by pixel.
+/// Density of one layer, pixel by pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DensityLayer {
-    /// The layer's name.
+    /// Name of the layer.
     pub name: String,
-    /// Silver: optical density (diffuse, transmission). Dye: its amount in units of the stock's table. Row-major, upright.
+    /// Silver: optical density (diffuse, transmission). Dye: amount in units of the stock's table. Row-major, upright.
     pub density: Vec<f32>,
 }
 
-/// A developed film.
+/// A developed film: the densities of its layers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Developed {
-    /// Size.
+    /// Size of the frame in pixels and mm.
     pub size: FrameSize,
-    /// Layers, in the order of the stock.
+    /// Densities of the layers, in the order of the stock.
     pub layers: Vec<DensityLayer>,
 }
 
-/// Develops a frame whose channels are the stock's layers, exposed for `exposure_time_s`, by the development called
+/// Develops a frame whose channels are the stock's layers, in lx s, exposed for `exposure_time_s`, with the development named
 /// `development`.
 ///
 /// # Errors
-/// A text: the frame has no channel for a layer, or the stock no such development.
+/// A text: the frame has no channel for a layer, the stock has no such development, or its layers cannot be developed.
 pub fn develop(
     stock: &Stock,
     development: &str,

@@ -1,10 +1,10 @@
-//! From absolute XYZ to a picture for a screen.
+//! Converts absolute XYZ to a picture for a screen.
 //!
-//! The screen's white is D65, as sRGB has it, and nothing is adapted: a scene in tungsten light looks as
-//! yellow as it is. What the screen cannot show moves straight toward the gray of its own luminance
-//! ([`Gamut::Desaturate`]): a color outside of the gamut keeps luminance and hue and loses saturation, one
-//! brighter than the screen can show it pales until, at the luminance of white, it is white. Neither hue nor
-//! brightness breaks on the way.
+//! The screen's white is D65, as in sRGB, and nothing is adapted: a scene in tungsten light looks as yellow as it is.
+//! Colors that the screen cannot show move straight toward the gray of their own luminance ([`Gamut::Desaturate`]). A color outside the
+//! gamut keeps luminance and hue and loses saturation.
+//! A color brighter than the screen can show becomes paler until, at the luminance of white, it is white. Hue and brightness change without
+//! a break.
 
 use crate::lookup::PIXELS_A_TASK;
 use rayon::prelude::*;
@@ -12,47 +12,45 @@ use spectra_color::matrix::{Matrix, apply};
 use spectra_color::{Gamut, RgbSpace, into_gamut};
 use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, Wanted};
 
-/// Finds the exposure that is shown as white, from the frame alone: the same frame, the same answer.
+/// Rule that finds the exposure shown as white, from the frame alone. The same frame always gives the same exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AutoExposure {
-    /// Share of the lit pixels (Y above 0) that are no brighter than the anchor, in (0, 1].
+    /// Fraction of the lit pixels (Y above 0) that are no brighter than the anchor, in (0, 1].
     pub quantile: f64,
-    /// What the anchor is shown as, in linear light, in (0, 1].
+    /// Linear light that shows the anchor, in (0, 1].
     pub shown_as: f64,
 }
 
 impl Default for AutoExposure {
-    /// The 99th percentile is shown as 0.9: a few highlights may clip, a lamp in the picture does not
-    /// darken all else.
+    /// Shows the 99th percentile as 0.9: a few highlights may clip, and a lamp in the picture does not darken everything else.
     fn default() -> Self {
         Self { quantile: 0.99, shown_as: 0.9 }
     }
 }
 
 impl AutoExposure {
-    /// The Y that is to be shown as 1, in the unit of `y`; `None` where nothing is lit.
+    /// Returns the Y that is to be shown as 1, in the unit of `y`; `None` if no pixel is lit.
     ///
-    /// Pixels without light do not count, else a small bright subject on black would have no
-    /// brightness at all.
+    /// Pixels without light do not count; otherwise a small bright subject on black would have no brightness at all.
     #[must_use]
     pub fn white(&self, y: &[f32]) -> Option<f64> {
         let mut lit: Vec<f32> = y.iter().copied().filter(|v| *v > 0.0 && v.is_finite()).collect();
         if lit.is_empty() {
             return None;
         }
-        // Nearest rank: the smallest value that this share of all does not exceed.
+        // Nearest rank: the smallest value that this fraction of all values does not exceed.
         let rank = ((self.quantile * lit.len() as f64).ceil() as usize).clamp(1, lit.len());
         let (_, anchor, _) = lit.select_nth_unstable_by(rank - 1, f32::total_cmp);
         Some(f64::from(*anchor) / self.shown_as)
     }
 }
 
-/// Which exposure is shown as white.
+/// The exposure that is shown as white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum White {
-    /// As the frame suggests.
+    /// White is found from the frame.
     Auto(AutoExposure),
-    /// This Y, in the unit of the frame: pictures of different scenes can be compared.
+    /// White is this Y, in the unit of the frame, so that pictures of different scenes can be compared.
     Stated(f64),
 }
 
@@ -62,12 +60,12 @@ impl Default for White {
     }
 }
 
-/// A frame that cannot be shown.
+/// Error for a frame that lacks a channel.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the frame has no channel `{0}`")]
 pub struct MissingChannel(pub String);
 
-/// The channel of `frame` called `name`.
+/// Returns the channel of `frame` with the name `name`.
 ///
 /// # Errors
 /// [`MissingChannel`].
@@ -75,7 +73,7 @@ pub fn channel<'a>(frame: &'a ExposureFrame, name: &str) -> Result<&'a ExposureC
     frame.channel(name).ok_or_else(|| MissingChannel(name.into()))
 }
 
-/// The picture of a frame with the channels `X`, `Y` and `Z` (CIE 1931).
+/// Converts a frame with the channels `X`, `Y` and `Z` (CIE 1931) to a picture for a screen.
 ///
 /// # Errors
 /// [`MissingChannel`].
@@ -83,8 +81,8 @@ pub fn show_xyz(frame: &ExposureFrame, white: White, gamut: Gamut) -> Result<Dis
     finish_xyz(frame, white, gamut, None, Wanted::default()).map(|finished| finished.shown)
 }
 
-/// The same with what else is `wanted`; `adapted` brings XYZ under the light of the scene to D65 beforehand, and leaves Y of a
-/// gray as it is.
+/// Converts a frame as [`show_xyz`] does, with the additional results in `wanted`. `adapted` converts XYZ under the light of the scene to
+/// D65 first, and does not change Y of a gray.
 ///
 /// # Errors
 /// [`MissingChannel`].
@@ -100,7 +98,7 @@ pub fn finish_xyz(
         White::Auto(auto) => auto.white(&y.values),
         White::Stated(white) => Some(white),
     };
-    // A frame without light is black whatever white is.
+    // A frame without light is black, whatever white is.
     let scale = white.map_or(0.0, |white| 1.0 / white);
     let srgb = RgbSpace::srgb();
     let linear = |((x, y), z): ((&f32, &f32), &f32)| {
@@ -166,11 +164,11 @@ mod tests {
         let y: Vec<f32> = (1..=1000).rev().map(|i| i as f32).collect();
         let white = AutoExposure::default().white(&y).expect("lit");
         assert!((990.0 / white - 0.9).abs() < 1e-12);
-        // One lamp a million times brighter moves it by one rank at most.
+        // A single lamp a million times brighter moves it by one rank at most.
         let mut lamp = y.clone();
         lamp[500] = 1e9;
         assert!((AutoExposure::default().white(&lamp).expect("lit") / white - 1.0).abs() < 2e-3);
-        // Black around it does not count, nor what is no number.
+        // Black surroundings and NaN do not count.
         let mut framed = y;
         framed.extend([0.0; 5000]);
         framed.push(f32::NAN);
@@ -187,8 +185,8 @@ mod tests {
         assert_eq!(show_xyz(&incomplete, White::default(), Gamut::Desaturate), Err(MissingChannel("Z".into())));
     }
 
-    /// Every spectral color at every exposure: in gamut, of its own luminance, and its place between gray and
-    /// the true color never flips (the three differences from gray keep sign and order).
+    /// Every spectral color at every exposure stays in gamut, keeps its luminance, and lies between gray and the true color: its three
+    /// differences from gray keep sign and order.
     #[test]
     fn colors_outside_of_the_gamut_keep_hue_and_luminance() {
         let srgb = RgbSpace::srgb();
@@ -205,7 +203,7 @@ mod tests {
                 for i in 0..3 {
                     assert!((shown[i] - y.min(1.0)) * (raw[i] - y) >= -1e-9, "{nm} {y}");
                 }
-                // No break: a step of 0.005 in exposure moves no value by more than the steepest blue.
+                // There is no break: a step of 0.005 in exposure changes no value by more than the steepest blue.
                 if let Some(before) = before {
                     assert!((0..3).all(|i| (shown[i] - before[i]).abs() < 0.1), "{nm} {y}: {before:?} {shown:?}");
                 }

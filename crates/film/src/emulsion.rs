@@ -1,4 +1,7 @@
-//! A stock and one development of it: from exposure to amounts of silver or dye.
+//! A stock with one of its developments: converts exposure to amounts of silver or dye.
+//!
+//! The integral densities of a sheet are separated into amounts of dye. A neutral subject gets the densities of the sheet. For other colors
+//! the exposure of each layer is first shifted by the inhibition of the other layers' dyes, relative to that of a neutral subject.
 
 use crate::curve::CharacteristicCurve;
 use crate::deposit::Deposit;
@@ -9,55 +12,55 @@ use rayon::prelude::*;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::math::log10;
 
-/// A stock whose layers cannot be developed as asked.
+/// A stock whose layers cannot be developed as requested.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EmulsionError {
-    /// A layer without that development.
+    /// A layer has no such development.
     #[error("layer `{layer}` has no curve for the development `{development}`; known: {known}")]
     NoCurve {
-        /// The layer.
+        /// Name of the layer.
         layer: String,
-        /// What was asked for.
+        /// Name of the requested development.
         development: String,
-        /// What there is.
+        /// Names of the layer's developments.
         known: String,
     },
-    /// Curves that no amounts of these dyes can give.
-    #[error("at log10 exposure {log10_exposure:.2} no amounts of its dyes have the densities of its curves")]
+    /// No amounts of the dyes give the densities of the curves.
+    #[error("at log10 exposure {log10_exposure:.2} no amounts of its dyes give the densities of its curves")]
     NoAmounts {
-        /// Where.
+        /// Log10 of the exposure (lx s) at which this happens.
         log10_exposure: f64,
     },
-    /// Layers that the densitometry does not know.
-    #[error("a film of three dyes has layers called red, green and blue")]
+    /// The layers do not have the names that the densitometry needs.
+    #[error("a film of three dyes must have layers named red, green and blue")]
     Layers,
 }
 
-/// Curves sampled over the exposure, by what that is multiplied with first: of a layer, and of three that meet.
+/// Caches of curves sampled over the exposure, by curve and exposure factor: of one layer, and of three layers that interact.
 static SAMPLED: Known<(AmountCurve, u64), Lookup> = Known::new();
 static TOGETHER: Known<(Emulsion, u64), [Pair; 3]> = Known::new();
 
-/// Dyes, the curves of a film that has them, and what three filters see of them.
+/// Dyes, the curves of a film that has them, and the weights of the three filters of its densitometry.
 type Measured = (Deposit, Vec<CharacteristicCurve>, Vec<Vec<f64>>);
 
-/// Curves of color film taken apart into amounts.
+/// Cache of the amounts of dye in the curves of color films.
 static AMOUNTS: Known<Measured, Result<Vec<AmountCurve>, EmulsionError>> = Known::new();
 
-/// A stock in one development, ready to turn exposures into amounts; see [`Deposit`] for their unit.
+/// A stock with one development, ready to convert exposures to amounts; see [`Deposit`] for their unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emulsion {
     deposit: Deposit,
     curves: Vec<AmountCurve>,
-    /// Log10 of exposure that a layer (row) loses per unit of dye in another (column); empty where layers do not meet. Below
-    /// 0 for a reversal film, whose dye is what did not develop first.
+    /// Log10 of exposure that a layer (row) loses per unit of dye in another (column); empty if layers do not interact. Negative for a
+    /// reversal film, whose dye forms where silver did not develop first.
     inhibition: Vec<Vec<f64>>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum AmountCurve {
-    /// Silver: the curve as it is.
+    /// Silver: the curve itself.
     Density(CharacteristicCurve),
-    /// Dye: amounts over log10 exposure, straight between samples.
+    /// Dye: amounts over log10 exposure, linear between samples.
     Amount(Lookup),
 }
 
@@ -71,7 +74,7 @@ impl AmountCurve {
     }
 }
 
-/// The amounts of dye that have the densities of `curves` over the clear film, seen through the filters `products`.
+/// Finds the amounts of dye that have the densities of `curves` above the clear film, seen through the filters `products`.
 fn amounts(
     deposit: &Deposit,
     curves: &[CharacteristicCurve],
@@ -97,15 +100,15 @@ fn amounts(
     Ok(amounts.into_iter().map(table).collect())
 }
 
-/// Samples of a dye curve a decade of exposure: with a second derivative below 15 (a print film's toe), linear interpolation
-/// is within 15 / 8 / 200^2 = 5e-5.
+/// Samples of a dye curve per decade of exposure. With a second derivative below 15 (a print film's toe), linear interpolation is accurate
+/// to 15 / 8 / 200^2 = 5e-5.
 const SAMPLES_A_DECADE: f64 = 200.0;
 
 impl Emulsion {
-    /// The stock after the development called `development`.
+    /// Prepares the stock with the development named `development`.
     ///
     /// # Errors
-    /// [`EmulsionError`].
+    /// [`EmulsionError`]: a layer lacks this development, or its curves cannot be converted to amounts.
     pub fn new(stock: &Stock, development: &str) -> Result<Self, EmulsionError> {
         let curve = |layer: &crate::stock::Layer| {
             layer.development(development).map(|d| d.curve.clone()).ok_or_else(|| EmulsionError::NoCurve {
@@ -117,15 +120,16 @@ impl Emulsion {
         Self::with_curves(stock, stock.layers.iter().map(curve).collect::<Result<_, _>>()?)
     }
 
-    /// The stock with a curve of one's own for each layer, in its densitometry.
+    /// Prepares the stock with a given curve for each layer, in its densitometry.
     ///
-    /// Curves of color film are densities of neutral exposures, measured through three filters of which each sees all three
-    /// dyes. They are taken apart into amounts: at each exposure, those of which the sheet's dyes make the sheet's densities
-    /// over the minimum. What the layers do to each other is in these curves as far as a neutral subject has it; what else
-    /// there is of it, [`Emulsion::developed`] adds.
+    /// Curves of color film are densities of neutral exposures, measured through three filters, each of which sees all three dyes.
+    /// They are separated into amounts: at each exposure, those amounts of the sheet's dyes that give the sheet's densities above the
+    /// minimum.
+    /// For neutral subjects, these curves already include the interaction of the layers. [`Emulsion::developed`] adds it for other
+    /// subjects.
     ///
     /// # Errors
-    /// [`EmulsionError`].
+    /// [`EmulsionError`]: the layers have other names, or no amounts give the densities.
     pub fn with_curves(stock: &Stock, curves: Vec<CharacteristicCurve>) -> Result<Self, EmulsionError> {
         let deposit = Deposit::of(stock);
         if stock.densitometry == Densitometry::Visual {
@@ -143,32 +147,31 @@ impl Emulsion {
         Ok(Self { deposit, curves, inhibition })
     }
 
-    /// Three separation negatives of silver, in the order blue, green, red; see
-    /// [`crate::positive::Positive::from_separations`].
+    /// Prepares three separation negatives of silver, in the order blue, green, red; see [`crate::positive::Positive::from_separations`].
     #[must_use]
     pub fn separations(curves: [CharacteristicCurve; 3]) -> Self {
         let curves = curves.into_iter().map(AmountCurve::Density).collect();
         Self { deposit: Deposit::separations(), curves, inhibition: Vec::new() }
     }
 
-    /// What it holds back.
+    /// Spectral density of the film as a function of the amounts.
     #[must_use]
     pub fn deposit(&self) -> &Deposit {
         &self.deposit
     }
 
-    /// How many layers it has.
+    /// Number of layers of the film.
     #[must_use]
     pub fn layers(&self) -> usize {
         self.curves.len()
     }
 
-    /// Amounts in all layers at log10 of the exposure of each (lx s), with what the layers do to each other.
+    /// Computes the amounts in all layers from log10 of the exposure of each (lx s), including the interaction of the layers.
     ///
-    /// Each layer i develops as if its log10 exposure x_i were x_i + sum_j K_ij (n_j(x_i) - n_j(x_j)), where n_j is the
-    /// amount that layer j has of a neutral subject: the more the others hold, the less develops. A neutral subject is left as
-    /// it is, by construction (as inhibitors released by couplers work: C. R. Barr, J. R. Thirtle and P. W. Vittum,
-    /// Photogr. Sci. Eng. 13, 74, 1969).
+    /// Each layer i develops as if its log10 exposure x_i were x_i + sum_j K_ij (n_j(x_i) - n_j(x_j)), where n_j(x) is the amount in layer
+    /// j of a neutral subject.
+    /// The more dye the other layers hold, the less develops. By construction, a neutral subject does not change.
+    /// This models inhibitors released by couplers (C. R. Barr, J. R. Thirtle and P. W. Vittum, Photogr. Sci. Eng. 13, 74, 1969).
     #[must_use]
     pub fn developed(&self, log10_exposures: &[f64]) -> Vec<f64> {
         let own: Vec<f64> = log10_exposures.iter().enumerate().map(|(j, x)| self.amount(j, *x)).collect();
@@ -180,24 +183,25 @@ impl Emulsion {
         log10_exposures.iter().enumerate().map(layer).collect()
     }
 
-    /// What a neutral subject of log10 exposure `x` would hold layer `i` back, log10 of exposure.
+    /// Inhibition of layer `i` by a neutral subject of log10 exposure `x`, in log10 of exposure.
     fn relief(&self, i: usize, x: f64) -> f64 {
         inhibited(&self.inhibition[i], &self.neutral(x))
     }
 
-    /// Amount that a neutral subject leaves in a layer, at log10 of its exposure (lx s); -infinity is no exposure.
+    /// Returns the amount in a layer for a neutral subject, at log10 of its exposure (lx s); -infinity is no exposure.
     #[must_use]
     pub fn amount(&self, layer: usize, log10_exposure: f64) -> f64 {
         self.curves[layer].at(log10_exposure)
     }
 
-    /// Amounts in all layers at the same log10 exposure of each: a neutral subject in the light that the film is made for.
+    /// Returns the amounts in all layers at the same log10 exposure (lx s) of each: a neutral subject in the light for which the film is
+    /// made.
     #[must_use]
     pub fn neutral(&self, log10_exposure: f64) -> Vec<f64> {
         (0..self.layers()).map(|i| self.amount(i, log10_exposure)).collect()
     }
 
-    /// Smallest and largest amount in a layer.
+    /// Returns the smallest and largest amount in a layer.
     #[must_use]
     pub fn range(&self, layer: usize) -> (f64, f64) {
         match &self.curves[layer] {
@@ -206,7 +210,7 @@ impl Emulsion {
         }
     }
 
-    /// Log10 of the exposure that gives `amount` in a layer, by bisection; `None` where it gives none.
+    /// Finds log10 of the exposure (lx s) that gives `amount` in a layer, by bisection; `None` if there is none.
     #[must_use]
     pub fn log10_exposure_at(&self, layer: usize, amount: f64) -> Option<f64> {
         let at = |x: f64| self.amount(layer, x) - amount;
@@ -225,9 +229,10 @@ impl Emulsion {
         }
     }
 
-    /// Turns the exposures of all layers (lx s; a plane a layer, of equal length) into amounts, in place, as
-    /// [`Emulsion::developed`] does for one place. `effect` multiplies them first: what a long exposure counts (see
-    /// [`crate::stock::Reciprocity`]). Less than no exposure, and no number, are taken as none.
+    /// Converts the exposures of all layers (lx s; a plane per layer, of equal length) to amounts, in place, as [`Emulsion::developed`]
+    /// does for one place.
+    /// `effect` multiplies the exposures first, to account for reciprocity failure (see [`crate::stock::Reciprocity`]). Negative exposures
+    /// and NaN count as no exposure.
     pub fn develop_all(&self, planes: &mut [Vec<f32>], effect: f64) {
         match planes {
             [a, b, c] if self.inhibition.len() == 3 => self.develop_together([a, b, c], effect),
@@ -251,8 +256,8 @@ impl Emulsion {
         });
     }
 
-    /// Turns the exposures of a layer (lx s) into amounts, in place, as if the other layers had a neutral subject's beside
-    /// it: [`Emulsion::develop_all`] for one layer.
+    /// Converts the exposures of one layer (lx s) to amounts, in place, as [`Emulsion::develop_all`] does if the other layers have the
+    /// amounts of a neutral subject.
     pub fn develop(&self, layer: usize, plane: &mut [f32], effect: f64) {
         let curve = &self.curves[layer];
         let made = || per_octave(|log10_exposure| curve.at(log10_exposure), effect);
@@ -266,12 +271,12 @@ impl Emulsion {
     }
 }
 
-/// Places of three layers that are developed together.
+/// A run of pixels of three layers that develop together.
 struct Together<'a> {
     emulsion: &'a Emulsion,
-    /// Of each layer, by octaves of its exposure: its own amount, and the exposure that it counts by.
+    /// Tables of each layer, by octaves of its exposure: its own amount, and its log10 exposure plus the inhibition by a neutral subject.
     sampled: &'a [Pair; 3],
-    /// Amounts of no exposure.
+    /// Amounts without exposure.
     clear: [f64; 3],
     rows: &'a [[f64; 3]; 3],
     planes: [&'a mut [f32]; 3],
@@ -299,20 +304,20 @@ impl Vectorized for Together<'_> {
     }
 }
 
-/// By how much a layer is held back whose row this is, log10 of exposure, where the layers hold these amounts.
+/// Inhibition of the layer with this row at these amounts, log10 of exposure.
 #[inline(always)]
 fn inhibited(row: &[f64], amounts: &[f64]) -> f64 {
     row.iter().zip(amounts).map(|(k, n)| k * n).sum()
 }
 
-/// Steps of the sampled curve an octave of exposure. With a second derivative of the density below 1 in octaves
-/// (a film of gradient 3 at most), linear interpolation is within 1 / 8 / 512^2 = 5e-7 of the curve.
+/// Samples per octave of exposure. With a second derivative of density below 1 in octaves (a film of gradient 3 at most), linear
+/// interpolation is accurate to 1 / 8 / 512^2 = 5e-7.
 const STEPS_AN_OCTAVE: usize = 512;
 
-/// Octaves over the smallest normal `f32` that are sampled: 2^-40 to 2^40 lx s, some 1e-12 to 1e12.
+/// Range of octaves above the smallest normal `f32` that is sampled: 2^-40 to 2^40 lx s, about 1e-12 to 1e12.
 const OCTAVES: (usize, usize) = (126 - 40, 126 + 40);
 
-/// A function of log10 exposure, sampled over octaves of an `f32`.
+/// Samples a function of log10 exposure over octaves of an `f32`.
 pub(crate) fn per_octave(f: impl Fn(f64) -> f64 + Sync, effect: f64) -> Lookup {
     let (low, high) = OCTAVES;
     Lookup::new(low as f64, high as f64, (high - low) * STEPS_AN_OCTAVE, |o| f(log10(from_octaves(o) * effect)))

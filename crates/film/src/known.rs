@@ -1,13 +1,13 @@
-//! What was made before: kernels and tables that rest on a few figures alone, and take longer to make than to use.
+//! A cache of kernels and tables that depend on a few numbers only, and take longer to compute than to use.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// So many are kept unless said otherwise: the layers of a color film on planes of two sizes.
+/// Default number of cached values: the layers of a color film on planes of two sizes.
 const KEPT: usize = 6;
 
-/// The last few that were made, each with what it was made of. What is made twice has the same bits, so nothing but time depends
-/// on what is known.
+/// A cache of the most recently used values with their keys. A value computed twice has the same bits, so the cache affects nothing but
+/// time.
 pub(crate) struct Known<K, V> {
     all: Mutex<VecDeque<(K, Arc<V>)>>,
     kept: usize,
@@ -18,18 +18,18 @@ impl<K: PartialEq, V> Known<K, V> {
         Self::keeping(KEPT)
     }
 
-    /// The same that keeps so many: fewer of what is large.
+    /// Creates a cache of another size, smaller for large values.
     pub(crate) const fn keeping(kept: usize) -> Self {
         Self { all: Mutex::new(VecDeque::new()), kept }
     }
 
-    /// What is known of `key`, or else what `make` gives, which is known from then on.
+    /// Returns the cached value of `key`, or computes it with `make` and caches it.
     pub(crate) fn of(&self, key: K, make: impl FnOnce() -> V) -> Arc<V> {
         let all = || self.all.lock().unwrap_or_else(PoisonError::into_inner);
         let known = {
             let mut all = all();
             let at = all.iter().position(|(other, _)| *other == key);
-            // The one that was asked for last goes last.
+            // The most recently used value goes last.
             at.and_then(|at| all.remove(at)).map(|found| {
                 let value = Arc::clone(&found.1);
                 all.push_back(found);
@@ -37,7 +37,7 @@ impl<K: PartialEq, V> Known<K, V> {
             })
         };
         known.unwrap_or_else(|| {
-            // Not under the lock: other threads may ask meanwhile.
+            // The lock is not held here, so that other threads can use the cache meanwhile.
             let made = Arc::new(make());
             let mut all = all();
             while all.len() >= self.kept {
@@ -66,7 +66,7 @@ mod tests {
                 10 * key
             );
         }
-        // 1 was asked for after 2, so 2 made room for the seventh.
+        // 1 was used after 2, so 2 made room for the seventh.
         assert_eq!(made, [1, 2, 3, 4, 5, 6, 7, 2]);
     }
 }

@@ -1,13 +1,13 @@
 //! Exposure frames, film stocks, development and display.
 //!
-//! What an imager records is linear exposure, channel by channel. From there:
+//! An imager records linear exposure, channel by channel. This crate turns it into a picture:
 //!
-//! - [`stock`]: what a film sees and how it answers, from a data file;
+//! - [`stock`]: spectral sensitivity, curves and structure of a film, from a data file;
 //! - [`curve`]: density over log exposure; [`emulsion`], [`develop`]: exposure to amounts of silver or dye;
-//! - [`scatter`], [`halation`] before the curve, [`adjacency`], [`grain`] after it: what film does beyond one place;
-//! - [`optics`]: the lens that a developed film is printed, scanned or projected through;
-//! - [`deposit`]: what those hold back, wavelength by wavelength;
-//! - [`mod@print`]: a black-and-white negative on paper; [`positive`]: any film on a print stock, as a scan, projected;
+//! - [`scatter`], [`halation`] before the curve, [`adjacency`], [`grain`] after it: effects of a film that involve more than one place;
+//! - [`optics`]: the lens through which a developed film is printed, scanned or projected;
+//! - [`deposit`]: spectral transmittance of silver and dyes;
+//! - [`mod@print`]: a black-and-white negative on paper; [`positive`]: any film on a print stock, as a scan, or projected;
 //! - [`display`]: absolute XYZ to a screen, with automatic exposure as one explicit step.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

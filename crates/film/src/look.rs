@@ -1,42 +1,44 @@
-//! How a finished film or print is looked at: what is shown as white and as black, and what surrounds it.
+//! Viewing choices for a finished film or print: its white, its black and its surround.
 
-/// What is shown as white.
+/// The light that is shown as white.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PictureWhite {
-    /// The clear film or print: a picture as one looks at it.
+    /// The clear film or print is white, as in a picture that one views.
     #[default]
     Film,
-    /// The bare light: what the film holds back of it is seen.
+    /// The bare light is white: the light that the clear film absorbs is visible.
     Lamp,
 }
 
-/// What is shown as black.
+/// The light that is shown as black.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PictureBlack {
-    /// No light: the medium keeps the black that it has, and a print on paper the flare that the room adds.
+    /// No light is black: the medium keeps its own black, and a print on paper also the flare of the room.
     #[default]
     Kept,
-    /// The darkest that the print or slide has, as a scan with set ends shows it.
+    /// The darkest tone of the print or slide is black, as in a scan with set end points.
     Stretched,
 }
 
-/// What surrounds a picture that is looked at. A picture in the dark looks lighter and softer than the same in a lit room; the
-/// screen that shows it is taken to stand in a lit room.
+/// Surround of a viewed picture. A picture in the dark looks lighter and softer than the same picture in a lit room. The screen that shows
+/// it is assumed to be in a lit room.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Surround {
-    /// A projection in a dark room, as an eye there sees it.
+    /// A projection in a dark room, as an eye sees it there.
     Dark,
-    /// A picture in a dim room, as an eye there sees it.
+    /// A picture in a dim room, as an eye sees it there.
     Dim,
-    /// A lit room: the picture's own density is shown.
+    /// A picture in a lit room: its own density is shown.
     #[default]
     Average,
 }
 
 impl Surround {
-    /// Exponent of luminance by which the picture is shown in a lit room: c, the impact of the surround, over that of an average one.
-    /// 0.525 in the dark, 0.59 in dim light, 0.69 on average (CIE 159:2004, CIECAM02, table 1). Chromaticities stay, as in the system
-    /// gamma of ITU-R BT.2100.
+    /// Exponent of luminance that shows the picture in a lit room.
+    ///
+    /// The exponent is the impact of the surround, c, divided by that of an average one.
+    /// c is 0.525 in the dark, 0.59 in dim light and 0.69 for an average surround (CIE 159:2004, CIECAM02, table 1). Chromaticities do not
+    /// change, as in the system gamma of ITU-R BT.2100.
     #[must_use]
     pub fn exponent(self) -> f64 {
         const AVERAGE: f64 = 0.69;
@@ -48,17 +50,17 @@ impl Surround {
     }
 }
 
-/// How a finished film or print is shown.
+/// Viewing conditions of a finished film or print.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Look {
-    /// What is shown as white.
+    /// The light that is shown as white.
     pub white: PictureWhite,
-    /// What is shown as black.
+    /// The light that is shown as black.
     pub black: PictureBlack,
-    /// What surrounds it.
+    /// Surround in which the picture is viewed.
     pub surround: Surround,
 }
 
-/// Light of the room that the surface of a print on paper reflects, as a part of what its white does: assumed, as in the viewing
-/// conditions of reflection prints, where 0.3 to 1 % are usual.
+/// Room light reflected by the surface of a paper print, as a fraction of the light from its white. Assumed, as in viewing conditions for
+/// reflection prints, where 0.3 to 1 % is usual.
 pub const FLARE: f64 = 0.005;

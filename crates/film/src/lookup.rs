@@ -1,12 +1,12 @@
-//! Smooth functions, sampled once and read off for every pixel of a frame.
+//! Smooth functions, sampled once and looked up for every pixel of a frame.
 
 use rayon::prelude::*;
 use spectra_numerics::table;
 
-/// Pixels that one task takes at a time.
+/// Number of pixels per parallel task.
 pub(crate) const PIXELS_A_TASK: usize = 8192;
 
-/// A function sampled at equal steps, linear between the samples, held constant beyond them.
+/// A function sampled at equal steps, linear between the samples, constant beyond them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Lookup {
     low: f64,
@@ -15,25 +15,25 @@ pub(crate) struct Lookup {
 }
 
 impl Lookup {
-    /// Samples `f` at both ends and `steps - 1` places between.
+    /// Samples `f` at both ends and at `steps - 1` places between.
     pub(crate) fn new(low: f64, high: f64, steps: usize, f: impl Fn(f64) -> f64 + Sync) -> Self {
         let width = (high - low) / steps as f64;
         let values = (0..steps + 1).into_par_iter().with_min_len(1024).map(|i| f(low + width * i as f64)).collect();
         Self { low, per_step: 1.0 / width, values }
     }
 
-    /// Equal steps from `low` to `high` with these values; at least two.
+    /// Builds the table from values at equal steps from `low` to `high`; at least two.
     pub(crate) fn from_values(low: f64, high: f64, values: Vec<f64>) -> Self {
         Self { low, per_step: (values.len() - 1) as f64 / (high - low), values }
     }
 
-    /// Smallest and largest value.
+    /// Smallest and largest value of the table.
     pub(crate) fn extremes(&self) -> (f64, f64) {
         let fold = |start: f64, f: fn(f64, f64) -> f64| self.values.iter().copied().fold(start, f);
         (fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max))
     }
 
-    /// The function at `x`; no number is taken as the low end.
+    /// Interpolates the function at `x`; NaN is taken as the low end.
     #[inline(always)]
     pub(crate) fn at(&self, x: f64) -> f64 {
         let last = self.values.len() - 1;
@@ -42,7 +42,7 @@ impl Lookup {
     }
 }
 
-/// Two functions sampled at the same places, side by side.
+/// Two functions sampled at the same places and stored side by side.
 #[derive(Clone, Debug)]
 pub(crate) struct Pair {
     low: f64,
@@ -51,14 +51,14 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    /// Of two functions that are sampled at the same places.
+    /// Joins two functions that are sampled at the same places.
     pub(crate) fn new(first: &Lookup, second: &Lookup) -> Self {
         assert_eq!((first.low, first.per_step), (second.low, second.per_step), "the places are the same");
         let values = first.values.iter().zip(&second.values).map(|(a, b)| [*a, *b]).collect();
         Self { low: first.low, per_step: first.per_step, values }
     }
 
-    /// Both at `x`, as [`Lookup::at`] has them.
+    /// Interpolates both functions at `x` as [`Lookup::at`] does.
     #[inline(always)]
     pub(crate) fn at(&self, x: f64) -> [f64; 2] {
         let last = self.values.len() - 1;
@@ -69,17 +69,17 @@ impl Pair {
     }
 }
 
-/// Octaves of a positive number over the smallest normal one: whole at the powers of 2 and straight between, so
-/// it is cheap, exact and has an exact inverse.
+/// Approximate log2 of a positive number relative to the smallest normal `f32`: exact at powers of 2 and linear between them. It is cheap
+/// and has an exact inverse.
 #[inline(always)]
 pub(crate) fn octaves(value: f32) -> f64 {
     f64::from(value.to_bits()) * (1.0 / 8_388_608.0) - 1.0
 }
 
-/// The number of so many octaves, for octaves of at least 0.
+/// Inverse of [`octaves`], for values of at least 0.
 pub(crate) fn from_octaves(octaves: f64) -> f64 {
     let whole = octaves.floor();
-    // 2^-126 is the smallest normal number; a double holds all its octaves.
+    // 2^-126 is the smallest normal number; a double can hold all of its octaves.
     (1.0 + (octaves - whole)) * f64::from_bits(((whole as u64) + 1023 - 126) << 52)
 }
 

@@ -1,7 +1,7 @@
-//! What a developed film is printed, scanned or projected through: a lens, which keeps some of its fine detail.
+//! The lens through which a developed film is printed, scanned or projected, which loses some fine detail.
 //!
-//! The lens blurs light that has passed the film, so its blur acts on transmittance: grain and edges lose the same. Its MTF is taken
-//! as a Gaussian, exp(-ln 2 (f / f50)^2), which good lenses are close to down to a fifth of the contrast.
+//! The lens blurs light that has passed the film, so its blur acts on transmittance: grain and edges lose equally.
+//! Its MTF is taken as a Gaussian, exp(-ln 2 (f / f50)^2), which is close to that of good lenses down to a fifth of the contrast.
 
 use rayon::prelude::*;
 use spectra_core::isa::{Isa, Vectorized};
@@ -21,38 +21,38 @@ use std::f64::consts::{LN_2, PI};
 /// assert!((density[3] - 1.0).abs() < 1e-2);
 /// ```
 pub struct Optics {
-    /// Weights across and down, from the middle on; the middle alone where pixels are coarser than the blur.
+    /// Weights across and down, from the center on; only the center if pixels are coarser than the blur.
     weights: [Vec<f32>; 2],
     isa: Isa,
 }
 
-/// Deviations that a kernel reaches.
+/// Reach of a kernel, standard deviations.
 const REACH: f64 = 4.0;
 
-/// Densities that pass as they are; beyond, as the nearest of them.
+/// Range of densities that pass unchanged; others are clipped to it.
 const DENSITIES: (f32, f32) = (-1.0, 9.0);
 
 impl Optics {
-    /// A lens that keeps half of the contrast at `mtf50` cycles/mm on the film, for pixels of `pitch_mm` across and down.
+    /// Prepares a lens that keeps half of the contrast at `mtf50` cycles/mm on the film, for pixels of `pitch_mm` across and down.
     ///
     /// # Panics
     /// If a value is not positive and finite.
     #[must_use]
     pub fn new(mtf50: f64, pitch_mm: [f64; 2]) -> Self {
         assert!([mtf50, pitch_mm[0], pitch_mm[1]].iter().all(|v| *v > 0.0 && v.is_finite()), "values above 0");
-        // exp(-2 (pi s f)^2) is a half at f50.
+        // exp(-2 (pi s f)^2) is one half at f50.
         let deviation_mm = (LN_2 / 2.0).sqrt() / (PI * mtf50);
         Self { weights: pitch_mm.map(|pitch| weights(deviation_mm / pitch)), isa: Isa::detect() }
     }
 
-    /// Whether pixels are fine enough for the lens to matter.
+    /// Returns whether pixels are fine enough for the lens to matter.
     #[must_use]
     pub fn is_felt(&self) -> bool {
         self.weights.iter().any(|w| w.len() > 1)
     }
 
-    /// Passes a plane of densities (of silver, or amounts of dye) of `width` columns through the lens, in place. Beyond the frame
-    /// its border goes on. Takes memory for one more plane.
+    /// Blurs a plane of densities (of silver, or amounts of dye) with `width` columns by the lens, in place. Border pixels continue outside
+    /// the frame. Needs memory for one more plane.
     pub fn apply(&self, density: &mut [f32], width: usize) {
         if !self.is_felt() || density.is_empty() {
             return;
@@ -61,7 +61,7 @@ impl Optics {
         self.pass(density, width, &mut passed);
     }
 
-    /// The same for planes of one size, with memory for one more.
+    /// Blurs several planes of one size as [`Optics::apply`] does, with memory for one more plane.
     pub fn apply_to_all(&self, planes: &mut [Vec<f32>], width: usize) {
         let Some(pixels) = planes.first().map(Vec::len).filter(|pixels| self.is_felt() && *pixels > 0) else { return };
         let mut passed = vec![0.0_f32; pixels];
@@ -81,7 +81,7 @@ impl Optics {
     }
 }
 
-/// From a row of densities to its light, blurred along it.
+/// Converts a row of densities to light and blurs it along the row.
 struct Across<'a> {
     weights: &'a [f32],
     row: &'a mut [f32],
@@ -105,7 +105,7 @@ impl Vectorized for Across<'_> {
     }
 }
 
-/// The rows of light around the row `y`, blurred and turned into densities again.
+/// Blurs the rows of light around the row `y` and converts them back to densities.
 struct Down<'a> {
     weights: &'a [f32],
     passed: &'a [f32],
@@ -125,7 +125,7 @@ impl Vectorized for Down<'_> {
     }
 }
 
-/// The weighted sum of lines around one: `line(k, after)` is the one `k` after or before it.
+/// Computes the weighted sum of lines around one: `line(k, after)` is the line `k` after or before it.
 #[inline(always)]
 fn blur<'a>(to: &mut [f32], weights: &[f32], line: impl Fn(usize, bool) -> &'a [f32]) {
     for (to, v) in to.iter_mut().zip(line(0, true)) {
@@ -138,8 +138,8 @@ fn blur<'a>(to: &mut [f32], weights: &[f32], line: impl Fn(usize, bool) -> &'a [
     }
 }
 
-/// Weights of a Gaussian of `deviation` pixels. Each is the integral over a pixel, which adds a twelfth to the
-/// variance; the Gaussian has so much less.
+/// Weights of a Gaussian of `deviation` pixels. Each is an integral over a pixel, which adds a twelfth to the variance; the Gaussian is
+/// narrowed accordingly.
 fn weights(deviation: f64) -> Vec<f32> {
     let variance = deviation * deviation - 1.0 / 12.0;
     if variance <= 0.0 {

@@ -1,4 +1,4 @@
-//! The positive: a print of a black-and-white negative, looked at as a scan.
+//! A paper print of a black-and-white negative, viewed as a scan.
 
 use crate::curve::{CurveError, ToeShoulder};
 use crate::look::{FLARE, PictureBlack};
@@ -7,12 +7,11 @@ use rayon::prelude::*;
 use spectra_core::math::{exp, log10};
 use std::f64::consts::LN_10;
 
-/// What a mid gray subject, exposed as the meter says, is shown as in linear light: the reflectance of the
-/// gray card.
+/// Linear light that shows a mid gray subject exposed as metered: the reflectance of the gray card.
 pub const MID_GRAY: f64 = 0.18;
 
-/// Exposure of a mid gray subject that is exposed as the meter says, lx s, on a film of ISO speed `iso`:
-/// 10/S, by the definition of exposure meters (ISO 2720:1974).
+/// Returns the exposure of a mid gray subject exposed as metered, lx s, on a film of ISO speed `iso`: 10/S, by the definition of exposure
+/// meters (ISO 2720:1974).
 #[must_use]
 pub fn metered_exposure_lx_s(iso: f64) -> f64 {
     10.0 / iso
@@ -20,17 +19,17 @@ pub fn metered_exposure_lx_s(iso: f64) -> f64 {
 
 /// A photographic paper.
 ///
-/// Density rises along a [`ToeShoulder`]. Its exposure range is that of ISO 6846:1992: between [`RANGE_ENDS`], 0.04 over the paper's
-/// white and nine tenths of its maximum density.
+/// Density rises along a [`ToeShoulder`]. The exposure range follows ISO 6846:1992: it goes from 0.04 above the paper's white to nine
+/// tenths of the maximum density ([`RANGE_ENDS`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paper {
-    /// Exposure range, log10; ISO range over 100.
+    /// Exposure range, log10: the ISO range divided by 100.
     pub range: f64,
-    /// Maximum density over the white of the paper.
+    /// Maximum density above the white of the paper.
     pub maximum_density: f64,
-    /// Width of the toe, where the highlights are, log10 of exposure.
+    /// Width of the toe, which holds the highlights, in log10 of exposure.
     pub toe: f64,
-    /// Sharpness of the shoulder, where the shadows are.
+    /// Sharpness of the shoulder, which holds the shadows.
     pub shoulder: f64,
 }
 
@@ -38,33 +37,34 @@ pub struct Paper {
 pub const GRADES: [[f64; 2]; 6] =
     [[140.0, 170.0], [115.0, 140.0], [95.0, 115.0], [80.0, 95.0], [65.0, 80.0], [50.0, 65.0]];
 
-/// Where the exposure range of a paper begins, density over its white, and where it ends, as a part of its maximum density (ISO 6846).
+/// Ends of a paper's exposure range: the density above white where it begins, and the fraction of the maximum density where it ends (ISO
+/// 6846).
 pub const RANGE_ENDS: [f64; 2] = [0.04, 0.9];
 
-/// The grade that fits a usual negative.
+/// Grade that fits a usual negative.
 pub const USUAL_GRADE: f64 = 2.0;
 
-/// Its exposure range, and the width of its toe.
+/// Exposure range of the usual grade, and width of its toe, log10 of exposure.
 const USUAL_RANGE: f64 = 1.05;
 const USUAL_TOE: f64 = 0.2;
 
 impl Default for Paper {
-    /// Grade 2, with the black of a glossy paper, 2.1; toe and shoulder so that the prints of a usual negative have the tones of a
-    /// darkroom's.
+    /// Returns grade 2 with the black of a glossy paper, 2.1. Toe and shoulder give prints of a usual negative the tones of a darkroom
+    /// print.
     fn default() -> Self {
         Self { range: USUAL_RANGE, maximum_density: 2.1, toe: USUAL_TOE, shoulder: 6.0 }
     }
 }
 
 impl Paper {
-    /// A usual paper of another exposure range, log10: its toe is as much wider.
+    /// Returns a usual paper with another exposure range, log10. The toe scales with the range.
     #[must_use]
     pub fn of_range(range: f64) -> Self {
         Self { range, toe: USUAL_TOE * range / USUAL_RANGE, ..Self::default() }
     }
 
-    /// Exposure range, log10, of a grade from 0 to 5: the middle of its ISO range, over 100, and straight between grades, as
-    /// papers of variable contrast have them; `None` for others.
+    /// Returns the exposure range, log10, of a grade from 0 to 5: the middle of its ISO range over 100, linear between grades as in
+    /// variable-contrast papers. `None` for other grades.
     #[must_use]
     pub fn range_of_grade(grade: f64) -> Option<f64> {
         if !(0.0..=5.0).contains(&grade) {
@@ -75,32 +75,32 @@ impl Paper {
         Some(middle(i) + (middle(i + 1) - middle(i)) * (grade - i as f64))
     }
 
-    /// Its curve, with log10 exposure 0 at the density of 0.04.
+    /// Returns the curve of the paper, with log10 exposure 0 at the density of 0.04.
     ///
     /// # Errors
-    /// [`CurveError`] for values that are no paper.
+    /// [`CurveError`] for values that do not describe a paper.
     pub fn curve(&self) -> Result<ToeShoulder, CurveError> {
         let high = [self.range, RANGE_ENDS[1] * self.maximum_density];
         ToeShoulder::through([0.0, RANGE_ENDS[0]], high, self.toe, self.maximum_density, self.shoulder)
     }
 }
 
-/// A paper and the light it is printed with.
+/// A paper and the light with which it is printed.
 ///
-/// The light is set so that a mid gray subject is shown as [`MID_GRAY`]. White is the bare paper. Its black is kept, and the flare of
-/// the room comes on top; or it is stretched: what unexposed film prints as is shown as black, and picture values are proportional to
-/// reflectance over that.
+/// The light is set so that a mid gray subject is shown as [`MID_GRAY`]. White is the bare paper.
+/// The paper's black is either kept, with the flare of the room added, or stretched. If it is stretched, the print of unexposed film is
+/// shown as black, and picture values are proportional to the reflectance above it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Print {
     paper: ToeShoulder,
     light: f64,
-    /// Reflectance over that of the white paper that is shown as black, and light that the surface reflects besides.
+    /// Reflectance, relative to white paper, that is shown as black, and additional light reflected by the surface.
     black: f64,
     flare: f64,
 }
 
 impl Print {
-    /// On a paper of this curve by this light; `darkest` is the reflectance that is shown as black where that is stretched.
+    /// Builds a print on a paper of this curve with this light; `darkest` is the reflectance shown as black if that is stretched.
     fn with(paper: ToeShoulder, light: f64, black: PictureBlack, darkest: f64) -> Self {
         match black {
             PictureBlack::Kept => Self { paper, light, black: 0.0, flare: FLARE },
@@ -111,8 +111,8 @@ impl Print {
     /// Prints negatives whose unexposed density is `unexposed_density`, and whose mid gray has `gray_density`, on `paper`.
     ///
     /// # Errors
-    /// [`CurveError`]: the paper cannot be, or no printing light shows that gray as [`MID_GRAY`], since it is not denser
-    /// than unexposed film.
+    /// [`CurveError`]: the paper is impossible, or no printing light shows that gray as [`MID_GRAY`], because it is not denser than
+    /// unexposed film.
     pub fn balanced(
         paper: &Paper,
         unexposed_density: f64,
@@ -124,11 +124,11 @@ impl Print {
             let darkest = reflectance(&curve, light - unexposed_density);
             Self::with(curve.clone(), light, black, darkest)
         };
-        // More light, darker gray: from a light that leaves both white to one that turns both black.
+        // More light gives a darker gray: search from a light that leaves both white to one that turns both black.
         let (mut left, mut right) = (gray_density, gray_density + 2.0 * paper.range);
         let above = |light: f64| of_light(light).picture(gray_density) > MID_GRAY;
         let is_between = above(left) && !above(right);
-        // Until they are neighbors.
+        // Bisects until both are neighboring numbers.
         let between =
             |left: f64, right: f64| Some(0.5 * (left + right)).filter(|middle| left < *middle && *middle < right);
         while let Some(middle) = between(left, right).filter(|_| is_between) {
@@ -139,7 +139,7 @@ impl Print {
             }
         }
         let print = of_light(left);
-        // A gray that is hardly denser than unexposed film can be shown as gray, but leaves nothing below it.
+        // A gray that is hardly denser than unexposed film can be shown as gray, but leaves no tones below it.
         if !is_between || print.density(unexposed_density) < print.density(gray_density) + LEAST_BELOW_GRAY {
             return Err(CurveError::OutOfRange {
                 what: "density of mid gray",
@@ -150,13 +150,14 @@ impl Print {
         Ok(print)
     }
 
-    /// Prints a whole negative as a printer does who looks at it: on the paper from grade 5 to grade 0 whose exposure range is the
-    /// contrast of the negative, so that the lightest hundredth of `densities` is printed at the one of [`RANGE_ENDS`] and the darkest
-    /// at the other. A negative of too little contrast even for grade 5 is not stretched: `None`; of one of too much the highlights are
-    /// kept.
+    /// Prints a whole negative as a printer does by eye: on a paper of grade 5 to 0 whose exposure range matches the contrast of the
+    /// negative.
+    ///
+    /// The lightest hundredth of `densities` is printed at one of [`RANGE_ENDS`] and the darkest at the other. Returns `None` for a
+    /// negative with too little contrast even for grade 5. If the contrast is too high for any paper, the highlights are kept.
     ///
     /// # Errors
-    /// [`CurveError`] for values that are no paper.
+    /// [`CurveError`] for values that do not describe a paper.
     pub fn automatic(paper: &Paper, densities: &[f32], black: PictureBlack) -> Result<Option<Self>, CurveError> {
         let Some([thin, dense]) = ends(densities) else { return Ok(None) };
         let [soft, hard] = [GRADES[0][1], GRADES[5][0]].map(|r| r / 100.0);
@@ -166,28 +167,28 @@ impl Print {
         }
         let range = contrast.min(soft);
         let curve = Paper { range, toe: paper.toe * range / paper.range, ..paper.clone() }.curve()?;
-        // The curve has its zero where the exposure range begins.
+        // The zero of the curve is where the exposure range begins.
         Ok(Some(Self::with(curve, dense, black, exp(-LN_10 * paper.maximum_density))))
     }
 
-    /// What a place of the negative with `density` is shown as, linear light in [0, 1].
+    /// Returns the linear light, in [0, 1], that shows a place of the negative with `density`.
     #[must_use]
     pub fn picture(&self, density: f64) -> f64 {
         let share = (reflectance(&self.paper, self.light - density) - self.black) / (1.0 - self.black);
         (share + self.flare) / (1.0 + self.flare)
     }
 
-    /// Density of the print over the paper's white, at a place of the negative with `density`.
+    /// Returns the density of the print above the paper's white, at a place of the negative with `density`.
     #[must_use]
     pub fn density(&self, density: f64) -> f64 {
         -log10(reflectance(&self.paper, self.light - density))
     }
 
-    /// The picture of a whole negative: [`Print::picture`] of each density, within 1e-6.
+    /// Computes the picture of a whole negative: [`Print::picture`] of each density, within 1e-6.
     #[must_use]
     pub fn pictures(&self, density: &[f32]) -> Vec<f32> {
-        // Curves end below a density of 10. The picture's second derivative over density is below 60 (a gradient of
-        // 4 at most), so steps of 3e-4 interpolate within 60 / 8 * 9e-8 = 7e-7.
+        // Curves end below a density of 10. The picture's second derivative over density is below 60 (a gradient of 4 at most), so steps of
+        // 3e-4 interpolate to within 60 / 8 * 9e-8 = 7e-7.
         const HIGHEST: f64 = 10.0;
         const STEPS: usize = 1 << 15;
         let sampled = Lookup::new(0.0, HIGHEST, STEPS, |d| self.picture(d));
@@ -196,10 +197,10 @@ impl Print {
     }
 }
 
-/// Density that unexposed film must print over a mid gray.
+/// Smallest print density of unexposed film above that of mid gray.
 const LEAST_BELOW_GRAY: f64 = 0.05;
 
-/// Densities that a hundredth of the negative is thinner and denser than; `None` where there is nothing.
+/// Densities below and above which a hundredth of the negative lies; `None` for an empty negative.
 fn ends(densities: &[f32]) -> Option<[f64; 2]> {
     let mut all: Vec<f32> = densities.iter().copied().filter(|d| d.is_finite()).collect();
     let last = all.len().checked_sub(1)?;
@@ -208,7 +209,7 @@ fn ends(densities: &[f32]) -> Option<[f64; 2]> {
     Some([at(few), at(last - few)])
 }
 
-/// Reflectance relative to the white of the paper.
+/// Reflectance of the print relative to the white of the paper.
 fn reflectance(paper: &ToeShoulder, log10_exposure: f64) -> f64 {
     exp(-LN_10 * paper.density(log10_exposure))
 }
@@ -218,7 +219,7 @@ mod tests {
     use super::*;
     use crate::curve::CharacteristicCurve;
 
-    /// A soft paper.
+    /// Returns a soft paper.
     fn soft() -> Paper {
         Paper::of_range(1.6)
     }
@@ -242,7 +243,7 @@ mod tests {
         assert_eq!(curve.density_range(), (0.0, 2.1));
     }
 
-    /// Each grade has the exposure range between 0.04 and nine tenths of the black that ISO 6846 asks for, 2 is the usual one.
+    /// Each grade has the exposure range of ISO 6846, between 0.04 and nine tenths of the black. Grade 2 is the usual one.
     #[test]
     fn grades_have_their_iso_ranges() {
         for (grade, [least, most]) in GRADES.iter().enumerate() {
@@ -262,8 +263,8 @@ mod tests {
         spectra_color::lab([y; 3], [1.0; 3])[0]
     }
 
-    /// The darkest and the lightest hundredth are printed at the ends of the paper's exposure range where a paper of grade 5 to 0 can do
-    /// it, and the ends of the whole are within the paper's own.
+    /// The darkest and the lightest hundredth are printed at the ends of the paper's exposure range if a paper of grade 5 to 0 can do it,
+    /// and the extremes stay within the paper's densities.
     #[test]
     fn an_automatic_print_uses_the_range_of_its_paper() {
         for contrast in [0.9, 1.0, 1.3, 1.65] {
@@ -274,20 +275,20 @@ mod tests {
             println!("{contrast}: {dark:.3} {light:.3}");
             assert!((dark - 0.9 * 2.1).abs() < 1e-5 && (light - 0.04).abs() < 1e-5, "{contrast}: {dark} {light}");
         }
-        // Too much for any paper: the highlights are kept.
+        // Too much contrast for any paper: the highlights are kept.
         let density: Vec<f32> = (0..2001).map(|i| 0.3 + 3.0 * i as f32 / 2000.0).collect();
         let automatic = |density: &[f32]| Print::automatic(&Paper::default(), density, PictureBlack::Stretched);
         let print = automatic(&density).expect("a paper").expect("contrast enough");
         assert!((print.density(f64::from(density[1980])) - 0.04).abs() < 1e-5 && print.picture(0.6) < 1e-3);
-        // A flat scene is not stretched, nor is nothing.
+        // A flat scene is not stretched, nor is an empty one.
         let flat: Vec<f32> = (0..2000).map(|i| 0.8 + 0.3 * i as f32 / 1999.0).collect();
         assert_eq!(automatic(&flat), Ok(None));
         assert_eq!(automatic(&[]), Ok(None));
         assert_eq!(automatic(&[f32::NAN]), Ok(None));
     }
 
-    /// L* of Tri-X from 3 stops under mid gray to 2 over it, on paper of grade 0 beside the print values that Ansel Adams gives of a
-    /// normal print (zones III to VIII; densities 1.6, 1.3, 1.0, 0.74, 0.5, 0.3), and on grade 2.
+    /// Checks L* of Tri-X from 3 stops below mid gray to 2 above, on grades 0 and 2. Grade 0 is compared with Ansel Adams's values of a
+    /// normal print (zones III to VIII; densities 1.6, 1.3, 1.0, 0.74, 0.5, 0.3).
     #[test]
     fn grades_have_the_tones_of_a_darkroom() {
         let film =
@@ -316,10 +317,10 @@ mod tests {
         let shown = |lx_s: f64| print.picture(film.density(log10(lx_s)));
         assert!((shown(0.125) - MID_GRAY).abs() < 1e-12);
         assert_eq!(shown(0.0), 0.0);
-        // A white subject (0.9 over 0.18) is bright but not yet bare paper; six stops over gray are that to the eye, within 3 L*.
+        // A white subject (0.9 over 0.18) is bright but not yet bare paper. Six stops above gray look like bare paper, within 3 L*.
         assert!((0.6..0.95).contains(&shown(0.125 * 5.0)), "{}", shown(0.125 * 5.0));
         assert!(lightness(shown(0.125 * 64.0)) > 97.0 && shown(f64::INFINITY) < 1.0 + 1e-12);
-        // Five stops under mid gray are black to the eye: under 1 % of white.
+        // Five stops below mid gray look black: below 1 % of white.
         assert!(shown(0.125 / 32.0) < 0.01, "{}", shown(0.125 / 32.0));
     }
 
@@ -328,7 +329,7 @@ mod tests {
         let print = print();
         let density: Vec<f32> = (0..60_000).map(|i| i as f32 * 5e-5).collect();
         for (d, shown) in density.iter().zip(print.pictures(&density)) {
-            // As stated, and the rounding to 24 bits.
+            // The stated accuracy, plus rounding to 24 bits.
             assert!((f64::from(shown) - print.picture(f64::from(*d))).abs() < 1.1e-6, "{d}");
         }
         assert_eq!(print.pictures(&[0.0]), [0.0]);
@@ -345,7 +346,7 @@ mod tests {
         }
     }
 
-    /// Log10 of the picture's light changes over log10 of the exposure by the product of both gradients, less what flare takes of it.
+    /// The slope of log10 of the picture's light over log10 of the exposure is the product of both gradients, reduced by flare.
     #[test]
     fn gradients_of_film_and_paper_multiply() {
         let (film, step) = (film(), 1e-4);

@@ -1,77 +1,79 @@
-//! Longer development: curves between those that a sheet prints, or, where it prints one only, what other films' curves do.
+//! Push and pull development: interpolates between the curves of a sheet, or, if the sheet has only one, assumes the behavior of other
+//! films.
 
 use crate::curve::{CharacteristicCurve, CurveError, TabulatedCurve};
 use crate::print::metered_exposure_lx_s;
 use crate::stock::{Development, Layer, Process, Stock};
 use spectra_core::math::{log, log10, pow};
 
-/// A film that cannot be pushed as asked.
+/// A film that cannot be pushed as requested.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PushError {
-    /// A print stock, which has no speed.
-    #[error("{stock} is no camera film: it has no speed from which to push it")]
+    /// A film without a speed, for example a print stock.
+    #[error("{stock} is not a camera film: it has no speed from which to push it")]
     NoCameraFilm {
-        /// The stock.
+        /// Name of the stock.
         stock: String,
     },
-    /// No curve from which mid grays could be told.
-    #[error("{stock}: a mid gray lies beyond its curve, {stops:+} stops from its speed")]
+    /// The curve does not reach a mid gray at this push.
+    #[error("{stock}: a mid gray {stops:+} stops from its speed lies outside its curve")]
     NoGray {
-        /// The stock.
+        /// Name of the stock.
         stock: String,
-        /// What was asked for.
+        /// Requested push, stops.
         stops: f64,
     },
-    /// Farther than other films' curves tell.
+    /// A push beyond the range that is assumed from other films.
     #[error(
-        "{stock} has one time of development; what other films do is assumed from -{MOST_ASSUMED} to +{MOST_ASSUMED} stops, not {stops:+}"
+        "{stock} has only one development time; a push can be assumed from -{MOST_ASSUMED} to +{MOST_ASSUMED} stops, not {stops:+}"
     )]
     BeyondAssumed {
-        /// The stock.
+        /// Name of the stock.
         stock: String,
-        /// What was asked for.
+        /// Requested push, stops.
         stops: f64,
     },
-    /// Beyond the longest or the shortest time.
-    #[error("the curves of {stock} reach from {fewest:+} to {most:+} stops, not {stops:+}")]
+    /// A push beyond the longest or the shortest development time.
+    #[error("the development times of {stock} reach from {fewest:+} to {most:+} stops, not {stops:+}")]
     Beyond {
-        /// The stock.
+        /// Name of the stock.
         stock: String,
-        /// What was asked for.
+        /// Requested push, stops.
         stops: f64,
-        /// How far its shortest time pulls, to a tenth.
+        /// Push at the shortest time (negative for a pull), to a tenth of a stop.
         fewest: f64,
-        /// How far its longest time pushes, to a tenth.
+        /// Push at the longest time, to a tenth of a stop.
         most: f64,
     },
-    /// Curves that cannot be joined.
+    /// The interpolated curve is not valid.
     #[error(transparent)]
     Curve(#[from] CurveError),
 }
 
-/// A development between those of the sheet.
+/// A pushed or pulled development.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pushed {
-    /// How long it takes, min; `None` where its curves are assumed.
+    /// Development time, min; `None` if the curves are assumed.
     pub minutes: Option<f64>,
-    /// A curve for each layer.
+    /// Characteristic curve of each layer.
     pub curves: Vec<CharacteristicCurve>,
 }
 
-/// Points at which two curves are mixed.
+/// Number of intervals at which curves are sampled.
 const POINTS: usize = 256;
 
-/// Most stops by which a film without a series is pushed or pulled.
+/// Largest push or pull, in stops, of a film without a series of development times.
 pub const MOST_ASSUMED: f64 = 2.0;
-/// By what contrast (ISO 6's average gradient) is multiplied for each stop of push, and divided for each of pull: the median over the
-/// times of the series of Tri-X and Double-X.
+/// Factor of contrast (ISO 6's average gradient) for each stop of push, and divisor for each stop of pull: the median over the times in the
+/// series of Tri-X and Double-X.
 pub const CONTRAST_PER_STOP: f64 = 1.24;
-/// What a stop of push adds to the fog, density: their median; a pull leaves it.
+/// Fog density added by each stop of push: the median of the same films. A pull leaves the fog unchanged.
 pub const FOG_PER_STOP: f64 = 0.036;
 
-/// Pushes as [`pushed`] where the sheet has a series of times; elsewhere densities over base and fog grow as the
-/// median of other films' do, and curves are moved until a mid gray has the density that the definition asks for.
-/// Of a reversal film that is the density of its first developer, which the positive lacks.
+/// Pushes as [`pushed`] if the sheet has a series of development times. Otherwise, scales densities above base and fog by the median of
+/// other films, and shifts the curves until a mid gray has the density required by the definition.
+///
+/// For a reversal film, this is the density of its first developer, which the positive lacks.
 ///
 /// # Errors
 /// [`PushError`].
@@ -103,10 +105,10 @@ fn assumed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> 
             .curve;
         let (least, most) = curve.density_range();
         let is_reversal = stock.process == Process::Reversal;
-        // What the first developer makes, over what it makes without light.
+        // Density from the first developer, above its density without light.
         let silver =
             |x: f64| if is_reversal { most - curve.density(x) } else { curve.density(x) - curve.unexposed_density() };
-        // A negative's mid gray is as dense over its fog, a slide's as dense as it was.
+        // A negative's mid gray keeps its density above fog; a slide's mid gray keeps its density.
         let kept = silver(gray) - if is_reversal { fog } else { 0.0 };
         let metered = gray - stops * log10(2.0);
         let (mut left, mut right) = (metered - 4.0, metered + 4.0);
@@ -130,9 +132,11 @@ fn assumed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> 
     Ok(Pushed { minutes: None, curves: each.collect::<Result<_, _>>()? })
 }
 
-/// Pushes by `stops` (pulls, if negative) from the development `usual`: the time of development at which a mid gray metered at
-/// 2^stops times the speed has the density over base and fog that one metered at the speed has after the usual time. Between
-/// two times of the sheet, densities are interpolated linearly in the logarithm of the time.
+/// Pushes by `stops` (pulls, if negative) from the development `usual`.
+///
+/// Finds the development time at which a mid gray metered at 2^stops times the speed has the density above base and fog that a mid gray
+/// metered at the speed has after the usual time.
+/// Between two times of the sheet, densities are interpolated linearly in the logarithm of the time.
 ///
 /// # Errors
 /// [`PushError`].
@@ -146,7 +150,7 @@ pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushErro
     let gray = log10(metered_exposure_lx_s(iso));
     let over = |d: f64, fog: f64| d - fog;
     let wanted = over(usual.curve.density(gray), usual.curve.unexposed_density());
-    // Stops by which a time pushes: how much less exposure gives that density.
+    // Push of a development time in stops: how much less exposure gives the wanted density.
     let reach = |minutes: f64| -> Option<f64> {
         let at = |x: f64| over(density(&series, minutes, x), density(&series, minutes, f64::NEG_INFINITY)) - wanted;
         let (mut left, mut right) = (gray - 3.0, gray + 3.0);
@@ -165,7 +169,7 @@ pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushErro
     if stops == 0.0 {
         (left, right) = (start, start);
     } else if !(stops >= fewest.min(tenths(fewest)) && stops <= most.max(tenths(most))) {
-        // The range is told to a tenth, and what is told can be had: as far as the longest time goes.
+        // The range is reported to a tenth of a stop, and every reported value can be requested: it is limited to the longest time.
         return Err(PushError::Beyond { stock: stock.name.clone(), stops, fewest: tenths(fewest), most: tenths(most) });
     }
     while right - left > 1e-9 {
@@ -182,12 +186,12 @@ pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushErro
     Ok(Pushed { minutes: Some(minutes), curves: vec![TabulatedCurve::new(&points)?.into()] })
 }
 
-/// To a tenth; never -0.
+/// Rounds to a tenth; never -0.
 fn tenths(stops: f64) -> f64 {
     (stops * 10.0).round() / 10.0 + 0.0
 }
 
-/// Developments of known time, the shortest first.
+/// Developments of known time, shortest first.
 fn series(layer: &Layer) -> Vec<(f64, &Development)> {
     let mut all: Vec<(f64, &Development)> =
         layer.developments.iter().filter_map(|d| d.minutes.map(|m| (m, d))).collect();
@@ -195,7 +199,7 @@ fn series(layer: &Layer) -> Vec<(f64, &Development)> {
     all
 }
 
-/// Density after any time, at log10 of an exposure.
+/// Density after any time, at log10 of an exposure (lx s).
 fn density(series: &[(f64, &Development)], minutes: f64, log10_exposure: f64) -> f64 {
     let i = series.partition_point(|s| s.0 <= minutes).clamp(1, series.len() - 1);
     let ((t0, a), (t1, b)) = (series[i - 1], series[i]);

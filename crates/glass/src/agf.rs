@@ -1,8 +1,8 @@
 //! Glass catalogue files (AGF) of optical design programs: a user's own catalogues.
 //!
-//! A record begins with `NM name formula code nd vd ...`; `CD` has the coefficients, `TD` the thermal data, `LD` the
-//! range in micrometres, `IT` internal transmittances (wavelength, transmittance, thickness in mm). Text is UTF-8, UTF-16
-//! or Latin-1. What cannot be read is listed, and the rest is used.
+//! A record begins with `NM name formula code nd vd ...`; `CD` has the coefficients, `TD` the thermal data, `LD` the range in
+//! micrometers, `IT` internal transmittances (wavelength, transmittance, thickness in mm). Text is UTF-8, UTF-16 or Latin-1.
+//! What cannot be read is listed, and the rest is used.
 
 use std::borrow::Cow;
 
@@ -18,11 +18,11 @@ use crate::glass::{Category, Extinction, Glass, Status, Thermal};
 pub struct AgfProblem {
     /// Line, from 1.
     pub line: usize,
-    /// What is wrong, and what became of it.
+    /// Message that says what is wrong, and what was done about it.
     pub message: String,
 }
 
-/// What an AGF file held.
+/// The content of an AGF file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Agf {
     /// The glasses, in the order of the file.
@@ -43,7 +43,7 @@ pub fn read(bytes: &[u8], maker: &str) -> Agf {
     reader.agf
 }
 
-/// Text from UTF-16 (with a byte-order mark, or seen by its zero bytes), UTF-8 or Latin-1.
+/// Decodes text from UTF-16 (with a byte-order mark, or recognized by its zero bytes), UTF-8 or Latin-1.
 fn decode(bytes: &[u8]) -> Cow<'_, str> {
     let utf16 = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
         let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
@@ -64,7 +64,7 @@ fn decode(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// A glass of which some lines have been read.
+/// A glass whose record is being read.
 struct Record {
     line: usize,
     name: String,
@@ -82,7 +82,7 @@ struct Reader<'a> {
     maker: &'a str,
     agf: Agf,
     record: Option<Record>,
-    /// Whether the line before was `CD`: some programs break it.
+    /// Whether the line before was `CD`: some programs break that line.
     continues: bool,
 }
 
@@ -109,13 +109,13 @@ impl Reader<'_> {
             "TD" => record.thermal = values,
             "LD" => match values[..] {
                 [min, max, ..] if min > 0.0 && min < max => record.range_nm = Some((min * 1000.0, max * 1000.0)),
-                _ => self.problem(number, "LD needs two wavelengths in micrometres; left out"),
+                _ => self.problem(number, "LD needs two wavelengths in micrometers; left out"),
             },
             "IT" => match values[..] {
                 [um, tau, mm, ..] if um > 0.0 && (0.0..=1.0).contains(&tau) && mm > 0.0 => {
                     record.transmittance.push([um, tau, mm]);
                 }
-                // Empty rows fill the tables of some programs, and a negative transmittance is one not measured.
+                // Some programs fill tables with empty rows; a negative transmittance was not measured.
                 [] | [_] | [_, _] => {}
                 [_, tau, ..] if tau < 0.0 => {}
                 _ => self.problem(number, "IT needs a wavelength, a transmittance up to 1 and a thickness; left out"),
@@ -141,7 +141,7 @@ impl Reader<'_> {
             self.problem(line, format!("glass {name}: unknown formula {formula}; the glass is left out"));
             return;
         }
-        // Programs write 1 and 0 where index and Abbe number are not known.
+        // Programs write 1 and 0 if index and Abbe number are not known.
         let known = |v: Option<f64>, least: f64| v.filter(|v| *v > least);
         self.record = Some(Record {
             line,
@@ -188,7 +188,7 @@ impl Reader<'_> {
         if record.range_nm.is_none() {
             self.problem(
                 record.line,
-                format!("glass {}: no LD line; 365 to 1014 nm are taken as its range", record.name),
+                format!("glass {}: no LD line; its range is assumed to be 365 to 1014 nm", record.name),
             );
         }
         // Columns that were swapped still give an index, of another glass.
@@ -210,13 +210,13 @@ impl Reader<'_> {
     }
 }
 
-/// A number as programs of any age and country write it: `1.0E+000`, `1.0D-3`, `1,5`.
+/// Reads a number as programs of any age and country write it: `1.0E+000`, `1.0D-3`, `1,5`.
 fn value(word: &str) -> Option<f64> {
     let plain = word.parse::<f64>().ok();
     plain.or_else(|| word.replace(['D', 'd'], "E").replace(',', ".").parse().ok()).filter(|v| v.is_finite())
 }
 
-/// The formulas by their number in AGF files; missing coefficients at the end are 0, but the first must be there.
+/// Returns the formula by its number in AGF files. Missing coefficients at the end are 0; `None` if all are 0.
 fn formula(number: u8, coefficients: &[f64]) -> Option<Formula> {
     let c = coefficients;
     if c.iter().all(|c| *c == 0.0) {
@@ -240,7 +240,8 @@ fn formula(number: u8, coefficients: &[f64]) -> Option<Formula> {
     })
 }
 
-/// k from internal transmittances: tau = exp(-4 pi k d / lambda). An opaque row says nothing of how opaque.
+/// Computes k from internal transmittances: tau = exp(-4 pi k d / lambda). Opaque rows are dropped, since they do not say how
+/// opaque the glass is.
 fn extinction(mut rows: Vec<[f64; 3]>) -> Option<Extinction> {
     rows.retain(|[_, tau, _]| *tau > 0.0);
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));

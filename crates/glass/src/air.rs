@@ -30,7 +30,7 @@ pub fn index(wavelength_nm: f64, air: AirConditions) -> f64 {
     index_at_vacuum_wavelength(wavelength_nm * first, air)
 }
 
-/// As [`index`], at a wavelength in vacuum.
+/// Absolute refractive index of dry air at a wavelength in vacuum, nm; see [`index`].
 #[must_use]
 pub fn index_at_vacuum_wavelength(vacuum_nm: f64, air: AirConditions) -> f64 {
     let sigma2 = 1e6 / (vacuum_nm * vacuum_nm);
@@ -38,13 +38,13 @@ pub fn index_at_vacuum_wavelength(vacuum_nm: f64, air: AirConditions) -> f64 {
     1.0 + standard * density(air) / density(STANDARD_AIR)
 }
 
-/// An index relative to air (a catalogue's) made absolute, at a wavelength in nm.
+/// Converts an index relative to air (a catalogue's) to an absolute index, at a wavelength in nm.
 #[must_use]
 pub fn absolute(relative_index: f64, wavelength_nm: f64, air: AirConditions) -> f64 {
     relative_index * index(wavelength_nm, air)
 }
 
-/// Density of dry air but for constants: p / (Z T), Z the compressibility of BIPM 1981/91.
+/// Density of dry air up to a constant factor: p / (Z T), with the compressibility Z of BIPM 1981/91.
 fn density(air: AirConditions) -> f64 {
     let t = air.temperature_c;
     let kelvin = t + 273.15;

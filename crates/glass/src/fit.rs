@@ -23,7 +23,7 @@ use thiserror::Error;
 
 use crate::formula::Formula;
 
-/// A measured index.
+/// A refractive index measured at a wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Wavelength in air, nm.
@@ -58,18 +58,18 @@ impl Fit {
     }
 }
 
-/// Why samples give no formula.
+/// Reason why samples give no formula.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum FitError {
     /// Too few samples for the number of coefficients.
     #[error("{found} samples are too few: {needed} are needed")]
     TooFew {
-        /// How many are needed.
+        /// Number of samples that are needed.
         needed: usize,
-        /// How many there are.
+        /// Number of samples that were given.
         found: usize,
     },
-    /// A wavelength or index that is none.
+    /// A wavelength or index that is not valid.
     #[error("row {row}: the wavelength must be positive and the index at least 1")]
     BadSample {
         /// Row, from 1.

@@ -6,7 +6,7 @@ use crate::air::{self, AirConditions};
 use crate::formula::{Formula, Melt, Table};
 use crate::lines::{D, LineTriple};
 
-/// What kind of medium it is.
+/// The category of a medium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Category {
     /// Optical glass of a maker's catalogue.
@@ -32,7 +32,7 @@ pub enum Category {
 }
 
 impl Category {
-    /// Name in the catalogue file and in reports.
+    /// Name of the category in the catalogue file and in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -49,14 +49,14 @@ impl Category {
         }
     }
 
-    /// Whether its names are those of glass types, and not of substances and measurements.
+    /// Returns whether media of this category have names of glass types, not of substances and measurements.
     #[must_use]
     pub fn is_glass(self) -> bool {
         use Category::*;
         matches!(self, OpticalGlass | TechnicalGlass | InfraredGlass | FilterGlass | User)
     }
 
-    /// The category of that name.
+    /// Finds the category of this name.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Category> {
         use Category::*;
@@ -66,7 +66,7 @@ impl Category {
     }
 }
 
-/// Whether it can be bought.
+/// The availability of a glass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Status {
     /// The maker recommends it for new designs.
@@ -84,7 +84,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Name in reports.
+    /// Name of the status in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -118,7 +118,7 @@ pub struct Extinction {
 }
 
 impl Extinction {
-    /// From wavelengths (nm, rising) and as many values, none negative. `None` otherwise.
+    /// Creates the table from wavelengths (nm, rising) and as many values, none negative. `None` otherwise.
     #[must_use]
     pub fn new(wavelength_nm: Arc<[f64]>, k: Vec<f64>) -> Option<Extinction> {
         let rising =
@@ -128,8 +128,8 @@ impl Extinction {
             .then(|| Extinction { wavelength_nm, k: k.into() })
     }
 
-    /// k at `wavelength_nm`: between two positive values its logarithm is linear, otherwise k itself is;
-    /// `None` outside of the data.
+    /// Returns k at `wavelength_nm`. Between two positive values its logarithm is linear, otherwise k itself is; `None` outside
+    /// the data.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> Option<f64> {
         let (min, max) = self.range_nm();
@@ -151,7 +151,7 @@ impl Extinction {
         (self.wavelength_nm[0], self.wavelength_nm[self.wavelength_nm.len() - 1])
     }
 
-    /// The points, wavelength (nm) and k.
+    /// Iterates over the points: wavelength (nm) and k.
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.wavelength_nm.iter().copied().zip(self.k.iter().copied())
     }
@@ -164,9 +164,9 @@ pub struct Glass {
     pub maker: Arc<str>,
     /// Name within the maker's catalogue (`N-BK7`), or of the measurement (`Daimon-20.0C`).
     pub name: String,
-    /// What kind of medium it is.
+    /// Category of the medium.
     pub category: Category,
-    /// n(lambda), relative to air for glasses.
+    /// Dispersion formula n(lambda), relative to air for glasses.
     pub formula: Formula,
     /// Shortest and longest wavelength of the data, nm.
     pub range_nm: (f64, f64),
@@ -174,9 +174,9 @@ pub struct Glass {
     pub listed_nd: Option<f64>,
     /// Vd as the maker lists it.
     pub listed_vd: Option<f64>,
-    /// Whether it can be bought.
+    /// Availability of the glass.
     pub status: Status,
-    /// Years of the first and last catalogue in which it was found.
+    /// Years of the first and last catalogue in which the glass was found.
     pub years: Option<(u16, u16)>,
     /// Temperature of the data, degrees Celsius.
     pub temperature_c: Option<f64>,
@@ -184,12 +184,12 @@ pub struct Glass {
     pub thermal: Option<Thermal>,
     /// Absorption.
     pub extinction: Option<Extinction>,
-    /// Where the numbers come from.
+    /// Source of the numbers.
     pub source: Arc<str>,
 }
 
 impl Glass {
-    /// A glass of a name and a formula, with nothing else known.
+    /// Creates a glass with a name and a formula, with nothing else known.
     #[must_use]
     pub fn new(maker: &str, name: &str, category: Category, formula: Formula, range_nm: (f64, f64)) -> Glass {
         Glass {
@@ -209,7 +209,7 @@ impl Glass {
         }
     }
 
-    /// `MAKER/NAME`, which [`crate::Catalogue::find`] takes.
+    /// Returns `MAKER/NAME`, as [`crate::Catalogue::find`] reads it.
     #[must_use]
     pub fn full_name(&self) -> String {
         format!("{}/{}", self.maker, self.name)
@@ -221,25 +221,25 @@ impl Glass {
         self.formula.index(wavelength_nm)
     }
 
-    /// Index at the d line, computed.
+    /// Index at the d line, computed from the formula.
     #[must_use]
     pub fn nd(&self) -> f64 {
         self.index(D.wavelength_nm)
     }
 
-    /// Abbe number at the lines d, F and C, computed.
+    /// Abbe number at the lines d, F and C, computed from the formula.
     #[must_use]
     pub fn vd(&self) -> f64 {
         self.abbe_number(LineTriple::FDC)
     }
 
-    /// Abbe number for any lines, computed.
+    /// Abbe number for any lines, computed from the formula.
     #[must_use]
     pub fn abbe_number(&self, lines: LineTriple) -> f64 {
         lines.abbe_number(|w| self.index(w))
     }
 
-    /// The same glass as a melt sheet has it: its dispersion shifted and scaled to the measured nd and Vd. `None` unless
+    /// Returns this glass as a melt sheet has it: its dispersion is shifted and scaled to the measured nd and Vd. `None` unless
     /// nd > 1, Vd > 0 and the glass disperses.
     #[must_use]
     pub fn melt(&self, nd: f64, vd: f64) -> Option<Glass> {
@@ -247,22 +247,21 @@ impl Glass {
         Some(Glass { formula, listed_nd: Some(nd), listed_vd: Some(vd), status: Status::Melt, ..self.clone() })
     }
 
-    /// Whether the data reach from `min_nm` to `max_nm`.
+    /// Returns whether the data reach from `min_nm` to `max_nm`.
     #[must_use]
     pub fn covers(&self, min_nm: f64, max_nm: f64) -> bool {
         self.range_nm.0 <= min_nm && max_nm <= self.range_nm.1
     }
 
-    /// Internal transmittance (without reflections) of a path of `thickness_mm`: exp(-4 pi k d / lambda); `None` where
-    /// k is not known.
+    /// Internal transmittance (without reflections) of a path of `thickness_mm`: exp(-4 pi k d / lambda); `None` if k is not known.
     #[must_use]
     pub fn internal_transmittance(&self, wavelength_nm: f64, thickness_mm: f64) -> Option<f64> {
         let k = self.extinction.as_ref()?.at(wavelength_nm)?;
         Some(libm::exp(-4.0 * std::f64::consts::PI * k * thickness_mm * 1e6 / wavelength_nm))
     }
 
-    /// Absolute index (relative to vacuum) at a wavelength in nm (in air) and a temperature of glass and air in
-    /// degrees Celsius, at 101 325 Pa. Without thermal data the index at the reference temperature is taken.
+    /// Absolute index (relative to vacuum) at a wavelength in nm (in air) and a temperature of glass and air in degrees
+    /// Celsius, at 101 325 Pa. Without thermal data it uses the index at the reference temperature.
     #[must_use]
     pub fn absolute_index(&self, wavelength_nm: f64, temperature_c: f64) -> f64 {
         let relative = self.index(wavelength_nm);
@@ -286,7 +285,7 @@ impl Glass {
         self.absolute_index(wavelength_nm, temperature_c) / air::index(wavelength_nm, air)
     }
 
-    /// The maker's table of points, if that is what the data are.
+    /// Returns the maker's table of points, if the data are a table.
     #[must_use]
     pub fn table(&self) -> Option<&Table> {
         match &self.formula {

@@ -1,4 +1,4 @@
-//! What happens to light at a surface between two media: refraction, Fresnel's equations, a single coating.
+//! Light at a surface between two media: refraction, Fresnel's equations, a single coating.
 //!
 //! Media are transparent (real indices). Angles are measured from the normal, in radians.
 
@@ -12,7 +12,7 @@ pub struct Reflectance {
 }
 
 impl Reflectance {
-    /// Of unpolarized light.
+    /// Reflectance for unpolarized light: the mean of both polarizations.
     #[must_use]
     pub fn mean(self) -> f64 {
         0.5 * (self.s + self.p)

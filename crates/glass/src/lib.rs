@@ -1,13 +1,12 @@
 //! Refractive index: dispersion formulas, catalogues, fast evaluation.
 //!
-//! - [`Formula`] is n(lambda) as makers and papers write it; [`Glass`] is a named medium with its data;
-//!   [`Catalogue`] finds one by name, or the nearest to a patent's (n, V).
-//! - [`Medium`] is what light travels in; [`Dispersion`] is the same, fitted for tracing.
+//! - [`Formula`] is n(lambda) as makers and papers write it; [`Glass`] is a named medium with its data; [`Catalogue`] finds one
+//!   by name, or the nearest to a patent's (n, V).
+//! - [`Medium`] is a medium that light travels in; [`Dispersion`] is its index, fitted for tracing.
 //! - [`fit`] makes formulas from tables, [`interface`] has Fresnel's equations, [`agf`] reads users' catalogues.
 //!
-//! Conventions: wavelengths are in nanometres at every public border and are those in air; glass formulas take
-//! micrometres inside. The index of a glass is relative to air as its maker gives it, so air is 1 and
-//! vacuum a little less than 1 (see [`air`]).
+//! Conventions: wavelengths are in nanometers in air in every public interface; glass formulas take micrometers inside. The
+//! index of a glass is relative to air as its maker gives it, so air is 1 and vacuum a little less than 1 (see [`air`]).
 //!
 //! ```
 //! use spectra_glass::{Catalogue, Dispersion, Medium, lines};

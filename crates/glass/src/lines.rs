@@ -1,6 +1,6 @@
 //! Spectral lines at which refractive indices are stated.
 //!
-//! Wavelengths are those in air, in nanometres, with the digits that glass makers use (Schott TIE-29; ISO 7944).
+//! Wavelengths are those in air, in nanometers, with the digits that glass makers use (Schott TIE-29; ISO 7944).
 
 use spectra_core::params::{Dimension, Reading, Unit};
 
@@ -17,33 +17,33 @@ const fn line(name: &'static str, wavelength_nm: f64) -> Line {
     Line { name, wavelength_nm }
 }
 
-/// i, mercury, ultraviolet.
+/// The line i of mercury, ultraviolet.
 pub const I: Line = line("i", 365.0146);
-/// h, mercury, violet.
+/// The line h of mercury, violet.
 pub const H: Line = line("h", 404.6561);
-/// g, mercury, blue.
+/// The line g of mercury, blue.
 pub const G: Line = line("g", 435.8343);
-/// F', cadmium, blue.
+/// The line F' of cadmium, blue.
 pub const F_PRIME: Line = line("F'", 479.9914);
-/// F, hydrogen, blue.
+/// The line F of hydrogen, blue.
 pub const F: Line = line("F", 486.1327);
-/// e, mercury, green.
+/// The line e of mercury, green.
 pub const E: Line = line("e", 546.074);
-/// d, helium, yellow: the reference line of most catalogues.
+/// The line d of helium, yellow: the reference line of most catalogues.
 pub const D: Line = line("d", 587.5618);
-/// D, mean of the sodium doublet, yellow: the reference line of old patents.
+/// The line D, mean of the sodium doublet, yellow: the reference line of old patents.
 pub const SODIUM_D: Line = line("D", 589.2938);
-/// C', cadmium, red.
+/// The line C' of cadmium, red.
 pub const C_PRIME: Line = line("C'", 643.8469);
-/// C, hydrogen, red.
+/// The line C of hydrogen, red.
 pub const C: Line = line("C", 656.2725);
-/// r, helium, red.
+/// The line r of helium, red.
 pub const R: Line = line("r", 706.5188);
-/// A', potassium, deep red.
+/// The line A' of potassium, deep red.
 pub const A_PRIME: Line = line("A'", 768.195);
-/// s, caesium, infrared.
+/// The line s of cesium, infrared.
 pub const S: Line = line("s", 852.11);
-/// t, mercury, infrared.
+/// The line t of mercury, infrared.
 pub const T: Line = line("t", 1013.98);
 
 /// All lines, from short to long.
@@ -53,14 +53,14 @@ pub const ALL: [Line; 14] = [I, H, G, F_PRIME, F, E, D, SODIUM_D, C_PRIME, C, R,
 const STATED_NM: std::ops::RangeInclusive<f64> = 100.0..=50_000.0;
 
 impl Line {
-    /// The line at a wavelength in nm: one of the named lines where it is exactly theirs. `None` outside of 100 to 50 000 nm.
+    /// Returns the line at a wavelength in nm: a named line if the wavelength is exactly its own. `None` outside of 100 to 50 000 nm.
     #[must_use]
     pub fn at(wavelength_nm: f64) -> Option<Line> {
         let named = ALL.into_iter().find(|line| line.wavelength_nm == wavelength_nm);
         named.or_else(|| STATED_NM.contains(&wavelength_nm).then_some(Line { name: "", wavelength_nm }))
     }
 
-    /// The line of a name (`F'`), or a wavelength in nm if bare (`450`, `0.45 um`).
+    /// Reads the name of a line (`F'`), or a wavelength in nm if bare (`450`, `0.45 um`).
     #[must_use]
     pub fn read(text: &str) -> Option<Line> {
         by_name(text).or_else(|| match Reading::of(text.trim()) {
@@ -72,20 +72,20 @@ impl Line {
         })
     }
 
-    /// The name, or the wavelength: `F'`, `450 nm`.
+    /// Returns the name or the wavelength: `F'`, `450 nm`.
     #[must_use]
     pub fn label(&self) -> String {
         if self.name.is_empty() { format!("{} nm", self.wavelength_nm) } else { self.name.to_owned() }
     }
 
-    /// How an index (`n`) or an Abbe number (`V`) at the line is called: `nd`, `n(450 nm)`.
+    /// Returns the name of an index (`n`) or an Abbe number (`V`) at the line: `nd`, `n(450 nm)`.
     #[must_use]
     pub fn indexed(&self, symbol: &str) -> String {
         if self.name.is_empty() { format!("{symbol}({})", self.label()) } else { format!("{symbol}{}", self.name) }
     }
 }
 
-/// The line of that name; `d` and `D` differ, so case counts. A prime may be written `'` or typographically.
+/// Finds the line of this name; `d` and `D` differ, so case counts. A prime may be written `'` or typographically.
 #[must_use]
 pub fn by_name(name: &str) -> Option<Line> {
     let name = name.trim().replace(['\u{2019}', '\u{2032}'], "'");
@@ -108,12 +108,12 @@ impl LineTriple {
     pub const FDC: LineTriple = LineTriple { mid: D, short: F, long: C };
     /// F, D, C: the sodium line's Abbe number of old catalogues and patents.
     pub const F_SODIUM_C: LineTriple = LineTriple { mid: SODIUM_D, short: F, long: C };
-    /// F, e, C.
+    /// F, e, C: reference line e with the hydrogen lines.
     pub const FEC: LineTriple = LineTriple { mid: E, short: F, long: C };
-    /// F', e, C': Ve.
+    /// F', e, C': Ve, with reference line e and the cadmium lines.
     pub const F_PRIME_E_C_PRIME: LineTriple = LineTriple { mid: E, short: F_PRIME, long: C_PRIME };
 
-    /// The triple that belongs to a reference line: d and D go with F and C, e with F' and C'; none for other lines.
+    /// Returns the triple that belongs to a reference line: d and D go with F and C, e with F' and C'; `None` for other lines.
     #[must_use]
     pub fn of_reference(line: Line) -> Option<LineTriple> {
         match line.name {
@@ -124,15 +124,15 @@ impl LineTriple {
         }
     }
 
-    /// The three lines, from short to long wavelengths; `None` in any other order.
+    /// Combines three lines that go from short to long wavelengths; `None` in any other order.
     #[must_use]
     pub fn rising(short: Line, mid: Line, long: Line) -> Option<LineTriple> {
         let rising = short.wavelength_nm < mid.wavelength_nm && mid.wavelength_nm < long.wavelength_nm;
         rising.then_some(LineTriple { mid, short, long })
     }
 
-    /// What figures are stated at, as a person writes it: a reference line with the lines that belong to it (`d`, `e`), or three lines
-    /// from blue to red, by name or wavelength in nm (`F',e,C'`, `450,580,680`).
+    /// Reads the lines at which figures are stated, as a person writes them: a reference line with the lines that belong to it
+    /// (`d`, `e`), or three lines from blue to red, by name or wavelength in nm (`F',e,C'`, `450,580,680`).
     #[must_use]
     pub fn read(text: &str) -> Option<LineTriple> {
         let lines: Option<Vec<Line>> = text.split(',').map(Line::read).collect();
@@ -143,13 +143,13 @@ impl LineTriple {
         }
     }
 
-    /// The lines from short to long: `F', e, C'`.
+    /// Lists the lines from short to long: `F', e, C'`.
     #[must_use]
     pub fn label(&self) -> String {
         [self.short, self.mid, self.long].map(|line| line.label()).join(", ")
     }
 
-    /// What the Abbe number is called: `Vd`, `Ve`, `VD` for the usual lines, otherwise with all three: `V(450 nm, e, C)`.
+    /// Returns the name of the Abbe number: `Vd`, `Ve`, `VD` for the usual lines, otherwise with all three: `V(450 nm, e, C)`.
     #[must_use]
     pub fn abbe_label(&self) -> String {
         let usual = LineTriple::of_reference(self.mid) == Some(*self);
@@ -207,7 +207,7 @@ mod tests {
         for (level, expected) in [(3.0, 656.288), (4.0, 486.139), (5.0, 434.053), (6.0, 410.180)] {
             assert!((balmer(level) - expected).abs() < 1e-3, "{} {expected}", balmer(level));
         }
-        // The catalogue's values are weighted means of the fine structure, some hundredths of a nanometre off.
+        // The catalogue's values are weighted means of the fine structure, some hundredths of a nanometer off.
         assert!((balmer(3.0) - C.wavelength_nm).abs() < 0.02 && (balmer(4.0) - F.wavelength_nm).abs() < 0.01);
     }
 }

@@ -1,4 +1,4 @@
-//! What light travels in between two surfaces.
+//! Media that light travels in between two surfaces.
 
 use std::sync::Arc;
 
@@ -14,16 +14,16 @@ pub enum Medium {
     Air,
     /// Vacuum: 1 / n_air of air at 20 C and 101 325 Pa.
     Vacuum,
-    /// The same index at every wavelength; also a medium held at its stated index.
+    /// A constant index at every wavelength; also a medium held at its stated index.
     Constant(f64),
-    /// A glass of which an index and an Abbe number are known.
+    /// A glass known by an index and an Abbe number.
     Model(ModelGlass),
     /// A glass of a catalogue.
     Glass(Arc<Glass>),
 }
 
 impl Medium {
-    /// A model glass from nd and Vd; `None` unless nd >= 1 and Vd >= 0 (0: no dispersion).
+    /// Creates a model glass from nd and Vd; `None` unless nd >= 1 and Vd >= 0 (0: no dispersion).
     #[must_use]
     pub fn from_nd_vd(nd: f64, vd: f64) -> Option<Medium> {
         ModelGlass::new(nd, vd, LineTriple::FDC).map(Medium::Model)
@@ -41,7 +41,7 @@ impl Medium {
         }
     }
 
-    /// Wavelengths (nm) between which the data were measured; `None` where there is no limit.
+    /// Shortest and longest wavelength of the data, nm; `None` if there is no limit.
     #[must_use]
     pub fn range_nm(&self) -> Option<(f64, f64)> {
         match self {
@@ -50,14 +50,14 @@ impl Medium {
         }
     }
 
-    /// Whether nothing between `min_nm` and `max_nm` is extrapolated.
+    /// Returns whether nothing between `min_nm` and `max_nm` is extrapolated.
     #[must_use]
     pub fn covers(&self, min_nm: f64, max_nm: f64) -> bool {
         self.range_nm().is_none_or(|(min, max)| min <= min_nm && max_nm <= max)
     }
 
-    /// The same medium held at one index for all wavelengths: `stated_nd` if the prescription states it, otherwise its own
-    /// index at the d line.
+    /// Returns this medium held at one index for all wavelengths: `stated_nd` if the prescription states it, otherwise its own
+    /// index at the d line. Air stays air.
     #[must_use]
     pub fn at_stated_nd(&self, stated_nd: Option<f64>) -> Medium {
         match self {
@@ -72,8 +72,8 @@ impl Medium {
         lines.abbe_number(|w| self.index(w))
     }
 
-    /// Internal transmittance of `thickness_mm`; `None` where it is not known. Air, vacuum and media of which only an
-    /// index is known absorb nothing.
+    /// Internal transmittance of `thickness_mm`; `None` if it is not known. Air, vacuum and media known by an index alone
+    /// absorb nothing.
     #[must_use]
     pub fn internal_transmittance(&self, wavelength_nm: f64, thickness_mm: f64) -> Option<f64> {
         match self {
@@ -82,7 +82,7 @@ impl Medium {
         }
     }
 
-    /// Name for reports: `air`, `SCHOTT/N-BK7`, `n 1.5168 V 64.17`.
+    /// Name of the medium in reports: `air`, `SCHOTT/N-BK7`, `n 1.5168 V 64.17`.
     #[must_use]
     pub fn name(&self) -> String {
         match self {

@@ -1,14 +1,15 @@
-//! What attributes of an SVG hold.
+//! Parses values of SVG attributes.
 
 use std::str::FromStr;
 use svgtypes::LengthUnit;
 
-/// The first letters of a user's text.
+/// Returns the first 40 characters of a user's text, for a message.
 pub(super) fn short(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
-/// A length as an attribute: a number, and mm a unit where it is one of paper; a percentage is `None`.
+/// Parses a length: returns its number, and the mm per unit if the unit is an absolute one (mm, cm, in, pt, pc). `None` for a percentage,
+/// for em or ex, and for an invalid text.
 pub(super) fn length(text: &str) -> Option<(f64, Option<f64>)> {
     let parsed = svgtypes::Length::from_str(text.trim()).ok()?;
     let mm = match parsed.unit {
@@ -23,7 +24,7 @@ pub(super) fn length(text: &str) -> Option<(f64, Option<f64>)> {
     Some((parsed.number, mm))
 }
 
-/// A length in user units: 96 to the inch.
+/// Parses a length and returns it in user units, 96 to the inch.
 pub(super) fn plain_length(text: &str) -> Result<f64, String> {
     let found = length(text).map(|(number, mm)| mm.map_or(number, |mm| number * mm * 96.0 / 25.4));
     found.filter(|v| v.is_finite()).ok_or_else(|| format!("not a length: `{}`", short(text)))

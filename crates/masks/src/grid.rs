@@ -1,38 +1,38 @@
-//! Which edges decide at a point: the page cut into cells.
+//! Divides the page into cells, to find quickly which edges decide the transmittance at a point.
 
 use crate::{Edge, Paint, settle};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Most cells of a page.
+/// Largest number of cells of a page.
 const MAX_CELLS: usize = 1 << 20;
-/// Most entries of all cells together.
+/// Largest number of entries of all cells together.
 const MAX_MEMBERS: usize = 1 << 23;
-/// Cells for each edge.
+/// Number of cells for each edge.
 const CELLS_PER_EDGE: usize = 16;
-/// Fewest cells, where memory allows.
+/// Smallest number of cells, if memory allows.
 const MIN_CELLS: usize = 64;
 
-/// How the page is cut.
+/// Division of the page into cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
-    /// Cells along x and y.
+    /// Number of cells along x and y.
     counts: [usize; 2],
-    /// Half of the page, mm.
+    /// Half of the width and height of the page, mm.
     half_mm: [f64; 2],
-    /// Cells per mm.
+    /// Number of cells per mm along x and y.
     per_mm: [f64; 2],
 }
 
 impl Cut {
-    /// About so many cells, nearly square.
+    /// Divides the page into about `cells` cells, nearly square.
     fn new(half_mm: [f64; 2], cells: usize) -> Self {
         let columns = (cells as f64 * half_mm[0] / half_mm[1]).sqrt().clamp(1.0, cells as f64) as usize;
         let counts = [columns, (cells / columns).max(1)];
         Self { counts, half_mm, per_mm: [0, 1].map(|k| counts[k] as f64 / (2.0 * half_mm[k])) }
     }
 
-    /// A quarter of the cells.
+    /// Returns a division with a quarter of the cells.
     fn coarser(&self) -> Self {
         Self::new(self.half_mm, (self.counts[0] * self.counts[1] / 4).max(1))
     }
@@ -41,32 +41,33 @@ impl Cut {
         self.counts == [1, 1]
     }
 
-    /// Column (`k` 0) or row (1) of a place on the page.
+    /// Returns the column (`k` = 0) or row (`k` = 1) of a coordinate (mm) on the page.
     fn index(&self, k: usize, at_mm: f64) -> usize {
         (((at_mm + self.half_mm[k]) * self.per_mm[k]).max(0.0) as usize).min(self.counts[k] - 1)
     }
 
-    /// How many cells the edges run through, about.
+    /// Estimates the number of cells that the edges run through.
     fn crossings(&self, edges: &[Edge]) -> f64 {
         let along = |k: usize, length: f64| (length * self.per_mm[k]).min(self.counts[k] as f64);
         let crossed = |e: &Edge| 1.0 + along(1, e.high - e.low) + along(0, (e.slope * (e.high - e.low)).abs());
         edges.iter().map(crossed).sum()
     }
 
-    /// Heights between which all points of a row lie, mm: a little more than the row, for what rounding does.
+    /// Returns heights (mm) between which all points of a row lie: a little more than the row, to allow for rounding.
     fn sides(&self, row: usize) -> [f64; 2] {
         let at = |rows: f64| rows / self.per_mm[1] - self.half_mm[1];
         [at(row as f64 - 1e-6), at(row as f64 + 1.0 + 1e-6)]
     }
 
-    /// First and last column that an edge runs through between two heights; -1 and the number of columns are beside the page.
+    /// Returns the first and last column that an edge runs through between two heights. -1 and the number of columns mean left and right
+    /// of the page.
     ///
-    /// Rounding keeps the order of numbers: no computed x of the edge, and no x of a cell, is on the other side of a column.
+    /// Rounding keeps the order of numbers, so no computed x of the edge lies on the wrong side of a column.
     fn columns(&self, edge: &Edge, [bottom, top]: [f64; 2]) -> [i64; 2] {
         let (from, to) = (edge.x_at(edge.low.max(bottom)), edge.x_at(edge.high.min(top)));
         let (columns, half) = (self.counts[0] as i64, self.half_mm[0]);
         if from.is_nan() || to.is_nan() {
-            return [0, columns - 1]; // so flat that its slope is infinite
+            return [0, columns - 1]; // The edge is so flat that its slope is infinite.
         }
         let column = |x: f64| match x {
             x if x < -half => -1,
@@ -77,23 +78,23 @@ impl Cut {
     }
 }
 
-/// The page in cells. What covers a point is told by the edges to its right. Of these a cell names only those that run through
-/// it; the others come to the same all over the cell, but for steps at the heights where outlines enter or leave it sideways.
+/// The page divided into cells. The edges to the right of a point decide which shapes cover it. A cell lists only the edges that run
+/// through it. The effect of the others is constant over the cell, except for steps at the heights where edges to the right begin or end.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Grid {
     cut: Cut,
-    /// Per cell, row by row: what passes by the shapes that lie below all of its members.
+    /// Transmittance of the shapes below all members of each cell, row by row.
     below: Arc<[f64]>,
-    /// Where the members of each cell begin, and the end.
+    /// Index of the first member of each cell, and the total number of members.
     starts: Arc<[u32]>,
-    /// Numbers of edges, by cell, each cell's in the order of the shapes.
+    /// Edge numbers of all cells, in each cell in the order of the shapes.
     members: Arc<[u32]>,
-    /// The edges, then the steps.
+    /// Edges of the drawing, followed by the steps.
     edges: Arc<[Edge]>,
 }
 
 impl Grid {
-    /// Cuts a page of these half sizes, mm, finely for its edges but within the memory that it may have.
+    /// Divides a page with these half sizes, mm, as finely as its edges need but within the memory limit.
     pub(crate) fn new(half_mm: [f64; 2], edges: &[Edge], paints: &[Paint]) -> Self {
         let mut cut = Cut::new(half_mm, (CELLS_PER_EDGE * edges.len()).clamp(MIN_CELLS, MAX_CELLS));
         while !cut.is_whole() && cut.crossings(edges) > MAX_MEMBERS as f64 {
@@ -108,7 +109,7 @@ impl Grid {
         }
     }
 
-    /// What passes below the members of the cell of a point on the page, and these, in the order of the shapes.
+    /// Returns, for the cell of a point on the page, the transmittance below its members, and the members in the order of the shapes.
     pub(crate) fn at(&self, x_mm: f64, y_mm: f64) -> (f64, impl Iterator<Item = &Edge>) {
         let cell = self.cut.index(1, y_mm) * self.cut.counts[0] + self.cut.index(0, x_mm);
         let members = &self.members[self.starts[cell] as usize..self.starts[cell + 1] as usize];
@@ -118,31 +119,31 @@ impl Grid {
 
 #[cfg(test)]
 impl Grid {
-    /// What it takes of memory.
+    /// Returns the memory that the grid takes.
     pub(crate) fn memory_bytes(&self) -> usize {
         size_of_val(&*self.below) + size_of_val(&*self.starts) + size_of_val(&*self.members) + size_of_val(&*self.edges)
     }
 }
 
-/// A grid in the making.
+/// Builder of a grid.
 struct Builder<'a> {
     paints: &'a [Paint],
     cut: Cut,
     below: Vec<f64>,
     starts: Vec<u32>,
     members: Vec<u32>,
-    /// Those given, then the steps.
+    /// Given edges, followed by the steps.
     edges: Vec<Edge>,
     /// Numbers of the steps among the edges, by shape, height and turn.
     steps: BTreeMap<(u32, u64, i32), u32>,
 }
 
-/// What the edges to the right of a cell come to, without those that cancel. Heights are keys by their bits.
+/// Combined effect of the edges to the right of a cell, without those that cancel. Heights are stored as bits, to serve as keys.
 #[derive(Default)]
 struct Right {
-    /// Per shape: the winding at the lower side of the row.
+    /// Winding number of each shape at the lower side of the row.
     winding: BTreeMap<u32, i32>,
-    /// Per shape and height: the change there.
+    /// Change of the winding number by shape and height.
     steps: BTreeMap<(u32, u64), i32>,
 }
 
@@ -156,7 +157,7 @@ impl<'a> Builder<'a> {
         &self.edges[number as usize]
     }
 
-    /// `None` where the cells would have more than `most` members in all.
+    /// Builds the grid; `None` if the cells would have more than `most` members in all.
     fn build(mut self, most: usize) -> Option<Grid> {
         let half = self.cut.half_mm[1];
         let on_page = |(number, edge): (u32, &Edge)| (edge.high > -half && edge.low <= half).then_some(number);
@@ -175,10 +176,10 @@ impl<'a> Builder<'a> {
         Some(Grid { cut, below: below.into(), starts: starts.into(), members: members.into(), edges: edges.into() })
     }
 
-    /// Adds a row of cells.
+    /// Adds a row of cells; `None` if there are more than `most` members in all.
     fn row(&mut self, sides: [f64; 2], active: &[u32], most: usize) -> Option<()> {
         let columns = self.cut.counts[0] as i64;
-        // Edges by the columns that they run through, and by the first of them.
+        // Edges by each column that they run through, and by their first column.
         let (mut through, mut first) = (Vec::new(), Vec::with_capacity(active.len()));
         for number in active {
             let [from, to] = self.cut.columns(self.edge(*number), sides);
@@ -190,7 +191,7 @@ impl<'a> Builder<'a> {
         }
         through.sort_unstable();
         first.sort_unstable();
-        // From right to left, as more and more edges lie to the right; kept from left to right.
+        // Cells are computed from right to left, since each has more edges to its right than the last; they are stored from left to right.
         let mut right = Right::default();
         let (mut found, mut cells) = (Vec::new(), Vec::with_capacity(columns as usize));
         for column in (0..columns).rev() {
@@ -214,7 +215,7 @@ impl<'a> Builder<'a> {
         Some(())
     }
 
-    /// Adds to the edges of a cell, from `start` on, what lies to its right; returns what passes below them.
+    /// Adds the effect of the edges to the right of a cell to its members, which begin at `start`. Returns the transmittance below them.
     fn complete(&mut self, start: usize, right: &Right, found: &mut Vec<u32>) -> f64 {
         let shapes = found[start..].iter().map(|number| self.edge(*number).shape);
         let lowest = shapes.chain(right.steps.keys().map(|(shape, _)| *shape)).min().unwrap_or(u32::MAX);
@@ -230,7 +231,7 @@ impl<'a> Builder<'a> {
         below
     }
 
-    /// An edge to the right of everything, from a height on.
+    /// Returns the number of a step: an edge to the right of everything that starts at a height and has no upper end.
     fn step(&mut self, shape: u32, low: f64, turn: i32) -> u32 {
         *self.steps.entry((shape, low.to_bits(), turn)).or_insert_with(|| {
             self.edges.push(Edge { low, high: f64::INFINITY, x: f64::INFINITY, slope: 0.0, turn, shape });
@@ -240,7 +241,7 @@ impl<'a> Builder<'a> {
 }
 
 impl Right {
-    /// One edge more lies to the right.
+    /// Adds an edge that lies to the right.
     fn add(&mut self, edge: &Edge, [bottom, top]: [f64; 2], half: f64) {
         // No point of the row lies below its lower side, or below the page; the same above.
         if edge.low <= bottom.max(-half) {
@@ -254,7 +255,7 @@ impl Right {
     }
 }
 
-/// Adds to a count; one of 0 is none.
+/// Adds `turn` to a count, and removes the count if it becomes 0.
 fn count<K: Ord + Copy>(counts: &mut BTreeMap<K, i32>, key: K, turn: i32) {
     let value = counts.entry(key).or_default();
     *value += turn;

@@ -1,4 +1,4 @@
-//! A drawing as an aperture: outlines, exact at any magnification.
+//! Apertures drawn as SVG files: outlines of shapes, exact at any magnification.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -13,32 +13,32 @@ pub use svg::{Open, read};
 use grid::Grid;
 use std::sync::Arc;
 
-/// Largest distance between a curve and the straight pieces that stand for it, mm: 50 nm.
+/// Largest distance between a curve and the straight segments that approximate it, mm: 50 nm.
 pub const FLATNESS_MM: f64 = 5e-5;
 
-/// Which points of an outline that crosses itself lie inside.
+/// Rule that says which points lie inside an outline that crosses itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FillRule {
-    /// Those that it runs around, whatever the sense.
+    /// Points that the outline winds around, in either direction.
     NonZero,
-    /// Those that are crossed into an odd number of times.
+    /// Points that a ray from outside reaches after an odd number of crossings.
     EvenOdd,
 }
 
-/// One painted shape; later ones lie on top.
+/// A painted shape. Later shapes lie on top of earlier ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Painted {
     /// Closed outlines: corners in order, mm from the center of the drawing, +y up.
     pub outlines: Vec<Vec<[f64; 2]>>,
-    /// What lies inside.
+    /// Rule for the points inside the outlines.
     pub rule: FillRule,
-    /// What it lets through where it is opaque: 0 to 1.
+    /// Transmittance of the shape where it is opaque, 0 to 1.
     pub transmittance: f64,
-    /// How much of what lies below it covers: 0 to 1.
+    /// Fraction by which the shape covers what lies below it, 0 to 1.
     pub opacity: f64,
 }
 
-/// A piece of an outline that rises or falls.
+/// A segment of an outline that rises or falls in y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Edge {
     /// Lower and upper end in y, mm.
@@ -47,22 +47,22 @@ struct Edge {
     /// x at the lower end, mm, and its change with y.
     x: f64,
     slope: f64,
-    /// +1 where it rises, -1 where it falls.
+    /// Direction of the segment: +1 if it rises, -1 if it falls.
     turn: i32,
     shape: u32,
 }
 
 impl Edge {
-    /// Where it is at a height between its ends, mm.
+    /// Returns x (mm) at a height between its ends.
     fn x_at(&self, y_mm: f64) -> f64 {
         self.x + self.slope * (y_mm - self.low)
     }
 }
 
-/// Rule, transmittance and opacity of a shape.
+/// Fill rule, transmittance and opacity of a shape.
 type Paint = (FillRule, f64, f64);
 
-/// Painted shapes on a page, black where nothing is painted. Beside the page nothing passes.
+/// An aperture made of painted shapes on a page. The page is opaque where nothing is painted, and no light passes outside the page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     half_mm: [f64; 2],
@@ -72,13 +72,13 @@ pub struct Drawing {
     grid: Grid,
 }
 
-/// How far beside an outline it is looked what passes there, as a part of an edge.
+/// Distance from an outline at which the transmittance on its two sides is tested, as a fraction of an edge.
 const BESIDE: f64 = 1e-3;
-/// Edges of an outline that are looked at.
+/// Number of edges of an outline that are tested.
 const LOOKS: usize = 16;
 
 impl Drawing {
-    /// A page of this width and height, mm, with shapes from the lowest to the topmost.
+    /// Creates a drawing on a page of this width and height, mm, with shapes from the lowest to the topmost.
     #[must_use]
     pub fn new(width_mm: f64, height_mm: f64, shapes: &[Painted]) -> Self {
         let edges: Vec<Edge> = (0_u32..).zip(shapes).flat_map(|(at, shape)| edges_of(shape, at)).collect();
@@ -94,8 +94,8 @@ impl Drawing {
         Self { half_mm, reach_mm, grid: Grid::new(half_mm, &edges, &paints), paints, outlines }
     }
 
-    /// What passes as closed rings, mm from the center of the page: outer ones counter-clockwise, holes clockwise. `None` where outlines
-    /// cross each other or the edge of the page, or some of the drawing is gray.
+    /// Returns the open area as closed rings, mm from the center of the page: outer rings counter-clockwise, holes clockwise. `None` if
+    /// outlines cross each other or the edge of the page, or if a part of the drawing is gray.
     #[must_use]
     pub fn rings(&self) -> Option<Vec<Vec<[f64; 2]>>> {
         let mut rings = Vec::new();
@@ -132,7 +132,7 @@ impl Drawing {
         Some(rings)
     }
 
-    /// What passes at a point, mm from the center of the page; 0 beside it.
+    /// Returns the transmittance (0 to 1) at a point, mm from the center of the page; 0 outside the page.
     #[must_use]
     pub fn transmittance(&self, x_mm: f64, y_mm: f64) -> f64 {
         if !(x_mm.abs() <= self.half_mm[0] && y_mm.abs() <= self.half_mm[1]) {
@@ -142,14 +142,14 @@ impl Drawing {
         passing(&self.paints, below, edges, [x_mm, y_mm])
     }
 
-    /// Radius about the center outside of which nothing passes, mm.
+    /// Radius around the center of the page, mm, outside which no light passes.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
         self.reach_mm
     }
 }
 
-/// What passes at a point, mm, by the edges of shapes in their order, on top of what passes `below` them.
+/// Returns the transmittance at a point (mm) from the edges of shapes in their order. `below` is the transmittance of what lies below them.
 fn passing<'a>(paints: &[Paint], below: f64, edges: impl Iterator<Item = &'a Edge>, [x_mm, y_mm]: [f64; 2]) -> f64 {
     let (mut passes, mut shape, mut winding) = (below, u32::MAX, 0);
     for edge in edges {
@@ -164,7 +164,7 @@ fn passing<'a>(paints: &[Paint], below: f64, edges: impl Iterator<Item = &'a Edg
     settle(paints, passes, shape, winding)
 }
 
-/// What passes where a shape has been painted, that runs so often around the point.
+/// Returns the transmittance after a shape is painted at a point that it winds around `winding` times; `passes` is that below it.
 fn settle(paints: &[Paint], passes: f64, shape: u32, winding: i32) -> f64 {
     match paints.get(shape as usize) {
         Some((FillRule::NonZero, value, opacity)) if winding != 0 => passes + opacity * (value - passes),

@@ -1,31 +1,31 @@
-//! Curves as straight pieces, and lines of a width as areas.
+//! Approximates curves by straight segments, and converts strokes to areas.
 
 use spectra_core::math;
 
-/// A point.
+/// A point in the plane, x and y.
 pub(super) type Point = [f64; 2];
 
-/// Most corners of one element.
+/// Largest number of corners of one element.
 const MAX_CORNERS: usize = 1_000_000;
-/// Most pieces of one curve.
+/// Largest number of segments of one curve.
 const MAX_PIECES: f64 = 20_000.0;
 
-/// A path in the making: parts of straight pieces.
+/// A path under construction, with parts made of straight segments.
 #[derive(Debug, Default)]
 pub(super) struct Path {
-    /// Each part with whether it was closed.
+    /// Points of each part, and whether the part is closed.
     pub(super) parts: Vec<(Vec<Point>, bool)>,
     tolerance: f64,
     corners: usize,
 }
 
 impl Path {
-    /// An empty path whose curves are this far from their pieces at most.
+    /// Creates an empty path. Curves differ from their segments by at most `tolerance`.
     pub(super) fn new(tolerance: f64) -> Self {
         Self { parts: Vec::new(), tolerance, corners: 0 }
     }
 
-    /// Whether it has more corners than are drawn.
+    /// Whether the path has more corners than the limit.
     pub(super) fn is_too_long(&self) -> bool {
         self.corners > MAX_CORNERS
     }
@@ -43,7 +43,7 @@ impl Path {
         }
     }
 
-    /// Where the last piece ends.
+    /// Returns the end of the last segment.
     pub(super) fn end(&self) -> Point {
         self.parts.last().and_then(|(points, _)| points.last()).copied().unwrap_or_default()
     }
@@ -56,7 +56,7 @@ impl Path {
         }
     }
 
-    /// Pieces of a curve by its parameter, `pieces` of equal steps.
+    /// Adds a curve as about `pieces` segments, with equal steps of its parameter.
     fn pieces(&mut self, pieces: f64, at: impl Fn(f64) -> Point) {
         let usable = pieces.is_finite() && !self.is_too_long();
         let count = if usable { pieces.ceil().clamp(1.0, MAX_PIECES) as u32 } else { 1 };
@@ -65,7 +65,7 @@ impl Path {
         }
     }
 
-    /// A Bezier curve of the third degree: a chord of it is off by less than the second differences tell.
+    /// Adds a cubic Bezier curve. Its second differences bound the error of the segments.
     pub(super) fn cubic(&mut self, b: Point, c: Point, d: Point) {
         let a = self.end();
         let bent = |p: Point, q: Point, r: Point| {
@@ -80,14 +80,14 @@ impl Path {
         });
     }
 
-    /// A Bezier curve of the second degree.
+    /// Adds a quadratic Bezier curve.
     pub(super) fn quadratic(&mut self, b: Point, c: Point) {
         let a = self.end();
         let third = |p: f64, q: f64| p + 2.0 / 3.0 * (q - p);
         self.cubic([third(a[0], b[0]), third(a[1], b[1])], [third(c[0], b[0]), third(c[1], b[1])], c);
     }
 
-    /// An arc of an ellipse, by the implementation notes of SVG 1.1, F.6.5 and F.6.6.
+    /// Adds an arc of an ellipse, after the implementation notes of SVG 1.1, F.6.5 and F.6.6.
     pub(super) fn arc(&mut self, radii: Point, turn_deg: f64, large: bool, sweep: bool, to: Point) {
         let from = self.end();
         let (mut rx, mut ry) = (radii[0].abs(), radii[1].abs());
@@ -115,14 +115,14 @@ impl Path {
             swept -= std::f64::consts::TAU;
         }
         self.ellipse_piece(center, [rx, ry], [cos, sin], start, swept);
-        // The end is where it was asked for, whatever was rounded.
+        // The arc ends exactly at the requested point, without rounding errors.
         if let Some(last) = self.parts.last_mut().and_then(|(points, _)| points.last_mut()) {
             *last = to;
         }
     }
 
     fn ellipse_piece(&mut self, center: Point, [rx, ry]: Point, [cos, sin]: Point, start: f64, swept: f64) {
-        // A chord over the angle a of a circle is off by r (1 - cos(a / 2)), less than r a^2 / 8.
+        // A chord over the angle a of a circle has the error r (1 - cos(a / 2)), less than r a^2 / 8.
         let pieces = swept.abs() * (rx.max(ry) / (8.0 * self.tolerance)).sqrt();
         self.pieces(pieces, |t| {
             let a = start + t * swept;
@@ -131,7 +131,7 @@ impl Path {
         });
     }
 
-    /// A whole ellipse along x and y.
+    /// Adds a whole ellipse with axes along x and y.
     pub(super) fn ellipse(&mut self, center: Point, radii: Point) {
         self.begin([center[0] + radii[0], center[1]]);
         self.ellipse_piece(center, radii, [1.0, 0.0], 0.0, std::f64::consts::TAU);
@@ -142,7 +142,7 @@ impl Path {
     }
 }
 
-/// How a line of a width bends and ends.
+/// Style of a stroke: width, joins and caps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pen {
     pub(super) width: f64,
@@ -165,8 +165,8 @@ pub(super) enum Cap {
     Square,
 }
 
-/// The area of a line: a rectangle a piece, a wedge a corner, and caps; all counter-clockwise, so that by the nonzero rule
-/// they are one area. `None` for more corners than are drawn.
+/// Returns the area of a stroke: a rectangle for each segment, a wedge for each corner, and caps. All are counter-clockwise, so that they
+/// form one area by the nonzero rule. `None` if there are more corners than the limit.
 pub(super) fn stroked(path: &Path, pen: Pen) -> Option<Vec<Vec<Point>>> {
     let mut areas: Vec<Vec<Point>> = Vec::new();
     let mut counted = (0, 0);
@@ -235,7 +235,7 @@ fn disk(at: Point, radius: f64, tolerance: f64) -> Vec<Point> {
     path.parts.remove(0).0
 }
 
-/// What the rectangles of two pieces leave open on the outer side of their corner.
+/// Adds the area that the rectangles of two segments leave open on the outer side of their corner.
 fn corner(areas: &mut Vec<Vec<Point>>, at: Point, before: Point, after: Point, half: f64, pen: Pen, tolerance: f64) {
     let cross = before[0] * after[1] - before[1] * after[0];
     let dot = before[0] * after[0] + before[1] * after[1];
@@ -243,18 +243,18 @@ fn corner(areas: &mut Vec<Vec<Point>>, at: Point, before: Point, after: Point, h
         return;
     }
     if pen.join == Join::Round {
-        // Almost straight corners of a flattened curve need no disk: the wedge is within the tolerance of it.
+        // Almost straight corners of an approximated curve need no disk, because the wedge is within the tolerance of it.
         if !(dot > 0.0 && half * cross * cross < 8.0 * tolerance) {
             areas.push(disk(at, half, tolerance));
             return;
         }
     }
-    // The outer side is the right one where the line turns left.
+    // If the line turns left, the outer side is the right one.
     let side = if cross > 0.0 { half } else { -half };
     let a = [at[0] + side * before[1], at[1] - side * before[0]];
     let b = [at[0] + side * after[1], at[1] - side * after[0]];
     let mut wedge = vec![at, a, b];
-    // Length over width of a miter is one over the sine of half the angle between the pieces: sqrt(2 / (1 + dot)).
+    // The length of a miter over its width is one over the sine of half the angle between the segments: sqrt(2 / (1 + dot)).
     if pen.join == Join::Miter && 2.0 <= pen.miter_limit * pen.miter_limit * (1.0 + dot) {
         let out = side / (1.0 + dot);
         let tip = [at[0] + out * (before[1] + after[1]), at[1] - out * (before[0] + after[0])];

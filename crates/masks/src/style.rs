@@ -1,4 +1,4 @@
-//! How an element of an SVG file is painted: attributes, `style`, style sheets, and what it inherits.
+//! Computes how an element of an SVG file is painted, from its attributes, `style`, style sheets and inherited properties.
 
 use super::FillRule;
 use super::attribute::{plain_length, short};
@@ -7,16 +7,16 @@ use roxmltree::Node;
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
 use std::str::FromStr;
 
-/// A color that covers what is below.
+/// A color with its opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Color {
     /// Relative luminance of the display color, 0 to 1.
     pub(super) luminance: f64,
-    /// How much it covers.
+    /// Opacity of the color, 0 to 1.
     pub(super) alpha: f64,
 }
 
-/// What an element inherits, and states.
+/// Properties of an element, inherited or stated by itself.
 #[derive(Clone, Debug)]
 pub(super) struct Style {
     pub(super) fill: Option<Color>,
@@ -27,7 +27,7 @@ pub(super) struct Style {
     pub(super) pen: Pen,
     pub(super) opacity: f64,
     pub(super) visible: bool,
-    /// Whether it and all in it is left out.
+    /// Whether the element and everything in it is left out.
     pub(super) hidden: bool,
     color: Color,
 }
@@ -35,7 +35,7 @@ pub(super) struct Style {
 const BLACK: Color = Color { luminance: 0.0, alpha: 1.0 };
 
 impl Default for Style {
-    /// Filled in black, no line, as SVG has it.
+    /// Returns the initial style of SVG: filled in black, without a stroke.
     fn default() -> Self {
         Self {
             fill: Some(BLACK),
@@ -52,7 +52,7 @@ impl Default for Style {
     }
 }
 
-/// An element, as style sheets look at it.
+/// An element in the form that selectors of style sheets need.
 struct Element<'a, 'i>(Node<'a, 'i>);
 
 impl simplecss::Element for Element<'_, '_> {
@@ -77,7 +77,7 @@ impl simplecss::Element for Element<'_, '_> {
     }
 }
 
-/// A property of an element: `style` goes before style sheets, those before attributes.
+/// Returns a property of an element. `style` takes precedence over style sheets, and these over attributes.
 fn property<'a>(node: Node<'a, '_>, sheet: &StyleSheet<'a>, name: &str) -> Option<&'a str> {
     let declared = node
         .attribute("style")
@@ -90,10 +90,10 @@ fn property<'a>(node: Node<'a, '_>, sheet: &StyleSheet<'a>, name: &str) -> Optio
 }
 
 impl Style {
-    /// The style of an element inside of one of this style.
+    /// Returns the style of an element inside an element of this style.
     ///
     /// # Errors
-    /// What this program does not paint: patterns, gradients, clips, dashes.
+    /// Fails for an invalid value, and for properties that are not supported: patterns, gradients, clips, dashes and others.
     pub(super) fn of<'a>(&self, node: Node<'a, '_>, sheet: &StyleSheet<'a>) -> Result<Self, String> {
         let mut style = self.clone();
         let get = |name: &str| property(node, sheet, name).filter(|value| *value != "inherit");
@@ -151,7 +151,7 @@ impl Style {
         if let Some(value) = get("stroke-width") {
             style.pen.width = plain_length(value)?;
             if style.pen.width < 0.0 {
-                return Err(format!("a line {} wide", style.pen.width));
+                return Err(format!("the stroke width is {}", style.pen.width));
             }
         }
         Ok(style)
@@ -170,9 +170,9 @@ fn paint(text: &str, current: Color, name: &str) -> Result<Option<Color>, String
         Ok(svgtypes::Paint::CurrentColor) => Ok(Some(current)),
         Ok(svgtypes::Paint::Color(c)) => Ok(Some(display(c))),
         Ok(svgtypes::Paint::FuncIRI(..)) => {
-            Err(format!("a `{name}` by gradient or pattern is not understood in an aperture"))
+            Err(format!("`{name}` with a gradient or pattern is not understood in an aperture"))
         }
-        _ => Err(format!("no color for `{name}`: `{}`", short(text))),
+        _ => Err(format!("not a color for `{name}`: `{}`", short(text))),
     }
 }
 
@@ -180,7 +180,7 @@ fn color(text: &str) -> Result<Color, String> {
     svgtypes::Color::from_str(text).map(display).map_err(|_| format!("not a color: `{}`", short(text)))
 }
 
-/// Luminance of an sRGB color on its encoded scale, as a picture mask has it: the weights of Rec. 709.
+/// Returns the luminance of an sRGB color on its encoded scale, with the weights of Rec. 709, as for picture masks.
 fn display(c: svgtypes::Color) -> Color {
     let [r, g, b] = [c.red, c.green, c.blue].map(|v| f64::from(v) / 255.0);
     Color { luminance: 0.2126 * r + 0.7152 * g + 0.0722 * b, alpha: f64::from(c.alpha) / 255.0 }

@@ -1,8 +1,8 @@
-//! An SVG file as an aperture.
+//! Reads an SVG file as an aperture.
 //!
-//! Understood are `svg`, `g`, `a`, `use`, `path`, `rect`, `circle`, `ellipse`, `line`, `polyline` and `polygon`, with
-//! transforms, fill rules, strokes, opacity, `style` and style sheets (SVG 1.1). Whatever else would be painted is a fault:
-//! an aperture that looks other than its drawing would be found out late.
+//! Supported are `svg`, `g`, `a`, `use`, `path`, `rect`, `circle`, `ellipse`, `line`, `polyline` and `polygon`, with
+//! transforms, fill rules, strokes, opacity, `style` and style sheets (SVG 1.1). Any other element that would be painted is a fault:
+//! a difference between an aperture and its drawing would be noticed only late.
 
 use super::attribute::{length, plain_length, short};
 use super::outline::{Path, Point, stroked};
@@ -19,39 +19,40 @@ use std::sync::Arc;
 use svgtypes::{Align, AspectRatio, PathParser, PathSegment, PointsParser, TransformListParser};
 use svgtypes::{TransformListToken, ViewBox};
 
-/// Most nodes of a file.
+/// Largest number of nodes in a file.
 const MAX_NODES: u32 = 200_000;
-/// Most elements that are painted, those that `use` repeats included.
+/// Largest number of painted elements, including those that `use` repeats.
 const MAX_PAINTED: usize = 50_000;
-/// Deepest nesting.
+/// Largest depth of nesting.
 const MAX_DEPTH: usize = 64;
-/// Most corners of all outlines together.
+/// Largest number of corners of all outlines together.
 const MAX_CORNERS: usize = 2_000_000;
-/// Most rules of a style sheet.
+/// Largest number of rules in the style sheets.
 const MAX_RULES: usize = 1000;
-/// Sizes of a page, mm.
+/// Allowed width and height of a page, mm.
 const SIZES_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 
-/// What is open.
+/// Parts of a drawing that are open to light.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub enum Open {
-    /// Whatever is painted, in any color.
+    /// Everything that is painted is open, in any color.
     Filled,
-    /// What is white; gray passes in part.
+    /// White is open, and gray passes in part.
     White,
 }
 
-/// Reads a file; `width_mm` goes before the width that it states.
+/// Reads an SVG file as a drawing. `name` is the name of the file in messages; `width_mm` overrides the width that the file states. If
+/// `open` is `None`, all shapes must be light or all dark, and every shape is open.
 ///
 /// # Errors
-/// All that is wrong with it, with line and column.
+/// Returns every fault of the file, with line and column.
 pub fn read(name: &str, bytes: &[u8], width_mm: Option<f64>, open: Option<Open>) -> Result<Drawing, Faults> {
     let text = std::str::from_utf8(bytes).map_err(|_| Fault::new(format!("{name}: is not UTF-8 text")))?;
     let file = Arc::new(SourceFile::new(name, text));
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
-    // Drawing programs write a document type that says nothing.
+    // Drawing programs write a document type, which has no effect here.
     let options = if text.contains("<!DOCTYPE") { ParsingOptions { allow_dtd: true, ..options } } else { options };
     let document = Document::parse_with_options(text, options).map_err(|e| {
         let at = e.pos();
@@ -71,7 +72,7 @@ pub fn read(name: &str, bytes: &[u8], width_mm: Option<f64>, open: Option<Open>)
         sheet.parse_more(style.text().unwrap_or_default());
     }
     if sheet.rules.len() > MAX_RULES {
-        return Err(fault(root, format!("{} rules of style", sheet.rules.len())).into());
+        return Err(fault(root, format!("too many style rules: {}", sheet.rules.len())).into());
     }
     let mut painter = Painter {
         document: &document,
@@ -93,7 +94,7 @@ pub fn read(name: &str, bytes: &[u8], width_mm: Option<f64>, open: Option<Open>)
     if faults.is_empty() && open.is_none() && shapes.iter().any(white) && !shapes.iter().all(white) {
         let fault = fault(root, "it has light and dark shapes: which of them are open?".to_owned());
         faults.push(
-            fault.hint("in the aperture: `open: white` (white passes, black stops) or `open: filled` (all pass)"),
+            fault.hint("write `open: white` (white passes, black stops) or `open: filled` (all pass) in the aperture"),
         );
     }
     let (width_mm, height_mm) = page.size_mm;
@@ -113,7 +114,7 @@ fn span_of(text: &str, offset: usize) -> Span {
     Span { line, column: before[start..].chars().count() + 1, offset, len }
 }
 
-/// (x, y) to (a x + c y + e, b x + d y + f).
+/// Affine map from (x, y) to (a x + c y + e, b x + d y + f).
 #[derive(Clone, Copy, Debug)]
 struct Matrix {
     a: f64,
@@ -129,7 +130,7 @@ impl Matrix {
         [self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f]
     }
 
-    /// This after the other.
+    /// Returns the map that applies `o` first and then this one.
     fn times(self, o: Self) -> Self {
         Self {
             a: self.a * o.a + self.c * o.b,
@@ -141,7 +142,7 @@ impl Matrix {
         }
     }
 
-    /// How much it stretches at most, within a factor of the root of 2.
+    /// Returns an upper bound of the largest stretch, at most sqrt(2) times too large.
     fn scale(self) -> f64 {
         (self.a * self.a + self.b * self.b + self.c * self.c + self.d * self.d).sqrt()
     }
@@ -153,22 +154,25 @@ struct Page {
     mm_from_user: Matrix,
 }
 
-/// The page: how large it is, and where its center lies.
+/// Returns the page: its size, and the map from user units to mm from its center. The error is a message and a hint.
 fn page(root: Node<'_, '_>, width_mm: Option<f64>) -> Result<Page, (String, &'static str)> {
-    const HINT: &str = "`width=\"24mm\"` in the drawing, or `width: 24` beside the file's name in the aperture";
+    const HINT: &str = "write `width=\"24mm\"` in the drawing, or `width: 24` next to the file name in the aperture";
     let [width, height] = ["width", "height"].map(|name| root.attribute(name).and_then(length));
     let px = |l: Option<(f64, Option<f64>)>| l.map(|(v, mm)| mm.map_or(v, |mm| v * mm * 96.0 / 25.4));
     let view = match root.attribute("viewBox").map(ViewBox::from_str) {
         Some(Ok(view)) => view,
-        Some(Err(_)) => return Err(("its viewBox is not four numbers".to_owned(), "viewBox=\"0 0 24 24\"")),
+        Some(Err(_)) => return Err(("its viewBox is not four numbers".to_owned(), "write viewBox=\"0 0 24 24\"")),
         None => match (px(width), px(height)) {
             (Some(w), Some(h)) => ViewBox { x: 0.0, y: 0.0, w, h },
-            _ => return Err(("how large is the drawing? It has no viewBox".to_owned(), "viewBox=\"0 0 24 24\"")),
+            _ => return Err(("how large is the drawing? It has no viewBox".to_owned(), "write viewBox=\"0 0 24 24\"")),
         },
     };
     let good = |v: f64| v.is_finite() && v > 0.0;
     if !(good(view.w) && good(view.h) && view.x.is_finite() && view.y.is_finite()) {
-        return Err((format!("a page of {} by {}", view.w, view.h), "a width and a height above 0"));
+        return Err((
+            format!("a page of {} by {} is not possible", view.w, view.h),
+            "write a width and a height above 0",
+        ));
     }
     let shape = match (px(width), px(height)) {
         (Some(w), Some(h)) if good(w) && good(h) => h / w,
@@ -181,7 +185,7 @@ fn page(root: Node<'_, '_>, width_mm: Option<f64>) -> Result<Page, (String, &'st
         (None, None, None) => return Err(("how large is the drawing? It states no width in mm".to_owned(), HINT)),
     };
     if !(SIZES_MM.contains(&size_mm.0) && SIZES_MM.contains(&size_mm.1)) {
-        return Err((format!("a page of {} by {} mm", size_mm.0, size_mm.1), HINT));
+        return Err((format!("a page of {} by {} mm is too small or too large", size_mm.0, size_mm.1), HINT));
     }
     let ratio = root.attribute("preserveAspectRatio").and_then(|text| AspectRatio::from_str(text).ok());
     let (sx, sy) = (size_mm.0 / view.w, size_mm.1 / view.h);
@@ -190,11 +194,11 @@ fn page(root: Node<'_, '_>, width_mm: Option<f64>) -> Result<Page, (String, &'st
         Some(AspectRatio { align: Align::None, .. }) => (sx, sy),
         Some(_) => {
             let text = "this preserveAspectRatio is not understood in an aperture".to_owned();
-            return Err((text, "leave it out, or `none`"));
+            return Err((text, "leave it out, or write `none`"));
         }
     };
     let (cx, cy) = (view.x + 0.5 * view.w, view.y + 0.5 * view.h);
-    // y runs down in a drawing, up in a lens.
+    // y points down in a drawing and up in a lens.
     let mm_from_user = Matrix { a: sx, b: 0.0, c: 0.0, d: -sy, e: -sx * cx, f: sy * cy };
     Ok(Page { view, size_mm, mm_from_user })
 }
@@ -204,7 +208,7 @@ struct Painter<'a, 'i> {
     sheet: StyleSheet<'a>,
     text: &'a str,
     file: Arc<SourceFile>,
-    /// Width and height in user units, of which percentages are.
+    /// Width and height of the page in user units, which percentages refer to.
     page: [f64; 2],
     shapes: Vec<Painted>,
     painted: usize,
@@ -214,7 +218,7 @@ struct Painter<'a, 'i> {
 
 impl<'a, 'i> Painter<'a, 'i> {
     fn fault(&mut self, node: Node<'_, '_>, text: String) {
-        // A drawing of a thousand words needs no thousand messages.
+        // The number of messages is limited, since a drawing may have thousands of faulty elements.
         if self.faults.len() < 20 {
             self.faults.push(Fault::new(text).at(Arc::clone(&self.file), span_of(self.text, node.range().start)));
         }
@@ -228,7 +232,7 @@ impl<'a, 'i> Painter<'a, 'i> {
 
     fn element(&mut self, node: Node<'a, 'i>, matrix: Matrix, inherited: &Style, depth: usize) {
         const SVG: &str = "http://www.w3.org/2000/svg";
-        // What a drawing program keeps for itself.
+        // Elements in other namespaces are private data of drawing programs.
         if node.tag_name().namespace().is_some_and(|space| space != SVG) {
             return;
         }
@@ -240,7 +244,7 @@ impl<'a, 'i> Painter<'a, 'i> {
         }
         if depth > MAX_DEPTH || self.painted >= MAX_PAINTED {
             if self.faults.is_empty() {
-                self.fault(node, format!("more than {MAX_DEPTH} elements in one another, or {MAX_PAINTED} in all"));
+                self.fault(node, format!("more than {MAX_DEPTH} nested elements, or {MAX_PAINTED} in all"));
             }
             return;
         }
@@ -263,7 +267,7 @@ impl<'a, 'i> Painter<'a, 'i> {
             "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon" => {
                 let scale = matrix.scale();
                 if scale == 0.0 {
-                    return; // to nothing
+                    return; // The element is scaled to nothing.
                 }
                 if !scale.is_finite() {
                     return self.fault(node, "it extends too far".to_owned());
@@ -279,7 +283,7 @@ impl<'a, 'i> Painter<'a, 'i> {
         }
     }
 
-    /// `use`: another element again, moved.
+    /// Paints a `use` element: another element again, at another position.
     fn repeated(&mut self, node: Node<'a, 'i>, matrix: Matrix, style: &Style, depth: usize) {
         let href = node.attribute("href").or_else(|| node.attribute(("http://www.w3.org/1999/xlink", "href")));
         let id = href.and_then(|text| text.trim().strip_prefix('#'));
@@ -301,7 +305,8 @@ impl<'a, 'i> Painter<'a, 'i> {
         }
     }
 
-    /// A length of an element; 0 if absent. Percentages are of the page's width (0), height (1) or diagonal (2).
+    /// Returns a length of an element in user units; 0 if absent. Percentages refer to the page's width (`of` = 0), height (1) or
+    /// diagonal (2).
     fn coordinate(&self, node: Node<'_, '_>, name: &str, of: usize) -> Result<f64, String> {
         let Some(text) = node.attribute(name) else { return Ok(0.0) };
         if let Some(number) = text.trim().strip_suffix('%') {
@@ -429,10 +434,10 @@ fn rectangle(path: &mut Path, [x, y]: Point, [w, h]: Point, [rx, ry]: Point) {
     path.close();
 }
 
-/// The data of a path: SVG 1.1, chapter 8.3.
+/// Adds the segments of path data to a path (SVG 1.1, chapter 8.3).
 fn path_data(text: &str, path: &mut Path) -> Result<(), String> {
     let (mut start, mut closed) = ([0.0; 2], false);
-    // The last control point, where the last piece was a curve of that degree.
+    // The last control point, if the last segment was a curve of that degree.
     let (mut cubic, mut quadratic): (Option<Point>, Option<Point>) = (None, None);
     for segment in PathParser::from(text) {
         let segment = segment.map_err(|e| format!("its path: {e}"))?;

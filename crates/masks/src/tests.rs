@@ -11,7 +11,7 @@ fn drawing(body: &str, open: Option<Open>) -> Drawing {
     read("test.svg", text.as_bytes(), None, open).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// Area where light passes, by rows of points whose ends are found by the drawing itself: within 1e-3 of a mm^2 or so.
+/// Measures the open area from rows of points, whose ends are found with the drawing itself; exact to about 1e-3 mm^2.
 fn area(drawing: &Drawing) -> f64 {
     let (columns, rows) = (4000, 2000);
     let at = |i: usize, count: usize, half: f64| ((i as f64 + 0.5) / count as f64 * 2.0 - 1.0) * half;
@@ -24,7 +24,7 @@ fn area(drawing: &Drawing) -> f64 {
     sum * 200.0 / (columns * rows) as f64
 }
 
-/// Closed forms, in mm^2; 8 million points of 5 um leave some 1e-4 of them.
+/// Compares areas with closed forms, in mm^2; 8 million points at 5 um leave a relative error of some 1e-4.
 #[test]
 fn areas_are_those_of_geometry() {
     // A pentagram of radius r has the area 5 r^2 sin(36) sin(18) / sin(54); by the even-odd rule without its pentagon, whose
@@ -45,17 +45,17 @@ fn areas_are_those_of_geometry() {
         (r#"<rect x="2" y="1" width="10" height="6" rx="1"/>"#.into(), 60.0 - (4.0 - PI)),
         (format!(r#"<polygon points="{tips}"/>"#), star),
         (format!(r#"<polygon points="{tips}" fill-rule="evenodd"/>"#), star - pentagon),
-        // The area under a parabola is two thirds of its box; half a disk; under a cubic lies the integral of 24 t (1 - t)
+        // The area under a parabola is two thirds of its box. Then half a disk. The area under a cubic is the integral of 24 t (1 - t)
         // times 72 t (1 - t), 1728 / 30.
         (r#"<path d="M2 8 Q10 -4 18 8 Z"/>"#.into(), 2.0 / 3.0 * 16.0 * 6.0),
         (r#"<path d="M6 5 A4 4 0 0 1 14 5 z"/>"#.into(), PI * 8.0),
         (r#"<path d="m4 8 c0-8 12-8 12 0"/>"#.into(), 57.6),
-        // A ring as a line; a cross of lines with square ends; a frame whose corners are mitered.
+        // A ring as a stroke, a cross of strokes with square caps, and a frame with mitered corners.
         (r#"<circle cx="10" cy="5" r="3" fill="none" stroke="black" stroke-width="1"/>"#.into(), PI * 6.0),
         (r#"<path d="M6 5H14M10 1v8" fill="none" stroke="gray" stroke-linecap="square"/>"#.into(), 18.0 - 1.0),
         (r#"<rect x="4" y="2" width="6" height="6" style="fill:none;stroke:red;stroke-width:2"/>"#.into(), 64.0 - 16.0),
         (r#"<path d="M4 5h6" stroke="black" stroke-width="2" stroke-linecap="round"/>"#.into(), 12.0 + PI),
-        // Two shapes that overlap are open together; a use of one is another.
+        // Two overlapping shapes are open together; `use` adds a copy of one.
         (
             r##"<defs><circle id="c" r="2"/></defs><use href="#c" x="6" y="5"/><g transform="translate(7 5)"><use href="#c" x="7"/></g>"##.into(),
             PI * 8.0,
@@ -67,8 +67,8 @@ fn areas_are_those_of_geometry() {
     }
 }
 
-/// Exact at the edge: a star's points by the half-planes of its five lines, where they lie farther than a nanometer from
-/// all of them; a circle within its stated flatness.
+/// Checks that edges are exact. Points in a star are compared with the half-planes of its five lines if they lie farther than a nanometer
+/// from all of them; a circle is exact within its stated flatness.
 #[test]
 fn edges_are_where_they_are_drawn() {
     let r = 4.0;
@@ -80,10 +80,10 @@ fn edges_are_where_they_are_drawn() {
     let star = drawing(&format!(r#"<polygon points="{}"/>"#, points.join(" ")), None);
     let mut compared = 0;
     for i in 0..200_000_u32 {
-        // An even spread by the plastic number (M. Roberts, 2018).
+        // Points evenly spread with the plastic number (M. Roberts, 2018).
         let (u, v) = (f64::from(i) * 0.754_877_666_246_692_7, f64::from(i) * 0.569_840_290_998_053_2);
         let (x, y) = ((u.fract() - 0.5) * 9.0, (v.fract() - 0.5) * 9.0);
-        // A pentagram is what lies on the inner side of at least four of its five lines.
+        // A point is in the pentagram if it lies on the inner side of at least four of the five lines.
         let side = |k: u32| {
             let (a, b) = (tip(k), tip(k + 1));
             let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
@@ -108,7 +108,7 @@ fn edges_are_where_they_are_drawn() {
     assert!((circle.reach_mm() - 4.0).abs() < 1e-4 && (star.reach_mm() - 4.0).abs() < 1e-12);
 }
 
-/// Up is up and right is right; white on black when it is asked for; gray passes in part, and so does what is half opaque.
+/// Checks orientation (up and right are kept), white on black if requested, and that gray and half opaque shapes pass in part.
 #[test]
 fn colors_count_when_they_should() {
     let body = r##"<rect width="20" height="10"/><rect x="10" width="10" height="5" fill="white"/>
@@ -142,7 +142,7 @@ fn what_is_not_understood_is_said_with_its_place() {
         (good, "", "nothing is painted"),
         (good, "<circle r='1'/><circle r='1' fill='white'/>", "which of them are open"),
         (good, "<use href='#a'/>", "`use` refers to nothing"),
-        (good, "<g id='a'><use href='#a'/></g>", "in one another"),
+        (good, "<g id='a'><use href='#a'/></g>", "nested elements"),
         (r#"viewBox="0 0 10 10""#, "<circle r='1'/>", "no width in mm"),
         (r#"width="1e9mm" viewBox="0 0 10 10""#, "<circle r='1'/>", "a page of"),
         ("", "<circle r='1'/>", "no viewBox"),
@@ -154,7 +154,7 @@ fn what_is_not_understood_is_said_with_its_place() {
     assert!(faults("<html/>")[0].contains("this is not an SVG"));
 }
 
-/// Hostile files end soon, with a word.
+/// Checks that malicious files end quickly with a message.
 #[test]
 fn too_much_is_refused() {
     let mut body = String::from(r##"<g id="a0"><circle r="1"/></g>"##);
@@ -172,7 +172,7 @@ fn too_much_is_refused() {
     assert!(faults(&line)[0].contains("corners"));
 }
 
-/// The winding by all edges: what the grid is there to be quicker than.
+/// Computes the transmittance from all edges. The grid is a faster way to the same result.
 fn by_all_edges(size: [f64; 2], shapes: &[Painted], at: [f64; 2]) -> f64 {
     let paints: Vec<Paint> = shapes.iter().map(|s| (s.rule, s.transmittance, s.opacity)).collect();
     let edges: Vec<Edge> = (0_u32..).zip(shapes).flat_map(|(number, shape)| edges_of(shape, number)).collect();
@@ -180,13 +180,13 @@ fn by_all_edges(size: [f64; 2], shapes: &[Painted], at: [f64; 2]) -> f64 {
     if is_on { passing(&paints, 0.0, edges.iter(), at) } else { 0.0 }
 }
 
-/// The same number, whatever the outlines do: cross themselves, lie on one another, have level edges and corners on the sides of
-/// the page and of the cells, or reach far beyond it.
+/// Checks that the grid gives the same number as all edges, whatever the outlines do: cross themselves, coincide, have level edges and
+/// corners on the sides of the page and of the cells, or reach far beyond the page.
 #[test]
 fn a_cell_says_what_all_edges_say() {
     let mut state = 1_u64;
     let mut number = move || {
-        // Numbers by Marsaglia's shifts (Xorshift RNGs, 2003).
+        // Random numbers by Marsaglia's shifts (Xorshift RNGs, 2003).
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
@@ -221,7 +221,7 @@ fn a_cell_says_what_all_edges_say() {
             .collect();
         let drawing = Drawing::new(size[0], size[1], &painted);
         let own = painted.iter().flat_map(|shape| shape.outlines.iter().flatten().copied());
-        // Corners themselves, points beside them at their heights, and points anywhere.
+        // The tested points are the corners, points beside them at their heights, and points anywhere.
         let mut points: Vec<[f64; 2]> = own.take(700).flat_map(|[x, y]| [[x, y], [x - 0.01, y], [-x, y]]).collect();
         points.extend((0..3000).map(|_| [coordinate(0), coordinate(1)]));
         points.extend([[4.0, 1.5], [-4.0, -1.5], [4.0, -1.5], [-4.0, 1.5], [4.1, 0.0]]);
@@ -232,7 +232,7 @@ fn a_cell_says_what_all_edges_say() {
     }
 }
 
-/// A cell names few edges, of long ones and of short ones, and all cells together no more than memory is meant for.
+/// Checks that a cell lists few edges, for long and for short ones, and that all cells together stay within the memory limit.
 #[test]
 fn few_edges_are_asked() {
     let at = |i: u32| f64::from(i) * 0.754_877_666_246_692_7;
@@ -257,7 +257,7 @@ fn few_edges_are_asked() {
     }
 }
 
-/// A square with a hole: the outer ring counter-clockwise, the hole clockwise, whatever their sense in the file.
+/// Checks a square with a hole: the outer ring is counter-clockwise, the hole clockwise, whatever their direction in the file.
 #[test]
 fn rings_have_what_passes_on_their_left() {
     let square = |half: f64, reversed: bool| {

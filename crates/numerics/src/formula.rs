@@ -1,7 +1,7 @@
 //! A function of one variable as people write it: `exp(-((w - 550) / 20)^4)`.
 //!
 //! Numbers, the variable, `pi`, `+ - * / ^` with the usual order (`^` first and from the right, so that `-x^2` is -(x^2)),
-//! parentheses, and the functions of [`FUNCTIONS`]. Every one of them has the same bits on every machine.
+//! parentheses, and the functions of [`FUNCTIONS`]. All of them give the same bits on every machine.
 
 /// The functions that may be written, for messages.
 pub const FUNCTIONS: &str =
@@ -9,25 +9,25 @@ pub const FUNCTIONS: &str =
 
 /// Longest text that is read, bytes.
 const LONGEST: usize = 4096;
-/// How deep parentheses and signs may lie in one another.
+/// Deepest nesting of parentheses and signs.
 const DEEPEST: u32 = 64;
 
 /// A function of one variable.
 #[derive(Clone, Debug)]
 pub struct Formula {
     text: String,
-    /// In postfix order.
+    /// Steps of the evaluation, in postfix order.
     steps: Vec<Step>,
 }
 
-/// What is wrong with a formula, and where.
+/// An error in a formula, and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormulaFault {
-    /// The character at which it is, from 0.
+    /// Character at which the error is, from 0.
     pub at: usize,
-    /// What is wrong.
+    /// Message that says what is wrong.
     pub message: String,
-    /// What to write instead.
+    /// Hint that says what to write instead.
     pub hint: String,
 }
 
@@ -41,7 +41,7 @@ enum Step {
 }
 
 impl PartialEq for Formula {
-    /// The same text.
+    /// Compares the texts of the formulas.
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
     }
@@ -55,7 +55,7 @@ impl Formula {
     pub fn parse(text: &str, variable: &str) -> Result<Self, FormulaFault> {
         if text.len() > LONGEST {
             let message = format!("a formula of more than {LONGEST} characters");
-            return Err(FormulaFault { at: 0, message, hint: "take a table instead".to_owned() });
+            return Err(FormulaFault { at: 0, message, hint: "use a table instead".to_owned() });
         }
         let characters: Vec<char> = text.chars().collect();
         let mut reader = Reader { characters: &characters, at: 0, depth: 0, variable, steps: Vec::new() };
@@ -66,18 +66,18 @@ impl Formula {
             Some(')') => Err(reader.fault("this `)` closes nothing", "remove it, or write a `(` before it")),
             Some(c) => Err(reader.fault(
                 &format!("`{c}` is not expected here"),
-                "between two values there is one of + - * / ^, as in `2 * w`",
+                "write one of + - * / ^ between two values, as in `2 * w`",
             )),
         }
     }
 
-    /// As it was written.
+    /// Text of the formula, as it was written.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Its value; not a number or infinite where it has none.
+    /// Evaluates the formula; not a number or infinite where it has no value.
     #[must_use]
     pub fn at(&self, variable: f64) -> f64 {
         let mut stack: Vec<f64> = Vec::with_capacity(16);
@@ -128,7 +128,7 @@ impl Reader<'_> {
     fn deeper(&mut self) -> Result<(), FormulaFault> {
         self.depth += 1;
         if self.depth > DEEPEST {
-            return Err(self.fault(&format!("more than {DEEPEST} parentheses in one another"), "write fewer"));
+            return Err(self.fault(&format!("parentheses are nested more than {DEEPEST} deep"), "write fewer"));
         }
         Ok(())
     }
@@ -154,7 +154,7 @@ impl Reader<'_> {
             self.skip();
             let step = match self.peek() {
                 Some('*') if self.characters.get(self.at + 1) == Some(&'*') => {
-                    return Err(self.fault("`**` is no operator", "a power is written `^`"));
+                    return Err(self.fault("`**` is not an operator", "a power is written `^`"));
                 }
                 Some('*') => Step::Two(|a, b| a * b),
                 Some('/') => Step::Two(|a, b| a / b),
@@ -209,13 +209,15 @@ impl Reader<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() || c == '_' => self.word(),
-            Some(')') => Err(self.fault("a value is missing before this `)`", "such as a number or the variable")),
+            Some(')') => {
+                Err(self.fault("a value is missing before this `)`", "write a value, such as a number or the variable"))
+            }
             Some(c) => Err(self.fault(
                 &format!("`{c}` is not expected here"),
-                "a number, the variable, a function or a `(` stands here",
+                "write a number, the variable, a function or a `(` here",
             )),
             None => {
-                let hint = format!("such as a number, `{}` or a function", self.variable);
+                let hint = format!("write a value, such as a number, `{}` or a function", self.variable);
                 Err(self.fault("the formula ends where a value is expected", &hint))
             }
         }
@@ -229,7 +231,7 @@ impl Reader<'_> {
                 Some(',') => self.fault("a `,` is not expected here", "only `min` and `max` take two values"),
                 Some(c) => self.fault(
                     &format!("`{c}` is not expected here"),
-                    "between two values there is one of + - * / ^, as in `2 * w`",
+                    "write one of + - * / ^ between two values, as in `2 * w`",
                 ),
             });
         }
@@ -255,7 +257,8 @@ impl Reader<'_> {
         }
         let text: String = self.characters[start..self.at].iter().collect();
         let value = text.parse().ok().filter(|v: &f64| v.is_finite());
-        let fault = || self.fault_at(start, &format!("`{text}` is no number"), "such as 550, 0.5 or 1e-3");
+        let fault =
+            || self.fault_at(start, &format!("`{text}` is not a number"), "write a number such as 550, 0.5 or 1e-3");
         let value = value.ok_or_else(fault)?;
         self.steps.push(Step::Number(value));
         Ok(())
@@ -290,7 +293,7 @@ impl Reader<'_> {
             "max" => Step::Two(|a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }),
             "min" => Step::Two(|a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.min(b) }),
             "log" => {
-                return Err(self.fault_at(start, "`log` could be of base 10 or e", "write `ln` or `log10`"));
+                return Err(self.fault_at(start, "`log` could mean base 10 or e", "write `ln` or `log10`"));
             }
             _ => {
                 let hint = format!("the variable is `{}`; functions: {FUNCTIONS}; and `pi`", self.variable);
@@ -301,9 +304,10 @@ impl Reader<'_> {
         self.skip();
         let open = self.at;
         if self.peek() != Some('(') {
-            return Err(
-                self.fault(&format!("`{word}` has no parentheses"), &format!("such as `{word}({})`", self.variable))
-            );
+            return Err(self.fault(
+                &format!("`{word}` has no parentheses"),
+                &format!("write it as in `{word}({})`", self.variable),
+            ));
         }
         self.at += 1;
         self.deeper()?;
@@ -311,8 +315,10 @@ impl Reader<'_> {
         if matches!(step, Step::Two(_)) {
             self.skip();
             if self.peek() != Some(',') {
-                return Err(self
-                    .fault(&format!("`{word}` takes two values"), &format!("such as `{word}(0, {})`", self.variable)));
+                return Err(self.fault(
+                    &format!("`{word}` takes two values"),
+                    &format!("write it as in `{word}(0, {})`", self.variable),
+                ));
             }
             self.at += 1;
             self.sum()?;
@@ -368,9 +374,9 @@ mod tests {
             ("min(w)", 5, "two values"),
             ("log(w)", 0, "base"),
             ("x + 1", 0, "neither"),
-            ("w ** 2", 2, "no operator"),
-            ("1.2.3", 0, "no number"),
-            ("1e999", 0, "no number"),
+            ("w ** 2", 2, "not an operator"),
+            ("1.2.3", 0, "not a number"),
+            ("1e999", 0, "not a number"),
             ("()", 1, "missing"),
             ("w $ 2", 2, "not expected"),
         ] {

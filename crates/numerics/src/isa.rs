@@ -1,10 +1,10 @@
 //! Instruction sets, chosen once at run time: one source, three compilations.
 //!
 //! A kernel is plain scalar code over slices, marked `#[inline(always)]` and wrapped in a [`Vectorized`] value. [`Isa::run`]
-//! compiles it once per tier, and the compiler vectorises each copy. Rust never fuses `a * b + c`, so every tier gives the same
+//! compiles it once per tier, and the compiler vectorizes each copy. Rust never fuses `a * b + c`, so every tier gives the same
 //! bits.
 //!
-//! No other module of the engine holds `unsafe` code; what does, calls into another language: OpenImageIO, a browser, the C library.
+//! No other module of the engine holds `unsafe` code, except to call into another language: OpenImageIO, a browser, the C library.
 #![allow(unsafe_code)]
 
 use std::sync::OnceLock;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 /// An instruction-set tier that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Isa {
-    /// What every machine of the target architecture has (x86-64: SSE2).
+    /// Instructions that every machine of the target architecture has (x86-64: SSE2).
     Baseline,
     /// 256-bit vectors.
     Avx2,
@@ -24,9 +24,9 @@ pub enum Isa {
 /// Work that [`Isa::run`] compiles for each tier. `run` and everything it calls must be `#[inline(always)]`, or it is compiled
 /// for the baseline only.
 pub trait Vectorized {
-    /// What the work returns.
+    /// Result of the work.
     type Output;
-    /// Does the work.
+    /// Does the work and returns its result.
     fn run(self) -> Self::Output;
 }
 
@@ -35,19 +35,19 @@ static LIMIT: AtomicU8 = AtomicU8::new(UNLIMITED);
 const UNLIMITED: u8 = u8::MAX;
 
 impl Isa {
-    /// The widest tier that this machine has and this process may use: see [`Isa::limit`].
+    /// Returns the widest tier that this machine has and this process may use; see [`Isa::limit`].
     #[must_use]
     pub fn detect() -> Self {
         Self::Avx512.allowed()
     }
 
-    /// From now on nothing in this process runs on a wider tier, whatever tier its code asks for. The command calls it
+    /// Limits this process: from now on nothing runs on a wider tier, whatever tier its code asks for. The command calls this
     /// once, at its start, with what `SPECTRA_ISA` says.
     pub fn limit(self) {
         LIMIT.store(self as u8, Relaxed);
     }
 
-    /// This tier, or the widest narrower one that the machine has and the process may use.
+    /// Returns this tier, or the widest narrower one that the machine has and the process may use.
     #[inline]
     #[must_use]
     pub fn allowed(self) -> Self {
@@ -60,7 +60,7 @@ impl Isa {
         }
     }
 
-    /// The widest tier that the machine has.
+    /// Returns the widest tier that the machine has.
     fn of_machine() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
@@ -78,7 +78,7 @@ impl Isa {
         Self::Baseline
     }
 
-    /// The tier of this name: `baseline`, `avx2` or `avx512`, as in `SPECTRA_ISA`.
+    /// Returns the tier of this name: `baseline`, `avx2` or `avx512`, as in `SPECTRA_ISA`.
     ///
     /// # Errors
     /// The name is unknown, or this machine lacks that tier.
@@ -96,7 +96,7 @@ impl Isa {
         Ok(isa)
     }
 
-    /// The name that [`Isa::by_name`] reads.
+    /// Name of the tier, as [`Isa::by_name`] reads it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -106,7 +106,7 @@ impl Isa {
         }
     }
 
-    /// All tiers that this machine has and this process may use, narrowest first.
+    /// Lists all tiers that this machine has and this process may use, narrowest first.
     #[must_use]
     pub fn available() -> Vec<Self> {
         [Self::Baseline, Self::Avx2, Self::Avx512].into_iter().filter(|isa| *isa <= Self::detect()).collect()
@@ -137,23 +137,6 @@ fn run_avx2<V: Vectorized>(work: V) -> V::Output {
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
 fn run_avx512<V: Vectorized>(work: V) -> V::Output {
     work.run()
-}
-
-/// Fetches numbers into the cache that will be read soon. A hint: it changes no result.
-///
-/// For work that streams over arrays far larger than the caches but traces a batch between accesses, which is long enough for
-/// the hardware prefetcher to lose track.
-#[inline]
-pub fn prefetch(soon: &[f64]) {
-    #[cfg(target_arch = "x86_64")]
-    for line in soon.chunks(8) {
-        // SAFETY: a prefetch reads and writes nothing that a program could see, at any address.
-        unsafe {
-            std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T1 }>(line.as_ptr().cast());
-        }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = soon;
 }
 
 #[cfg(test)]

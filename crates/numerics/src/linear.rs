@@ -61,8 +61,8 @@ impl Factors {
     }
 }
 
-/// Least-squares solution of `a x = b` with `columns` unknowns, by Householder reflections.
-/// `None` if there are fewer rows than unknowns or the columns are dependent.
+/// Returns the least-squares solution of `a x = b` with `columns` unknowns, by Householder reflections. `None` if there are
+/// fewer rows than unknowns or the columns are dependent.
 #[must_use]
 pub fn least_squares(a: &[f64], b: &[f64], columns: usize) -> Option<Vec<f64>> {
     let rows = b.len();

@@ -1,16 +1,17 @@
 //! Functions that give the same bits on every machine and at every vector width.
 //!
-//! `exp`, `sin` and the like differ between platforms' libraries, so everything uses the pure-Rust `libm`, re-exported here.
-//! The few that run once per ray have branch-free forms of our own.
+//! `exp`, `sin` and the like differ between the libraries of platforms, so everything uses the pure-Rust `libm`, re-exported
+//! here. The few functions that run once per ray have branch-free forms of our own.
 
 pub use libm::{
     acos, asin, atan, atan2, cbrt, cos, erf, erfc, exp, expm1, j0, j1, lgamma, log, log1p, log2, log10, pow, sin, tan,
 };
 
-/// The whole part of a number from 0 to `last` (a whole number below 2^32), as an index and as a number; the nearer end of what lies
-/// beyond, 0 of what is no number. Branch-free.
+/// Returns the whole part of `at`, as an index and as a number. `at` is held between 0 and `last` (a whole number below 2^32);
+/// what is not a number counts as 0. Branch-free.
 ///
-/// A cast would be done one by one. Beside 2^52 there is room for whole numbers only, in the last bits: that takes additions.
+/// A cast would be done number by number. Near 2^52 there is room for whole numbers only, in the last bits, which takes nothing
+/// but additions.
 #[inline(always)]
 #[must_use]
 pub fn whole(at: f64, last: f64) -> (u32, f64) {
@@ -22,14 +23,14 @@ pub fn whole(at: f64, last: f64) -> (u32, f64) {
     ((below + WHOLE).to_bits() as u32, below)
 }
 
-/// Sine and cosine of `x` in [-pi/4, pi/4] rad, within 1.2e-16; branch-free.
+/// Computes sine and cosine of `x` in [-pi/4, pi/4] rad, within 1.2e-16; branch-free.
 ///
 /// Taylor series to x^15 and x^16: the first term left out is below 5e-17 and 3e-18 there.
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_octant(x: f64) -> (f64, f64) {
     let s = x * x;
-    // In parts: a formatter takes long over many brackets within each other.
+    // The series is split into parts, because a formatter takes long for many nested brackets.
     let high =
         1.0 / 362_880.0 + s * (-1.0 / 39_916_800.0 + s * (1.0 / 6_227_020_800.0 + s * (-1.0 / 1_307_674_368_000.0)));
     let sin = x * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s * high))));
@@ -39,11 +40,11 @@ pub fn sin_cos_octant(x: f64) -> (f64, f64) {
     (sin, cos)
 }
 
-/// Sine and cosine of `turns` whole turns, for `turns` in [0, 1]; branch-free.
+/// Computes sine and cosine of `turns` whole turns, for `turns` in [0, 1]; branch-free.
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_turns(turns: f64) -> (f64, f64) {
-    // Round to the nearest quarter by adding and taking away 1.5 * 2^52: the same on every tier.
+    // Round to the nearest quarter by adding and subtracting 1.5 * 2^52: the same on every tier.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     let quarter = (turns * 4.0 + ROUND) - ROUND;
     let (s, c) = sin_cos_octant((turns * 4.0 - quarter) * std::f64::consts::FRAC_PI_2);
@@ -54,9 +55,11 @@ pub fn sin_cos_turns(turns: f64) -> (f64, f64) {
     (sin, cos)
 }
 
-/// `e` to the power of `x`, for `x` from -700 to 700, within 4e-16 of it; branch-free. Beyond that range the power of its end.
+/// Computes `e` to the power of `x`, for `x` from -700 to 700, with a relative error of at most 4e-16; branch-free. Beyond that
+/// range `x` counts as the nearer end.
 ///
-/// A power of two times the Taylor series to r^13 of what is left, |r| <= ln(2) / 2: the first term left out is below 5e-18.
+/// The result is a power of two times the Taylor series to r^13 of the remainder r, |r| <= ln(2) / 2. The first omitted term is
+/// below 5e-18.
 #[inline(always)]
 #[must_use]
 pub fn exp_within_700(x: f64) -> f64 {
@@ -78,9 +81,11 @@ pub fn exp_within_700(x: f64) -> f64 {
     series * power
 }
 
-/// 2 to the power of `x`, for `x` from -126 to 127, within 1.5e-7 of it; branch-free, in single precision. Beyond that range the power of its end.
+/// Computes 2 to the power of `x`, for `x` from -126 to 127, with a relative error of at most 1.5e-7; branch-free, in single
+/// precision. Beyond that range `x` counts as the nearer end.
 ///
-/// A power of two times the Taylor series to r^7 of what is left, |r| <= ln(2) / 2: the first term left out is below 6e-9.
+/// The result is a power of two times the Taylor series to r^7 of the remainder r, |r| <= ln(2) / 2. The first omitted term is
+/// below 6e-9.
 #[inline(always)]
 #[must_use]
 pub fn exp2_single(x: f32) -> f32 {
@@ -95,14 +100,15 @@ pub fn exp2_single(x: f32) -> f32 {
     series * f32::from_bits(shifted.to_bits().wrapping_add(127) << 23)
 }
 
-/// The logarithm to the base 2 of a normal positive `x`, within 1e-7 of 1 and of itself; branch-free, in single precision.
+/// Computes the logarithm to base 2 of a normal positive `x`; branch-free, in single precision. The error is at most 1e-7 times
+/// the larger of 1 and the absolute value of the result.
 ///
-/// Of the mantissa, 2 artanh((m - 1) / (m + 1)) to the ninth power, m from the root of 1/2 to that of 2: the first term left
-/// out is below 1e-9.
+/// For the mantissa m, from sqrt(1/2) to sqrt(2), it takes the series of 2 artanh((m - 1) / (m + 1)) to the ninth power. The
+/// first omitted term is below 1e-9.
 #[inline(always)]
 #[must_use]
 pub fn log2_single(x: f32) -> f32 {
-    // Of the root of 1/2.
+    // Bits of sqrt(1/2).
     const LEAST: u32 = 0x3f35_04f3;
     let whole = x.to_bits().wrapping_sub(LEAST) as i32 >> 23;
     let m = f32::from_bits(x.to_bits().wrapping_sub((whole << 23) as u32));

@@ -2,22 +2,23 @@
 
 use crate::math::erfc;
 
-/// Beyond it, in standard deviations, [`far_mills`] holds; shares of the distribution are about to underflow.
+/// Distance, in standard deviations, beyond which [`far_mills`] holds; shares of the distribution out there are about to underflow.
 pub const FAR: f64 = 25.0;
 
-/// Share of the distribution below `z` standard deviations.
+/// Returns the share of the distribution below `z` standard deviations.
 #[must_use]
 pub fn below(z: f64) -> f64 {
     0.5 * erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// The point below which a share `u` of the distribution lies, from 1e-300 to 1 - 1e-16; relative error about 1e-15.
+/// Returns the point below which a share `u` of the distribution lies, in standard deviations, for `u` from 1e-300 to 1 -
+/// 1e-16; relative error about 1e-15.
 #[must_use]
 pub fn quantile(u: f64) -> f64 {
     if u < 0.5 { -upper_quantile(u) } else { upper_quantile(1.0 - u) }
 }
 
-/// Mills' ratio for `z` beyond [`FAR`], to the last digits: the eighth convergent of its continued fraction.
+/// Returns Mills' ratio for `z` beyond [`FAR`], to the last digits: the eighth convergent of its continued fraction.
 #[inline(always)]
 #[must_use]
 pub fn far_mills(z: f64) -> f64 {
@@ -32,16 +33,16 @@ pub fn far_mills(z: f64) -> f64 {
     above / below
 }
 
-/// Natural logarithm of a positive normal number, within two units in the last place; free of branches.
+/// Computes the natural logarithm of a positive normal number, within two units in the last place; branch-free.
 ///
 /// x = 2^k m with m from sqrt(1/2) to sqrt(2), and log m = 2 artanh((m - 1) / (m + 1)) by its series.
 #[inline(always)]
 #[must_use]
 pub fn log(x: f64) -> f64 {
-    /// Bits of sqrt(1/2), and what brings it to 1 in the exponent.
+    /// Bits of sqrt(1/2), and the offset that brings it to 1 in the exponent.
     const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
     const TO_ONE: u64 = 0x3ff0_0000_0000_0000 - ROOT_HALF;
-    /// 2^52: an integer below it, put into the mantissa, is a number without a conversion.
+    /// 2^52: an integer below it, put into the mantissa, becomes a float without a conversion.
     const INTEGER: u64 = 0x4330_0000_0000_0000;
     const OFFSET: f64 = 4_503_599_627_370_496.0 + 1023.0;
     /// ln 2 in two parts; the first has 21 bits of zeros, so that k times it is exact.
@@ -53,19 +54,20 @@ pub fn log(x: f64) -> f64 {
     let f = m - 1.0;
     let s = f / (2.0 + f);
     let z = s * s;
-    // Series in parts: a formatter takes half a minute over ten brackets within each other.
+    // The series is split into parts, because a formatter takes half a minute for ten nested brackets.
     let high = 1.0 / 13.0 + z * (1.0 / 15.0 + z * (1.0 / 17.0 + z * (1.0 / 19.0 + z * (1.0 / 21.0))));
     let series = z * (1.0 / 3.0 + z * (1.0 / 5.0 + z * (1.0 / 7.0 + z * (1.0 / 9.0 + z * (1.0 / 11.0 + z * high)))));
     k * LN2_HIGH + (k * LN2_LOW + (2.0 * s + 2.0 * s * series))
 }
 
-/// exp of a number of 0 or less, relative error under 4e-16; 0 below -708, where it is about to underflow; free of branches.
+/// Computes exp of a number of 0 or less, with a relative error under 4e-16; 0 below -708, where it is about to underflow;
+/// branch-free.
 ///
-/// x = k ln 2 + r with r within half of ln 2, and its series to r^13, whose next term is below 4e-18.
+/// x = k ln 2 + r with |r| <= ln(2) / 2, and the series of exp(r) to r^13, whose next term is below 4e-18.
 #[inline(always)]
 #[must_use]
 pub fn exp_of_negative(x: f64) -> f64 {
-    /// 1.5 * 2^52: added and taken away it rounds to whole numbers, which stand in the low bits in between.
+    /// 1.5 * 2^52: adding and subtracting it rounds to whole numbers, which stand in the low bits in between.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     const LN2_HIGH: f64 = 6.931_471_803_691_238_16e-1;
     const LN2_LOW: f64 = 1.908_214_929_270_587_70e-10;
@@ -75,7 +77,7 @@ pub fn exp_of_negative(x: f64) -> f64 {
     let k = shifted - ROUND;
     let r = (within - k * LN2_HIGH) - k * LN2_LOW;
     let s = r * r;
-    // Even and odd powers apart: two short chains are under way at once.
+    // Even and odd powers are summed separately, so that two short chains run at once.
     let high = 1.0 / 40_320.0 + s * (1.0 / 3_628_800.0 + s * (1.0 / 479_001_600.0));
     let even = 1.0 + s * (0.5 + s * (1.0 / 24.0 + s * (1.0 / 720.0 + s * high)));
     let high = 1.0 / 362_880.0 + s * (1.0 / 39_916_800.0 + s * (1.0 / 6_227_020_800.0));
@@ -84,9 +86,10 @@ pub fn exp_of_negative(x: f64) -> f64 {
     if x > LOWEST { (even + r * odd) * power } else { 0.0 }
 }
 
-/// The point beyond which a share from 1e-300 to 1/2 of the normal distribution lies, relative error about 1e-15.
+/// Returns the point beyond which a share from 1e-300 to 1/2 of the normal distribution lies, in standard deviations; relative
+/// error about 1e-15.
 ///
-/// PPND16 of AS 241, with its three rational approximations side by side.
+/// PPND16 of AS 241; all three rational approximations are evaluated side by side.
 #[inline(always)]
 #[must_use]
 pub fn upper_quantile(share: f64) -> f64 {
@@ -104,7 +107,7 @@ pub fn upper_quantile(share: f64) -> f64 {
     top / bottom
 }
 
-/// Numerator and denominator at `x`; coefficients from the highest power down.
+/// Evaluates numerator and denominator at `x`; coefficients go from the highest power down.
 #[inline(always)]
 fn rational([top, bottom]: &[[f64; 8]; 2], x: f64) -> (f64, f64) {
     let mut t = top[0];
@@ -191,7 +194,7 @@ const AS241_FAR: [[f64; 8]; 2] = [
 mod tests {
     use super::*;
 
-    /// Table of quantiles: Abramowitz and Stegun 26.5.
+    /// Quantiles of the table in Abramowitz and Stegun 26.5.
     #[test]
     fn quantiles_are_the_tables() {
         for (u, z) in [(0.5, 0.0), (0.9, 1.281_551_566), (0.975, 1.959_963_985), (0.001, -3.090_232_306)] {
@@ -221,7 +224,7 @@ mod tests {
         );
     }
 
-    /// Against libm's erfc: the share beyond its own quantile.
+    /// The share beyond its own quantile, against libm's erfc.
     #[test]
     fn normal_quantile_inverts_erfc() {
         for i in 1..3000 {

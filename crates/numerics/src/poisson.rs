@@ -1,15 +1,16 @@
-//! Counts by Poisson's law.
+//! Random counts from the Poisson distribution.
 
 use crate::math::{exp, lgamma, log};
 use crate::normal;
 
-/// Beyond this mean the sum of the law's terms is long, and an expansion about the normal distribution exact to 1 in 10^4 of its
-/// standard deviation.
+/// Above this mean the sum of the distribution's terms is long, and an expansion about the normal distribution is exact to 1 in
+/// 10^4 of the standard deviation.
 const MANY: f64 = 500.0;
 
-/// The count of mean `mean` that a share `u`, in [0, 1), of all counts does not reach; 0 where the mean is no positive number.
+/// Returns the quantile `u`, in [0, 1), of the Poisson distribution of mean `mean`: the smallest count whose cumulative
+/// probability exceeds `u`. 0 if the mean is not a positive number.
 ///
-/// Above a mean of 500 by the expansion of E. A. Cornish and R. A. Fisher (1938) to the third order.
+/// Above a mean of 500 it uses the expansion of E. A. Cornish and R. A. Fisher (1938) to the third order.
 #[must_use]
 pub fn quantile(mean: f64, u: f64) -> f64 {
     if !(mean > 0.0) {
@@ -32,8 +33,9 @@ pub fn quantile(mean: f64, u: f64) -> f64 {
     count
 }
 
-/// A count of mean `mean`, exact for any: [`quantile`] where few are expected, else by W. Hörmann's transformed rejection (PTRS,
-/// Insurance: Mathematics and Economics 12, 39 (1993)). `uniform` gives independent numbers in (0, 1).
+/// Draws a Poisson count of mean `mean`, exact for any mean; 0 if the mean is not a positive number. Uses [`quantile`] below a
+/// mean of 10, else W. Hörmann's transformed rejection (PTRS, Insurance: Mathematics and Economics 12, 39 (1993)). `uniform`
+/// gives independent numbers in (0, 1).
 pub fn draw(mean: f64, mut uniform: impl FnMut() -> f64) -> f64 {
     if !(mean >= 10.0) {
         return if mean > 0.0 { quantile(mean, uniform()) } else { 0.0 };
@@ -65,25 +67,15 @@ pub fn draw(mean: f64, mut uniform: impl FnMut() -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Numbers in (0, 1) by the SplitMix64 generator (G. Steele, D. Lea, C. Flood, OOPSLA 2014).
-    fn uniform(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut x = state;
-            x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            (((x ^ (x >> 31)) >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
-        }
-    }
+    use crate::hash::SplitMix64;
 
     /// Mean and variance of a Poisson number are its mean, the third central moment too; each within five standard errors
     /// (those of the moments of a Poisson number, by its cumulants). A quantile is rounded from the expansion: 1/12 of variance.
     #[test]
     fn counts_have_poissons_moments() {
         let n = 200_000;
-        let mut next = uniform(7);
+        let mut random = SplitMix64::new(7);
+        let mut next = || random.open_unit();
         for mean in [0.1, 2.0, 9.9, 10.1, 60.0, 499.0, 501.0, 5000.0] {
             let quantiles: Vec<f64> = (0..n).map(|_| quantile(mean, next())).collect();
             let drawn: Vec<f64> = (0..n).map(|_| draw(mean, &mut next)).collect();

@@ -1,7 +1,7 @@
 //! Functions sampled at equal steps.
 
-/// The value at `place`, counted in steps from the first sample: linear between samples. At least two of them, and 0 <= `place` <=
-/// number of samples - 1.
+/// Interpolates linearly between samples at `place`, counted in steps from the first sample. There must be at least two
+/// samples, and 0 <= `place` <= number of samples - 1.
 #[inline(always)]
 #[must_use]
 pub fn linear(samples: &[f64], place: f64) -> f64 {

@@ -1,8 +1,8 @@
-//! Bytes to pictures and back.
+//! Reads and writes picture files.
 //!
-//! - [`read`]: picture files to linear light: OpenEXR, PNG, JPEG, TIFF, WebP, BMP, Radiance HDR, and others by a library;
-//! - [`mod@write`]: exposures, pictures for a screen and raw frames to files: OpenEXR, PNG, JPEG, TIFF, DNG;
-//! - [`library`]: where a library registers that knows more formats.
+//! - [`read`]: reads picture files as linear light: OpenEXR, PNG, JPEG, TIFF, WebP, BMP, Radiance HDR, and others with a linked library;
+//! - [`mod@write`]: writes exposures, pictures for a screen and raw frames: OpenEXR, PNG, JPEG, TIFF, DNG;
+//! - [`library`]: the registry for a library that supports more formats.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -1,4 +1,4 @@
-//! What a picture costs: the peak of a process of its own that reads it, as the system counts it.
+//! Measures the memory that reading a picture takes: the peak of a separate process that reads it, as the system counts it.
 
 #![cfg(target_os = "linux")]
 
@@ -22,7 +22,7 @@ where
     picture.write_data(values).expect("written");
 }
 
-/// A plane for each channel, one after the other, in strips of 8 rows.
+/// Writes a TIFF with a plane for each channel, one after the other, in strips of 8 rows.
 fn planar(path: &Path, channels: u16) {
     const ROWS: u32 = 8;
     let mut encoder = TiffEncoder::new(File::create(path).expect("a file")).expect("a file");

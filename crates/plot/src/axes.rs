@@ -1,4 +1,4 @@
-//! A frame with scales.
+//! A frame with two axes.
 
 use crate::canvas::Canvas;
 use crate::color::Color;
@@ -7,40 +7,40 @@ use crate::stroke::Stroke;
 use crate::text::{TextStyle, text_width};
 use crate::ticks::nice_ticks;
 
-/// One scale of a frame.
+/// One axis of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Quantity and unit, such as `wavelength / nm`.
     pub label: String,
-    /// Value at its beginning: left or below.
+    /// Value at the start of the axis: left or bottom.
     pub from: f64,
-    /// Value at its end: may be less than `from`.
+    /// Value at the end of the axis; may be less than `from`.
     pub to: f64,
-    /// About how many ticks.
+    /// Approximate number of ticks.
     pub ticks: usize,
-    /// Small ticks from one tick to the next.
+    /// Number of intervals between neighboring ticks that minor ticks divide.
     pub parts: usize,
 }
 
 impl Axis {
-    /// A scale with about eight ticks.
+    /// Creates an axis with about eight ticks.
     #[must_use]
     pub fn new(label: &str, from: f64, to: f64) -> Self {
         Self { label: label.to_owned(), from, to, ticks: 8, parts: 5 }
     }
 
-    /// The same with about `count` ticks, and `parts` small ones from one to the next.
+    /// Returns this axis with about `count` ticks, each interval divided into `parts` by minor ticks.
     #[must_use]
     pub fn ticks(self, count: usize, parts: usize) -> Self {
         Self { ticks: count, parts, ..self }
     }
 
-    /// Share of the way along it.
+    /// Position of a value along the axis: 0 at its start, 1 at its end.
     fn share(&self, value: f64) -> f64 {
         (value - self.from) / (self.to - self.from)
     }
 
-    /// Round values with their labels, and the small ticks.
+    /// Returns the ticks with their labels, and the minor ticks.
     fn marks(&self) -> (Vec<(f64, String)>, Vec<f64>) {
         let (low, high) = (self.from.min(self.to), self.from.max(self.to));
         let ticks = nice_ticks(low, high, self.ticks);
@@ -60,27 +60,27 @@ impl Axis {
     }
 }
 
-/// A frame with two scales.
+/// A frame with two axes that maps values to points on a canvas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axes {
-    /// Where the frame lies; labels stand outside of it, to the left and below.
+    /// Rectangle of the frame. Labels are outside it, to the left and below.
     pub frame: Rect,
-    /// From left to right.
+    /// Horizontal axis, from left to right.
     pub x: Axis,
-    /// From below to above.
+    /// Vertical axis, from bottom to top.
     pub y: Axis,
-    /// Size of the labels.
+    /// Text size (em) of the labels, canvas units.
     pub text_size: f64,
 }
 
 impl Axes {
-    /// A frame with two scales.
+    /// Creates a frame with two axes.
     #[must_use]
     pub fn new(frame: Rect, x: Axis, y: Axis) -> Self {
         Self { frame, x, y, text_size: 14.0 }
     }
 
-    /// The place of two values.
+    /// Returns the point on the canvas for two values.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> Point {
         [
@@ -89,7 +89,7 @@ impl Axes {
         ]
     }
 
-    /// Pale lines at the ticks; before what the frame shows.
+    /// Draws pale grid lines at the ticks. Call it before drawing the contents.
     pub fn draw_grid(&self, canvas: &mut Canvas) {
         let stroke = Stroke::new(Color::PALE, 0.8);
         for (value, _) in self.x.marks().0 {
@@ -102,7 +102,7 @@ impl Axes {
         }
     }
 
-    /// The frame, its ticks, their labels and the names of the scales; after what the frame shows.
+    /// Draws the frame, its ticks, their labels and the names of the axes. Call it after drawing the contents.
     pub fn draw_frame(&self, canvas: &mut Canvas) {
         const TICK: f64 = 6.0;
         const SMALL: f64 = 3.5;

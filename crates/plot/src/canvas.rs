@@ -1,4 +1,4 @@
-//! What is drawn, in order.
+//! A drawing: its parts in order.
 
 use crate::color::Color;
 use crate::geometry::{Point, Rect, circle};
@@ -7,10 +7,10 @@ use crate::raster::{Pixels, Raster};
 use crate::stroke::{Cap, Stroke};
 use crate::text::{TextStyle, plain};
 
-/// Pixels a side of one of the picture, where light is added up.
+/// Oversampling per side of a pixel in drawings that add up light.
 const FINER: u32 = 3;
 
-/// A drawing. Later parts cover earlier ones.
+/// A drawing whose later parts cover earlier ones.
 #[derive(Clone, Debug)]
 pub struct Canvas {
     pub(crate) width: f64,
@@ -25,7 +25,7 @@ pub struct Canvas {
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     pub kind: PartKind,
-    /// Where it shows; everywhere if `None`.
+    /// Clip rectangle; `None` shows the whole part.
     pub clip: Option<Rect>,
 }
 
@@ -37,28 +37,27 @@ pub(crate) enum PartKind {
 }
 
 impl Canvas {
-    /// A white sheet of `width` x `height` (units of a CSS pixel, clamped to 1-16384) with a title for those who cannot
-    /// see it.
+    /// Creates a white canvas of `width` x `height` (CSS pixels, clamped to 1-16384) with a title for screen readers.
     #[must_use]
     pub fn new(width: f64, height: f64, title: &str) -> Self {
         let [width, height] = [width, height].map(|l| if l.is_nan() { 1.0 } else { l.clamp(1.0, 16384.0) });
         Self { width, height, title: title.to_owned(), background: Color::WHITE, parts: Vec::new(), clip: None }
     }
 
-    /// The same with another ground.
+    /// Returns the canvas with another background color.
     #[must_use]
     pub fn on(mut self, background: Color) -> Self {
         self.background = background;
         self
     }
 
-    /// Width and height.
+    /// Width and height of the canvas, CSS pixels.
     #[must_use]
     pub fn size(&self) -> (f64, f64) {
         (self.width, self.height)
     }
 
-    /// What is drawn from here on shows within `clip` only; `None` lifts that.
+    /// Clips everything drawn from now on to `clip`; `None` ends clipping.
     pub fn clip(&mut self, clip: Option<Rect>) {
         self.clip = clip;
     }
@@ -67,42 +66,42 @@ impl Canvas {
         self.parts.push(Part { kind, clip: self.clip });
     }
 
-    /// A line from one place to another.
+    /// Draws a straight line between two points.
     pub fn line(&mut self, from: Point, to: Point, stroke: &Stroke) {
         self.polyline(&[from, to], stroke);
     }
 
-    /// A line through places.
+    /// Draws a line through several points.
     pub fn polyline(&mut self, points: &[Point], stroke: &Stroke) {
         self.add(PartKind::Line { points: points.to_vec(), closed: false, stroke: stroke.clone() });
     }
 
-    /// A line around a polygon.
+    /// Draws a line around a polygon.
     pub fn outline(&mut self, points: &[Point], stroke: &Stroke) {
         self.add(PartKind::Line { points: points.to_vec(), closed: true, stroke: stroke.clone() });
     }
 
-    /// A filled polygon; where it overlaps itself, it is filled.
+    /// Draws a filled polygon. Where it overlaps itself, it is filled.
     pub fn polygon(&mut self, points: &[Point], paint: impl Into<Paint>) {
         self.add(PartKind::Fill { polygon: points.to_vec(), paint: paint.into() });
     }
 
-    /// A filled rectangle.
+    /// Draws a filled rectangle.
     pub fn rectangle(&mut self, rect: Rect, paint: impl Into<Paint>) {
         self.polygon(&rect.corners(), paint);
     }
 
-    /// A filled disc.
+    /// Draws a filled disc.
     pub fn disc(&mut self, center: Point, radius: f64, paint: impl Into<Paint>) {
         self.polygon(&circle(center, radius), paint);
     }
 
-    /// A circle.
+    /// Draws a circle as a line.
     pub fn circle(&mut self, center: Point, radius: f64, stroke: &Stroke) {
         self.outline(&circle(center, radius), stroke);
     }
 
-    /// A line of text on its base line; `_{...}` is lowered, `^{...}` raised, as in `n_{d}` and `10^{-3}`.
+    /// Draws a line of text with its baseline at a point. `_{...}` is a subscript and `^{...}` a superscript, as in `n_{d}` and `10^{-3}`.
     pub fn text(&mut self, at: Point, text: &str, style: &TextStyle) {
         let stroke = |color, width| Stroke::new(color, width).round();
         self.add(PartKind::Text {
@@ -113,7 +112,7 @@ impl Canvas {
         });
     }
 
-    /// The drawing with every color (sRGB code values) changed: as another eye has it. Opacities stay.
+    /// Returns the drawing with every color (sRGB code values) changed, for example as a color-blind eye sees it. Opacities stay.
     #[must_use]
     pub fn with_colors(mut self, change: impl Fn([u8; 3]) -> [u8; 3]) -> Self {
         let color = |color: &mut Color| color.rgb = change(color.rgb);
@@ -137,11 +136,11 @@ impl Canvas {
         self
     }
 
-    /// The drawing on pixels, `scale` of them a unit.
+    /// Renders the drawing to pixels, `scale` of them per canvas unit.
     #[must_use]
     pub fn to_pixels(&self, scale: f64) -> Pixels {
-        // Light on light soon is white also where it covers a part of a pixel only, and edges turn into stairs: it is drawn
-        // on finer pixels, whose means are taken once all is added up.
+        // Overlapping light soon clips to white, even where it covers only part of a pixel, so that edges turn into stairs. Render it to
+        // finer pixels and average them after all light is added.
         let shines = |part: &Part| matches!(&part.kind, PartKind::Line { stroke, .. } if stroke.is_light);
         if self.parts.iter().any(shines) {
             return self.on_pixels(scale * f64::from(FINER)).shrunk(FINER);

@@ -1,29 +1,29 @@
-//! Colors of a figure.
+//! Colors used in figures.
 
-/// An sRGB color of 8 bits a channel, with its opacity.
+/// An sRGB color with 8 bits per channel and an opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Color {
     /// Code values of red, green and blue.
     pub rgb: [u8; 3],
-    /// 0 is clear, 1 covers what is below.
+    /// Opacity: 0 is clear, 1 covers what is below.
     pub opacity: f64,
 }
 
 impl Color {
-    /// Black.
+    /// Black: background of dark figures.
     pub const BLACK: Self = Self::new(0, 0, 0);
     /// White: paper.
     pub const WHITE: Self = Self::new(255, 255, 255);
     /// Nearly black: text and frames.
     pub const INK: Self = Self::new(0x1f, 0x23, 0x28);
-    /// Grey of things beside the point.
+    /// Gray for secondary text and marks.
     pub const GREY: Self = Self::new(0x6b, 0x72, 0x7b);
-    /// Grid lines.
+    /// Pale gray for grid lines.
     pub const PALE: Self = Self::new(0xdf, 0xe2, 0xe6);
     /// Blue of the palette.
     pub const BLUE: Self = Self::new(0x00, 0x72, 0xb2);
-    /// Colors that people of any color vision tell apart, for curves in their order. Okabe and Ito (2008), "Color
-    /// Universal Design", without their yellow, which is too light for a line on paper.
+    /// Colors for curves in their order, which people with any color vision can tell apart. Okabe and Ito (2008), "Color Universal Design",
+    /// without their yellow, which is too light for a line on paper.
     pub const PALETTE: [Self; 7] = [
         Self::BLUE,
         Self::new(0xd5, 0x5e, 0x00),
@@ -34,19 +34,19 @@ impl Color {
         Self::new(0x56, 0xb4, 0xe9),
     ];
 
-    /// An opaque color.
+    /// Creates an opaque color from code values.
     #[must_use]
     pub const fn new(red: u8, green: u8, blue: u8) -> Self {
         Self { rgb: [red, green, blue], opacity: 1.0 }
     }
 
-    /// The same color, `opacity` of 0 to 1.
+    /// Returns this color with another opacity, clamped to 0 to 1.
     #[must_use]
     pub const fn with_opacity(self, opacity: f64) -> Self {
         Self { opacity: opacity.clamp(0.0, 1.0), ..self }
     }
 
-    /// The color between this (0) and `other` (1), on code values.
+    /// Returns the color between this one (`share` 0) and `other` (1), interpolated on code values.
     #[must_use]
     pub fn toward(self, other: Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + share * (b - a);
@@ -54,7 +54,7 @@ impl Color {
         Self { rgb, opacity: mix(self.opacity, other.opacity) }
     }
 
-    /// `#1f2328`; opacity is not in it.
+    /// Returns the color as in `#1f2328`, without its opacity.
     #[must_use]
     pub fn hex(self) -> String {
         let [r, g, b] = self.rgb;

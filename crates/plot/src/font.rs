@@ -1,33 +1,33 @@
-//! A font of strokes: letters as the way of a pen.
+//! A stroke font: each letter is the path of a pen.
 //!
-//! Drawn for this program on a grid of 20 units to the em: base line at 0, small letters 10 high, capitals and figures
-//! 14, descenders to -4. y is upward here, as type designers have it.
+//! The font was drawn for this program on a grid of 20 units per em: baseline at 0, lowercase letters 10 high, capitals and figures 14,
+//! descenders to -4. Unlike on the canvas, y points upward, as is usual in type design.
 
 use crate::geometry::Point;
 
-/// Units of the grid in an em.
+/// Number of grid units per em.
 pub const UNITS_PER_EM: f64 = 20.0;
-/// Height of capitals and figures, units.
+/// Height of capitals and figures, grid units.
 pub const CAP_HEIGHT: f64 = 14.0;
-/// Width of the pen, units.
+/// Width of the pen, grid units.
 pub const PEN: f64 = 1.55;
 
-/// From the pen's way to the edge of the letter, on either side, units.
+/// Side bearing: distance from the path of the pen to the edge of the letter on either side, grid units.
 const BEARING: f64 = 1.6;
-/// Figures are all this wide, so that they stand below each other.
+/// Width of every figure, grid units: equal, so that figures line up in columns.
 const FIGURE: f64 = 8.4;
 const SPACE: f64 = 5.6;
 
-/// A letter.
+/// The strokes and the advance width of a letter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Glyph {
-    /// From this letter to the next, units.
+    /// Distance from the start of this letter to the next, grid units.
     pub advance: f64,
-    /// Ways of the pen, units; x from the edge of the letter.
+    /// Paths of the pen, grid units; x is measured from the left edge of the letter.
     pub strokes: Vec<Vec<Point>>,
 }
 
-/// The glyph of a character: a box for what the font lacks.
+/// Returns the glyph of a character; a box if the font lacks it.
 #[must_use]
 pub fn glyph(letter: char) -> Glyph {
     if matches!(letter, ' ' | '\u{a0}') {
@@ -42,14 +42,14 @@ pub fn glyph(letter: char) -> Glyph {
     Glyph { advance: width + 2.0 * BEARING, strokes }
 }
 
-/// Whether the font has a character of its own for it.
+/// Whether the font has its own glyph for a character.
 #[must_use]
 pub fn has(letter: char) -> bool {
     matches!(letter, ' ' | '\u{a0}' | '\u{2009}') || way(letter).is_some()
 }
 
-/// The ways of the pen that a text describes: M x y begins one, L x y goes straight, C x y x y x y is a cubic Bezier,
-/// A x y rx ry from to an arc of an ellipse about x y between two angles in degrees, counterclockwise.
+/// Converts a description of strokes to points. M x y starts a stroke and L x y draws a straight line. C x y x y x y draws a cubic Bezier
+/// curve. A x y rx ry from to draws an arc of an ellipse around x y, counterclockwise between two angles in degrees.
 fn follow(text: &str) -> Vec<Vec<Point>> {
     let mut strokes: Vec<Vec<Point>> = Vec::new();
     for (numbers, command) in text.split(['M', 'L', 'C', 'A']).zip(commands(text)) {
@@ -75,7 +75,7 @@ fn follow(text: &str) -> Vec<Vec<Point>> {
     strokes
 }
 
-/// The command before each list of numbers; the first list, before any command, is empty.
+/// Iterates over the commands before each list of numbers; the first list, before any command, is empty.
 fn commands(text: &str) -> impl Iterator<Item = char> {
     std::iter::once(' ').chain(text.chars().filter(|c| matches!(c, 'M' | 'L' | 'C' | 'A')))
 }
@@ -103,7 +103,7 @@ fn arc(center: Point, radii: [f64; 2], from: f64, to: f64) -> Vec<Point> {
         .collect()
 }
 
-/// Width and way of a character.
+/// Returns the width of a character, grid units, and the description of its strokes.
 fn way(letter: char) -> Option<(f64, &'static str)> {
     letters(letter).or_else(|| marks(letter))
 }
@@ -270,7 +270,7 @@ mod tests {
             let glyph = glyph(letter);
             assert!(letter == ' ' || !glyph.strokes.is_empty(), "{letter}");
             for [x, y] in glyph.strokes.into_iter().flatten() {
-                // The pen stays within the letter, but for overhangs of half its width.
+                // The pen stays within the letter except for overhangs of half its width.
                 assert!((-0.2..=glyph.advance + 0.2).contains(&x) && (-5.0..=16.0).contains(&y), "{letter}: {x} {y}");
             }
         }

@@ -1,32 +1,32 @@
-//! Names beside points, none on top of another.
+//! Placement of labels next to points, without overlap.
 
 use crate::geometry::{Point, Rect};
 use crate::text::{TextStyle, text_width};
 
-/// Places names near their points, clear of what is taken already.
+/// A placer of labels near their points, clear of areas that are already taken.
 #[derive(Clone, Debug)]
 pub struct Labels {
     within: Rect,
     taken: Vec<Rect>,
 }
 
-/// Ways from a point to its name, the best first.
+/// Directions from a point to its label, the best first.
 const WAYS: [Point; 8] =
     [[1.0, 0.0], [-1.0, 0.0], [0.7, -0.7], [0.7, 0.7], [-0.7, -0.7], [-0.7, 0.7], [0.0, -1.0], [0.0, 1.0]];
 
 impl Labels {
-    /// Names that stay `within` a rectangle.
+    /// Creates a label placer for labels that stay `within` a rectangle.
     #[must_use]
     pub fn new(within: Rect) -> Self {
         Self { within, taken: Vec::new() }
     }
 
-    /// Keeps names off a rectangle: a mark, a legend.
+    /// Keeps labels off a rectangle, such as a mark or a legend.
     pub fn keep_clear(&mut self, rect: Rect) {
         self.taken.push(rect);
     }
 
-    /// Takes a rectangle where it is free; whether it was.
+    /// Reserves a rectangle if it is free; returns whether it was.
     pub fn claim(&mut self, rect: Rect) -> bool {
         let free = self.within.holds(&rect) && self.taken.iter().all(|other| !other.overlaps(&rect.grown(2.0)));
         if free {
@@ -35,14 +35,15 @@ impl Labels {
         free
     }
 
-    /// Beginning of the base line for `text` near `point`, `distance` off its edge; `None` where there is no room.
+    /// Finds room for `text` near `point` and reserves it. Returns the start of the text's baseline; `None` if there is no room. `distance`
+    /// is the gap between point and text.
     ///
-    /// Nearer places are taken first, the right hand side before the left, and that before those above and below.
+    /// Closer positions are tried first; of these, the right side before the left, and both before positions above and below.
     pub fn place(&mut self, point: Point, text: &str, style: &TextStyle, distance: f64) -> Option<Point> {
         let (width, height) = (text_width(text, style.size), 2.0 * style.half_cap());
         let far = [1.0, 2.2, 4.0, 6.5];
         let found = far.into_iter().flat_map(|f| WAYS.map(|w| (w, f))).find_map(|([x, y], far)| {
-            // The name's middle lies so that its nearest edge is at the distance.
+            // Center the label so that its nearest edge is at the distance.
             let middle = [
                 point[0] + x * distance * far + 0.5 * width * sign(x),
                 point[1] + y * distance * far + 0.5 * height * sign(y),

@@ -1,16 +1,16 @@
-//! Figures: a drawing of lines, areas and text, written as SVG or PNG.
+//! Figures made of lines, areas and text, written as SVG or PNG.
 //!
-//! Both kinds of file show the same: text is drawn with the strokes of a built-in [`font`], so no font of the machine is
-//! needed, and areas and lines are put on pixels as an SVG viewer does it.
+//! Both file formats show the same drawing. Text is drawn with the strokes of a built-in [`font`], so no font of the machine is needed, and
+//! areas and lines are rasterized as an SVG viewer does it.
 //!
-//! - [`Canvas`]: lines, polygons, gradients, pictures and text, in units of a CSS pixel, y downward;
-//! - [`Axes`]: a frame with ticks, labels and a grid, from values to places on the canvas;
-//! - [`Page`]: figures, pictures, tables and texts as one HTML file.
+//! - [`Canvas`]: lines, polygons, gradients, pictures and text, in CSS pixels, y downward;
+//! - [`Axes`]: a frame with ticks, labels and a grid, which maps values to points on the canvas;
+//! - [`Page`]: figures, pictures, tables and texts in one HTML file.
 //!
 //! ```
 //! use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke};
 //! let mut canvas = Canvas::new(400.0, 300.0, "A straight line");
-//! let axes = Axes::new(Rect::new(60.0, 20.0, 380.0, 250.0), Axis::new("time / s", 0.0, 4.0), Axis::new("way / m", 0.0, 8.0));
+//! let axes = Axes::new(Rect::new(60.0, 20.0, 380.0, 250.0), Axis::new("time / s", 0.0, 4.0), Axis::new("distance / m", 0.0, 8.0));
 //! axes.draw_frame(&mut canvas);
 //! canvas.polyline(&[axes.at(0.0, 0.0), axes.at(4.0, 8.0)], &Stroke::new(Color::BLUE, 1.8));
 //! assert!(canvas.to_svg().starts_with("<svg"));

@@ -1,14 +1,14 @@
-//! A page for a browser that needs nothing else: figures, pictures, tables and texts in one HTML file without scripts, for light and dark,
-//! wide screens and phones.
+//! A self-contained page for a browser: figures, pictures, tables and texts in one HTML file without scripts. It fits light and dark
+//! themes, wide screens and phones.
 
 use crate::canvas::Canvas;
 use std::fmt::Write;
 
-/// Nothing is loaded from anywhere, and nothing runs.
+/// Content security policy: the page loads nothing and runs nothing.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 
-/// Colors with a contrast of 4.5 : 1 and more on both grounds; drawings, which are made for paper, turn dark with their hues kept.
-/// What scrolls is reached by the keyboard.
+/// Style sheet. Colors have a contrast of at least 4.5 : 1 on both backgrounds. Drawings, which are made for paper, are inverted on the
+/// dark one with their hues kept. Scrolling areas can be reached by keyboard.
 const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#1f2328;--dim:#57606a;--ground:#fff;--line:#d5d9de;--panel:#f5f6f8}
 @media(prefers-color-scheme:dark){:root{--ink:#e6e8eb;--dim:#a5adb8;--ground:#16181c;--line:#3a3f47;--panel:#1f2227}}
@@ -36,7 +36,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// An empty page with a title, which is its first heading, too.
+    /// Creates an empty page with a title, which is also its first heading.
     #[must_use]
     pub fn new(title: &str) -> Self {
         Self { title: title.to_owned(), body: format!("<h1>{}</h1>\n", escaped(title)) }
@@ -47,29 +47,30 @@ impl Page {
         let _ = self.body.write_fmt(text);
     }
 
-    /// A heading.
+    /// Adds a heading to the page.
     pub fn heading(&mut self, text: &str) {
         self.add(format_args!("<h2>{}</h2>\n", escaped(text)));
     }
 
-    /// A paragraph.
+    /// Adds a paragraph to the page.
     pub fn paragraph(&mut self, text: &str) {
         self.add(format_args!("<p>{}</p>\n", escaped(text)));
     }
 
-    /// A paragraph beside the point.
+    /// Adds a dimmed paragraph with secondary information.
     pub fn aside(&mut self, text: &str) {
         self.add(format_args!("<p class=\"dim\">{}</p>\n", escaped(text)));
     }
 
-    /// A drawing.
+    /// Adds a drawing, embedded as SVG, with a caption.
     pub fn figure(&mut self, canvas: &Canvas, caption: &str) {
         let (width, height) = canvas.size();
         let svg = format!("data:image/svg+xml;base64,{}", base64(canvas.to_svg().as_bytes()));
         self.image("drawn", &svg, [width, height], caption);
     }
 
-    /// A picture, the bytes of a PNG file, to be shown `width` by `height` pixels large, or smaller where there is less room.
+    /// Adds a picture with a caption. `png` is the content of a PNG file, shown `width` by `height` pixels large, or smaller if there is
+    /// less room.
     pub fn picture(&mut self, png: &[u8], [width, height]: [f64; 2], caption: &str) {
         let png = format!("data:image/png;base64,{}", base64(png));
         self.image("shown", &png, [width, height], caption);
@@ -83,7 +84,7 @@ impl Page {
         ));
     }
 
-    /// Names and what they say, a row each.
+    /// Adds a table of names and values, one row each.
     pub fn facts(&mut self, rows: &[(String, String)]) {
         self.body.push_str("<div class=\"wide\" tabindex=\"0\"><table>\n");
         for (name, value) in rows {
@@ -96,11 +97,11 @@ impl Page {
         self.body.push_str("</table></div>\n");
     }
 
-    /// A table with a head.
+    /// Adds a table with a header row.
     pub fn table(&mut self, head: &[&str], rows: &[Vec<Cell>]) {
         self.body.push_str("<div class=\"wide\" tabindex=\"0\"><table>\n<tr>");
         for (at, name) in head.iter().enumerate() {
-            // A column of numbers is set to the right, its head with it.
+            // Align a column of numbers, with its header, to the right.
             let is_number = rows.first().is_some_and(|row| matches!(row.get(at), Some(Cell::Number(_))));
             let class = if is_number { " class=\"number\"" } else { "" };
             self.add(format_args!("<th scope=\"col\"{class}>{}</th>", escaped(name)));
@@ -123,12 +124,12 @@ impl Page {
         self.body.push_str("</table></div>\n");
     }
 
-    /// A text as it is, in letters of one width.
+    /// Adds preformatted text in a monospaced font.
     pub fn text(&mut self, text: &str) {
         self.add(format_args!("<pre tabindex=\"0\">{}</pre>\n", escaped(text)));
     }
 
-    /// The file.
+    /// Returns the page as an HTML file.
     #[must_use]
     pub fn to_html(&self) -> String {
         format!(
@@ -142,18 +143,18 @@ impl Page {
     }
 }
 
-/// A cell of a table.
+/// A cell of a table on a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Cell {
-    /// Words.
+    /// Text, aligned to the left.
     Text(String),
-    /// A number, set to the right.
+    /// A number, aligned to the right.
     Number(String),
-    /// A file beside the page, by its name.
+    /// A link to a file in the folder of the page, by its name.
     Beside(String),
 }
 
-/// A text within HTML.
+/// Escapes a text for HTML.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -164,7 +165,7 @@ fn escaped(text: &str) -> String {
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
             '\n' | '\t' => out.push(c),
-            // What HTML does not allow.
+            // Replace control characters, which HTML does not allow.
             c if c.is_control() => out.push('\u{fffd}'),
             c => out.push(c),
         }
@@ -172,7 +173,8 @@ fn escaped(text: &str) -> String {
     out
 }
 
-/// The name of a file as a relative address (RFC 3986): a name with a colon would be one of another kind, so it begins with `./`.
+/// Returns the name of a file as a relative URL (RFC 3986). It begins with `./`, because a name with a colon would otherwise be read as a
+/// URL with a scheme.
 fn link(file: &str) -> String {
     let mut out = String::from("./");
     for byte in file.bytes() {
@@ -186,7 +188,7 @@ fn link(file: &str) -> String {
     out
 }
 
-/// RFC 4648, base 64 with padding.
+/// Encodes bytes as base 64 with padding (RFC 4648).
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
@@ -205,7 +207,7 @@ fn base64(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// RFC 4648, section 10.
+    /// Test vectors of RFC 4648, section 10.
     #[test]
     fn base64_of_the_rfc() {
         for (text, coded) in [

@@ -1,45 +1,45 @@
-//! What an area is filled with.
+//! Paints: the fill of an area.
 
 use crate::color::Color;
 use crate::geometry::{Point, Rect};
 
-/// A color at a place of a gradient.
+/// A color at a position of a gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// 0 at its beginning, 1 at its end.
+    /// Position: 0 at the start of the gradient, 1 at its end.
     pub at: f64,
-    /// Color there.
+    /// Color at this position.
     pub color: Color,
 }
 
-/// A picture to fill an area with; smooth between the centers of its pixels.
+/// A picture that fills an area, interpolated between the centers of its pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Where it lies.
+    /// Rectangle of the whole picture on the canvas.
     pub place: Rect,
     /// Width in pixels.
     pub width_px: u32,
     /// Height in pixels.
     pub height_px: u32,
-    /// Its pixels row by row from the upper left, sRGB.
+    /// Pixels row by row from the upper left, sRGB code values.
     pub rgb: Vec<[u8; 3]>,
 }
 
-/// What an area is filled with.
+/// The fill of an area.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Paint {
-    /// One color.
+    /// A single color.
     Solid(Color),
-    /// Colors along a straight way, constant across it and beyond its ends.
+    /// Colors along a straight line, constant across it and beyond its ends.
     Gradient {
-        /// Where the first stop's 0 is.
+        /// Start of the gradient, position 0.
         from: Point,
-        /// Where the last stop's 1 is.
+        /// End of the gradient, position 1.
         to: Point,
-        /// At least one, in rising order.
+        /// Colors, at least one, in rising order of position.
         stops: Vec<Stop>,
     },
-    /// A picture, seen through the area.
+    /// A picture, clipped to the area.
     Picture(Picture),
 }
 
@@ -50,7 +50,7 @@ impl From<Color> for Paint {
 }
 
 impl Paint {
-    /// Color at a place of the canvas.
+    /// Returns the color at a point of the canvas.
     #[must_use]
     pub fn at(&self, place: Point) -> Color {
         match self {
@@ -90,7 +90,7 @@ impl Picture {
     }
 }
 
-/// Pixel whose center lies before `at`, and the share of the way to the next.
+/// Returns the pixel whose center lies before `at`, and the fraction of the distance to the next.
 fn cell(at: f64, start: f64, length: f64, count: usize) -> (usize, f64) {
     let pixels = ((at - start) / length * count as f64 - 0.5).clamp(0.0, count as f64 - 1.0);
     (pixels as usize, pixels - pixels.floor())

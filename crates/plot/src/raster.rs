@@ -1,13 +1,13 @@
-//! Areas on pixels: scan lines with exact coverage along them.
+//! Rasterization of areas: scan lines with exact coverage along them.
 
 use crate::color::Color;
 use crate::geometry::{Point, Rect};
 use crate::paint::Paint;
 
-/// Scan lines a row of pixels.
+/// Number of scan lines in a row of pixels.
 const LINES: usize = 16;
 
-/// A picture of a canvas.
+/// A canvas rendered to pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pixels {
     /// Width in pixels.
@@ -19,7 +19,7 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// Each pixel the mean of `by` by `by`; what is left over at the right and lower rim is left out.
+    /// Reduces the picture: each pixel is the mean of `by` by `by` pixels. A remainder at the right and lower edge is dropped.
     pub(crate) fn shrunk(&self, by: u32) -> Self {
         let (width_px, height_px) = ((self.width_px / by).max(1), (self.height_px / by).max(1));
         let mean = |i: u32| {
@@ -39,11 +39,11 @@ impl Pixels {
     }
 }
 
-/// A picture while it is drawn; code values are kept as floats, so that many thin layers do not round away.
+/// A picture being drawn. Code values are kept as floats, so that many thin layers do not round away.
 pub(crate) struct Raster {
     width: usize,
     height: usize,
-    /// Pixels a unit of the canvas.
+    /// Number of pixels per canvas unit.
     scale: f64,
     rgb: Vec<[f32; 3]>,
 }
@@ -55,7 +55,7 @@ impl Raster {
         Self { width, height, scale, rgb: vec![background.rgb.map(f32::from); width * height] }
     }
 
-    /// Fills what lies in the polygons (where they wind around a place at all), within `clip`.
+    /// Fills the polygons (wherever their winding number is not 0), within `clip`.
     pub(crate) fn fill(&mut self, polygons: &[Vec<Point>], paint: &Paint, clip: Option<Rect>) {
         self.put(polygons, paint, clip, false);
     }
@@ -88,7 +88,7 @@ impl Raster {
         }
     }
 
-    /// Puts paint on a row, by the coverage that `steps` add up to; leaves them 0.
+    /// Blends paint onto a row. `steps` are the differences of coverage from pixel to pixel; they are reset to 0.
     fn blend(&mut self, row: usize, columns: &std::ops::Range<usize>, steps: &mut [f32], paint: &Paint, light: bool) {
         let mut covered = 0.0;
         for column in columns.clone() {
@@ -117,19 +117,19 @@ impl Raster {
     }
 }
 
-/// Light of an sRGB code value of 0 to 255 (IEC 61966-2-1), white is 1.
+/// Decodes an sRGB code value of 0 to 255 (IEC 61966-2-1) to linear light; white is 1.
 fn linear(code: f32) -> f32 {
     let v = code / 255.0;
     if v <= 0.04045 { v / 12.92 } else { libm::powf((v + 0.055) / 1.055, 2.4) }
 }
 
-/// The way back; more light than white is white.
+/// Encodes linear light as an sRGB code value; light above white is clipped.
 fn encoded(light: f32) -> f32 {
     let v = light.min(1.0);
     255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * libm::powf(v, 1.0 / 2.4) - 0.055 }
 }
 
-/// Where edges cross the scan lines: place and sense.
+/// Crossings of polygon edges with the scan lines: x and direction.
 struct Crossings {
     /// Scan lines of the area that may be drawn on.
     first: usize,
@@ -142,7 +142,7 @@ impl Crossings {
         Self { first, end, lines: vec![Vec::new(); end.saturating_sub(first)] }
     }
 
-    /// An edge, y in scan lines; line `i` lies at `i` + 0.5.
+    /// Adds an edge, with y in scan lines; line `i` lies at `i` + 0.5.
     fn add(&mut self, a: Point, b: Point) {
         let (top, bottom, sense) = if a[1] < b[1] { (a, b, 1) } else { (b, a, -1) };
         if !(top[1] < bottom[1] && top.iter().chain(&bottom).all(|c| c.is_finite())) {
@@ -156,14 +156,14 @@ impl Crossings {
         }
     }
 
-    /// Rows of pixels, each with its scan lines.
+    /// Iterates over the rows of pixels, each with its scan lines.
     fn rows(&mut self) -> impl Iterator<Item = (usize, &mut [Vec<(f32, i32)>])> {
         let first = self.first / LINES;
         self.lines.chunks_mut(LINES).enumerate().map(move |(i, lines)| (first + i, lines))
     }
 }
 
-/// Adds the coverage of a row's scan lines to `steps`, whose running sum it is; whether there is any.
+/// Adds the coverage of a row's scan lines to `steps`, whose running sum is the coverage; returns whether there is any.
 fn cover(lines: &mut [Vec<(f32, i32)>], columns: &std::ops::Range<usize>, steps: &mut [f32]) -> bool {
     let (low, high) = (columns.start as f32, columns.end as f32);
     let mut any = false;
@@ -201,7 +201,7 @@ mod tests {
         raster.finish()
     }
 
-    /// Ink in units of whole pixels.
+    /// Sum of the ink in units of whole pixels.
     fn ink(pixels: &Pixels) -> f64 {
         pixels.rgb.iter().map(|p| (255.0 - f64::from(p[0])) / 255.0).sum()
     }
@@ -213,13 +213,13 @@ mod tests {
         assert!((ink(&pixels) - 3.25 * 1.5).abs() < 0.02);
         assert_eq!([pixels.rgb[32][0], pixels.rgb[33][0], pixels.rgb[35][0], pixels.rgb[45][0]], [64, 0, 128, 191]);
         let disc = crate::geometry::circle([5.0, 5.0], 4.0);
-        // The area of a regular polygon within a circle of radius 4.
+        // Compare with the area of a regular polygon within a circle of radius 4.
         let sides = disc.len() as f64;
         let area = 0.5 * sides * 16.0 * libm::sin(std::f64::consts::TAU / sides);
         assert!((ink(&drawn(&[disc], Color::BLACK, None)) - area).abs() < 0.05);
     }
 
-    /// Red and green light on one place are yellow, half of white twice is white, and paper cannot get brighter.
+    /// Red and green light on one pixel make yellow, half of white twice is white, and paper cannot get brighter.
     #[test]
     fn light_adds() {
         let all = Rect::new(0.0, 0.0, 10.0, 10.0).corners().to_vec();

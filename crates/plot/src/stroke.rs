@@ -3,56 +3,56 @@
 use crate::color::Color;
 use crate::geometry::{Point, circle};
 
-/// How a line ends.
+/// The shape of the ends of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cap {
-    /// Where its last point is.
+    /// Ends exactly at the last point.
     Flat,
-    /// In half a circle beyond it.
+    /// Ends in a half circle beyond the last point.
     Round,
 }
 
-/// How a line is drawn; corners are round.
+/// Style of a line; its corners are round.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
-    /// Its color.
+    /// Color.
     pub color: Color,
-    /// Its width.
+    /// Width, canvas units.
     pub width: f64,
-    /// Its ends.
+    /// Shape of the ends.
     pub cap: Cap,
-    /// Lengths of dash, gap, dash ... in turn; empty for a whole line.
+    /// Lengths of dashes and gaps in turn, canvas units; empty for a solid line.
     pub dashes: Vec<f64>,
-    /// Whether it adds its light to what is below, as rays do that cross on a dark ground, in place of covering it.
+    /// Whether the line adds its light to what is below instead of covering it, as rays that cross on a dark background do.
     pub is_light: bool,
 }
 
 impl Stroke {
-    /// A whole line with flat ends.
+    /// Creates a solid line style with flat ends.
     #[must_use]
     pub fn new(color: Color, width: f64) -> Self {
         Self { color, width, cap: Cap::Flat, dashes: Vec::new(), is_light: false }
     }
 
-    /// The same with round ends.
+    /// Returns this style with round ends.
     #[must_use]
     pub fn round(self) -> Self {
         Self { cap: Cap::Round, ..self }
     }
 
-    /// The same as light, added to what is below.
+    /// Returns this style as light that is added to what is below.
     #[must_use]
     pub fn as_light(self) -> Self {
         Self { is_light: true, ..self }
     }
 
-    /// The same with dashes and gaps of these lengths.
+    /// Returns this style with dashes and gaps of these lengths.
     #[must_use]
     pub fn dashed(self, dashes: &[f64]) -> Self {
         Self { dashes: dashes.to_vec(), ..self }
     }
 
-    /// The area that a line covers, as polygons that all turn the same way: what lies in any of them is covered.
+    /// Returns the area of a line as polygons of the same orientation; their union is covered.
     pub(crate) fn outline(&self, points: &[Point], closed: bool) -> Vec<Vec<Point>> {
         let mut points: Vec<Point> = points.iter().copied().filter(|p| p.iter().all(|c| c.is_finite())).collect();
         points.dedup();
@@ -77,7 +77,7 @@ impl Stroke {
             if length > 0.0 {
                 let n = [-along[1] / length * half, along[0] / length * half];
                 let corner = |p: &Point, s: f64| [p[0] + s * n[0], p[1] + s * n[1]];
-                // The way round that `circle` has, too.
+                // Use the same orientation as `circle`.
                 out.push(vec![corner(a, -1.0), corner(b, -1.0), corner(b, 1.0), corner(a, 1.0)]);
             }
         }
@@ -91,7 +91,7 @@ impl Stroke {
 }
 
 fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
-    /// A line of more dashes than this is drawn whole: its dashes would be finer than can be seen.
+    /// Largest number of dashes: a line with more is drawn solid, because its dashes would be too fine to see.
     const MOST: usize = 100_000;
     let mut out: Vec<Vec<Point>> = Vec::new();
     let (mut turn, mut left) = (0, pattern[0]);
@@ -103,7 +103,7 @@ fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
         while length - done > left {
             done += left;
             let place = [a[0] + along[0] * done / length, a[1] + along[1] * done / length];
-            // An odd pattern swaps dash and gap each time round, as SVG has it.
+            // An odd pattern swaps dashes and gaps on each repetition, as in SVG.
             if turn % 2 == 0 {
                 current.push(place);
                 out.push(std::mem::take(&mut current));

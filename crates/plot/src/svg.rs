@@ -1,4 +1,4 @@
-//! A drawing as SVG 1.1.
+//! Output of a drawing as SVG 1.1.
 
 use crate::canvas::{Canvas, PartKind};
 use crate::color::Color;
@@ -9,7 +9,7 @@ use crate::write::png;
 use std::fmt::Write;
 
 impl Canvas {
-    /// The drawing as the text of an SVG file. It needs nothing beside it: text is drawn, pictures are within.
+    /// Returns the drawing as the text of a self-contained SVG file: text is drawn as strokes, and pictures are embedded.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let (width, height) = (number(self.width), number(self.height));
@@ -63,7 +63,7 @@ impl Svg {
         format!("d{}", self.names)
     }
 
-    /// Name of the clip of that rectangle.
+    /// Returns the identifier of the clip path for this rectangle.
     fn clip(&mut self, rect: Rect) -> String {
         if let Some((_, id)) = self.clips.iter().find(|(known, _)| *known == rect) {
             return id.clone();
@@ -76,7 +76,7 @@ impl Svg {
 
     fn define_clip(&mut self, id: &str, polygon: &[Point]) {
         let way = path(&[polygon.to_vec()], true);
-        // Writing to a String cannot fail, here and below.
+        // Ignore the result: writing to a String cannot fail, here and below.
         let _ = writeln!(self.definitions, "<clipPath id=\"{id}\"><path d=\"{way}\"/></clipPath>");
     }
 
@@ -110,7 +110,7 @@ impl Svg {
     }
 
     fn picture(&mut self, polygon: &[Point], picture: &Picture, clip: &str) {
-        // A picture whose pixels do not fill it is not shown on pixels either.
+        // Skip a picture with a wrong number of pixels, as rasterization does.
         let Ok(bytes) = png(picture.rgb.as_flattened(), picture.width_px, picture.height_px) else { return };
         let id = self.name();
         self.define_clip(&id, polygon);
@@ -147,7 +147,7 @@ fn opacity(attribute: &str, color: Color) -> String {
     if color.opacity < 1.0 { format!(" {attribute}=\"{}\"", number(color.opacity)) } else { String::new() }
 }
 
-/// Hundredths are below what any screen shows.
+/// Formats a number with two decimals; smaller differences are not visible on any screen.
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -176,7 +176,7 @@ fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // XML has no way to write them.
+            // Replace control characters, which XML cannot represent.
             c if c.is_control() => out.push(' '),
             c => out.push(c),
         }
@@ -184,7 +184,7 @@ fn escaped(text: &str) -> String {
     out
 }
 
-/// RFC 4648, section 4.
+/// Encodes bytes as base 64 (RFC 4648, section 4).
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);

@@ -1,92 +1,92 @@
-//! Text as strokes.
+//! Text drawn as strokes.
 
 use crate::color::Color;
 use crate::font::{self, UNITS_PER_EM};
 use crate::geometry::{Point, Rect};
 
-/// Which part of a line of text lies at its place.
+/// The part of a line of text that lies at its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its beginning.
+    /// The start of the text.
     Start,
-    /// Its middle.
+    /// The middle of the text.
     Middle,
-    /// Its end.
+    /// The end of the text.
     End,
 }
 
-/// How text is drawn.
+/// Style of a line of text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextStyle {
-    /// Size of the em.
+    /// Size of the em, canvas units.
     pub size: f64,
     /// Color of the strokes.
     pub color: Color,
-    /// What part of it lies at its place, along the line; across, that is its base line.
+    /// Part of the text that lies at its point, along the line. Across the line the point is on the baseline.
     pub anchor: Anchor,
-    /// Turn counterclockwise, degrees: 90 reads upward.
+    /// Rotation counterclockwise, degrees: 90 reads upward.
     pub turn_deg: f64,
-    /// Width of the strokes against the regular one: 1.4 is bold.
+    /// Width of the strokes relative to the regular one: 1.4 is bold.
     pub weight: f64,
-    /// A rim about the strokes that keeps them clear of what lies below.
+    /// Color of a halo around the strokes that sets them off from what lies below.
     pub halo: Option<Color>,
 }
 
 impl TextStyle {
-    /// Regular text in ink, beginning at its place.
+    /// Creates a regular style in ink, with the text starting at its point. `size` is the em in canvas units.
     #[must_use]
     pub fn new(size: f64) -> Self {
         Self { size, color: Color::INK, anchor: Anchor::Start, turn_deg: 0.0, weight: 1.0, halo: None }
     }
 
-    /// The same in another color.
+    /// Returns this style with another color.
     #[must_use]
     pub fn color(self, color: Color) -> Self {
         Self { color, ..self }
     }
 
-    /// The same with its middle at its place.
+    /// Returns this style with the text centered at its point.
     #[must_use]
     pub fn middle(self) -> Self {
         Self { anchor: Anchor::Middle, ..self }
     }
 
-    /// The same with its end at its place.
+    /// Returns this style with the text ending at its point.
     #[must_use]
     pub fn end(self) -> Self {
         Self { anchor: Anchor::End, ..self }
     }
 
-    /// The same, turned counterclockwise.
+    /// Returns this style rotated counterclockwise, degrees.
     #[must_use]
     pub fn turned_deg(self, turn_deg: f64) -> Self {
         Self { turn_deg, ..self }
     }
 
-    /// The same with strokes of another width.
+    /// Returns this style with another relative width of the strokes.
     #[must_use]
     pub fn weight(self, weight: f64) -> Self {
         Self { weight, ..self }
     }
 
-    /// The same with a rim.
+    /// Returns this style with a halo of this color.
     #[must_use]
     pub fn halo(self, halo: Color) -> Self {
         Self { halo: Some(halo), ..self }
     }
 
-    /// Width of the pen on the canvas.
+    /// Width of the pen, canvas units.
     pub(crate) fn pen(&self) -> f64 {
         self.size / UNITS_PER_EM * font::PEN * self.weight
     }
 
-    /// How far the text's middle between base line and the top of capitals lies above its base line.
+    /// Half the height of capitals: how far the middle of a line of text lies above its baseline, canvas units.
     #[must_use]
     pub fn half_cap(&self) -> f64 {
         0.5 * font::CAP_HEIGHT / UNITS_PER_EM * self.size
     }
 
-    /// About the place of a line of text that is not turned: from the base line to the top of capitals.
+    /// Returns the approximate bounds of a line of text that is not rotated: from the baseline to the top of capitals.
     #[must_use]
     pub fn bounds(&self, at: Point, text: &str) -> Rect {
         let width = text_width(text, self.size);
@@ -102,7 +102,7 @@ impl TextStyle {
         }
     }
 
-    /// Ways of the pen for a line of text.
+    /// Returns the strokes of the pen for a line of text.
     pub(crate) fn strokes(&self, at: Point, text: &str) -> Vec<Vec<Point>> {
         let start = -text_width(text, self.size) * self.share();
         let turn = self.turn_deg.to_radians();
@@ -122,7 +122,7 @@ impl TextStyle {
     }
 }
 
-/// Size and height of a letter against those of the line.
+/// Size and height of a letter relative to the line.
 #[derive(Clone, Copy)]
 struct Level {
     size: f64,
@@ -133,7 +133,7 @@ const LINE: Level = Level { size: 1.0, rise: 0.0 };
 const RAISED: Level = Level { size: 0.68, rise: 0.34 };
 const LOWERED: Level = Level { size: 0.68, rise: -0.16 };
 
-/// The letters of a text: `_{...}` is lowered, `^{...}` raised, as in `n_{d}` and `10^{-3}`.
+/// Splits a text into letters. `_{...}` is a subscript and `^{...}` a superscript, as in `n_{d}` and `10^{-3}`.
 fn levels(text: &str) -> Vec<(char, Level)> {
     let mut out = Vec::new();
     let mut rest = text;
@@ -163,13 +163,13 @@ fn levels(text: &str) -> Vec<(char, Level)> {
     out
 }
 
-/// Width of a line of text of that em.
+/// Returns the width of a line of text whose em is `size`, in the same unit.
 #[must_use]
 pub fn text_width(text: &str, size: f64) -> f64 {
     levels(text).iter().map(|(letter, level)| font::glyph(*letter).advance * level.size * size / UNITS_PER_EM).sum()
 }
 
-/// The text without its marks, for a reader that cannot see it.
+/// Returns the text without its markup, for screen readers.
 pub(crate) fn plain(text: &str) -> String {
     levels(text).iter().map(|(letter, _)| letter).collect()
 }

@@ -1,17 +1,17 @@
-//! Round numbers along an axis.
+//! Round tick values along an axis.
 
-/// Places of ticks, and how to write them.
+/// The tick values of an axis and their number format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ticks {
-    /// Values, rising.
+    /// Tick values, rising.
     pub values: Vec<f64>,
-    /// From one to the next.
+    /// Difference between neighboring ticks.
     pub step: f64,
     decimals: usize,
 }
 
-/// About `count` round values from `low` to `high`: steps of 1, 2 or 5 times a power of ten. None for an empty or endless
-/// range.
+/// Returns about `count` round values from `low` to `high`, in steps of 1, 2 or 5 times a power of ten. An empty or infinite range gives
+/// none.
 #[must_use]
 pub fn nice_ticks(low: f64, high: f64, count: usize) -> Ticks {
     let none = Ticks { values: Vec::new(), step: 0.0, decimals: 0 };
@@ -31,7 +31,7 @@ pub fn nice_ticks(low: f64, high: f64, count: usize) -> Ticks {
 }
 
 impl Ticks {
-    /// How a value stands at the axis, with as many decimals as the step has.
+    /// Returns the label of a value, with as many decimals as the step has.
     #[must_use]
     pub fn label(&self, value: f64) -> String {
         let text = format!("{value:.*}", self.decimals);

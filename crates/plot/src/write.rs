@@ -1,4 +1,4 @@
-//! Figures as files.
+//! Writing of figures to files.
 
 use crate::canvas::Canvas;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -7,23 +7,23 @@ use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Pixels of a PNG a unit of the canvas: sharp on a screen of high density, and in print.
+/// Number of PNG pixels per canvas unit: sharp on a high-density screen and in print.
 const PIXELS_A_UNIT: f64 = 2.0;
 
-/// Kinds of files.
+/// File format of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Lines and areas, sharp at any size.
+    /// SVG: lines and areas, sharp at any size.
     Svg,
-    /// Two pixels a unit of the canvas.
+    /// PNG: two pixels per canvas unit unless another scale is given.
     Png,
 }
 
 impl Format {
-    /// By the ending of a file's name; case does not matter.
+    /// Returns the format for the extension of a file name, in upper or lower case.
     ///
     /// # Errors
-    /// [`PlotError::Ending`] for another.
+    /// [`PlotError::Ending`] for any other extension.
     pub fn of(path: &Path) -> Result<Self, PlotError> {
         match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
             Some("svg") => Ok(Self::Svg),
@@ -36,20 +36,20 @@ impl Format {
 /// A figure that could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
-    /// The ending of the file's name is not one that is known.
+    /// The extension of the file name is unknown.
     #[error("{}: a figure is written as .svg or .png", path.display())]
     Ending {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// The system refused.
+    /// The operating system refused.
     #[error(transparent)]
     Write(#[from] WriteError),
 }
 
 impl Canvas {
-    /// Writes the drawing as the file's ending says: `.svg`, or `.png` with two pixels a unit. The file appears under
-    /// its name only when it is whole.
+    /// Writes the drawing in the format of the file's extension: `.svg`, or `.png` with two pixels per canvas unit. The file appears under
+    /// its name only when it is complete.
     ///
     /// # Errors
     /// [`PlotError`].
@@ -57,7 +57,7 @@ impl Canvas {
         self.write_at(path, PIXELS_A_UNIT)
     }
 
-    /// The same with `scale` pixels a unit in a PNG.
+    /// Writes the drawing as [`Canvas::write`] does, but with `scale` pixels per canvas unit in a PNG.
     ///
     /// # Errors
     /// [`PlotError`].
@@ -66,7 +66,7 @@ impl Canvas {
         Ok(write_atomically(path, |file| Ok(file.write_all(&bytes?)?))?)
     }
 
-    /// The content of such a file, with `scale` pixels a unit in a PNG.
+    /// Returns the content of a file in this format, with `scale` pixels per canvas unit in a PNG.
     ///
     /// # Errors
     /// [`WriteFault::Format`]: the picture is too large for the encoder.
@@ -81,7 +81,7 @@ impl Canvas {
     }
 }
 
-/// An 8-bit RGB PNG.
+/// Encodes an 8-bit RGB PNG.
 pub(crate) fn png(rgb: &[u8], width_px: u32, height_px: u32) -> Result<Vec<u8>, ImageError> {
     let mut bytes = Vec::new();
     PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive).write_image(

@@ -20,7 +20,7 @@ fn main() -> Result<(), SessionError> {
     Ok(())
 }
 
-/// Mean squared step from pixel to pixel over the mean square: what is blurred has small steps.
+/// Returns the mean squared step from pixel to pixel over the mean square; a blurred picture has small steps.
 fn sharpness(exposure: &ExposureFrame) -> f64 {
     let values = &exposure.channels[0].values;
     let width = exposure.size.width_px as usize;

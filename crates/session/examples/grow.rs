@@ -6,7 +6,7 @@ use spectra_plugins as _;
 use spectra_session::{Control, Session, Threads};
 use std::io::Write;
 
-/// Columns of the terminal that the picture takes.
+/// Number of columns that the picture takes in the terminal.
 const COLUMNS: u32 = 96;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let threads = Threads(std::thread::available_parallelism()?.get());
     let all = u64::from(session.scene().render.samples);
     while session.samples() < all {
-        // Twice as many each time: the noise falls by the same part with every look.
+        // Doubles the samples each time, so that every look lowers the noise by the same factor.
         let more = session.samples().clamp(1, all - session.samples());
         session.step(more, &threads, &Control::new())?;
         let picture = session.develop()?.remove(0).1;
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The picture in colored half blocks.
+/// Draws the picture in colored half blocks.
 fn cells(picture: &DisplayPicture) -> String {
     let code = |linear: f32| {
         // The sRGB curve, IEC 61966-2-1.

@@ -1,22 +1,22 @@
-//! What a turn of a control costs the processor, in the engine alone: turns SCENE [EVENTS [ONLY]]
+//! Measures the processor time that a turn of a control costs in the engine alone: turns SCENE [EVENTS [ONLY]]
 //!
-//! Each event is done as the viewer does it, on one thread: a small draft is changed, made ready, traced and developed; then the whole
-//! picture is changed and gets its first sample. ONLY is a part of the names of the changes to be made. Times are those of the processor where
-//! the system tells them, else those of the clock.
+//! Each event is handled as the viewer does it, on one thread: a small draft is changed, prepared, traced and developed; then the
+//! whole picture is changed. ONLY is a part of the names of the changes to make. Times are processor times if the system reports
+//! them, otherwise wall-clock times.
 
 use spectra_core::Isa;
 use spectra_plugins as _;
 use spectra_session::{Alone, Control, Session};
 use std::time::Instant;
 
-/// Nanoseconds that this thread has run.
+/// Returns the time that this thread has run, in nanoseconds.
 fn cpu_ns(start: Instant) -> u128 {
     let said = std::fs::read_to_string("/proc/self/schedstat").ok();
     let own = said.as_deref().and_then(|text| text.split(' ').next()?.parse().ok());
     own.unwrap_or_else(|| start.elapsed().as_nanos())
 }
 
-/// Pseudo-random numbers of [0, 1), the same in every run.
+/// Pseudo-random numbers in [0, 1), the same in every run.
 struct Random(u64);
 
 impl Random {

@@ -1,4 +1,5 @@
-//! Films that an exposure leaves black or white all over, and those exposed for longer than anybody knows what they do.
+//! Warnings about films that an exposure leaves dark or saturated all over, and about exposures longer than a film's published
+//! data cover.
 
 use spectra_core::frame::ExposureFrame;
 use spectra_core::math::log2;
@@ -7,7 +8,8 @@ use spectra_core::shutter;
 use spectra_core::stage::Beyond;
 use spectra_scene::{Scene, SceneFilm, place_of_film};
 
-/// What is said of a scene's films of such a frame: at the exposure, with what to write in its place.
+/// Returns the warnings about films that a frame leaves dark or saturated, or whose exposure is longer than is known for them.
+/// Each warning points at the exposure in the scene and says what to write instead.
 pub(crate) fn beyond(scene: &Scene, exposure: &ExposureFrame) -> Vec<Warning> {
     let of = |(index, film): (usize, &SceneFilm)| {
         let own = film.exposure(exposure);
@@ -18,17 +20,20 @@ pub(crate) fn beyond(scene: &Scene, exposure: &ExposureFrame) -> Vec<Warning> {
         let gray_s = film.film.gray_time_s(&own)?;
         let stops = log2(time_s / gray_s);
         let text = format!(
-            "the film is {} nearly all over: {} is {:.0} stops {} than the time at which the mean of the frame is a mid gray",
-            if beyond == Beyond::Dark { "without light" } else { "saturated with light" },
+            "nearly the whole film is {}: {} is {:.0} stops {} than the time that makes the mean of the frame a mid gray",
+            if beyond == Beyond::Dark { "unexposed" } else { "saturated" },
             shutter::words(time_s),
             stops.abs(),
             if stops < 0.0 { "shorter" } else { "longer" }
         );
         let fault = scene.params.fault(&format!("{at}.{key}"), text);
         Some(Warning(fault.hint(if film.film.is_metered() {
-            format!("`compensation` in stops, such as `1` or `-1`; the time without it is {}", shutter::words(gray_s))
+            format!(
+                "set `compensation` in stops, such as `1` or `-1`; without it the time is {}",
+                shutter::words(gray_s)
+            )
         } else {
-            format!("`exposure: {}`, or `metering: average` in place of `exposure`", shutter::words(gray_s))
+            format!("write `exposure: {}`, or `metering: average` instead of `exposure`", shutter::words(gray_s))
         })))
     };
     let long = |(index, film): (usize, &SceneFilm)| {
@@ -36,7 +41,7 @@ pub(crate) fn beyond(scene: &Scene, exposure: &ExposureFrame) -> Vec<Warning> {
         let text = film.film.long_exposure_doubt(time_s)?;
         let fault = scene.params.fault(&place_of_film(film, index, &scene.params), text);
         Some(Warning(fault.hint(
-            "open the lens or light the scene for a time of a second at most; or state `reciprocity` in a stock of your own, `like` this one",
+            "open the aperture or add light until 1 s or less is enough; or state `reciprocity` in a stock of your own, `like` this one",
         )))
     };
     let films = || scene.films.iter().enumerate();

@@ -1,4 +1,4 @@
-//! Every picture of a series looked at, before any is rendered.
+//! Checks of every picture of a series before any is rendered.
 
 use crate::{SessionError, Workers};
 use spectra_core::Isa;
@@ -8,41 +8,41 @@ use spectra_scene::{Scene, Series, SeriesKind};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Most scenes that are assembled at one time.
+/// Largest number of scenes that are assembled at the same time.
 const AT_ONCE: usize = 8;
 
-/// How pictures are looked at.
+/// Settings for a check of the pictures of a series.
 #[derive(Clone, Copy)]
 pub struct Look<'a> {
-    /// Instruction set.
+    /// Instruction set that the pictures will be traced with.
     pub isa: Isa,
-    /// Who does it.
+    /// Threads that do the checks.
     pub workers: &'a dyn Workers,
-    /// Bytes of memory that can still be had, where that is known.
+    /// Bytes of memory that are still available, if known.
     pub memory_bytes: Option<u64>,
-    /// Hears how many were looked at, and of how many.
+    /// Progress callback: receives how many pictures have been checked, and how many there are.
     pub seen: &'a (dyn Fn(usize, usize) + Sync),
 }
 
-/// A series in which nothing is wrong.
+/// Result of checking a series that has no faults.
 #[derive(Clone, Debug, Default)]
 pub struct Checked {
-    /// What a person should know before believing its pictures, each once.
+    /// Warnings about the pictures, without duplicates.
     pub warnings: Vec<Warning>,
-    /// What is worth knowing of how they are taken, each once.
+    /// Notes on how the pictures are taken, without duplicates.
     pub notes: Vec<String>,
-    /// Bytes that its largest picture takes beyond the scene itself.
+    /// Bytes of memory that the largest picture needs beyond the scene itself.
     pub memory_bytes: u64,
 }
 
-/// Looks at every picture of a series.
+/// Checks every picture of a series.
 ///
 /// # Errors
-/// Everything that is wrong with any of them; a fault that several have is told once.
+/// Every fault of any picture. A fault that several pictures share is reported once.
 pub fn check(series: &Series, look: Look<'_>) -> Result<Checked, SessionError> {
     let all: Vec<usize> = (0..series.count()).collect();
     let keep = |_, scene: &Scene| {
-        // The pixels of large files are looked at where that is done once, not for a thousand pictures.
+        // Pixels of large files are checked only for a single picture, not for each of a thousand.
         if series.count() == 1 {
             scene.source.prepare()?;
         }
@@ -59,7 +59,7 @@ pub fn check(series: &Series, look: Look<'_>) -> Result<Checked, SessionError> {
     })
 }
 
-/// What several pictures have to say, each once.
+/// Returns the items without duplicates, in their order.
 pub(crate) fn each_once<'a, T: PartialEq>(all: impl Iterator<Item = &'a T>) -> Vec<&'a T> {
     let mut once: Vec<&T> = Vec::new();
     for one in all {
@@ -70,7 +70,7 @@ pub(crate) fn each_once<'a, T: PartialEq>(all: impl Iterator<Item = &'a T>) -> V
     once
 }
 
-/// Assembles and checks these pictures, and gives what `keep` makes of each.
+/// Assembles and checks these pictures of a series, and returns what `keep` makes of each.
 pub(crate) fn checked<T: Send>(
     series: &Series,
     indices: &[usize],
@@ -79,10 +79,10 @@ pub(crate) fn checked<T: Send>(
 ) -> Result<Vec<T>, SessionError> {
     let results: Vec<Mutex<Option<Result<T, SessionError>>>> = indices.iter().map(|_| Mutex::new(None)).collect();
     let (next, done, working) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicUsize::new(0));
-    // Pictures of a series mostly differ in little: what they share is made once a thread.
+    // Pictures of a series mostly differ in little: each thread makes the stages that they share once.
     let check = |index: usize, other: &mut Option<Arc<Scene>>| -> Result<T, SessionError> {
         let scene = Arc::new(series.looked_at(index, other.take())?);
-        // What shows only once the stages are put together.
+        // Finds the faults that show only once the stages are put together.
         Renderer::check(&scene, look.isa).map_err(|error| SessionError::of(&error, &scene))?;
         look.memory_bytes.map_or(Ok(()), |bytes| spectra_render::fits(&scene, bytes))?;
         let kept = keep(index, &scene);
@@ -126,7 +126,7 @@ pub(crate) fn checked<T: Send>(
     Err(SessionError::Faults(Faults(told.collect())))
 }
 
-/// A fault with the pictures that have it, where not all do.
+/// Returns the fault with the pictures that have it in its hint, unless all pictures have it.
 fn told(series: &Series, fault: Fault, members: &[usize], all: usize) -> Fault {
     let Some(first) = members.first().filter(|_| members.len() < all) else { return fault };
     let member = series.member(*first);

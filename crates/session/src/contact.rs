@@ -1,4 +1,4 @@
-//! The contact sheet: all pictures of a sweep, small, side by side.
+//! The contact sheet: thumbnails of all pictures of a sweep, side by side.
 
 use spectra_color::{Transfer, to_u8};
 use spectra_core::frame::DisplayPicture;
@@ -11,24 +11,24 @@ use std::io::Cursor;
 
 /// Space around and between the cells, pixels.
 const GAP: f64 = 18.0;
-/// Size of the letters, pixels.
+/// Font size of the labels, pixels.
 const LETTERS: f64 = 19.0;
-/// From one line of text to the next.
+/// Distance from one line of text to the next, pixels.
 const LINE: f64 = 28.0;
-/// The sheet is about so wide at most, pixels.
+/// Approximate largest width of the sheet, pixels.
 const WIDEST: f64 = 3600.0;
-/// Widest thumbnail, pixels, and the narrowest that is tried for.
+/// Largest width of a thumbnail, pixels, and the smallest that the layout allows.
 const THUMBNAIL: [f64; 2] = [480.0, 24.0];
-/// Narrowest cell: there is a label on it.
+/// Smallest width of a cell, pixels, so that a label fits.
 const CELL: f64 = 120.0;
-/// Most lines below a thumbnail.
+/// Largest number of lines below a thumbnail.
 const LINES: usize = 4;
-/// A little darker than a screen's middle: neither whites nor blacks run into it.
+/// Background: a little darker than the middle of a screen, so that neither whites nor blacks blend into it.
 const GROUND: Color = Color::new(38, 38, 38);
 const LETTER: Color = Color::new(214, 214, 214);
 const EMPTY: Color = Color::new(52, 52, 52);
 
-/// A picture made small: sRGB.
+/// A downscaled picture, sRGB code values.
 #[derive(Clone, Debug)]
 struct Thumbnail {
     width_px: usize,
@@ -36,23 +36,23 @@ struct Thumbnail {
     rgb: Vec<[u8; 3]>,
 }
 
-/// Sheets, one for each film, in the making.
+/// Contact sheets under construction, one for each film.
 pub(crate) struct Contact {
     columns: usize,
     rows: usize,
-    /// Heads of the columns, and of the rows; empty where each cell has its own label.
+    /// Headings of the columns, and of the rows; empty if each cell has its own label.
     heads: [Vec<Vec<String>>; 2],
-    /// Labels below the cells; empty where rows and columns have heads.
+    /// Labels below the cells; empty if rows and columns have headings.
     labels: Vec<Vec<String>>,
-    /// Largest width and height of a thumbnail.
+    /// Largest width and height of a thumbnail, pixels.
     largest: [usize; 2],
-    /// By film: its name, and the cells.
+    /// Name of each film, and its cells.
     sheets: Vec<(Option<String>, Vec<Option<Thumbnail>>)>,
 }
 
 impl Contact {
-    /// A sheet for these pictures, which are about as large as `size_px`. A product of several paths has its last one
-    /// across and the others down; other sweeps are laid out in rows.
+    /// Lays out a sheet for these pictures, which are about as large as `size_px`. If several paths are swept as a product, the
+    /// last one runs across and the others down. Other sweeps fill rows.
     pub(crate) fn new(axes: &[SweptAxis], members: &[Member], size_px: [u32; 2]) -> Self {
         let names = short_names(members);
         let name =
@@ -84,14 +84,14 @@ impl Contact {
         let rows = members.len().div_ceil(columns);
         let [width, height] = size_px.map(|s| f64::from(s.max(1)));
         let room = (WIDEST / columns as f64 - GAP).clamp(THUMBNAIL[1], THUMBNAIL[0]).min(width);
-        // The canvas ends at 16384.
+        // The canvas is limited to 16384 pixels.
         let tallest = (15_000.0 / rows as f64 - GAP - LINE * LINES as f64).max(8.0);
         let width_px = room.min(tallest * width / height).max(1.0);
         let largest = [width_px, (width_px * height / width).max(1.0)].map(|s| s.round() as usize);
         Self { columns, rows, heads, labels, largest, sheets: Vec::new() }
     }
 
-    /// Puts the pictures of a member into its cells.
+    /// Puts the pictures of a member, one for each film, into its cells.
     pub(crate) fn put(&mut self, index: usize, pictures: &[Developed]) {
         for (film, picture) in pictures {
             let small = Thumbnail::of(picture, self.largest);
@@ -99,10 +99,10 @@ impl Contact {
         }
     }
 
-    /// A file that is larger than this is no picture of a sweep.
+    /// Largest picture file that is read, bytes; a larger one is not a picture of a sweep.
     pub(crate) const LARGEST_BYTES: u64 = 4 << 30;
 
-    /// The same from a file of earlier, where it can be read.
+    /// Puts a picture file from an earlier run into its cell, if the file can be read.
     pub(crate) fn put_file(&mut self, index: usize, film: Option<&str>, bytes: &[u8]) {
         let reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format();
         let read = reader.ok().and_then(|r| r.decode().ok()).map(image::DynamicImage::into_rgb16);
@@ -128,12 +128,12 @@ impl Contact {
         }
     }
 
-    /// Names of the films that there is a sheet for.
+    /// Names of the films that have a sheet.
     pub(crate) fn films(&self) -> Vec<Option<String>> {
         self.sheets.iter().map(|(film, _)| film.clone()).collect()
     }
 
-    /// Where the thumbnail of a member lies on the sheet, pixels: left and upper edge of the largest that there is room for.
+    /// Returns the left and upper edge, pixels, of the thumbnail of a member on the sheet.
     fn place(&self, index: usize) -> [f64; 2] {
         let (column, row) = (index % self.columns, index / self.columns);
         let [left, top] = self.margins();
@@ -141,7 +141,7 @@ impl Contact {
         [left + column as f64 * width, top + row as f64 * height]
     }
 
-    /// From cell to cell.
+    /// Returns the distance from cell to cell, pixels: across and down.
     fn pitch(&self) -> [f64; 2] {
         let lines = self.labels.iter().map(|l| l.len().min(LINES)).max().unwrap_or(0);
         let label = if lines > 0 { LINE * lines as f64 + 0.4 * GAP } else { 0.0 };
@@ -152,12 +152,12 @@ impl Contact {
         (self.largest[0] as f64).max(CELL).round()
     }
 
-    /// Height that the head of a row needs.
+    /// Returns the height that the heading of a row needs, pixels.
     fn row_head(&self) -> f64 {
         self.heads[1].iter().map(|l| l.len().min(LINES)).max().unwrap_or(0) as f64 * LINE
     }
 
-    /// From the edges of the sheet to the first cell.
+    /// Returns the distance from the edges of the sheet to the first cell, pixels: left and top.
     fn margins(&self) -> [f64; 2] {
         let widest = self.heads[1].iter().flatten().map(|text| text_width(text, LETTERS)).fold(0.0, f64::max);
         let left = if widest > 0.0 { (widest + GAP).min(420.0).round() } else { 0.0 };
@@ -208,17 +208,17 @@ impl Contact {
         canvas
     }
 
-    /// Writes the sheet of a film.
+    /// Writes the sheet of a film as PNG; does nothing if the film has none.
     ///
     /// # Errors
-    /// What the place that it goes to has.
+    /// The sheet cannot be drawn, or `out` cannot be written.
     pub(crate) fn write(&self, film: Option<&str>, title: &str, out: &mut dyn Out) -> Result<(), WriteFault> {
         let Some((_, cells)) = self.sheets.iter().find(|(name, _)| name.as_deref() == film) else { return Ok(()) };
         Ok(out.write_all(&self.draw(cells, title).to_bytes(Format::Png, 1.0)?)?)
     }
 }
 
-/// How many stand in a row, for about the shape of a page of pictures that are wider than high.
+/// Returns the number of columns that gives about the shape of a page for pictures in landscape format.
 fn in_rows(count: usize) -> usize {
     match count {
         0..=5 => count.max(1),
@@ -226,7 +226,7 @@ fn in_rows(count: usize) -> usize {
     }
 }
 
-/// Paths by their last key, where that tells them apart.
+/// Returns each path with its last key as a short name, or with the whole path if several end in that key.
 fn short_names(members: &[Member]) -> Vec<(String, String)> {
     let mut paths: Vec<&str> = members.iter().flat_map(|m| &m.values).map(|(path, _)| path.as_str()).collect();
     paths.sort_unstable();
@@ -239,9 +239,9 @@ fn short_names(members: &[Member]) -> Vec<(String, String)> {
     paths.iter().map(|path| ((*path).to_owned(), short(path))).collect()
 }
 
-/// A value in few characters: `f/2.828` for `f/2.82842712474619`.
+/// Shortens a value to about four digits: `f/2.828` for `f/2.82842712474619`.
 fn rounded(value: &str) -> String {
-    /// Shorter ones are shown as they were written.
+    /// Shorter values are shown as they were written.
     const SHORT: usize = 9;
     let figures = |v: f64| {
         let digits = (3 - log10(v.abs()).floor() as i64).clamp(0, 12) as usize;
@@ -262,9 +262,9 @@ fn rounded(value: &str) -> String {
     }
 }
 
-/// A text, cut where there is no room for it.
+/// Returns a text, cut off where the width, pixels, ends.
 fn fitting(text: &str, width: f64) -> String {
-    // No marks for raised and lowered letters in a user's text.
+    // Keeps the plot from reading `_{` and `^{` in a user's text as subscripts and superscripts.
     let text = text.replace("_{", "_ {").replace("^{", "^ {");
     if text_width(&text, LETTERS) <= width {
         return text;
@@ -277,7 +277,7 @@ fn fitting(text: &str, width: f64) -> String {
 }
 
 impl Thumbnail {
-    /// The picture as a screen shows it, made small: each pixel is the mean of the light of those that it covers.
+    /// Downscales the picture as a screen shows it: each pixel is the mean of the light of those that it covers.
     fn of(picture: &DisplayPicture, [width, height]: [usize; 2]) -> Self {
         let (from_width, from_height) = (picture.width_px as usize, picture.height_px as usize);
         let scale = (width as f64 / from_width as f64).min(height as f64 / from_height as f64).min(1.0);
@@ -302,7 +302,8 @@ impl Thumbnail {
     }
 }
 
-/// For each of `to` equal parts of `from` pixels: the first pixel that it covers, and the shares of it and those behind.
+/// Divides `from` pixels into `to` equal parts. Returns for each part the first pixel that it covers, and the weights of that
+/// pixel and the following ones.
 fn shares(from: usize, to: usize) -> Vec<(usize, Vec<f64>)> {
     let size = from as f64 / to as f64;
     let part = |at: usize| {
@@ -325,14 +326,14 @@ mod tests {
         DisplayPicture { width_px, height_px, rgb }
     }
 
-    /// A checkerboard of black and white is half the light, code value 188, and not 128.
+    /// A checkerboard of black and white averages to half the light, code value 188, not 128.
     #[test]
     fn light_is_averaged_and_not_code_values() {
         let board = picture(40, 20, |x, y| ((x + y) % 2) as f32);
         let small = Thumbnail::of(&board, [10, 10]);
         assert_eq!((small.width_px, small.height_px), (10, 5));
         assert!(small.rgb.iter().all(|p| *p == [188; 3]), "{:?}", small.rgb);
-        // What a screen clips, counts as clipped.
+        // Values that a screen clips count as clipped.
         let bright = picture(4, 4, |x, _| if x % 2 == 0 { 9.0 } else { -1.0 });
         assert!(Thumbnail::of(&bright, [2, 2]).rgb.iter().all(|p| *p == [188; 3]));
     }

@@ -1,6 +1,7 @@
-//! A film stock as a 3-D look-up table for other programs: from the light of the scene to the picture, color by color.
+//! A film stock as a 3-D look-up table for other programs: from scene light to the picture, color by color.
 //!
-//! What needs a pixel's neighbors cannot be in it: scatter, halation, adjacency, grain, and the lens of the printer or scanner.
+//! The table leaves out effects that need a pixel's neighbors: scatter, halation, adjacency, grain, and the lens of the printer
+//! or scanner.
 
 use crate::still::{F_NUMBER, WHITE_CD_M2};
 use crate::{SessionError, Setting};
@@ -19,66 +20,66 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// What is tabulated, and how finely.
+/// A 3-D look-up table to compute: film, light and resolution.
 #[derive(Clone, Debug)]
 pub struct Cube {
-    /// What the film section of a scene says, such as `film.stock`.
+    /// Settings of the film section of a scene, such as `film.stock`.
     pub settings: Vec<Setting>,
-    /// The light of the scene, by name.
+    /// Name of the light of the scene.
     pub illuminant: Setting,
-    /// Points along each side.
+    /// Number of points along each side.
     pub size: usize,
-    /// Stops from one end of a side to the other, half of them above mid gray.
+    /// Range of a side in stops, half of them above mid gray.
     pub stops: f64,
 }
 
-/// How far a table is from the film that it was made of, CIEDE2000 of the pictures.
+/// Errors of a table against the film that it was computed from, CIEDE2000 between the pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeErrors {
-    /// Of [`RANDOM_COLORS`] colors of a screen, read as pictures are: mean, 95th percentile, largest.
+    /// Errors for [`RANDOM_COLORS`] random screen colors, read as picture files are: mean, 95th percentile, largest.
     pub colors: [f64; 3],
-    /// Of the 24 patches of a ColorChecker, by their measured reflectances on the film and by their colors in the table: mean,
-    /// largest.
+    /// Errors for the 24 patches of a ColorChecker, mean and largest: the film sees their measured reflectances, the table their
+    /// colors.
     pub reflectances: [f64; 2],
 }
 
-/// A table, written out.
+/// A computed look-up table, as text.
 #[derive(Clone, Debug)]
 pub struct CubeFile {
-    /// The content of the `.cube` file.
+    /// Content of the `.cube` file.
     pub text: String,
-    /// What the film is.
+    /// Description of the film.
     pub film: String,
-    /// How far it is from the film.
+    /// Errors of the table against the film.
     pub errors: CubeErrors,
 }
 
-/// Colors by which a table is judged.
+/// Number of random colors that a table is tested with.
 pub const RANDOM_COLORS: usize = 10_000;
 /// Linear light of a mid gray.
 const GRAY: f64 = 0.18;
 
-/// The film, and what it gets of colors.
+/// The film, and the color model that exposes it.
 pub(crate) struct Chain {
     film: Box<dyn Film>,
     model: Box<dyn ColorModel>,
     channels: Vec<Channel>,
-    /// Exposure per integral over the model's spectra.
+    /// Exposure, lx s, per integral over the model's spectra.
     factor: f64,
-    /// What the meter gets of a mid gray.
+    /// Exposure of each channel by a mid gray, which the meter sees.
     pub(crate) metered: Vec<f64>,
 }
 
 impl Cube {
-    /// Computes the table; `version` is said in its header.
+    /// Computes the table. `version` is written into its header.
     ///
     /// # Errors
-    /// What is wrong with the settings; the film cannot be developed.
+    /// Faults of the settings; a film that cannot be developed.
     pub fn file(&self, version: &str) -> Result<CubeFile, SessionError> {
         let chain = Chain::of(&self.settings, &self.illuminant)?;
         let side: Vec<f64> = (0..self.size).map(|i| self.linear(i as f64 / (self.size - 1) as f64)).collect();
         let mut lattice = Vec::with_capacity(self.size * self.size * self.size);
-        // Red runs fastest (the order of `.cube`).
+        // Red varies fastest, as in every `.cube` file.
         for b in &side {
             for g in &side {
                 lattice.extend(side.iter().map(|r| [*r, *g, *b]));
@@ -96,17 +97,17 @@ impl Cube {
         Ok(CubeFile { text, film, errors })
     }
 
-    /// Linear light at a place from 0 to 1 along a side.
+    /// Returns the linear light at a place from 0 to 1 along a side.
     fn linear(&self, place: f64) -> f64 {
         GRAY * pow(2.0, (place - 0.5) * self.stops)
     }
 
-    /// Its inverse, within the table.
+    /// Returns the place from 0 to 1 along a side of some linear light; values outside the table get its ends.
     fn place(&self, linear: f64) -> f64 {
         if linear <= 0.0 { 0.0 } else { (0.5 + log2(linear / GRAY) / self.stops).clamp(0.0, 1.0) }
     }
 
-    /// Interpolates the table as other programs do: linear along each side.
+    /// Interpolates the table trilinearly, as other programs do.
     fn at(&self, points: &[[f64; 3]], rgb: [f64; 3]) -> [f64; 3] {
         let cells = rgb.map(|v| {
             let p = self.place(v) * (self.size - 1) as f64;
@@ -156,7 +157,7 @@ impl Cube {
         Ok(CubeErrors { colors, reflectances: [mean(&off), largest(&off)] })
     }
 
-    /// How much the table's picture of colors differs from another.
+    /// Returns the CIEDE2000 difference of each color between the table's picture and `pictures`, sRGB encoded.
     fn differences(&self, points: &[[f64; 3]], colors: &[[f64; 3]], pictures: &[[f64; 3]]) -> Vec<f64> {
         let space = RgbSpace::srgb();
         let look = |encoded: [f64; 3]| lab(space.to_xyz(space.decode(encoded)), space.white_xyz());
@@ -176,12 +177,12 @@ impl Cube {
         format!(
             "TITLE \"{title}\"\n\
              # spectra {version}: {title}\n\
-             # Input: linear light x of the scene in sRGB (Rec. 709) primaries, 0.18 a mid gray as metered, in a logarithm:\n\
-             #   value = 0.5 + log2(x / 0.18) / {stops}, {half} stops to either side of mid gray. OpenColorIO: a file of this table after\n\
+             # Input: logarithm of linear scene light x in sRGB (Rec. 709) primaries, where 0.18 is mid gray as metered:\n\
+             #   value = 0.5 + log2(x / 0.18) / {stops}, {half} stops to either side of mid gray. OpenColorIO: apply this file after\n\
              #   AllocationTransform {{allocation: lg2, vars: [{low:.6}, {high:.6}]}}.\n\
              # Scene light: {light}. Output: the picture, sRGB encoded, 0 to 1.\n\
-             # Left out, since it needs the neighbors of a pixel: scatter, halation, adjacency, grain, the lens of printer or scanner.\n\
-             # Error against the film without these, linear interpolation, CIEDE2000: {count} random colors of a screen mean {mean:.2},\n\
+             # Left out, because it needs the neighbors of a pixel: scatter, halation, adjacency, grain, the lens of printer or scanner.\n\
+             # Error against the film without these, linear interpolation, CIEDE2000: {count} random screen colors mean {mean:.2},\n\
              #   95 % below {p95:.2}, largest {most:.2}; ColorChecker by measured reflectances mean {patches:.2}, largest {worst:.2}.\n\
              LUT_3D_SIZE {size}\nDOMAIN_MIN 0.0 0.0 0.0\nDOMAIN_MAX 1.0 1.0 1.0\n",
             stops = self.stops,
@@ -194,7 +195,8 @@ impl Cube {
 }
 
 impl Chain {
-    /// The film of these settings, metered for a mid gray in the light `illuminant`; what needs a pixel's neighbors is off.
+    /// Builds the film of these settings, metered for a mid gray in the light `illuminant`. Effects that need a pixel's neighbors
+    /// are off.
     pub(crate) fn of(settings: &[Setting], illuminant: &Setting) -> Result<Self, Faults> {
         const MADE: &str = "--made";
         let resources = FileResources::beside(Path::new(""));
@@ -207,8 +209,9 @@ impl Chain {
             let node = faults.take(yaml::parse(SourceFile::new(setting.said.as_str(), setting.value.as_str())));
             if let Some(node) = node {
                 if setting.path == "film.paper.grade" && node.as_str() == Some("auto") {
-                    let fault = node.fault("an automatic print suits each frame, and a table is the same for all");
-                    faults.push(fault.hint("a grade from 0 to 5"));
+                    let fault =
+                        node.fault("an automatic grade differs from frame to frame, but a table is the same for all");
+                    faults.push(fault.hint("write a grade from 0 to 5"));
                 }
                 faults.take(root.set_path(&setting.path, node));
             }
@@ -235,17 +238,17 @@ impl Chain {
         Ok(chain)
     }
 
-    /// The picture of lights, sRGB encoded, 0 to 1.
+    /// Returns the picture of each light, sRGB encoded, 0 to 1.
     fn shown_of(&self, lights: impl Iterator<Item = SpectralPower>) -> Result<Vec<[f64; 3]>, SessionError> {
         self.shown(&lights.map(|light| self.seen(&light)).collect::<Vec<_>>())
     }
 
-    /// What each channel gets of a light.
+    /// Returns the exposure of each channel by a light, lx s.
     pub(crate) fn seen(&self, light: &SpectralPower) -> Vec<f64> {
         self.channels.iter().map(|channel| self.factor * light.seen_by(&channel.response)).collect()
     }
 
-    /// The picture of what each channel got, sRGB encoded, 0 to 1. The meter saw mid gray.
+    /// Returns the picture of each set of channel exposures, sRGB encoded, 0 to 1. The meter sees mid gray.
     fn shown(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
         let picture = self.film.develop(&self.frame(exposures)).map_err(SessionError::Failed)?;
         let space = RgbSpace::srgb();
@@ -253,7 +256,8 @@ impl Chain {
         Ok(picture.rgb.iter().map(encoded).collect())
     }
 
-    /// The same in linear light of sRGB primaries, brought into no gamut as far as the film knows such a picture.
+    /// Returns the picture of each set of channel exposures in linear light of sRGB primaries, not compressed into a gamut if the
+    /// film can give such a picture.
     pub(crate) fn open(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
         let wanted = Wanted { open: true, ..Wanted::default() };
         let finished = self.film.finish(&self.frame(exposures), wanted).map_err(SessionError::Failed)?;
@@ -261,7 +265,7 @@ impl Chain {
         Ok(picture.rgb.iter().map(|rgb| rgb.map(f64::from)).collect())
     }
 
-    /// A row of pixels with what each channel got.
+    /// Returns a frame of one row, with a pixel for each set of channel exposures. Channels of the meter hold mid gray.
     fn frame(&self, exposures: &[Vec<f64>]) -> ExposureFrame {
         let pictured = self.film.picture_channels();
         let plane = |k: usize| -> Vec<f32> {

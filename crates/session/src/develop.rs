@@ -1,8 +1,9 @@
-//! A film developed from a picture file, or from many, without a scene file: the scene is made here.
+//! Development of a film from one or many picture files, without a scene file: the scene is made here.
 //!
-//! The picture fills the frame: of the format's frame the largest part that has the picture's shape. White has a luminance of
-//! 5000 cd/m2, as in daylight under clouds, which is short enough an exposure for any film. A photograph, a file of integers, is exposed as it
-//! was taken, once its camera's tone curve is taken back; light in floating point is metered as cameras do.
+//! The picture fills the frame, which is the largest part of the format's frame that has the picture's shape. White has a
+//! luminance of 5000 cd/m2, as in daylight under clouds; that allows an exposure short enough for any film. A photograph (a file
+//! of integers) is exposed as it was taken, after its camera's tone curve is removed. Light in floating point is metered as
+//! cameras do.
 
 use crate::made::{MADE, of_nobody};
 use crate::run::{fits, picture};
@@ -21,76 +22,78 @@ use spectra_scene::{FileResources, FilmTime, NO_LENS, Output, Series, document, 
 use std::path::Path;
 use std::sync::Arc;
 
-/// A value of the scene that somebody states.
+/// A value of the scene that the user sets.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// Where it stands in a scene, such as `film.stock`.
+    /// Path of the value in a scene, such as `film.stock`.
     pub path: String,
-    /// The value as it would be written there.
+    /// The value as it would be written in a scene.
     pub value: String,
-    /// What the person wrote, for messages: `--stock tri-x`.
+    /// The user's own words, for messages: `--stock tri-x`.
     pub said: String,
 }
 
-/// A picture to develop, and what becomes of it.
+/// A picture to develop, and the file to write.
 #[derive(Clone, Debug)]
 pub struct Plate {
-    /// Its file.
+    /// Picture file to develop.
     pub file: String,
-    /// The file that is written, in the folder of the host.
+    /// File to write, in the folder of the host.
     pub output: String,
-    /// Its number, if it has one, as one of several or by its name: each has grain of its own by it.
+    /// Number of the picture in a sequence or in its file name, if it has one. Each number has grain of its own.
     pub number: Option<u64>,
 }
 
-/// What is to be developed, and how.
+/// Pictures to develop, and how to develop them.
 pub struct Develop<'a> {
-    /// The pictures, in their order.
+    /// Pictures to develop, in order.
     pub plates: Vec<Plate>,
-    /// What the scene says. Where it names a lens (`lens.file`), rays are traced through it; otherwise the film gets the
+    /// Settings of the scene. If they name a lens (`lens.file`), rays are traced through it; otherwise the film is exposed to the
     /// picture's own pixels.
     pub settings: Vec<Setting>,
-    /// What is set on top of all that: texts `path=value`.
+    /// Values set on top of `settings`: texts `path=value`.
     pub overrides: Vec<String>,
-    /// The format that the frame is cut from; 135 if none is said.
+    /// Format that the frame is cut from; 135 if `None`.
     pub format: Option<Setting>,
-    /// Pixels along the longer side of the frame; those of the picture if none, or at most [`TRACED_PX`] through a lens.
+    /// Pixels along the longer side of the frame. If `None`, those of the picture, but at most [`TRACED_PX`] through a lens.
     pub side_px: Option<u32>,
-    /// Whether they are a series: of it only whole pictures are written, and one that fails does not stop the others.
+    /// Whether the pictures are a series. Of a series only complete pictures are written, and one that fails does not stop the
+    /// others.
     pub is_series: bool,
-    /// What is worth knowing of a series before any of it is developed.
+    /// Notes on a series, given before any of it is developed.
     pub notes: Vec<String>,
-    /// Whether each picture is metered; otherwise the first one is, for all.
+    /// Whether each picture is metered by itself. Otherwise the first one is metered for all.
     pub meter_each: bool,
-    /// Whether pictures whose files are there are left as they are.
+    /// Whether pictures whose files already exist are skipped.
     pub skip_existing: bool,
-    /// Instruction set.
+    /// Instruction set that rays are traced with.
     pub isa: Isa,
-    /// For the record: the version of the program.
+    /// Version of the program, for the record.
     pub version: &'a str,
-    /// For the record: the versions that a result depends on.
+    /// Versions that a result depends on, for the record.
     pub versions: Value,
-    /// The unit that a bare number at a path of a scene is read in.
+    /// Function that returns the unit of a bare number at a path of a scene.
     pub unit_of: &'a (dyn Fn(&str) -> Option<String> + Sync),
 }
 
-/// A photograph on a film, to be held as a [`Session`] and not only written: the scene is the one that [`develop`] makes of it.
+/// A photograph on a film, for use as a [`Session`] instead of only being written. The scene is the one that [`develop`] makes of
+/// it.
 #[derive(Clone, Debug)]
 pub struct Photograph {
     /// The picture; its output names the scene.
     pub plate: Plate,
-    /// What the scene says, as in [`Develop`].
+    /// Settings of the scene, as in [`Develop`].
     pub settings: Vec<Setting>,
-    /// The format that the frame is cut from; 135 if none is said.
+    /// Format that the frame is cut from; 135 if `None`.
     pub format: Option<Setting>,
 }
 
 impl Photograph {
-    /// The scene of it, with texts `path=value` on top. Without a lens ([`Series::is_without_lens`]) its film is exposed by
-    /// [`Session::expose`].
+    /// Returns the scene of the photograph, with texts `path=value` on top. Without a lens ([`Series::is_without_lens`]) its film
+    /// is exposed by [`Session::expose`].
     ///
     /// # Errors
-    /// Everything that is wrong with the picture's file or with what is set.
+    /// Every fault of the picture's file or of the settings.
     pub fn series(&self, overrides: &[String], isa: Isa) -> Result<Series, SessionError> {
         let job = Develop {
             plates: Vec::new(),
@@ -111,7 +114,7 @@ impl Photograph {
     }
 }
 
-/// The number that a name without its ending closes with; before a version, as in `plate.0007.v2`, where there is one.
+/// Returns the number at the end of a file name without its extension, or before a version at its end, as in `plate.0007.v2`.
 #[must_use]
 pub fn last_number(stem: &str) -> Option<u64> {
     let version = stem.rfind(['.', '_', '-']).filter(|at| {
@@ -124,44 +127,44 @@ pub fn last_number(stem: &str) -> Option<u64> {
     closing_number(stem)
 }
 
-/// The digits that a text closes with.
+/// Returns the number made of the digits at the end of a text.
 fn closing_number(stem: &str) -> Option<u64> {
     let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
     stem[stem.len() - digits..].parse().ok()
 }
 
-/// Whether a file is a picture by its ending.
+/// Returns whether a file is a picture that can be developed, by its extension.
 #[must_use]
 pub fn is_picture(file: &Path) -> bool {
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     ending.is_some_and(|ending| PICTURES.contains(&&*ending))
 }
 
-/// Endings of pictures that can be developed.
+/// File extensions of pictures that can be developed.
 pub const PICTURES: [&str; 10] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "hdr", "dpx"];
 
-/// Pixels along the longer side of a frame that rays are traced for, where nobody says how many.
+/// Pixels along the longer side of a traced frame if the user gives no number.
 pub const TRACED_PX: u32 = 1920;
 
-/// A file of one picture, bytes; the limit of `source: picture`.
+/// Largest picture file that is read, bytes; the same limit as for `source: picture`.
 const MAX_BYTES: u64 = 1 << 30;
-/// Keys of the film that find the exposure; where it is known they are left out.
+/// Keys of the film that control metering; left out if the exposure is already known.
 const METERING: [&str; 3] = ["film.metering", "film.spot", "film.compensation"];
 
-/// Keys of a lens that do nothing where there is none; its filters stand before the film all the same.
+/// Keys of a lens that have no effect without a lens. Its filters are not among them: they act on the film without a lens, too.
 const IDLE: [&str; 3] = ["lens.f-number", "lens.focus", "lens.aperture"];
 
-/// Whether a path is of [`IDLE`].
+/// Returns whether a path belongs to [`IDLE`].
 fn is_idle(path: &str) -> bool {
     IDLE.iter().any(|key| path.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with('.')))
 }
 
-/// How the file of a picture ends, such as `png`, where `output` is set among `overrides` (texts `path=value`).
+/// Returns the extension of the picture file, such as `png`, if `output` is set among `overrides` (texts `path=value`).
 ///
 /// # Errors
-/// No picture is among the outputs, or more than one file.
+/// `output` names a file that is not a picture, or more than one file.
 pub fn picture_ending(overrides: &[String]) -> Result<Option<String>, Fault> {
-    // What cannot be read is told of where the scene is read.
+    // A value that cannot be read is reported when the scene is read.
     let set =
         overrides.iter().rev().filter_map(|text| yaml::parse_override(text).ok()).find(|set| set.path == "output");
     let Some(yaml::Override { node, .. }) = set else { return Ok(None) };
@@ -179,28 +182,29 @@ pub fn picture_ending(overrides: &[String]) -> Result<Option<String>, Fault> {
         }
         [] => Ok(None),
         [ending] => {
-            let text = format!("`film develop` writes pictures, and {ending} is none");
+            let text = format!("`film develop` writes pictures, but {ending} is not a picture");
             Err(node.fault(text).hint("`--set output=[png]`, or tiff or exr"))
         }
         [first, ..] => {
-            let text = format!("one file is written of a picture, and these are {}", endings.join(", "));
-            let hint =
-                format!("leave one, or say at `-o` which: `-o out/picture{first}`, of a sequence `-o out/####{first}`");
+            let text = format!("one file is written for each picture, but these are {}", endings.join(", "));
+            let hint = format!(
+                "keep one, or choose with `-o`: `-o out/picture{first}`, or `-o out/####{first}` for a sequence"
+            );
             Err(node.fault(text).hint(hint))
         }
     }
 }
 
-/// Develops all pictures.
+/// Develops all pictures of a job.
 ///
 /// # Errors
-/// [`SessionError`]; of several pictures, those that could be are developed all the same.
+/// [`SessionError`]; if one of several pictures fails, the others are developed all the same.
 pub fn develop(job: &Develop<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     match &job.plates[..] {
         [plate] if !job.is_series && !job.skip_existing => {
             one(job, plate, None, Unfinished::IsKept, host).map(|(ended, _)| ended)
         }
-        // Where a file that is there is skipped, it has to be whole.
+        // A file that is skipped if it exists must be complete, so an incomplete picture is not written.
         [plate] if !job.is_series => {
             host.hear(Event::Picture(Some(place(plate, 0, 1))));
             if is_there(plate, 0, 1, host) {
@@ -212,33 +216,33 @@ pub fn develop(job: &Develop<'_>, host: &dyn Host) -> Result<Ended, SessionError
     }
 }
 
-/// Which of how many pictures it is.
+/// Returns the number and the position of a picture among all.
 fn place(plate: &Plate, index: usize, of: usize) -> Place {
     let number = plate.number.unwrap_or(index as u64 + 1);
     Place { number: u32::try_from(number).unwrap_or(u32::MAX), index, of }
 }
 
-/// Whether a picture's file is there; says so.
+/// Returns whether a picture's file already exists, and reports it if so.
 fn is_there(plate: &Plate, index: usize, of: usize, host: &dyn Host) -> bool {
     let is_there = host.folder().has(&plate.output);
     if is_there {
         let shown = host.folder().shown(&plate.output);
         host.hear(Event::Series(
-            &format!("{} of {of}: {} is there", index + 1, words::files(std::slice::from_ref(&shown))),
+            &format!("{} of {of}: {} already exists", index + 1, words::files(std::slice::from_ref(&shown))),
             &json!({ "event": "kept", "files": [shown] }),
         ));
     }
     is_there
 }
 
-/// Develops pictures one by one.
+/// Develops pictures one after another.
 fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, SessionError> {
     let begun_s = host.now_s();
     host.hear(Event::Series(
         &format!(
             "{}, {}",
             words::counted(plates.len() as u64, "picture"),
-            if job.meter_each { "each metered" } else { "exposed as the first is" }
+            if job.meter_each { "each metered" } else { "exposed like the first" }
         ),
         &json!({ "event": "series", "pictures": plates.len(), "metered": if job.meter_each { "each" } else { "first" } }),
     ));
@@ -246,7 +250,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
         host.hear(Event::Note(note));
     }
     let (mut metered, mut done, mut failed) = (None, 0, Vec::new());
-    // An exposure that is stated is not metered.
+    // A stated exposure is not metered.
     let mut meters = !job.meter_each;
     let mut ended = Ended::Whole;
     for (index, plate) in plates.iter().enumerate() {
@@ -269,7 +273,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             }
             if metered.is_none() {
                 let text = format!(
-                    "`{}` sets the exposure in place of the first picture, and those after it are exposed as it is",
+                    "`{}` sets the exposure instead of the first picture; those after it are exposed like it",
                     plate.file
                 );
                 host.hear(Event::Warning(&Warning::from(text)));
@@ -286,13 +290,13 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
                 metered = metered.or_else(|| times.into_iter().find(|time| time.is_metered));
                 meters &= metered.is_some();
             }
-            // What is wrong with the settings is wrong with every picture.
+            // A fault of the settings affects every picture.
             Err(SessionError::Faults(faults)) if faults.iter().any(|fault| fault.place.is_some()) => {
                 return Err(faults.into());
             }
             Err(error @ SessionError::Request(_)) => return Err(error),
             Err(error) => {
-                host.hear(Event::Warning(&Warning::from(format!("`{}` is not developed: {error}", plate.file))));
+                host.hear(Event::Warning(&Warning::from(format!("`{}` was not developed: {error}", plate.file))));
                 failed.push((plate.file.clone(), error.to_string()));
             }
         }
@@ -309,16 +313,16 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
     ));
     match &failed[..] {
         [] => Ok(ended),
-        [(file, why)] => Err(SessionError::Failed(format!("`{file}` is not developed: {why}"))),
-        // The cause of the first, since it may be that of all, and warnings may be silent.
+        [(file, why)] => Err(SessionError::Failed(format!("`{file}` was not developed: {why}"))),
+        // Gives the cause of the first failure: all may have the same one, and warnings may be turned off.
         [(file, why), ..] => {
-            Err(SessionError::Failed(format!("{} pictures are not developed: `{file}`: {why} ...", failed.len())))
+            Err(SessionError::Failed(format!("{} pictures were not developed: `{file}`: {why} ...", failed.len())))
         }
     }
 }
 
-/// What the camera metered of a picture that is there already; `None` where it cannot be read, or tracing stops. Through a lens it is
-/// traced as it was then: less light would meter it otherwise in the last digits.
+/// Meters a picture whose file already exists. Returns `None` if it cannot be read, or if tracing stops. Through a lens it is
+/// traced with all samples, because fewer would change the last digits of the metered time.
 fn meter(job: &Develop<'_>, plate: &Plate, host: &dyn Host) -> Option<FilmTime> {
     let (series, light) = scene(job, plate, None).ok()?;
     let mut session = Session::of_series(series, 0, job.isa).ok()?;
@@ -327,7 +331,7 @@ fn meter(job: &Develop<'_>, plate: &Plate, host: &dyn Host) -> Option<FilmTime> 
         LightFrom::Rays if !session.scene().films.iter().any(|film| film.film.is_metered()) => return None,
         LightFrom::Rays => {
             fits(&session, host).ok()?;
-            host.hear(Event::Note(&format!("`{}` is traced once more, to expose the others as it was", plate.file)));
+            host.hear(Event::Note(&format!("`{}` is traced once more, to expose the others like it", plate.file)));
             let control = host.control();
             session.prepare(host.workers()).ok()?;
             Taken::of(&mut session, host, &control, Unfinished::IsLeftOut).ok()?.rendering
@@ -337,7 +341,7 @@ fn meter(job: &Develop<'_>, plate: &Plate, host: &dyn Host) -> Option<FilmTime> 
     session.scene().film_times(&exposure).into_iter().find(|time| time.is_metered)
 }
 
-/// Develops a picture, exposed as another one was metered if that is said.
+/// Develops a picture, with the exposure metered on another one if `metered` is given.
 fn one(
     job: &Develop<'_>,
     plate: &Plate,
@@ -347,7 +351,7 @@ fn one(
 ) -> Result<(Ended, Vec<FilmTime>), SessionError> {
     let (series, light) = scene(job, plate, metered).map_err(of_nobody)?;
     let of_picture = Names::of_picture(Path::new(&plate.output));
-    let none = || SessionError::Request(format!("{}: no picture is written with that ending", plate.output));
+    let none = || SessionError::Request(format!("{}: a picture cannot be written with this ending", plate.output));
     let job = Job {
         series: &series,
         light,
@@ -367,7 +371,7 @@ fn one(
     })
 }
 
-/// The scene of a picture, and where its light comes from.
+/// Returns the scene of a picture, and where its light comes from.
 fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result<(Series, LightFrom), Faults> {
     let files = FileResources::beside(Path::new(""));
     let is_of_meter = |path: &str| METERING.iter().any(|key| path == *key || path.starts_with(&format!("{key}.")));
@@ -392,7 +396,7 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
     let header = header_of(&plate.file, layer, &files)?;
     let [width_mm, height_mm] = frame_mm(job.format.as_ref(), &header, &files)?;
     let [across, down] = pixels(job, &header, has_lens)?;
-    // The pixels are square to the last digit, however whole their numbers are.
+    // Makes the pixels square to the last digit, although their numbers are rounded to integers.
     let height_mm =
         if job.side_px.is_some() || has_lens { width_mm * f64::from(down) / f64::from(across) } else { height_mm };
 
@@ -412,16 +416,16 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
     ];
     match metered {
         Some(time) => made.push(("film.exposure", format!("{} s", time.time_s))),
-        // Who states a time wants that one; who meters beside it is told that one of them has no effect.
+        // A stated time is used as it is. If metering is stated as well, a warning says that one of the two has no effect.
         None if overrides.iter().any(|text| path_of(text) == "film.exposure") => {}
-        // Metered on request, photographs too, which are exposed as taken otherwise.
+        // Metering on request applies to photographs too, which are otherwise exposed as taken.
         None if job.meter_each => made.push(("film.metering", "camera".to_owned())),
         None => made.push(("film.exposure", "metered".to_owned())),
     }
     if has_lens {
         made.push(("render.noise", "1 %".to_owned()));
     }
-    // The name asks for the picture on film; the light before it is an output that somebody sets.
+    // An `.exr` name asks for the picture on film. The light before the film is written only if `output` is set.
     let is_exr = Path::new(&plate.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
     if is_exr && !overrides.iter().any(|text| path_of(text) == "output") {
         made.push(("output", "[{kind: exr, holds: picture}]".to_owned()));
@@ -444,7 +448,7 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
         faults.take(put(&mut root, &setting.path, &setting.value, &setting.said));
     }
     faults.into_result(())?;
-    // For the record: the scene as somebody would write it.
+    // The record holds the scene as a user would write it.
     root.file = Arc::new(SourceFile::new(MADE, document(&root)));
     let resources: Arc<dyn Resources> = Arc::new(files);
     let name = Path::new(&plate.output).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
@@ -457,7 +461,7 @@ fn put(root: &mut Node, path: &str, value: &str, said: &str) -> Result<(), Fault
     Ok(root.set_path(path, node)?)
 }
 
-/// Shape and kind of a picture file.
+/// Reads the size and kind of a picture file from its header.
 fn header_of(file: &str, layer: Option<&str>, files: &dyn Resources) -> Result<Header, Faults> {
     let found = files.find(file, &["scenes"], &[], MAX_BYTES).map_err(|error| {
         let hint = match &error {
@@ -471,7 +475,8 @@ fn header_of(file: &str, layer: Option<&str>, files: &dyn Resources) -> Result<H
         .map_err(|trouble| Fault::new(format!("picture `{file}`: {}", trouble.text)).hint(trouble.advice()).into())
 }
 
-/// The largest frame of the picture's shape that a format holds, on its side where the picture stands upright: width and height, mm.
+/// Returns the width and height, mm, of the largest frame of the picture's shape that a format holds, turned upright for an
+/// upright picture.
 fn frame_mm(format: Option<&Setting>, header: &Header, files: &dyn Resources) -> Result<[f64; 2], Faults> {
     let mut node = yaml::parse(SourceFile::new(MADE, "{kind: film, format: 135, resolution: 1}"))?;
     if let Some(setting) = format {
@@ -485,13 +490,13 @@ fn frame_mm(format: Option<&Setting>, header: &Header, files: &dyn Resources) ->
     Ok(if aspect > width / height { [width, width / aspect] } else { [height * aspect, height] })
 }
 
-/// Pixels across and down of the frame.
+/// Returns the number of pixels of the frame, across and down.
 fn pixels(job: &Develop<'_>, header: &Header, has_lens: bool) -> Result<[u32; 2], Faults> {
     let own = [header.width, header.height];
     if (header.pixel_aspect - 1.0).abs() > 0.01 && !has_lens && job.side_px.is_none() {
         let text =
-            format!("its pixels are {:.2} times as wide as high, and film needs square ones", header.pixel_aspect);
-        return Err(Fault::new(text).hint("`--side` with fewer pixels than the picture has").into());
+            format!("its pixels are {:.2} times as wide as high, but film needs square ones", header.pixel_aspect);
+        return Err(Fault::new(text).hint("set `--side` to fewer pixels than the picture has").into());
     }
     let upright = [f64::from(own[0]) * header.pixel_aspect.max(1.0), f64::from(own[1]) / header.pixel_aspect.min(1.0)];
     let longest = upright[0].max(upright[1]);

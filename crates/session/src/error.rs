@@ -1,39 +1,39 @@
-//! What can go wrong.
+//! Errors of a session.
 
 use spectra_core::params::{Fault, Faults};
 use spectra_core::sink::WriteFault;
 use spectra_render::RenderError;
 use spectra_scene::Scene;
 
-/// Why a session could not do what it should.
+/// Reasons why a session could not do what it was asked to.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
-    /// Everything that is wrong with the scene, each with its place.
+    /// Every fault of the scene, each with its place.
     #[error("{0}")]
     Faults(Faults),
-    /// What was asked for, this scene cannot have.
+    /// A request that does not fit this scene.
     #[error("{0}")]
     Request(String),
     /// The render failed.
     #[error("{0}")]
     Failed(String),
-    /// A file that could not be written.
+    /// A file could not be written.
     #[error("{file}: cannot be written: {fault}{kept}")]
     Unwritten {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// Why.
+        /// Reason why it could not be written.
         fault: WriteFault,
-        /// Where the light is kept instead, in words; empty where it is safe.
+        /// Message that says where the light was saved instead; empty if it is safe.
         kept: String,
     },
-    /// Light of a render that cannot be taken up.
+    /// Saved light of a render cannot be loaded.
     #[error("{0}")]
     Light(#[from] std::io::Error),
 }
 
 impl SessionError {
-    /// What the scene cannot have is a fault of the scene.
+    /// Converts a render error: to faults of the scene if the scene caused it, otherwise to [`Self::Failed`].
     pub(crate) fn of(error: &RenderError, scene: &Scene) -> Self {
         error.faults(scene).map_or_else(|| Self::Failed(error.to_string()), Self::Faults)
     }

@@ -5,26 +5,26 @@ use spectra_core::sink::{Sink, WriteFault};
 use spectra_scene::{Holds, Member, Output, Scene, Shot};
 use std::sync::Arc;
 
-/// What is written of one picture.
+/// Files to write for one picture.
 #[derive(Clone)]
 pub(crate) struct Files(Vec<File>);
 
 #[derive(Clone)]
 struct File {
     output: Arc<dyn Output>,
-    /// Of films side by side, which one.
+    /// Index of the film whose picture the file holds, among films side by side.
     film: usize,
     name: String,
 }
 
-/// A file that was not written, and why.
+/// A file that was not written, and the reason.
 type Unwritten = (String, WriteFault);
 
 impl Files {
-    /// The files of a picture.
+    /// Lists the files of a picture.
     ///
     /// # Errors
-    /// The scene cannot have the one that is asked for.
+    /// The scene cannot be written to the file that is asked for.
     pub(crate) fn of(names: &Names, scene: &Scene, member: &Member) -> Result<Self, SessionError> {
         let mut files = Vec::new();
         for output in names.outputs(scene)? {
@@ -43,20 +43,20 @@ impl Files {
         Ok(Self(files))
     }
 
-    /// Their names.
+    /// Names of the files.
     pub(crate) fn names(&self) -> Vec<String> {
         self.0.iter().map(|file| file.name.clone()).collect()
     }
 
-    /// The files that hold what a person looks at, one for each film.
+    /// Names of the files that hold the picture to look at, one for each film.
     pub(crate) fn shown(&self) -> Vec<String> {
         let first = self.0.iter().find(|file| file.output.holds() == Holds::Picture).map(|file| file.output.ending());
         let own = self.0.iter().filter(|file| Some(file.output.ending()) == first);
         own.map(|file| file.name.clone()).collect()
     }
 
-    /// Writes all of them. Where the system refuses one, the light is kept in another folder if there is one, and the error says
-    /// where.
+    /// Writes all files. If the system refuses one and no file holds the light, the light is saved in one of the `folders`, and
+    /// the error says where.
     pub(crate) fn write(
         &self,
         shot: &Shot<'_>,
@@ -64,7 +64,7 @@ impl Files {
         folders: Option<[&dyn Folder; 2]>,
     ) -> Result<(), SessionError> {
         let is_light = |file: &&File| file.output.holds() == Holds::Light;
-        // Pictures are developed and packed while the light behind them is.
+        // Pictures are developed and compressed in parallel with the light that they are made from.
         let (light, others) = rayon::join(
             || self.0.iter().filter(is_light).try_for_each(|file| file.write(shot, sink)),
             || self.0.iter().filter(|file| !is_light(file)).try_for_each(|file| file.write(shot, sink)),
@@ -90,7 +90,7 @@ impl File {
     }
 }
 
-/// Writes a report of what was rendered.
+/// Writes a report on a render as JSON.
 pub(crate) fn write_report(folder: &dyn Folder, file: &str, report: &serde_json::Value) -> Result<(), SessionError> {
     let text = format!("{report:#}\n");
     let written = folder.file(file, &mut |out| Ok(out.write_all(text.as_bytes())?));

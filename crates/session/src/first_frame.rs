@@ -1,20 +1,23 @@
-//! What the camera meters of the first frame of an animation, for all of its frames.
+//! Metering of an animation on its first frame, for all of its frames.
 //!
-//! A camera that meters each frame by itself makes a shot flicker with whatever moves through it. So the first frame is traced with few
-//! rays before any picture is made, and all frames, the first among them, are exposed as the meter has it there. Which frames are asked
-//! for does not matter: frame 17 alone has the exposure that it has in the whole shot.
+//! A camera that meters each frame by itself makes a shot flicker with whatever moves through it. The first frame is therefore
+//! traced with few rays before any picture is made, and all frames, including the first, are exposed as metered there. It does
+//! not matter which frames are asked for: frame 17 alone has the same exposure as in the whole shot.
 
 use crate::{Event, Host, Job, Session, SessionError};
 use spectra_core::params::Warning;
 use spectra_core::shutter;
 use spectra_scene::SeriesKind;
 
-/// Samples over the frame: the mean of an even one is known to about 0.1 %, that of a spot of a hundredth of it to about 1 %.
+/// Samples over the whole frame. They give the mean of an even frame to about 0.1 %, and of a spot of a hundredth of it to about
+/// 1 %.
 const SAMPLES: u64 = 1 << 21;
-/// A first frame that would be exposed for longer, s, is dark: nobody opens a shutter for an hour in each frame of a shot.
+/// Longest plausible exposure of the first frame, s. A longer one means a dark frame: nobody opens a shutter for an hour in each
+/// frame.
 const LONGEST_S: f64 = 3600.0;
 
-/// The series of a job with the exposures of its first frame where its films are metered on that; `None` where they are not.
+/// Returns the series of a job with the exposure metered on its first frame; `None` if its films are not metered on that frame,
+/// or if it has no light.
 pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_scene::Series>, SessionError> {
     let series = job.series;
     if !matches!(series.kind(), SeriesKind::Animation { .. }) || series.sets_exposures() {
@@ -38,7 +41,7 @@ pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_s
     }
     let rendering = session.look()?;
     let times = session.scene().film_times(&rendering.exposure);
-    // Where a meter sees no light it leaves the time as it is.
+    // A meter that sees no light leaves the time unchanged.
     if times.iter().any(|time| time.gain == 1.0 || time.time_s > LONGEST_S) {
         let text = "the first frame has no light to meter: each frame is metered by itself";
         host.hear(Event::Warning(&Warning::from(format!(
@@ -56,7 +59,7 @@ pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_s
         .collect();
     let words: Vec<String> = locked.iter().map(|(_, time_s)| shutter::words(*time_s)).collect();
     host.hear(Event::Note(&format!(
-        "metered on the first frame: {} for all frames (`film.meter: each` meters each by itself, and may flicker)",
+        "metered on the first frame: {} for all frames (`film.meter: each` meters each frame by itself, which may flicker)",
         words.join(", ")
     )));
     series.exposed_for(&locked).map(Some).map_err(SessionError::Faults)

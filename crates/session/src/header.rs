@@ -1,9 +1,9 @@
-//! What stands in the header of a picture's EXR.
+//! Attributes in the header of a picture's EXR.
 
 use spectra_core::frame::ExposureFrame;
 use spectra_scene::{FilmTime, Scene, SceneFilm};
 
-/// What is on the imager, in words.
+/// Describes the films on the imager, with their names if there are several; `None` if there is no film.
 pub fn films(scene: &Scene) -> Option<String> {
     let one =
         |f: &SceneFilm| f.name.as_ref().map_or_else(|| f.film.describe(), |n| format!("{n}: {}", f.film.describe()));
@@ -11,7 +11,7 @@ pub fn films(scene: &Scene) -> Option<String> {
     (!all.is_empty()).then(|| all.join("; "))
 }
 
-/// How long light fell on the film, s with all digits; of several films one each, by their names.
+/// Formats the exposure time of the film, s, with all digits; if there are several films, one time for each by name.
 fn exposure_times(scene: &Scene, times: &[FilmTime]) -> String {
     if times.is_empty() {
         return format!("{} s", scene.exposure_time_s());
@@ -23,11 +23,11 @@ fn exposure_times(scene: &Scene, times: &[FilmTime]) -> String {
     times.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// Where a pixel lies on the film, for whoever measures in the EXR.
+/// Explains where a pixel lies on the film, for users who measure in the EXR.
 const COORDINATES: &str = "upright picture; +x of the film is to the left, +y is down: column = (0.5 - x / width) * columns, \
                            row = (0.5 + y / height) * rows";
 
-/// Scene and lens, for the header of the EXR. Nothing here changes from run to run, nor with the number of threads.
+/// Describes scene and lens for the header of the EXR. The result is the same in every run and with any number of threads.
 pub(crate) fn attributes(
     scene: &Scene,
     exposure: &ExposureFrame,

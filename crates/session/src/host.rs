@@ -1,4 +1,8 @@
-//! What a program lends to a session, and hears of it.
+//! The interface that a program implements to run sessions: workers, folders, and events that it hears.
+//!
+//! The engine owns no threads, clock or disk. A program lends it threads ([`Workers`]), a [`Control`] that can stop it, a [`Sink`] that
+//! takes files by name, and for a whole job a [`Host`]. `spectra run` is such a host. Without threads, disk and clock (`Alone`, `Memory`) a
+//! render has the same bits.
 
 use crate::{Control, Report, Workers};
 use serde_json::Value;
@@ -8,106 +12,107 @@ use spectra_scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A picture among several.
+/// Position of a picture among several.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// Its number: in the sweep, or of the frame.
+    /// Number of the picture in the sweep, or number of the frame.
     pub number: u32,
-    /// How many are rendered before it.
+    /// Number of pictures that come before it.
     pub index: usize,
-    /// How many there are.
+    /// Number of pictures in all.
     pub of: usize,
 }
 
-/// What goes on.
+/// Progress and results of a job, as they happen.
 #[derive(Clone, Copy)]
 pub enum Event<'a> {
-    /// So many pictures of a series were looked at.
+    /// Some pictures of a series have been checked.
     Checked {
-        /// How many.
+        /// Number of pictures checked so far.
         done: usize,
-        /// Of how many.
+        /// Number of pictures in all.
         of: usize,
     },
-    /// The scene is right; where light passes its lens is searched, which takes seconds behind a drawing as aperture.
+    /// The scene has no faults. The search for where light passes the lens begins, which takes seconds if the aperture is a
+    /// drawing.
     Preparing,
-    /// Nothing is wrong: light is traced from now on.
+    /// All checks have passed; tracing comes next.
     Ready,
-    /// What a person should know before believing the picture.
+    /// A warning to consider before trusting the picture.
     Warning(&'a Warning),
-    /// What is worth knowing of how the scene is taken.
+    /// A note on how the scene is taken.
     Note(&'a str),
-    /// A remark on a series, in words and as data.
+    /// A remark on a series, as text and as data.
     Series(&'a str, &'a Value),
-    /// From now on it is this one of several pictures, or none any more.
+    /// The picture of a series that the following events are about; `None` after the last one.
     Picture(Option<Place>),
-    /// The light of a scene is traced.
+    /// Tracing of a scene has begun.
     Start(&'a Scene),
-    /// No more light is traced.
+    /// Tracing of the scene has ended.
     Traced,
     /// These files are complete.
     Written(&'a [String]),
-    /// A picture is done.
+    /// A picture is finished.
     Done {
-        /// How it came about.
+        /// Report on how the picture was made.
         report: &'a Report<'a>,
-        /// Whether somebody stopped it.
+        /// Whether the user stopped it.
         stopped: bool,
     },
 }
 
-/// Where files go, and may be already.
+/// A folder for results, which may already hold files.
 pub trait Folder: Sink {
-    /// Sees to it that such files can be written; `name` is that of the scene.
+    /// Makes sure that files of these names can be written. `name` is the name of the scene.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// The reason why they cannot, as text.
     fn prepare(&self, name: &str, files: &[&str]) -> Result<(), String>;
 
-    /// Whether a file is there, and not empty.
+    /// Returns whether a file exists and is not empty.
     fn has(&self, file: &str) -> bool;
 
-    /// Whether a file is the one at this path on disk, if it is there.
+    /// Returns whether a file exists and is the same as the one at this path on disk.
     fn is(&self, _file: &str, _path: &Path) -> bool {
         false
     }
 
-    /// The content of a file that is there and not larger than `most` bytes.
+    /// Returns the content of a file if it exists and has at most `most` bytes.
     fn read(&self, file: &str, most: u64) -> Option<Vec<u8>>;
 
-    /// How a file is named to a person.
+    /// Returns the name of a file as shown to the user.
     fn shown(&self, file: &str) -> String;
 }
 
 /// A program that has pictures rendered.
 pub trait Host: Sync {
-    /// Its threads.
+    /// The threads of the program.
     fn workers(&self) -> &dyn Workers;
 
-    /// How many they are, for the record.
+    /// Number of threads, for the record.
     fn threads(&self) -> usize;
 
-    /// What stops the next picture.
+    /// Returns the control that can stop the next picture.
     fn control(&self) -> Arc<Control>;
 
-    /// Whether somebody asked for an end.
+    /// Returns whether the user asked to stop.
     fn is_interrupted(&self) -> bool;
 
-    /// Whether no picture is to be begun any more: somebody asked for an end, or the time is up.
+    /// Returns whether no further picture may begin: the user asked to stop, or the time limit is reached.
     fn is_stopped(&self) -> bool;
 
-    /// Seconds since any moment.
+    /// Returns the time in seconds since an arbitrary moment.
     fn now_s(&self) -> f64;
 
-    /// Bytes of memory that can still be had, where that is known.
+    /// Bytes of memory that are still available, if known.
     fn memory_bytes(&self) -> Option<u64>;
 
-    /// Where results go.
+    /// The folder for results.
     fn folder(&self) -> &dyn Folder;
 
-    /// Where light is kept that could not go there.
+    /// The folder for light that could not be saved in [`Host::folder`].
     fn elsewhere(&self) -> &dyn Folder;
 
-    /// Hears what goes on, from any thread.
+    /// Receives an event, from any thread.
     fn hear(&self, event: Event<'_>);
 }

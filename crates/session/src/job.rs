@@ -1,51 +1,51 @@
-//! What is to be rendered, and how that ended.
+//! What to render, and how a job ended.
 
 use crate::Names;
 use serde_json::Value;
 use spectra_core::Isa;
 use spectra_scene::Series;
 
-/// What is to be rendered and written.
+/// A scene to render and write to files.
 pub struct Job<'a> {
     /// The scene with all its pictures.
     pub series: &'a Series,
-    /// Where the light comes from.
+    /// Source of the light.
     pub light: LightFrom,
-    /// Of several pictures, the places in the series of those that are wanted.
+    /// Indices in the series of the pictures to render, if there are several.
     pub chosen: Vec<usize>,
-    /// Whether pictures whose files are all there are left as they are.
+    /// Whether pictures whose files all exist already are skipped.
     pub skip_existing: bool,
-    /// What files are called.
+    /// Naming of the files.
     pub names: Names,
-    /// Instruction set.
+    /// Instruction set that rays are traced with.
     pub isa: Isa,
-    /// For the record: how the scene's file was named.
+    /// Name of the scene's file, for the record.
     pub scene_file: String,
-    /// For the record: what was set on top of it.
+    /// Values set on top of the scene, for the record.
     pub overrides: Vec<String>,
-    /// For the record: the version of the program.
+    /// Version of the program, for the record.
     pub version: &'a str,
-    /// For the record: the versions that a result depends on.
+    /// Versions that a result depends on, for the record.
     pub versions: Value,
-    /// The unit that a bare number at a path of a scene is read in.
+    /// Function that returns the unit of a bare number at a path of a scene.
     pub unit_of: &'a (dyn Fn(&str) -> Option<String> + Sync),
 }
 
-/// Where the light of a picture comes from.
+/// Source of the light of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightFrom {
     /// Rays through the lens.
     #[default]
     Rays,
-    /// The pixels of the scene's flat picture, as an ideal lens would image them: no ray is traced.
+    /// The pixels of the scene's flat picture, imaged by an ideal lens; no ray is traced.
     Pixels,
 }
 
 /// How a job ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// All is done.
+    /// Everything was done.
     Whole,
-    /// Somebody stopped it; what was done is written.
+    /// The user stopped the job; finished pictures are written.
     Stopped,
 }

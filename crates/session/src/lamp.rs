@@ -1,4 +1,4 @@
-//! Surfaces on a developed film, in one light or another.
+//! Pictures of surfaces on a developed film, in one light or another.
 
 use crate::cube::Chain;
 use crate::{SessionError, Setting};
@@ -6,25 +6,27 @@ use spectra_color::RgbSpace;
 use spectra_core::spectral::BAND;
 use spectra_spectrum::{Emission, Reflectance};
 
-/// Part of the light that a mid gray reflects.
+/// Fraction of the light that a mid gray reflects.
 const GRAY: f64 = 0.18;
 
-/// A film that is developed and printed, scanned or projected as it always is, whatever light its pictures are taken in.
+/// A film whose development and print, scan or projection stay the same, whatever light its pictures are taken in.
 pub struct FilmInLight(Chain);
 
 impl FilmInLight {
-    /// The film of these settings (`film.stock` and what else a scene's film may say); `made_for` names the light that it is made for.
+    /// Builds the film of these settings (`film.stock` and any other key of a scene's film). `made_for` names the light that the
+    /// film is made for.
     ///
     /// # Errors
-    /// What is wrong with the settings.
+    /// Faults of the settings.
     pub fn new(settings: &[Setting], made_for: &Setting) -> Result<Self, SessionError> {
         Ok(Self(Chain::of(settings, made_for)?))
     }
 
-    /// What the picture shows of surfaces in `light`: XYZ under D65, 1 for the Y of a screen's white. Filters on the camera take the cast
-    /// of the light away: a mid gray exposes each layer as it does in the light that the film is made for.
+    /// Returns the color of each surface in the picture taken in `light`: XYZ under D65, where Y of a screen's white is 1.
+    /// Filters on the camera remove the color cast of the light: a mid gray exposes each layer as in the light that the film is
+    /// made for.
     ///
-    /// `None` where a layer sees nothing of the light.
+    /// Returns `None` if a layer does not respond to the light.
     ///
     /// # Errors
     /// The film cannot be developed.

@@ -1,11 +1,11 @@
-//! A render as a thing one holds.
+//! Sessions: renders that a program holds, changes and continues.
 //!
-//! A [`Session`] has one picture of a scene: load it from a path, a text or a tree, let it trace some samples, look at what
-//! there is, change a value and go on with whatever that leaves, save the light and take it up again, develop it and write it
-//! to files. [`run()`] does all of that for every picture of a scene, as `spectra run` does.
+//! A [`Session`] holds one picture of a scene. Load it from a path, a text or a tree; trace some samples and look at the result.
+//! Change a value and continue with all results that the change leaves valid. Save the light and load it again, develop it, and
+//! write it to files. [`run()`] does all of that for every picture of a scene, as `spectra run` does.
 //!
-//! A session has no thread, clock, terminal or disk of its own: a program lends it workers, says when to stop, and takes its
-//! files; what a session has to say comes as values.
+//! A session has no thread, clock, terminal or disk of its own. A program lends it workers, tells it when to stop, and takes its
+//! files. Warnings, notes and results come back as values.
 //!
 //! ```no_run
 //! use spectra_session::{Alone, Control, Session};

@@ -1,21 +1,21 @@
-//! What the program writes into a scene by itself: a value that nobody wrote has no place to show.
+//! Scene values that the program writes by itself. Messages about them cannot show a place, because the user did not write them.
 
 use spectra_core::params::{Fault, Faults, Warning};
 
-/// What the made scene is called where a value is nobody's.
+/// Name of the generated scene, as the place of values that the user did not write.
 pub(crate) const MADE: &str = "--made";
 
-/// Faults, without the places of values that nobody wrote.
+/// Returns the faults without the places of values that the user did not write.
 pub(crate) fn of_nobody(faults: Faults) -> Faults {
     faults.into_iter().map(without_made).collect::<Vec<_>>().into()
 }
 
-/// A warning as it is told: without the place of a value that nobody wrote.
+/// Returns a warning as it is shown: without the place if the user did not write the value.
 pub(crate) fn told(warning: &Warning) -> Warning {
     Warning(without_made(warning.0.clone()))
 }
 
-/// Whether a warning stands at a value that nobody wrote.
+/// Returns whether a warning is about a value that the user did not write.
 pub(crate) fn is_made(warning: &Warning) -> bool {
     at_made(&warning.0)
 }

@@ -1,4 +1,4 @@
-//! What files are called.
+//! Names of output files.
 
 use crate::SessionError;
 use spectra_core::params::Fault;
@@ -6,15 +6,15 @@ use spectra_scene::{Member, Output, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
-/// How the files of a scene are named: by the scene, or as the one that is asked for.
+/// Naming of a scene's files: after the scene, or as one given file.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     only: Option<[String; 2]>,
-    /// What stands before the ending: `.partial` of a picture that is not whole.
+    /// Text before the extension: `.partial` for an incomplete picture.
     mark: &'static str,
 }
 
-/// Endings by which a name is known to be that of a file and not of a folder; no scene is written as one of the last two rows.
+/// Extensions that mark a name as a file instead of a folder. Scenes cannot be written with those of the last two rows.
 const ENDINGS: [&str; 29] = [
     "png", "jpg", "jpeg", "tif", "tiff", "exr", "dng", "html", //
     "webp", "gif", "bmp", "jp2", "hdr", "tga", "avif", "heic", "psd", "dpx", "cin", "pfm", //
@@ -22,28 +22,28 @@ const ENDINGS: [&str; 29] = [
 ];
 
 impl Names {
-    /// All files that the scene asks for, by its name.
+    /// Names all files of the scene's `output` after the scene.
     #[must_use]
     pub fn of_scene() -> Self {
         Self::default()
     }
 
-    /// One picture alone, where `file` ends as pictures do: that file.
+    /// Names one picture alone: `file` itself. `None` if `file` has no known extension.
     #[must_use]
     pub fn of_picture(file: &Path) -> Option<Self> {
         let [stem, ending] = [file.file_stem()?, file.extension()?].map(|part| part.to_string_lossy().into_owned());
         ENDINGS.contains(&&*ending.to_ascii_lowercase()).then_some(Self { only: Some([stem, ending]), mark: "" })
     }
 
-    /// The same for a picture that is not whole, beside one that may be.
+    /// Returns the names for an incomplete picture, so that it does not replace a complete one.
     pub(crate) fn of_partial(&self) -> Self {
         Self { only: self.only.clone(), mark: ".partial" }
     }
 
-    /// What is written of a scene.
+    /// Returns the outputs to write for a scene.
     ///
     /// # Errors
-    /// There is no such picture of it.
+    /// The scene cannot be written with the extension that is asked for.
     pub(crate) fn outputs(&self, scene: &Scene) -> Result<Vec<Arc<dyn Output>>, SessionError> {
         let Some([stem, ending]) = &self.only else { return Ok(scene.output.clone()) };
         let ending = ending.to_ascii_lowercase();
@@ -53,7 +53,7 @@ impl Names {
             other => other,
         };
         let none = || {
-            let fault = Fault::new(format!("{stem}.{ending}: no picture is written as `.{ending}`"));
+            let fault = Fault::new(format!("{stem}.{ending}: a picture cannot be written as `.{ending}`"));
             SessionError::Request(fault.hint(format!("name it {stem}.png, .jpg, .tiff or .exr")).to_string())
         };
         let output = scene.output_of(&format!(".{ending}")).ok_or_else(none)?;
@@ -65,12 +65,12 @@ impl Names {
         }
     }
 
-    /// Whether one picture is asked for by its name.
+    /// Returns whether one file is asked for by its name.
     pub(crate) fn is_one(&self) -> bool {
         self.only.is_some()
     }
 
-    /// The name of a file of a picture; `part` is what tells it from the picture's others.
+    /// Returns the name of a file of a picture. `part` distinguishes it from the picture's other files.
     pub(crate) fn file(&self, member: &Member, part: &str, ending: &str) -> String {
         let mark = self.mark;
         match &self.only {
@@ -79,7 +79,7 @@ impl Names {
         }
     }
 
-    /// The name of a report; none where one file is asked for.
+    /// Returns the name of a report; `None` if only one file is asked for.
     pub(crate) fn report(&self, name: &str) -> Option<String> {
         self.only.is_none().then(|| format!("{name}{}.json", self.mark))
     }

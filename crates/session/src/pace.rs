@@ -1,22 +1,22 @@
-//! How fast a render goes on, and how long it will take.
+//! The speed of a render, and the time that it will take.
 
 use crate::Control;
 
-/// How far a render is.
+/// Progress of a render.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     /// Rays launched so far.
     pub rays: u64,
     /// Rays in all; 0 before the render knows.
     pub total_rays: u64,
-    /// Since it began.
+    /// Average rate since the render began, rays per second.
     pub rays_per_second: f64,
-    /// By what is left to do, or until the time is up; `None` before anything is known.
+    /// Estimated time to the end, s: until all rays are traced or the time limit is reached. `None` before anything is known.
     pub seconds_left: Option<f64>,
 }
 
 impl Pace {
-    /// After so many `seconds`, with `most_s` until the time is up.
+    /// Computes the progress after `seconds`, with `most_s` seconds left until the time limit.
     #[must_use]
     pub fn of(control: &Control, seconds: f64, most_s: Option<f64>) -> Self {
         let (rays, total_rays) = (control.rays(), control.total_rays());
@@ -29,7 +29,7 @@ impl Pace {
         Self { rays, total_rays, rays_per_second, seconds_left }
     }
 
-    /// Share of the rays that were launched.
+    /// Fraction of the rays launched so far, 0 to 1.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         if self.total_rays > 0 { self.rays as f64 / self.total_rays as f64 } else { 0.0 }

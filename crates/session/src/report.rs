@@ -1,4 +1,4 @@
-//! `SCENE.json`: how a picture came about.
+//! The report `SCENE.json` on how a picture was made.
 
 use crate::header::films;
 use crate::job::Job;
@@ -7,28 +7,28 @@ use spectra_core::Loss;
 use spectra_render::{GhostPath, LightLedger, Rendering};
 use spectra_scene::{FilmTime, FocusBy, Scene};
 
-/// All there is to say of a render.
+/// Facts about a finished render.
 pub struct Report<'a> {
     pub(crate) job: &'a Job<'a>,
-    /// The scene.
+    /// The scene that was rendered.
     pub scene: &'a Scene,
-    /// What the render gave.
+    /// Result of the render.
     pub rendering: &'a Rendering,
-    /// How long each film was exposed.
+    /// Exposure time of each film.
     pub times: &'a [FilmTime],
-    /// How long its light took.
+    /// Duration of tracing, s.
     pub seconds: f64,
     pub(crate) threads: usize,
 }
 
 impl Report<'_> {
-    /// Rays launched per second of rendering.
+    /// Returns the rays launched per second of rendering.
     #[must_use]
     pub fn rays_per_second(&self) -> f64 {
         if self.seconds > 0.0 { self.rendering.rays as f64 / self.seconds } else { 0.0 }
     }
 
-    /// The content of `SCENE.json`.
+    /// Returns the content of `SCENE.json`.
     pub(crate) fn to_json(&self, files: &[String]) -> Value {
         let Self { scene, rendering, .. } = self;
         let settings = &scene.render;
@@ -87,12 +87,12 @@ impl Report<'_> {
         })
     }
 
-    /// How long light fell on the film: a number, of several films one each by their names.
+    /// Returns the exposure time, s: a number, or one for each film by name if there are several.
     fn exposure_time_s(&self) -> Value {
         if self.times.is_empty() { self.scene.exposure_time_s().into() } else { self.film_times_s(|t| Some(t.time_s)) }
     }
 
-    /// A figure of the films: a number, of several films one each by their names; null where there is no film.
+    /// Returns a figure of the films: a number, or one for each film by name if there are several; null if there is no film.
     fn film_times_s(&self, figure: impl Fn(&FilmTime) -> Option<f64>) -> Value {
         let mut by_name = Map::new();
         for time in self.times {
@@ -104,8 +104,8 @@ impl Report<'_> {
         if by_name.is_empty() { Value::Null } else { by_name.into() }
     }
 
-    /// Rays that ended on the way, by cause, and by surface with its causes. A surface number of `null` is none of the
-    /// lens's: forward, beside the frame; backward, at or beside the source.
+    /// Counts the rays that ended on the way, by cause, and by surface and cause. Surface `null` is not part of the lens:
+    /// forward, the ray missed the frame; backward, it ended at the source or missed it.
     fn lost(&self) -> Value {
         let losses = &self.rendering.losses;
         let by_cause: Map<String, Value> =
@@ -124,7 +124,7 @@ impl Report<'_> {
         json!({ "total": losses.total(), "by_cause": by_cause, "by_surface": by_surface })
     }
 
-    /// Where the light of the source's lights went, W in the band: emitted = detected + lost + not traced.
+    /// Returns where the light of the source's lights went, W in the band: emitted = detected + lost + not traced.
     fn ledger(&self, ledger: &LightLedger) -> Value {
         let path = |path: &GhostPath| json!({ "surfaces": path.surfaces, "power_w": path.power_w });
         let imager = self.scene.render.reflections;
@@ -147,7 +147,7 @@ impl Report<'_> {
         })
     }
 
-    /// The head of a row of losses: which surface.
+    /// Returns the first entries of a row of losses, which identify the surface.
     fn surface(&self, number: u32) -> Map<String, Value> {
         let lens = &self.scene.lens;
         let element = (number as usize).checked_sub(1).and_then(|at| lens.elements.get(at));
@@ -167,7 +167,7 @@ impl Report<'_> {
     }
 }
 
-/// How the lens was focused; a distance of `null` is infinity, or none where it stands as its file has it.
+/// Describes how the lens was focused. A distance of `null` is infinity, or means that the lens was left as in its file.
 fn focus(scene: &Scene) -> Value {
     let focus = &scene.focus;
     let per_mm = match focus.by {

@@ -1,11 +1,11 @@
-//! Light that could not be written where it was meant to be.
+//! A fallback for light that could not be written to its own file.
 
 use crate::Folder;
 use spectra_pictures::write::{exr, half_exr};
 use spectra_scene::Shot;
 
-/// Keeps the exposure somewhere, where `failed` is the file that should have held it, or would have been beside it: as it is
-/// elsewhere, or in half floats, which take half the space, at its own place. In words, where.
+/// Saves the exposure after `failed`, its file or another one of the picture, could not be written. Tries the folder `elsewhere`
+/// with full precision, then its own folder in half floats, which take half the space. Returns a message that says where it is.
 pub(crate) fn keep(shot: &Shot<'_>, failed: &str, folder: &dyn Folder, elsewhere: &dyn Folder) -> String {
     let name = failed.rsplit_once('.').map_or(failed, |(stem, _)| stem);
     let (frame, gains, squeeze) = (shot.exposure, shot.gains(), shot.scene.lens.squeeze);

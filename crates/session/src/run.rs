@@ -1,4 +1,4 @@
-//! Every picture of a scene, from its file to files.
+//! Rendering of every picture of a scene, from its file to output files.
 
 use crate::beyond::beyond;
 use crate::files::{Files, write_report};
@@ -8,10 +8,10 @@ use crate::taken::{Taken, Unfinished, prepare};
 use crate::{Event, Host, Report, Session, SessionError, header, series, words};
 use spectra_scene::{FilmTime, SeriesKind, Shot};
 
-/// Renders and writes all that a job wants.
+/// Renders and writes all pictures of a job.
 ///
 /// # Errors
-/// [`SessionError`]; of several pictures, those that are done are written.
+/// [`SessionError`]; if there are several pictures, the finished ones are written.
 pub fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     if job.series.kind() == SeriesKind::Single {
         picture(job, Unfinished::IsKept, host).map(|(ended, _)| ended)
@@ -20,7 +20,7 @@ pub fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     }
 }
 
-/// A scene that is one picture; and how long its films were exposed.
+/// Renders and writes a scene that is one picture, and returns the exposure times of its films.
 pub(crate) fn picture(
     job: &Job<'_>,
     unfinished: Unfinished,
@@ -29,7 +29,7 @@ pub(crate) fn picture(
     let mut session = Session::of_series(job.series.clone(), 0, job.isa)?;
     let member = session.member();
     let files = Files::of(&job.names, session.scene(), &member)?;
-    // What cannot be rendered leaves no folder behind.
+    // Checked before any folder is made, so that a scene that does not fit into memory leaves none behind.
     fits(&session, host)?;
     host.hear(Event::Preparing);
     let exposed = match job.light {
@@ -37,7 +37,7 @@ pub(crate) fn picture(
         LightFrom::Pixels => Some(session.expose()?),
     };
     host.hear(Event::Ready);
-    // Before any light is traced: an hour's picture must not end without a place to go.
+    // Checked before any light is traced: a picture that took an hour must have a place to go.
     let report_file = job.names.report(&member.stem(""));
     let mut names = files.names();
     names.extend(report_file.clone());
@@ -57,18 +57,18 @@ pub(crate) fn picture(
             return failure.map_or(Ok((Ended::Stopped, Vec::new())), |text| Err(SessionError::Failed(text)));
         }
         let there = names.iter().find(|name| host.folder().has(name));
-        // What a limit of time ends is what was asked for.
+        // A picture ended by a time limit is what the user asked for, so it keeps its names.
         if let (Some(there), true) = (there, stopped || failure.is_some()) {
             let there = words::files(&[host.folder().shown(there)]);
             host.hear(Event::Note(&format!(
-                "`{there}` stays as it was: this picture is not whole, and has other names"
+                "`{there}` was not overwritten. The picture is incomplete and was saved under another name"
             )));
             let partial = job.names.of_partial();
             files = Files::of(&partial, session.scene(), &member)?;
             report_file = partial.report(&member.stem(""));
             names = files.names();
             names.extend(report_file.clone());
-            // These, too, are no files that are read.
+            // These names must not overwrite a file that the scene is read from, either.
             prepare(job, host, &names)?;
         }
     }
@@ -76,7 +76,7 @@ pub(crate) fn picture(
     let scene = session.scene();
     let times = scene.film_times(exposure);
     if !taken.rendering.partial {
-        // A frame that is exposed as the first one was metered may be dark: a sequence fades.
+        // Values that the program wrote are not warned about: a sequence exposed like its first frame may fade to black.
         let stated = beyond(scene, exposure).into_iter().filter(|warning| !is_made(warning));
         stated.for_each(|warning| host.hear(Event::Warning(&warning)));
     }
@@ -99,7 +99,7 @@ pub(crate) fn picture(
     }
 }
 
-/// Whether there is memory for the picture.
+/// Checks that the picture fits into memory.
 pub(crate) fn fits(session: &Session, host: &dyn Host) -> Result<(), SessionError> {
     let fits = host.memory_bytes().map_or(Ok(()), |bytes| spectra_render::fits(session.scene(), bytes));
     fits.map_err(SessionError::Faults)

@@ -1,4 +1,4 @@
-//! Several pictures of one scene: the members of a sweep, the frames of an animation.
+//! Rendering of several pictures of one scene: the members of a sweep, or the frames of an animation.
 
 use crate::beyond::beyond;
 use crate::check::{Look, checked, each_once};
@@ -15,12 +15,12 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::sync::Arc;
 
-/// `SCENE-series.json` is brought up to date in this time, s, so that little of it is lost with the machine.
+/// Interval between updates of `SCENE-series.json`, s, so that little of it is lost if the machine fails.
 const REPORT_EVERY_S: f64 = 10.0;
 
-/// A picture that is going to be made.
+/// A picture to be made.
 struct Planned {
-    /// Its place in the series.
+    /// Index of the picture in the series.
     index: usize,
     member: Member,
     files: Files,
@@ -30,11 +30,11 @@ struct Planned {
     notes: Vec<String>,
 }
 
-/// Renders all pictures of a series that are asked for.
+/// Renders the pictures of a series that the job asks for.
 pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
     let series = job.series;
     let Some(report_file) = job.names.report(&format!("{}-series", series.name())) else {
-        let text = format!("--output: that is one picture, but this scene makes {}: name a folder", series.count());
+        let text = format!("--output: this names one picture, but the scene makes {}: name a folder", series.count());
         return Err(SessionError::Request(text));
     };
     let plan = |index: usize, scene: &Scene| -> Result<Planned, SessionError> {
@@ -86,7 +86,7 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
         }
     }
     host.hear(Event::Picture(None));
-    // What is done is kept and told of, also where the next one failed.
+    // Finished pictures are kept and reported even if the next one failed.
     let files = work.finish(result.as_ref().is_ok_and(|whole| *whole));
     let whole = result?;
     host.hear(Event::Written(&files?));
@@ -103,7 +103,7 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
     Ok(if stopped { Ended::Stopped } else { Ended::Whole })
 }
 
-/// What a person wants to know before it begins.
+/// Describes the series, for the message before it begins.
 fn what(series: &Series, pictures: usize) -> String {
     let counted = words::counted(pictures as u64, "picture");
     match series.kind() {
@@ -117,7 +117,7 @@ fn what(series: &Series, pictures: usize) -> String {
     }
 }
 
-/// The unit of a bare number at a path of the scene; that of a variable is known by where it is used.
+/// Returns the unit of a bare number at a path of the scene. The unit of a variable follows from the places that use it.
 fn unit_of(job: &Job<'_>, path: &str) -> Option<String> {
     let Some(name) = path.strip_prefix("variables.") else { return (job.unit_of)(path) };
     job.series.uses_of_variable(name).into_iter().find_map(|(path, text)| {
@@ -132,11 +132,11 @@ fn unit_of(job: &Job<'_>, path: &str) -> Option<String> {
     })
 }
 
-/// The contact sheet of a sweep, its cells empty.
+/// Returns the contact sheet of a sweep, with empty cells; `None` for other series.
 fn contact(job: &Job<'_>, planned: &[Planned]) -> Option<Contact> {
     let SeriesKind::Sweep { mut axes } = job.series.kind() else { return None };
     let mut members: Vec<Member> = planned.iter().map(|p| p.member.clone()).collect();
-    // On the sheet a bare number has the unit that it is read in.
+    // The sheet shows a bare number with the unit in which it is read.
     let mut units: HashMap<String, Option<String>> = HashMap::new();
     let mut complete = |path: &str, value: &mut String| {
         if let Reading::Bare(_) = Reading::of(value.trim_matches('"'))
@@ -154,9 +154,9 @@ fn contact(job: &Job<'_>, planned: &[Planned]) -> Option<Contact> {
     Some(Contact::new(&axes, &members, planned.first()?.size_px))
 }
 
-/// What an earlier run said of its pictures, by their numbers.
+/// Returns the entries of an earlier run's report, by picture number.
 fn earlier(host: &dyn Host, report_file: &str) -> Map<String, Value> {
-    /// A larger file is not one of ours.
+    /// Largest report that is read, bytes; a larger file is not one of ours.
     const LARGEST: u64 = 256 << 20;
     let read = host.folder().read(report_file, LARGEST);
     let report: Value = read.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
@@ -164,19 +164,20 @@ fn earlier(host: &dyn Host, report_file: &str) -> Map<String, Value> {
     pictures.into_iter().filter_map(|p| Some((p["number"].as_u64()?.to_string(), p))).collect()
 }
 
-/// The work on a series, and what is done of it.
+/// The work on a series, and the results so far.
 struct Work<'a> {
     job: &'a Job<'a>,
-    /// What the pictures are made of: that of the job, exposed as its first frame was metered where that is locked.
+    /// The series to render: that of the job, with the exposure metered on the first frame where all frames share it.
     series: &'a Series,
     host: &'a dyn Host,
     earlier: Map<String, Value>,
     contact: Option<Contact>,
-    /// The picture before: what the next one shares with it is not made again.
+    /// Scene of the previous picture; the next one reuses the stages that they share.
     other: Option<Arc<Scene>>,
-    /// What is said of each picture in `SCENE-series.json`, as text: a tree of it takes five times the memory, and there may be thousands.
+    /// Entry of each picture in `SCENE-series.json`, as text: a JSON tree takes five times the memory, and there may be thousands
+    /// of pictures.
     done: Vec<Box<str>>,
-    /// What was said of the files of its sources and of exposures beyond films.
+    /// Warnings already given about the files of sources and about exposures that films cannot record.
     doubts: Vec<Warning>,
     report_file: String,
     reported_s: f64,
@@ -184,7 +185,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Renders a picture and writes its files; false where it was stopped before it was whole.
+    /// Renders a picture and writes its files. Returns false if it was stopped before it was complete.
     fn picture(&mut self, picture: &Planned, place: Place) -> Result<bool, SessionError> {
         let Self { job, host, .. } = *self;
         if host.is_stopped() {
@@ -196,12 +197,12 @@ impl Work<'_> {
         if job.skip_existing && !names.is_empty() && names.iter().all(|name| host.folder().has(name)) {
             self.keep(picture, &shown);
             host.hear(Event::Series(
-                &format!("{} of {}: {} is there", place.index + 1, place.of, picture.member.stem("")),
+                &format!("{} of {}: {} already exists", place.index + 1, place.of, picture.member.stem("")),
                 &json!({ "event": "kept", "files": shown }),
             ));
             return Ok(true);
         }
-        // Not kept from the check: a thousand scenes would not fit into memory.
+        // The scenes of the check are not kept: a thousand of them would not fit into memory.
         let mut session = Session::after(self.series.clone(), picture.index, self.other.take(), job.isa, Effort::Full)?;
         let control = host.control();
         session.prepare(host.workers())?;
@@ -220,7 +221,7 @@ impl Work<'_> {
         }
         let scene = session.into_scene();
         for warning in beyond(&scene, &rendering.exposure) {
-            // Once for what was written once, not in each of a thousand frames.
+            // One warning for each place in the scene file, not one in each of a thousand frames.
             if !self.doubts.iter().any(|said| said.0.place == warning.0.place) {
                 host.hear(Event::Warning(&warning));
                 self.doubts.push(warning);
@@ -241,7 +242,7 @@ impl Work<'_> {
             said.extend(figures.into_iter().filter(|(key, _)| !common.contains(&key.as_str())));
         }
         self.done.push(format!("{:#}", Value::Object(said)).into());
-        // Not every imager has something to show.
+        // Not every imager gives a picture.
         if let (Some(contact), Ok(pictures)) = (&mut self.contact, shot.pictures()) {
             contact.put(place.index, pictures);
         }
@@ -255,11 +256,11 @@ impl Work<'_> {
         Ok(true)
     }
 
-    /// Takes a picture as it is on disk.
+    /// Adds a picture that already exists on disk to the report and the contact sheet.
     fn keep(&mut self, picture: &Planned, shown: &[String]) {
         let mut said = entry(&picture.member);
         if let Some(Value::Object(earlier)) = self.earlier.get(&picture.member.number.to_string()) {
-            // Of other values it may be, but of these files it is all that is known.
+            // The earlier entry may belong to other values, but nothing else is known about these files.
             said.extend(earlier.clone().into_iter().filter(|(key, _)| key != "values"));
         }
         said.insert("files".to_owned(), shown.into());
@@ -274,7 +275,7 @@ impl Work<'_> {
         }
     }
 
-    /// The content of `SCENE-series.json`, without what is said of each picture.
+    /// Returns the content of `SCENE-series.json` without the entries of the pictures.
     fn report(&self, contact: &[String], whole: bool) -> Value {
         let Self { job, host, .. } = self;
         let mut report = json!({
@@ -309,7 +310,7 @@ impl Work<'_> {
         report
     }
 
-    /// Writes the contact sheets and the report; says how they are called.
+    /// Writes the contact sheets and the report, and returns the names of these files.
     fn finish(&self, whole: bool) -> Result<Vec<String>, SessionError> {
         let (name, folder) = (self.job.series.name(), self.host.folder());
         let mut shown = Vec::new();
@@ -331,7 +332,7 @@ impl Work<'_> {
         let mut report = self.report(&shown, whole);
         self.write_report(&report)?;
         shown.push(folder.shown(&self.report_file));
-        // The outputs that the pictures share are those of the last one.
+        // All pictures have the same outputs of the series; those of the last scene are used.
         if let Some(scene) = self.other.as_ref().filter(|scene| scene.output.iter().any(|output| output.is_of_series()))
         {
             report["pictures"] = self.done.iter().map(|said| said_of(said)).collect();
@@ -347,11 +348,11 @@ impl Work<'_> {
         Ok(shown)
     }
 
-    /// Writes the report, and what is said of each picture into its list.
+    /// Writes the report, with the entries of the pictures in its list.
     fn write_report(&self, report: &Value) -> Result<(), SessionError> {
         const LIST: &str = "\n  \"pictures\": [";
         let text = format!("{report:#}\n");
-        // No text within holds a line break: this is the key.
+        // JSON texts hold no line breaks, so this finds the key.
         let (before, behind) = text.split_once(&format!("{LIST}]")).unwrap_or((&text, ""));
         let written = self.host.folder().file(&self.report_file, &mut |out| {
             write!(out, "{before}")?;
@@ -370,12 +371,12 @@ impl Work<'_> {
     }
 }
 
-/// What is said of a picture, of its text.
+/// Parses the entry of a picture from its text.
 fn said_of(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_default()
 }
 
-/// The head of what is said of a picture.
+/// Returns the first values of a picture's entry: number, name and swept values.
 fn entry(member: &Member) -> Map<String, Value> {
     let values: Map<String, Value> =
         member.values.iter().map(|(path, value)| (path.clone(), value.as_str().into())).collect();
@@ -386,7 +387,8 @@ fn entry(member: &Member) -> Map<String, Value> {
     said
 }
 
-/// What the header of an EXR says of its place in the series. Nothing here changes with the frames that are asked for.
+/// Describes the picture's place in the series for the header of an EXR. The result does not depend on which frames are asked
+/// for.
 fn attributes_of(series: &Series, member: &Member) -> Vec<(String, String)> {
     let mut all = Vec::new();
     match series.kind() {
@@ -404,7 +406,7 @@ fn attributes_of(series: &Series, member: &Member) -> Vec<(String, String)> {
     all
 }
 
-/// A rate as the fraction that it stands for: `24/1`, and `24000/1001` for 23.976.
+/// Returns a frame rate as the fraction that it stands for: `24/1`, and `24000/1001` for 23.976.
 fn rational(rate: f64) -> String {
     let whole = rate.round();
     if rate == whole {

@@ -1,4 +1,8 @@
-//! One picture of a scene, on its way.
+//! A session: one picture of a scene, while it is rendered.
+//!
+//! It holds the scene, the renderer and the light so far. Stages are shared between scenes by `Arc`. A change sets a value in the tree as
+//! `--set` does and assembles the scene again; sections that are unchanged keep their stages. The light is kept if source, lens, imager,
+//! wavelength density and channels are still the same stages ([`Kept`]).
 
 use crate::files::Files;
 use crate::{Alone, Control, Names, Rendering, SessionError, Workers, header, still};
@@ -13,20 +17,20 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a change of a scene leaves of what was made before.
+/// The results that remain valid after a change of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept {
-    /// The light: nothing is traced again.
+    /// Whether the light is kept, so that nothing is traced again.
     pub light: bool,
-    /// The density of wavelengths.
+    /// Whether the wavelength density is kept.
     pub density: bool,
-    /// The lens, focused.
+    /// Whether the focused lens is kept.
     pub lens: bool,
-    /// The source, with its files.
+    /// Whether the source is kept, with its files.
     pub source: bool,
 }
 
-/// How a session was set: its values, its picture of the series and its stages, without the light.
+/// A saved state of a session: its values, its picture of the series and its stages, without the light.
 #[derive(Clone)]
 pub struct Moment {
     series: Series,
@@ -35,66 +39,66 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// The pictures that the scene stood for.
+    /// The pictures that the scene stands for in this state.
     #[must_use]
     pub fn series(&self) -> &Series {
         &self.series
     }
 
-    /// The place of its picture among them, from 0.
+    /// Index of the picture in the series, from 0.
     #[must_use]
     pub fn index(&self) -> usize {
         self.index
     }
 }
 
-/// One picture of a scene: its stages, and its light so far.
+/// A session on one picture of a scene: its stages, and its light so far.
 pub struct Session {
     series: Series,
     index: usize,
     isa: Isa,
     scene: Arc<Scene>,
-    /// The scene made ready, once light is asked for, with that light.
+    /// The prepared scene and its light, once light is asked for.
     ready: Option<(Renderer, Light)>,
-    /// A density of wavelengths that fits the scene, where one is known from before.
+    /// A wavelength density that fits the scene, if one is known from before.
     density: Option<Arc<dyn WavelengthDensity>>,
     effort: Effort,
 }
 
 impl Session {
-    /// The scene of a file, with texts `path=value` on top.
+    /// Opens the scene of a file, with texts `path=value` on top.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// Every fault of the scene.
     pub fn open(path: &Path, overrides: &[String], isa: Isa) -> Result<Self, SessionError> {
         Self::of_series(load_series(path, overrides)?, 0, isa)
     }
 
-    /// The scene of a text; its stages ask `resources` for files.
+    /// Opens a scene from its text. Its stages get their files from `resources`.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// The errors of [`Session::open`].
     pub fn of_text(name: &str, text: &str, resources: Arc<dyn Resources>, isa: Isa) -> Result<Self, SessionError> {
         Self::of_series(series_of_text(name, text, &[], resources)?, 0, isa)
     }
 
-    /// The scene of a tree.
+    /// Opens a scene from a tree. Its stages get their files from `resources`.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// The errors of [`Session::open`].
     pub fn of_tree(name: &str, root: Node, resources: Arc<dyn Resources>, isa: Isa) -> Result<Self, SessionError> {
         Self::of_series(series_of_tree(name, root, &[], resources)?, 0, isa)
     }
 
-    /// A picture by its place in a series, from 0.
+    /// Opens a picture of a series by its index, from 0.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// The errors of [`Session::open`].
     pub fn of_series(series: Series, index: usize, isa: Isa) -> Result<Self, SessionError> {
         Self::after(series, index, None, isa, Effort::Full)
     }
 
-    /// The same, with the stages of another scene where both say the same.
+    /// Opens a picture of a series, and takes over the stages of `other` where both scenes have the same section.
     pub(crate) fn after(
         series: Series,
         index: usize,
@@ -106,22 +110,22 @@ impl Session {
         Ok(Self { series, index, isa, scene, ready: None, density: None, effort })
     }
 
-    /// The scene, assembled.
+    /// The assembled scene of the picture.
     #[must_use]
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The scene alone.
+    /// Returns the scene and drops the rest.
     pub(crate) fn into_scene(self) -> Arc<Scene> {
         self.scene
     }
 
-    /// The same picture with these values `path=value` on top, without light. Of this one's stages it has those that do not rest on
-    /// them; this one stays as it is.
+    /// Returns a session on the same picture with these values `path=value` on top, without light. It shares the stages that do
+    /// not depend on these values. `self` does not change.
     ///
     /// # Errors
-    /// Everything that is wrong with the scene as it would be.
+    /// Every fault of the changed scene.
     pub fn branch(&self, texts: &[String]) -> Result<Self, SessionError> {
         self.branched(texts, self.index, Effort::Full)
     }
@@ -130,44 +134,46 @@ impl Session {
         Self::after(self.series.with_all(texts)?, index, Some(Arc::clone(&self.scene)), self.isa, effort)
     }
 
-    /// The same for a first look: what passes the lens, and what frame and meters see, is found with less effort, and so the bits are
-    /// others.
+    /// Returns a draft, for a first look, of what [`Session::branch`] returns. Less effort is spent on the search for the rays
+    /// that pass the lens, and for those that frame and meters see. The result therefore differs in its bits.
     ///
     /// # Errors
-    /// As [`Session::branch`].
+    /// The errors of [`Session::branch`].
     pub fn draft(&self, texts: &[String]) -> Result<Self, SessionError> {
         self.draft_of(texts, self.index)
     }
 
-    /// The same of another picture of the series, by its place from 0.
+    /// Returns a draft, as [`Session::draft`] does, of another picture of the series by its index, from 0.
     ///
     /// # Errors
-    /// As [`Session::branch`].
+    /// The errors of [`Session::branch`].
     pub fn draft_of(&self, texts: &[String], index: usize) -> Result<Self, SessionError> {
         self.branched(texts, index, Effort::Draft)
     }
 
-    /// The picture among those that the scene's file stands for.
+    /// Returns the number, values and name of the picture in its series.
     #[must_use]
     pub fn member(&self) -> spectra_scene::Member {
         self.series.member(self.index)
     }
 
-    /// The files on disk that its pictures rest on: the scene, what it includes, and what its stages have asked for so far.
+    /// Returns the files on disk that the pictures depend on: the scene, its includes, and the files that its stages have read so
+    /// far.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
         self.series.files_on_disk()
     }
 
-    /// What a person should know before believing the picture; of large files, once they are read.
+    /// Iterates over the warnings to consider before trusting the picture. Those about large files come once these are read.
     pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
         self.series.warnings().iter().chain(&self.scene.warnings).chain(self.scene.source.doubts())
     }
 
-    /// Makes the scene ready, if it is not; where the workers are to stop meanwhile, it stays as it is.
+    /// Prepares the scene for tracing, unless that is done already. If the workers are told to stop, the session remains
+    /// unprepared.
     ///
     /// # Errors
-    /// What shows only once the stages are put together, as a fault of the scene.
+    /// Faults of the scene that show only once the stages are put together.
     pub fn prepare(&mut self, workers: &dyn Workers) -> Result<(), SessionError> {
         if self.ready.is_some() {
             return Ok(());
@@ -191,25 +197,25 @@ impl Session {
         Ok((renderer, light))
     }
 
-    /// Of each pixel, so many samples are traced.
+    /// Returns the number of samples traced in each pixel.
     #[must_use]
     pub fn samples(&self) -> u64 {
         self.ready.as_ref().map_or(0, |(_, light)| light.samples())
     }
 
-    /// Traces so many samples of each pixel more; fewer where `control` says stop.
+    /// Traces this many more samples of each pixel, or fewer if `control` says stop.
     ///
     /// # Errors
-    /// As [`Session::advance`].
+    /// The errors of [`Session::advance`].
     pub fn step(&mut self, samples: u64, workers: &dyn Workers, control: &Control) -> Result<(), SessionError> {
         self.advance(self.samples() + samples, workers, control)
     }
 
-    /// Traces until so many samples of each pixel are there, or `control` says stop.
+    /// Traces until each pixel has this many samples, or `control` says stop.
     ///
     /// # Errors
-    /// The scene cannot be rendered; `numbers` that cannot go on beyond the samples of the scene; a stage that gave a number
-    /// that no light can have. The light before stays.
+    /// The scene cannot be rendered; the `numbers` cannot go beyond the samples that the scene states; a stage gave a number that
+    /// light cannot have. The light from before remains.
     pub fn advance(&mut self, samples: u64, workers: &dyn Workers, control: &Control) -> Result<(), SessionError> {
         self.prepare(workers)?;
         let Some((renderer, light)) = &mut self.ready else { return Ok(()) };
@@ -217,20 +223,21 @@ impl Session {
         traced.map_err(|error| SessionError::of(&error, &self.scene))
     }
 
-    /// The light so far, as the scene has it now.
+    /// Returns the light so far, as the current scene shows it.
     ///
     /// # Errors
-    /// There is no memory for it.
+    /// Not enough memory; the errors of [`Session::prepare`].
     pub fn look(&mut self) -> Result<Rendering, SessionError> {
         self.prepare(&Alone)?;
         let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
         renderer.look(&self.scene, light).map_err(|error| SessionError::of(&error, &self.scene))
     }
 
-    /// The same without what the edge of the aperture does to it, which takes seconds: stars of lights are left out.
+    /// Returns the light so far without diffraction at the edge of the aperture, which takes seconds to compute: lamps have no
+    /// stars.
     ///
     /// # Errors
-    /// As [`Session::look`].
+    /// The errors of [`Session::look`].
     pub fn look_without_stars(&mut self) -> Result<Rendering, SessionError> {
         self.prepare(&Alone)?;
         let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
@@ -239,16 +246,17 @@ impl Session {
         renderer.look(&plain, light).map_err(|error| SessionError::of(&error, &self.scene))
     }
 
-    /// The exposure of the scene's film to its flat picture, pixel by pixel, as by an ideal lens at f/2.8 in place of the scene's: no
-    /// ray is traced, and the light so far stays as it is.
+    /// Exposes the scene's film to its flat picture, pixel by pixel, as through an ideal lens at f/2.8 instead of the scene's
+    /// lens. No ray is traced, and the light so far does not change.
     ///
     /// # Errors
-    /// The source is no flat picture, or its file is broken; the film has more pixels than the picture, or another shape.
+    /// The source is not a flat picture, or its file is broken; the film has more pixels than the picture, or another shape.
     pub fn expose(&self) -> Result<Rendering, SessionError> {
         still::expose(&self.scene)
     }
 
-    /// The same of pixels that [`spectra_core::stage::Source::still`] of its source gave before, or of the same picture with fewer.
+    /// Exposes the film, as [`Session::expose`] does, to pixels that [`spectra_core::stage::Source::still`] of its source gave
+    /// before, or to fewer pixels of the same picture.
     ///
     /// # Errors
     /// The film has more pixels than the picture, or another shape.
@@ -256,22 +264,22 @@ impl Session {
         still::of_still(&self.scene, still)
     }
 
-    /// Whether any ray was traced.
+    /// Returns whether any ray was traced.
     #[must_use]
     pub fn has_light(&self) -> bool {
         self.ready.as_ref().is_some_and(|(_, light)| light.rays() > 0)
     }
 
-    /// What a person should know of such a rendering.
+    /// Returns the remarks that a user should read about a rendering of this session.
     #[must_use]
     pub fn remarks(&self, rendering: &Rendering) -> Vec<String> {
         self.ready.as_ref().map_or_else(Vec::new, |(renderer, light)| renderer.remarks(light, rendering))
     }
 
-    /// The pictures of the light so far: one for each film, with its name where there are several.
+    /// Develops the light so far. Returns one picture for each film, with its name if there are several.
     ///
     /// # Errors
-    /// As [`Session::look`]; the imager has no picture.
+    /// The errors of [`Session::look`]; an imager that gives no picture.
     pub fn develop(&mut self) -> Result<Vec<Developed>, SessionError> {
         let exposure: ExposureFrame = self.look()?.exposure;
         let times = self.scene.film_times(&exposure);
@@ -279,16 +287,16 @@ impl Session {
         shot.pictures().map(<[Developed]>::to_vec).map_err(SessionError::Failed)
     }
 
-    /// The density that wavelengths are drawn by, once the scene is made ready.
+    /// Returns the density from which wavelengths are drawn; `None` until the scene is prepared.
     #[must_use]
     pub fn density(&self) -> Option<&Arc<dyn WavelengthDensity>> {
         self.ready.as_ref().map(|(renderer, _)| renderer.density())
     }
 
-    /// Writes the files that the scene asks for, of the light so far, and says how they are called.
+    /// Writes the files that the scene asks for from the light so far, and returns their names.
     ///
     /// # Errors
-    /// As [`Session::look`]; a file that could not be written.
+    /// The errors of [`Session::look`]; a file that cannot be written.
     pub fn write(&mut self, sink: &dyn Sink) -> Result<Vec<String>, SessionError> {
         let rendering = self.look()?;
         let (scene, exposure) = (&self.scene, &rendering.exposure);
@@ -300,45 +308,48 @@ impl Session {
         Ok(files.names())
     }
 
-    /// Sets a value, as `--set` does: a text `path=value`. Of the stages and the light that is kept which does not rest on it;
-    /// where something is wrong, all stays as it was.
+    /// Sets a value with a text `path=value`, as `--set` does. Stages and light that do not depend on it are kept. If there is an
+    /// error, nothing changes.
     ///
     /// # Errors
-    /// Everything that is wrong with the scene as it would be.
+    /// Every fault of the changed scene.
     pub fn change(&mut self, text: &str) -> Result<Kept, SessionError> {
         self.change_on(text, &Alone)
     }
 
-    /// The same, with what is searched anew on these workers: the same bits on any.
+    /// Sets a value as [`Session::change`] does, and runs the searches that it needs on these workers. Any workers give the same
+    /// bits.
     ///
     /// # Errors
-    /// As [`Session::change`].
+    /// The errors of [`Session::change`].
     pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<Kept, SessionError> {
         self.changed(&[text], self.index, true, None, workers)
     }
 
-    /// The same, but what the change asks to be made ready anew is made when light is asked for again, where it can be stopped. What
-    /// shows only then is told then.
+    /// Sets a value as [`Session::change`] does, but leaves the preparation of the scene until light is asked for, where it can
+    /// be stopped. Errors of the preparation are reported then.
     ///
     /// # Errors
-    /// What is wrong with the stages of the scene as it would be.
+    /// Faults of the stages of the changed scene.
     pub fn change_later(&mut self, text: &str) -> Result<Kept, SessionError> {
         self.changed(&[text], self.index, false, None, &Alone)
     }
 
-    /// The same, where `other` may have the lens as the change asks for it, focused: a draft that was changed so before.
+    /// Sets a value as [`Session::change_later`] does. Takes the focused lens from `other` if it fits, such as from a draft with
+    /// the same change.
     ///
     /// # Errors
-    /// As [`Session::change_later`]; and something where the workers are to stop meanwhile, which then leaves all as it was.
+    /// The errors of [`Session::change_later`]; an error if the workers are told to stop meanwhile, which leaves everything
+    /// unchanged.
     pub fn change_after(&mut self, text: &str, other: &Self, workers: &dyn Workers) -> Result<Kept, SessionError> {
         self.changed(&[text], self.index, false, Some(&other.scene), workers)
     }
 
-    /// Sets several values at once and goes to another picture of the series, by its place from 0; made ready when light is asked for
-    /// again. `other` may have the lens as this asks for it, as in [`Session::change_after`].
+    /// Sets several values at once and goes to another picture of the series, by its index from 0. The scene is prepared when
+    /// light is asked for. `other` may provide the focused lens, as in [`Session::change_after`].
     ///
     /// # Errors
-    /// As [`Session::change_after`].
+    /// The errors of [`Session::change_after`].
     pub fn turn(
         &mut self,
         texts: &[impl AsRef<str>],
@@ -350,13 +361,14 @@ impl Session {
         self.changed(&texts, index, false, other.map(|other| &*other.scene), workers)
     }
 
-    /// How it is set now.
+    /// Returns the current state, for [`Session::back_to`].
     #[must_use]
     pub fn moment(&self) -> Moment {
         Moment { series: self.series.clone(), index: self.index, scene: Arc::clone(&self.scene) }
     }
 
-    /// Goes back to how it was set, with the light where that is the same; it cannot be refused, since it was so before.
+    /// Returns to an earlier state, and keeps the light if it is still valid. This cannot fail, because the state was valid
+    /// before.
     pub fn back_to(&mut self, moment: &Moment) -> Kept {
         let Moment { series, index, scene } = moment.clone();
         let kept = self.kept(&scene);
@@ -368,13 +380,13 @@ impl Session {
         kept
     }
 
-    /// The pictures that the scene stands for: one, those of a sweep, the frames of an animation.
+    /// The pictures that the scene stands for: one, the members of a sweep, or the frames of an animation.
     #[must_use]
     pub fn series(&self) -> &Series {
         &self.series
     }
 
-    /// The place of its picture among them, from 0.
+    /// Index of the picture in the series, from 0.
     #[must_use]
     pub fn index(&self) -> usize {
         self.index
@@ -415,7 +427,7 @@ impl Session {
         Ok(kept)
     }
 
-    /// What another scene leaves of what was made for the one that is there.
+    /// Returns which results for the current scene remain valid for another one.
     fn kept(&self, scene: &Scene) -> Kept {
         let before = &*self.scene;
         let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
@@ -426,7 +438,7 @@ impl Session {
             && before.metered_pixels() == scene.metered_pixels();
         let source = Arc::ptr_eq(&before.source, &scene.source);
         let lens = Arc::ptr_eq(&before.lens, &scene.lens);
-        // A source that fills the frame is another one with every lens; its light has the spectrum of before.
+        // A source that fills the frame is rebuilt for every lens, but the spectrum of its light stays the same.
         let system = before.source.spectrum() == scene.source.spectrum()
             && same_channels
             && before.grid == scene.grid
@@ -442,15 +454,15 @@ impl Session {
         Kept { light: same_light, density: system, lens, source }
     }
 
-    /// Gives the memory of the light back.
+    /// Frees the memory of the light.
     pub(crate) fn forget_light(&mut self) {
         self.ready = None;
     }
 
-    /// Writes the light so far, for another process to go on with.
+    /// Writes the light so far, for another process to continue.
     ///
     /// # Errors
-    /// What the stream has; and as [`Session::prepare`].
+    /// Errors of the stream, and those of [`Session::prepare`].
     pub fn save(&mut self, out: &mut dyn Write) -> Result<(), SessionError> {
         self.prepare(&Alone)?;
         let Some((_, light)) = &self.ready else { return Ok(()) };
@@ -460,10 +472,10 @@ impl Session {
         Ok(light.save(out)?)
     }
 
-    /// Takes up the light that another session of the same scene saved, in place of its own.
+    /// Replaces the light by light that another session of the same scene saved.
     ///
     /// # Errors
-    /// What the stream has; light of another scene, which leaves all as it was; and as [`Session::prepare`].
+    /// Errors of the stream; light of another scene, which leaves everything unchanged; and the errors of [`Session::prepare`].
     pub fn load(&mut self, from: &mut dyn Read) -> Result<(), SessionError> {
         self.prepare(&Alone)?;
         let Some((renderer, light)) = &mut self.ready else { return Ok(()) };
@@ -476,7 +488,7 @@ impl Session {
             from.read_exact(&mut known)?;
         }
         if known != scene {
-            return Err(io::Error::new(io::ErrorKind::InvalidData, "this light is of another scene").into());
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "this light belongs to another scene").into());
         }
         *light = Light::load(renderer, from)?;
         Ok(())

@@ -1,10 +1,11 @@
-//! A film exposed to a picture itself: no lens, no rays, each pixel's light falls on the same pixel of the film.
+//! Exposure of a film to a picture without lens and rays: the light of each pixel falls on the same pixel of the film.
 //!
-//! That is what an ideal lens does, up to its size on the film: with the f-number N the irradiance is pi / (4 N^2) times the radiance,
-//! the same all over the frame. What a layer gets of a color is the integral of the color's spectrum and the layer's response, which
-//! scenes that are traced draw wavelengths for. A picture has more pixels than there are colors worth an integral each: what the
-//! channels see is tabulated over the two smaller values of a color relative to the largest, since twice the color is twice the light;
-//! of colors beyond sRGB over their direction from white and their depth toward the spectral locus.
+//! An ideal lens does the same, apart from the size on the film. At f-number N the irradiance is pi / (4 N^2) times the radiance,
+//! equal all over the frame. The exposure of a layer by a color is the integral of the color's spectrum times the layer's
+//! response. Traced scenes estimate this integral by drawing wavelengths. A picture has too many pixels for an integral each, so
+//! the exposures of the channels are tabulated. The table runs over the two smaller values of a color relative to the largest,
+//! because twice the color is twice the light. Colors beyond sRGB have a table over their direction from white and their depth
+//! toward the spectral locus.
 
 mod wide;
 
@@ -21,41 +22,42 @@ use wide::Wide;
 
 /// F-number of the ideal lens.
 pub(crate) const F_NUMBER: f64 = spectra_scene::NO_LENS_F_NUMBER;
-/// Luminance of white, cd/m2 of a picture that is developed.
+/// Luminance of white in a picture that is developed, cd/m2.
 pub(crate) const WHITE_CD_M2: f64 = 5000.0;
 
-/// Points along each side of the table, closer together toward 0 as [`value`] has it: two to a cell of the table that the `smooth`
-/// model looks its own coefficients up in.
+/// Number of points along each side of the table, denser toward 0 (see [`value`]). Each cell of the table in which the `smooth`
+/// model looks up its coefficients gets two points.
 const SIDE: usize = 129;
-/// Largest difference that a table may make, as a part of what the channel gets, or of a hundredth of what the one that gets most
-/// does: 0.004 of log10 exposure. The bundled models stay within 0.002, on average within 0.0001.
+/// Largest relative error that a table may have: relative to the exposure of the channel, or to a hundredth of that of the most
+/// exposed channel if this is larger. It equals 0.004 in log10 exposure. The bundled models stay within 0.002, on average within
+/// 0.0001.
 const TOLERANCE: f64 = 1e-2;
-/// Colors by which a table is judged.
+/// Number of colors that a table is tested with.
 const JUDGES: usize = 256;
-/// Channels that are read off together.
+/// Number of channels that are interpolated together.
 const LANES: usize = 4;
-/// Pixels that a thread takes at a time.
+/// Number of pixels in a task of one thread.
 const PIXELS_A_TASK: usize = 1 << 14;
 
-/// The exposure of the scene's film to the scene's picture, without its lens.
+/// Exposes the scene's film to the scene's picture, without its lens.
 ///
 /// # Errors
-/// The source is no flat picture, or its file is broken; the film's pixels are more than the picture's, or of another shape.
+/// The source is not a flat picture, or its file is broken; the film has more pixels than the picture, or another shape.
 pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
     let Some(still) = scene.source.still() else {
         let fault = scene.params.fault("source.kind", "only a flat picture can be exposed without a lens");
-        return Err(fault.hint("`kind: picture` without `depth`; or name a lens").into());
+        return Err(fault.hint("use `kind: picture` without `depth`, or name a lens").into());
     };
     of_still(scene, &still?)
 }
 
-/// The same of pixels that were read before.
+/// Exposes the scene's film to pixels that were read before.
 pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, SessionError> {
     let size = scene.imager.size();
     let [across, down] = [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)];
     let aspects =
         [size.width_mm / size.height_mm, f64::from(still.width_px) * still.pixel_aspect / f64::from(still.height_px)];
-    // A whole number of pixels is off by half of one.
+    // Allows for widths and heights that are rounded to whole pixels.
     let slack = 0.51 / f64::from(size.width_px.min(size.height_px)) + 1e-6;
     let is_smaller = size.width_px <= still.width_px && size.height_px <= still.height_px;
     if !is_smaller || (aspects[0] / aspects[1] - 1.0).abs() > slack {
@@ -73,7 +75,7 @@ pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, Sessio
     }
     let mut planes = colors.planes(still, &size);
     let gray = colors.integrals([spectra_scene::MID_GRAY; 3]).into_iter().map(|v| v as f32).collect::<Vec<_>>();
-    // A picture that is taken as it is shows the meter its mid gray.
+    // For a picture that is exposed as taken, the meter sees its mid gray.
     let meters = scene.meter_channels();
     for film in scene.films.iter().filter(|film| scene.is_as_taken(film)) {
         for at in film.channels.clone().filter(|at| meters.contains(at)) {
@@ -103,28 +105,28 @@ pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, Sessio
     })
 }
 
-/// What the channels get of each color.
+/// Lookup of the channels' exposures by a color.
 pub(crate) struct Colors<'a> {
     model: &'a dyn ColorModel,
     channels: &'a [Channel],
     factor: f64,
-    /// Of each largest value, row and column what the channels get of the color, [`LANES`] at a time; none where a table is not near
+    /// Exposures of the channels for each largest value, row and column, [`LANES`] at a time; empty if a table is not accurate
     /// enough.
     points: Vec<[f32; LANES]>,
-    /// Values at the points of a side, and one over the step to the next.
+    /// Value at each point of a side, and one over the step to the next.
     values: Vec<[f32; 2]>,
-    /// The same of colors beyond sRGB, where the picture has some and a table is near enough.
+    /// Table for colors beyond sRGB, if the picture has any and the table is accurate enough.
     wide: Option<Wide>,
 }
 
-/// Relative value at point `i` of a side.
+/// Returns the relative value at point `i` of a side.
 fn value(i: usize) -> f64 {
     let s = i as f64 / (SIDE - 1) as f64;
     s * s
 }
 
 impl<'a> Colors<'a> {
-    /// The exposures of `channels`, which are `factor` times the integrals over the model's spectra.
+    /// Tabulates the exposures of `channels`, which are `factor` times the integrals over the model's spectra.
     pub(crate) fn new(model: &'a dyn ColorModel, channels: &'a [Channel], factor: f64) -> Self {
         let step = |i: usize| if i + 1 < SIDE { value(i + 1) - value(i) } else { 1.0 };
         let values = (0..SIDE).map(|i| [value(i) as f32, (1.0 / step(i)) as f32]).collect();
@@ -148,21 +150,22 @@ impl<'a> Colors<'a> {
         colors
     }
 
-    /// Tabulates colors beyond sRGB, too.
+    /// Adds the table for colors beyond sRGB.
     fn take_wide(&mut self) {
         self.wide = Wide::new(self).filter(|wide| wide.worst(self) <= TOLERANCE);
     }
 
-    /// What each channel gets of a color, by integrals.
+    /// Computes the exposure of each channel by a color by integration.
     pub(crate) fn integrals(&self, color: [f64; 3]) -> Vec<f64> {
         let light = self.model.spectrum(color);
         self.channels.iter().map(|channel| self.factor * light.seen_by(&channel.response)).collect()
     }
 
-    /// Largest difference between table and integrals over colors that are dark and bright, gray and full.
+    /// Returns the largest error of the table against integrals, over dark, bright, gray and saturated colors.
     pub(crate) fn worst(&self) -> f64 {
         let off = |i: usize| {
-            // Additive recurrences of irrational steps fill a cube evenly (the plastic number's relative in three dimensions).
+            // Additive recurrences with irrational steps fill a cube evenly (the three-dimensional relative of the plastic
+            // number).
             let at = |step: f64| (0.5 + i as f64 * step).fract();
             let [a, b, c] = [at(0.819_172_513_396_164_4), at(0.671_043_606_703_789_2), at(0.549_700_477_901_970_1)];
             let color = [[a, b, c], [a * a, b * b, c * c], [8.0 * a * a * a, 8.0 * b * b * b, c * c * c]][i % 3];
@@ -174,7 +177,7 @@ impl<'a> Colors<'a> {
         (0..JUDGES).into_par_iter().map(off).reduce(|| 0.0, f64::max)
     }
 
-    /// Largest difference of what was found for a color from its integrals, as [`TOLERANCE`] has it.
+    /// Returns the largest error of the exposures `found` for a color, relative as in [`TOLERANCE`].
     fn off(&self, color: [f32; 3], found: &[f32]) -> f64 {
         let exact = self.integrals(color.map(f64::from));
         let most = exact.iter().fold(0.0_f64, |a, b| a.max(*b));
@@ -182,7 +185,7 @@ impl<'a> Colors<'a> {
         found.iter().zip(&exact).map(differs).fold(0.0, f64::max)
     }
 
-    /// What each channel gets of a color.
+    /// Looks up the exposure of each channel by a color; integrates where there is no table.
     #[inline]
     fn at(&self, rgb: [f32; 3], to: &mut [f32]) {
         if rgb.iter().any(|v| *v < 0.0) && self.wide.as_ref().is_some_and(|wide| wide.at(rgb, to)) {
@@ -225,7 +228,7 @@ impl<'a> Colors<'a> {
         }
     }
 
-    /// A plane for each channel, of as many pixels as the film has.
+    /// Returns a plane for each channel, with as many pixels as the film has.
     fn planes(&self, still: &Still, size: &FrameSize) -> Vec<Vec<f32>> {
         if [still.width_px, still.height_px] == [size.width_px, size.height_px] {
             return self.of_pixels(&still.rgb);
@@ -236,7 +239,7 @@ impl<'a> Colors<'a> {
         (0..self.channels.len()).map(plane).collect()
     }
 
-    /// What each channel gets of each of these pixels, a plane a channel.
+    /// Returns a plane for each channel with its exposure by each of these pixels.
     pub(crate) fn of_pixels(&self, pixels: &[[f32; 3]]) -> Vec<Vec<f32>> {
         let mut planes: Vec<Vec<f32>> = self.channels.iter().map(|_| vec![0.0; pixels.len()]).collect();
         let mut pieces: Vec<Vec<&mut [f32]>> = pixels.chunks(PIXELS_A_TASK).map(|_| Vec::new()).collect();
@@ -253,8 +256,8 @@ impl<'a> Colors<'a> {
         planes
     }
 
-    /// A row of a film with fewer pixels than the picture, the channels one after the other: each pixel gets the mean of the light
-    /// that falls on it.
+    /// Returns a row of a film that has fewer pixels than the picture, one channel after another. Each pixel gets the mean of the
+    /// light that falls on it.
     fn row(&self, still: &Still, size: &FrameSize, row: usize) -> Vec<f32> {
         let (width, count) = (size.width_px as usize, self.channels.len());
         let covered = |i: usize, of: u32, parts: u32| {
@@ -291,7 +294,7 @@ mod tests {
     use spectra_scene::{FileResources, yaml};
     use std::path::Path;
 
-    /// The models of pictures are tabulated near enough for three layers and a meter.
+    /// The tables of the picture models are accurate enough for three layers and a meter.
     #[test]
     fn tables_hold_what_the_integrals_are() {
         let resources = FileResources::beside(Path::new(""));
@@ -309,7 +312,7 @@ mod tests {
             let colors = Colors::new(&*built, &channels, 1.0);
             println!("{model}: within {:.1e}, tabulated: {}", colors.worst(), !colors.points.is_empty());
             assert!(!colors.points.is_empty() && colors.worst() < 3e-3, "{model} falls back to integrals");
-            // A color that is not among the judges, near the fold between two thirds, and one of a single value.
+            // Colors that the table is not tested with: near the edge between two thirds, and of a single value.
             for rgb in [[0.3_f32, 0.299, 0.02], [0.0, 7.0, 0.0], [0.2, 0.2, 0.2], [1e-6, 2e-6, 1e-7]] {
                 let (mut found, exact) = (vec![0.0; 4], colors.integrals(rgb.map(f64::from)));
                 colors.at(rgb, &mut found);
@@ -324,7 +327,7 @@ mod tests {
             let mut nothing = vec![1.0; 4];
             colors.at([0.0; 3], &mut nothing);
             assert_eq!(nothing, [0.0; 4]);
-            // Beyond sRGB there is a table for a model that goes there; black is what has no luminance.
+            // A model that reaches beyond sRGB has a table there; a color without luminance is black.
             let mut colors = colors;
             colors.take_wide();
             assert_eq!(colors.wide.is_some(), model == "smooth");

@@ -1,4 +1,4 @@
-//! What is said of a picture that is done, as a photographer would say it.
+//! The summary of a finished picture, in a photographer's words.
 
 use crate::{LightFrom, Report, words};
 use spectra_core::math::log10;
@@ -8,8 +8,8 @@ use spectra_render::GhostNoise;
 use spectra_scene::FilmTime;
 use std::path::Path;
 
-/// Causes that say something of a picture. What the lens itself stops is none: rays are aimed at a region a little larger
-/// than its pupil, so that none is forgotten, and those beside the pupil end there.
+/// Causes of loss that the summary names. Rays that the lens itself stops are not among them. Rays are aimed at a region a little
+/// larger than the pupil, so that no light is missed, and those that miss the pupil end there.
 const TELLING: [(Loss, &str); 3] = [
     (Loss::TotalReflection, "totally reflected"),
     (Loss::Absorbed, "absorbed"),
@@ -17,15 +17,15 @@ const TELLING: [(Loss, &str); 3] = [
 ];
 
 impl Report<'_> {
-    /// The picture in a few lines, as a photographer would say it.
+    /// Describes the picture in a few lines, in a photographer's words.
     #[must_use]
     pub fn summary(&self) -> String {
         of(self)
     }
 }
 
-/// `Zeiss Biotar 50 mm f/1.4 at f/2, focus 2 m, Kodak Tri-X 400 at 1/700 s (metered); 1 228 800 rays in 0.8 s, 1.5 million
-/// rays/s, 39 % of them through the lens`.
+/// Formats the summary: `Zeiss Biotar 50 mm f/1.4 at f/2, focus 2 m, Kodak Tri-X 400 at 1/700 s (metered); 1 228 800 rays in 0.8 s,
+/// 1.5 million rays/s, 39 % of them through the lens`.
 fn of(report: &Report<'_>) -> String {
     let (scene, rendering) = (report.scene, report.rendering);
     if report.job.light == LightFrom::Pixels {
@@ -69,7 +69,7 @@ fn of(report: &Report<'_>) -> String {
         };
         let share = |part: f64| spectra_render::percent(part / ledger.emitted_w);
         text.push_str(&format!(
-            ", ghosts of {}{why}: {} of the light of the lights, {} left after {} reflections",
+            ", ghosts along {}{why}: {} of what the lights emit, {} not traced after {} reflections",
             words::counted(ledger.paths.len() as u64, "path"),
             share(ledger.ghosts_w),
             share(ledger.not_traced_w),
@@ -77,7 +77,7 @@ fn of(report: &Report<'_>) -> String {
         ));
         if let Some(GhostNoise { noise, clean_samples: Some(samples) }) = rendering.ghost_noise {
             let [own, clean] = [noise, GhostNoise::CLEAN].map(spectra_render::percent);
-            text.push_str(&format!(", with about {own} of noise ({clean} with `render.samples: {samples}`)"));
+            text.push_str(&format!(", with about {own} noise ({clean} with `render.samples: {samples}`)"));
         }
     }
     if let Some(glare) = rendering.glare {
@@ -87,7 +87,7 @@ fn of(report: &Report<'_>) -> String {
         let mean = |of: fn(&spectra_render::Diffracted) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
         let stars = all.iter().map(|d| d.stars).max().unwrap_or(0);
         let why = match scene.render.diffraction {
-            None => " (stars are bright enough; `render.diffraction: false` leaves it out)",
+            None => " (stars are bright enough to matter; `render.diffraction: false` leaves it out)",
             Some(_) => "",
         };
         text.push_str(&format!(
@@ -110,6 +110,7 @@ fn of(report: &Report<'_>) -> String {
     text
 }
 
+/// Formats the summary of a film exposed to pixels:
 /// `6000 x 4000 pixels on 36 x 24 mm, no lens, Kodak Tri-X 400 at 1/700 s (metered)`.
 fn of_pixels(report: &Report<'_>) -> String {
     let size = report.rendering.exposure.size;
@@ -118,9 +119,9 @@ fn of_pixels(report: &Report<'_>) -> String {
     format!("{} x {} pixels on {width} x {height} mm, no lens, {times}", size.width_px, size.height_px)
 }
 
-/// How each film was exposed.
+/// Describes how each film was exposed.
 fn all_exposed(report: &Report<'_>) -> String {
-    // A photograph that is developed has no scene to write into.
+    // A developed photograph has no scene file to edit, so messages name command-line options.
     let has_options = crate::develop::is_picture(Path::new(&report.job.scene_file));
     let one = |(at, time): (usize, &FilmTime)| {
         let gray = report.rendering.mid_gray.as_deref();
@@ -129,19 +130,19 @@ fn all_exposed(report: &Report<'_>) -> String {
     report.times.iter().enumerate().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// `Kodak Tri-X 400 at 1/700 s (metered)`; with by how many stops the picture that is the source is exposed more than it is, and how to say
-/// otherwise: by an option of `film develop` or by a key of the scene.
+/// Describes how a film was exposed: `Kodak Tri-X 400 at 1/700 s (metered)`. For a picture as source it adds the difference from
+/// the file in stops. It also says how to change this, with an option of `film develop` or a key of the scene.
 fn exposed(time: &FilmTime, stops: Option<f64>, has_options: bool) -> String {
     let key = |stops: &str| {
         if has_options { format!("`--exposure {stops}`") } else { format!("`film.compensation: {stops}`") }
     };
-    // Five hundredths of a stop are nothing.
+    // Less than five hundredths of a stop does not matter.
     let moved = stops.filter(|stops| stops.abs() >= 0.05);
     let metered = match (time.meter, moved) {
         (Some(_), _) if time.is_as_taken => format!(" (exposed as taken; {} adds a stop)", key("1")),
         (Some(meter), Some(stops)) => {
             let undone = key(&format!("{:.1}", -stops));
-            format!(" (metered, {meter}: {stops:+.1} stops from the file as it is, which {undone} undoes)")
+            format!(" (metered, {meter}: {stops:+.1} stops from the file as it is; {undone} undoes that)")
         }
         (Some(meter), None) => format!(" (metered, {meter})"),
         (None, _) if time.is_metered => " (metered)".to_owned(),
@@ -151,13 +152,13 @@ fn exposed(time: &FilmTime, stops: Option<f64>, has_options: bool) -> String {
     format!("{named}{} at {}{metered}", time.film, shutter::words(time.time_s))
 }
 
-/// `f/2.8`.
+/// Formats an f-number: `f/2.8`.
 fn f_number(node: &Node) -> Option<String> {
     let text = scalar(node)?;
     Some(format!("f/{}", rounded(text.trim_start_matches("f/"))))
 }
 
-/// A value with its unit, `unit` where it states none.
+/// Formats a value with its unit, or with `unit` if it states none.
 fn quantity(node: &Node, unit: &str) -> Option<String> {
     let text = scalar(node)?;
     let is_bare = matches!(node.value, Value::Number(_));
@@ -172,7 +173,7 @@ fn scalar(node: &Node) -> Option<String> {
     }
 }
 
-/// The number that a text begins with, to four digits, and what stands behind it.
+/// Rounds the number that a text begins with to four digits, and keeps the text after it.
 fn rounded(text: &str) -> String {
     let end = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
     let (number, rest) = text.split_at(end);

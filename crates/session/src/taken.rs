@@ -1,41 +1,40 @@
-//! The light of a picture, and the place for its files before any is traced.
+//! Tracing of one picture, and the check of its output files before that.
 
 use crate::job::Job;
 use crate::{Event, Host, Session, SessionError};
 use spectra_core::params::{Fault, Warning};
 
-/// Sees to it that such files can be written, and none of them over one that the scene is made of.
+/// Checks that files of these names can be written, and that none would overwrite a file that the scene is read from.
 pub(crate) fn prepare(job: &Job<'_>, host: &dyn Host, names: &[String]) -> Result<(), SessionError> {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let folder = host.folder();
     let read = job.series.files_on_disk();
     if let Some(file) = names.iter().find(|name| read.iter().any(|path| folder.is(name, path))) {
-        let text = format!("`{}` would be written over a file that the scene is made of", folder.shown(file));
-        return Err(Fault::new(text).hint("another folder or name at `--output`").into());
+        let text = format!("`{}` is a file that the scene is read from and would be overwritten", folder.shown(file));
+        return Err(Fault::new(text).hint("choose another folder or name with `--output`").into());
     }
     folder.prepare(job.series.name(), &names).map_err(SessionError::Failed)
 }
 
-/// What becomes of a picture that is stopped before it is whole.
+/// Treatment of a picture that is stopped before it is complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unfinished {
-    /// It is written: where files of its name are there, beside them.
+    /// The picture is written; if files of its name exist, it is written beside them.
     IsKept,
-    /// Nothing is written of it: a file of a series is whole.
+    /// The picture is not written at all, because every file of a series must be complete.
     IsLeftOut,
 }
 
-/// The light of a picture.
+/// Traced light of one picture.
 pub(crate) struct Taken {
     pub rendering: spectra_render::Rendering,
     pub seconds: f64,
-    /// Why it is not whole, where that is nobody's wish.
+    /// Cause of an incomplete picture, unless it was stopped on purpose.
     pub failure: Option<String>,
 }
 
 impl Taken {
-    /// Traces all samples that the scene states. Of a picture that is left out where it is stopped, nothing is looked for, nor said,
-    /// then.
+    /// Traces all samples that the scene states. A picture that was stopped and will be left out gets no remarks.
     pub(crate) fn of(
         session: &mut Session,
         host: &dyn Host,
@@ -47,10 +46,10 @@ impl Taken {
         let traced = session.advance(u64::from(session.scene().render.samples), host.workers(), control);
         let seconds = host.now_s() - begun;
         host.hear(Event::Traced);
-        // What was computed before is worth keeping: it may be hours.
+        // Light traced before the failure is worth keeping: it may have taken hours.
         let failure = match traced {
             Err(SessionError::Failed(text)) if session.has_light() => {
-                Some(format!("{text}; the files hold the light traced before it, without that ray"))
+                Some(format!("{text}; the files hold the light traced so far, without that ray"))
             }
             traced => traced.map(|()| None)?,
         };
@@ -62,7 +61,7 @@ impl Taken {
         for warning in &rendering.warnings {
             host.hear(Event::Warning(&Warning::from(warning.clone())));
         }
-        // Developing takes memory of its own.
+        // Frees the light, because development needs memory of its own.
         session.forget_light();
         Ok(Self { rendering, seconds, failure })
     }

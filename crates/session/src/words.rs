@@ -1,6 +1,6 @@
-//! Numbers, times and names as a person reads them.
+//! Formatting of numbers, times and file names for people.
 
-/// A count with thin groups: `157 286 400`.
+/// Formats a count with a space between groups of digits: `157 286 400`.
 #[must_use]
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
@@ -14,14 +14,14 @@ pub fn count(value: u64) -> String {
     out
 }
 
-/// A count with what is counted: `1 ray`, `1 540 rays`.
+/// Formats a count with a noun: `1 ray`, `1 540 rays`.
 #[must_use]
 pub fn counted(value: u64, noun: &str) -> String {
     let plural = if value == 1 { "" } else { "s" };
     format!("{} {noun}{plural}", count(value))
 }
 
-/// A rate in few characters: `23.4 million rays/s`.
+/// Formats a rate in few characters: `23.4 million rays/s`.
 #[must_use]
 pub fn rate(rays_per_second: f64) -> String {
     match rays_per_second {
@@ -33,10 +33,10 @@ pub fn rate(rays_per_second: f64) -> String {
     }
 }
 
-/// A duration: `0.8 s`, `41 s`, `2 min 03 s`, `1 h 05 min`.
+/// Formats a duration: `0.8 s`, `41 s`, `2 min 03 s`, `1 h 05 min`.
 #[must_use]
 pub fn duration(seconds: f64) -> String {
-    // What takes longer than that, nobody waits for.
+    // Nobody waits for longer than this limit, a million hours.
     let whole = seconds.clamp(0.0, 3.6e9).round() as u64;
     match whole {
         0..10 => format!("{:.1} s", seconds.max(0.0)),
@@ -46,14 +46,14 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// A part of a whole: `12 %`, and `0.3 %` where it is small.
+/// Formats a part of a whole in percent: `12 %`, or `0.3 %` with a decimal if it is small.
 #[must_use]
 pub fn percent(part: u64, whole: u64) -> String {
     let percent = 100.0 * part as f64 / whole.max(1) as f64;
     if percent < 9.95 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
-/// Files of one picture in a line: `out/a.exr, a-ortho.png, a.json`.
+/// Lists the files of one picture in a line: `out/a.exr, a-ortho.png, a.json`.
 #[must_use]
 pub fn files(names: &[String]) -> String {
     let folder = |name: &str| name.rfind(['/', '\\']).map_or(0, |at| at + 1);

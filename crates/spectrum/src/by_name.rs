@@ -1,10 +1,10 @@
-//! Finds a spectrum by what a person writes for it.
+//! Finds a spectrum by the text that a person writes for it.
 //!
 //! | written | means |
 //! |---|---|
-//! | `D65`, `mercury`, `v-lambda-1924` | a bundled file; case, spaces, hyphens and underscores do not matter, a part is enough (`printer`) |
-//! | `colorchecker#dark-skin` | a column of a file of several |
-//! | `spectra/illuminants/A.csv`, `mine.csv`, `mine.csv#red` | a file, beside the scene first, then bundled; also `.txt`, `.dat`, `.tsv` |
+//! | `D65`, `mercury`, `v-lambda-1924` | a bundled file; case, spaces, hyphens and underscores do not matter; a part is enough (`printer`) |
+//! | `colorchecker#dark-skin` | a column of a file with several spectra |
+//! | `spectra/illuminants/A.csv`, `mine.csv`, `mine.csv#red` | a file beside the scene, else a bundled one; also `.txt`, `.dat`, `.tsv` |
 //! | `5600 K`, `3200K` | light of that color temperature: a black body below 5000 K, CIE daylight from there on |
 //! | `blackbody:5800` | radiance of a black body of that many kelvin |
 //! | `daylight:5500` | CIE daylight of that correlated color temperature, K |
@@ -13,16 +13,17 @@
 //! | `rectangle:500,600` | 1 between two wavelengths, nm |
 //! | `constant`, `constant:0.18` | the same value everywhere |
 //! | `lines:404.66=1,e=2` | several lines with their powers |
-//! | `mine.yaml` | any spectrum of those in [`crate::document`]: signed Gaussians, histograms, products ... |
+//! | `mine.yaml` | any spectrum described in [`crate::document`]: signed Gaussians, histograms, products ... |
 //! | `FdC`, `F'eC'` | the three lines of a set, of equal power |
-//! | `rgb-lines` | three lines of the hues of sRGB's primaries that together are white (a form that the color models bring) |
+//! | `rgb-lines` | three lines of the hues of sRGB's primaries that together are white (a form that the color models define) |
 //! | `function:exp(-((w - 550) / 20)^4)` | a formula of the wavelength w in nm |
 //! | `D65 + 5000 * line:e`, `1 - wratten-25`, `(A + D65) / 2`, `wratten-12^2` | algebra, with spaces around `+ - /`; see [`crate::expression`] |
 //!
-//! A Gaussian, a rectangle or a constant is whatever is wanted: light, filter, surface or detector. Of a product the first
-//! may be that, what stands behind it are filters. Two lights have no product, and only like is added to like. Like by like is a
-//! function, as is a filter's transmittance from a density: `10^(-0.3 * gaussian:550,20)`. What is computed may be
-//! negative on the way; the whole must not.
+//! A Gaussian, a rectangle or a constant can be any kind that is wanted: light, filter, surface or detector. In a product only
+//! the first factor may be of the wanted kind; the factors after it are filters. Two lights have no product, and only spectra
+//! of the same kind can be added. The quotient of two spectra of the same kind is a plain function, and so is a filter's
+//! transmittance from a density: `10^(-0.3 * gaussian:550,20)`. Intermediate results may be negative; the final result must
+//! not.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -34,7 +35,7 @@ use spectra_core::names::{self, Match};
 use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::Line;
 
-// A circle with `document.rs`: what bears a name may be a document, which names the spectra that it is made of.
+// A circle with `document.rs`: a name may refer to a document, which names the spectra that it is made of.
 use crate::document;
 use crate::emission::Emission;
 use crate::error::SpectrumError;
@@ -49,7 +50,7 @@ use crate::signed::Signed;
 use crate::table::{MAX_BYTES, Table, TableError};
 use crate::tabulated::Tabulated;
 
-/// Where bundled spectra lie that can be named without their folder.
+/// Folders of bundled spectra that can be named without their folder.
 const FOLDERS: [&str; 7] = [
     "spectra/illuminants/",
     "spectra/lamps/",
@@ -60,7 +61,7 @@ const FOLDERS: [&str; 7] = [
     "spectra/sensors/",
 ];
 
-/// Bundled spectra that can be named: (name, path in the bundled data), in the order of the folders.
+/// Lists the bundled spectra that can be named: (name, path in the bundled data), in the order of the folders.
 pub fn bundled_spectra() -> impl Iterator<Item = (&'static str, &'static str)> {
     FOLDERS.into_iter().flat_map(|folder| {
         spectra_data::list(folder).filter_map(move |path| {
@@ -70,19 +71,19 @@ pub fn bundled_spectra() -> impl Iterator<Item = (&'static str, &'static str)> {
     })
 }
 
-/// The spectrum `name`; files are looked up in the working directory, then among the bundled data.
+/// Finds the spectrum `name`; files are looked up in the working directory, then among the bundled data.
 ///
-/// A shape that could be of any kind is taken as light, a table of your own as what its header says (`wavelength_nm,transmittance`), else
-/// as light; see [`find_transmittance`] and its like.
+/// A shape that could be of any kind is taken as light. A table of your own is taken as the kind that its header names
+/// (`wavelength_nm,transmittance`), else as light; see [`find_transmittance`] and its siblings.
 ///
 /// # Errors
-/// [`SpectrumError`]: an unknown name with near ones, a faulty file with row and column, a file of several columns of
-/// which none is chosen.
+/// [`SpectrumError`]: an unknown name (with similar names), a faulty file (with row and column), or a file with several columns
+/// of which none is chosen.
 pub fn find(name: &str) -> Result<Found, SpectrumError> {
     Loader { by_header: true, ..Loader::new(None) }.piece(name, Kind::Emission)?.into_found(Kind::Emission)
 }
 
-/// The spectrum `name`; files are looked up by `files`, beside the scene.
+/// Finds the spectrum `name`; files are looked up by `files`, next to the scene.
 ///
 /// # Errors
 /// As [`find`].
@@ -90,10 +91,10 @@ pub fn find_in(name: &str, files: &dyn Resources) -> Result<Found, SpectrumError
     Loader { by_header: true, ..Loader::new(Some(files)) }.piece(name, Kind::Emission)?.into_found(Kind::Emission)
 }
 
-/// The spectrum `name` as one of a kind: that of a file which does not say what it is.
+/// Finds the spectrum `name` as one of the given kind, which also holds for a file that does not state its kind.
 ///
 /// # Errors
-/// As [`find`], and [`SpectrumError::WrongKind`] for a spectrum that is of another kind.
+/// As [`find`], and [`SpectrumError::WrongKind`] for a spectrum of another kind.
 pub fn find_as_in(name: &str, kind: Kind, files: &dyn Resources) -> Result<Found, SpectrumError> {
     let found = load(name, Some(files), kind)?;
     let same = found.kind() == kind || (kind == Kind::Lines && found.kind() == Kind::Emission);
@@ -103,8 +104,8 @@ pub fn find_as_in(name: &str, kind: Kind, files: &dyn Resources) -> Result<Found
     Err(SpectrumError::WrongKind { name: name.into(), found: found.kind().word(), wanted: kind.word() })
 }
 
-/// A column of a table that is no light, matter or detector: a color-matching function with negative values, or a
-/// component that spectra are summed of. `None` where `name` is none.
+/// Finds a column of a table that is neither light, matter nor detector: a color-matching function with negative values, or a
+/// component from which spectra are summed. Returns `None` if `name` is no such column.
 #[must_use]
 pub fn function_in(name: &str, files: &dyn Resources) -> Option<(Kind, Tabulated)> {
     let (file, column) = name.trim().rsplit_once('#')?;
@@ -115,7 +116,7 @@ pub fn function_in(name: &str, files: &dyn Resources) -> Option<(Kind, Tabulated
     Some((table.kind, table.column_at(at)))
 }
 
-/// What was made of the table `name`, which is not written as the bundled ones are; see [`Table::notes`].
+/// Returns notes on how the table `name` was interpreted if it is not in the format of the bundled tables; see [`Table::notes`].
 #[must_use]
 pub fn notes_in(name: &str, files: &dyn Resources) -> Vec<&'static str> {
     let name = name.trim();
@@ -128,7 +129,7 @@ pub fn notes_in(name: &str, files: &dyn Resources) -> Vec<&'static str> {
 
 macro_rules! typed {
     ($plain:ident, $with:ident, $kind:ident, $what:literal) => {
-        #[doc = concat!("The ", $what, " `name`; see [`find`].")]
+        #[doc = concat!("Finds the ", $what, " `name`; see [`find`].")]
         ///
         /// # Errors
         /// As [`find`], and [`SpectrumError::WrongKind`].
@@ -136,7 +137,7 @@ macro_rules! typed {
             of_kind(name, load(name, None, Kind::$kind)?)
         }
 
-        #[doc = concat!("The ", $what, " `name`; see [`find_in`].")]
+        #[doc = concat!("Finds the ", $what, " `name`; see [`find_in`].")]
         ///
         /// # Errors
         /// As [`find`], and [`SpectrumError::WrongKind`].
@@ -146,7 +147,7 @@ macro_rules! typed {
 
         impl TryFrom<Found> for $kind {
             type Error = Kind;
-            /// The spectrum, or the kind that it is.
+            /// Returns the spectrum, or as error the kind that it is of.
             fn try_from(found: Found) -> Result<Self, Kind> {
                 match found {
                     Found::$kind(it) => Ok(it),
@@ -179,8 +180,8 @@ fn load(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Found
     Loader::new(files).piece(name, wanted)?.into_found(wanted)
 }
 
-/// What a bundled spectrum or a file says of itself: name, source, license, range. `None` for a spectrum that is written
-/// out, and for what is not found.
+/// Returns the front matter of a bundled spectrum or a file: name, source, license, range. Returns `None` for a spectrum that
+/// is written inline, and if nothing is found.
 #[must_use]
 pub fn meta_in(name: &str, files: &dyn Resources) -> Option<Meta> {
     let name = name.trim();
@@ -194,24 +195,24 @@ pub fn meta_in(name: &str, files: &dyn Resources) -> Option<Meta> {
     table(file, Some(files), Kind::Emission).ok().map(|table| table.meta.clone())
 }
 
-/// The same of a bundled spectrum alone, whatever lies in the working directory.
+/// Returns the front matter of a bundled spectrum, whatever files are in the working directory.
 #[must_use]
 pub fn bundled_meta(name: &str) -> Option<Meta> {
     table(name, None, Kind::Emission).ok().map(|table| table.meta.clone())
 }
 
-/// Loads spectra that may be made of others, and bounds how many.
+/// Loads spectra that may be made of others, and limits their number.
 pub(crate) struct Loader<'a> {
     files: Option<&'a dyn Resources>,
-    /// Whether nothing says what is wanted, so that the header of a table does.
+    /// Whether no kind is requested, so that the header of a table decides.
     by_header: bool,
-    /// Spectra that may still be loaded, and how deep they may still lie in one another.
+    /// Numbers of spectra that may still be loaded, and of levels that may still be nested.
     left: Cell<u32>,
     depth: Cell<u32>,
 }
 
 impl<'a> Loader<'a> {
-    /// More than anybody writes; few enough that a file which names itself ends at once.
+    /// More than anybody writes, but few enough that a file which names itself fails at once.
     const MOST: u32 = 1000;
     const DEEPEST: u32 = 12;
 
@@ -219,7 +220,7 @@ impl<'a> Loader<'a> {
         Self { files, by_header: false, left: Cell::new(Self::MOST), depth: Cell::new(Self::DEEPEST) }
     }
 
-    /// Counts one more spectrum.
+    /// Counts one more spectrum against the limit.
     pub(crate) fn count(&self, name: &str) -> Result<(), SpectrumError> {
         match self.left.get().checked_sub(1) {
             Some(left) => {
@@ -230,12 +231,12 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// The spectrum of that name or expression; a shape stays one.
+    /// Loads the spectrum of a name or expression; a shape stays a shape.
     pub(crate) fn piece(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
         self.part(name, wanted)?.settled()
     }
 
-    /// The same as a part of a sum, which is judged as a whole.
+    /// Loads the spectrum of a name or expression as a part of a sum, which is checked as a whole later.
     pub(crate) fn part(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
         let name = name.trim();
         match expression::parse(name)? {
@@ -244,7 +245,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// What an expression comes to. The first that has a name may be what is wanted; what is behind it in a product are filters.
+    /// Evaluates an expression. Its first named spectrum may be of the wanted kind; later factors of a product are filters.
     fn value(&self, whole: &str, tree: &Tree, wanted: Kind) -> Result<Signed, SpectrumError> {
         let within = |at: usize, len: usize| {
             move |cause: SpectrumError| match cause {
@@ -285,7 +286,7 @@ impl<'a> Loader<'a> {
         if is_yaml(file) {
             return self.document(name, wanted).map(|(piece, _)| piece);
         }
-        // What stands behind a light in a product is a filter, whatever its header says.
+        // A factor after a light in a product is a filter, whatever its header says.
         let table = if self.by_header && wanted == Kind::Emission {
             table_by(file, self.files, |shown, bytes| Table::parse_by_header(shown, bytes, column, wanted))?
         } else {
@@ -296,7 +297,7 @@ impl<'a> Loader<'a> {
 
     fn document(&self, name: &str, wanted: Kind) -> Result<(Piece, Meta), SpectrumError> {
         let Some(files) = self.files else {
-            let cause = "a spectrum in YAML is found beside a scene, not by its bare name".to_owned();
+            let cause = "a spectrum in YAML must lie beside a scene; its name alone is not enough".to_owned();
             return Err(SpectrumError::Io { name: name.into(), cause });
         };
         let Some(depth) = self.depth.get().checked_sub(1) else {
@@ -315,14 +316,14 @@ fn is_yaml(name: &str) -> bool {
     ending.is_some_and(|e| e == "yaml" || e == "yml")
 }
 
-/// Whether it is the name of a file with a table in it.
+/// Returns whether `name` is that of a file with a table.
 fn is_table(name: &str) -> bool {
     const ENDINGS: [&str; 6] = ["csv", "txt", "dat", "tsv", "asc", "prn"];
     let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) || name.contains(['/', '\\'])
 }
 
-/// The bundled table of that path; read once.
+/// Returns the bundled table of a path; it is read only once.
 fn bundled_table(path: &'static str) -> Result<Arc<Table>, SpectrumError> {
     static KNOWN: Mutex<BTreeMap<&'static str, Arc<Table>>> = Mutex::new(BTreeMap::new());
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -337,12 +338,12 @@ fn bundled_table(path: &'static str) -> Result<Arc<Table>, SpectrumError> {
     )
 }
 
-/// The table of a bundled name, or of a file.
+/// Returns the table of a bundled name or of a file.
 fn table(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Arc<Table>, SpectrumError> {
     table_by(name, files, |shown, bytes| Table::parse_bytes(shown, bytes, Some(wanted)))
 }
 
-/// The same, a file by `parse`.
+/// Returns the table of a bundled name or of a file; a file is parsed by `parse`.
 fn table_by(
     name: &str,
     files: Option<&dyn Resources>,
@@ -440,7 +441,7 @@ fn from_table(name: &str, table: &Table, column: Option<&str>) -> Result<Found, 
         Kind::Transmittance => Found::Transmittance(Transmittance::from_checked(values)),
         Kind::Reflectance => Found::Reflectance(Reflectance::from_checked(values)),
         Kind::Sensitivity => Found::Sensitivity(Sensitivity::from_checked(values)),
-        // A function that is nowhere negative can be seen with; the others have no meaning as a detector.
+        // A function that is nowhere negative can serve as a detector; the others cannot.
         Kind::ColorMatching if values.extremes().0 >= 0.0 => Found::Sensitivity(Sensitivity::from_checked(values)),
         Kind::ColorMatching | Kind::Components => {
             let (found, wanted) = (table.kind.word(), "emission, transmittance, reflectance or sensitivity");

@@ -1,4 +1,4 @@
-//! Integral of a function that is smooth between given places.
+//! Integration of a function that is smooth between given breaks.
 
 /// Nodes on (-1, 1) and weights of the eight-point Gauss-Legendre rule (Abramowitz and Stegun, table 25.4).
 const GAUSS: [(f64, f64); 4] = [
@@ -8,8 +8,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.960_289_856_497_536_23, 0.101_228_536_290_376_26),
 ];
 
-/// Integral of `f` over the intervals between neighbors of the sorted `breaks`; exact for polynomials of degree 15
-/// on each.
+/// Integrates `f` over the intervals between neighbors of the sorted `breaks`; exact for polynomials of degree 15 on each.
 pub(crate) fn integral(f: impl Fn(f64) -> f64, breaks: &[f64]) -> f64 {
     let mut sum = 0.0;
     for pair in breaks.windows(2) {

@@ -1,9 +1,9 @@
 //! The CIE's observers: color-matching functions and luminous efficiency.
 //!
-//! The tables are the CIE's, by 1 nm: 360-830 nm for 1931 and 1964, 390-830 nm for 2015. The band of light here begins
-//! at 350 nm, so below its first wavelength each function falls on at the mean logarithmic rate of its first ten
-//! nanometres ([`crate::Outside::Geometric`]): for the 1931 observer a factor of about 3.2 in ten nanometres. All of
-//! what lies below 360 nm adds 1e-5 to the X of equal-energy light.
+//! The tables are those of the CIE, in steps of 1 nm: 360-830 nm for 1931 and 1964, 390-830 nm for 2015. The band of light here
+//! begins at 350 nm. Below its first wavelength, each function therefore continues to fall at the mean logarithmic rate of its
+//! first ten nanometers ([`crate::Outside::Geometric`]): for the 1931 observer a factor of about 3.2 in ten nanometers.
+//! Everything below 360 nm adds 1e-5 to the X of equal-energy light.
 
 use std::sync::{Arc, OnceLock};
 
@@ -29,50 +29,50 @@ impl Observer {
         Self { name, functions, band }
     }
 
-    /// CIE 1931, field of 2 degrees: the one meant where nothing else is said.
+    /// Returns the CIE 1931 observer for a field of 2 degrees, which is the default.
     pub fn cie_1931_2deg() -> &'static Self {
         static ONE: OnceLock<Observer> = OnceLock::new();
         ONE.get_or_init(|| Self::load("CIE 1931 2 deg", "spectra/cie/cie-1931-2deg.csv"))
     }
 
-    /// CIE 1964, field of 10 degrees.
+    /// Returns the CIE 1964 observer for a field of 10 degrees.
     pub fn cie_1964_10deg() -> &'static Self {
         static ONE: OnceLock<Observer> = OnceLock::new();
         ONE.get_or_init(|| Self::load("CIE 1964 10 deg", "spectra/cie/cie-1964-10deg.csv"))
     }
 
-    /// CIE 2015 (from cone fundamentals), field of 2 degrees.
+    /// Returns the CIE 2015 observer (from cone fundamentals) for a field of 2 degrees.
     pub fn cie_2015_2deg() -> &'static Self {
         static ONE: OnceLock<Observer> = OnceLock::new();
         ONE.get_or_init(|| Self::load("CIE 2015 2 deg", "spectra/cie/cie-2015-2deg.csv"))
     }
 
-    /// CIE 2015 (from cone fundamentals), field of 10 degrees.
+    /// Returns the CIE 2015 observer (from cone fundamentals) for a field of 10 degrees.
     pub fn cie_2015_10deg() -> &'static Self {
         static ONE: OnceLock<Observer> = OnceLock::new();
         ONE.get_or_init(|| Self::load("CIE 2015 10 deg", "spectra/cie/cie-2015-10deg.csv"))
     }
 
-    /// The CIE RGB functions of 1931 (primaries 700, 546.1 and 435.8 nm), with their negative lobes; every 5 nm from
+    /// Returns the CIE RGB functions of 1931 (primaries 700, 546.1 and 435.8 nm), with their negative lobes; every 5 nm from
     /// 380 to 780 nm, 0 beyond.
     pub fn cie_rgb_1931() -> &'static Self {
         static ONE: OnceLock<Observer> = OnceLock::new();
         ONE.get_or_init(|| Self::load("CIE RGB 1931", "spectra/cie/cie-rgb-1931.csv"))
     }
 
-    /// How people call it.
+    /// Common name of the observer.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// The three functions at `wavelength_nm`.
+    /// Returns the three functions at `wavelength_nm`.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> [f64; 3] {
         [0, 1, 2].map(|i| self.functions[i].at(wavelength_nm))
     }
 
-    /// The three functions on `grid`.
+    /// Returns the three functions on `grid`.
     #[must_use]
     pub fn on_grid(&self, grid: &Grid) -> [Vec<f64>; 3] {
         if *grid == BAND {
@@ -81,7 +81,7 @@ impl Observer {
         [0, 1, 2].map(|i| grid.wavelengths_nm().map(|w| self.functions[i].at(w)).collect())
     }
 
-    /// The same of light on a grid: the sum over its points times the step, as the CIE prescribes at 1 nm (CIE 15:2004,
+    /// Computes XYZ of light on a grid: the sum over its points times the step, as the CIE prescribes at 1 nm (CIE 15:2004,
     /// 7.1), and the lines, each at its own wavelength.
     ///
     /// The integral of the piecewise linear functions ([`SpectralPower::seen_by`]) differs by 5e-5 for a smooth surface.
@@ -101,19 +101,19 @@ impl Observer {
     }
 }
 
-/// Luminous efficiency for photopic vision, V(lambda) of the CIE 1924; the y function of the 1931 observer.
+/// Returns the luminous efficiency for photopic vision, V(lambda) of the CIE 1924; the y function of the 1931 observer.
 #[must_use]
 pub fn v_lambda() -> Sensitivity {
     Sensitivity::from_checked(bundled::table("spectra/cie/v-lambda-1924.csv").column_at(0))
 }
 
-/// Luminous efficiency for scotopic vision, V'(lambda) of the CIE 1951.
+/// Returns the luminous efficiency for scotopic vision, V'(lambda) of the CIE 1951.
 #[must_use]
 pub fn v_prime() -> Sensitivity {
     Sensitivity::from_checked(bundled::table("spectra/cie/v-prime-1951.csv").column_at(0))
 }
 
-/// Mean and characteristic vectors S0, S1 and S2 of daylight (CIE 15:2004, table T.2).
+/// Returns mean and characteristic vectors S0, S1 and S2 of daylight (CIE 15:2004, table T.2).
 pub(crate) fn daylight_components() -> &'static [Tabulated; 3] {
     static ONE: OnceLock<Arc<[Tabulated; 3]>> = OnceLock::new();
     ONE.get_or_init(|| {

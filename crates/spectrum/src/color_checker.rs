@@ -1,6 +1,6 @@
-//! The chart that cameras are measured with.
+//! Patches of the ColorChecker, the usual test chart for cameras.
 
-/// The 24 patches of the ColorChecker, row by row from the top left: the columns of `colorchecker`, so that
+/// Names of the 24 patches of the ColorChecker, row by row from the top left. They are the columns of `colorchecker`, so that
 /// `colorchecker#dark-skin` is the reflectance of the first. The last six are white, four grays and black.
 pub const COLOR_CHECKER: [&str; 24] = [
     "dark-skin",

@@ -19,7 +19,7 @@ const WORDS: [(&[&str], &str, &str); 19] = [
     (
         &["tungsten", "studio"],
         "A",
-        "a bulb of 2856 K; a studio lamp is `iso-7589-studio-tungsten`, 3200 K or so `blackbody:3200`",
+        "a bulb of 2856 K; a studio lamp is `iso-7589-studio-tungsten`, 3200 K is `blackbody:3200`",
     ),
     (&["halogen", "quartz"], "blackbody:3200", "3200 K"),
     (&["fluorescent", "office", "cool-white"], "FL2", "cool white; `FL11` has three narrow bands"),
@@ -37,7 +37,7 @@ const WORDS: [(&[&str], &str, &str); 19] = [
     (&["nd", "neutral-density"], "constant:0.125", "a filter of three stops"),
 ];
 
-/// What to write for such a word.
+/// Returns a hint that says what to write for such a word.
 pub(crate) fn meant(name: &str) -> Option<String> {
     let key = normalized(name);
     let key =

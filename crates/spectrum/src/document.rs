@@ -1,4 +1,4 @@
-//! Spectra in YAML: a map with its kind, and what the file says of itself.
+//! Spectra in YAML: a map with its kind, and what the file says about itself.
 //!
 //! ```yaml
 //! spectra: 1
@@ -9,8 +9,9 @@
 //!   - {kind: mixture, terms: [{amplitude: 0.9, center: 560, sigma: 300}, {amplitude: -0.5, center: 520, sigma: 25}]}
 //! ```
 //!
-//! A file may say what it is a spectrum `of` (`emission`, `transmittance`, `reflectance`, `sensitivity`) and, in words,
-//! its `name`, `source`, `license`, `conditions` and `note`. Without `of` a function is what is wanted where it is named.
+//! A file may say what it is a spectrum `of` (`emission`, `transmittance`, `reflectance`, `sensitivity`) and, in words, its
+//! `name`, `source`, `license`, `conditions` and `note`. Without `of`, a function becomes the kind of spectrum that is wanted
+//! where the file is named.
 
 use crate::by_name::Loader;
 use crate::kind::{SpectrumKind, of_params};
@@ -22,31 +23,31 @@ use spectra_core::params::{Faults, Params, Whole, keys_of};
 use spectra_core::registry;
 use spectra_core::resources::Resources;
 
-/// What a file says of itself beside its spectrum.
+/// Data that a file states about itself beside its spectrum.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Head {
-    /// Format of the file: 1; 1 if absent.
+    /// Version of the file format: 1; 1 if absent.
     #[expect(dead_code, reason = "its schema allows one version")]
     spectra: Option<Whole<1, 1>>,
-    /// What it is a spectrum of: `emission`, `transmittance`, `reflectance` or `sensitivity`; what is wanted where it
-    /// is named, if absent.
+    /// Kind of the spectrum: `emission`, `transmittance`, `reflectance` or `sensitivity`; if absent, the kind that is wanted
+    /// where the file is named.
     of: Option<KindName>,
     /// Name for people.
     name: Option<String>,
-    /// Where the figures come from.
+    /// Source of the figures.
     source: Option<String>,
     /// License of the figures.
     license: Option<String>,
-    /// The same, as older files write it.
+    /// License of the figures, as older files spell it.
     licence: Option<String>,
-    /// How it was measured: angle, temperature, age.
+    /// Conditions of the measurement: angle, temperature, age.
     conditions: Option<String>,
     /// Doubts and choices, for people.
     note: Option<String>,
 }
 
-/// What a file is a spectrum of.
+/// The kind of spectrum that a file holds.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -68,7 +69,7 @@ impl From<KindName> for Kind {
     }
 }
 
-/// The schema of a file that holds a spectrum.
+/// Returns the schema of a file that holds a spectrum.
 #[must_use]
 pub fn schema(generator: &mut SchemaGenerator) -> Schema {
     let head = Head::json_schema(generator);
@@ -77,15 +78,15 @@ pub fn schema(generator: &mut SchemaGenerator) -> Schema {
     schema
 }
 
-/// What a person reads about such a file.
+/// Documentation of such a file, as a user reads it.
 const ABOUT: &str = "\
 A spectrum: a light, a filter, a surface or a sensitivity, by its kind.
 
-It may say what it is a spectrum `of`; without that, a function such as a table or a Gaussian is what is wanted where the \
-file is named. Lights are radiance or power a nanometer, relative unless scaled; transmittances and reflectances are shares \
-of 1. Spectra are made of others by `product`, `sum` and `scale`; what stands there is a map like these, the name of a \
-bundled spectrum or file (`D65`, `wratten-15`, `gel.csv`), or an expression such as `blackbody:3200`. A table of many rows \
-is better kept as CSV.
+The key `of` may state what it is a spectrum of. Without it, a function such as a table or a Gaussian becomes the kind of \
+spectrum that is wanted where the file is named. Lights are radiance or power per nanometer, relative unless scaled; \
+transmittances and reflectances are fractions of 1. `product`, `sum` and `scale` make spectra from others. Each of these is \
+a map like the ones here, the name of a bundled spectrum or file (`D65`, `wratten-15`, `gel.csv`), or an expression such as \
+`blackbody:3200`. A table of many rows is better kept as CSV.
 
 # Examples
 ```yaml
@@ -103,7 +104,8 @@ spectrum: {kind: lines, lines: [{wavelength: \"C'\", power: 2}, {wavelength: 546
 luminance: 120 cd/m2
 ```";
 
-/// The spectrum of a whole file, as what is wanted unless the file says what it is of; and what it says of itself.
+/// Reads the spectrum of a whole file, and what the file says about itself. The spectrum is of the wanted kind, unless the file
+/// states another.
 pub(crate) fn of_file(
     file: &Params,
     wanted: Kind,
@@ -123,7 +125,7 @@ pub(crate) fn of_file(
         Some(kind) => {
             let found = piece.into_found(kind).map_err(|e| whole.fault_here(e.to_string()))?;
             if found.kind() != kind {
-                let text = format!("what the file holds is of kind {}", found.kind());
+                let text = format!("the spectrum in the file is of kind {}", found.kind());
                 return Err(whole.fault("of", text).into());
             }
             Piece::Typed(found)

@@ -1,4 +1,4 @@
-//! Light that is emitted: a continuum and lines.
+//! Emitted light: a continuum and lines.
 
 use std::ops::{Add, Mul};
 
@@ -12,10 +12,10 @@ use crate::gaussian::GaussianMixture;
 use crate::shape::Shape;
 use crate::tabulated::Tabulated;
 
-/// Emitted power (or radiance) by wavelength: a continuum per nanometre, and lines kept apart from it.
+/// Emitted power (or radiance) by wavelength: a continuum per nanometer, and lines stored separately.
 ///
-/// A line of power p holds as much as a continuum of p per nanometre does over one nanometre. The unit is that of the
-/// maker: relative for an illuminant, W m^-2 sr^-1 nm^-1 for a black body; [`Emission::scaled_to_luminance`] and
+/// A line of power p holds as much as a continuum of p per nanometer does over one nanometer. The unit is that of the source:
+/// relative for an illuminant, W m^-2 sr^-1 nm^-1 for a black body. [`Emission::scaled_to_luminance`] and
 /// [`Emission::scaled_to_power`] make it absolute.
 ///
 /// Light passes through matter and falls on detectors, but two lights have no product:
@@ -43,7 +43,7 @@ pub struct Emission {
 }
 
 impl Emission {
-    /// A continuum and lines.
+    /// Creates light from a continuum per nanometer and lines.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless wavelengths of lines are positive and their powers 0 or more.
@@ -55,7 +55,7 @@ impl Emission {
         Ok(Self { continuum, lines })
     }
 
-    /// One line: monochromatic light.
+    /// Creates monochromatic light: one line.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`]; see [`Emission::new`].
@@ -63,7 +63,7 @@ impl Emission {
         Self::new(None, vec![Line { wavelength_nm, power }])
     }
 
-    /// `value` per nanometre at all wavelengths; 1 is illuminant E.
+    /// Creates light with `value` per nanometer at all wavelengths; 1 is illuminant E.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless it is 0 or more.
@@ -71,7 +71,7 @@ impl Emission {
         Self::new(Some(Shape::constant(check("power per nm", "0 or more", value, |v| v >= 0.0)?)?), Vec::new())
     }
 
-    /// 1 per nanometre from `from_nm` to `to_nm`.
+    /// Creates light with 1 per nanometer from `from_nm` to `to_nm`.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`]; see [`Shape::rectangle`].
@@ -79,7 +79,7 @@ impl Emission {
         Self::new(Some(Shape::rectangle(from_nm, to_nm)?), Vec::new())
     }
 
-    /// A Gaussian of peak 1 per nanometre and standard deviation `sigma_nm`.
+    /// Creates a Gaussian of peak 1 per nanometer and standard deviation `sigma_nm`.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`]; see [`Shape::gaussian`].
@@ -87,7 +87,7 @@ impl Emission {
         Self::new(Some(Shape::gaussian(center_nm, sigma_nm)?), Vec::new())
     }
 
-    /// A signed sum of Gaussian terms, power per nanometre; taken as 0 where it falls a little below.
+    /// Creates light from a signed sum of Gaussian terms, power per nanometer; it is cut off at 0 if it falls a little below.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if it is nowhere positive on 350-830 nm, or falls below 0 there by more than a tenth
@@ -96,7 +96,7 @@ impl Emission {
         Self::new(Some(Shape::positive_mixture(terms)?.0), Vec::new())
     }
 
-    /// A black body, W m^-2 sr^-1 nm^-1.
+    /// Creates the light of a black body, W m^-2 sr^-1 nm^-1.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`]; see [`Shape::blackbody`].
@@ -104,7 +104,7 @@ impl Emission {
         Self::new(Some(Shape::blackbody(temperature_k)?), Vec::new())
     }
 
-    /// A table of power per nanometre.
+    /// Creates light from a table of power per nanometer.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if a value is negative.
@@ -113,7 +113,7 @@ impl Emission {
         Self::new(Some(Shape::tabulated(table)), Vec::new())
     }
 
-    /// A histogram of measured power; see [`Shape::histogram`].
+    /// Creates light from a histogram of measured power; see [`Shape::histogram`].
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if a content is negative, and as [`Shape::histogram`].
@@ -124,44 +124,45 @@ impl Emission {
         Self::new(Some(Shape::histogram(edges_nm, contents)?), Vec::new())
     }
 
-    /// First and last wavelength that was measured, nm, of a table that goes on flat beyond them; `None` of anything else.
+    /// First and last measured wavelength, nm, of a table that is continued with constant values beyond them; `None` for
+    /// anything else.
     #[must_use]
     pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
         self.continuum.as_ref().and_then(Shape::flat_beyond_nm)
     }
 
-    /// The continuum, per nanometre; `None` where there are lines only.
+    /// Returns the continuum, per nanometer; `None` if there are only lines.
     #[must_use]
     pub fn continuum(&self) -> Option<&Shape> {
         self.continuum.as_ref()
     }
 
-    /// The lines.
+    /// Returns the spectral lines.
     #[must_use]
     pub fn lines(&self) -> &[Line] {
         &self.lines
     }
 
-    /// Continuum per nanometre at `wavelength_nm`.
+    /// Returns the continuum per nanometer at `wavelength_nm`.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         self.continuum.as_ref().map_or(0.0, |c| c.at(wavelength_nm))
     }
 
-    /// The continuum on `grid`; see [`Shape::on_grid`].
+    /// Returns the continuum on `grid`; see [`Shape::on_grid`].
     #[must_use]
     pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
         self.continuum.as_ref().map_or_else(|| vec![0.0; grid.count], |c| c.on_grid(grid))
     }
 
-    /// Continuum on `grid`, and the lines within its band.
+    /// Returns the continuum on `grid`, and the lines within its band.
     #[must_use]
     pub fn to_power(&self, grid: &Grid) -> SpectralPower {
         let lines = self.lines.iter().filter(|l| grid.contains(l.wavelength_nm)).copied().collect();
         SpectralPower { grid: *grid, continuum: self.on_grid(grid), lines }
     }
 
-    /// This times a number.
+    /// Multiplies the light by a number.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless it is finite and 0 or more.
@@ -172,14 +173,14 @@ impl Emission {
         Ok(Self { continuum, lines })
     }
 
-    /// Power over `grid`'s band, lines included: the integral of the continuum plus the lines.
+    /// Returns the power over `grid`'s band: the integral of the continuum plus the lines.
     #[must_use]
     pub fn power(&self, grid: &Grid) -> f64 {
         let power = self.to_power(grid);
         grid.integrate(&power.continuum) + power.lines.iter().map(|l| l.power).sum::<f64>()
     }
 
-    /// What a detector makes of it: the integral of power times sensitivity over `grid`'s band, lines included.
+    /// Returns the response of a detector to the light: the integral of power times sensitivity over `grid`'s band, lines included.
     #[must_use]
     pub fn seen_by(&self, sensitivity: &Sensitivity, grid: &Grid) -> f64 {
         let continuum = grid.integrate_product(&self.on_grid(grid), &sensitivity.on_grid(grid));
@@ -187,19 +188,19 @@ impl Emission {
         continuum + lines.map(|l| l.power * sensitivity.at(l.wavelength_nm)).sum::<f64>()
     }
 
-    /// Luminance, cd/m^2, of a radiance in W m^-2 sr^-1 nm^-1: 683 lm/W times the integral over V(lambda).
+    /// Returns the luminance, cd/m^2, of a radiance in W m^-2 sr^-1 nm^-1: 683 lm/W times the integral over V(lambda).
     ///
-    /// Of an irradiance it is the illuminance in lux, of a power in watts the lumens.
+    /// For an irradiance the result is the illuminance in lux, for a power in watts the luminous flux in lumens.
     #[must_use]
     pub fn luminance(&self) -> f64 {
         LUMINOUS_EFFICACY_LM_PER_W * Observer::cie_1931_2deg().xyz(self)[1]
     }
 
-    /// The same colors at a luminance of `cd_per_m2`: a radiance in W m^-2 sr^-1 nm^-1 (lines W m^-2 sr^-1).
+    /// Scales the light to a luminance of `cd_per_m2`, so that it is a radiance in W m^-2 sr^-1 nm^-1 (lines W m^-2 sr^-1).
     ///
     /// # Errors
-    /// [`SpectrumError::NothingToScale`] if no part of it is seen, [`SpectrumError::OutOfRange`] for a luminance that
-    /// is negative or not finite.
+    /// [`SpectrumError::NothingToScale`] if none of the light is visible, [`SpectrumError::OutOfRange`] for a luminance that is
+    /// negative or not finite.
     pub fn scaled_to_luminance(&self, cd_per_m2: f64) -> Result<Self, SpectrumError> {
         check("luminance, cd/m2", "0 or more", cd_per_m2, |l| l >= 0.0)?;
         let now = self.luminance();
@@ -209,7 +210,7 @@ impl Emission {
         self.scaled(cd_per_m2 / now)
     }
 
-    /// The same colors at a power of `power` (W, or the unit wanted) over 350-830 nm: W/nm, lines W.
+    /// Scales the light to a power of `power` (W, or the unit wanted) over 350-830 nm: W/nm, lines W.
     ///
     /// # Errors
     /// [`SpectrumError::NothingToScale`] if there is no power in that band, [`SpectrumError::OutOfRange`] for a power
@@ -223,17 +224,18 @@ impl Emission {
         self.scaled(power / now)
     }
 
-    /// The same light with a peak of 1: of the continuum on the 1 nm grid, or of the strongest line if it has none.
+    /// Scales the light to a peak of 1: the peak of the continuum on the 1 nm grid, or of the strongest line if there is no
+    /// continuum.
     ///
     /// # Errors
-    /// [`SpectrumError::NothingToScale`] for no light.
+    /// [`SpectrumError::NothingToScale`] if there is no light.
     pub fn scaled_to_peak(&self) -> Result<Self, SpectrumError> {
         let continuum = self.on_grid(&BAND).into_iter().fold(0.0_f64, f64::max);
         let peak = if continuum > 0.0 { continuum } else { self.lines.iter().map(|l| l.power).fold(0.0, f64::max) };
         if peak > 0.0 { self.scaled(1.0 / peak) } else { Err(SpectrumError::NothingToScale("peak")) }
     }
 
-    /// What passes matter of that shape.
+    /// Returns the light that passes matter of this transmittance or reflectance.
     pub(crate) fn through(&self, shape: &Shape) -> Self {
         Self {
             continuum: self.continuum.as_ref().map(|c| c.times(shape)),
@@ -264,7 +266,7 @@ pass!(Reflectance);
 
 impl Add for &Emission {
     type Output = Emission;
-    /// Both lights together.
+    /// Returns the sum of both lights.
     fn add(self, other: &Emission) -> Emission {
         let continuum = match (&self.continuum, &other.continuum) {
             (Some(a), Some(b)) => Some(a.plus(b)),
@@ -283,9 +285,9 @@ impl Add for Emission {
 }
 
 impl Observer {
-    /// The integral of `light` times each function over 350-830 nm, lines included; no factor.
+    /// Returns the integral of `light` times each function over 350-830 nm, lines included; no factor is applied.
     ///
-    /// Times 683 lm/W, and of a radiance in W m^-2 sr^-1 nm^-1, Y is a luminance in cd/m^2.
+    /// For a radiance in W m^-2 sr^-1 nm^-1, Y times 683 lm/W is the luminance in cd/m^2.
     #[must_use]
     pub fn xyz(&self, light: &Emission) -> [f64; 3] {
         self.xyz_of_power(&light.to_power(&BAND))

@@ -1,144 +1,144 @@
-//! What can be wrong with a spectrum that is not read from a file.
+//! Errors of spectra, whether written inline or read from files.
 
 use crate::table_error::TableError;
 use spectra_core::params::{Fault, Faults};
 use spectra_core::quantity::NotLight;
 
-/// A spectrum that cannot be.
+/// Error in the definition or use of a spectrum.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SpectrumError {
-    /// A parameter outside of its range.
+    /// A parameter is outside of its range.
     #[error("{what} must be {wanted}, not {}", shown(*.value))]
     OutOfRange {
-        /// The parameter, with its unit.
+        /// Name of the parameter, with its unit.
         what: &'static str,
-        /// What it may be.
+        /// Description of allowed values.
         wanted: &'static str,
-        /// What it was.
+        /// Value of the parameter.
         value: f64,
     },
-    /// An expression that cannot be read: a parenthesis that is not closed, a sign without a value.
+    /// An expression cannot be read: a parenthesis is not closed, or a sign has no value after it.
     #[error("{message} at character {} of `{text}`", .at + 1)]
     Expression {
-        /// The expression.
+        /// Expression that cannot be read.
         text: String,
-        /// The character, from 0.
+        /// Position of the error in characters, from 0.
         at: usize,
-        /// What is wrong.
+        /// Message of the error.
         message: String,
-        /// What to write.
+        /// Hint on what to write.
         hint: String,
     },
-    /// What is wrong with a part of an expression.
+    /// An error in a part of an expression.
     #[error("{cause}")]
     Within {
-        /// The expression.
+        /// Expression that contains the part.
         text: String,
-        /// The character of the expression at which the part begins, from 0.
+        /// Character of the expression at which the part begins, from 0.
         at: usize,
-        /// How many characters it has.
+        /// Number of characters of the part.
         len: usize,
-        /// What is wrong with it.
+        /// Error in the part.
         cause: Box<SpectrumError>,
     },
-    /// A spectrum that is negative where it cannot be: a difference of two.
-    #[error("the whole is {} at {at_nm} nm, but {kind} cannot be negative", shown(*.value))]
+    /// A spectrum is negative where it cannot be, such as a difference of two.
+    #[error("the result is {} at {at_nm} nm, but {kind} cannot be negative", shown(*.value))]
     Negative {
-        /// What it is.
+        /// Kind of the spectrum.
         kind: &'static str,
-        /// Where it is smallest, nm.
+        /// Wavelength at which it is smallest, nm.
         at_nm: f64,
-        /// Its value there.
+        /// Value at that wavelength.
         value: f64,
     },
-    /// A spectrum without a value somewhere: a division by 0, a root of a negative number.
-    #[error("the whole has no finite value at {at_nm} nm")]
+    /// A spectrum has no value at some wavelength: a division by 0, or a root of a negative number.
+    #[error("the result has no finite value at {at_nm} nm")]
     NotFinite {
-        /// The first wavelength without one, nm.
+        /// First wavelength without a finite value, nm.
         at_nm: f64,
     },
-    /// Light that a scale refers to is absent: no luminance, or no power.
+    /// The light has nothing that could be scaled: no luminance, power or peak.
     #[error("the spectrum has no {0} to scale")]
     NothingToScale(&'static str),
-    /// A name that nothing bears.
+    /// No spectrum has this name.
     #[error("no spectrum is called `{name}`{}", near(.candidates))]
     Unknown {
-        /// The name asked for.
+        /// Name that was asked for.
         name: String,
-        /// Names that resemble it, best first.
+        /// Similar names, best first.
         candidates: Vec<String>,
     },
-    /// An inline spectrum such as `gaussian:550,20` with wrong arguments.
+    /// An inline spectrum such as `gaussian:550,20` has wrong arguments.
     #[error("`{text}` is not understood: {wanted}")]
     Inline {
-        /// What was written.
+        /// Text of the inline spectrum.
         text: String,
-        /// How to write it.
+        /// Description of the correct form.
         wanted: &'static str,
     },
-    /// A file of several spectra where one is wanted.
+    /// A file with several spectra is given where one is expected.
     #[error("`{name}` holds {}; write `{name}#{}`", .columns.join(", "), .columns[0])]
     Ambiguous {
-        /// The file or bundled name.
+        /// File or bundled name that was given.
         name: String,
-        /// Its columns.
+        /// Names of the file's columns.
         columns: Vec<String>,
     },
-    /// A column that the file does not hold.
+    /// The file does not have the requested column.
     #[error("`{name}` has no column `{column}`; it has {}", .columns.join(", "))]
     NoColumn {
-        /// The file or bundled name.
+        /// Name of the file, or bundled name.
         name: String,
-        /// The column asked for.
+        /// Column that was asked for.
         column: String,
-        /// Its columns.
+        /// Names of the columns that the file has.
         columns: Vec<String>,
     },
-    /// A spectrum of one kind where another is wanted: a light as a filter.
+    /// A spectrum of one kind is given where another is expected, such as a light as a filter.
     #[error("`{name}` is of kind {found}, but {wanted} is expected here")]
     WrongKind {
-        /// The name asked for.
+        /// Name of the given spectrum.
         name: String,
-        /// Its kind.
+        /// Kind of the given spectrum.
         found: &'static str,
-        /// The kind wanted.
+        /// Kind that is expected.
         wanted: &'static str,
     },
-    /// Two spectra that cannot be multiplied, or added: light and light, light and a filter.
+    /// Two spectra cannot be combined, such as the product of two lights or the sum of a light and a filter.
     #[error("{left} and {right} have no {operation}")]
     NotTogether {
-        /// Kind of the first.
+        /// Kind of the first spectrum.
         left: &'static str,
-        /// Kind of the second.
+        /// Kind of the second spectrum.
         right: &'static str,
-        /// `product` or `sum`.
+        /// Name of the operation: `product`, `sum`, `difference`, `quotient` or `power`.
         operation: &'static str,
     },
-    /// A file that names itself, or spectra in such numbers that nobody wrote them.
+    /// A file refers to itself, or to an unreasonable number of spectra.
     #[error("`{0}` refers to too many spectra, or to itself")]
     TooMany(String),
-    /// A YAML file with faults, each with its place.
+    /// A YAML file has faults, each with its place.
     #[error("{0}")]
     Document(Faults),
-    /// A file that cannot be read.
+    /// A file cannot be read.
     #[error("{name}: {cause}")]
     Io {
-        /// The file.
+        /// Name of the file.
         name: String,
-        /// The system's word.
+        /// Error message of the operating system or of the loader.
         cause: String,
     },
-    /// A wavelength that is none of light: given in micrometers.
+    /// A wavelength is not one of light, such as one given in micrometers.
     #[error(transparent)]
     NotLight(#[from] NotLight),
-    /// A table with a fault.
+    /// A table has an error.
     #[error(transparent)]
     Table(#[from] TableError),
 }
 
 impl SpectrumError {
-    /// The same as faults: what is wrong within a file, there; everything else as `here` places a message, with what to
-    /// do about it.
+    /// Converts the error to faults. An error within a file gets its place there; any other gets the place that `here` assigns
+    /// to its message, and a hint.
     #[must_use]
     pub fn faults(&self, here: impl FnOnce(String) -> Fault) -> Faults {
         self.placed(Box::new(here))
@@ -150,11 +150,11 @@ impl SpectrumError {
                 here(message.clone()).hint(hint.clone()).within(text, *at, 1).into()
             }
             Self::Within { text, at, len, cause } => {
-                // What is wrong in another file has its place there.
+                // An error in another file already has its place there.
                 cause.placed(Box::new(|message| here(message).within(text, *at, *len)))
             }
             Self::Negative { .. } => here(self.to_string())
-                .hint("subtract less: what is subtracted must nowhere be more than what it is taken from")
+                .hint("subtract less: the result must not be negative anywhere")
                 .into(),
             Self::NotFinite { .. } => here(self.to_string())
                 .hint("a divisor must not be 0 anywhere from 350 to 830 nm; add a little to it, such as `A / (B + 0.001)`")
@@ -188,32 +188,32 @@ impl SpectrumError {
                 .into(),
             Self::Io { name, cause } => here(format!("cannot read `{name}`: {cause}")).into(),
             Self::TooMany(_) => here(self.to_string()).hint("a spectrum cannot be a part of itself").into(),
-            Self::NothingToScale(_) => here(self.to_string()).hint("light that is somewhere more than 0").into(),
+            Self::NothingToScale(_) => here(self.to_string()).hint("use light that is above 0 somewhere").into(),
             Self::OutOfRange { wanted, .. } => here(self.to_string()).hint(*wanted).into(),
         }
     }
 }
 
-/// What a person may have meant by a name that nothing bears.
+/// Returns a hint for an unknown name: what the writer may have meant.
 fn hint_for_unknown(name: &str, candidates: &[String]) -> String {
     if let Some(hint) = crate::common_words::meant(name) {
         return hint;
     }
     match candidates {
         _ if name.contains(['*', '+', '(']) => {
-            "a sum or a product has spaces around its signs and a spectrum behind each: `D65 + 5000 * line:e`"
-                .to_owned()
+            "put spaces around `+` and `*`, with a spectrum after each: `D65 + 5000 * line:e`".to_owned()
         }
         [one] => format!("did you mean `{one}`?"),
         [first, others @ ..] => format!("did you mean `{first}`? Similar: {}", others.join(", ")),
         [] if name.contains(['/', '\\']) || name.contains('.') => {
-            "a file is looked for beside the one that names it, then among the bundled ones".to_owned()
+            "a file is looked up beside the one that names it, then among the bundled files".to_owned()
         }
-        [] => "`spectra list spectrum` shows all names; or a file such as `lamp.csv`, or `blackbody:3200`".to_owned(),
+        [] => "`spectra list spectrum` shows all names; or write a file such as `lamp.csv`, or `blackbody:3200`"
+            .to_owned(),
     }
 }
 
-/// A value as a person reads it: as it is, or with a power of ten where that would be a long row of digits.
+/// Formats a value for a message: as it is, or with a power of ten if it would have many digits.
 fn shown(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !size.is_finite() || (1e-4..1e15).contains(&size) {
@@ -227,7 +227,7 @@ fn near(candidates: &[String]) -> String {
     if candidates.is_empty() { String::new() } else { format!("; near: {}", candidates.join(", ")) }
 }
 
-/// `value` if `test` holds and it is finite.
+/// Returns `value` if it is finite and `test` holds.
 pub(crate) fn check(
     what: &'static str,
     wanted: &'static str,

@@ -1,19 +1,19 @@
-//! Algebra of spectra in a line: `1 - wratten-25`, `(D65 + 0.5 * A) / 2`, `wratten-12^2`.
+//! Parses algebra of spectra in one line: `1 - wratten-25`, `(D65 + 0.5 * A) / 2`, `wratten-12^2`.
 //!
-//! Names hold `-`, `/`, `.` and even spaces (`he-ne`, `spectra/illuminants/A.csv`, `5600 K`), so `+ - * /` are signs of the algebra
-//! where spaces stand on both sides, or behind a `)`. `*`, `^` and parentheses are in no name, and need none. Parentheses
-//! that open within a name belong to it: `function:exp(-((w - 550) / 20)^4)`. As everywhere `^` comes first and from the right, then
-//! a sign, then `*` and `/`, then `+` and `-`.
+//! Names can contain `-`, `/`, `.` and even spaces (`he-ne`, `spectra/illuminants/A.csv`, `5600 K`). Therefore `+ - /` are
+//! operators only with spaces on both sides, or after a `)`. `*` and `^` occur in no name and need no spaces. Parentheses that
+//! open within a name belong to it: `function:exp(-((w - 550) / 20)^4)`. The usual precedence holds: `^` first and from the
+//! right, then a sign, then `*` and `/`, then `+` and `-`.
 
 use crate::error::SpectrumError;
 use crate::inline::number;
 
-/// Longest expression that is read, bytes.
+/// Length of the longest expression that is read, in bytes.
 const LONGEST: usize = 8192;
-/// How deep parentheses and signs may lie in one another.
+/// Largest depth to which parentheses and signs may be nested.
 const DEEPEST: u32 = 48;
 
-/// Two spectra joined.
+/// Operator between two spectra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sign {
     Plus,
@@ -23,18 +23,18 @@ pub(crate) enum Sign {
     Power,
 }
 
-/// An expression as it was written, not yet looked up.
+/// Syntax tree of an expression; its names are not yet looked up.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Tree {
     Number(f64),
-    /// A name, and the characters from which and over which it stands.
+    /// A name, with the position of its first character and its number of characters.
     Name {
         text: String,
         at: usize,
         len: usize,
     },
     Negative(Box<Tree>),
-    /// Both, and the character of the sign.
+    /// Two operands, with the operator and its position in characters.
     Joined {
         sign: Sign,
         at: usize,
@@ -43,7 +43,7 @@ pub(crate) enum Tree {
 }
 
 impl Tree {
-    /// Whether anything in it has a name.
+    /// Returns whether the expression contains a name.
     pub(crate) fn has_name(&self) -> bool {
         match self {
             Self::Number(_) => false,
@@ -54,7 +54,7 @@ impl Tree {
     }
 }
 
-/// What `text` says; a text without any sign or parenthesis is a name, even if it is a number.
+/// Parses `text`. A text without any operator or parenthesis is a name, even if it is a number.
 pub(crate) fn parse(text: &str) -> Result<Tree, SpectrumError> {
     if text.len() > LONGEST {
         let text = text.chars().take(80).collect();
@@ -71,7 +71,7 @@ pub(crate) fn parse(text: &str) -> Result<Tree, SpectrumError> {
             _ => reader.fault(
                 reader.at,
                 "a sign is missing here",
-                "between two spectra there is one of ` + `, ` - `, ` * ` and ` / `: `2 * (D65 + A)`",
+                "write one of ` + `, ` - `, ` * ` and ` / ` between two spectra: `2 * (D65 + A)`",
             ),
         });
     }
@@ -88,7 +88,7 @@ struct Reader<'a> {
     characters: &'a [char],
     at: usize,
     depth: u32,
-    /// Parentheses that are open around what is read.
+    /// Number of parentheses that are open at the current position.
     groups: u32,
 }
 
@@ -111,11 +111,11 @@ impl Reader<'_> {
         SpectrumError::Expression { text: self.text.to_owned(), at, message: message.to_owned(), hint: hint.to_owned() }
     }
 
-    /// One more level.
+    /// Enters one more level, or fails if the nesting is too deep.
     fn deeper(&mut self) -> Result<(), SpectrumError> {
         self.depth += 1;
         if self.depth > DEEPEST {
-            let message = format!("more than {DEEPEST} parentheses or signs in one another");
+            let message = format!("parentheses or signs are nested more than {DEEPEST} deep");
             return Err(self.fault(self.at, &message, "put a part of it into a file"));
         }
         Ok(())
@@ -127,7 +127,7 @@ impl Reader<'_> {
 
     fn sum(&mut self) -> Result<Tree, SpectrumError> {
         let mut left = self.product()?;
-        // As deep as it is long: bounded like parentheses.
+        // The tree becomes as deep as the expression is long; the limit on its length bounds that.
         loop {
             self.skip();
             let sign = match self.peek() {
@@ -191,7 +191,7 @@ impl Reader<'_> {
     }
 
     fn value(&mut self) -> Result<Tree, SpectrumError> {
-        const STANDS: &str = "a spectrum or a number stands behind each sign: `D65 + 5000 * line:e`";
+        const STANDS: &str = "write a spectrum or a number after each sign: `D65 + 5000 * line:e`";
         self.skip();
         match self.peek() {
             Some('(') => {
@@ -205,7 +205,7 @@ impl Reader<'_> {
                     Some(')') => {}
                     None => return Err(self.fault(open, "this `(` is never closed", "write a `)` where it ends")),
                     Some(_) => {
-                        let hint = "between two spectra there is one of ` + `, ` - `, ` * ` and ` / `";
+                        let hint = "write one of ` + `, ` - `, ` * ` and ` / ` between two spectra";
                         return Err(self.fault(self.at, "a sign is missing here", hint));
                     }
                 }
@@ -265,7 +265,7 @@ impl Reader<'_> {
 mod tests {
     use super::*;
 
-    /// The tree with every pair in parentheses.
+    /// Formats the tree with brackets around every pair.
     fn shown(tree: &Tree) -> String {
         match tree {
             Tree::Number(value) => value.to_string(),

@@ -1,16 +1,17 @@
-//! Where a function of the wavelength lies, and how wide it is.
+//! Position and width of a function of the wavelength.
 
 use crate::emission::Emission;
 use crate::shape::Shape;
 use spectra_core::spectral::BAND;
 
 impl Shape {
-    /// The two wavelengths, nm, on both sides of its highest value on 350-830 nm at which it has fallen to half of that.
+    /// Returns the two wavelengths, nm, on both sides of the highest value on 350-830 nm at which the function has fallen to
+    /// half of that.
     ///
-    /// `None` where it has not fallen so far within the band, on one side or on both, and where it is nowhere positive.
+    /// `None` if it does not fall that far within the band on both sides, or if it is nowhere positive.
     #[must_use]
     pub fn half_height_nm(&self) -> Option<[f64; 2]> {
-        /// Narrower dips beside the peak are stepped over.
+        /// Step of the search, nm; narrower dips beside the peak are stepped over.
         const STEP_NM: f64 = 0.05;
         let (height, peak_nm) = self.survey().high;
         if !(height > 0.0 && height.is_finite()) {
@@ -18,7 +19,7 @@ impl Shape {
         }
         let is_high = |nm: f64| self.at(nm) >= 0.5 * height;
         let side = |toward_nm: f64| -> Option<f64> {
-            // Highest at the very end: on that side it does not fall.
+            // The highest value is at the very end: on that side it does not fall.
             if toward_nm == peak_nm {
                 return None;
             }
@@ -43,14 +44,14 @@ impl Shape {
         Some([side(BAND.start_nm)?, side(BAND.end_nm())?])
     }
 
-    /// The mean wavelength on 350-830 nm, nm, weighted by its values; `None` where their sum is not positive.
+    /// Returns the mean wavelength on 350-830 nm, nm, weighted by the values; `None` if their sum is not positive.
     #[must_use]
     pub fn centroid_nm(&self) -> Option<f64> {
         let [sum, moment] = self.moments();
         mean(sum, moment)
     }
 
-    /// Integral over 350-830 nm of its values, and of its values times the wavelength in nm.
+    /// Returns the integral over 350-830 nm of the values, and that of the values times the wavelength in nm.
     fn moments(&self) -> [f64; 2] {
         let (low, high) = (BAND.start_nm, BAND.end_nm());
         [self.integral(low, high, PANEL_NM), self.weighted(low, high, PANEL_NM, |nm| nm)]
@@ -61,7 +62,7 @@ impl Shape {
 const PANEL_NM: f64 = 2.0;
 
 impl Emission {
-    /// The mean wavelength on 350-830 nm, nm, weighted by power, lines included; `None` of no light.
+    /// Returns the mean wavelength on 350-830 nm, nm, weighted by power, lines included; `None` for no light.
     #[must_use]
     pub fn centroid_nm(&self) -> Option<f64> {
         let [mut sum, mut moment] = self.continuum().map_or([0.0; 2], Shape::moments);
@@ -98,7 +99,7 @@ mod tests {
         }
         let both = find_emission("line:500 + 3 * line:600").expect("a light");
         assert_eq!(both.centroid_nm(), Some(575.0));
-        // Of what is highest at an end of the band, the other side alone is no width.
+        // If the highest value is at an end of the band, the other side alone gives no width.
         for open in ["A", "D65 / A / 10", "1 - 0.9 * gaussian:550,20", "rectangle:300,500"] {
             let open = find_emission(open).expect("a light");
             assert!(open.continuum().and_then(|c| c.half_height_nm()).is_none());

@@ -10,11 +10,11 @@ use crate::meta::{Kind, Scale};
 use crate::shape::Shape;
 use crate::tabulated::Tabulated;
 
-/// Share of power that passes, by wavelength; from 0 to 1.
+/// Fraction of power that passes, by wavelength; from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transmittance(Shape);
 
-/// Share of power that is thrown back, relative to the perfect diffuser; 0 or more, hardly above 1.
+/// Fraction of power that is reflected, relative to the perfect diffuser; 0 or more, hardly above 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reflectance(Shape);
 
@@ -25,7 +25,7 @@ pub struct Sensitivity(Shape);
 macro_rules! filter {
     ($name:ident, $kind:expr, $what:literal) => {
         impl $name {
-            /// The same value at all wavelengths.
+            /// Creates a spectrum with the same value at all wavelengths.
             ///
             /// # Errors
             /// [`SpectrumError::OutOfRange`] if it is negative or beyond the bound of its kind.
@@ -33,7 +33,7 @@ macro_rules! filter {
                 Ok(Self(Shape::constant(check_value($kind, value)?)?))
             }
 
-            /// `value` from `from_nm` to `to_nm`, 0 elsewhere.
+            /// Creates a rectangle: `value` from `from_nm` to `to_nm`, 0 elsewhere.
             ///
             /// # Errors
             /// [`SpectrumError::OutOfRange`]; see [`Shape::rectangle`].
@@ -41,7 +41,7 @@ macro_rules! filter {
                 Ok(Self(Shape::rectangle(from_nm, to_nm)?.scaled(check_value($kind, value)?)?))
             }
 
-            /// A Gaussian of standard deviation `sigma_nm` and height `peak`.
+            /// Creates a Gaussian of standard deviation `sigma_nm` and height `peak`.
             ///
             /// # Errors
             /// [`SpectrumError::OutOfRange`]; see [`Shape::gaussian`].
@@ -49,7 +49,7 @@ macro_rules! filter {
                 Ok(Self(Shape::gaussian(center_nm, sigma_nm)?.scaled(check_value($kind, peak)?)?))
             }
 
-            /// A signed sum of Gaussian terms; taken as 0 where it falls a little below.
+            /// Creates a signed sum of Gaussian terms; it counts as 0 where it falls a little below.
             ///
             /// # Errors
             /// [`SpectrumError::OutOfRange`] if it is nowhere positive on 350-830 nm, falls below 0 there by more than a
@@ -60,7 +60,7 @@ macro_rules! filter {
                 Ok(Self(shape))
             }
 
-            /// A table.
+            /// Creates a spectrum from a table.
             ///
             /// # Errors
             /// [`SpectrumError::OutOfRange`] if a value is negative or beyond the bound of its kind.
@@ -71,7 +71,7 @@ macro_rules! filter {
                 Ok(Self(Shape::tabulated(table)))
             }
 
-            /// A table from memory, linear between its points, with its kind's extension beyond the ends.
+            /// Creates a spectrum from points, linear between them, with the extension of its kind beyond the ends.
             ///
             /// # Errors
             /// [`SpectrumError::OutOfRange`]; see [`Tabulated::new`].
@@ -80,12 +80,12 @@ macro_rules! filter {
                 Self::tabulated(Tabulated::new(wavelengths_nm, values, kind.outside(), Scale::Linear)?)
             }
 
-            /// A column of a file, whose reader has checked it.
+            /// Creates a spectrum from a column of a file, which its reader has checked.
             pub(crate) fn from_checked(table: Tabulated) -> Self {
                 Self(Shape::tabulated(table))
             }
 
-            /// A shape, whose values are checked on 350-830 nm.
+            /// Creates a spectrum from a shape, whose values are checked on 350-830 nm.
             pub(crate) fn from_shape(shape: Shape) -> Result<Self, SpectrumError> {
                 let (low, high) = shape.extremes();
                 check_value($kind, low)?;
@@ -93,19 +93,19 @@ macro_rules! filter {
                 Ok(Self(shape))
             }
 
-            #[doc = concat!("The ", $what, " at `wavelength_nm`; 0 for NaN.")]
+            #[doc = concat!("Returns the ", $what, " at `wavelength_nm`; 0 for NaN.")]
             #[must_use]
             pub fn at(&self, wavelength_nm: f64) -> f64 {
                 self.0.at(wavelength_nm)
             }
 
-            /// Values on `grid`; see [`Shape::on_grid`].
+            /// Returns the values on `grid`; see [`Shape::on_grid`].
             #[must_use]
             pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
                 self.0.on_grid(grid)
             }
 
-            /// The bare function of wavelength.
+            /// Returns the bare function of wavelength.
             #[must_use]
             pub fn shape(&self) -> &Shape {
                 &self.0
@@ -128,7 +128,7 @@ fn check_value(kind: Kind, value: f64) -> Result<f64, SpectrumError> {
 }
 
 impl Sensitivity {
-    /// This times a number.
+    /// Multiplies the sensitivity by a number.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless it is finite and 0 or more.
@@ -137,7 +137,7 @@ impl Sensitivity {
     }
 }
 
-/// What light meets one after the other; a product of two lights does not exist.
+/// Implements products of things that light meets one after the other; a product of two lights does not exist.
 macro_rules! multiply {
     ($left:ident * $right:ident = $out:ident) => {
         impl Mul<&$right> for &$left {

@@ -7,7 +7,7 @@ use crate::meta::Kind;
 /// A spectrum of any kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Found {
-    /// Light.
+    /// Emitted light.
     Emission(Emission),
     /// A filter.
     Transmittance(Transmittance),
@@ -18,7 +18,7 @@ pub enum Found {
 }
 
 impl Found {
-    /// Its kind.
+    /// Kind of the spectrum.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {

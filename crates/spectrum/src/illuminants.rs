@@ -1,4 +1,4 @@
-//! Lights by name and by temperature.
+//! Illuminants by name and by color temperature.
 
 use crate::bundled;
 use crate::cie::daylight_components;
@@ -10,17 +10,17 @@ use crate::tabulated::Tabulated;
 
 const FOLDER: &str = "spectra/illuminants/";
 
-/// Names of the bundled illuminants, in the order of their files.
+/// Lists the names of the bundled illuminants, in the order of their files.
 pub fn illuminant_names() -> impl Iterator<Item = &'static str> {
     spectra_data::list(FOLDER).filter_map(|p| p.strip_prefix(FOLDER)?.strip_suffix(".csv"))
 }
 
-/// The bundled illuminant `name`: `A`, `D65`, `FL11` (or `F11`), `LED-B3`, `ISO 7589 Photographic Daylight` ...
+/// Returns the bundled illuminant `name`: `A`, `D65`, `FL11` (or `F11`), `LED-B3`, `ISO 7589 Photographic Daylight` ...
 ///
-/// Case, spaces, hyphens and underscores do not matter. Values are relative, per nanometre.
+/// Case, spaces, hyphens and underscores do not matter. Values are relative, per nanometer.
 ///
 /// # Errors
-/// [`SpectrumError::Unknown`] with near names.
+/// [`SpectrumError::Unknown`] with similar names.
 pub fn illuminant(name: &str) -> Result<Emission, SpectrumError> {
     let wanted = normalized(name);
     let fluorescent = wanted.strip_prefix('f').filter(|n| n.starts_with(|c: char| c.is_ascii_digit()));
@@ -33,7 +33,7 @@ pub fn illuminant(name: &str) -> Result<Emission, SpectrumError> {
     Emission::tabulated(bundled::table(&format!("{FOLDER}{found}.csv")).column_at(0))
 }
 
-/// Chromaticity x, y of CIE daylight of correlated color temperature `cct_k` (CIE 15:2004, 3.1).
+/// Returns the chromaticity x, y of CIE daylight of correlated color temperature `cct_k` (CIE 15:2004, 3.1).
 ///
 /// # Errors
 /// [`SpectrumError::OutOfRange`] outside of 4000-25000 K.
@@ -48,11 +48,11 @@ pub fn daylight_xy(cct_k: f64) -> Result<[f64; 2], SpectrumError> {
     Ok([x, -3.0 * x * x + 2.870 * x - 0.275])
 }
 
-/// CIE daylight of correlated color temperature `cct_k`, 100 at 560 nm, every 5 nm from 300 to 830 nm.
+/// Returns CIE daylight of correlated color temperature `cct_k`, 100 at 560 nm, every 5 nm from 300 to 830 nm.
 ///
-/// The weights of the characteristic vectors are not rounded, so its chromaticity is that of [`daylight_xy`]. The
-/// temperature is on the scale of the exact c2; the named illuminants were defined on an older one: D65 has 6503.6 K,
-/// 6500 K times 1.438777 / 1.438.
+/// The weights of the characteristic vectors are not rounded, so the chromaticity is that of [`daylight_xy`]. The temperature
+/// is on the scale of the exact c2. The named illuminants were defined on an older scale: D65 has 6503.6 K, which is 6500 K
+/// times 1.438777 / 1.438.
 ///
 /// # Errors
 /// [`SpectrumError::OutOfRange`] outside of 4000-25000 K.
@@ -85,8 +85,8 @@ mod tests {
         assert!(candidates.contains(&"D65".to_owned()), "{candidates:?}");
     }
 
-    /// The CIE's table of D65 rests on weights of the vectors rounded to three decimals, and is itself rounded: with
-    /// vectors up to 60 that explains 0.06.
+    /// The CIE's table of D65 uses weights of the vectors rounded to three decimals, and is itself rounded. With vectors up to
+    /// 60 that explains a difference of 0.06.
     #[test]
     fn daylight_of_6504_k_is_d65() {
         let computed = daylight(6500.0 * 1.438_776_877 / 1.438).expect("in range");
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!([d65.at(350.0), d65.at(355.0), d65.at(360.0)], [44.9117, 45.775, 46.6383]);
     }
 
-    /// The definition puts a daylight at its own chromaticity; the vectors were rounded to a decimal, hence 5e-4.
+    /// By definition a daylight has its own chromaticity; the vectors were rounded to one decimal, hence 5e-4.
     #[test]
     fn daylight_has_its_chromaticity() {
         for t in [4000.0, 5003.0, 6504.0, 7000.0, 7001.0, 10_000.0, 25_000.0] {

@@ -12,23 +12,23 @@ use crate::meta::Kind;
 use crate::piece::Piece;
 use crate::shape::Shape;
 
-/// A form in which a spectrum is written out in a line; see [`expression!`](crate::expression).
+/// A form in which a spectrum is written out in one line; see [`expression!`](crate::expression).
 pub struct Expression {
     example: &'static str,
     wanted: &'static str,
     read: Read,
 }
 
-/// What stands behind the `:` as a spectrum; `None` if it is not understood.
+/// Function that reads the part after the `:` as a spectrum; `None` if it is not understood.
 #[derive(Clone, Copy)]
 enum Read {
     Plain(fn(&str) -> Option<Result<Piece, SpectrumError>>),
-    /// Told what is wanted where it stands.
+    /// Function that is also told which kind of spectrum is wanted.
     Wanted(fn(&str, Kind) -> Option<Result<Piece, SpectrumError>>),
 }
 
 impl Expression {
-    /// See [`expression!`](crate::expression).
+    /// Creates a form; see [`expression!`](crate::expression).
     #[must_use]
     pub const fn new(
         example: &'static str,
@@ -38,7 +38,7 @@ impl Expression {
         Self { example, wanted, read: Read::Plain(read) }
     }
 
-    /// The same of one that is another spectrum where a light is wanted than where a surface is: a color.
+    /// Creates a form that is one spectrum where a light is wanted and another where a surface is wanted: a color.
     #[must_use]
     pub const fn of_wanted(
         example: &'static str,
@@ -55,8 +55,9 @@ impl Expression {
 
 inventory::collect!(Expression);
 
-/// Registers how a spectrum is written out in a line: an example such as `gaussian:550,20`, which names it too, how to write it, and
-/// what reads the part behind the `:` (`None` where it is not understood).
+/// Registers a form in which a spectrum is written out in one line. The arguments are an example such as `gaussian:550,20`,
+/// which also names the form, a hint that says how to write it, and a function that reads the part after the `:` (`None` if it
+/// is not understood).
 #[macro_export]
 macro_rules! expression {
     ($example:literal, $wanted:literal, $read:expr $(,)?) => {
@@ -64,8 +65,9 @@ macro_rules! expression {
     };
 }
 
-/// The same of a form that is told what is wanted where it stands, a [`Kind`](crate::Kind): a color is one spectrum as a light and
-/// another as a surface. An example without `:` is a name, and what is read is empty.
+/// Registers a form like [`expression!`](crate::expression), whose function is also told which [`Kind`](crate::Kind) is wanted:
+/// a color is one spectrum as a light and another as a surface. An example without `:` is a name, and the part to read is
+/// empty.
 #[macro_export]
 macro_rules! expression_of_wanted {
     ($example:literal, $wanted:literal, $read:expr $(,)?) => {
@@ -73,7 +75,7 @@ macro_rules! expression_of_wanted {
     };
 }
 
-/// One of each, for messages, sorted.
+/// Returns one example of each form, sorted, for messages.
 pub(crate) fn examples() -> Vec<&'static str> {
     let all = inventory::iter::<Expression>.into_iter().map(|expression| expression.example);
     let mut all: Vec<&str> = all.chain(["constant"]).collect();
@@ -81,7 +83,7 @@ pub(crate) fn examples() -> Vec<&'static str> {
     all
 }
 
-/// A single spectrum that is written out; `None` if `text` is none.
+/// Reads a single spectrum that is written out; `None` if `text` is not one.
 pub(crate) fn single(text: &str, wanted: Kind) -> Option<Result<Piece, SpectrumError>> {
     if text.eq_ignore_ascii_case("constant") {
         return Some(Shape::constant(1.0).map(Piece::Bare));
@@ -110,13 +112,13 @@ pub(crate) fn single(text: &str, wanted: Kind) -> Option<Result<Piece, SpectrumE
     Some(read.unwrap_or_else(|| Err(fault())))
 }
 
-/// A line by its letter, or a number of nm.
+/// Reads a line by its letter, or a number of nm.
 pub(crate) fn line_nm(text: &str) -> Option<f64> {
     let text = text.trim();
     named_line(text).map(|l| l.nominal_nm).or_else(|| measure(text, "nm"))
 }
 
-/// The temperature of `5600 K`.
+/// Reads the temperature, K, of `5600 K`.
 fn color_temperature(text: &str) -> Option<f64> {
     match Reading::of(text) {
         Reading::Quantity { value, unit } if unit.dimension == Dimension::Temperature => Some(value),
@@ -124,13 +126,13 @@ fn color_temperature(text: &str) -> Option<f64> {
     }
 }
 
-/// The light that a color temperature alone stands for: a black body below 5000 K, CIE daylight from there on, as CIE
+/// Returns the light that a color temperature alone stands for: a black body below 5000 K, CIE daylight from there on, as CIE
 /// 13.3-1995 (5.3) chooses the reference of a lamp.
 fn of_color_temperature(kelvin: f64) -> Result<Emission, SpectrumError> {
     if kelvin < 5000.0 { Emission::blackbody(kelvin) } else { daylight(kelvin) }
 }
 
-/// A number with or without its unit, in that unit.
+/// Reads a number with or without its unit, and returns it in `unit`.
 pub(crate) fn measure(text: &str, unit: &str) -> Option<f64> {
     let wanted = Unit::find(unit)?;
     let value = match Reading::of(text) {
@@ -141,7 +143,7 @@ pub(crate) fn measure(text: &str, unit: &str) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Wavelengths with or without their unit, nm.
+/// Reads wavelengths with or without their unit, and returns them in nm.
 pub(crate) fn wavelengths(text: &str) -> Option<Vec<f64>> {
     text.split(',').map(|text| measure(text, "nm")).collect()
 }

@@ -1,8 +1,8 @@
 //! Spectra, illuminants, observers' tables and spectral lines.
 //!
-//! A spectrum is one of four things, and the compiler keeps them apart: an [`Emission`] is light, a [`Transmittance`]
-//! and a [`Reflectance`] are matter, a [`Sensitivity`] is a detector. Light meets matter by `*`, lights add by `+`; light
-//! times light is refused.
+//! A spectrum is one of four things, and the compiler keeps them apart: an [`Emission`] is light, a [`Transmittance`] and a
+//! [`Reflectance`] are matter, a [`Sensitivity`] is a detector. Light meets matter by `*`, and lights add by `+`; light times
+//! light does not compile.
 //!
 //! ```
 //! use spectra_spectrum::{find_emission, find_reflectance};
@@ -13,9 +13,9 @@
 //! # Ok::<(), spectra_spectrum::SpectrumError>(())
 //! ```
 //!
-//! Conventions: wavelengths are in nanometres in air; power is per nanometre, lines hold power as such; the band is
-//! 350-830 nm by 1 nm ([`spectra_core::spectral::BAND`]) unless a grid is given; luminance is 683 lm/W times an
-//! integral over V(lambda) ([`constants::LUMINOUS_EFFICACY_LM_PER_W`]).
+//! Conventions: wavelengths are in nanometers in air; power is per nanometer, but lines hold power as such. The band is 350-830
+//! nm by 1 nm ([`spectra_core::spectral::BAND`]) unless a grid is given. Luminance is 683 lm/W times an integral over V(lambda)
+//! ([`constants::LUMINOUS_EFFICACY_LM_PER_W`]).
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

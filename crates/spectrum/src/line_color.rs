@@ -1,30 +1,30 @@
-//! A color as three spectral lines, with secondary lines between them; and back.
+//! Converts a color to three spectral lines, with secondary lines between them, and back.
 //!
-//! Each channel is one line. A secondary line has the value that lies linearly, by wavelength, between those of its
-//! neighbors among the three, or between the outermost and a cut, where the value is 0. Back, each secondary line is split
-//! between the same neighbors. That is no inverse: of a red, the yellow line gives a part to green, which was never there.
-//! This phantom is why lines with secondaries are no default.
+//! Each channel is one line. A secondary line has the value that is interpolated linearly, by wavelength, between its two
+//! neighbors among the three, or between the outermost line and a cut, where the value is 0. On the way back each secondary
+//! line is split between the same neighbors. That is not an inverse: for a red, the yellow line gives a part to green that was
+//! never there. Because of this phantom, lines with secondaries are not the default.
 
 use crate::emission::Emission;
 use crate::error::{SpectrumError, check};
 use spectra_core::spectral::Line;
 
-/// Lines for red, green and blue, and secondary lines between them.
+/// Spectral lines for red, green and blue, and secondary lines between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineColor {
-    /// Red, green, blue, then the secondary lines in the order given, nm.
+    /// Wavelengths of red, green and blue, then of the secondary lines in the order given, nm.
     lines_nm: Vec<f64>,
-    /// What a full red, green and blue give to each line.
+    /// Shares of each line that a full red, green and blue contribute.
     shares: Vec<[f64; 3]>,
 }
 
 impl LineColor {
-    /// Lines of red, green and blue (in any order of wavelength), secondary lines, and the wavelengths in the ultraviolet
-    /// and the infrared at which values are cut to 0; all nm. A secondary line beyond a cut gets nothing.
+    /// Creates the model from lines of red, green and blue (in any order of wavelength) and secondary lines. `cuts_nm` holds
+    /// the wavelengths in the ultraviolet and the infrared at which values fall to 0. All are in nm. A secondary line beyond a
+    /// cut gets nothing.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless all wavelengths are positive, no line comes twice, and the three lie between
-    /// the cuts.
+    /// [`SpectrumError::OutOfRange`] unless all wavelengths are positive, no line occurs twice, and the three lie between the cuts.
     pub fn new(rgb_nm: [f64; 3], secondary_nm: &[f64], cuts_nm: [f64; 2]) -> Result<Self, SpectrumError> {
         let lines_nm: Vec<f64> = rgb_nm.iter().chain(secondary_nm).copied().collect();
         for (i, nm) in lines_nm.iter().enumerate() {
@@ -36,26 +36,26 @@ impl LineColor {
         let [low, _, high] = order.map(|c| rgb_nm[c]);
         check("ultraviolet cut, nm", "below the lines of the channels", cuts_nm[0], |w| w < low)?;
         check("infrared cut, nm", "above the lines of the channels", cuts_nm[1], |w| w > high)?;
-        // Ends of the interpolation: the channel there, if any.
+        // Knots of the interpolation, each with its channel, if any.
         let [a, b, c] = order.map(|channel| (rgb_nm[channel], Some(channel)));
         let knots = [(cuts_nm[0], None), a, b, c, (cuts_nm[1], None)];
         let shares = lines_nm.iter().map(|nm| share(*nm, &knots)).collect();
         Ok(Self { lines_nm, shares })
     }
 
-    /// All lines, nm: those of red, green and blue, then the secondary ones.
+    /// Returns the wavelengths of all lines, nm: red, green and blue, then the secondary lines.
     #[must_use]
     pub fn lines_nm(&self) -> &[f64] {
         &self.lines_nm
     }
 
-    /// Value of each line for linear RGB, in the order of [`LineColor::lines_nm`]; 1 is full (255 of 8 bits).
+    /// Returns the value of each line for linear RGB, in the order of [`LineColor::lines_nm`]; 1 is full (255 of 8 bits).
     #[must_use]
     pub fn values(&self, linear_rgb: [f64; 3]) -> Vec<f64> {
         self.shares.iter().map(|share| share.iter().zip(linear_rgb).map(|(s, v)| s * v).sum()).collect()
     }
 
-    /// The lines of linear RGB as light, each of the power of its value.
+    /// Returns the light of linear RGB: each line with its value as power.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if a value is negative or not finite.
@@ -64,9 +64,10 @@ impl LineColor {
         Emission::new(None, lines.map(|(nm, power)| Line { wavelength_nm: *nm, power }).collect())
     }
 
-    /// Linear RGB of line values in that order: each split between its neighbors by distance, white kept as white.
+    /// Converts line values, in the order of [`LineColor::lines_nm`], to linear RGB. Each value is split between its neighbors
+    /// by distance, and white stays white.
     ///
-    /// Lines that are missing count as 0.
+    /// Missing values count as 0.
     #[must_use]
     pub fn rgb(&self, values: &[f64]) -> [f64; 3] {
         let split = |values: &[f64]| {
@@ -82,7 +83,7 @@ impl LineColor {
     }
 }
 
-/// What each channel gives to a line at `nm`, linear between the knots.
+/// Returns the contribution of each channel to a line at `nm`, linear between the knots.
 fn share(nm: f64, knots: &[(f64, Option<usize>); 5]) -> [f64; 3] {
     let mut share = [0.0; 3];
     for pair in knots.windows(2) {
@@ -110,7 +111,7 @@ mod tests {
         LineColor::new(["C'", "e", "g"].map(nm), &["F", "D"].map(nm), [380.0, 780.0]).expect("valid")
     }
 
-    /// The dispersion study's example: (255, 0, 0) with R = C', G = e, B = g and secondaries F, D.
+    /// Example of the dispersion study: (255, 0, 0) with R = C', G = e, B = g and secondaries F, D.
     #[test]
     fn lines_of_red() {
         let lines = study();
@@ -128,7 +129,7 @@ mod tests {
         let [red, green, blue] = lines.rgb(&lines.values([1.0, 0.0, 0.0])).map(|v| 255.0 * v);
         println!("red comes back as {red:.1} {green:.1} {blue:.1}");
         assert!(green > 30.0 && green < 35.0 && red > 200.0 && blue == 0.0);
-        // Without secondaries there is none, and white comes back as white in any case.
+        // Without secondaries there is no phantom, and white comes back as white in any case.
         let three = LineColor::new([643.85, 546.07, 435.84], &[], [380.0, 780.0]).expect("valid");
         assert_eq!(three.rgb(&three.values([1.0, 0.0, 0.3])), [1.0, 0.0, 0.3]);
         for back in lines.rgb(&lines.values([0.6; 3])) {
@@ -136,7 +137,7 @@ mod tests {
         }
     }
 
-    /// A line halfway to a cut has half the value; beyond it nothing. Channels may lie in any order.
+    /// A line halfway to a cut has half the value, and 0 beyond it. Channels may lie in any order.
     #[test]
     fn cuts_are_zero_and_any_assignment_goes() {
         let lines =

@@ -1,4 +1,4 @@
-//! Spectral lines by the short names of optics, and the lines of hydrogen.
+//! Spectral lines by their usual letters, and the lines of hydrogen.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
@@ -8,16 +8,16 @@ use std::borrow::Cow;
 
 use crate::constants::{AIR_INDEX, PROTON_ELECTRON_MASS_RATIO, RYDBERG_PER_M};
 
-/// A spectral line that optics knows by a letter.
+/// Spectral line that is known in optics by a letter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NamedLine {
-    /// Its letter, such as `C'`.
+    /// Letter of the line, such as `C'`.
     pub symbol: &'static str,
-    /// Wavelength in air as it is usually written, nm; what the name means in a scene.
+    /// Wavelength in air as it is usually written, nm; this is what the name means in a scene.
     pub nominal_nm: f64,
-    /// Wavelength in air with more digits, nm; what catalogues of glass mean.
+    /// Wavelength in air with more digits, nm; this is what glass catalogs mean.
     pub precise_nm: f64,
-    /// What emits it.
+    /// Element that emits the line.
     pub element: &'static str,
 }
 
@@ -25,7 +25,7 @@ const fn named(symbol: &'static str, nominal_nm: f64, precise_nm: f64, element: 
     NamedLine { symbol, nominal_nm, precise_nm, element }
 }
 
-/// All named lines, by wavelength. ISO 7944:1998; precise values as makers of glass state them (Schott TIE-29).
+/// All named lines, by wavelength, from ISO 7944:1998. The precise values are those that makers of glass state (Schott TIE-29).
 pub const NAMED_LINES: [NamedLine; 14] = [
     named("i", 365.01, 365.0146, "mercury"),
     named("h", 404.66, 404.6561, "mercury"),
@@ -43,29 +43,30 @@ pub const NAMED_LINES: [NamedLine; 14] = [
     named("t", 1013.98, 1013.98, "mercury"),
 ];
 
-/// Sets of three lines by their letters, from blue to red, as they define a dispersion.
+/// Sets of three lines that define a dispersion: name, and the letters from blue to red.
 pub const LINE_SETS: [(&str, [&str; 3]); 4] =
     [("FDC", ["F", "D", "C"]), ("FdC", ["F", "d", "C"]), ("FeC", ["F", "e", "C"]), ("F'eC'", ["F'", "e", "C'"])];
 
-/// The line of that letter. Case matters: `d` is helium, `D` sodium. A typographic apostrophe is taken as a straight one.
+/// Returns the line with the given letter. Case matters: `d` is helium, `D` sodium. A typographic apostrophe counts as a
+/// straight one.
 #[must_use]
 pub fn named_line(symbol: &str) -> Option<&'static NamedLine> {
     let symbol = symbol.trim().replace(['\u{2019}', '\u{2032}'], "'");
     NAMED_LINES.iter().find(|l| l.symbol == symbol)
 }
 
-/// A wavelength as a file writes it: a line by its letter, or a number.
+/// Wavelength as written in a file: the letter of a line, or a number.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum LineOrWavelength {
-    /// A line.
+    /// A named spectral line.
     Line(NamedLine),
-    /// Where it lies, nm if bare.
+    /// A wavelength; a bare number is in nm.
     Wavelength(Wavelength),
 }
 
 impl LineOrWavelength {
-    /// Where it lies, nm.
+    /// Returns the wavelength, nm.
     #[must_use]
     pub fn nm(self) -> f64 {
         match self {
@@ -96,7 +97,7 @@ impl JsonSchema for NamedLine {
     }
 }
 
-/// The three lines of a set such as `F'eC'`, from blue to red.
+/// Returns the three lines of a set such as `F'eC'`, from blue to red.
 #[must_use]
 pub fn line_set(name: &str) -> Option<[&'static NamedLine; 3]> {
     let name = name.trim().replace(['\u{2019}', '\u{2032}'], "'");
@@ -104,10 +105,10 @@ pub fn line_set(name: &str) -> Option<[&'static NamedLine; 3]> {
     Some(symbols.map(|s| named_line(s).expect("sets are made of named lines")))
 }
 
-/// Wavelength in air, nm, of the Balmer line from level `upper` to 2; `None` below 3.
+/// Returns the wavelength in air, nm, of the Balmer line from level `upper` to 2; `None` below 3.
 ///
-/// Rydberg's formula with the reduced mass of hydrogen and a constant index of air of 1.000277: the centre of the fine
-/// structure, within 0.003 nm of what is measured.
+/// It is Rydberg's formula with the reduced mass of hydrogen and a constant index of air of 1.000277. The result is the center
+/// of the fine structure, within 0.003 nm of the measured wavelength.
 #[must_use]
 pub fn balmer(upper: u32) -> Option<f64> {
     if upper < 3 {
@@ -122,7 +123,7 @@ pub fn balmer(upper: u32) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Precise wavelengths of the named lines in air, nm, as makers of glass state them.
+    /// Precise wavelengths of the named lines in air, nm, as stated by makers of glass.
     #[test]
     fn precise_lines() {
         for (symbol, want) in [
@@ -158,7 +159,7 @@ mod tests {
         assert!(named_line("q").is_none() && line_set("abc").is_none());
     }
 
-    /// Rydberg with reduced mass in air of index 1.000277, computed independently.
+    /// Rydberg's formula with reduced mass in air of index 1.000277, computed independently.
     #[test]
     fn balmer_lines() {
         for (upper, want) in [(3, 656.288), (4, 486.139), (5, 434.053), (6, 410.180)] {

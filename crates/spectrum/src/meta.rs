@@ -1,30 +1,30 @@
-//! The front matter of a spectrum file: what it holds, and where it comes from.
+//! Front matter of a spectrum file: what it holds, and where it comes from.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::fmt;
 
-/// What a file's columns are.
+/// Kind of quantity in a file's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// Emitted power per nanometre.
+    /// Emitted power per nanometer.
     Emission,
-    /// Power in spectral lines.
+    /// Power of spectral lines.
     Lines,
-    /// Share of power that passes.
+    /// Share of power that is transmitted.
     Transmittance,
-    /// Share of power that is thrown back.
+    /// Share of power that is reflected.
     Reflectance,
-    /// Response per power.
+    /// Response of a detector per power.
     Sensitivity,
-    /// Functions that weigh light into color values; they may be negative.
+    /// Functions that weight light to give color values; they may be negative.
     ColorMatching,
-    /// Vectors of which spectra are summed; they may be negative.
+    /// Vectors from which spectra are summed; they may be negative.
     Components,
 }
 
 impl Kind {
-    /// All kinds.
+    /// All kinds of spectra.
     pub const ALL: [Self; 7] = [
         Self::Emission,
         Self::Lines,
@@ -35,7 +35,7 @@ impl Kind {
         Self::Components,
     ];
 
-    /// The word that stands in files.
+    /// Word for this kind in files.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -49,16 +49,16 @@ impl Kind {
         }
     }
 
-    /// The kind of that word.
+    /// Returns the kind for a word in a file.
     #[must_use]
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|k| k.word() == word)
     }
 
-    /// What the name of a column says it is: `transmittance`, `Spectral response`, `power [W]`.
+    /// Guesses the kind from the name of a column: `transmittance`, `Spectral response`, `power [W]`.
     #[must_use]
     pub fn of_header(name: &str) -> Option<Self> {
-        // Power stands beside the others, too: `power reflectance`.
+        // Power comes last, because it also occurs together with the others: `power reflectance`.
         const WORDS: [(Kind, &[&str]); 4] = [
             (Kind::Transmittance, &["transmittance", "transmission", "transmissivity"]),
             (Kind::Reflectance, &["reflectance", "reflection", "reflectivity"]),
@@ -70,16 +70,16 @@ impl Kind {
         WORDS.into_iter().find(|(_, words)| has(words)).map(|(kind, _)| kind)
     }
 
-    /// Whether a value below 0 makes sense.
+    /// Returns whether negative values make sense.
     #[must_use]
     pub fn may_be_negative(self) -> bool {
         matches!(self, Self::ColorMatching | Self::Components)
     }
 
-    /// The largest value that is believed; more is a percentage, or a slip.
+    /// Returns the largest plausible value; a larger one is a percentage or a mistake.
     ///
-    /// A transmittance has 0.02 for the noise of its measurement; a reflectance factor may exceed 1, since a
-    /// glossy or fluorescent patch can be brighter than the perfect diffuser in one direction.
+    /// The limit for a transmittance is 0.02 above 1, to allow for measurement noise. A reflectance factor may exceed 1,
+    /// because a glossy or fluorescent patch can be brighter than the perfect diffuser in one direction.
     #[must_use]
     pub fn bound(self) -> Option<f64> {
         match self {
@@ -90,10 +90,10 @@ impl Kind {
         }
     }
 
-    /// What a table of this kind is beyond its ends unless it says so itself.
+    /// Returns how a table of this kind is continued beyond its ends unless it states that itself.
     ///
-    /// CIE 15:2004, 7.2.2.1 sets missing values of an illuminant or a material to the nearest one given; a
-    /// detector that was not measured is taken as blind.
+    /// CIE 15:2004, 7.2.2.1 sets missing values of an illuminant or a material to the nearest given one; a detector is taken as
+    /// blind where it was not measured.
     #[must_use]
     pub fn outside(self) -> Outside {
         match self {
@@ -109,21 +109,21 @@ impl fmt::Display for Kind {
     }
 }
 
-/// What a table is beyond its first and last wavelength.
+/// Continuation of a table beyond its first and last wavelength.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outside {
-    /// 0.
+    /// The value is 0.
     Zero,
-    /// The nearest value given.
+    /// The nearest given value is kept.
     Constant,
-    /// Falls on at the mean logarithmic rate of the ten nanometres at that end; 0 where the values there do not
-    /// fall toward the end, or change sign.
+    /// The values continue to fall at the mean logarithmic rate of the last ten nanometers; 0 if the values there do not fall
+    /// toward the end, or change sign.
     Geometric,
 }
 
 impl Outside {
-    /// The word that stands in files.
+    /// Word for this continuation in files.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -133,37 +133,37 @@ impl Outside {
         }
     }
 
-    /// The extension of that word.
+    /// Returns the continuation for a word in a file.
     #[must_use]
     pub fn from_word(word: &str) -> Option<Self> {
         [Self::Zero, Self::Constant, Self::Geometric].into_iter().find(|o| o.word() == word)
     }
 }
 
-/// The scale on which values are written.
+/// Scale on which values are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scale {
-    /// As they are.
+    /// The values themselves.
     #[default]
     Linear,
-    /// Their logarithm to base 10 (`unit: log10`); interpolated as such.
+    /// Logarithm of the values to base 10 (`unit: log10`); interpolated as such.
     Log10,
 }
 
-/// How a table is read between its points.
+/// Interpolation between the points of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Interpolation {
-    /// Straight lines: what CIE 15:2004 asks for illuminants, and right where a table has edges.
+    /// Straight lines: recommended by CIE 15:2004 for illuminants, and right where a table has edges.
     #[default]
     Linear,
-    /// Sprague's polynomial of fifth degree through six equally spaced points: what CIE 167:2005 asks for smooth
+    /// Sprague's polynomial of fifth degree through six equally spaced points: recommended by CIE 167:2005 for smooth
     /// measurements such as reflectances.
     Sprague,
 }
 
 impl Interpolation {
-    /// The word that stands in files.
+    /// Word for this interpolation in files.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -172,26 +172,26 @@ impl Interpolation {
         }
     }
 
-    /// The interpolation of that word.
+    /// Returns the interpolation for a word in a file.
     #[must_use]
     pub fn from_word(word: &str) -> Option<Self> {
         [Self::Linear, Self::Sprague].into_iter().find(|i| i.word() == word)
     }
 }
 
-/// Where the strengths of a lamp's lines come from.
+/// Origin of the strengths of a lamp's lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Strengths {
-    /// Measured: they compare as powers.
+    /// Measured: the strengths compare as powers.
     Measured,
-    /// Computed from a model of the discharge: they compare as far as the model holds.
+    /// Computed from a model of the discharge: the strengths compare as far as the model holds.
     Computed,
     /// Observers' estimates: neighboring lines compare, lines far apart do not.
     Estimated,
 }
 
 impl Strengths {
-    /// The word that stands in files.
+    /// Word for this origin in files.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -201,44 +201,44 @@ impl Strengths {
         }
     }
 
-    /// The strengths of that word.
+    /// Returns the origin for a word in a file.
     #[must_use]
     pub fn from_word(word: &str) -> Option<Self> {
         [Self::Measured, Self::Computed, Self::Estimated].into_iter().find(|s| s.word() == word)
     }
 }
 
-/// Front matter. A file of your own may leave all of it out; a bundled file has every field but `notes`.
+/// Front matter of a table. A file of your own may leave all of it out; a bundled file has every field but `notes`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Meta {
-    /// How people call it.
+    /// Common name of the spectrum.
     pub name: Option<String>,
-    /// What the columns are.
+    /// Kind of quantity in the columns.
     pub kind: Option<Kind>,
-    /// The quantity in words.
+    /// Quantity in words.
     pub quantity: Option<String>,
     /// Unit of the values: `1`, `1/nm`, `W/nm`, `log10` ...
     pub unit: Option<String>,
-    /// Publication, maker's sheet or measurement.
+    /// Publication, manufacturer's data sheet or measurement from which the figures come.
     pub source: Option<String>,
-    /// Terms under which the figures came.
+    /// License of the figures.
     pub license: Option<String>,
     /// Conditions of the measurement.
     pub conditions: Option<String>,
-    /// Of `kind: lines`: where their strengths come from.
+    /// Origin of the strengths; only for `kind: lines`.
     pub strengths: Option<Strengths>,
-    /// First and last wavelength, nm.
+    /// First and last wavelength of the table, nm.
     pub range_nm: Option<(f64, f64)>,
-    /// What holds beyond the ends.
+    /// Continuation of the table beyond its ends; `None` for that of its kind.
     pub outside: Option<Outside>,
-    /// How it is read between its points; linear unless stated.
+    /// Interpolation between the points; linear unless stated.
     pub interpolation: Interpolation,
     /// Anything else worth knowing.
     pub notes: Vec<String>,
 }
 
 impl Meta {
-    /// Keys in the order in which files write them.
+    /// Keys of the front matter, in the order in which files write them.
     pub const KEYS: [&'static str; 13] = [
         "spectra",
         "name",
@@ -255,7 +255,7 @@ impl Meta {
         "note",
     ];
 
-    /// Required keys that are absent; empty for a bundled file.
+    /// Lists the required keys that are absent; empty for a bundled file.
     #[must_use]
     pub fn missing(&self) -> Vec<&'static str> {
         let present = [
@@ -272,13 +272,13 @@ impl Meta {
         present.into_iter().filter(|(_, has)| !has).map(|(key, _)| key).collect()
     }
 
-    /// The scale that `unit` names.
+    /// Returns the scale that `unit` names.
     #[must_use]
     pub fn scale(&self) -> Scale {
         if self.unit.as_deref() == Some("log10") { Scale::Log10 } else { Scale::Linear }
     }
 
-    /// Sets `key`; the error says what the value should have been, or `None` for an unknown key.
+    /// Sets `key` to `value`. The error describes the valid values, or is `None` for an unknown key.
     pub(crate) fn set(&mut self, key: &str, value: &str) -> Result<(), Option<&'static str>> {
         let text = || Some(value.to_owned());
         match key {
@@ -291,7 +291,7 @@ impl Meta {
             }
             "unit" => self.unit = text(),
             "source" => self.source = text(),
-            // Older files have the British word.
+            // Older files use the British spelling.
             "license" | "licence" => self.license = text(),
             "conditions" => self.conditions = text(),
             "note" => self.notes.push(value.to_owned()),

@@ -1,8 +1,8 @@
-//! Names as people type them.
+//! Search for similar names when a typed name is unknown.
 
 pub(crate) use spectra_core::names::normalized;
 
-/// Number of characters to insert, delete, replace or swap with their neighbor to get from `a` to `b`.
+/// Returns the number of characters to insert, delete, replace or swap with a neighbor to turn `a` into `b`.
 fn distance(a: &[char], b: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut row: Vec<usize> = (0..=b.len()).collect();
@@ -20,9 +20,9 @@ fn distance(a: &[char], b: &[char]) -> usize {
     row[b.len()]
 }
 
-/// Up to six of `names` that resemble `wanted`, nearest first: few letters apart, or one within the other.
+/// Returns up to six of `names` that resemble `wanted`, nearest first: they differ by few letters, or one contains the other.
 pub(crate) fn candidates<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    // A name of a file's length is no misspelling of anything; comparing it would only cost time.
+    // A name as long as a file is no misspelling of anything; comparing it would only cost time.
     const LONGEST: usize = 80;
     let key = normalized(wanted);
     let letters: Vec<char> = key.chars().take(LONGEST).collect();
@@ -59,7 +59,7 @@ mod tests {
         assert_eq!(candidates("mercuri", names.into_iter()), ["mercury"]);
         assert_eq!(candidates("Photographic Daylight", names.into_iter()), ["iso-7589-photographic-daylight"]);
         assert!(candidates("zzzz", names.into_iter()).is_empty());
-        // A slip in a long name is nearer than a short name that it contains.
+        // A typing error in a long name is nearer than a short name that it contains.
         let lights = ["daylight", "iso-7589-photographic-daylight"];
         let near = candidates("iso-7589-fotographic-daylight", lights.into_iter());
         assert_eq!(near, ["iso-7589-photographic-daylight", "daylight"]);

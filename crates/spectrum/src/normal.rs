@@ -1,18 +1,18 @@
-//! The normal distribution where its own functions underflow or cancel.
+//! Integrals of the normal distribution where its usual functions underflow or cancel.
 
 use crate::cell;
 
-/// From here on the continued fraction of Mills' ratio needs no more than [`LEVELS`] levels.
+/// From this z on, the continued fraction of Mills' ratio needs no more than [`LEVELS`] levels.
 const FRACTION_FROM: f64 = 4.0;
 const LEVELS: u32 = 40;
 
 pub(crate) const SQRT_TAU: f64 = 2.506_628_274_631_000_5;
 pub(crate) const SQRT_HALF_PI: f64 = 1.253_314_137_315_500_3;
 
-/// Mills' ratio for `z` of 0 or more: the integral of exp(-(t^2 - z^2) / 2) over t from z on. About 1/z far out,
-/// where the integral of exp(-t^2 / 2) itself is below all numbers.
+/// Returns Mills' ratio for `z` of 0 or more: the integral of exp(-(t^2 - z^2) / 2) over t from z to infinity. It is about 1/z
+/// for large z, where the integral of exp(-t^2 / 2) itself underflows.
 ///
-/// Near 0 by erfc; then by the continued fraction of Laplace (Abramowitz and Stegun 26.2.14).
+/// It uses erfc near 0, and the continued fraction of Laplace (Abramowitz and Stegun 26.2.14) from 4 on.
 pub(crate) fn mills(z: f64) -> f64 {
     if z < FRACTION_FROM {
         return SQRT_HALF_PI * libm::exp(0.5 * z * z) * libm::erfc(z * std::f64::consts::FRAC_1_SQRT_2);
@@ -24,21 +24,21 @@ pub(crate) fn mills(z: f64) -> f64 {
     1.0 / below
 }
 
-/// The integral of exp(-z^2 / 2) over an interval, as exp(-nearest^2 / 2) times `scaled`: it never underflows.
+/// Integral of exp(-z^2 / 2) over an interval, stored as exp(-nearest^2 / 2) times `scaled` so that it never underflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Mass {
     /// The point of the interval nearest to 0.
     pub nearest: f64,
-    /// The integral over exp(-nearest^2 / 2).
+    /// Integral divided by exp(-nearest^2 / 2).
     pub scaled: f64,
 }
 
 impl Mass {
-    /// From `a` to `b`, whose distance `width` is known with more digits than theirs: far out they lose it. None unless
-    /// it is positive. Relative error about 1e-14.
+    /// Integrates from `a` to `b`. `width` is their distance, known to more digits than their difference, which loses them far
+    /// from 0. The result is 0 unless the width is positive. The relative error is about 1e-14.
     ///
-    /// By erf where the interval holds 0, by Mills' ratio (erfc without its underflow) in the tails, and by Gauss and
-    /// Legendre's rule where the ends are so close that the difference of those would cancel.
+    /// The method is erf if the interval contains 0, and Mills' ratio (erfc without its underflow) in the tails. If the ends
+    /// are so close that the difference of those would cancel, it is Gauss-Legendre quadrature.
     pub fn of_width(a: f64, b: f64, width: f64) -> Self {
         if b <= 0.0 && width > 0.0 {
             let mirrored = Self::of_width(-b, -a, width);
@@ -60,7 +60,7 @@ impl Mass {
         Self { nearest, scaled }
     }
 
-    /// The integral itself; 0 where it underflows.
+    /// Returns the integral itself; 0 if it underflows.
     pub fn value(self) -> f64 {
         self.scaled * libm::exp(-0.5 * self.nearest * self.nearest)
     }

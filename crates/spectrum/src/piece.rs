@@ -1,4 +1,4 @@
-//! A spectrum on its way from what a person wrote to what is wanted.
+//! Intermediate form of a spectrum between its written form and the kind that is expected.
 
 use crate::emission::Emission;
 use crate::error::{SpectrumError, check};
@@ -8,19 +8,19 @@ use crate::meta::Kind;
 use crate::shape::Shape;
 use crate::signed::{Signed, joined, positive};
 
-/// A spectrum whose kind is known, or a shape (a Gaussian, a constant) that can be of any.
+/// Spectrum of known kind, or a shape (a Gaussian, a constant) that can be of any kind.
 #[derive(Clone, Debug)]
 pub enum Piece {
     /// Light, matter or a detector.
     Typed(Found),
-    /// A bare function of wavelength.
+    /// A function of wavelength without a kind.
     Bare(Shape),
-    /// A part of a sum, of a kind or bare: it may be negative, and is judged with the whole.
+    /// A part of a sum, with or without a kind. It may be negative: only the whole sum is checked.
     Signed(Signed),
 }
 
 impl From<Emission> for Piece {
-    /// Light.
+    /// Wraps light as a spectrum of known kind.
     fn from(light: Emission) -> Self {
         Self::Typed(Found::Emission(light))
     }
@@ -45,7 +45,7 @@ impl From<Piece> for Signed {
 }
 
 impl Piece {
-    /// As what is wanted, if it can be that; a spectrum of another kind stays what it is.
+    /// Converts the spectrum to the kind that is wanted, if it can be of that kind; a spectrum of another kind stays unchanged.
     pub(crate) fn into_found(self, wanted: Kind) -> Result<Found, SpectrumError> {
         match self {
             Self::Typed(found) => Ok(found),
@@ -54,7 +54,7 @@ impl Piece {
         }
     }
 
-    /// One behind the other. A bare shape takes part as a filter.
+    /// Multiplies both spectra. A bare shape takes part as a filter.
     pub(crate) fn times(self, other: Self) -> Result<Self, SpectrumError> {
         for factor in [&self, &other] {
             if let Self::Bare(shape) = factor {
@@ -64,18 +64,18 @@ impl Piece {
         Signed::from(self).times(&Signed::from(other))?.settled()
     }
 
-    /// Both at once, still to be judged as a whole. A bare shape takes part as what the other is.
+    /// Adds both spectra; the sum is not yet checked. A bare shape takes part as the kind of the other.
     pub(crate) fn plus(self, other: Self) -> Result<Self, SpectrumError> {
         Ok(Self::Signed(Signed::from(self).plus(&Signed::from(other))?))
     }
 
-    /// Times a number of 0 or more.
+    /// Multiplies the spectrum by a number of 0 or more.
     pub(crate) fn scaled(self, factor: f64) -> Result<Self, SpectrumError> {
         check("factor", "0 or more", factor, |f| f >= 0.0)?;
         Signed::from(self).scaled(factor)?.settled()
     }
 
-    /// Judged as a whole.
+    /// Checks a sum as a whole and gives it its kind.
     pub(crate) fn settled(self) -> Result<Self, SpectrumError> {
         match self {
             Self::Signed(signed) => signed.settled(),
@@ -85,7 +85,7 @@ impl Piece {
 }
 
 impl Signed {
-    /// Judged as a whole: a bare function as one of a kind only where it is known what is wanted.
+    /// Checks the sum as a whole. Without a kind it stays a bare function, which is checked once the wanted kind is known.
     pub(crate) fn settled(self) -> Result<Piece, SpectrumError> {
         let Some(kind) = self.kind else {
             return Ok(Piece::Bare(self.continuum.unwrap_or(Shape::constant(0.0)?)));
@@ -99,7 +99,7 @@ impl Signed {
     }
 }
 
-/// The function of matter and detectors.
+/// Returns the function of wavelength of matter or of a detector; `None` for light.
 pub(crate) fn shape_of(found: &Found) -> Option<&Shape> {
     match found {
         Found::Emission(_) => None,
@@ -109,7 +109,7 @@ pub(crate) fn shape_of(found: &Found) -> Option<&Shape> {
     }
 }
 
-/// A shape as a spectrum of a kind, whose values are checked on 350-830 nm.
+/// Makes a spectrum of the given kind from a shape, and checks its values on 350-830 nm.
 pub(crate) fn of_shape(shape: Shape, kind: Kind) -> Result<Found, SpectrumError> {
     let shape = positive(shape, kind)?;
     Ok(match kind {

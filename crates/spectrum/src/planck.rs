@@ -1,11 +1,11 @@
-//! Radiation of a black body.
+//! Spectral radiance of a black body.
 
 use crate::constants::{FIRST_RADIATION_W_M2_PER_SR, SECOND_RADIATION_M_K};
 
-/// Spectral radiance of a black body in vacuum, W m^-2 sr^-1 nm^-1.
+/// Returns the spectral radiance of a black body in vacuum, W m^-2 sr^-1 nm^-1.
 ///
-/// Planck's law, B = c1L / lambda^5 / (exp(c2 / (lambda T)) - 1), with the exact constants of the SI.
-/// 0 for a temperature or wavelength that is not positive.
+/// It is Planck's law, B = c1L / lambda^5 / (exp(c2 / (lambda T)) - 1), with the exact constants of the SI. The result is 0 for
+/// a temperature or wavelength that is not positive.
 #[must_use]
 pub fn planck_radiance(wavelength_nm: f64, temperature_k: f64) -> f64 {
     if !(wavelength_nm > 0.0 && temperature_k > 0.0) {

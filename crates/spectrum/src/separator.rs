@@ -1,21 +1,21 @@
-//! What stands between the fields of a row.
+//! Separators between the fields of a table row.
 
-/// What stands between the fields of a row.
+/// Separator between the fields of a table row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Separator {
     /// `,`: numbers have a decimal point.
     #[default]
     Comma,
-    /// `;`.
+    /// A semicolon, `;`.
     Semicolon,
     /// A tab.
     Tab,
-    /// One blank or more.
+    /// One space or more.
     Blanks,
 }
 
 impl Separator {
-    /// Its name.
+    /// Returns the name of the separator, in the plural.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -26,7 +26,7 @@ impl Separator {
         }
     }
 
-    /// That of a row of numbers.
+    /// Guesses the separator from a row of numbers.
     pub(crate) fn of(row: &str) -> Self {
         let row = row.trim();
         let has_decimal_comma =
@@ -42,7 +42,7 @@ impl Separator {
         }
     }
 
-    /// The fields of a row.
+    /// Splits a row into its fields.
     pub(crate) fn fields(self, row: &str) -> Vec<&str> {
         match self {
             Self::Comma => row.split(',').collect(),

@@ -1,7 +1,7 @@
-//! A function of wavelength, of whatever origin.
+//! Function of wavelength, whatever its origin.
 //!
-//! It says nothing of what it is a function *of*: that is what [`crate::Emission`], [`crate::Transmittance`],
-//! [`crate::Reflectance`] and [`crate::Sensitivity`] are for.
+//! A shape does not know which quantity it describes: [`crate::Emission`], [`crate::Transmittance`], [`crate::Reflectance`] and
+//! [`crate::Sensitivity`] do.
 
 use std::sync::Arc;
 
@@ -15,8 +15,8 @@ use crate::meta::Outside;
 use crate::planck::planck_radiance;
 use crate::tabulated::Tabulated;
 
-/// A function of the wavelength: constant, rectangle, Gaussian, signed sum of Gaussians, black body, table, histogram,
-/// or made of others.
+/// Function of wavelength: constant, rectangle, Gaussian, signed sum of Gaussians, black body, table, histogram or formula, or
+/// a combination of others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape(Node);
 
@@ -45,23 +45,23 @@ enum Node {
     Product(Arc<[Shape; 2]>),
     Quotient(Arc<[Shape; 2]>),
     Power(Arc<[Shape; 2]>),
-    /// 0 where the other is negative.
+    /// The other shape, cut off at 0 where it is negative.
     Positive(Arc<Shape>),
-    /// Whether points 1 nm apart would miss some of it.
+    /// A formula, and whether points 1 nm apart would miss some of it.
     Function {
         formula: Arc<Formula>,
         is_fine: bool,
     },
 }
 
-/// The values of a shape on 350-830 nm.
+/// Extreme values of a shape on 350-830 nm.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Survey {
-    /// Smallest value, and where it is, nm.
+    /// Smallest value, and its wavelength, nm.
     pub low: (f64, f64),
-    /// Largest value, and where it is, nm.
+    /// Largest value, and its wavelength, nm.
     pub high: (f64, f64),
-    /// The first wavelength, nm, at which it has no finite value.
+    /// First wavelength, nm, at which the value is not finite; `None` if all are finite.
     pub not_finite_nm: Option<f64>,
 }
 
@@ -72,7 +72,7 @@ struct Histogram {
 }
 
 impl Histogram {
-    /// A bin holds its lower edge; the last one its upper edge too.
+    /// Returns the value at a wavelength. A bin includes its lower edge; the last one also its upper edge.
     fn at(&self, wavelength_nm: f64) -> f64 {
         let after = self.edges_nm.partition_point(|e| *e <= wavelength_nm);
         let last = self.edges_nm.len() - 1;
@@ -86,7 +86,7 @@ impl Histogram {
 }
 
 impl Shape {
-    /// The same `value` everywhere.
+    /// Creates a function with the same `value` everywhere.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if it is not finite.
@@ -94,7 +94,7 @@ impl Shape {
         Ok(Self(Node::Constant(check("value", "finite", value, |_| true)?)))
     }
 
-    /// 1 from `from_nm` to `to_nm`, both included, 0 elsewhere.
+    /// Creates a function that is 1 from `from_nm` to `to_nm`, both included, and 0 elsewhere.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless 0 <= from < to, both finite.
@@ -104,7 +104,7 @@ impl Shape {
         Ok(Self(Node::Rectangle { from_nm, to_nm }))
     }
 
-    /// exp(-(x - center)^2 / (2 sigma^2)): peak 1, standard deviation `sigma_nm`.
+    /// Creates the Gaussian exp(-(x - center)^2 / (2 sigma^2)), with peak 1 and standard deviation `sigma_nm`.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless both are finite and sigma is positive.
@@ -114,18 +114,18 @@ impl Shape {
         Ok(Self(Node::Gaussian { center_nm, sigma_nm }))
     }
 
-    /// A signed sum of Gaussian terms, with the sign that it has.
+    /// Creates a signed sum of Gaussian terms, which may be negative.
     #[must_use]
     pub fn mixture(terms: GaussianMixture) -> Self {
         Self(Node::Mixture { terms: Arc::new(terms), at_least_zero: false })
     }
 
-    /// A signed sum of Gaussian terms that stands for something which cannot be negative, and its largest value on
-    /// 350-830 nm: where the sum falls below 0, as a fit does at its edges, it is taken as 0.
+    /// Creates a signed sum of Gaussian terms for a quantity that cannot be negative, and returns it with its largest value on
+    /// 350-830 nm. Where the sum falls below 0, as a fit does at its edges, it is cut off at 0.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] if it is nowhere positive, falls below 0 by more than a tenth of its largest value
-    /// (that is no roughness of a fit), or is not finite.
+    /// [`SpectrumError::OutOfRange`] if it is nowhere positive, falls below 0 by more than a tenth of its largest value (too
+    /// much for the error of a fit), or is not finite.
     pub(crate) fn positive_mixture(terms: GaussianMixture) -> Result<(Self, f64), SpectrumError> {
         let centers = terms.terms().iter().map(GaussianTerm::center_nm).filter(|c| BAND.contains(*c));
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -138,9 +138,9 @@ impl Shape {
         Ok((Self(Node::Mixture { terms: Arc::new(terms), at_least_zero: low < 0.0 }), high))
     }
 
-    /// This as a sum of Gaussian terms, exact; `None` where it is none, or is cut off at 0.
+    /// Returns the shape as an exact sum of Gaussian terms; `None` if it is not one, or is cut off at 0.
     ///
-    /// Gaussians and mixtures are, and sums, products and multiples of such.
+    /// Gaussians and mixtures are such sums, and so are sums, products and multiples of them.
     #[must_use]
     pub fn as_mixture(&self) -> Option<GaussianMixture> {
         match &self.0 {
@@ -155,7 +155,7 @@ impl Shape {
         }
     }
 
-    /// Spectral radiance of a black body, W m^-2 sr^-1 nm^-1; see [`planck_radiance`].
+    /// Creates the spectral radiance of a black body, W m^-2 sr^-1 nm^-1; see [`planck_radiance`].
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless the temperature is positive and at most 1e9 K.
@@ -165,13 +165,13 @@ impl Shape {
         Ok(Self(Node::Blackbody { temperature_k }))
     }
 
-    /// A table.
+    /// Creates a function from a table.
     #[must_use]
     pub fn tabulated(table: Tabulated) -> Self {
         Self(Node::Tabulated(table))
     }
 
-    /// First and last wavelength of a table that goes on flat beyond them, nm; `None` of anything else.
+    /// First and last wavelength, nm, of a table that is continued with constant values beyond them; `None` for anything else.
     #[must_use]
     pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
         match &self.0 {
@@ -181,17 +181,17 @@ impl Shape {
         }
     }
 
-    /// A histogram as a detector measures it: `contents[i]` of power between `edges_nm[i]` and `edges_nm[i + 1]`.
+    /// Creates a histogram as a detector measures it: `contents[i]` of power between `edges_nm[i]` and `edges_nm[i + 1]`.
     ///
-    /// Its value is the content divided by the width of the bin: power per nanometre.
+    /// The value of the function is the content divided by the width of the bin: power per nanometer.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless there is one more edge than contents, at least one bin, edges increase
-    /// from 0 or more and all is finite.
+    /// [`SpectrumError::OutOfRange`] unless there is at least one bin, one more edge than contents, the edges increase from 0
+    /// or more, and all are finite.
     pub fn histogram(edges_nm: &[f64], contents: &[f64]) -> Result<Self, SpectrumError> {
         check("number of bins", "at least 1", contents.len() as f64, |n| n >= 1.0)?;
         let wanted = (contents.len() + 1) as f64;
-        check("number of edges", "one more than that of bins", edges_nm.len() as f64, |n| n == wanted)?;
+        check("number of edges", "one more than the number of bins", edges_nm.len() as f64, |n| n == wanted)?;
         let mut before = check("edge, nm", "0 or more", edges_nm[0], |e| e >= 0.0)?;
         let mut per_nm = Vec::with_capacity(contents.len());
         for (edge, content) in edges_nm[1..].iter().zip(contents) {
@@ -202,7 +202,7 @@ impl Shape {
         Ok(Self(Node::Histogram(Arc::new(Histogram { edges_nm: edges_nm.to_vec(), per_nm }))))
     }
 
-    /// This times a number.
+    /// Multiplies the shape by a number.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if it is not finite.
@@ -214,40 +214,40 @@ impl Shape {
         })
     }
 
-    /// Sum of both, wavelength by wavelength.
+    /// Returns the sum of both shapes at each wavelength.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self(Node::Sum(Arc::new([self.clone(), other.clone()])))
     }
 
-    /// Product of both, wavelength by wavelength.
+    /// Returns the product of both shapes at each wavelength.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         Self(Node::Product(Arc::new([self.clone(), other.clone()])))
     }
 
-    /// This divided by the other, wavelength by wavelength; not finite where that is 0.
+    /// Divides this shape by the other at each wavelength; the result is not finite where the other is 0.
     #[must_use]
     pub fn over(&self, other: &Self) -> Self {
         Self(Node::Quotient(Arc::new([self.clone(), other.clone()])))
     }
 
-    /// This to the power of the other, wavelength by wavelength; not a number where it has none.
+    /// Raises this shape to the power of the other at each wavelength; NaN where the power is not defined.
     #[must_use]
     pub fn to_the_power(&self, exponent: &Self) -> Self {
         Self(Node::Power(Arc::new([self.clone(), exponent.clone()])))
     }
 
-    /// The same, and 0 where it is negative.
+    /// Returns the shape cut off at 0 where it is negative.
     #[must_use]
     pub fn at_least_zero(&self) -> Self {
         Self(Node::Positive(Arc::new(self.clone())))
     }
 
-    /// A formula of the wavelength in nm.
+    /// Creates a function from a formula of the wavelength in nm.
     #[must_use]
     pub fn function(formula: Formula) -> Self {
-        // A formula does not say how fine it is: whether sums by 1 nm and by eighths of that are the same.
+        // A formula does not say how fine it is, so this compares sums by 1 nm with sums by eighths of a nanometer.
         let formula = Arc::new(formula);
         let shape = Self(Node::Function { formula: Arc::clone(&formula), is_fine: true });
         let (mut largest, mut apart) = (0.0_f64, 0.0_f64);
@@ -255,12 +255,12 @@ impl Shape {
             largest = largest.max(mean.abs());
             apart = apart.max((mean - formula.at(w)).abs());
         }
-        // What the curvature of a Gaussian of two steps makes of it, 1 / (24 * 2^2), as in `is_finer_than`.
+        // The threshold is the effect of the curvature of a Gaussian of two steps, 1 / (24 * 2^2), as in `is_finer_than`.
         let is_fine = apart * 96.0 > largest;
         Self(Node::Function { formula, is_fine })
     }
 
-    /// The value of what is the same everywhere; `None` of anything else.
+    /// Returns the value if it is the same everywhere; `None` for anything else.
     #[must_use]
     pub(crate) fn as_constant(&self) -> Option<f64> {
         match &self.0 {
@@ -270,7 +270,7 @@ impl Shape {
         }
     }
 
-    /// The sum of the sizes of what is added up at `wavelength_nm`: how large the roundings of a difference are.
+    /// Returns the sum of the absolute values that are added up at `wavelength_nm`: the scale of the roundoff of a difference.
     #[must_use]
     pub(crate) fn magnitude(&self, wavelength_nm: f64) -> f64 {
         match &self.0 {
@@ -282,7 +282,7 @@ impl Shape {
         }
     }
 
-    /// Whether a fit by signed Gaussians is a part of it.
+    /// Returns whether the shape contains a fit by signed Gaussians.
     #[must_use]
     pub(crate) fn has_mixture(&self) -> bool {
         match &self.0 {
@@ -295,7 +295,7 @@ impl Shape {
         }
     }
 
-    /// Value at `wavelength_nm`; 0 for NaN.
+    /// Returns the value at `wavelength_nm`; 0 for NaN.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         match &self.0 {
@@ -324,7 +324,7 @@ impl Shape {
             Node::Product(parts) => parts[0].at(wavelength_nm) * parts[1].at(wavelength_nm),
             Node::Quotient(parts) => parts[0].at(wavelength_nm) / parts[1].at(wavelength_nm),
             Node::Power(parts) => libm::pow(parts[0].at(wavelength_nm), parts[1].at(wavelength_nm)),
-            // NaN stays what it is.
+            // NaN stays NaN.
             Node::Positive(shape) => {
                 let value = shape.at(wavelength_nm);
                 if value < 0.0 { 0.0 } else { value }
@@ -333,11 +333,11 @@ impl Shape {
         }
     }
 
-    /// Values on `grid`.
+    /// Returns the values on `grid`.
     ///
-    /// At a point of the grid the value there; where the shape has edges or is finer than the grid (rectangle,
-    /// histogram, a Gaussian of under two steps, a table of closer points), the mean over the cell from half a step
-    /// below to half a step above, so that no power is lost or doubled between the points.
+    /// Normally this is the value at each point of the grid. It is the mean over the cell from half a step below to half a step
+    /// above if the shape has edges or is finer than the grid. That is so for a rectangle, a histogram, a Gaussian of under two
+    /// steps and a table of closer points. No power is then lost or doubled between the points.
     #[must_use]
     pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
         if !self.is_finer_than(grid.step_nm) {
@@ -347,7 +347,7 @@ impl Shape {
         grid.wavelengths_nm().map(|w| self.mean(w - half, w + half)).collect()
     }
 
-    /// Mean over the wavelengths from `low_nm` to `high_nm`.
+    /// Returns the mean over the wavelengths from `low_nm` to `high_nm`.
     #[must_use]
     pub fn mean(&self, low_nm: f64, high_nm: f64) -> f64 {
         let mut breaks = vec![low_nm, high_nm];
@@ -357,14 +357,14 @@ impl Shape {
         cell::integral(|w| self.at(w), &breaks) / (high_nm - low_nm)
     }
 
-    /// Integral from `low_nm` to `high_nm`, by a quadrature between all the places at which a part of it is not smooth, every
-    /// `panel_nm` at least.
+    /// Returns the integral from `low_nm` to `high_nm`. The quadrature has breaks at all points where a part of the shape is
+    /// not smooth, and at least every `panel_nm`.
     #[must_use]
     pub fn integral(&self, low_nm: f64, high_nm: f64, panel_nm: f64) -> f64 {
         self.weighted(low_nm, high_nm, panel_nm, |_| 1.0)
     }
 
-    /// The same times a smooth weight at each wavelength.
+    /// Returns the integral of the shape times a smooth weight of the wavelength, as [`Shape::integral`] does without it.
     pub(crate) fn weighted(&self, low_nm: f64, high_nm: f64, panel_nm: f64, weight: impl Fn(f64) -> f64) -> f64 {
         let panels = ((high_nm - low_nm) / panel_nm).clamp(1.0, 1e6).ceil() as u32;
         let mut breaks: Vec<f64> =
@@ -375,7 +375,7 @@ impl Shape {
         cell::integral(|w| weight(w) * self.at(w), &breaks)
     }
 
-    /// How far the points of its tables lie apart, nm, the widest of them; 0 of what is known at every wavelength.
+    /// Returns the widest spacing of the points of its tables, nm; 0 if it is known at every wavelength.
     #[must_use]
     pub fn spacing_nm(&self) -> f64 {
         match &self.0 {
@@ -388,13 +388,13 @@ impl Shape {
         }
     }
 
-    /// Smallest and largest value on 350-830 nm: at whole nanometres, at knots, centers and edges.
+    /// Returns the smallest and largest value on 350-830 nm, evaluated at whole nanometers, knots, centers and edges.
     pub(crate) fn extremes(&self) -> (f64, f64) {
         let Survey { low, high, .. } = self.survey();
         (low.0, high.0)
     }
 
-    /// The same, with the places.
+    /// Returns the smallest and largest value on 350-830 nm with their wavelengths, and the first wavelength without a finite value.
     pub(crate) fn survey(&self) -> Survey {
         let (low_nm, high_nm) = (BAND.start_nm, BAND.end_nm());
         let mut places: Vec<f64> = BAND.wavelengths_nm().collect();
@@ -416,7 +416,7 @@ impl Shape {
         survey
     }
 
-    /// Whether points `step_nm` apart would miss or double some of it.
+    /// Returns whether points `step_nm` apart would miss or double some of it.
     fn is_finer_than(&self, step_nm: f64) -> bool {
         match &self.0 {
             Node::Constant(_) | Node::Blackbody { .. } => false,
@@ -428,12 +428,12 @@ impl Shape {
             Node::Sum(parts) | Node::Product(parts) | Node::Quotient(parts) | Node::Power(parts) => {
                 parts.iter().any(|p| p.is_finer_than(step_nm))
             }
-            // Judged by 1 nm.
+            // Judged at a step of 1 nm.
             Node::Function { is_fine, .. } => *is_fine || step_nm > BAND.step_nm,
         }
     }
 
-    /// Adds the places between which the shape is smooth enough for a quadrature of high order.
+    /// Adds to `out` the wavelengths between which the shape is smooth enough for a quadrature of high order.
     fn breaks(&self, low_nm: f64, high_nm: f64, out: &mut Vec<f64>) {
         match &self.0 {
             Node::Constant(_) | Node::Blackbody { .. } => {}
@@ -453,7 +453,7 @@ impl Shape {
             Node::Sum(parts) | Node::Product(parts) | Node::Quotient(parts) | Node::Power(parts) => {
                 parts.iter().for_each(|p| p.breaks(low_nm, high_nm, out));
             }
-            // Nothing says where: by eighths of a nanometer, or what the span is worth.
+            // A formula does not say where: every eighth of a nanometer, with a limit on the number.
             Node::Function { .. } => {
                 const MOST: f64 = 4096.0;
                 let count = (8.0 * (high_nm - low_nm)).clamp(1.0, MOST);
@@ -463,7 +463,7 @@ impl Shape {
     }
 }
 
-/// Where a Gaussian is cut for a quadrature.
+/// Adds the wavelengths at which a Gaussian is divided for a quadrature.
 fn bell_breaks(center_nm: f64, sigma_nm: f64, out: &mut Vec<f64>) {
     for k in [0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 9.0] {
         out.extend([center_nm - k * sigma_nm, center_nm + k * sigma_nm]);
@@ -480,7 +480,8 @@ mod tests {
         shape.on_grid(&GRID).iter().sum::<f64>() * GRID.step_nm
     }
 
-    /// Areas: a rectangle its width, a Gaussian sigma sqrt(2 pi), however narrow and wherever between the points.
+    /// Areas on the grid are exact: the width of a rectangle, and sigma sqrt(2 pi) of a Gaussian, however narrow and wherever
+    /// between the points.
     #[test]
     fn power_on_the_grid_is_kept() {
         let root = (2.0 * std::f64::consts::PI).sqrt();
@@ -500,7 +501,7 @@ mod tests {
         assert!((sum(&h) - 6.0).abs() < 1e-12);
     }
 
-    /// A product has edges where one factor has: half of a ramp under a rectangle.
+    /// A product has edges where a factor has: half of a ramp under a rectangle.
     #[test]
     fn products_keep_the_edges_of_their_factors() {
         let ramp = Tabulated::new(&[500.0, 600.0], &[0.0, 1.0], crate::Outside::Zero, crate::Scale::Linear);

@@ -1,33 +1,33 @@
-//! A spectrum while it is computed with: of either sign, judged only as a whole.
+//! Spectra in a computation: of either sign, and checked only as a whole.
 
 use crate::error::SpectrumError;
 use crate::meta::Kind;
 use crate::shape::Shape;
 use spectra_core::spectral::Line;
 
-/// A spectrum that may be negative, as a part of a sum or a difference is; lines count for light alone.
+/// A spectrum that may be negative, as a part of a sum or a difference is; only light has lines.
 #[derive(Clone, Debug)]
 pub struct Signed {
-    /// `None` for a bare function of wavelength, which is whatever is wanted.
+    /// Kind; `None` for a bare function of wavelength, which becomes whatever is wanted.
     pub(crate) kind: Option<Kind>,
     pub(crate) continuum: Option<Shape>,
     pub(crate) lines: Vec<Line>,
 }
 
 impl Signed {
-    /// The same number everywhere.
+    /// Creates a spectrum with the same value everywhere.
     pub(crate) fn number(value: f64) -> Result<Self, SpectrumError> {
         Ok(Self { kind: None, continuum: Some(Shape::constant(value)?), lines: Vec::new() })
     }
 
-    /// Times a number of either sign.
+    /// Multiplies by a number of either sign.
     pub(crate) fn scaled(&self, factor: f64) -> Result<Self, SpectrumError> {
         let continuum = self.continuum.as_ref().map(|shape| shape.scaled(factor)).transpose()?;
         let lines = self.lines.iter().map(|l| Line { power: l.power * factor, ..*l }).collect();
         Ok(Self { kind: self.kind, continuum, lines })
     }
 
-    /// Both at once. A bare function takes part as what the other is.
+    /// Adds two spectra. A bare function counts as the kind of the other.
     pub(crate) fn plus(&self, other: &Self) -> Result<Self, SpectrumError> {
         let kind = match (self.kind, other.kind) {
             (Some(a), Some(b)) if a != b => return Err(not_together(a, b, "sum")),
@@ -40,12 +40,12 @@ impl Signed {
         Ok(Self { kind, continuum, lines: [self.lines.as_slice(), &other.lines].concat() })
     }
 
-    /// The difference.
+    /// Subtracts the other spectrum from this one.
     pub(crate) fn minus(&self, other: &Self) -> Result<Self, SpectrumError> {
         self.plus(&other.scaled(-1.0)?).map_err(|e| renamed(e, "difference"))
     }
 
-    /// One behind the other.
+    /// Multiplies two spectra, one behind the other.
     pub(crate) fn times(&self, other: &Self) -> Result<Self, SpectrumError> {
         use Kind::{Emission as E, Reflectance as R, Sensitivity as S, Transmittance as T};
         let kind = match (self.kind, other.kind) {
@@ -79,7 +79,8 @@ impl Signed {
         Ok(Self { kind, continuum, lines })
     }
 
-    /// The quotient. Like by like is a bare function: a filter that turns one light into another.
+    /// Divides by the other spectrum. A quotient of two spectra of one kind is a bare function: a filter that turns one light
+    /// into another.
     pub(crate) fn over(&self, other: &Self) -> Result<Self, SpectrumError> {
         use Kind::{Emission as E, Reflectance as R, Sensitivity as S, Transmittance as T};
         let kind = match (self.kind, other.kind) {
@@ -99,7 +100,7 @@ impl Signed {
             });
         };
         if let (Some(value), None) = (divisor.as_constant(), other.kind) {
-            // As it reads: a division by 0 is found where the whole is judged.
+            // Divide as written: a division by 0 is found when the whole is checked.
             let continuum = self.continuum.as_ref().map(|shape| shape.over(divisor));
             let lines = self.lines.iter().map(|l| Line { power: l.power / value, ..*l }).collect();
             return Ok(Self { kind, continuum, lines });
@@ -108,7 +109,7 @@ impl Signed {
         Ok(Self { kind, continuum: self.continuum.as_ref().map(|shape| shape.over(divisor)), lines })
     }
 
-    /// To a power: a filter twice as thick, a transmittance from a density.
+    /// Raises to a power: a filter twice as thick, a transmittance from a density.
     pub(crate) fn to_the_power(&self, exponent: &Self) -> Result<Self, SpectrumError> {
         if let Some(kind) = exponent.kind {
             return Err(SpectrumError::NotTogether { left: "a spectrum", right: kind.word(), operation: "power" });
@@ -124,7 +125,7 @@ impl Signed {
     }
 }
 
-/// Lines at one wavelength as one where any is negative, and without those that are gone.
+/// Merges lines at the same wavelength if any line is negative, and drops those that cancel.
 pub(crate) fn joined(lines: Vec<Line>) -> Result<Vec<Line>, SpectrumError> {
     if let Some(line) = lines.iter().find(|l| !l.power.is_finite()) {
         return Err(SpectrumError::NotFinite { at_nm: line.wavelength_nm });
@@ -158,12 +159,13 @@ pub(crate) fn joined(lines: Vec<Line>) -> Result<Vec<Line>, SpectrumError> {
     Ok(left)
 }
 
-/// How far below 0 the roundings of a difference reach, relative to what is subtracted.
+/// Largest rounding of a difference below 0, relative to what is subtracted.
 const ROUNDING: f64 = 1e-12;
-/// How far below 0 the roughness of a fit by signed Gaussians may reach, relative to the largest value.
+/// Largest roughness below 0 of a fit by signed Gaussians, relative to the largest value.
 const ROUGHNESS: f64 = 0.1;
 
-/// A shape that stands for something which cannot be negative: cut off at 0 where it is so by roundings, or as a fit is at its edges.
+/// Makes a shape that cannot be negative. Where it is slightly negative by rounding, or as a fit is at its edges, it is cut off
+/// at 0. Larger negative values are an error.
 pub(crate) fn positive(shape: Shape, kind: Kind) -> Result<Shape, SpectrumError> {
     let survey = shape.survey();
     if let Some(at_nm) = survey.not_finite_nm {

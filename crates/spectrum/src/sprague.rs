@@ -1,18 +1,18 @@
 //! Interpolation of smooth measurements.
 //!
-//! T. B. Sprague (1880), as recommended by CIE 167:2005, "Recommended practice for tabulating spectral data for use in
-//! colour computations": between two of equally spaced points, the polynomial of fifth degree whose value, slope and
-//! curvature at both are those of the quartic through five neighbors.
+//! T. B. Sprague (1880), as recommended by CIE 167:2005, "Recommended practice for tabulating spectral data for use in colour
+//! computations". Between two equally spaced points it takes the polynomial of fifth degree whose value, slope and curvature at
+//! both points are those of the quartic through five neighbors.
 
-/// Fewest points.
+/// Smallest number of points.
 const LEAST: usize = 6;
 
-/// Weights of the six points at the first end that give the two points before it, farther one first; over 209.
-/// Reversed, those of the last end.
+/// Weights, over 209, of the first six points that give the two points before them, the farther one first. Reversed, they are
+/// the weights for the last end.
 const BEYOND: [[f64; 6]; 2] =
     [[884.0, -1960.0, 3033.0, -2648.0, 1080.0, -180.0], [508.0, -540.0, 488.0, -367.0, 144.0, -24.0]];
 
-/// Whether the wavelengths are such that it applies: six or more, equally spaced.
+/// Returns whether the interpolation applies: there are six or more wavelengths, equally spaced.
 pub(crate) fn applies(wavelengths_nm: &[f64]) -> bool {
     if wavelengths_nm.len() < LEAST {
         return false;
@@ -21,7 +21,7 @@ pub(crate) fn applies(wavelengths_nm: &[f64]) -> bool {
     wavelengths_nm.windows(2).all(|w| ((w[1] - w[0]) / step - 1.0).abs() < 1e-6)
 }
 
-/// Point `index` of `values`, from -2 to two past the last.
+/// Returns point `index` of `values`, from -2 to two past the last.
 fn point(values: &[f64], index: isize) -> f64 {
     let n = values.len();
     match usize::try_from(index) {
@@ -37,7 +37,7 @@ fn point(values: &[f64], index: isize) -> f64 {
     }
 }
 
-/// Value the share `x` (0 to 1) of the way from point `index` to the next; there are at least six.
+/// Interpolates at the share `x` (0 to 1) of the way from point `index` to the next; there must be at least six points.
 pub(crate) fn between(values: &[f64], index: usize, x: f64) -> f64 {
     let i = index as isize;
     let [a, b, c, d, e, f] = [-2, -1, 0, 1, 2, 3].map(|k| point(values, i + k));

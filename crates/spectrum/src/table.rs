@@ -1,12 +1,12 @@
-//! Reads the CSV files in which spectra are kept.
+//! Reads CSV files of spectra.
 //!
-//! Front matter of `# key: value` lines (see [`Meta`]), a header row `wavelength_nm,<columns>`, then one row a
+//! A file has front matter of `# key: value` lines (see [`Meta`]), a header row `wavelength_nm,<columns>`, then one row per
 //! wavelength, in increasing order.
 //!
-//! Without `# spectra: 1` on the first line the table is read as people have it: lines that begin with `#` are plain
-//! comments, the reader is told the kind, and [`Table::notes`] says what was made of the rest. Columns are separated by
-//! commas, semicolons, tabs or blanks (all but the first with decimal commas, too), the header may be missing, wavelengths
-//! may be in micrometers, and may fall.
+//! Without `# spectra: 1` on the first line the table is read in any common format. Lines that begin with `#` are plain
+//! comments, the caller supplies the kind, and [`Table::notes`] says how the rest was interpreted. Columns are separated by
+//! commas, semicolons, tabs or spaces; decimal commas are accepted with all of these except commas. The header may be missing,
+//! and wavelengths may be in micrometers or in falling order.
 //!
 //! ```
 //! use spectra_spectrum::table::Table;
@@ -30,25 +30,26 @@ use crate::tabulated::{Reading, Tabulated};
 pub use crate::separator::Separator;
 pub use crate::table_error::{MAX_COLUMNS, MAX_ROWS, Place, TableError, TableFault};
 
-/// Largest file that is read, bytes.
+/// Size of the largest file that is read, bytes.
 pub const MAX_BYTES: u64 = 32 << 20;
-/// Words of which one stands in the name of a column of wavelengths.
+/// Words of which one occurs in the name of a column of wavelengths.
 const WAVELENGTH_WORDS: [&str; 8] = ["wave", "lambda", "\u{3bb}", "nm", "nano", "um", "\u{b5}m", "micro"];
 
-/// A table as a file holds it.
+/// Table of spectra as read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// The file it came from.
+    /// Name of the file.
     pub file: String,
-    /// Its front matter.
+    /// Front matter of the file.
     pub meta: Meta,
-    /// What its columns are.
+    /// Kind of quantity in the columns.
     pub kind: Kind,
-    /// Names of the columns after the wavelength.
+    /// Names of the columns after the wavelength column.
     pub columns: Vec<String>,
     /// Wavelengths in air, nm, increasing.
     pub wavelengths_nm: Arc<[f64]>,
-    /// What was made of a table that is not written as the bundled ones are: `no header`, `wavelengths in micrometers`.
+    /// Notes on how a table that is not in the format of the bundled ones was interpreted: `no column names`,
+    /// `falling wavelengths`, `wavelengths in micrometers`.
     pub notes: Vec<&'static str>,
     /// Values by column, then by row, in the unit of the front matter.
     pub values: Vec<Arc<[f64]>>,
@@ -58,22 +59,22 @@ impl Table {
     /// Reads `bytes` of a file; see [`Table::parse`].
     ///
     /// # Errors
-    /// [`TableError`], also when they are not UTF-8.
+    /// [`TableError`], also if they are not UTF-8.
     pub fn parse_bytes(file: &str, bytes: &[u8], kind: Option<Kind>) -> Result<Self, TableError> {
         let text = std::str::from_utf8(bytes).map_err(|_| whole(file, TableFault::NotText))?;
         Self::parse(file, text, kind)
     }
 
-    /// Reads a table. `kind` is taken where the file does not state one; `file` is for messages.
+    /// Reads a table from text. `kind` is used if the file does not state one; `file` is for messages.
     ///
     /// # Errors
-    /// [`TableError`] with row and column: no data, more than [`MAX_ROWS`], a bad front matter or header, a wrong
-    /// number of fields, no number, NaN, wavelengths that do not increase, negative power, percentages.
+    /// [`TableError`] with row and column: no data, more than [`MAX_ROWS`], a bad front matter or header, a wrong number of
+    /// fields, a field that is not a number, NaN, wavelengths that do not increase, negative power, or percentages.
     pub fn parse(file: &str, text: &str, kind: Option<Kind>) -> Result<Self, TableError> {
         Reader::new(file, text.strip_prefix('\u{feff}').unwrap_or(text), kind).read()
     }
 
-    /// The same where whoever names the file says how its values are to be read: a file that says nothing of it itself is read so.
+    /// Reads a table whose kind and scale the caller supplies; they apply to a file that does not state its own.
     ///
     /// # Errors
     /// As [`Table::parse_bytes`].
@@ -83,8 +84,8 @@ impl Table {
         Reader { scale, ..reader }.read()
     }
 
-    /// The same where nothing says what is wanted: the kind is that of the file, else that of the name of `column` or, without
-    /// one, of all columns whose names say any, else `kind`.
+    /// Reads a table when no kind is requested. The kind is that of the file. If it has none, it is that of the name of
+    /// `column` or, without one, of all columns whose names suggest one, else `kind`.
     ///
     /// # Errors
     /// As [`Table::parse_bytes`].
@@ -94,14 +95,14 @@ impl Table {
         Reader { by_header: Some(column.unwrap_or_default()), ..reader }.read()
     }
 
-    /// The column `name`, ready to be evaluated.
+    /// Returns the column `name`, ready to be evaluated; `None` if there is none.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<Tabulated> {
         let at = self.columns.iter().position(|c| c == name)?;
         Some(self.column_at(at))
     }
 
-    /// Column `index` (from 0), ready to be evaluated.
+    /// Returns column `index` (from 0), ready to be evaluated.
     ///
     /// # Panics
     /// If there is no such column.
@@ -132,11 +133,11 @@ struct Reader<'a> {
     file: &'a str,
     text: &'a str,
     kind: Option<Kind>,
-    /// The column whose name says the kind; all if it is empty, none if there is no such thing.
+    /// The column whose name gives the kind; all columns if it is empty; `None` to ignore the header.
     by_header: Option<&'a str>,
-    /// How the values of a table without front matter are read.
+    /// Scale of the values of a table without front matter.
     scale: Scale,
-    /// Whether the table is written as the bundled ones are.
+    /// Whether the table is in the format of the bundled ones.
     strict: bool,
     separator: Separator,
     header: Vec<String>,
@@ -168,7 +169,7 @@ impl<'a> Reader<'a> {
         TableError { place: Box::new(place), cause }
     }
 
-    /// Lines with something on them that is no comment, by their number from 1.
+    /// Lines that are neither empty nor comments, with their numbers from 1.
     fn rows(&self) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
         let lines = self.text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
         lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
@@ -176,7 +177,7 @@ impl<'a> Reader<'a> {
 
     fn read(mut self) -> Result<Table, TableError> {
         let mut meta = Meta::default();
-        // What lies beyond the rows may be said in any file: nothing else about it is in the numbers.
+        // Any file may state `outside`: nothing else about the continuation is in the numbers.
         let is_meant = |line: &str| {
             line.starts_with('#') && (self.strict || key_value(line).is_some_and(|(key, _)| key == "outside"))
         };
@@ -188,7 +189,7 @@ impl<'a> Reader<'a> {
         if !self.strict
             && let Some((_, row)) = self.rows().find(|(_, row)| row.starts_with(is_of_number))
         {
-            // A row with one field says nothing of what separates several.
+            // A row with one field does not show what separates several.
             let single = Separator::of(row).fields(row).len() < 2;
             let header = self.rows().map(|(_, line)| line).next().filter(|_| single);
             self.separator = Separator::of(header.unwrap_or(row));
@@ -221,7 +222,7 @@ impl<'a> Reader<'a> {
         let (Some(&begin), Some(&end)) = (wavelengths.first(), wavelengths.last()) else {
             return Err(self.fault(0, 0, TableFault::Empty));
         };
-        // A table that falls, but for a row that stands wrongly: that row is told, not every other one.
+        // If a table falls except for one misplaced row, the error names that row, not every other one.
         let falls = wavelengths.windows(2).filter(|pair| pair[0] > pair[1]).count();
         if 2 * falls + 1 > wavelengths.len() && !self.strict {
             self.notes.push("falling wavelengths");
@@ -267,7 +268,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The kind that the names of columns say, where they are asked and agree.
+    /// Returns the kind that the names of columns suggest, if the header is to be used and they agree.
     fn said_by_header(&self) -> Option<Kind> {
         let column = normalized(self.by_header?);
         let asked = |name: &&String| column.is_empty() || normalized(name) == column;
@@ -281,7 +282,7 @@ impl<'a> Reader<'a> {
         let first = header[0].to_lowercase();
         let of_wavelengths = !self.strict && WAVELENGTH_WORDS.iter().any(|word| first.contains(word));
         if self.separator == Separator::Blanks && of_wavelengths {
-            // Blanks also stand within names: `Wavelength [nm]   Power [W]`.
+            // Spaces also occur within names: `Wavelength [nm]   Power [W]`.
             let next = self.rows().find(|(_, line)| line.starts_with(is_of_number));
             let fields = next.map_or(header.len(), |(_, line)| self.separator.fields(line).len());
             if fields != header.len() {
@@ -303,7 +304,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Names of columns that have none: `value`, or their numbers where there are several.
+    /// Assigns names to columns that have none: `value`, or their numbers if there are several.
     fn name_columns(&mut self, row: usize, fields: usize) -> Result<(), TableError> {
         if fields < 2 {
             return Err(self.fault(row, 0, TableFault::FieldCount { found: fields, expected: 2 }));
@@ -311,13 +312,13 @@ impl<'a> Reader<'a> {
         if fields - 1 > MAX_COLUMNS {
             return Err(self.fault(row, MAX_COLUMNS + 2, TableFault::TooManyColumns));
         }
-        self.notes.push("no names of columns");
+        self.notes.push("no column names");
         let names = (1..fields).map(|i| if fields == 2 { "value".to_owned() } else { i.to_string() });
         self.header = std::iter::once("wavelength_nm".to_owned()).chain(names).collect();
         Ok(())
     }
 
-    /// Puts the values of a row behind those of their columns, and gives its wavelength as it is written.
+    /// Appends the values of a row to those of their columns, and returns its wavelength as written.
     fn read_row(
         &self,
         row: usize,
@@ -347,7 +348,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A field without its blanks and quotes.
+/// Returns a field without surrounding spaces and quotes.
 fn bare(field: &str) -> &str {
     field.trim().trim_matches('"').trim()
 }
@@ -357,7 +358,7 @@ fn key_value(line: &str) -> Option<(&str, &str)> {
     Some((key.trim(), value.trim()))
 }
 
-/// The first 40 characters, for a message.
+/// Returns the first 40 characters, for a message.
 fn shorten(text: &str) -> String {
     text.chars().take(40).collect()
 }

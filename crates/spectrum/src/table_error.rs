@@ -1,4 +1,4 @@
-//! What can be wrong with a table.
+//! Errors of tables of spectra.
 
 use std::fmt;
 use std::sync::Arc;
@@ -8,30 +8,30 @@ use spectra_core::params::{Fault, SourceFile, Span};
 use crate::meta::{Kind, Meta};
 use crate::separator::Separator;
 
-/// Most rows that are read.
+/// Largest number of rows that is read.
 pub const MAX_ROWS: usize = 100_000;
-/// Most columns that are read.
+/// Largest number of columns that is read.
 pub const MAX_COLUMNS: usize = 256;
 
-/// What is wrong with a table, and where.
+/// Error in a table, with its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{place}: {cause}")]
 pub struct TableError {
-    /// Where it is.
+    /// Place of the error.
     pub place: Box<Place>,
-    /// What is wrong.
+    /// Cause of the error.
     pub cause: TableFault,
 }
 
 impl TableError {
-    /// The same as a fault of the table's file, at its line and field.
+    /// Converts the error to a fault of the table's file, at its line and field.
     #[must_use]
     pub fn fault(&self) -> Fault {
         let fault = Fault::new(self.cause.to_string()).path(self.place.column_name.clone()).hint(self.cause.hint());
         if self.cause == TableFault::NotText {
             return Fault { message: self.to_string(), ..fault };
         }
-        // Of a row with a field too many or too few the row is shown.
+        // For a row with too many or too few fields the whole row is shown.
         let row = matches!(self.cause, TableFault::FieldCount { .. } | TableFault::Header(_));
         let place = Place { column: if row { 0 } else { self.place.column }, ..(*self.place).clone() };
         let span = if place.row == 0 { Span::default() } else { place.span() };
@@ -39,25 +39,25 @@ impl TableError {
     }
 }
 
-/// A place in a table. As text: `mine.csv: row 3, column 2 (red)`.
+/// Place in a table. Displayed as `mine.csv: row 3, column 2 (red)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// The file.
+    /// Name of the file.
     pub file: String,
-    /// Line of the file, from 1; 0 for the file as a whole.
+    /// Line of the file, from 1; 0 for the whole file.
     pub row: usize,
-    /// Field of the row, from 1; 0 for the row as a whole.
+    /// Field of the row, from 1; 0 for the whole row.
     pub column: usize,
-    /// The column's name in the header, empty where there is none.
+    /// Name of the column in the header; empty if there is none.
     pub column_name: String,
-    /// The whole text.
+    /// Text of the whole file.
     pub text: Arc<SourceFile>,
-    /// What stands between its fields.
+    /// Separator between the fields.
     pub separator: Separator,
 }
 
 impl Place {
-    /// Where the field is written, or the row.
+    /// Returns the span of the field in the text, or that of the row.
     #[must_use]
     pub fn span(&self) -> Span {
         let text = &self.text.text;
@@ -91,114 +91,114 @@ impl fmt::Display for Place {
 /// Causes of a [`TableError`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableFault {
-    /// No row of numbers.
+    /// The table has no row of numbers.
     #[error("holds no data")]
     Empty,
-    /// Not text.
+    /// The file is not UTF-8 text.
     #[error("is not UTF-8 text")]
     NotText,
-    /// More rows than [`MAX_ROWS`].
+    /// The table has more rows than [`MAX_ROWS`].
     #[error("more than {MAX_ROWS} rows")]
     TooManyRows,
-    /// More columns than [`MAX_COLUMNS`].
+    /// The table has more columns than [`MAX_COLUMNS`].
     #[error("more than {MAX_COLUMNS} columns")]
     TooManyColumns,
-    /// A key of the front matter that has no meaning.
-    #[error("unknown key `{0}`; known are {known}", known = Meta::KEYS.join(", "))]
+    /// The front matter has a key that is not known.
+    #[error("unknown key `{0}`; known keys: {known}", known = Meta::KEYS.join(", "))]
     UnknownKey(String),
-    /// A value of the front matter that has no meaning.
+    /// The front matter has a value that is not valid for its key.
     #[error("`{key}` should be {wanted}, not `{found}`")]
     FrontMatter {
-        /// The key.
+        /// Key of the front matter.
         key: String,
-        /// What it should be.
+        /// Description of valid values.
         wanted: &'static str,
-        /// What it is.
+        /// Value that was written.
         found: String,
     },
-    /// A comment line in the front matter that is no `key: value`.
+    /// A comment line in the front matter is not of the form `key: value`.
     #[error("front matter is written as `# key: value`")]
     NotKeyValue,
-    /// The kind is stated nowhere.
+    /// The kind of the spectrum is stated nowhere.
     #[error("the kind is not stated; write `# spectra: 1` and `# kind: emission` (or another) above the header")]
     NoKind,
-    /// The first row of the table is no header.
+    /// The first row of the table is not a header.
     #[error("a header such as `wavelength_nm,power` is expected here, not `{0}`")]
     Header(String),
-    /// A column name that is empty or appears twice.
+    /// A column name is empty or appears twice.
     #[error("column name `{0}` is empty or appears twice")]
     ColumnName(String),
-    /// A row with too few or too many fields.
+    /// A row has too few or too many fields.
     #[error("number of fields: {found}, but the header has {expected}")]
     FieldCount {
-        /// Fields in this row.
+        /// Number of fields in this row.
         found: usize,
-        /// Fields in the header.
+        /// Number of fields in the header.
         expected: usize,
     },
-    /// A field that is no number.
+    /// A field is not a number.
     #[error("`{0}` is not a number")]
     NotANumber(String),
-    /// NaN or infinity.
+    /// A field is NaN or infinite.
     #[error("`{0}` is not a finite number")]
     NotFinite(String),
-    /// A wavelength that is not positive.
-    #[error("a wavelength is a positive number of nanometres, not {0}")]
+    /// A wavelength is not positive.
+    #[error("a wavelength is a positive number of nanometers, not {0}")]
     Wavelength(f64),
-    /// A table whose wavelengths are all below any light.
+    /// All wavelengths of the table are shorter than any light.
     #[error("{0} nm is not a wavelength of light")]
     NoLight(f64),
-    /// A wavelength that is not larger than the one above it.
+    /// A wavelength is not larger than the one before it.
     #[error("{found} nm does not come after {before} nm: wavelengths must increase")]
     OutOfOrder {
-        /// The wavelength of the row before.
+        /// Wavelength of the row before, nm.
         before: f64,
-        /// The wavelength of this row.
+        /// Wavelength of this row, nm.
         found: f64,
     },
-    /// A negative value where none can be.
+    /// A value is negative, which its kind does not allow.
     #[error("{kind} cannot be negative: {value}")]
     Negative {
-        /// Kind of the table.
+        /// Kind of the table's spectra.
         kind: Kind,
-        /// The value.
+        /// Value in the table.
         value: f64,
     },
-    /// A value too large for its kind.
+    /// A value is too large for its kind.
     #[error("{value} is more than {bound}: given as percent? divide by 100")]
     AboveBound {
-        /// The value.
+        /// Value that is too large.
         value: f64,
-        /// The largest that is believed.
+        /// Largest plausible value of this kind.
         bound: f64,
     },
-    /// Sprague's interpolation of points that it is not made for.
-    #[error("interpolation: sprague wants at least six equally spaced wavelengths")]
+    /// Sprague's interpolation was asked for, but the points do not suit it.
+    #[error("`interpolation: sprague` needs at least six equally spaced wavelengths")]
     Sprague,
-    /// A logarithm to base 10 that is no plausible one.
+    /// A value is implausible as a logarithm to base 10.
     #[error("{0} is implausible as a logarithm to base 10")]
     Logarithm(f64),
 }
 
 impl TableFault {
-    /// What to do about it.
+    /// Returns a hint on how to correct the table.
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
-            Self::Empty => "a header such as `wavelength_nm,power`, then one row per wavelength, such as `400,0.5`",
+            Self::Empty => "write a header like `wavelength_nm,power` and one row per wavelength, such as `400,0.5`",
             Self::NotText => "save it as CSV in UTF-8",
             Self::TooManyRows | Self::TooManyColumns => "is this a table of a spectrum? Thin it out, or split it",
             Self::UnknownKey(_) => "keep other remarks under `# note: ...`",
-            Self::FrontMatter { .. } | Self::NotKeyValue => "`# key: value`, as in the files under spectra/",
-            Self::NoKind => "or name it where one kind is wanted",
+            Self::FrontMatter { .. } | Self::NotKeyValue => "write `# key: value`, as in the files under spectra/",
+            Self::NoKind => "or name the file where a certain kind is expected",
             Self::Header(_) => "call the first column `wavelength_nm`, or leave the header out; wavelengths are in nm",
-            Self::ColumnName(_) => "each column has a name of its own",
+            Self::ColumnName(_) => "give each column its own name",
             Self::FieldCount { found, expected } if found > expected => {
                 "write a decimal point in numbers, or separate the columns with semicolons"
             }
-            Self::FieldCount { .. } => "each row has a value for each column",
+            Self::FieldCount { .. } => "give each row a value for each column",
             Self::NotANumber(_) | Self::NotFinite(_) => "write a number with a decimal point, such as 0.5 or 1e-3",
-            Self::Wavelength(_) => "such as 550",
+            Self::Wavelength(_) => "write a wavelength such as 550",
             Self::NoLight(_) => "given in micrometers? Multiply by 1000",
             Self::OutOfOrder { .. } => "sort the rows by wavelength, each wavelength once",
             Self::Negative { .. } => "write 0 where nothing was measured",

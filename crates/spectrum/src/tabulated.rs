@@ -18,7 +18,7 @@ pub struct Tabulated {
     reading: Reading,
 }
 
-/// How the numbers of a table are to be understood.
+/// The way in which the numbers of a table are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reading {
     pub outside: Outside,
@@ -28,7 +28,7 @@ pub(crate) struct Reading {
 }
 
 impl Tabulated {
-    /// A table from memory, linear between its points; one of a file comes from [`crate::table::Table::column`].
+    /// Creates a table from memory, linear between its points; a table of a file comes from [`crate::table::Table::column`].
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] for no points, unequal numbers of wavelengths and values, wavelengths that are
@@ -36,7 +36,7 @@ impl Tabulated {
     pub fn new(wavelengths_nm: &[f64], values: &[f64], outside: Outside, scale: Scale) -> Result<Self, SpectrumError> {
         check("number of points", "at least 1", wavelengths_nm.len() as f64, |n| n >= 1.0)?;
         let equal = |n| n == wavelengths_nm.len() as f64;
-        check("number of values", "that of wavelengths", values.len() as f64, equal)?;
+        check("number of values", "the number of wavelengths", values.len() as f64, equal)?;
         let mut before = 0.0;
         for w in wavelengths_nm {
             before = check("wavelength, nm", "positive and larger than the one before", *w, |w| w > before)?;
@@ -48,24 +48,24 @@ impl Tabulated {
         Ok(Self::from_checked(wavelengths_nm.into(), values.into(), reading))
     }
 
-    /// A table whose points a reader has checked.
+    /// Creates a table whose points a reader has checked.
     pub(crate) fn from_checked(wavelengths_nm: Arc<[f64]>, values: Arc<[f64]>, reading: Reading) -> Self {
         Self { wavelengths_nm, values, reading }
     }
 
-    /// The wavelengths given, nm.
+    /// Wavelengths of the points, nm.
     #[must_use]
     pub fn wavelengths_nm(&self) -> &[f64] {
         &self.wavelengths_nm
     }
 
-    /// The values given, on their own scale.
+    /// Values of the points, on their own scale.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// What holds beyond the ends.
+    /// Extension of the table beyond its ends.
     #[must_use]
     pub fn outside(&self) -> Outside {
         self.reading.outside
@@ -77,7 +77,7 @@ impl Tabulated {
         (self.wavelengths_nm[0], self.wavelengths_nm[self.wavelengths_nm.len() - 1])
     }
 
-    /// Smallest and largest value given, linear.
+    /// Smallest and largest value of the points, on a linear scale.
     #[must_use]
     pub fn extremes(&self) -> (f64, f64) {
         let fold = |a: (f64, f64), v: &f64| (a.0.min(*v), a.1.max(*v));
@@ -92,7 +92,7 @@ impl Tabulated {
         }
     }
 
-    /// Value at `wavelength_nm`, linear; 0 for NaN.
+    /// Value at `wavelength_nm`, on a linear scale; 0 for NaN.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         let (first, last) = self.range_nm();
@@ -105,7 +105,7 @@ impl Tabulated {
         self.linear(self.between(wavelength_nm))
     }
 
-    /// Interpolated value on the table's own scale; `wavelength_nm` lies within the range.
+    /// Interpolates on the table's own scale; `wavelength_nm` lies within the range.
     fn between(&self, wavelength_nm: f64) -> f64 {
         let above = self.wavelengths_nm.partition_point(|w| *w < wavelength_nm);
         let (w1, v1) = (self.wavelengths_nm[above], self.values[above]);
@@ -141,14 +141,14 @@ impl Tabulated {
         }
     }
 
-    /// Knots strictly between `low_nm` and `high_nm`.
+    /// Returns the knots strictly between `low_nm` and `high_nm`.
     pub(crate) fn knots(&self, low_nm: f64, high_nm: f64) -> &[f64] {
         let from = self.wavelengths_nm.partition_point(|w| *w <= low_nm);
         let to = self.wavelengths_nm.partition_point(|w| *w < high_nm);
         &self.wavelengths_nm[from..to.max(from)]
     }
 
-    /// Smallest distance of neighbors, nm; infinite for a single point.
+    /// Smallest distance between neighboring points, nm; infinite for a single point.
     pub(crate) fn finest_step_nm(&self) -> f64 {
         self.wavelengths_nm.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min)
     }

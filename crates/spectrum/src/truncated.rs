@@ -1,10 +1,10 @@
-//! A Gaussian cut off at the ends of a band, drawn by inverse transform.
+//! Gaussian cut off at the ends of a band, sampled by inverse transform.
 //!
-//! Three algorithms share one type, chosen once when it is made: near the middle the inverse of the normal distribution
-//! by M. J. Wichura's AS 241 (Applied Statistics 37, 477, 1988); where the whole band lies more than
-//! 25 standard deviations out, and erfc is about to underflow, Newton's method on the logarithm of the tail, whose
-//! hazard is one over Mills' ratio. All is free of branches, of fused operations and of the system's functions, so
-//! that it fills vectors and gives the same bits on every instruction set.
+//! Two algorithms share one type; the choice is made when it is created. Near the middle it is the inverse of the normal
+//! distribution by M. J. Wichura's AS 241 (Applied Statistics 37, 477, 1988). If the whole band lies more than 25 standard
+//! deviations out, where erfc is about to underflow, it is Newton's method on the logarithm of the tail, whose hazard is one
+//! over Mills' ratio. None of it uses branches, fused operations or the system's functions, so that it fills vectors and gives
+//! the same bits on every instruction set.
 
 use spectra_core::isa::{Isa, Vectorized};
 
@@ -13,10 +13,10 @@ use crate::error::{SpectrumError, check};
 use crate::normal::{Mass, SQRT_TAU};
 use spectra_numerics::normal::{self, exp_of_negative, far_mills, log, upper_quantile};
 
-/// Where the algorithm for the tail takes over, in standard deviations.
+/// Distance from the center, in standard deviations, at which the algorithm for the tail takes over.
 const FAR: f64 = normal::FAR;
 
-/// Density exp(-(x - center)^2 / (2 sigma^2)) between two wavelengths, 0 beyond, of integral 1.
+/// Probability density exp(-(x - center)^2 / (2 sigma^2)) between two wavelengths, 0 outside, normalized to an integral of 1.
 ///
 /// ```
 /// use spectra_spectrum::TruncatedGaussian;
@@ -30,7 +30,7 @@ pub struct TruncatedGaussian {
     sigma_nm: f64,
     min_nm: f64,
     max_nm: f64,
-    /// The band in standard deviations from the center.
+    /// Ends of the band in standard deviations from the center.
     low: f64,
     high: f64,
     mass: Mass,
@@ -44,13 +44,13 @@ enum Draw {
 }
 
 impl TruncatedGaussian {
-    /// The Gaussian around `center_nm` of standard deviation `sigma_nm` (before it is cut), on `min_nm` to `max_nm`.
+    /// Creates the Gaussian around `center_nm` with standard deviation `sigma_nm` (before it is cut), on `min_nm` to `max_nm`.
     ///
-    /// The center may lie anywhere, far outside of the band too.
+    /// The center may lie anywhere, even far outside of the band.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless the center is within 1e9 nm of 0, sigma from 1e-6 to 1e6 nm, and
-    /// 0 <= min < max <= 1e9 nm.
+    /// [`SpectrumError::OutOfRange`] unless the center is within 1e9 nm of 0, sigma is from 1e-6 to 1e6 nm, and 0 <= min < max
+    /// <= 1e9 nm.
     pub fn new(center_nm: f64, sigma_nm: f64, min_nm: f64, max_nm: f64) -> Result<Self, SpectrumError> {
         check("center, nm", "within 1e9 of 0", center_nm, |c| c.abs() <= 1e9)?;
         check("standard deviation, nm", "between 1e-6 and 1e6", sigma_nm, |s| (1e-6..=1e6).contains(&s))?;
@@ -76,43 +76,43 @@ impl TruncatedGaussian {
         Ok(Self { center_nm, sigma_nm, min_nm, max_nm, low, high, mass, draw })
     }
 
-    /// Center before it was cut, nm.
+    /// Center before the Gaussian was cut, nm.
     #[must_use]
     pub fn center_nm(&self) -> f64 {
         self.center_nm
     }
 
-    /// Standard deviation before it was cut, nm.
+    /// Standard deviation before the Gaussian was cut, nm.
     #[must_use]
     pub fn sigma_nm(&self) -> f64 {
         self.sigma_nm
     }
 
-    /// The band, nm.
+    /// Lower and upper end of the band, nm.
     #[must_use]
     pub fn band_nm(&self) -> (f64, f64) {
         (self.min_nm, self.max_nm)
     }
 
-    /// Share of the whole Gaussian that lies on the band; 0 where it is below all numbers.
+    /// Share of the whole Gaussian that lies on the band; 0 if it underflows.
     #[must_use]
     pub fn mass(&self) -> f64 {
         self.mass.value() / SQRT_TAU
     }
 
-    /// Density at `wavelength_nm`, 1/nm; 0 outside of the band, and for NaN.
+    /// Returns the density at `wavelength_nm`, 1/nm; 0 outside of the band, and for NaN.
     #[must_use]
     pub fn density(&self, wavelength_nm: f64) -> f64 {
         if !(self.min_nm..=self.max_nm).contains(&wavelength_nm) {
             return 0.0;
         }
-        // Relative to the point of the band nearest to the center: nothing underflows that matters.
+        // Relative to the point of the band nearest to the center: nothing that matters underflows.
         let from = self.distance_from_nearest(wavelength_nm);
         let exponent = -0.5 * from * (from + 2.0 * self.mass.nearest);
         libm::exp(exponent) / (self.sigma_nm * self.mass.scaled)
     }
 
-    /// Share of the draws at or below `wavelength_nm`; 0 for NaN.
+    /// Returns the share of the draws at or below `wavelength_nm`; 0 for NaN.
     #[must_use]
     pub fn cumulative(&self, wavelength_nm: f64) -> f64 {
         if wavelength_nm.is_nan() || wavelength_nm <= self.min_nm {
@@ -124,7 +124,7 @@ impl TruncatedGaussian {
         let nearest = self.mass.nearest;
         let from = self.distance_from_nearest(wavelength_nm);
         let z = (nearest + from).clamp(self.low, self.high);
-        // The nearest point of a part is that of the band, or z.
+        // The point of a part that is nearest to the center is either that of the band, or z.
         let part = |mass: Mass, is_z: bool| {
             let from = if is_z { from } else { 0.0 };
             mass.scaled / self.mass.scaled * libm::exp(-0.5 * from * (from + 2.0 * nearest))
@@ -136,16 +136,16 @@ impl TruncatedGaussian {
         if below < 0.5 { below } else { 1.0 - part(Mass::of_width(z, self.high, width_above), z > 0.0) }
     }
 
-    /// From the point of the band that is nearest to the center, in standard deviations.
+    /// Returns the distance from the point of the band that is nearest to the center, in standard deviations.
     fn distance_from_nearest(&self, wavelength_nm: f64) -> f64 {
         let nearest_nm = self.center_nm.clamp(self.min_nm, self.max_nm);
         (wavelength_nm - nearest_nm) / self.sigma_nm
     }
 
-    /// Wavelength, nm, below which a share `u` of the draws lies; within the band for every `u`, NaN included.
+    /// Returns the wavelength, nm, below which a share `u` of the draws lies; within the band for every `u`, NaN included.
     ///
-    /// Its share comes out as u within 1e-13, plus what the roundings of u, of the wavelength and of a wide sigma (2e-16 of
-    /// it, for far more than the band) make of it.
+    /// The share of the result equals u within 1e-13, plus the effect of rounding u, the wavelength and a sigma that is much
+    /// wider than the band (2e-16 of it).
     #[must_use]
     pub fn quantile(&self, u: f64) -> f64 {
         match &self.draw {
@@ -154,9 +154,9 @@ impl TruncatedGaussian {
         }
     }
 
-    /// Draws a wavelength, nm, for each number of `u` in [0, 1): its quantile, bit for bit, on every `isa`.
+    /// Draws a wavelength, nm, for each number of `u` in [0, 1): its quantile, with the same bits on every `isa`.
     ///
-    /// As many as the shorter of both slices holds.
+    /// The shorter of the two slices sets the number of draws.
     pub fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], isa: Isa) {
         match self.draw {
             Draw::Central(central) => isa.run(Fill { quantile: central, u, wavelength_nm }),
@@ -164,10 +164,10 @@ impl TruncatedGaussian {
         }
     }
 
-    /// Writes the density, 1/nm, at each of `wavelength_nm`, which lie within the band: what [`TruncatedGaussian::density`]
-    /// gives, within some roundings, and the same bits on every `isa`.
+    /// Writes the density, 1/nm, at each of `wavelength_nm`, which must lie within the band. The values are those of
+    /// [`TruncatedGaussian::density`] within a few roundings, with the same bits on every `isa`.
     ///
-    /// As many as the shorter of both slices holds.
+    /// The shorter of the two slices sets the number of values.
     pub fn densities(&self, wavelength_nm: &[f64], density_per_nm: &mut [f64], isa: Isa) {
         let fill = FillDensity {
             nearest_nm: self.center_nm.clamp(self.min_nm, self.max_nm),
@@ -193,15 +193,15 @@ impl TruncatedGaussian {
         self.sigma_nm * self.moments().1
     }
 
-    /// Mean, from the point nearest to the center, and standard deviation, both in standard deviations of the whole.
+    /// Returns mean, from the point nearest to the center, and standard deviation, both in standard deviations of the whole Gaussian.
     ///
-    /// By quadrature: the closed forms subtract nearly equal numbers in the tails and on narrow bands.
+    /// It uses quadrature, because the closed forms subtract nearly equal numbers in the tails and on narrow bands.
     fn moments(&self) -> (f64, f64) {
-        /// Beyond exp(-45) nothing reaches the last digit.
+        /// Below exp(-45) no contribution reaches the last digit.
         const DEEPEST: f64 = 45.0;
         const PANELS: u32 = 64;
         let nearest = self.mass.nearest;
-        // Where the density has fallen that far, along the side that leads away from the center.
+        // Distance at which the density has fallen that far, on the side that leads away from the center.
         let reach = 2.0 * DEEPEST / (nearest.abs() + (nearest * nearest + 2.0 * DEEPEST).sqrt());
         let from = (self.low - nearest).max(-reach);
         let to = (self.high - nearest).min(reach);
@@ -214,7 +214,7 @@ impl TruncatedGaussian {
     }
 }
 
-/// What every draw ends in.
+/// Band and width that every draw uses to get its wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Span {
     min_nm: f64,
@@ -223,7 +223,7 @@ struct Span {
 }
 
 impl Span {
-    /// Within the band; its lower end for NaN.
+    /// Clamps a wavelength to the band; NaN becomes its lower end.
     #[inline(always)]
     fn clamp(self, wavelength_nm: f64) -> f64 {
         let at_least = if wavelength_nm > self.min_nm { wavelength_nm } else { self.min_nm };
@@ -231,7 +231,7 @@ impl Span {
     }
 }
 
-/// A share of the draws to the wavelength below which it lies.
+/// Maps a share of the draws to the wavelength below which it lies.
 trait Quantile: Copy {
     fn quantile(&self, u: f64) -> f64;
 }
@@ -273,12 +273,12 @@ impl Vectorized for FillDensity<'_> {
     }
 }
 
-/// A band that reaches to within [`FAR`] of the center.
+/// Sampling of a band that reaches to within [`FAR`] of the center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Central {
     span: Span,
     center_nm: f64,
-    /// Share of the whole Gaussian below the band, above it, and on it.
+    /// Shares of the whole Gaussian below the band, above it, and on it.
     below: f64,
     above: f64,
     mass: f64,
@@ -287,25 +287,25 @@ struct Central {
 impl Quantile for Central {
     #[inline(always)]
     fn quantile(&self, u: f64) -> f64 {
-        // From whichever end is nearer: a share close to 1 has lost its digits.
+        // From whichever end is nearer, because a share close to 1 has lost its digits.
         let lower = self.below + u * self.mass;
         let upper = self.above + (1.0 - u) * self.mass;
         let (share, side) = if lower < upper { (lower, -1.0) } else { (upper, 1.0) };
-        // Holds for u = 1 with nothing above the band, too.
+        // Also covers u = 1 with nothing above the band.
         let share = if share > 1e-300 { share } else { 1e-300 };
         let z = side * upper_quantile(share);
         self.span.clamp(self.center_nm + self.span.sigma_nm * z)
     }
 }
 
-/// A band that lies beyond [`FAR`].
+/// Sampling of a band that lies beyond [`FAR`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Tail {
     span: Span,
-    /// The end near the center, and the direction away from it.
+    /// End of the band near the center, nm, and the direction away from the center, 1 or -1.
     from_nm: f64,
     direction: f64,
-    /// That end in standard deviations.
+    /// Distance of that end from the center, in standard deviations.
     start: f64,
     mills: f64,
     /// Share of the whole tail that lies on the band.
@@ -326,8 +326,8 @@ impl Quantile for Tail {
         let left = 1.0 - u * self.share;
         let left = if left > 1e-300 { left } else { 1e-300 };
         let wanted = -log(left);
-        // The share beyond a point falls as exp(-start d - d^2/2) times a ratio of Mills' ratios, near 1 here; without
-        // that ratio it is a quadratic, and two steps of Newton's method bring it in to the last digits.
+        // The share beyond a point falls as exp(-start d - d^2/2) times a ratio of Mills' ratios, which is near 1 here. Without
+        // that ratio it is a quadratic equation; two steps of Newton's method then reach the last digits.
         let start = self.start;
         let mut d = 2.0 * wanted / (start + (start * start + 2.0 * wanted).sqrt());
         let mut step = 0;

@@ -1,4 +1,4 @@
-//! Stages from YAML texts, as a scene builds them.
+//! Stages built from YAML text, as a scene builds them.
 
 use spectra_core::params::{Fault, Faults, Params, SourceFile};
 use spectra_core::registry::{self, Context, Stage};
@@ -9,7 +9,7 @@ use spectra_core::surface::Surface;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Files beside the crate under test, then the bundled ones.
+/// Resources that look for files in the folder of the crate under test, then among the bundled ones.
 struct Files;
 
 impl Resources for Files {
@@ -59,12 +59,12 @@ fn build<S: Stage + ?Sized>(yaml: &str) -> Box<S> {
 
 macro_rules! builders {
     ($($name:ident, $stage:ty, $what:literal, $example:literal;)*) => {$(
-        #[doc = concat!("The ", $what, " of a YAML text such as `", $example, "`, built through the registry: what is \
-            linked into the test. Files are looked for from the folder of the crate, then among the bundled ones; the \
-            band is 350 to 830 nm.")]
+        #[doc = concat!("Builds the ", $what, " described by a YAML text such as `", $example, "`, through the registry, \
+            which knows the stages linked into the test. Files are looked for in the folder of the crate, then among the \
+            bundled ones; the band is 350 to 830 nm.")]
         ///
         /// # Panics
-        /// With all faults, where it cannot be built.
+        /// If the stage cannot be built; the message lists all faults.
         #[must_use]
         pub fn $name(yaml: &str) -> Box<$stage> {
             build(yaml)
@@ -82,11 +82,11 @@ builders! {
     film, dyn Film, "film", "{stock: ilford-ortho-plus, exposure: 1/60 s}";
 }
 
-/// Asserts that a YAML text is refused, with a fault at this key (`radius`, `color.R`): what a user of the stage gets
-/// to see when he errs. `stage` is its kind of stage, such as `surface`.
+/// Asserts that building a stage from a YAML text fails with a fault at `key` (such as `radius` or `color.R`), as a user who makes
+/// this mistake would see it. `stage` is the kind of stage, such as `surface`.
 ///
 /// # Panics
-/// Where the stage is built all the same, or the faults are elsewhere.
+/// If the stage is built, if all faults are at other keys, or if there is no such kind of stage.
 pub fn assert_fault(stage: &str, yaml: &str, key: &str) {
     let faults = match stage {
         "source" => try_build::<dyn Source>(yaml).err(),
@@ -100,7 +100,7 @@ pub fn assert_fault(stage: &str, yaml: &str, key: &str) {
     };
     let Some(faults) = faults else { panic!("{stage} {yaml}: expected a fault at `{key}`, but it was built") };
     let path = format!("{stage}.{key}");
-    // A missing or unknown key is named in the text; its place is the map.
+    // A missing or unknown key is named in the message; the fault's path is that of the map.
     let quoted = format!("`{key}`");
     let found = faults.iter().any(|fault| fault.path == path || fault.message.contains(&quoted));
     assert!(found, "{stage} {yaml}: expected a fault at `{key}`, found\n{faults}");

@@ -1,44 +1,44 @@
-//! The laws of films.
+//! The laws that every film must obey.
 
 use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::spectral::{BAND, Channel};
 use spectra_core::stage::Film;
 
-/// The laws of films, and what must be known of one to try them.
+/// The laws of films, with the facts about a film that are needed to check them.
 ///
-/// - Channels have a name of their own, a unit, and a response over the band that is finite, not negative and not zero
+/// - Each channel has a unique name, a unit, and a response over the band that is finite, not negative and not zero
 ///   everywhere; exposure times are finite and above zero.
-/// - The picture has the size of the frame, its values are finite and within what a screen shows; the same frame gives the
-///   same picture.
-/// - A missing channel is an error with a text.
-/// - If it says so: more light is never darker.
+/// - The picture has the size of the frame, and its values are finite and within the range of a screen; the same frame gives
+///   the same picture.
+/// - A missing channel is an error with a message.
+/// - If [`FilmLaws::brighter_with_light`] is true, more light never makes a pixel darker.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmLaws {
-    /// Whether more light makes no pixel darker: true of a reversal film or a print, not of a negative, nor of one with grain
-    /// or a meter.
+    /// Whether more light never makes a pixel darker: true for a reversal film or a print, false for a negative and for a film with
+    /// grain or a meter.
     pub brighter_with_light: bool,
-    /// How far beyond 0 and 1 a picture's values may lie: colors that a screen cannot show.
+    /// Largest amount by which a picture's values may lie outside 0 to 1, for colors that a screen cannot show.
     pub beyond_screen: f32,
-    /// Exposures that are tried, in the unit of the channels: least and most. 0 is tried anyway.
+    /// Least and largest exposure that are tried, in the unit of the channels; 0 is always tried.
     pub exposures: [f32; 2],
 }
 
 impl Default for FilmLaws {
-    /// A positive whose colors a screen can show, from 1e-6 to 1e6 lx s.
+    /// Returns the laws of a positive whose colors a screen can show, tried from 1e-6 to 1e6 lx s.
     fn default() -> Self {
         Self { brighter_with_light: true, beyond_screen: 1e-6, exposures: [1e-6, 1e6] }
     }
 }
 
 pub(crate) const SIZE: FrameSize = FrameSize { width_px: 9, height_px: 5, width_mm: 36.0, height_mm: 20.0 };
-/// Exposures between the least and the most.
+/// Number of steps from the least to the largest exposure.
 const STEPS: usize = 24;
 
 impl FilmLaws {
-    /// Tries all of them.
+    /// Checks all laws on a film.
     ///
     /// # Panics
-    /// With the first case that breaks a law.
+    /// At the first case that breaks a law; the message describes it.
     pub fn hold(&self, film: &dyn Film) {
         let channels = film.channels();
         assert!(!channels.is_empty(), "the film has no channels");
@@ -63,7 +63,7 @@ impl FilmLaws {
             }
             darker = Some((exposure, picture.rgb));
         }
-        // Other values in each pixel and channel, as in a picture.
+        // Different values in each pixel and channel, as in a picture.
         let middle = (least * most).sqrt();
         let mixed =
             frame(&channels, |channel, pixel| (middle * f64::from(((channel * 5 + pixel * 7) % 11) as u32)) as f32);
@@ -77,20 +77,20 @@ impl FilmLaws {
             }
         }
         let none = ExposureFrame { size: SIZE, channels: Vec::new() };
-        assert!(film.develop(&none).is_err(), "a frame without channels is developed all the same");
+        assert!(film.develop(&none).is_err(), "a frame without channels is developed without an error");
     }
 
     fn develop(&self, film: &dyn Film, frame: &ExposureFrame, case: &str) -> DisplayPicture {
         let picture = film.develop(frame).unwrap_or_else(|text| panic!("{case}: {text}"));
         let size = (picture.width_px, picture.height_px, picture.rgb.len());
         let want = (SIZE.width_px, SIZE.height_px, SIZE.pixels());
-        assert_eq!(size, want, "{case}: the picture is of another size than the frame");
+        assert_eq!(size, want, "{case}: the picture does not have the size of the frame");
         let range = -self.beyond_screen..=1.0 + self.beyond_screen;
         for (pixel, rgb) in picture.rgb.iter().enumerate() {
-            assert!(rgb.iter().all(|v| range.contains(v)), "{case}: pixel {pixel} is {rgb:?}, outside of 0 to 1");
+            assert!(rgb.iter().all(|v| range.contains(v)), "{case}: pixel {pixel} is {rgb:?}, outside 0 to 1");
         }
         let again = film.develop(frame).unwrap_or_else(|text| panic!("{case}, again: {text}"));
-        assert!(again == picture, "{case}: a second time the picture is another one");
+        assert!(again == picture, "{case}: developing the frame again gives another picture");
         picture
     }
 }
@@ -104,7 +104,7 @@ pub(crate) fn frame(channels: &[Channel], value: impl Fn(usize, usize) -> f32) -
     ExposureFrame { size: SIZE, channels: channels.iter().enumerate().map(plane).collect() }
 }
 
-/// What holds for the channels of films and imagers alike.
+/// Checks the laws of channels, which films, responses and imagers share.
 pub(crate) fn check_channels(channels: &[Channel]) {
     for (i, channel) in channels.iter().enumerate() {
         let name = &channel.name;
@@ -116,6 +116,6 @@ pub(crate) fn check_channels(channels: &[Channel]) {
         for (response, nm) in channel.response.iter().zip(BAND.wavelengths_nm()) {
             assert!(response.is_finite() && *response >= 0.0, "channel `{name}` responds with {response} at {nm} nm");
         }
-        assert!(channel.response.iter().any(|r| *r > 0.0), "channel `{name}` sees nothing");
+        assert!(channel.response.iter().any(|r| *r > 0.0), "channel `{name}` has no response anywhere");
     }
 }

@@ -1,4 +1,4 @@
-//! The laws of imagers.
+//! The laws that every imager must obey.
 
 use crate::film::check_channels;
 use crate::spread::Spread;
@@ -7,36 +7,35 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::stage::{Imager, Launch, Receive};
 use spectra_core::{Isa, RayBatch};
 
-/// The laws of imagers, and what must be known of one to try them.
+/// The laws of imagers, with the facts about an imager that are needed to check them.
 ///
-/// - Its size is finite and above zero; channels have a name of their own, a unit, and a response that is finite and not
-///   negative.
-/// - Launched points lie in the pixel that they were launched from, with a unit normal toward the lens; their places
-///   fill the pixel as evenly as its numbers do: so many mm^2 a pixel as the frame says.
-/// - Light that goes back the way it was launched is received by that pixel; what passes beside the frame is out of it.
+/// - Its size is finite and above zero. Each channel has a unique name, a unit, and a response over the band that is finite, not
+///   negative and not zero everywhere.
+/// - Points launched from a pixel lie in that pixel and have a unit normal toward the lens.
+/// - Light that returns along the way it was launched is received by the same pixel; light that passes beside the frame is lost.
 /// - The result does not depend on how rays are split into batches, nor on the instruction set.
 #[derive(Clone, Copy, Debug)]
 pub struct ImagerLaws {
-    /// Whether light goes straight to the pixels: glass plates, or microlenses, move it aside.
+    /// Whether light goes straight to the pixels; glass plates and microlenses displace it.
     pub straight: bool,
-    /// Whether the frame is flat, without tilt: its points lie where the frame's size has them.
+    /// Whether the frame is flat and not tilted, so that its points lie where the frame's size puts them.
     pub flat: bool,
-    /// Rays that are tried.
+    /// Number of rays that are tried.
     pub rays: usize,
 }
 
 impl Default for ImagerLaws {
-    /// A flat frame with nothing before it.
+    /// Returns the laws of a flat frame with nothing in front of it.
     fn default() -> Self {
         Self { straight: true, flat: true, rays: 4000 }
     }
 }
 
 impl ImagerLaws {
-    /// Tries all of them.
+    /// Checks all laws on an imager.
     ///
     /// # Panics
-    /// With the first case that breaks a law.
+    /// At the first case that breaks a law; the message describes it.
     pub fn hold(&self, imager: &dyn Imager) {
         let size = imager.size();
         assert!(size.width_px > 0 && size.height_px > 0, "a frame of {} x {} pixels", size.width_px, size.height_px);
@@ -74,7 +73,7 @@ impl ImagerLaws {
             rays.restart(upto - first);
             let c = rays.columns_mut();
             for (i, tag) in c.tag.iter_mut().enumerate() {
-                // The corners among them.
+                // The first and the last pixel, which are corners, are among them.
                 let ray = (first + i) as u64;
                 *tag = if ray == 1 { pixels - 1 } else { ray * 7919 * 104_729 % pixels } as u32;
             }
@@ -96,10 +95,10 @@ impl ImagerLaws {
         assert!(!want.is_empty(), "it launches no ray from any pixel");
         for (pixel, p, normal) in &want {
             assert!(p.is_finite(), "pixel {pixel} launches from {p} mm");
-            assert!((normal.length() - 1.0).abs() < 1e-12, "pixel {pixel}: the normal {normal} is no unit vector");
+            assert!((normal.length() - 1.0).abs() < 1e-12, "pixel {pixel}: the normal {normal} is not a unit vector");
             assert!(normal.z < 0.0, "pixel {pixel}: the normal {normal} points away from the lens");
             if self.flat && self.straight {
-                // On the edge of a pixel rounding decides.
+                // On the edge of a pixel, rounding decides to which pixel a point belongs.
                 let inward = DVec3::new(p.x, p.y, 0.0) * (1.0 - 1e-12);
                 let found = size.pixel_at(inward.x, inward.y);
                 let near = |a: u32| {
@@ -154,7 +153,7 @@ impl ImagerLaws {
                 };
                 assert!(
                     (got as usize) < imager.size().pixels(),
-                    "light to {p} mm is received by pixel {got}, which is none"
+                    "light to {p} mm is received by pixel {got}, which does not exist"
                 );
                 assert!(
                     only.is_none_or(|only| only < channels),
@@ -169,7 +168,7 @@ impl ImagerLaws {
             }
             assert!(!self.straight || elsewhere * 100 <= launched.len(), "{elsewhere} rays end in another pixel");
         }
-        // Far beside the frame.
+        // Light that passes far beside the frame.
         let size = imager.size();
         let aside =
             [(3.0, 0.0), (-3.0, 0.0), (0.0, 3.0), (0.0, -3.0)].map(|(a, b)| (a * size.width_mm, b * size.height_mm));
@@ -189,7 +188,8 @@ impl ImagerLaws {
     }
 }
 
-/// Whether a place is so near to its pixel's edge that rounding may decide; always where the pixel is none of a flat frame's.
+/// Returns whether a place is so near the edge of its pixel that rounding may decide, or outside the area that the pixel has in a flat
+/// frame.
 fn is_at_edge(imager: &dyn Imager, pixel: u32, p: DVec3) -> bool {
     let size = imager.size();
     let center = size.point_of(pixel, 0.5, 0.5);

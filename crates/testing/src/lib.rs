@@ -1,7 +1,7 @@
-//! For the tests of plugins: stages from YAML, single rays, and the laws that every stage keeps.
+//! Support for tests of plugins: stages built from YAML, single rays, and the laws that every stage must obey.
 //!
-//! A stage is built as a scene builds it, through the registry. Its laws are a struct with what the test must know of it;
-//! `hold` tries them on thousands of cases that are the same in every run, and panics with the first one that breaks a law.
+//! A stage is built through the registry, as for a scene. Its laws are a struct with the facts that the test must know about the
+//! stage. `hold` checks the laws on thousands of cases that are the same in every run, and panics at the first case that breaks one.
 //!
 //! ```ignore
 //! use spectra_testing::{SurfaceLaws, assert_fault, surface};

@@ -1,4 +1,4 @@
-//! Rays that meet one surface.
+//! Rays that interact with a single surface.
 
 use glam::DVec3;
 use spectra_core::batch::Column;
@@ -7,37 +7,37 @@ use spectra_core::numbers::{Numbers, StageKey};
 use spectra_core::surface::{Action, IndexColumns, Interface, Surface, Travel};
 use spectra_core::{Isa, Loss, RayBatch};
 
-/// A ray: a point, mm, and a unit direction.
+/// A ray, as a point, mm, and a unit direction.
 pub type Line = (DVec3, DVec3);
 
-/// What happens to a ray of 550 nm at a surface whose vertex is the origin, between media of the refractive indices
-/// `(before, after)`: the ray behind it, or why it ended. The sense of travel is that of the direction.
+/// Traces a ray of 550 nm through a surface whose vertex is the origin, and returns the ray behind the surface. The media have the
+/// refractive indices `(before, after)`, in the sense of travel, which is that of the ray's direction.
 ///
 /// # Errors
-/// The cause of the loss.
+/// The cause of the loss, if the ray ends at the surface.
 pub fn ray(surface: &dyn Surface, ray: Line, indices: (f64, f64), action: Action) -> Result<Line, Loss> {
     Rays { indices, action, ..Rays::default() }.meet(surface, &[ray], Isa::detect())[0]
 }
 
-/// How rays meet a surface, in a frame whose origin is its vertex.
+/// Conditions under which rays meet a surface, in a coordinate frame whose origin is the surface's vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Rays {
     /// Refractive indices before and after, in the sense of travel.
     pub indices: (f64, f64),
-    /// What happens there.
+    /// Interaction at the surface: refraction, reflection or passage.
     pub action: Action,
-    /// Clear semi-diameter, mm.
+    /// Clear semi-diameter of the surface, mm.
     pub clip_mm: f64,
-    /// Wavelength, nm.
+    /// Wavelength of the rays, nm.
     pub wavelength_nm: f64,
-    /// Most rays in a batch.
+    /// Largest number of rays in a batch.
     pub batch: usize,
-    /// Seed of the numbers that a surface may draw, a sample a ray in order; none are handed out without one.
+    /// Seed of the random numbers that a surface may draw; each ray is one sample, in order. Without a seed the batch has no numbers.
     pub seed: Option<u64>,
 }
 
 impl Default for Rays {
-    /// From air into glass of 1.5, nothing clipped, 550 nm, in batches of 256, nothing left to chance.
+    /// Returns refraction from air into glass of index 1.5 at 550 nm, without clipping or random numbers, in batches of 256.
     fn default() -> Self {
         Self {
             indices: (1.0, 1.5),
@@ -50,16 +50,17 @@ impl Default for Rays {
     }
 }
 
-/// Number that the surface is given, by which losses are booked.
+/// Number given to the surface; losses are recorded with it.
 pub(crate) const NUMBER: u32 = 7;
-/// How far the vertex lies behind the origin of the frame that rays come in, mm.
+/// Distance of the vertex behind the origin of the frame in which rays arrive, mm.
 const SHIFT_MM: f64 = 1.25;
 
 impl Rays {
-    /// What becomes of rays that all travel in one sense: those behind the surface, or why they ended, in order.
+    /// Traces rays, which must all travel in the same sense, through a surface. Returns, in order, each ray behind the surface or the
+    /// cause of its loss.
     ///
     /// # Panics
-    /// Where the surface counts other losses than it books.
+    /// If the number of losses that the surface returns is not the number of rays that ended.
     #[must_use]
     pub fn meet(&self, surface: &dyn Surface, rays: &[Line], isa: Isa) -> Vec<Result<Line, Loss>> {
         let mut out = Vec::with_capacity(rays.len());
@@ -72,7 +73,7 @@ impl Rays {
         out
     }
 
-    /// A batch of these rays in front of the surface, the samples from `first` on.
+    /// Returns a batch of these rays in front of the surface; their samples are numbered from `first`.
     pub(crate) fn send(&self, rays: &[Line], first: u64) -> RayBatch {
         let mut batch = RayBatch::new(rays.len()).with_numbers();
         batch.restart(rays.len());
@@ -91,7 +92,7 @@ impl Rays {
         batch
     }
 
-    /// Lets a batch of [`Rays::send`] meet it.
+    /// Lets a batch made by [`Rays::send`] interact with the surface, and returns the number of losses that the surface counts.
     pub(crate) fn interact(&self, surface: &dyn Surface, batch: &mut RayBatch, isa: Isa) -> usize {
         let len = batch.len();
         let column = |value: f64| {
@@ -115,7 +116,7 @@ impl Rays {
     }
 }
 
-/// What became of ray `i`.
+/// Returns ray `i` behind the surface, or the cause of its loss.
 pub(crate) fn outcome(batch: &RayBatch, i: usize) -> Result<Line, Loss> {
     match batch.loss(i) {
         Some((loss, number)) => {

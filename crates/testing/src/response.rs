@@ -1,36 +1,35 @@
-//! The laws of responses.
+//! The laws that every response must obey.
 
 use crate::film::{SIZE, check_channels, frame};
 use spectra_core::frame::ExposureFrame;
 use spectra_core::stage::Response;
 
-/// The laws of responses, and what must be known of one to try them.
+/// The laws of responses, with the facts about a response that are needed to check them.
 ///
-/// - Channels have a name of their own, a unit, and a response over the band that is finite, not negative and not zero
-///   everywhere.
-/// - Where it makes a picture, this has the size of the frame and finite values; the same frame gives the same picture, and no
-///   light a darker one than much.
-/// - Without its channels there is no picture, and no panic.
+/// - Each channel has a unique name, a unit, and a response over the band that is finite, not negative and not zero everywhere.
+/// - A picture has the size of the frame and finite values. The same frame gives the same picture, and no light gives a darker
+///   picture than much light.
+/// - A frame without the channels gives no picture and no panic.
 #[derive(Clone, Copy, Debug)]
 pub struct ResponseLaws {
-    /// Whether it makes pictures.
+    /// Whether the response makes pictures.
     pub shows: bool,
-    /// The exposure that counts as much light, in the unit of the channels.
+    /// Exposure that counts as much light, in the unit of the channels.
     pub much: f32,
 }
 
 impl Default for ResponseLaws {
-    /// One that makes pictures, and for which 1 is much.
+    /// Returns the laws of a response that makes pictures and for which an exposure of 1 is much light.
     fn default() -> Self {
         Self { shows: true, much: 1.0 }
     }
 }
 
 impl ResponseLaws {
-    /// Tries all of them.
+    /// Checks all laws on a response.
     ///
     /// # Panics
-    /// With the first case that breaks a law.
+    /// At the first case that breaks a law; the message describes it.
     pub fn hold(&self, response: &dyn Response) {
         let channels = response.channels();
         assert!(!channels.is_empty(), "the response has no channels");
@@ -46,9 +45,9 @@ impl ResponseLaws {
                 continue;
             };
             let size = (picture.width_px, picture.height_px, picture.rgb.len());
-            assert_eq!(size, (SIZE.width_px, SIZE.height_px, SIZE.pixels()), "{case}: the picture is of another size");
+            assert_eq!(size, (SIZE.width_px, SIZE.height_px, SIZE.pixels()), "{case}: the picture has another size");
             assert!(picture.rgb.iter().flatten().all(|v| v.is_finite()), "{case}: not all values are finite");
-            assert!(response.display(frame).as_ref() == Some(&picture), "{case}: a second time it is another picture");
+            assert!(response.display(frame).as_ref() == Some(&picture), "{case}: a second call gives another picture");
             sums.push(picture.rgb.iter().flatten().sum::<f32>());
         }
         assert!(sums.len() < 2 || sums[0] < sums[1], "much light is no brighter than none: {sums:?}");

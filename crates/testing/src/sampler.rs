@@ -1,4 +1,4 @@
-//! The laws of wavelength samplers.
+//! The laws that every wavelength sampler must obey.
 
 use crate::spread::{Spread, mean_and_error};
 use crate::system::systems;
@@ -8,36 +8,38 @@ use spectra_core::math::{exp, sin};
 use spectra_core::spectral::{BAND, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
-/// The laws of wavelength samplers, and what must be known of one to try them.
+/// The laws of wavelength samplers, with the facts about a sampler that are needed to check them.
 ///
-/// They are tried on the [`systems`] that it accepts, one at least; those that it refuses it must refuse with a text.
+/// The laws are checked on those [`systems`] that the sampler accepts, which must be at least one. It must refuse the others with a
+/// message.
 ///
-/// - The density over the band and the probabilities of the lines add up to 1, and none is negative.
-/// - It is positive wherever the system has light that a channel sees: what is never drawn is missing in the picture.
-/// - Samples follow it: chi-square over 40 bins, or over the lines, within 6 standard deviations.
-/// - Weights are one over it.
-/// - A test integral comes out right within 5 standard errors.
+/// - The integral of the density over the band and the probabilities of the lines add up to 1, and none is negative.
+/// - The density is positive wherever the system has light that a channel records; wavelengths that are never drawn would be
+///   missing in the picture.
+/// - Samples follow the density: chi-square over 40 bins and the lines is within 6 standard deviations.
+/// - Weights are one over the density.
+/// - A test integral is right within 5 standard errors.
 /// - The result does not depend on how numbers are split into batches, nor on the instruction set.
 #[derive(Clone, Copy, Debug)]
 pub struct SamplerLaws {
-    /// Whether each weight is one over the density: samples of a signed mixture carry a sign as well.
+    /// Whether each weight is one over the density; false for a signed mixture, whose samples also carry a sign.
     pub weight_is_inverse_density: bool,
-    /// Whether samples follow the density, a number a sample; not where a term is followed.
+    /// Whether samples follow the density, with one number per sample; false if a term is followed.
     pub follows_density: bool,
-    /// How exact the integral of the density is.
+    /// Tolerance for the integral of the density, at least 1e-5.
     pub tolerance: f64,
-    /// Samples of each system.
+    /// Number of samples for each system.
     pub samples: usize,
 }
 
 impl Default for SamplerLaws {
-    /// A density that can be evaluated.
+    /// Returns the laws of a sampler whose density can be evaluated.
     fn default() -> Self {
         Self { weight_is_inverse_density: true, follows_density: true, tolerance: 1e-6, samples: 1 << 15 }
     }
 }
 
-/// What was drawn.
+/// Drawn wavelengths with their lines and weights.
 #[derive(Clone, Debug, PartialEq)]
 struct Drawn {
     wavelength_nm: Vec<f64>,
@@ -46,10 +48,10 @@ struct Drawn {
 }
 
 impl SamplerLaws {
-    /// Tries all of them.
+    /// Checks all laws on a sampler.
     ///
     /// # Panics
-    /// With the first case that breaks a law.
+    /// At the first case that breaks a law; the message describes it.
     pub fn hold(&self, sampler: &dyn WavelengthSampler) {
         let mut accepted = 0;
         for (name, system) in systems() {
@@ -58,7 +60,7 @@ impl SamplerLaws {
                     accepted += 1;
                     self.hold_for(name, &system, &*density);
                 }
-                Err(text) => assert!(!text.trim().is_empty(), "{name}: refused, without a word why"),
+                Err(text) => assert!(!text.trim().is_empty(), "{name}: refused without a reason"),
             }
         }
         assert!(accepted > 0, "it refuses every system");
@@ -74,12 +76,12 @@ impl SamplerLaws {
         assert!((sum - 1.0).abs() < self.tolerance.max(1e-5), "{name}: density and lines add up to {sum}, not to 1");
         let seen = system.summed_response();
         for (i, nm) in BAND.wavelengths_nm().enumerate() {
-            // A point of the grid may be the very end of what is seen: look between.
+            // A point of the grid may be the very end of a channel's response, so only interior points are checked.
             let inside = i > 0 && i + 1 < BAND.count && seen[i - 1] > 1e-9 && seen[i] > 1e-9 && seen[i + 1] > 1e-9;
             let p = density.density_per_nm(nm);
             assert!(
                 p > 0.0 || !inside || system.source.continuum[i] == 0.0,
-                "{name}: {nm} nm is never drawn, though there is light that a channel sees"
+                "{name}: {nm} nm is never drawn, though there is light that a channel records"
             );
         }
         for (line, p) in system.source.lines.iter().zip(&of_lines) {
@@ -93,14 +95,14 @@ impl SamplerLaws {
             [1, 64, 1000].map(|b| (b, Isa::Baseline)).into_iter().chain(Isa::available().into_iter().map(|i| (256, i)))
         {
             let same = draw(density, &u, batch, isa) == drawn;
-            assert!(same, "{name}: other samples in batches of {batch} on {}", isa.name());
+            assert!(same, "{name}: different samples in batches of {batch} on {}", isa.name());
         }
         self.check_samples(name, system, density, &drawn);
         if self.follows_density {
             self.check_distribution(name, density, &of_lines, &drawn);
         }
         check_integral(name, system, &drawn);
-        // The ends of the numbers.
+        // The ends of the range of numbers.
         let ends = draw(density, &[0.0, 1.0 - 0.5 * f64::EPSILON], 2, Isa::detect());
         self.check_samples(name, system, density, &ends);
     }
@@ -110,23 +112,23 @@ impl SamplerLaws {
             let (nm, line, weight) = (drawn.wavelength_nm[i], drawn.line[i], drawn.weight[i]);
             assert!(weight.is_finite(), "{name}: a sample at {nm} nm weighs {weight}");
             let p = if line == CONTINUUM {
-                assert!(BAND.contains(nm), "{name}: {nm} nm is drawn, outside of the band");
+                assert!(BAND.contains(nm), "{name}: {nm} nm is drawn, outside the band");
                 density.density_per_nm(nm)
             } else {
-                let Some(of) = system.source.lines.get(line as usize) else { panic!("{name}: line {line} is none") };
+                let Some(of) = system.source.lines.get(line as usize) else { panic!("{name}: no line {line} exists") };
                 assert!(
                     nm == of.wavelength_nm,
-                    "{name}: line {line} is drawn at {nm} nm, it is at {} nm",
+                    "{name}: line {line} is drawn at {nm} nm, but lies at {} nm",
                     of.wavelength_nm
                 );
                 density.line_probability(line as usize)
             };
             if self.weight_is_inverse_density {
-                // Next to an edge of the density rounding decides on which side a sample is.
+                // Next to an edge of the density, rounding decides on which side a sample lies.
                 let near = [-1e-7, 1e-7].map(|d| density.density_per_nm(nm + d));
                 let close = |p: f64| (weight * p - 1.0).abs() < 1e-9;
                 let good = close(p) || line == CONTINUUM && near.into_iter().any(|p| (weight * p - 1.0).abs() < 1e-6);
-                assert!(good, "{name}: a sample at {nm} nm weighs {weight}, one over its density is {}", 1.0 / p);
+                assert!(good, "{name}: a sample at {nm} nm weighs {weight}, but one over its density is {}", 1.0 / p);
             }
         }
     }
@@ -144,7 +146,7 @@ impl SamplerLaws {
         let mut want: Vec<f64> =
             (0..BINS).map(|bin| many * integral(density, start(bin), start(bin + 1), 1200).0).collect();
         want.extend(of_lines.iter().map(|p| many * p));
-        // Bins that expect few samples are taken together with their neighbors.
+        // Bins with few expected samples are merged with their neighbors.
         let (mut chi2, mut cells, mut few) = (0.0, 0, (0.0, 0.0));
         for (found, want) in found.into_iter().zip(want) {
             few = (few.0 + found, few.1 + want);
@@ -155,7 +157,7 @@ impl SamplerLaws {
             }
         }
         assert!(few.0 <= few.1 + 6.0 * (few.1 + 1.0).sqrt(), "{name}: {} samples where {} are expected", few.0, few.1);
-        // Chi-square of k degrees of freedom: mean k, variance 2 k; a tail beyond 6 standard deviations is some 1e-6.
+        // Chi-square with k degrees of freedom has mean k and variance 2 k; the tail beyond 6 standard deviations is about 1e-6.
         let degrees = f64::from(cells.max(2) - 1);
         let deviations = (chi2 - degrees) / (2.0 * degrees).sqrt();
         assert!(
@@ -165,7 +167,7 @@ impl SamplerLaws {
     }
 }
 
-/// Integral of the density by midpoints, and its least value.
+/// Returns the integral of the density by the midpoint rule, and its least value, 1/nm.
 fn integral(density: &dyn WavelengthDensity, from_nm: f64, to_nm: f64, steps: u32) -> (f64, f64) {
     let step = (to_nm - from_nm) / f64::from(steps);
     let (mut sum, mut least) = (0.0, f64::INFINITY);
@@ -188,7 +190,7 @@ fn draw(density: &dyn WavelengthDensity, u: &[f64], batch: usize, isa: Isa) -> D
     all
 }
 
-/// Light times what is seen times a wave over the band: estimated and by quadrature.
+/// Compares a test integral, of light times response times a wave over the band, by samples and by quadrature.
 fn check_integral(name: &str, system: &SystemResponse, drawn: &Drawn) {
     let seen = system.summed_response();
     let wave = |nm: f64| 1.0 + 0.5 * sin(nm / 20.0) * exp((nm - 600.0) / 300.0);

@@ -1,4 +1,4 @@
-//! The laws of sources.
+//! The laws that every source must obey.
 
 use crate::spread::{Spread, mean_and_error};
 use glam::DVec3;
@@ -9,31 +9,30 @@ use spectra_core::stage::{Emit, Radiance, Source};
 use spectra_core::{Isa, RayBatch};
 use std::f64::consts::PI;
 
-/// The laws of sources, and what must be known of one to try them.
+/// The laws of sources, with the facts about a source that are needed to check them.
 ///
 /// - Its spectrum is finite, not negative and not dark; its distance is positive; its peak is not below its mean.
-/// - Weights are finite and not negative, and places and directions are finite.
-/// - Where it both emits rays and answers for radiance: as much light passes an aperture either way, within 5 standard
-///   errors.
+/// - Weights are finite and not negative, and positions and directions are finite.
+/// - If it both emits rays and returns radiance, the same flux passes an aperture either way, within 5 standard errors.
 /// - The result does not depend on how rays are split into batches, nor on the instruction set.
 #[derive(Clone, Copy, Debug)]
 pub struct SourceLaws {
-    /// Radius of a disk across the axis at the source's distance that holds all of it, mm.
+    /// Radius of a disk across the axis, at the source's distance, that contains the whole source, mm.
     pub extent_mm: f64,
-    /// Radius of the aperture that light is counted in, mm.
+    /// Radius of the aperture through which flux is measured, mm.
     pub aperture_mm: f64,
-    /// Rays that are tried.
+    /// Number of rays that are tried.
     pub rays: usize,
 }
 
 impl Default for SourceLaws {
-    /// A source within 1 m of the axis, an aperture of 10 mm in radius.
+    /// Returns the laws of a source within 1 m of the axis, with an aperture of 10 mm radius.
     fn default() -> Self {
         Self { extent_mm: 1000.0, aperture_mm: 10.0, rays: 1 << 16 }
     }
 }
 
-/// How rays are asked about: in batches of so many, on an instruction set.
+/// Size of batches and instruction set for a run.
 #[derive(Clone, Copy)]
 struct How {
     batch: usize,
@@ -43,14 +42,14 @@ struct How {
 const PLAIN: How = How { batch: 256, isa: Isa::Baseline };
 
 impl SourceLaws {
-    /// Tries all of them.
+    /// Checks all laws on a source.
     ///
     /// # Panics
-    /// With the first case that breaks a law.
+    /// At the first case that breaks a law; the message describes it.
     pub fn hold(&self, source: &dyn Source) {
-        source.prepare().unwrap_or_else(|faults| panic!("it cannot be made ready: {faults}"));
+        source.prepare().unwrap_or_else(|faults| panic!("it cannot be prepared: {faults}"));
         let spectrum = source.spectrum();
-        assert_eq!(spectrum.continuum.len(), spectrum.grid.count, "the spectrum has not as many values as its grid");
+        assert_eq!(spectrum.continuum.len(), spectrum.grid.count, "the spectrum has not one value per grid point");
         for (power, nm) in spectrum.continuum.iter().zip(spectrum.grid.wavelengths_nm()) {
             assert!(*power >= 0.0 && power.is_finite(), "the spectrum is {power} at {nm} nm");
         }
@@ -66,8 +65,8 @@ impl SourceLaws {
         assert!(source.distance_mm() > 0.0, "its distance is {} mm", source.distance_mm());
         assert!(source.peak_over_mean() >= 1.0 - 1e-9, "its peak is {} of its mean", source.peak_over_mean());
         assert!(!source.describe().trim().is_empty(), "`describe` says nothing");
-        assert!(source.emit().is_some() || source.radiance().is_some(), "it neither emits nor answers for radiance");
-        // Wavelengths of the continuum, and each line by itself.
+        assert!(source.emit().is_some() || source.radiance().is_some(), "it neither emits nor returns radiance");
+        // The continuum, and each line separately.
         let lines = std::iter::once(None).chain((0..spectrum.lines.len().min(4)).map(Some));
         for line in lines {
             if line.is_none() && spectrum.continuum.iter().all(|p| *p == 0.0) {
@@ -84,7 +83,7 @@ impl SourceLaws {
                 let error = (da * da + db * db).sqrt();
                 assert!(
                     (a - b).abs() < 5.0 * error + 1e-9 * (a + b),
-                    "{}: through the aperture it emits {a:.6e} +- {da:.1e}, but answers for {b:.6e} +- {db:.1e}: {:.1} \
+                    "{}: through the aperture it emits {a:.6e} +- {da:.1e}, but its radiance is {b:.6e} +- {db:.1e}: {:.1} \
                      standard errors apart{}",
                     what(line),
                     (a - b).abs() / error,
@@ -94,11 +93,11 @@ impl SourceLaws {
         }
     }
 
-    /// Flux of each ray that is emitted through the aperture.
+    /// Returns the flux of each ray that the source emits through the aperture.
     fn forward(&self, source: &dyn Source, emit: &dyn Emit, line: Option<usize>) -> Vec<f64> {
         let want = self.emitted(source, emit, line, PLAIN);
         for (how, name) in others() {
-            assert!(self.emitted(source, emit, line, how) == want, "{}: it emits other rays {name}", what(line));
+            assert!(self.emitted(source, emit, line, how) == want, "{}: it emits different rays {name}", what(line));
         }
         want
     }
@@ -131,11 +130,11 @@ impl SourceLaws {
         flux
     }
 
-    /// Flux that comes along rays from the aperture toward the source.
+    /// Returns the flux that arrives along each ray from the aperture toward the source.
     fn backward(&self, source: &dyn Source, radiance: &dyn Radiance, line: Option<usize>) -> Vec<f64> {
         let want = self.answered(source, radiance, line, PLAIN);
         for (how, name) in others() {
-            assert!(self.answered(source, radiance, line, how) == want, "{}: radiance is another {name}", what(line));
+            assert!(self.answered(source, radiance, line, how) == want, "{}: radiance differs {name}", what(line));
         }
         want
     }
@@ -166,14 +165,14 @@ impl SourceLaws {
         flux
     }
 
-    /// A place in the aperture.
+    /// Returns a point in the aperture, mm.
     fn aperture(&self, u: f64, v: f64) -> DVec3 {
         let (x, y) = concentric_disk(u, v);
         self.aperture_mm * DVec3::new(x, y, 0.0)
     }
 }
 
-/// Rays of one line, or of wavelengths from all of the band.
+/// Starts rays with the wavelength of one line, or with wavelengths from the whole band.
 fn start(source: &dyn Source, line: Option<usize>, u: &[f64]) -> RayBatch {
     let mut rays = RayBatch::new(u.len());
     rays.restart(u.len());
@@ -194,7 +193,7 @@ fn check(rays: &RayBatch, line: Option<usize>) {
         let nm = rays.wavelengths_nm()[i];
         assert!(weight >= 0.0 && weight.is_finite(), "{}: a ray of {nm} nm weighs {weight}", what(line));
         let finite = rays.positions().iter().chain(&rays.directions()).all(|column| column[i].is_finite());
-        assert!(finite, "{}: a ray of {nm} nm is nowhere", what(line));
+        assert!(finite, "{}: a ray of {nm} nm has a position or direction that is not finite", what(line));
     }
 }
 
@@ -202,7 +201,7 @@ fn what(line: Option<usize>) -> String {
     line.map_or_else(|| "the continuum".to_owned(), |line| format!("line {line}"))
 }
 
-/// Other ways to ask that must give the same.
+/// Returns other batch sizes and instruction sets, which must give the same result, each with its words for a message.
 fn others() -> Vec<(How, String)> {
     let batches = [1, 100, 1024].map(|batch| (How { batch, ..PLAIN }, format!("in batches of {batch}")));
     let tiers = Isa::available().into_iter().map(|isa| (How { isa, ..PLAIN }, format!("on {}", isa.name())));

@@ -1,9 +1,9 @@
-//! Numbers to try things with: the same in every run.
+//! Pseudorandom numbers for tests, the same in every run.
 
 use spectra_core::Isa;
 use spectra_core::numbers::Numbers;
 
-/// Independent numbers in [0, 1), by dimension.
+/// Independent numbers in [0, 1) in each of several dimensions.
 pub(crate) struct Spread(Numbers);
 
 impl Spread {
@@ -11,17 +11,17 @@ impl Spread {
         Self(Numbers::random(seed))
     }
 
-    /// Number `i` of a dimension.
+    /// Returns number `i` of a dimension.
     pub(crate) fn at(&self, i: usize, dimension: u32) -> f64 {
         self.0.one(0, i as u64, dimension)
     }
 
-    /// Number `i` of a dimension, between two values.
+    /// Returns number `i` of a dimension, scaled to lie between `low` and `high`.
     pub(crate) fn between(&self, i: usize, dimension: u32, low: f64, high: f64) -> f64 {
         low + (high - low) * self.at(i, dimension)
     }
 
-    /// The first `many` of a dimension.
+    /// Returns the first `many` numbers of a dimension.
     pub(crate) fn column(&self, many: usize, dimension: u32) -> Vec<f64> {
         let mut out = vec![0.0; many];
         self.0.fill(Isa::Baseline, 0, 0, dimension, &mut out);
@@ -29,7 +29,7 @@ impl Spread {
     }
 }
 
-/// Mean of values and the standard error of it.
+/// Returns the mean of values and its standard error.
 pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let many = values.len() as f64;
     let mean = values.iter().sum::<f64>() / many;

@@ -1,4 +1,4 @@
-//! The laws of surfaces.
+//! The laws that every surface must obey.
 
 use crate::ray::{Line, Rays, outcome};
 use crate::spread::Spread;
@@ -7,44 +7,44 @@ use spectra_core::loss::ALIVE;
 use spectra_core::surface::{Action, BentRay, Surface};
 use spectra_core::{Isa, Loss};
 
-/// The laws of surfaces, and what must be known of one to try them.
+/// The laws of surfaces, with the facts about a surface that are needed to check them.
 ///
-/// - A ray ends up on the sag, on its own line, with a unit direction; the sag is never NaN.
-/// - Snell's law: n' d' x N = n d x N, in the plane of incidence; a mirror keeps the angle.
-/// - Where a surface has a phase, that is what bends light: along the surface, n' d' - n d is its gradient.
+/// - A ray ends on the sag, on its own line, with a unit direction; the sag is never NaN.
+/// - Refraction obeys Snell's law, n' d' x N = n d x N, in the plane of incidence; a mirror keeps the angle.
+/// - If a surface has a phase, the phase bends light: along the surface, n' d' - n d is the gradient of the phase.
 /// - Light is reversible.
-/// - The result does not depend on how rays are split into batches, nor (bit by bit) on the instruction set, nor on rays that
-///   were dropped; on numbers only where the surface says that it draws them ([`Surface::draws`]). Laws of single rays are tried
-///   without numbers.
-/// - Rays beyond the clear semi-diameter are vignetted; a lost ray keeps its cause and the surface's number, one that was lost
-///   before is left alone.
-/// - At another size, where it knows one, it bends rays alike at places as many times farther out.
+/// - The result does not depend on how rays are split into batches, nor (bit by bit) on the instruction set, nor on dropped rays.
+///   It depends on random numbers only if the surface says that it draws them ([`Surface::draws`]). Laws of single rays are
+///   checked without numbers.
+/// - Rays beyond the clear semi-diameter are vignetted. A lost ray keeps its cause and the surface's number; a ray that was lost
+///   before is not touched.
+/// - If the surface can be scaled, the scaled surface bends rays alike at proportionally scaled places.
 /// - The curvature at the vertex is that of the sag, and rays near the axis are bent by the paraxial power.
 /// - Wild rays (grazing, from far away, along the vertex plane) are met or lost; nothing panics and nothing is NaN.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceLaws {
-    /// Rays are tried out to this distance from the axis, mm.
+    /// Largest distance from the axis at which rays are tried, mm.
     pub semi_diameter_mm: f64,
     /// Steepest slope of rays against the axis.
     pub steepest: f64,
-    /// Farthest that rays start from, mm.
+    /// Largest distance from which rays start, mm.
     pub farthest_mm: f64,
-    /// Whether light is bent by Snell's law; an ideal lens, or a grating, has another.
+    /// Whether light is bent by Snell's law; an ideal lens or a grating obeys another law.
     pub snell: bool,
-    /// Whether light that goes back takes the same way.
+    /// Whether returning light takes the same path.
     pub reversible: bool,
-    /// Whether the vertex, where paraxial optics looks, is smooth and across the axis: a cone's tip is not.
+    /// Whether the vertex, where paraxial optics applies, is smooth and perpendicular to the axis; a cone's tip is not.
     pub smooth_vertex: bool,
-    /// How far from the sag a ray may end, mm.
+    /// Largest distance from the sag at which a ray may end, mm.
     pub tolerance_mm: f64,
-    /// How exact directions are: slopes by differences are good to 1e-8 or so.
+    /// Tolerance for directions; slopes computed by differences are good to about 1e-8.
     pub tolerance: f64,
-    /// Rays of each sort.
+    /// Number of rays of each sort.
     pub rays: usize,
 }
 
 impl Default for SurfaceLaws {
-    /// A smooth surface under Snell's law, 10 mm in semi-diameter.
+    /// Returns the laws of a smooth surface under Snell's law, with a semi-diameter of 10 mm.
     fn default() -> Self {
         Self {
             semi_diameter_mm: 10.0,
@@ -60,14 +60,14 @@ impl Default for SurfaceLaws {
     }
 }
 
-/// Senses of travel, and the media: into glass, out of it.
+/// Refractive indices before and after the surface: into glass, and out of it.
 const INDICES: [(f64, f64); 2] = [(1.0, 1.7), (1.7, 1.0)];
 
 impl SurfaceLaws {
-    /// Tries all of them.
+    /// Checks all laws on a surface.
     ///
     /// # Panics
-    /// With the first ray that breaks a law.
+    /// At the first ray that breaks a law; the message describes it.
     pub fn hold(&self, surface: &dyn Surface) {
         for forward in [true, false] {
             let rays = self.some_rays(forward);
@@ -87,7 +87,7 @@ impl SurfaceLaws {
         self.survives_wild_rays(surface);
     }
 
-    /// Through points near the vertex plane, from near and far, in one sense of travel.
+    /// Returns rays through points of the vertex plane, from near and far, in one sense of travel.
     fn some_rays(&self, forward: bool) -> Vec<Line> {
         let spread = Spread::new(if forward { 1 } else { 2 });
         let sense = if forward { 1.0 } else { -1.0 };
@@ -113,7 +113,7 @@ impl SurfaceLaws {
             let off = sag.map(|sag| (q.z - sag).abs());
             assert!(
                 off.is_some_and(|off| off < self.tolerance_mm),
-                "{}: ends at {q} mm, the sag there is {sag:?}",
+                "{}: ends at {q} mm, but the sag there is {sag:?}",
                 case()
             );
             let aside = (q - p).cross(d).length();
@@ -138,7 +138,7 @@ impl SurfaceLaws {
                 let same_side = after.dot(normal) * d.dot(normal) > 0.0;
                 assert!(same_side == (how.action == Action::Refract), "{}: goes on to the wrong side", case());
             }
-            // Flat light may cross a curved surface elsewhere before it is back.
+            // On its way back, light at a grazing angle may meet a curved surface at another place first.
             if self.reversible && how.action == Action::Refract && after.z * d.z > 0.05 {
                 let back =
                     Rays { indices: (m, n), ..how }.meet(surface, &[(q + 0.5 * after, -after)], Isa::detect())[0];
@@ -146,9 +146,9 @@ impl SurfaceLaws {
                     && (there - q).length() < 1e-3
                 {
                     let off = (out + d).length();
-                    assert!(off < self.tolerance, "{}: back it goes along {out}, off by {off}", case());
+                    assert!(off < self.tolerance, "{}: its way back is along {out}, off by {off}", case());
                 } else {
-                    assert!(back.is_ok(), "{}: on its way back it ends as {back:?}", case());
+                    assert!(back.is_ok(), "{}: on its way back it ends with {back:?}", case());
                 }
             }
         }
@@ -161,9 +161,10 @@ impl SurfaceLaws {
         );
     }
 
-    /// Parallel light, whose object is at infinity: between neighboring rays the phase differs as their directions do.
+    /// Checks that the phase bends parallel light, whose object is at infinity: the phase difference of neighboring rays must match their
+    /// change of direction.
     fn is_bent_by_its_phase(&self, surface: &dyn Surface, rays: &[Line]) {
-        /// Distance between neighbors, mm: differences are good to its square.
+        /// Distance between neighbors, mm; differences are good to its square.
         const STEP_MM: f64 = 1e-3;
         let mut compared = 0;
         for indices in INDICES {
@@ -191,7 +192,7 @@ impl SurfaceLaws {
                         assert!(
                             (got - want).abs() < 1e-5 * STEP_MM,
                             "{surface:?}: {action:?} from {n} to {m}, ray at {p} mm along {d}: between points {a} and {b} mm the phase \
-                             differs by {got} mm; the way that rays are bent asks for {want} mm"
+                             differs by {got} mm; the directions of the bent rays need {want} mm"
                         );
                     }
                 }
@@ -203,7 +204,7 @@ impl SurfaceLaws {
         );
     }
 
-    /// Other batches and other instruction sets: the same rays.
+    /// Checks that other batches and other instruction sets give the same rays.
     fn is_the_same_however_asked(&self, surface: &dyn Surface, rays: &[Line]) {
         let clip_mm = 0.8 * self.semi_diameter_mm;
         let how = Rays { indices: INDICES[1], clip_mm, seed: Some(1), ..Rays::default() };
@@ -211,7 +212,7 @@ impl SurfaceLaws {
         let chance = [Some(2), None].map(|seed| Rays { seed, ..how }.meet(surface, rays, Isa::Baseline));
         for other in chance.iter().filter(|_| !surface.draws()) {
             if let Some(i) = differs(other, &want) {
-                panic!("{surface:?}: ray {i} gives {:?} or {:?} by chance; `draws` denies it", other[i], want[i]);
+                panic!("{surface:?}: ray {i} gives {:?} or {:?} at random; `draws` denies it", other[i], want[i]);
             }
         }
         let mut few = how.send(rays, 0);
@@ -220,7 +221,7 @@ impl SurfaceLaws {
         how.interact(surface, &mut few, Isa::Baseline);
         for (at, i) in (1..rays.len()).step_by(2).enumerate() {
             let got = outcome(&few, at);
-            assert!(got == want[i], "{surface:?}: ray {i} gives {got:?} where others were dropped, {:?} else", want[i]);
+            assert!(got == want[i], "{surface:?}: ray {i} gives {got:?} if others were dropped, else {:?}", want[i]);
         }
         for batch in [1, 7, 64, 1024] {
             let got = Rays { batch, ..how }.meet(surface, rays, Isa::Baseline);
@@ -246,7 +247,7 @@ impl SurfaceLaws {
         let clipped = Rays { clip_mm, ..open }.meet(surface, rays, Isa::detect());
         for (i, (free, clipped)) in free.iter().zip(&clipped).enumerate() {
             let Ok((q, _)) = free else {
-                assert_eq!(free, clipped, "{surface:?}: ray {i} ends otherwise where the surface is clipped");
+                assert_eq!(free, clipped, "{surface:?}: ray {i} ends differently if the surface is clipped");
                 continue;
             };
             let radius = q.truncate().length();
@@ -257,7 +258,7 @@ impl SurfaceLaws {
                 "{surface:?}: ray {i} meets it {radius} mm off the axis, clipped at {clip_mm} mm: {clipped:?}"
             );
         }
-        // Every second ray has ended already: it keeps all that it had.
+        // Every second ray has already ended; its state must not change.
         let mut batch = Rays { clip_mm, ..open }.send(rays, 0);
         let before = Loss::Absorbed.state(3);
         batch.columns_mut().state.iter_mut().step_by(2).for_each(|state| *state = before);
@@ -266,7 +267,7 @@ impl SurfaceLaws {
         assert_eq!(lost, newly, "{surface:?}: `interact` returns {lost}, but {newly} rays ended");
         for i in 0..rays.len() {
             if i % 2 == 0 {
-                assert_eq!(batch.states()[i], before, "{surface:?}: ray {i}, which had ended before, ends anew");
+                assert_eq!(batch.states()[i], before, "{surface:?}: ray {i}, which had ended before, ends again");
             } else {
                 assert!(
                     outcome(&batch, i) == clipped[i],
@@ -287,18 +288,18 @@ impl SurfaceLaws {
             let (mut compared, mut apart) = (0, 0);
             for (i, (own, of_larger)) in own.iter().zip(&of_larger).enumerate() {
                 let (Ok((p, d)), Ok((q, e))) = (own, of_larger) else {
-                    // A ray at the very rim may be lost by rounding.
+                    // A ray at the very edge of the surface may be lost by rounding.
                     apart += usize::from(own.is_err() != of_larger.is_err());
                     continue;
                 };
                 compared += 1;
                 let same =
                     (*p * FACTOR - *q).length() < FACTOR * self.tolerance_mm && (*d - *e).length() < self.tolerance;
-                assert!(same, "{surface:?}: ray {i} ends as {own:?}; {FACTOR} times as large as {of_larger:?}");
+                assert!(same, "{surface:?}: ray {i} ends as {own:?}, but {FACTOR} times as large as {of_larger:?}");
             }
             assert!(
                 compared > self.rays / 20 && apart <= self.rays / 100,
-                "{surface:?}: of {} rays {compared} go on at both sizes, {apart} at one of them only",
+                "{surface:?}: of {} rays, {compared} go on at both sizes and {apart} at only one of them",
                 self.rays
             );
         }
@@ -314,7 +315,7 @@ impl SurfaceLaws {
         let h = 1e-2 * self.semi_diameter_mm.min(1.0);
         for (axis, stated) in ["x", "y"].into_iter().zip(curvature) {
             let along = |k: f64| if axis == "x" { at(k * h, 0.0) } else { at(0.0, k * h) };
-            // Fourth order: what is left of the sixth derivative is nothing here.
+            // A fourth-order difference; the remainder with the sixth derivative is negligible here.
             let second =
                 (16.0 * (along(1.0) + along(-1.0)) - (along(2.0) + along(-2.0)) - 30.0 * along(0.0)) / (12.0 * h * h);
             let close = (stated - second).abs() < 1e-5 * (stated.abs() + 0.01);
@@ -330,7 +331,7 @@ impl SurfaceLaws {
                 let [Ok((_, a)), Ok((_, b))] = met[..] else {
                     panic!("{surface:?}: a ray next to the axis ends: {met:?}");
                 };
-                // The difference of two rays: a tilt or a grating's order bends both alike.
+                // The difference of two rays cancels a tilt or a grating's order, which bends both alike.
                 let slope = 0.5 * ((a / a.z).dot(axis) - (b / b.z).dot(axis));
                 let close = (m * slope + power * h).abs() < 2e-5 * h * (power.abs() + 0.01);
                 assert!(
@@ -343,7 +344,7 @@ impl SurfaceLaws {
         }
     }
 
-    /// Whatever comes: a ray is met on the sag, or it is lost.
+    /// Checks that wild rays are met or lost, without panic or NaN.
     fn survives_wild_rays(&self, surface: &dyn Surface) {
         let r = self.semi_diameter_mm;
         let spread = Spread::new(3);
@@ -357,7 +358,7 @@ impl SurfaceLaws {
                     rays.push((spot - far * d, d));
                 }
             }
-            // Along the plane, through the vertex and beside it.
+            // Rays along the vertex plane and beside it, and one that starts at the vertex.
             rays.extend([0.0, 0.5 * r, -3.0].map(|z| (DVec3::new(-2.0 * r, 0.0, z), DVec3::X)));
             rays.push((DVec3::ZERO, DVec3::Z * sense));
             for action in [Action::Refract, Action::Reflect, Action::Pass] {
@@ -379,7 +380,7 @@ impl SurfaceLaws {
     }
 }
 
-/// The first ray that is not the same to the bit.
+/// Returns the index of the first ray that is not the same bit by bit.
 fn differs(a: &[Result<Line, Loss>], b: &[Result<Line, Loss>]) -> Option<usize> {
     let bits = |(p, d): &Line| [p.x, p.y, p.z, d.x, d.y, d.z].map(f64::to_bits);
     a.iter().zip(b).position(|(a, b)| match (a, b) {
@@ -388,7 +389,7 @@ fn differs(a: &[Result<Line, Loss>], b: &[Result<Line, Loss>]) -> Option<usize> 
     })
 }
 
-/// Unit normal by differences of the sag; `None` next to its rim.
+/// Returns the unit normal by differences of the sag; `None` next to the edge of the surface.
 fn normal(surface: &dyn Surface, q: DVec3) -> Option<DVec3> {
     let h = 1e-3;
     let along = |dx: f64, dy: f64| {

@@ -1,10 +1,10 @@
-//! Systems to draw wavelengths for.
+//! Systems of source and channels for tests of wavelength samplers.
 
 use spectra_core::math::exp;
 use spectra_core::spectral::{BAND, Channel, Line, SpectralPower, SystemResponse};
 
-/// Sources and channels of each sort, by name: a slope of light, light with two lines in it, lines alone; seen by one broad
-/// channel, or by three narrow ones that leave gaps between them. In arbitrary units.
+/// Returns systems of each sort, with names: a sloping continuum, a continuum with two lines, or lines alone, recorded by one broad
+/// channel or by three narrow ones with gaps between them. Units are arbitrary.
 #[must_use]
 pub fn systems() -> Vec<(&'static str, SystemResponse)> {
     let table = |f: &dyn Fn(f64) -> f64| BAND.wavelengths_nm().map(f).collect::<Vec<f64>>();

@@ -100,7 +100,7 @@ globalThis.fetch = (what, options) => {
   return server(what, options);
 };
 
-// Which scene, and the bits ----------------------------------------------------------------------------------------------------
+// Choice of the scene, and comparison of the bits --------------------------------------------------------------------------------
 
 const bar = document.createElement("p");
 bar.className = "tools";

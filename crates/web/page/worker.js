@@ -1,7 +1,7 @@
 // @ts-check
 // The engine, in a thread of its own: it answers requests, and between them traces pieces of the picture.
 
-/** A piece of the picture takes about so long, ms: in between, changes are taken up. */
+/** Approximate duration of one piece of the picture, ms; changes are handled between pieces. */
 const PIECE_MS = 120;
 
 /** @typedef {{memory: WebAssembly.Memory, start(): void, inbox(bytes: number): number, call(): number, outbox(): number}} Engine */
@@ -12,7 +12,7 @@ const text = new TextEncoder();
 /** @param {any} request @returns {Uint8Array<ArrayBuffer>} */
 function raw(request) {
   const bytes = text.encode(JSON.stringify(request));
-  // A call may move the memory: it is looked up afterwards.
+  // A call may move the memory, so its buffer is looked up again afterwards.
   const inbox = engine.inbox(bytes.length);
   new Uint8Array(engine.memory.buffer, inbox, bytes.length).set(bytes);
   const length = engine.call();
@@ -25,7 +25,7 @@ function ask(request) {
   return JSON.parse(new TextDecoder().decode(raw(request)));
 }
 
-/** What is there of the picture, and how long a sample of all pixels takes, ms. */
+/** Progress of the picture. `paceMs` is the time that one sample of all pixels takes, ms. */
 let state = { samples: 0, of: 0 };
 let paceMs = 0;
 let started = 0;
@@ -44,7 +44,7 @@ function show() {
   postMessage({ picture, sinceMs: performance.now() - started }, { transfer: [picture.buffer] });
 }
 
-/** Traces a piece, shows it, and comes back for the next once messages were heard. */
+/** Traces a piece, shows it, and continues with the next after pending messages are handled. */
 function work() {
   isAtWork = false;
   if (state.samples >= state.of) return;
@@ -57,7 +57,7 @@ function work() {
     return;
   }
   state = answer;
-  // The first sample pays for what is made ready once.
+  // The first sample includes the preparation of the scene, so it is not timed.
   if (before > 0) paceMs = (performance.now() - from) / samples;
   show();
   goOn();
@@ -82,13 +82,13 @@ onmessage = async ({ data: { id, request } }) => {
       answer = ask({ do: "about" });
     } else if (request.do === "section") {
       const drawn = raw(request);
-      // A drawing, or why there is none.
+      // The answer is a drawing, or JSON with the reason why there is none.
       answer = drawn[0] === 0x7b ? JSON.parse(new TextDecoder().decode(drawn)) : drawn;
     } else {
       answer = ask(request);
       if (["open", "width", "turn"].includes(request.do)) {
         changed(answer);
-        // What the light did not change for is only developed.
+        // Light that is still valid is only developed again.
         if (answer.kept && answer.light) show();
         if (!request.still) goOn();
       }

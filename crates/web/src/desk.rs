@@ -1,4 +1,4 @@
-//! What a page without a server works on: one session, which its requests move on.
+//! The state behind a page without a server: one session, changed by the page's requests.
 
 use serde_json::{Value, json};
 use spectra_core::frame::DisplayPicture;
@@ -10,23 +10,23 @@ use std::path::Path;
 
 /// Widths of the picture that a page may choose, pixels.
 const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
-/// The first of them.
+/// Initial width of the picture, pixels.
 const WIDTH_PX: u32 = 480;
 
-/// Answers the requests of a page.
+/// A service that answers the requests of a page.
 #[derive(Default)]
 pub struct Desk {
     open: Option<Open>,
 }
 
-/// A scene that is open.
+/// An open scene and its session.
 struct Open {
     name: String,
     session: Session,
     controls: Vec<Control>,
-    /// Height over width, in pixels.
+    /// Height over width of the picture in pixels.
     aspect: f64,
-    /// Pictures so far, scenes, and lenses: as the page counts them.
+    /// Counters that the page compares: pictures so far, scenes, and lenses.
     frames: u64,
     scenes: u64,
     lenses: u64,
@@ -36,12 +36,13 @@ struct Open {
 type Answer = Result<Vec<u8>, Value>;
 
 impl Desk {
-    /// The answer to a request: JSON, with `faults` where it went wrong; of `look`, a picture as `spectra view` sends it.
+    /// Answers a request with JSON, which has `faults` if it failed. The answer to `look` is a picture in the format of
+    /// `spectra view`.
     #[must_use]
     pub fn answer(&mut self, request: &[u8]) -> Vec<u8> {
         let answer = match serde_json::from_slice::<Value>(request) {
             Ok(request) => self.asked(&request),
-            Err(error) => Err(wrong(&format!("the request is no JSON: {error}"))),
+            Err(error) => Err(wrong(&format!("the request is not JSON: {error}"))),
         };
         answer.unwrap_or_else(|error| error.to_string().into_bytes())
     }
@@ -79,7 +80,7 @@ impl Desk {
     }
 }
 
-/// The program, and what it was linked with.
+/// Describes the program and its registered stages.
 fn about() -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -98,7 +99,7 @@ fn wrong(message: &str) -> Value {
 }
 
 impl Open {
-    /// A bundled scene.
+    /// Opens a bundled scene.
     fn scene(name: &str, set: &[String]) -> Result<Self, SessionError> {
         let session = Session::open(Path::new(name), set, Isa::detect())?;
         let size = session.scene().imager.size();
@@ -107,7 +108,7 @@ impl Open {
         Ok(Self { name: name.to_owned(), session, controls, aspect, frames: 0, scenes: 1, lenses: 1, fault: None })
     }
 
-    /// How far the picture is.
+    /// Returns the size and progress of the picture.
     fn state(&self) -> Value {
         let scene = self.session.scene();
         let size = scene.imager.size();
@@ -154,7 +155,7 @@ impl Open {
         let text = control.text(value).map_err(|why| wrong(&why))?;
         if let Some(word) = control.picked(value) {
             let picture = Picks::of(&self.session).with(None, path, &word);
-            return self.pick(path, picture.ok_or_else(|| wrong("no picture of the scene has it"))?);
+            return self.pick(path, picture.ok_or_else(|| wrong("no picture of the scene has this value"))?);
         }
         self.change(path, &text)
     }
@@ -167,7 +168,7 @@ impl Open {
         Ok(json(&self.state()))
     }
 
-    /// The light so far, developed.
+    /// Develops the light so far and packs the picture.
     fn look(&mut self) -> Answer {
         let failed = |error: SessionError| said(&error, "");
         let rendering = self.session.look().map_err(failed)?;
@@ -176,7 +177,7 @@ impl Open {
         let shot = Shot::new(scene, &rendering.exposure, &times, &[], Isa::detect());
         let developed = shot.pictures().map_err(|error| failed(SessionError::Failed(error)))?;
         let Some((_, DisplayPicture { width_px, height_px, rgb })) = developed.first() else {
-            return Err(wrong("the imager has no picture"));
+            return Err(wrong("the imager gives no picture"));
         };
         self.frames += 1;
         let own = json!({
@@ -200,7 +201,7 @@ impl Open {
         })
     }
 
-    /// What a pixel got, channel by channel.
+    /// Returns the exposure of a pixel, channel by channel.
     fn pixel(&mut self, x: u64, y: u64) -> Answer {
         let rendering = self.session.look().map_err(|error| said(&error, ""))?;
         let times = self.session.scene().film_times(&rendering.exposure);
@@ -208,7 +209,7 @@ impl Open {
         seen.map(|seen| json(&seen)).ok_or_else(|| wrong("no such pixel"))
     }
 
-    /// A number of the exposure's bits, as `spectra run` writes it into its report.
+    /// Returns a hash of the exposure's bits, as in the report of `spectra run`.
     fn fingerprint(&mut self) -> Answer {
         let rendering = self.session.look().map_err(|error| said(&error, ""))?;
         let fingerprint = format!("{:016x}", rendering.exposure.fingerprint());

@@ -1,10 +1,11 @@
-//! The engine for a page without a server.
+//! The engine for a web page without a server.
 //!
-//! A worker of the page writes a request as JSON into the [`inbox`], says [`call`], and reads the answer from the [`outbox`]: JSON, or
-//! a picture as `spectra view` sends it. There is one session, one thread, no disk and no clock: the worker says how many samples to
-//! trace, and so how long a call takes. The bits are those of the command.
+//! A worker of the page writes a request as JSON into the [`inbox`], makes a [`call`], and reads the answer from the [`outbox`].
+//! The answer is JSON, or a picture in the format of `spectra view`. There is one session, one thread, no disk and no clock. The
+//! worker states how many samples to trace, and thereby how long a call takes. The result has the same bits as that of the
+//! command.
 //!
-//! Built by `cargo run -p xtask -- web`.
+//! Build it with `cargo run -p xtask -- web`.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

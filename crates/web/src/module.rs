@@ -1,4 +1,4 @@
-//! What the module gives to the worker.
+//! Functions that the module exports to the worker.
 #![allow(unsafe_code)] // names without mangling, and the one call that registers the stages
 
 use crate::Desk;
@@ -17,7 +17,7 @@ fn module() -> MutexGuard<'static, Module> {
     MODULE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// To be called once, before anything else: registers the stages of all plugins.
+/// Registers the stages of all plugins. The worker must call it once, before anything else.
 #[unsafe(no_mangle)]
 pub extern "C" fn start() {
     #[cfg(target_family = "wasm")]
@@ -25,13 +25,13 @@ pub extern "C" fn start() {
         unsafe extern "C" {
             fn __wasm_call_ctors();
         }
-        // SAFETY: the linker makes this function of the module's own static constructors. A module that calls it itself is not
-        // given further calls of it, and the worker says `start` once.
+        // SAFETY: the linker creates this function from the static constructors of the module. Because the module calls it
+        // explicitly, the linker adds no other calls, and the worker calls `start` only once.
         unsafe { __wasm_call_ctors() }
     }
 }
 
-/// Room for a request of so many bytes.
+/// Clears the inbox and returns a pointer to room for a request of this many bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn inbox(bytes: usize) -> *mut u8 {
     let mut module = module();
@@ -40,7 +40,7 @@ pub extern "C" fn inbox(bytes: usize) -> *mut u8 {
     module.inbox.as_mut_ptr()
 }
 
-/// Answers the request in the inbox; the length of the answer, bytes.
+/// Answers the request in the inbox, and returns the length of the answer, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn call() -> usize {
     let module = &mut *module();
@@ -48,7 +48,7 @@ pub extern "C" fn call() -> usize {
     module.outbox.len()
 }
 
-/// The last answer.
+/// Returns a pointer to the last answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn outbox() -> *const u8 {
     module().outbox.as_ptr()

@@ -1,5 +1,5 @@
-// The page without a server, in Chromium: node page.mjs FOLDER-WITH-NODE_MODULES CHROMIUM FOLDER-OF-THE-PAGE [PICTURE.png]
-// Each scene's exposure has the bits of the command line; the picture follows a control; nothing is said on the console.
+// Tests the page without a server in Chromium: node page.mjs FOLDER-WITH-NODE_MODULES CHROMIUM FOLDER-OF-THE-PAGE [PICTURE.png]
+// Checks that each scene's exposure has the bits of the command line, that the picture follows a control, and the console stays silent.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
@@ -31,7 +31,7 @@ page.on("console", (message) => message.type() === "error" && errors.push(messag
 page.on("pageerror", (error) => errors.push(String(error)));
 
 await page.goto(address);
-/** Waits for a picture after that frame: all samples of a scene take minutes on one thread. @param {number} after */
+/** Waits for a picture after this frame, but not for all samples, which take minutes on one thread. @param {number} after */
 const drawn = (after) => page.waitForFunction((after) => Number(document.body.dataset.frame ?? 0) > after, after);
 await drawn(4);
 assert.ok(await page.locator("#section").isVisible(), "the lens is drawn");

@@ -1,7 +1,7 @@
-//! The sources of the program, packed into it: what plugins are built against, with no checkout and no network.
+//! The sources of the program, packed into it, so that plugins can be built against them without checkout or network.
 //!
-//! The archive holds manifests, the lock file and the source files of every crate (tar and deflate, the same bytes wherever
-//! it is packed). What the program holds anyway, its data, is not stored again: whoever unpacks hands it in.
+//! The archive holds manifests, the lock file and the source files of every crate (tar and deflate, the same bytes wherever it is
+//! packed). The program holds its data anyway, so they are not stored again: the caller of [`unpack()`] passes them in.
 //!
 //! ```no_run
 //! # fn data() -> impl Iterator<Item = (&'static str, &'static [u8])> { std::iter::empty() }
@@ -19,10 +19,10 @@ pub use unpack::{Data, unpack};
 /// Version of the sources.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The packed sources: tar, compressed as zlib does. Empty in a program that was built from a registry.
+/// The packed sources: tar, compressed with zlib. Empty in a program that was built from a registry.
 pub static ARCHIVE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/sources.tar.zz"));
 
-/// Whether the sources are in this program.
+/// Returns whether this program was built without its sources.
 #[must_use]
 pub fn is_empty() -> bool {
     ARCHIVE.is_empty()

@@ -1,4 +1,4 @@
-//! From the archive to a folder, once.
+//! Unpacking of the archive to a folder, once.
 
 use crate::{ARCHIVE, VERSION};
 use flate2::read::ZlibDecoder;
@@ -10,12 +10,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Files to write beside the packed ones: path below the root with forward slashes, and content.
 pub type Data<'a> = dyn Iterator<Item = (&'static str, &'static [u8])> + 'a;
 
-/// Unpacks the sources and `data` into a folder of `cache` that is named after their version and content, unless it is
-/// there already. Returns that folder. Files appear under a temporary name and the folder gets its own when it is
-/// whole, so two processes may do this at once and one that is killed leaves nothing that is taken for whole.
+/// Unpacks the sources and `data` into a folder of `cache` that is named after their version and content, unless it exists
+/// already. Returns that folder. Files are written under a temporary folder name, and the folder gets its own name when it is
+/// complete. Two processes may therefore do this at once, and one that is killed leaves nothing that looks complete.
 ///
 /// # Errors
-/// The program holds no sources ([`crate::is_empty`]), or the system's word: the folder cannot be written.
+/// The program holds no sources ([`crate::is_empty`]), or the folder cannot be written.
 pub fn unpack(cache: &Path, data: &mut Data<'_>) -> io::Result<PathBuf> {
     if crate::is_empty() {
         return Err(io::Error::new(io::ErrorKind::NotFound, "this program was built without its sources"));
@@ -30,15 +30,15 @@ pub fn unpack(cache: &Path, data: &mut Data<'_>) -> io::Result<PathBuf> {
     let temporary = cache.join(temporary_name());
     let written = write(&temporary, &data).and_then(|()| fs::rename(&temporary, &folder));
     if let Err(error) = written {
-        // What was begun is of no use; that it cannot be removed either is no news.
+        // Removes the incomplete folder; a failure of the removal is ignored.
         let _ = fs::remove_dir_all(&temporary);
-        // Another process was faster.
+        // Another process may have been faster.
         return if folder.is_dir() { Ok(folder) } else { Err(error) };
     }
     Ok(folder)
 }
 
-/// What tells these sources from others: FNV-1a over names and contents.
+/// Returns a hash that identifies the sources and data: FNV-1a over names and contents.
 fn identity(data: &[(&str, &[u8])]) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |bytes: &[u8]| {
@@ -56,13 +56,13 @@ fn identity(data: &[(&str, &[u8])]) -> u64 {
 
 const TEMPORARY: &str = ".unpacking-";
 
-/// A name that no other process or thread uses.
+/// Returns a name that no other process or thread uses.
 fn temporary_name() -> String {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     format!("{TEMPORARY}{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
 }
 
-/// Removes what a process that was killed a day ago or more has left.
+/// Removes what processes that were killed have left, if it is older than a day.
 fn remove_abandoned(cache: &Path) {
     const DAY: std::time::Duration = std::time::Duration::from_secs(24 * 3600);
     for entry in fs::read_dir(cache).into_iter().flatten().flatten() {
@@ -106,7 +106,7 @@ mod tests {
         [("spectra/a/b.csv", &b"1,2\n"[..]), ("lenses/c.yaml", b"name: c\n")].into_iter()
     }
 
-    /// Paths of all files below a folder, with forward slashes.
+    /// Returns the paths of all files below a folder, with forward slashes.
     fn files(folder: &Path) -> BTreeSet<String> {
         let mut found = BTreeSet::new();
         let mut open = vec![folder.to_owned()];
@@ -144,7 +144,7 @@ mod tests {
         }
         let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
         assert!(!manifest.contains("[[bench]]") && manifest.contains("[profile.release]"), "{manifest}");
-        // Nothing else lies in the cache, and a second time nothing is written.
+        // The cache holds nothing else, and a second call writes nothing.
         assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 1);
         fs::write(folder.join("mark"), "").unwrap();
         assert_eq!(unpack(cache.path(), &mut data()).unwrap(), folder);

@@ -1,19 +1,20 @@
-//! This program as the linker of the WebAssembly module.
+//! This program in its role as the linker of the WebAssembly module.
 //!
-//! Nobody names the statics by which plugins register their stages, and for WebAssembly the linker leaves out what nobody names. So
-//! this program stands in for the linker: it asks for the plugins' libraries as a whole, and hands on to the toolchain's own.
+//! No code refers to the statics by which plugins register their stages, and for WebAssembly the linker drops symbols without
+//! references. This program therefore stands in for the linker: it asks for the plugins' libraries as a whole, and passes the
+//! arguments on to the toolchain's own linker.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The variable that makes this program a linker: the path of the toolchain's own.
+/// Environment variable that makes this program act as a linker; its value is the path of the toolchain's own linker.
 pub const ASKED: &str = "SPECTRA_WEB_LINKER";
 
-/// Links.
+/// Links the module, with the arguments that the compiler passes to its linker.
 ///
 /// # Errors
-/// The linker cannot be started, or has found something wrong, which it has said.
+/// The linker cannot be started, or it failed and has printed why.
 pub fn link(arguments: Vec<OsString>) -> Result<(), String> {
     let own = std::env::var_os(ASKED).unwrap_or_default();
     let status = Command::new(&own).args(["-flavor", "wasm"]).args(whole(arguments)).status();
@@ -21,7 +22,7 @@ pub fn link(arguments: Vec<OsString>) -> Result<(), String> {
     if status.success() { Ok(()) } else { Err(format!("{}: {status}", own.display())) }
 }
 
-/// The same arguments, with each library of a plugin asked for as a whole.
+/// Returns the arguments with each library of a plugin included as a whole.
 fn whole(arguments: Vec<OsString>) -> Vec<OsString> {
     let mut all = Vec::with_capacity(arguments.len());
     for argument in arguments {
@@ -35,10 +36,10 @@ fn whole(arguments: Vec<OsString>) -> Vec<OsString> {
     all
 }
 
-/// The linker that comes with the toolchain.
+/// Returns the path of the linker that comes with the toolchain.
 ///
 /// # Errors
-/// There is none, or `rustc` cannot be asked.
+/// The toolchain has no linker, or `rustc` cannot be run.
 pub fn own() -> Result<PathBuf, String> {
     let ask = |what: &str| -> Result<String, String> {
         let said = Command::new("rustc").args(["--print", what]).output().map_err(|error| format!("rustc: {error}"))?;

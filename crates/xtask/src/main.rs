@@ -1,8 +1,8 @@
-//! Chores of this repository that are programs.
+//! Development tasks of this repository.
 //!
-//! - `cargo run -p xtask -- web [FOLDER]`: the page without a server, as a folder of files that any web server can give out;
-//! - `cargo run -p xtask -- times [ARGUMENTS OF CARGO TEST]`: runs the tests and prints the slowest programs and tests;
-//! - `xtask timed PROGRAM`: the runner of test programs by which `.ci/run` knows their times; `xtask slow FILE SECONDS` judges them.
+//! - `cargo run -p xtask -- web [FOLDER]` builds the page that needs no server, as a folder of files for any web server.
+//! - `cargo run -p xtask -- times [ARGUMENTS OF CARGO TEST]` runs the tests and prints the slowest programs and tests.
+//! - `xtask timed PROGRAM` runs a test program and records its times for `.ci/run`; `xtask slow FILE SECONDS` fails on slow tests.
 
 mod link;
 mod times;
@@ -23,7 +23,7 @@ fn main() -> ExitCode {
         Some("times") => ended(times::times(arguments)),
         Some("timed") => match times::timed(arguments) {
             Ok(status) if status.success() => ExitCode::SUCCESS,
-            // What cargo shows as the program's own code.
+            // Cargo shows this as the exit code of the test program.
             Ok(status) => ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)),
             Err(why) => ended(Err(why)),
         },

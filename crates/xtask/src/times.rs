@@ -1,8 +1,8 @@
-//! Where the time of the tests goes.
+//! Measurement of the time that tests take.
 //!
 //! Cargo starts each test program through a runner (`cargo config`, `target.<triple>.runner`). Ours, [`timed`], asks the test harness for
-//! the time of each test, passes on what it prints, and appends the times to a file. [`times`] runs all tests so and prints the table;
-//! [`slow`] reads the file and runs tests that took too long once more, alone, since beside others every test is slow.
+//! the time of each test, passes on what it prints, and appends the times to a file. [`times`] runs all tests this way and prints a table.
+//! [`slow`] reads the file and runs tests that took too long again, alone, since every test is slow while others run.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -11,10 +11,10 @@ use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::Instant;
 
-/// Names the file that [`timed`] appends to.
+/// Environment variable with the path of the file to which [`timed`] appends.
 pub const FILE: &str = "SPECTRA_TIMES";
 
-/// Runs a test program, `arguments` being its path and its own arguments, and notes how long it and each of its tests took.
+/// Runs a test program and records how long it and each of its tests took. `arguments` are the program's path and its own arguments.
 pub fn timed(mut arguments: impl Iterator<Item = String>) -> Result<ExitStatus, String> {
     let program = arguments.next().ok_or("usage: xtask timed PROGRAM [ARGUMENTS]")?;
     let begun = Instant::now();
@@ -37,7 +37,8 @@ pub fn timed(mut arguments: impl Iterator<Item = String>) -> Result<ExitStatus, 
     Ok(status)
 }
 
-/// A test program that says how long each test takes: an option of the stable harness that has to be asked for as if it were not.
+/// Returns the command that runs a test program and makes it print the time of each test. The option works in the stable harness, but must
+/// be enabled as if it were unstable.
 fn harness(program: &str) -> Command {
     let mut command = Command::new(program);
     command.env("RUSTC_BOOTSTRAP", "1").args(["-Zunstable-options", "--report-time"]).stdout(Stdio::piped());
@@ -48,18 +49,18 @@ fn folder() -> Result<String, String> {
     Ok(std::env::current_dir().map_err(|error| error.to_string())?.display().to_string())
 }
 
-/// Name and seconds of `test NAME ... ok <1.234s>`.
+/// Parses the name and the seconds from a line such as `test NAME ... ok <1.234s>`; `None` for other lines.
 fn reported(line: &str) -> Option<(&str, f64)> {
     let (name, rest) = line.strip_prefix("test ")?.split_once(" ... ")?;
     let (_, time) = rest.rsplit_once('<')?;
     Some((name.split(" - ").next()?, time.strip_suffix("s>")?.parse().ok()?))
 }
 
-/// One line of the file.
+/// One line of the file of times.
 struct Row {
     program: String,
     folder: String,
-    /// Empty for the program as a whole.
+    /// Name of the test; empty for the program as a whole.
     test: String,
     seconds: f64,
 }
@@ -74,13 +75,13 @@ fn rows(file: &Path) -> Result<Vec<Row>, String> {
     Ok(text.lines().filter_map(row).collect())
 }
 
-/// The name of a program without the folder and the hash that cargo gives it.
+/// Returns the name of a program without its folder and the hash that cargo adds.
 fn plain(program: &str) -> &str {
     let name = program.rsplit(['/', '\\']).next().unwrap_or(program);
     name.rsplit_once('-').map_or(name, |(name, _)| name)
 }
 
-/// The programs and the `most` slowest tests of a file, slowest first.
+/// Formats a table of the `most` slowest programs and the `most` slowest tests, slowest first.
 fn table(rows: &[Row], most: usize) -> String {
     let mut programs: BTreeMap<&str, f64> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.test.is_empty()) {
@@ -95,14 +96,14 @@ fn table(rows: &[Row], most: usize) -> String {
     }
     let mut tests: Vec<&Row> = rows.iter().filter(|row| !row.test.is_empty()).collect();
     tests.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
-    let _ = writeln!(text, "{} tests, of which the slowest, beside others", tests.len());
+    let _ = writeln!(text, "{} tests; the slowest of them, while others ran", tests.len());
     for row in tests.iter().take(most) {
         let _ = writeln!(text, "{:8.1} s  {} {}", row.seconds, plain(&row.program), row.test);
     }
     text
 }
 
-/// Runs all tests, or those that cargo's `arguments` choose, and prints programs and tests by their time.
+/// Runs all tests, or those that cargo's `arguments` choose, and prints programs and tests sorted by time.
 pub fn times(arguments: impl Iterator<Item = String>) -> Result<(), String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
     let file = std::env::temp_dir().join(format!("spectra-times-{}", std::process::id()));
@@ -120,7 +121,7 @@ pub fn times(arguments: impl Iterator<Item = String>) -> Result<(), String> {
     if status.success() { Ok(()) } else { Err(format!("cargo test: {status}")) }
 }
 
-/// Prints the ten slowest programs and tests of a file; fails where a test takes more than `limit_s` alone.
+/// Prints the ten slowest programs and tests of a file of times; fails if a test takes more than `limit_s` seconds when run alone.
 pub fn slow(file: &Path, limit_s: f64) -> Result<(), String> {
     let rows = rows(file)?;
     println!("{}", table(&rows, 10));
@@ -131,7 +132,7 @@ pub fn slow(file: &Path, limit_s: f64) -> Result<(), String> {
         alone.args(["--exact", &row.test]).current_dir(&row.folder).stdout(Stdio::null());
         let status = alone.status().map_err(|error| format!("{}: {error}", row.program))?;
         let seconds = begun.elapsed().as_secs_f64();
-        println!("{}: {:.1} s beside others, {seconds:.1} s alone, {status}", row.test, row.seconds);
+        println!("{}: {:.1} s with others, {seconds:.1} s alone, {status}", row.test, row.seconds);
         if seconds > limit_s {
             let _ = writeln!(wrong, "{} {} takes {seconds:.1} s alone", plain(&row.program), row.test);
         }
@@ -140,7 +141,7 @@ pub fn slow(file: &Path, limit_s: f64) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "{wrong}a test takes at most {limit_s} s: make it quicker, or mark it `#[ignore]` and name it in a long step of .ci/run"
+        "{wrong}a test may take at most {limit_s} s: make it faster, or mark it `#[ignore]` and name it in a long step of .ci/run"
     ))
 }
 

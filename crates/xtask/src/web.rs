@@ -1,4 +1,5 @@
-//! The folder: the page of `spectra view`, the engine as a WebAssembly module, and what joins the two.
+//! The folder of the page without a server: the page of `spectra view`, the engine as a WebAssembly module, and the scripts that connect
+//! them.
 
 use crate::link;
 use serde_json::{Map, Value, json};
@@ -7,9 +8,9 @@ use std::path::Path;
 use std::process::Command;
 
 const TARGET: &str = "wasm32-unknown-unknown";
-/// Files of the page, as they are.
+/// Files of the page that are copied unchanged.
 const PAGE: [&str; 4] = ["view/page/page.js", "view/page/page.css", "web/page/serverless.js", "web/page/worker.js"];
-/// Scenes of the page, whose bits are compared.
+/// Scenes of the page whose bits are compared with those of the command.
 const SCENES: [&str; 14] = [
     "biotar-ortho",
     "biotar-color",
@@ -26,14 +27,14 @@ const SCENES: [&str; 14] = [
     "sensor-biotar",
     "tilted",
 ];
-/// How they are rendered for that.
+/// Settings with which these scenes are rendered for the comparison.
 const SET: [&str; 2] = ["imager.resolution=[300, 200]", "render.samples=32"];
 const SAMPLES: u32 = 32;
 
-/// Makes the folder.
+/// Builds the folder of the page without a server.
 ///
 /// # Errors
-/// What cargo says; no such target in the toolchain; a scene that does not render; a file that cannot be written.
+/// Cargo fails, the toolchain lacks the WebAssembly target, a scene does not render, or a file cannot be written.
 pub fn web(folder: &Path) -> Result<(), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into);
@@ -51,16 +52,16 @@ pub fn web(folder: &Path) -> Result<(), String> {
     let page = String::from_utf8_lossy(&read(&root.join("crates/view/page/index.html"))?).into_owned();
     let joined = page.replace("<script type=\"module\" src=\"page.js\">", JOINED);
     if joined == page {
-        return Err("the page has no script `page.js` for the engine to stand before".to_owned());
+        return Err("the page has no script `page.js` before which the engine's script could be inserted".to_owned());
     }
     write("index.html", joined.as_bytes())?;
     write("fingerprints.json", known.to_string().as_bytes())?;
     write("spectra.wasm", &module)?;
-    println!("{}: {:.1} MB of engine; any web server can give it out", folder.display(), module.len() as f64 / 1e6);
+    println!("{}: {:.1} MB of engine; any web server can serve it", folder.display(), module.len() as f64 / 1e6);
     Ok(())
 }
 
-/// What stands in for the server comes before the page's own script.
+/// Scripts of the page without a server: the one that stands in for the server comes before the page's own.
 const JOINED: &str =
     "<script type=\"module\" src=\"serverless.js\"></script>\n<script type=\"module\" src=\"page.js\">";
 
@@ -84,18 +85,19 @@ fn cargo(root: &Path) -> Command {
     cargo
 }
 
-/// The engine as a module.
+/// Builds the engine as a WebAssembly module and returns its bytes.
 fn module(root: &Path, target: &Path) -> Result<Vec<u8>, String> {
-    let own = std::env::current_exe().map_err(|error| format!("this program does not know where it is: {error}"))?;
+    let own = std::env::current_exe().map_err(|error| format!("cannot find the path of this program: {error}"))?;
     let mut cargo = cargo(root);
     cargo.env(link::ASKED, link::own()?).env("CARGO_PROFILE_RELEASE_STRIP", "true");
     cargo.args(["rustc", "--locked", "--release", "--package", "spectra-web", "--lib", "--target", TARGET]);
     cargo.args(["--crate-type", "cdylib", "--", &format!("-Clinker={}", own.display()), "-Clinker-flavor=wasm-ld"]);
-    run(&mut cargo).map_err(|why| format!("{why}; where the target is missing: rustup target add {TARGET}"))?;
+    run(&mut cargo).map_err(|why| format!("{why}; if the target is missing: rustup target add {TARGET}"))?;
     read(&target.join(TARGET).join("release/spectra_web.wasm"))
 }
 
-/// What the command says: a fingerprint by scene, with `set` and `samples` to render it by, and how many stages it has.
+/// Renders the scenes with the command and returns their fingerprints by name, the settings `set` and `samples` to render them with, and
+/// the number of stages.
 fn fingerprints(root: &Path, target: &Path) -> Result<Value, String> {
     run(cargo(root).args(["build", "--locked", "--release", "--bin", "spectra"]))?;
     let program = target.join("release/spectra").with_extension(std::env::consts::EXE_EXTENSION);
@@ -115,7 +117,7 @@ fn fingerprints(root: &Path, target: &Path) -> Result<Value, String> {
     }
     let listed = Command::new(&program).args(["list", "--json"]).output().map_err(|error| said(&program, &error))?;
     let listed: Vec<Value> = serde_json::from_slice(&listed.stdout).map_err(|error| said(&program, &error.into()))?;
-    // What is registered is documented; data that can be named is not.
+    // Every registered stage has documentation; data that can be named has none.
     let stages = listed.iter().filter(|item| !item["documentation"].is_null()).count();
     Ok(json!({"set": SET, "samples": SAMPLES, "scenes": scenes, "stages": stages}))
 }

@@ -1,7 +1,7 @@
-//! From the events of the parser to items in flat storage.
+//! Collects the events of the parser as items in flat storage.
 //!
 //! Events go into flat storage first, without recursion and without copies, so that an alias costs
-//! nothing until it is expanded; [`tree`] makes nodes of it.
+//! nothing until it is expanded. [`tree`] then builds nodes from the items.
 
 use super::items::{Item, Placed};
 use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
@@ -13,14 +13,14 @@ use spectra_core::params::{Faults, Node, SourceFile, Span, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A list or map that is not closed yet.
+/// A list or map that is still open.
 struct Open {
     index: usize,
-    /// In a map, the key whose value comes next.
+    /// Key of a map whose value comes next.
     key: Option<usize>,
 }
 
-/// Reads the one document of a text, from `start` on, which is on the first line.
+/// Parses the document of a file from `start` on, which is on the first line.
 pub(super) fn document(file: &Arc<SourceFile>, start: Span) -> Result<Node, Faults> {
     let text = file.text.get(start.offset..).unwrap_or("");
     let mut builder = Builder {
@@ -119,7 +119,7 @@ impl Builder<'_> {
                     return Err(fault(
                         self.file,
                         place,
-                        "this alias stands inside of what it names",
+                        "this alias is inside the value that it refers to",
                         Some("write the values out"),
                     ));
                 };
@@ -143,7 +143,7 @@ impl Builder<'_> {
     fn add(&mut self, item: Item, range: Range, anchor: usize) -> Result<usize, Stop> {
         let span = self.span(range);
         let index = self.items.len();
-        // Keys are items too, so twice the limit may come before the values are counted one by one.
+        // Keys are items too, so up to twice the limit is allowed here. The values are counted exactly later.
         if index >= 2 * MAX_NODES {
             return Err(too_many(self.file, span));
         }
@@ -154,7 +154,7 @@ impl Builder<'_> {
         Ok(index)
     }
 
-    /// Sets the end of a list or map: its own bracket, or the end of its last entry.
+    /// Sets the end of a list or map: its closing bracket, or the end of its last entry.
     fn close(&mut self, index: usize, range: Range) {
         let last = match &self.items[index].item {
             Item::Seq(elements) => elements.last(),
@@ -172,7 +172,7 @@ impl Builder<'_> {
         };
         let is_list = matches!(self.items[index].item, Item::Seq(_));
         let span = &mut self.items[index].span;
-        // A list that is not indented below its key is given from its first entry on, without the dash.
+        // The parser reports a list that is not indented below its key from its first entry on, without the dash.
         let offset = span.offset - self.start.offset;
         if is_list && !self.text[offset..].starts_with(['-', '[']) {
             let line = self.text[..offset].rfind('\n').map_or(0, |newline| newline + 1);
@@ -184,7 +184,7 @@ impl Builder<'_> {
         span.len = end.saturating_sub(span.offset);
     }
 
-    /// Puts a finished item into what is open around it.
+    /// Adds a finished item to the list or map that is open around it, or makes it the root.
     fn attach(&mut self, index: usize) {
         let Some(open) = self.open.last_mut() else {
             self.root = Some(index);
@@ -204,11 +204,11 @@ impl Builder<'_> {
         self.span(Range::empty(marker))
     }
 
-    /// The parser's range as a place in the file.
+    /// Converts a range of the parser to a place in the file.
     fn span(&self, range: Range) -> Span {
         let offset = range.start.byte_offset().unwrap_or(0).min(self.text.len());
         let end = range.end.byte_offset().unwrap_or(offset).min(self.text.len());
-        // The parser counts lines from 1 and columns from 0; a text that starts inside of a line shifts the first one.
+        // The parser counts lines from 1 and columns from 0. If the text starts inside a line, the columns of its first line are shifted.
         let shift = if range.start.line() <= 1 { self.start.column } else { 1 };
         Span {
             line: range.start.line().max(1) + self.start.line - 1,

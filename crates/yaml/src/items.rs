@@ -1,20 +1,20 @@
-//! What the events of the parser make, in flat storage.
+//! Items that the parser's events create, in flat storage.
 
 use spectra_core::params::{Span, Value};
 
-/// What an event made.
+/// Item created from an event of the parser. Indices refer to the flat storage.
 pub(super) enum Item {
-    /// Neither of the others.
+    /// A single value: text, number, boolean or null.
     Scalar(Value),
-    /// Indices of its elements.
+    /// A list, with the indices of its elements.
     Seq(Vec<usize>),
-    /// Indices of keys and values.
+    /// A map, with the indices of its keys and values.
     Map(Vec<(usize, usize)>),
-    /// Index of what it names.
+    /// An alias, with the index of the item that it refers to.
     Alias(usize),
 }
 
-/// An item with its place.
+/// An item with its place in the file.
 pub(super) struct Placed {
     pub item: Item,
     pub span: Span,

@@ -1,9 +1,9 @@
-//! YAML files as trees with the place of every key and value.
+//! Parses YAML files to trees that know the place of every key and value.
 //!
 //! A file is one document of maps, lists, texts, numbers, booleans and nulls by the core schema of YAML 1.2,
-//! with strict booleans (`true`, `false`); anchors and aliases are expanded, tags, merge keys, directives and
-//! further documents are faults. What a file may cost is bounded: [`MAX_BYTES`], [`MAX_NODES`] values with
-//! aliases expanded, and [`MAX_DEPTH`] levels.
+//! with strict booleans (`true`, `false`). Anchors and aliases are expanded. Tags, merge keys, directives and
+//! further documents are faults. The cost of a file is bounded by [`MAX_BYTES`], by [`MAX_NODES`] values after
+//! expansion of aliases, and by [`MAX_DEPTH`] levels.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -19,16 +19,16 @@ mod tree;
 use spectra_core::params::{Fault, Faults, MAX_DEPTH, Node, SourceFile, Span};
 use std::sync::Arc;
 
-/// Largest file that is read, in bytes.
+/// Size of the largest file that is read, bytes.
 pub const MAX_BYTES: usize = 4 * 1024 * 1024;
 
-/// Most values in a file, aliases expanded.
+/// Largest number of values in a file, after expansion of aliases.
 pub const MAX_NODES: usize = 200_000;
 
-/// Parses a text.
+/// Parses the text of a YAML file.
 ///
 /// # Errors
-/// Everything that is wrong with it up to the first error of syntax, each with its place.
+/// Returns every fault up to the first syntax error, each with its place.
 pub fn parse(mut file: SourceFile) -> Result<Node, Faults> {
     if file.text.len() > MAX_BYTES {
         return Err(too_large(&file.name, file.text.len() as u64).into());
@@ -39,10 +39,10 @@ pub fn parse(mut file: SourceFile) -> Result<Node, Faults> {
     build::document(&Arc::new(file), Span::default())
 }
 
-/// Parses the bytes of a file with a name for messages.
+/// Parses the bytes of a YAML file; `name` is the name of the file in messages.
 ///
 /// # Errors
-/// As [`parse`]; and where the bytes are not UTF-8.
+/// Fails like [`parse`], and if the bytes are not UTF-8.
 pub fn parse_bytes(name: &str, bytes: &[u8]) -> Result<Node, Faults> {
     if bytes.len() > MAX_BYTES {
         return Err(too_large(name, bytes.len() as u64).into());
@@ -53,7 +53,7 @@ pub fn parse_bytes(name: &str, bytes: &[u8]) -> Result<Node, Faults> {
     }
 }
 
-/// That a file has too many bytes.
+/// Returns the fault for a file that is larger than [`MAX_BYTES`].
 #[must_use]
 pub fn too_large(name: &str, bytes: u64) -> Fault {
     Fault::new(format!("the file has {bytes} bytes, at most {MAX_BYTES} are read"))
@@ -69,19 +69,19 @@ fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> Fault {
         _ => "save it as UTF-8",
     };
     let text = String::from_utf8_lossy(bytes).into_owned();
-    // Up to the first bad byte both texts are equal.
+    // Both texts are equal up to the first invalid byte.
     let before = text.get(..valid).unwrap_or("");
     let span = Span { len: '\u{fffd}'.len_utf8(), ..behind(Span::default(), before) };
     Fault::new("this byte is not UTF-8").at(Arc::new(SourceFile::new(name, text)), span).hint(hint)
 }
 
-/// Whether the bytes begin as PNG, JPEG, OpenEXR, TIFF or GIF files do.
+/// Whether the bytes begin like a PNG, JPEG, OpenEXR, TIFF or GIF file.
 fn is_picture(bytes: &[u8]) -> bool {
     const MAGIC: [&[u8]; 6] = [b"\x89PNG", b"\xff\xd8\xff", b"\x76\x2f\x31\x01", b"II*\0", b"MM\0*", b"GIF8"];
     MAGIC.iter().any(|magic| bytes.starts_with(magic))
 }
 
-/// The place behind `skipped`, which starts at `place`. Lines end as the parser ends them: LF, CR, or both.
+/// Returns the place after the text `skipped`, which starts at `place`. Lines end as for the parser: with LF, CR, or both.
 fn behind(place: Span, skipped: &str) -> Span {
     let mut at = Span { offset: place.offset + skipped.len(), len: 0, ..place };
     let mut characters = skipped.chars().peekable();
@@ -95,36 +95,36 @@ fn behind(place: Span, skipped: &str) -> Span {
     at
 }
 
-/// One `--set path=value` of the command line.
+/// An argument `--set path=value` of the command line.
 #[derive(Clone, Debug)]
 pub struct Override {
-    /// Where it goes, such as `film.exposure`.
+    /// Path of the key to set, such as `film.exposure`.
     pub path: String,
-    /// What is put there. Its place reads `--set film.exposure=...`.
+    /// Value to set. Messages give its place as `--set film.exposure=...`.
     pub node: Node,
 }
 
 impl Override {
-    /// Puts it into a tree; maps that are missing are created.
+    /// Sets the value in a tree; missing maps are created.
     ///
     /// # Errors
-    /// The path leads through what is no map or no list.
+    /// Fails if the path leads through a value that is neither a map nor a list.
     pub fn apply(self, root: &mut Node) -> Result<(), Fault> {
         root.set_path(&self.path, self.node)
     }
 }
 
-/// Parses `path=value`, the value as YAML: `film.exposure=1/60 s`, `output=[exr, png]`.
+/// Parses `path=value` with a value in YAML: `film.exposure=1/60 s`, `output=[exr, png]`.
 ///
 /// # Errors
-/// The argument has no `=` or nothing behind it, its path is ill-formed, or its value is not YAML.
+/// Fails if the argument has no `=` or nothing after it, if its path is ill-formed, or if its value is not YAML.
 pub fn parse_override(argument: &str) -> Result<Override, Faults> {
     /// Longest argument that a message repeats, in bytes.
     const SHOWN: usize = 60;
     let is_path =
         |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || ".-_[]".contains(c));
     let hint = if is_path(argument) && argument.len() <= SHOWN {
-        format!("write a value behind it, without a space: `--set {argument}=VALUE`")
+        format!("write a value after it, without a space: `--set {argument}=VALUE`")
     } else {
         "write `--set film.exposure=\"1/60 s\"`".to_owned()
     };
@@ -145,10 +145,10 @@ pub fn parse_override(argument: &str) -> Result<Override, Faults> {
         return Err(Fault::new(message).at(file, Span { len: path.len(), ..Span::default() }).hint(hint).into());
     }
     let before = &argument[..argument.len() - value.len()];
-    // A variable of the shell that holds nothing: what is taken then would not be what was meant.
+    // The value may come from an empty shell variable; a null would then not be what the user meant.
     if value.trim().is_empty() {
         let fault = Fault::new(format!("`{path}` has no value")).at(file, Span { len: path.len(), ..Span::default() });
-        return Err(fault.hint(format!("write one behind `=`; `--set {path}=null` leaves the key out")).into());
+        return Err(fault.hint(format!("write one after `=`; `--set {path}=null` leaves the key out")).into());
     }
     let start = Span { line: 1, column: 1 + before.chars().count(), offset: before.len(), len: value.len() };
     let node = build::document(&file, start)?;

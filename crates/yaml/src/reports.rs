@@ -1,16 +1,16 @@
-//! What is said of a file while it is read.
+//! Collects the faults of a file while it is read.
 
 use super::{MAX_DEPTH, MAX_NODES};
 use spectra_core::params::{Fault, Faults, SourceFile, Span};
 use std::sync::Arc;
 
-/// Most faults that one file reports.
+/// Largest number of faults reported for one file.
 const MOST: usize = 100;
 
-/// A fault that ends the reading. Boxed, as it is large beside what most calls return.
+/// A fault that ends the parse. It is boxed because it is larger than what most calls return.
 pub(super) type Stop = Box<Fault>;
 
-/// Faults after which reading goes on.
+/// Faults that do not end the parse.
 #[derive(Default)]
 pub(super) struct Reports {
     faults: Vec<Fault>,
@@ -22,7 +22,7 @@ impl Reports {
         if self.faults.len() < MOST { self.faults.push(fault) } else { self.more = true }
     }
 
-    /// All of them in the order of the file, and the one that ended the reading.
+    /// Returns all faults in the order of the file, including `last`, which ended the parse.
     pub(super) fn and(mut self, last: Fault) -> Faults {
         self.faults.push(last);
         self.into_faults()
@@ -54,12 +54,12 @@ pub(super) fn too_many(file: &Arc<SourceFile>, span: Span) -> Stop {
     fault(
         file,
         span,
-        format!("more than {MAX_NODES} values, aliases expanded"),
+        format!("more than {MAX_NODES} values, counting what aliases expand to"),
         Some("put large tables into a file of their own"),
     )
 }
 
-/// What stands at a place, for a message: the start of it.
+/// Returns the beginning of the text at a place, for a message.
 pub(super) fn written(file: &Arc<SourceFile>, span: Span) -> String {
     const SHOWN: usize = 48;
     let text = file.text.get(span.offset..span.offset + span.len).unwrap_or("");

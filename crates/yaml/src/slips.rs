@@ -1,18 +1,18 @@
-//! The slip behind an error of the parser: what it stumbles over often stands behind what is wrong.
+//! Finds the mistake that causes an error of the parser. The parser often fails at a place after the mistake itself.
 
 use super::behind;
 use super::syntax;
 use serde_saphyr::granit_parser::ErrorKind;
 use spectra_core::params::{SourceFile, Span};
 
-/// A slip as a person is told it.
+/// A mistake in a file, with message and hint.
 pub(super) struct Slip {
     pub place: Span,
     pub message: String,
     pub hint: Option<String>,
 }
 
-/// The slip behind an error at `place`; `open` is the outermost bracket that is open there.
+/// Returns the mistake that causes an error at `place`; `open` is the outermost bracket that is open there.
 pub(super) fn behind_error(kind: &ErrorKind, file: &SourceFile, place: Span, open: Option<Span>) -> Slip {
     let lines = Lines::around(&file.text, place);
     if syntax::is_tab(kind) {
@@ -30,7 +30,7 @@ pub(super) fn behind_error(kind: &ErrorKind, file: &SourceFile, place: Span, ope
         })
 }
 
-/// A bracket that was to be closed above: what follows starts where the line of the bracket starts, or left of it.
+/// Detects a bracket that should have been closed above: the line of the error is indented no deeper than the line of the bracket.
 fn never_closed(file: &SourceFile, lines: &Lines<'_>, place: Span, open: Option<Span>) -> Option<Slip> {
     let open = open.filter(|open| open.line < place.line)?;
     let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
@@ -42,11 +42,11 @@ fn never_closed(file: &SourceFile, lines: &Lines<'_>, place: Span, open: Option<
     Some(Slip {
         place: Span { len: 1, ..open },
         message: format!("`{bracket}` is never closed"),
-        hint: Some(format!("add `{closing}` behind its last entry; the next key starts on line {}", place.line)),
+        hint: Some(format!("add `{closing}` after its last entry; the next key starts on line {}", place.line)),
     })
 }
 
-/// `key:value`.
+/// Detects a missing space after the colon: `key:value`.
 fn no_space(kind: &ErrorKind, lines: &Lines<'_>, place: Span) -> Option<Slip> {
     if !matches!(kind, ErrorKind::SimpleKeyExpected | ErrorKind::InvalidSimpleKey) {
         return None;
@@ -56,12 +56,12 @@ fn no_space(kind: &ErrorKind, lines: &Lines<'_>, place: Span) -> Option<Slip> {
     let is_slip = !key.is_empty() && !key.contains(' ') && !value.is_empty() && !value.starts_with([' ', '/']);
     is_slip.then(|| Slip {
         place: Span { len: text.len(), ..place },
-        message: "`:` without a space behind it".to_owned(),
+        message: "`:` without a space after it".to_owned(),
         hint: Some(format!("write `{}: {}`", short(key), short(value))),
     })
 }
 
-/// A pair that no comma separates from the one before it: `{a: 1 b: 2}`.
+/// Detects a missing comma between two pairs: `{a: 1 b: 2}`.
 fn no_comma(kind: &ErrorKind, lines: &Lines<'_>) -> Option<Slip> {
     let before = &lines.line[..lines.at];
     if !matches!(kind, ErrorKind::ExpectedFlowMappingSeparator) || !lines.line[lines.at..].starts_with(':') {
@@ -76,7 +76,7 @@ fn no_comma(kind: &ErrorKind, lines: &Lines<'_>) -> Option<Slip> {
     })
 }
 
-/// A key that is read as more of the text above it: it is indented deeper, or that line lacks its colon.
+/// Detects a key that is read as a continuation of the text above it, because it is indented deeper or the line above lacks its colon.
 fn uneven(kind: &ErrorKind, lines: &Lines<'_>) -> Option<Slip> {
     let is_colon = matches!(kind, ErrorKind::MappingValueNotAllowed | ErrorKind::InvalidColonPlacement);
     let before = &lines.line[..lines.at];
@@ -104,7 +104,7 @@ fn uneven(kind: &ErrorKind, lines: &Lines<'_>) -> Option<Slip> {
     if let Some((key, value)) = above.trim().split_once(':').filter(|(key, _)| !key.contains(' ')) {
         return Some(Slip {
             place: Span { len: above.trim().len(), ..place },
-            message: "`:` without a space behind it".to_owned(),
+            message: "`:` without a space after it".to_owned(),
             hint: Some(format!("write `{}: {}`", short(key), short(value))),
         });
     }
@@ -115,20 +115,20 @@ fn uneven(kind: &ErrorKind, lines: &Lines<'_>) -> Option<Slip> {
     })
 }
 
-/// A text of bounded length.
+/// Returns the first 40 characters of a text, for a message.
 fn short(text: &str) -> String {
     text.chars().take(40).filter(|c| !c.is_control()).collect()
 }
 
-/// The line of a place, and what stands above it.
+/// The line of a place, and the nearest line with content above it.
 struct Lines<'a> {
     text: &'a str,
     line: &'a str,
-    /// Where the line starts.
+    /// Place where the line starts.
     start: Span,
-    /// Bytes of the line before the place.
+    /// Number of bytes of the line before the place.
     at: usize,
-    /// The nearest line above it that is neither empty nor a remark, with its start.
+    /// Nearest line above that is neither empty nor a comment, with the place where it starts.
     above: Option<(&'a str, Span)>,
 }
 
@@ -140,7 +140,7 @@ impl<'a> Lines<'a> {
         let line = &text[start..end];
         let mut above = None;
         let (mut upper, mut number) = (start, place.line);
-        // Far enough for any remark between two keys.
+        // Enough lines for any comment between two keys.
         for _ in 0..100 {
             let Some(last) = upper.checked_sub(1) else { break };
             let last = if text[..upper].ends_with("\r\n") { last - 1 } else { last };
@@ -156,7 +156,7 @@ impl<'a> Lines<'a> {
         Self { text, line, start: Span { line: place.line, column: 1, offset: start, len: 0 }, at, above }
     }
 
-    /// The first tab of the lines indented with tabs that end with this one.
+    /// Returns the first tab in the block of tab-indented lines that ends with this line.
     fn first_tab(&self) -> Option<Span> {
         let tab = |line: &str| line[..line.len() - line.trim_start_matches([' ', '\t']).len()].find('\t');
         let mut found = None;
@@ -173,7 +173,7 @@ impl<'a> Lines<'a> {
         found
     }
 
-    /// The first tab at or behind a place; the place itself if there is none.
+    /// Returns the place of the first tab at or after a place, or the place itself if there is none.
     fn tab_behind(&self, place: Span) -> Span {
         let rest = &self.text[place.offset..];
         rest.find('\t').map_or(place, |tab| Span { len: 1, ..behind(place, &rest[..tab]) })

@@ -1,9 +1,9 @@
-//! The parser's errors in the words of a person who writes a scene.
+//! Translates the parser's errors to messages for people who write scenes.
 
 use super::MAX_DEPTH;
 use serde_saphyr::granit_parser::ErrorKind;
 
-/// Whether an error is about a tab; then the tab stands at or behind the place that the parser names.
+/// Whether an error is about a tab. The tab is then at or after the place that the parser names.
 pub(super) fn is_tab(kind: &ErrorKind) -> bool {
     use ErrorKind as E;
     matches!(
@@ -16,13 +16,13 @@ pub(super) fn is_tab(kind: &ErrorKind) -> bool {
     )
 }
 
-/// Whether a text is one word, as of a key, and no `:` behind it.
+/// Whether a text is a single word like a key, followed by a space but no `:`.
 fn is_bare_key(text: &str) -> bool {
     let word = text.trim();
     text.ends_with(' ') && !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_' | '.'))
 }
 
-/// Message and hint; `before` is what stands on the line before the error.
+/// Returns the message and the hint for an error; `before` is the text of the line before the error.
 pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'static str>) {
     use ErrorKind as E;
     if is_tab(kind) {
@@ -42,20 +42,20 @@ pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'stati
             ("a key without its `:` in front of the bracket", "write `key: {...}`")
         }
         E::CommentInterceptedScalar => (
-            "a text that goes on in the next line has a comment in it",
+            "a text that continues on the next line contains a comment",
             "if the next line is a key, it is indented too far: keys of one map start in the same column",
         ),
         E::MappingValueNotAllowed | E::InvalidColonPlacement if before.contains(": ") => {
             ("a second `: ` on one line", "put a text that holds `: ` in quotes, or write {key: value}")
         }
         E::MappingValueNotAllowed | E::InvalidColonPlacement => (
-            "a `:` that ends no key",
-            "the lines above are read as one text with this one: a `:` needs a space behind it, and keys of one map start in the same column",
+            "a `:` that does not end a key",
+            "this line is read as one text with the lines above: a `:` needs a space after it; keys of one map start in the same column",
         ),
         E::MismatchedFlowCollectionEnd { open, close } => {
             return (format!("`{open}` is closed by `{close}`"), Some("close the innermost bracket first"));
         }
-        E::InvalidMappingValueWhitespace => ("`:` without a space behind it", "write `key: value`"),
+        E::InvalidMappingValueWhitespace => ("`:` without a space after it", "write `key: value`"),
         E::SimpleKeyExpected | E::InvalidSimpleKey => ("a key without its `:`", "write `key: value`"),
         E::ExpectedBlockMappingKey => ("expected a key here", "keys of one map start in the same column"),
         E::ExpectedBlockSequenceEntry => ("expected `- ` here", "entries of one list start in the same column"),
@@ -65,7 +65,7 @@ pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'stati
         E::BlockEntryInFlowCollection | E::BlockSequenceEntryNotAllowed => {
             ("`- ` cannot start an entry here", "start a list on a line of its own, or write [a, b]")
         }
-        E::InvalidBlockEntryWhitespace => ("`-` without a space behind it", "write `- entry`"),
+        E::InvalidBlockEntryWhitespace => ("`-` without a space after it", "write `- entry`"),
         E::CommentNotSeparated => ("`#` without a space before it", "put a space before a comment"),
         E::UnexpectedCharacter { character } => {
             let hint = if matches!(character, '@' | '`' | '%' | '*' | '&' | '!' | '|' | '>') {
@@ -76,16 +76,16 @@ pub(super) fn message(kind: &ErrorKind, before: &str) -> (String, Option<&'stati
             return (format!("a value cannot start with `{}`", character.escape_default()), hint);
         }
         E::UnknownAnchor => {
-            ("this alias names nothing that stands before it", "define it with `&name`, or put the text in quotes")
+            ("this alias refers to no anchor above it", "define it with `&name`, or put the text in quotes")
         }
         E::UnknownQuotedScalarEscape => {
             ("an unknown escape in a text with double quotes", "use single quotes, or double the backslash")
         }
         E::DirectiveDisallowed => ("YAML directives are not known here", "remove the line, or put the text in quotes"),
         E::InvalidDocumentEnd | E::ExpectedDocumentStart | E::MultipleDocumentsUnsupported => {
-            ("text behind the end of the document", "one document a file; keys of one map start in the same column")
+            ("text after the end of the document", "a file is one document; keys of one map start in the same column")
         }
-        E::BomInsideDocument => ("a byte order mark inside of the file", "remove it"),
+        E::BomInsideDocument => ("a byte order mark inside the file", "remove it"),
         other => return (format!("not YAML: {other}"), None),
     };
     (message.to_owned(), Some(hint))

@@ -1,4 +1,4 @@
-//! Small inputs, each with the exact place and the kernel of what is said about it.
+//! Tests small inputs, each with the exact place and the essential part of the message.
 
 use super::*;
 use schemars::JsonSchema;
@@ -11,10 +11,10 @@ use std::collections::BTreeMap;
 
 mod hostile;
 
-/// Parameters with one of each kind of field.
+/// Parameters with a field of each kind.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[allow(dead_code)] // Most fields are there to be deserialized.
+#[allow(dead_code)] // Most fields exist only to be deserialized.
 struct Camera {
     #[serde(default)]
     focus: Option<LengthOrInfinity>,
@@ -95,8 +95,8 @@ fn camera(text: &str) -> Result<Camera, Faults> {
     tree(text)?.parse()
 }
 
-/// Input; then line, column, kernel of the message, kernel of the hint (empty: none, or just an example of the right
-/// form) of each fault.
+/// Cases: the input, and for each fault its line, its column and the essential parts of its message and hint. An empty hint means none,
+/// or only an example of the right form.
 type Row = (&'static str, &'static [(usize, usize, &'static str, &'static str)]);
 
 fn check(rows: &[Row]) {
@@ -209,11 +209,11 @@ fn keys_are_checked() {
         ("surfaces:\n- {radius: 5}\n", &[(2, 3, "missing key `thickness`", "add `thickness: ...`")]),
         ("surfaces:\n- {}\n", &[(2, 3, "missing key `radius`", "add"), (2, 3, "missing key `thickness`", "add")]),
         ("surfaces:\n-\n", &[(2, 2, "found nothing, expected a map", "known keys")]),
-        // Of a key misspelt, its right name is not missing as well.
+        // The right name of a misspelled key is not reported as missing, too.
         ("surfaces:\n- {radius: 5, thicknes: 3}\n", &[(2, 15, "unknown key `thicknes`", "did you mean `thickness`?")]),
-        // Nor is a key whose value is wrong.
+        // A key with a wrong value is not reported as missing either.
         ("surfaces:\n- {radius: 5 s, thickness: 3}\n", &[(2, 12, "found a time", "units")]),
-        ("radius: 1\nradius: 2\n", &[(2, 1, "the key `radius` comes twice", "remove one of them")]),
+        ("radius: 1\nradius: 2\n", &[(2, 1, "the key `radius` appears twice", "remove one of them")]),
     ]);
 }
 
@@ -369,12 +369,12 @@ fn syntax_errors_have_a_place() {
         ("a: {b: 2 c: 3}", &[(1, 10, "before `c`", "commas")]),
         ("a:\n\tb: 1\n\tc: 2", &[(2, 1, "a tab", "spaces")]),
         ("a\nb: 2", &[(1, 1, "a key without its `:`", "key: value")]),
-        ("a:1\nb: 2", &[(1, 1, "`:` without a space behind it", "write `a: 1`")]),
+        ("a:1\nb: 2", &[(1, 1, "`:` without a space after it", "write `a: 1`")]),
         (
             "x: {a:1, b: 2, c:d e}",
             &[
-                (1, 5, "`:` without a space behind it", "write `a: 1`"),
-                (1, 16, "`:` without a space behind it", "write `c: d e`"),
+                (1, 5, "`:` without a space after it", "write `a: 1`"),
+                (1, 16, "`:` without a space after it", "write `c: d e`"),
             ],
         ),
         ("a: 'x", &[(1, 4, "a quote is never closed", "close it")]),
@@ -383,7 +383,7 @@ fn syntax_errors_have_a_place() {
         ("a: - 1", &[(1, 4, "`- ` cannot start an entry here", "a line of its own")]),
         ("- a\nb: 1", &[(2, 1, "expected `- ` here", "same column")]),
         ("a: *b", &[(1, 4, "this alias names nothing", "&name")]),
-        ("a: &b [*b]", &[(1, 8, "stands inside of what it names", "write the values out")]),
+        ("a: &b [*b]", &[(1, 8, "inside the value that it refers to", "write the values out")]),
         ("a: !x 1", &[(1, 4, "the tag `!x`", "remove it")]),
         ("a: !!str 1\nb: !<x> 2", &[(1, 4, "the tag `!!str`", "remove it"), (2, 4, "the tag `!<x>`", "remove it")]),
         ("a: 1\n---\nb: 1", &[(2, 1, "a second document", "remove `---`")]),
@@ -394,7 +394,7 @@ fn syntax_errors_have_a_place() {
         (": 1", &[(1, 1, "a key is missing", "key: value")]),
         (
             "a: 1\nb: {c: 1, d: 2, c: 3}\na: 2",
-            &[(2, 17, "the key `c` comes twice", "remove"), (3, 1, "the key `a` comes twice", "remove")],
+            &[(2, 17, "the key `c` appears twice", "remove"), (3, 1, "the key `a` appears twice", "remove")],
         ),
         ("\u{e9}\u{e9}: [\u{e9}, 'x", &[(1, 9, "a quote is never closed", "close it")]),
     ]);
@@ -437,7 +437,7 @@ fn overrides_replace_and_create() {
     let (file, span) = fault.place.unwrap();
     assert_eq!(&file.text[span.offset..span.offset + span.len], "5 s");
 
-    // An unknown key that an override writes is reported there, also in a map of the file.
+    // An unknown key set by an override is reported at the override, even in a map of the file.
     parse_override("surfaces[1].radios=4").unwrap().apply(&mut root).unwrap();
     let faults = root.at_path("surfaces[1]").unwrap().parse::<Surface>().unwrap_err();
     assert!(faults.to_string().contains("--set surfaces[1].radios=4: unknown key `radios`"), "{faults}");

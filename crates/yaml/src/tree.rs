@@ -1,4 +1,4 @@
-//! From items in flat storage to nodes: aliases are expanded here, within the limits.
+//! Builds nodes from the items in flat storage, and expands aliases within the limits.
 
 use super::items::{Item, Placed};
 use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
@@ -7,7 +7,7 @@ use spectra_core::params::{Fault, Faults, Key, Node, SourceFile, Span, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The tree below `root`; an empty file is nothing, at `start`.
+/// Builds the tree below `root`. An empty file gives a null at `start`.
 pub(super) fn grow(
     file: &Arc<SourceFile>,
     items: &[Placed],
@@ -32,12 +32,12 @@ struct Tree<'a> {
 }
 
 impl Tree<'_> {
-    /// An item as a node, with `depth` lists and maps around it. `seat` is the place of its key, for a
-    /// value that is not there. Recursion is bounded by the depth.
+    /// Builds the node of an item with `depth` lists and maps around it. `seat` is the place of its key, used
+    /// for a missing value. The recursion is bounded by the depth.
     fn node(&mut self, index: usize, seat: Option<Span>, depth: usize) -> Result<Node, Stop> {
         let &Placed { ref item, mut span } = &self.items[index];
         if let Item::Alias(target) = item {
-            // Only the size can be at fault there, and that is the alias' doing.
+            // The only new fault possible there is the size, which the alias causes; so the alias is its place.
             let here = |stop: Stop| Box::new(Fault { place: Some((Arc::clone(self.file), span)), ..*stop });
             return self.node(self.unalias(*target), None, depth).map_err(here);
         }
@@ -77,12 +77,12 @@ impl Tree<'_> {
             let node = self.node(value, Some(span), depth + 1)?;
             let Some(text) = text else { continue };
             if let Some(apart) = self.joined(key, value) {
-                self.report(span, "`:` without a space behind it".to_owned(), &format!("write `{apart}`"));
+                self.report(span, "`:` without a space after it".to_owned(), &format!("write `{apart}`"));
                 continue;
             }
             if let Some(first) = seen.get(&text) {
                 let hint = format!("remove one of them: the first is on line {first}");
-                self.report(span, format!("the key `{}` comes twice", written(self.file, span)), &hint);
+                self.report(span, format!("the key `{}` appears twice", written(self.file, span)), &hint);
             } else {
                 seen.insert(text.clone(), span.line);
                 nodes.push((Key { text, span }, node));
@@ -91,7 +91,7 @@ impl Tree<'_> {
         Ok(nodes)
     }
 
-    /// The text of a key; reports what is none.
+    /// Returns the text of a key, or reports a fault and returns `None` if it is not a valid key.
     fn key(&mut self, index: usize) -> Option<String> {
         let span = self.items[index].span;
         let item = &self.items[self.unalias(index)].item;
@@ -116,7 +116,7 @@ impl Tree<'_> {
         }
     }
 
-    /// What a key without a value was meant to be: `{order:0}` is a key `order:0` to YAML.
+    /// Returns the correction of a key and value written without a space: to YAML, `{order:0}` has a key `order:0` without a value.
     fn joined(&self, key: usize, value: usize) -> Option<String> {
         let span = self.items[key].span;
         let is_empty = self.items[value].span.len == 0 && matches!(self.items[value].item, Item::Scalar(Value::Null));
@@ -128,9 +128,9 @@ impl Tree<'_> {
         is_slip.then(|| format!("{name}: {given}"))
     }
 
-    /// What an alias names; it can name an alias.
+    /// Resolves an alias, which may refer to another alias, to the index of its item.
     fn unalias(&self, mut index: usize) -> usize {
-        // An alias names what stands before it, so this ends.
+        // An alias refers only to an item before it, so this loop ends.
         while let Item::Alias(target) = self.items[index].item {
             index = target;
         }

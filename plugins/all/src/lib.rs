@@ -1,4 +1,4 @@
-//! Every built-in plugin, linked into the program: a crate that nobody names registers nothing.
+//! Links every built-in plugin into the program; a crate that is not named anywhere would register nothing.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

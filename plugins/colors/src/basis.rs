@@ -1,4 +1,4 @@
-//! Color models whose spectrum is a weighted sum of three: one a channel.
+//! Color models whose spectrum is a weighted sum of three basis spectra, one per channel.
 
 use spectra_color::{fit, matrix};
 use spectra_core::batch::CONTINUUM;
@@ -7,12 +7,12 @@ use spectra_core::spectral::{Grid, Line, SpectralPower};
 use spectra_core::stage::{ColorGamut, ColorModel};
 use spectra_spectrum::Observer;
 
-/// Red, green and blue spectra; a color is their sum, weighted by its linear values.
+/// A color model with red, green and blue basis spectra: a color's spectrum is their sum, weighted by its linear sRGB values.
 #[derive(Clone, Debug)]
 pub struct Basis {
     grid: Grid,
     continua: [Vec<f64>; 3],
-    /// The same, side by side at each wavelength.
+    /// The values of `continua`, side by side at each wavelength.
     powers: Vec<[f64; 3]>,
     lines_nm: Vec<f64>,
     /// Power of each line at full red, green, blue.
@@ -20,7 +20,7 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// A basis from three spectra on the same grid. Lines at the same wavelength become one.
+    /// Builds a basis from three spectra on the same grid. Lines at the same wavelength are merged.
     #[must_use]
     pub fn new(spectra: &[SpectralPower; 3]) -> Self {
         let mut lines_nm: Vec<f64> = Vec::new();
@@ -40,8 +40,8 @@ impl Basis {
         Self { grid: spectra[0].grid, continua, powers, lines_nm, line_powers }
     }
 
-    /// The same, with each channel scaled so that white, (1, 1, 1), has the chromaticity of `white`.
-    /// `None` where no positive mixture of the three has it.
+    /// Builds a basis from three spectra on the same grid, each scaled so that (1, 1, 1) has the chromaticity of `white`. `None` if
+    /// no positive mixture of the three has it.
     #[must_use]
     pub fn balanced(spectra: [SpectralPower; 3], white: &SpectralPower) -> Option<Self> {
         let observer = Observer::cie_1931_2deg();
@@ -66,7 +66,7 @@ impl ColorModel for Basis {
         &self.lines_nm
     }
 
-    /// The color, brought into sRGB where it lies beyond: a negative amount of a spectrum would be negative light.
+    /// Returns the color, moved into sRGB if it lies outside, because a negative amount of a spectrum would be negative light.
     fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3] {
         fit(linear_srgb, ColorGamut::Srgb).rgb.map(|v| v as f32)
     }
@@ -88,7 +88,7 @@ impl ColorModel for Basis {
     }
 }
 
-/// Multiplies weights by the power of colors.
+/// Multiplies ray weights by the spectral power of the rays' colors.
 struct Mix<'a> {
     basis: &'a Basis,
     coefficients: &'a [[f32; 3]],
@@ -108,7 +108,7 @@ impl Vectorized for Mix<'_> {
         for i in 0..len {
             let [r, g, b] = coefficients[i];
             let powers = if line[i] == CONTINUUM {
-                // As `Grid::interpolate` does, for three tables at once.
+                // Interpolates like `Grid::interpolate`, for three tables at once.
                 let place = (wavelength_nm[i] - grid.start_nm) / grid.step_nm;
                 if place >= 0.0 && place <= last as f64 {
                     let at = (place as i32 as usize).min(last.saturating_sub(1));

@@ -1,4 +1,4 @@
-//! `kind: fraunhofer`: each channel one spectral line, by the line's short name or its wavelength.
+//! The color model `fraunhofer`: each channel is one spectral line, given by its short name or its wavelength.
 
 use crate::Basis;
 use schemars::JsonSchema;
@@ -11,13 +11,13 @@ use spectra_spectrum::LineOrWavelength;
 
 /// One spectral line per channel, with optional secondary lines between them.
 ///
-/// A picture made of spectral lines only: lateral color shows as three sharp pictures on top of each other. The usual
-/// lines are C' (643.85 nm), e (546.07 nm) and g (435.84 nm). A line is written by its short name (`C'` in quotes:
+/// The picture consists of spectral lines only, so lateral color shows as three sharp pictures on top of each other. The
+/// usual lines are C' (643.85 nm), e (546.07 nm) and g (435.84 nm). A line is written as its short name (`C'` in quotes:
 /// `"C'"`) or as a wavelength, and the three must lie in the order blue, green, red.
 ///
 /// `secondary` lines fill the gaps: the power of each channel is linear between its own line and those of its
-/// neighbors, and zero at the cuts. They change the colors of a picture: a gray patch also gets light between the
-/// lines.
+/// neighbors, and zero at the cuts. They change the colors of a picture, because a gray patch also gets light between
+/// the lines.
 ///
 /// # Example
 /// ```yaml
@@ -38,14 +38,14 @@ struct FraunhoferParams {
     /// Line of the blue channel: a short name, or a wavelength, nm if bare; g if left out.
     #[serde(rename = "B")]
     blue: Option<LineOrWavelength>,
-    /// Further lines, by name or wavelength, nm if bare; their power is linear between the three and zero at the cuts.
-    /// None if left out.
+    /// Further lines, by name or wavelength, nm if bare. Their power is linear between the three main lines and zero at the cuts. No
+    /// further lines if left out.
     #[serde(default)]
     secondary: Vec<LineOrWavelength>,
-    /// Where the ultraviolet ends and secondary lines have no power, nm if bare; 380 nm if left out.
+    /// Wavelength at which the ultraviolet ends and secondary lines have no power, nm if bare; 380 nm if left out.
     #[serde(rename = "uv-cut")]
     uv_cut: Option<Wavelength>,
-    /// Where the infrared begins and secondary lines have no power, nm if bare; 780 nm if left out.
+    /// Wavelength at which the infrared begins and secondary lines have no power, nm if bare; 780 nm if left out.
     #[serde(rename = "ir-cut")]
     ir_cut: Option<Wavelength>,
     /// Whether the lines are scaled so that white has the illuminant's chromaticity; if not, each has the power 1.
@@ -91,7 +91,7 @@ fn named(symbol: &str) -> f64 {
     spectra_spectrum::named_line(symbol).map_or(0.0, |line| line.nominal_nm)
 }
 
-/// The lines of one channel at full value: its own, and its share of each secondary line.
+/// Returns the lines of one channel at full value: its own line with power 1, and the channel's part of each secondary line.
 fn channel_lines(
     [red, green, blue]: [f64; 3],
     secondary: &[f64],
@@ -100,7 +100,7 @@ fn channel_lines(
     grid: Grid,
 ) -> SpectralPower {
     let own = [red, green, blue][channel];
-    // Knots of the interpolation: the cuts are its zero ends.
+    // Knots of the interpolation; at the cuts the power is zero.
     let knots = [(uv.min(blue), 0.0), (blue, 2.0), (green, 1.0), (red, 0.0), (ir.max(red), 0.0)];
     let value = |knot: usize| if (1..=3).contains(&knot) && knots[knot].1 == channel as f64 { 1.0 } else { 0.0 };
     let mut lines = vec![Line { wavelength_nm: own, power: 1.0 }];
@@ -122,8 +122,8 @@ mod tests {
     use super::*;
     use spectra_core::spectral::BAND;
 
-    /// The dispersion study's example: (255, 0, 0) with R = C', G = e, B = g and secondaries F, D
-    /// gives radiants 1 0 0 0 0.44211495 of C' e g F D.
+    /// The example of the dispersion study: (255, 0, 0) with R = C', G = e, B = g and secondaries F, D gives the powers 1 0 0 0
+    /// 0.44211495 of C' e g F D.
     #[test]
     fn red_with_secondaries_reaches_into_the_yellow() {
         let [red, green, blue, f, d] = ["C'", "e", "g", "F", "D"].map(named);

@@ -1,4 +1,4 @@
-//! `kind: gaussians`: each channel one Gaussian.
+//! The color model `gaussians`: each channel is one Gaussian.
 
 use crate::Basis;
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use spectra_core::registry::Context;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::ColorModel;
 
-/// One channel: centre and standard deviation.
+/// The Gaussian of one channel: center and standard deviation.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Bell {
@@ -21,8 +21,8 @@ struct Bell {
 
 /// One Gaussian per channel, scaled so that white has the illuminant's chromaticity.
 ///
-/// For displays with narrow primaries, and to study the effect of their width on film: exp(-(w - center)^2 / (2
-/// sigma^2)) for red, green and blue, each times its linear value. White has the chromaticity of the source's
+/// Use it for displays with narrow primaries, and to study the effect of their width on film. Each of red, green and blue
+/// is exp(-(w - center)^2 / (2 sigma^2)) times the linear value of its channel. White has the chromaticity of the source's
 /// illuminant; if no positive mixture of the three has it, the scene is refused.
 ///
 /// The colors of the Gaussians are not those of sRGB: saturated colors change, more so with narrower Gaussians.
@@ -48,8 +48,8 @@ struct GaussiansParams {
     blue: Option<Bell>,
 }
 
-/// Default centres and standard deviations, nm: near the dominant wavelengths of the sRGB primaries
-/// (611, 549, 464 nm), wide enough to overlap without a gap.
+/// Default centers and standard deviations, nm. The centers are near the dominant wavelengths of the sRGB primaries (611, 549, 464 nm);
+/// the Gaussians are wide enough to overlap without a gap.
 const DEFAULTS: [[f64; 2]; 3] = [[611.0, 24.0], [545.0, 26.0], [460.0, 22.0]];
 
 spectra_core::register!(color "gaussians": GaussiansParams, build);

@@ -1,4 +1,4 @@
-//! Built-in models from RGB to a spectrum.
+//! Built-in color models, which turn RGB values into spectra.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -1,7 +1,7 @@
-//! Colors where a spectrum is named: `rgb:#ff8040`, `rgb:255,128,64 by gaussians`, `srgb-r`, `rgb-lines`.
+//! Colors as named spectra: `rgb:#ff8040`, `rgb:255,128,64 by gaussians`, `srgb-r`, `rgb-lines`.
 //!
-//! As a light it is what a model makes of the color under D65; as a surface, a filter or a detector the function by which the model
-//! multiplies an equal-energy light.
+//! Such a color, used as a light, is the spectrum that a color model gives it under D65. Used as a surface, a filter or a detector, it is
+//! the function by which the model multiplies an equal-energy light.
 
 use spectra_color::{RgbSpace, chromaticity, dominant_wavelength, matrix};
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Span, Value};
@@ -44,8 +44,8 @@ spectra_spectrum::expression_of_wanted!("rgb-lines", "write rgb-lines alone", |_
     rgb_lines().map(Piece::from)
 ));
 
-/// Three spectral lines of the hues of sRGB's red, green and blue, in the powers that together are white (D65): light of three wavelengths
-/// that nobody tells from daylight, until it falls on something. The mean power is 1, as of the lines of other sets.
+/// Returns three spectral lines with the hues of sRGB's red, green and blue, whose powers add up to white (D65). Such light looks like
+/// daylight until it falls on something. The mean power is 1, like that of the lines of other sets.
 fn rgb_lines() -> Result<Emission, SpectrumError> {
     let (space, observer) = (RgbSpace::srgb(), Observer::cie_1931_2deg());
     let white = space.white_xyz();
@@ -66,7 +66,7 @@ fn rgb_lines() -> Result<Emission, SpectrumError> {
     Emission::new(None, lines.collect())
 }
 
-/// `#ff8040` or `255,128,64`, from 0 to 255.
+/// Parses `#ff8040` or `255,128,64` into three values from 0 to 255; `None` if the text is neither.
 fn code_values(text: &str) -> Option<[f64; 3]> {
     let text = text.trim();
     if let Some(digits) = text.strip_prefix('#') {
@@ -81,7 +81,7 @@ fn code_values(text: &str) -> Option<[f64; 3]> {
     values.iter().all(|v| (0.0..=255.0).contains(v)).then_some(values)
 }
 
-/// `None` where no model is called that.
+/// Returns the spectrum of a color by the named model, or by the default one; `None` if there is no model of that name.
 fn of_color(code_values: [f64; 3], model: Option<&str>, wanted: Kind) -> Option<Result<Piece, SpectrumError>> {
     let entries = <dyn ColorModel as Stage>::entries();
     let name = match model {
@@ -112,7 +112,7 @@ fn spectrum(code_values: [f64; 3], model: &str, wanted: Kind) -> Result<Piece, S
     Ok(Piece::Bare(shape))
 }
 
-/// A model without keys of its own.
+/// Builds the color model `name` with its defaults, for the illuminant `light`.
 fn build(name: &str, light: &SpectralPower) -> Result<Box<dyn ColorModel>, SpectrumError> {
     let file = Arc::new(SourceFile::new("rgb", name));
     let node = Node::new(Value::String(name.to_owned()), Span { len: name.len(), ..Span::default() }, file);
@@ -121,7 +121,7 @@ fn build(name: &str, light: &SpectralPower) -> Result<Box<dyn ColorModel>, Spect
     registry::build::<dyn ColorModel>(&params, &context).map_err(SpectrumError::Document)
 }
 
-/// A model that is named alone reads none.
+/// Resources that refuse every file: a model with its defaults reads none.
 struct NoFiles;
 
 impl Resources for NoFiles {
@@ -139,7 +139,7 @@ mod tests {
     use spectra_color::{RgbSpace, chromaticity, xyz_of_light, xyz_of_reflectance};
     use spectra_spectrum::{Observer, find_emission, find_reflectance, illuminant};
 
-    /// The corners of sRGB, and white as D65, as lights and, half as bright, as surfaces under D65.
+    /// Named colors have the right chromaticity as lights and, at half brightness, as surfaces under D65.
     #[test]
     fn colors_are_lights_and_surfaces() {
         let observer = Observer::cie_1931_2deg();
@@ -171,7 +171,7 @@ mod tests {
 
     const RGB_LINES: [(f64, f64); 3] = [(611.282, 0.747_601), (549.133, 1.148_732), (464.312, 1.103_667)];
 
-    /// White of three lines whose hues are those of the primaries.
+    /// The lines of `rgb-lines` make white together, and have the hues of the primaries.
     #[test]
     fn rgb_lines_make_white() {
         let observer = Observer::cie_1931_2deg();
@@ -179,12 +179,12 @@ mod tests {
         let white = chromaticity(space.white_xyz()).expect("a color");
         let seen = xyz_of_light(&light, observer).and_then(chromaticity).expect("a color");
         assert!((seen[0] - white[0]).abs() < 1e-12 && (seen[1] - white[1]).abs() < 1e-12, "{seen:?}");
-        // Dominant wavelengths and relative powers computed apart (xtask/rgb_lines.py).
+        // Dominant wavelengths and relative powers from an independent computation (xtask/rgb_lines.py).
         for (line, (nm, power)) in light.lines().iter().zip(RGB_LINES) {
             assert!((line.wavelength_nm - nm).abs() < 0.01, "{line:?}");
             assert!((line.power - power).abs() < 1e-3, "{line:?}");
         }
-        // Each is of the hue of its primary: line, primary and white lie on one straight line.
+        // Each line has the hue of its primary: line, primary and white lie on one straight line in xy.
         for (i, line) in light.lines().iter().enumerate() {
             let mut primary = [0.0; 3];
             primary[i] = 1.0;

@@ -1,4 +1,4 @@
-//! RGB to a spectrum to XYZ to sRGB: each model measured over all 8-bit colors in steps of 15 per channel.
+//! Tests of the round trip from RGB to a spectrum, XYZ and sRGB: each model is measured over 8-bit colors in steps of 15 per channel.
 
 use spectra_color::{Adaptation, RgbSpace, fit, from_u8, lab};
 use spectra_core::params::{Faults, Key, Node, Params, SourceFile, Span, Value};
@@ -22,7 +22,7 @@ impl Resources for NoFiles {
     }
 }
 
-/// The model `kind` with nothing else said, white being `light`.
+/// Builds the model `kind` with its defaults, for the illuminant `light`.
 fn model(kind: &str, light: Option<&SpectralPower>) -> Box<dyn ColorModel> {
     let text = format!("kind: {kind}");
     let file = Arc::new(SourceFile::new("scene.yaml", text.clone()));
@@ -35,7 +35,8 @@ fn model(kind: &str, light: Option<&SpectralPower>) -> Box<dyn ColorModel> {
     build::<dyn ColorModel>(&params, &context).unwrap_or_else(|e| panic!("{kind}: {e}"))
 }
 
-/// Largest and mean difference, in 255ths of a channel, over all colors in steps of 15; clipped as a screen clips.
+/// Returns the largest and mean difference after the round trip, in 255ths of a channel, over all colors in steps of 15. Values are clipped
+/// as on a screen.
 fn round_trip(model: &dyn ColorModel) -> (f64, f64) {
     let (observer, srgb) = (Observer::cie_1931_2deg(), RgbSpace::srgb());
     let white = observer.xyz_of_power(&model.spectrum([1.0; 3]))[1];
@@ -58,7 +59,7 @@ fn round_trip(model: &dyn ColorModel) -> (f64, f64) {
     (largest, sum / count)
 }
 
-/// Under D65, and with nothing said: at most 0.5 of 255 for the models that may be the default.
+/// The models that may be the default have a largest difference of 0.5 of 255, under D65 and without an illuminant.
 #[test]
 fn faithful_models_round_trip_within_half_a_step() {
     let light = illuminant("D65").expect("bundled").to_power(&BAND);
@@ -71,7 +72,7 @@ fn faithful_models_round_trip_within_half_a_step() {
     }
 }
 
-/// The others keep white only: their channels are not the primaries of sRGB, and a picture comes back in other colors.
+/// The other models keep only white: their channels are not the primaries of sRGB, so a picture comes back in other colors.
 #[test]
 fn other_models_keep_white_but_not_colors() {
     let light = illuminant("D65").expect("bundled").to_power(&BAND);
@@ -88,7 +89,7 @@ fn other_models_keep_white_but_not_colors() {
     }
 }
 
-/// No green that was not there: a full red stays without green in the models that may be the default.
+/// The models that may be the default keep a full red free of green.
 #[test]
 fn red_has_no_phantom_green() {
     let (observer, srgb) = (Observer::cie_1931_2deg(), RgbSpace::srgb());
@@ -101,9 +102,9 @@ fn red_has_no_phantom_green() {
     }
 }
 
-/// Colors of wide spaces, uniform in their linear cubes, keep luminance within 1 % and hue within 3 degrees under `smooth`, against what
-/// they are moved to where no light has them; models of sRGB keep luminance. Chromaticities are compared by CIELAB at half of white's
-/// luminance, adapted to D65 by Bradford.
+/// Colors of wide spaces, uniform in their linear cubes, keep luminance within 1 % and hue within 3 degrees under `smooth`. Colors that no
+/// light can have are compared with those to which they are moved. Models of sRGB keep luminance. Chromaticities are compared by CIELAB at
+/// half of white's luminance, adapted to D65 by Bradford.
 #[test]
 fn colors_of_wide_spaces_keep_luminance_and_hue() {
     let light = illuminant("D65").expect("bundled").to_power(&BAND);

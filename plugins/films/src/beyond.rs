@@ -1,19 +1,20 @@
-//! Frames that are wholly beyond what a film can tell apart: black or white, whatever the picture is of.
+//! Detection of frames whose exposure lies outside the film's range: they would come out all black or all white.
 
 use spectra_core::stage::Beyond;
 
-/// Nearer than this share of its range to where it ends, a curve tells nothing apart.
+/// A curve counts as flat where it is nearer to one of its end values than this fraction of its whole range.
 const FLAT: f64 = 0.01;
-/// Log10 of exposures, lx s, between which all films lie, and the step in which their curves are looked at.
+/// Range of log10 exposure (exposure in lx s) that covers all films, and the step at which curves are sampled.
 const SPAN: [f64; 2] = [-8.0, 8.0];
 const STEP: f64 = 0.02;
-/// Lights in the dark make a picture; so do shadows in a bright one: shares of the frame that are beyond.
+/// Fractions of the frame that must be out of range: too dark, or too bright. A few lights in the dark still make a picture, and so do
+/// shadows in a bright frame.
 const DARK: f64 = 0.999;
 const BRIGHT: f64 = 0.99;
-/// A smaller part of the frame that has any light is a lamp in the dark.
+/// If a smaller fraction of the frame than this has any light, the light is a lamp in the dark.
 const LAMP: f64 = 0.1;
 
-/// Log10 of the exposures, lx s, between which `curve` (of log10 of the exposure) tells light apart.
+/// Returns the log10 exposures (lx s) between which `curve`, a function of log10 exposure, is not flat.
 pub(crate) fn ends(curve: impl Fn(f64) -> f64) -> [f64; 2] {
     let [least, most] = SPAN.map(&curve);
     let flat = FLAT * (most - least).abs();
@@ -24,7 +25,8 @@ pub(crate) fn ends(curve: impl Fn(f64) -> f64) -> [f64; 2] {
     [low, high]
 }
 
-/// Whether a frame is: of each layer its plane, lx s once multiplied by `factor`, and the [`ends`] of its curve.
+/// Returns whether nearly all of a frame is too dark or too bright for the film; `None` otherwise. Each layer is given as its plane, which
+/// is in lx s once multiplied by `factor`, and the [`ends`] of its curve.
 pub(crate) fn beyond(layers: &[(&[f32], [f64; 2])], factor: f64) -> Option<Beyond> {
     let pixels = layers.first()?.0.len();
     let ends: Vec<[f64; 2]> =
@@ -33,7 +35,7 @@ pub(crate) fn beyond(layers: &[(&[f32], [f64; 2])], factor: f64) -> Option<Beyon
     let share = |is: &dyn Fn(usize) -> bool, of: usize| (0..pixels).filter(|p| is(*p)).count() as f64 / of as f64;
     let mean = |plane: &[f32]| plane.iter().map(|v| f64::from(*v)).sum::<f64>() / pixels as f64;
     let means: Vec<f64> = layers.iter().map(|(plane, _)| mean(plane)).collect();
-    // Without any light it is the scene that is black.
+    // If there is no light at all, the scene itself is black.
     if means.iter().all(|mean| *mean == 0.0) {
         return None;
     }
@@ -42,7 +44,7 @@ pub(crate) fn beyond(layers: &[(&[f32], [f64; 2])], factor: f64) -> Option<Beyon
     if is_dark {
         return Some(Beyond::Dark);
     }
-    // Beside the circle of a fisheye there is no light at any exposure.
+    // Outside the image circle of a fisheye there is no light at any exposure, so only lit pixels count.
     let lit = (0..pixels).filter(|pixel| each(*pixel).any(|(value, _)| value > 0.0)).count();
     let is_bright = share(&|pixel| each(pixel).all(|(value, ends)| value > ends[1]), lit) > BRIGHT;
     (is_bright && lit as f64 > LAMP * pixels as f64).then_some(Beyond::Bright)
@@ -56,7 +58,7 @@ mod tests {
     fn a_curve_ends_where_it_is_flat() {
         let [low, high] = ends(|x| (x + 2.0).clamp(0.0, 3.0));
         assert!((low + 1.97).abs() < 0.03 && (high - 0.97).abs() < 0.03, "{low} {high}");
-        // Of a reversal film as well.
+        // A falling curve, as of a reversal film, has the same ends.
         assert_eq!(ends(|x| -(x + 2.0).clamp(0.0, 3.0)), [low, high]);
     }
 

@@ -1,4 +1,4 @@
-//! What happens inside of the film: light is spread before the curve, silver lies in grains after it.
+//! Effects inside the film: scatter and halation spread light before the characteristic curve; adjacency and grain act after it.
 
 use crate::view::View;
 use schemars::JsonSchema;
@@ -14,72 +14,73 @@ use spectra_film::raster::Raster;
 use spectra_film::scatter::{Modulation, Mtf, Scatter};
 use spectra_film::stock::{Backing, Stock};
 
-/// `halation` as written in a scene; see [`HalationBase`].
+/// The map `halation` as written in a scene; see [`HalationBase`].
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct HalationParams {
-    /// Light that enters the base, over the light that exposes the layer, 0 to 10; the stock's if left out.
+    /// Ratio of the light that enters the base to the light that exposes the layer, 0 to 10; the stock's value if left out.
     #[schemars(range(min = 0, max = 10))]
     pub entering: Option<f64>,
-    /// What keeps light from coming back, in place of the stock's: `rem-jet` takes nearly all, `silver` most, `dye` some; `removed` leaves
-    /// clear base, as of cinema film whose rem-jet was washed off before it was shot.
+    /// Backing that keeps light from coming back, instead of the stock's: `rem-jet` absorbs nearly all of it, `silver` most, `dye` some.
+    /// `removed` leaves the clear base, as on cinema film whose rem-jet was washed off before it was shot.
     pub backing: Option<Backing>,
-    /// Transmittance of base and backing, passed once, 0 to 1, in place of `backing`; the stock's if both are left out.
+    /// Transmittance of base and backing in one pass, 0 to 1, instead of `backing`; the stock's value if both are left out.
     #[schemars(range(min = 0, max = 1))]
     pub transmittance: Option<f64>,
-    /// Thickness of the base, 0.001 to 10 mm, mm if bare; the stock's first base if left out.
+    /// Thickness of the base, 0.001 to 10 mm, mm if bare; that of the stock's first base if left out.
     pub thickness: Option<Positive<Length>>,
-    /// Refractive index of the base, above 1 to 4; the stock's if left out.
+    /// Refractive index of the base, above 1 to 4; that of the stock's first base if left out.
     #[schemars(extend("exclusiveMinimum" = 1, "maximum" = 4))]
     pub index: Option<f64>,
-    /// Share of what comes back that the emulsion throws down again, for another trip, 0 to 0.95; the stock's if left
-    /// out, or 0.
+    /// Fraction of the returning light that the emulsion reflects into the base again for another trip, 0 to 0.95. If left out, the
+    /// stock's value, or 0 if it has none.
     #[schemars(range(min = 0, max = 0.95))]
     pub reflected: Option<f64>,
 }
 
-/// Nothing of it.
+/// The word `off`: the effect is disabled.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Off {
-    /// None.
+    /// The effect is disabled.
     Off,
 }
 
-/// `halation` as written in a scene: figures, or none.
+/// The value of `halation` as written in a scene: a map of figures, or `off`.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum HalationSetting {
-    /// No halation.
+    /// The word `off`: no halation.
     Word(Off),
-    /// The film's back.
+    /// Properties of the film's base and backing.
     Back(HalationParams),
 }
 
-/// `optics` as written in a scene.
+/// The map `optics` as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct OpticsParams {
-    /// Spatial frequency on the film at which half of the contrast is left, cycles/mm, 5 to 1000.
+    /// Spatial frequency on the film at which the lens keeps half of the contrast, cycles/mm, 5 to 1000.
     #[schemars(range(min = 5, max = 1000))]
     pub mtf50: f64,
 }
 
-/// `optics` as written in a scene: a lens, or none.
+/// The value of `optics` as written in a scene: a lens, or `off`.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum OpticsSetting {
-    /// No loss.
+    /// The word `off`: no loss of contrast.
     Word(Off),
-    /// The lens.
+    /// Properties of the lens.
     Lens(OpticsParams),
 }
 
-/// Where enlargers, printers, scanners and projectors keep half of the contrast, cycles/mm: a good lens at a fourth to a
-/// tenth of its picture's size. Assumed.
+/// Spatial frequency on the film, cycles/mm, at which enlargers, printers, scanners and projectors keep half of the contrast. Assumed, for
+/// a good lens at a fourth to a tenth of its picture's size.
 const USUAL_MTF50: f64 = 60.0;
 
-/// That of the lens between the film and its picture; none where the film itself is looked at.
+/// Returns the frequency, cycles/mm, at which the lens between the film and its picture keeps half of the contrast; `None` if there is no
+/// lens, because it is `off` or the film itself is viewed.
 pub(crate) fn mtf50(optics: Option<OpticsSetting>, view: Option<View>) -> Option<f64> {
     match optics {
         Some(OpticsSetting::Word(Off::Off)) => None,
@@ -89,20 +90,20 @@ pub(crate) fn mtf50(optics: Option<OpticsSetting>, view: Option<View>) -> Option
     }
 }
 
-/// `assumed` as written in a scene.
+/// The value of `assumed` as written in a scene.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Assumed {
-    /// Assumed figures count.
+    /// Figures that are assumed are used, too.
     #[default]
     On,
-    /// Only what is measured or stated counts.
+    /// Only figures that are measured or stated are used.
     Off,
 }
 
-/// Which effects a scene asks for, of a stock that it names at `key`.
+/// The effects that a scene asks for on one stock.
 pub(crate) struct Switches<'a> {
-    /// Where the stock is named.
+    /// Key of the scene at which the stock is named.
     pub key: &'a str,
     pub scatter: Option<bool>,
     pub adjacency: Option<bool>,
@@ -110,40 +111,40 @@ pub(crate) struct Switches<'a> {
     pub grain: Option<bool>,
     pub assumed: Assumed,
     pub grain_seed: u64,
-    /// Number of its first layer among those of the picture: each has grains of its own.
+    /// Number of the stock's first layer among all layers of the picture; each layer has its own grains.
     pub first_layer: u32,
 }
 
-/// How grainy the layers are.
+/// Granularity of a film's layers.
 #[derive(Clone, Debug, PartialEq)]
 enum Granularity {
-    /// RMS granularity of silver, at 48 um and the density 1.
+    /// RMS granularity of silver times 1000, through an aperture of 48 um at density 1.
     Silver(f64),
-    /// Of layers of dye.
+    /// Granularity of each dye layer as a function of its amount.
     Dyes(ColorGrain),
 }
 
-/// The effects of one film.
+/// Scatter, adjacency, halation and grain of one film.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Effects {
-    /// How each layer spreads light, where it is known.
+    /// MTF of the scatter in each layer; `None` if it is unknown or switched off.
     mtf: Vec<Option<Mtf>>,
-    /// How the edges of each layer are developed, where they stand out.
+    /// Adjacency effect of each layer; `None` if edges do not stand out or the effect is switched off.
     adjacency: Vec<Option<Adjacency>>,
-    /// Of each layer that light comes back to.
+    /// Halation of each layer; `None` if no light comes back to it.
     halation: Vec<Option<HalationBase>>,
-    /// Which of the effects rest on assumed figures.
+    /// Names of the effects that rest on assumed figures.
     assumed: Vec<&'static str>,
     grain: Option<Granularity>,
-    /// Which piece of film it is.
+    /// Seed that identifies the piece of film, the same for all frames.
     piece: u64,
-    /// Seed of the grains, by the piece and the frame.
+    /// Seed of the grains, derived from the piece and the frame.
     seed: u64,
-    /// Number of the first layer among those of the picture.
+    /// Number of the first layer among all layers of the picture.
     first_layer: u32,
 }
 
-/// The ways to square pixels: another number of rows, or a frame of the shape that the numbers have.
+/// Returns a hint on how to get square pixels: another number of rows, or a crop to the aspect ratio of the resolution.
 fn square_frame(size: &FrameSize) -> String {
     let rows = (f64::from(size.width_px) * size.height_mm / size.width_mm).round();
     let [mut common, mut rest] = [size.width_px, size.height_px];
@@ -154,7 +155,7 @@ fn square_frame(size: &FrameSize) -> String {
     format!("`resolution: [{}, {rows:.0}]`, or `crop: {across}:{down}` for a frame of that shape", size.width_px)
 }
 
-/// Width and height of a pixel, mm.
+/// Returns the width and height of a pixel, mm.
 pub(crate) fn pixel_mm(size: &FrameSize) -> [f64; 2] {
     [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)]
 }
@@ -197,17 +198,17 @@ impl Effects {
         faults.into_result(Self { mtf, adjacency, halation, assumed, grain, piece, seed: piece, first_layer })
     }
 
-    /// Which of the effects rest on assumed figures.
+    /// Names of the effects that rest on assumed figures.
     pub(crate) fn assumed(&self) -> &[&'static str] {
         &self.assumed
     }
 
-    /// Other grains for each frame of an animation.
+    /// Gives frame `frame` of an animation its own grains.
     pub(crate) fn set_frame(&mut self, frame: u64) {
         self.seed = seed_of_frame(self.piece, frame);
     }
 
-    /// Whether pixels of a frame are square, where anything on the film needs that.
+    /// Checks that the pixels of a frame are square, to 1 %, if any effect on the film needs that. The error is a message and a hint.
     pub(crate) fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
         let [across, down] = pixel_mm(size);
         let edges = self.adjacency.iter().any(Option::is_some);
@@ -227,14 +228,14 @@ impl Effects {
         Ok(())
     }
 
-    /// Where the pixels of a frame lie on the film.
+    /// Returns the raster that says where the pixels of a frame lie on the film. Fails if they must be square and are not.
     pub(crate) fn raster(&self, size: FrameSize) -> Result<Raster, String> {
         self.check_frame(&size).map_err(|[text, hint]| format!("{text}: {hint}"))?;
         let [across, down] = pixel_mm(&size);
         Ok(Raster::new(size.width_px as usize, size.height_px as usize, (across * down).sqrt()))
     }
 
-    /// The light of a plane as the emulsion of a layer spreads it.
+    /// Returns a plane of exposure after scatter in the emulsion of a layer.
     pub(crate) fn scattered(&self, layer: usize, plane: &[f32], raster: &Raster) -> Result<Vec<f32>, String> {
         match &self.mtf[layer] {
             Some(mtf) => Ok(Scatter::new(mtf, raster).map_err(|e| e.to_string())?.applied(plane)),
@@ -242,8 +243,8 @@ impl Effects {
         }
     }
 
-    /// The light of a plane as a layer gets it: spread in its emulsion, and from the back of the film. `spare` is work space, which
-    /// layers that come one after the other share.
+    /// Returns the plane of exposure that a layer receives: scattered in its emulsion, with halation added. `spare` is a work buffer
+    /// that successive layers share.
     pub(crate) fn spread(
         &self,
         layer: usize,
@@ -259,7 +260,7 @@ impl Effects {
         Ok(halation.applied(spare))
     }
 
-    /// Develops the edges of a layer.
+    /// Applies the adjacency effect to the developed amounts of a layer.
     pub(crate) fn edges(&self, layer: usize, plane: &mut [f32], emulsion: &Emulsion, raster: &Raster) {
         if let Some(adjacency) = &self.adjacency[layer] {
             let unexposed = emulsion.amount(layer, f64::NEG_INFINITY);
@@ -267,7 +268,7 @@ impl Effects {
         }
     }
 
-    /// Turns the amounts of a layer into those of its grains; `clear` is the least, which has none but fog.
+    /// Adds grain to the amounts of a layer. `clear` is its least amount, at which there is no grain except fog.
     pub(crate) fn grain(&self, layer: usize, plane: &mut [f32], clear: f64, raster: &Raster) -> Result<(), String> {
         let (grain, base) = match &self.grain {
             None => return Ok(()),
@@ -284,7 +285,7 @@ impl Effects {
     }
 }
 
-/// The grain of a layer of dye. How far its spectrum goes rests on its granularity in the middle of its range.
+/// Builds the grain of a dye layer. The half-power frequency of its spectrum follows from its granularity in the middle of its range.
 fn by_dye(color: &ColorGrain, layer: usize, seed: u64) -> Result<Grain, GrainError> {
     let most = color.most(layer);
     let half_power = usual_half_power(color.rms(layer, most / 2.0).max(1.0));
@@ -299,7 +300,7 @@ fn granularity(
     faults: &mut Faults,
 ) -> Option<Granularity> {
     let known = match stock.granularity {
-        // At another density the variance goes with the density (Nutting), at another aperture with one over the area (Selwyn).
+        // The variance is proportional to density (Nutting) and inversely proportional to the aperture's area (Selwyn).
         Some(g) => Some(Granularity::Silver(g.rms * (g.aperture_mm / 0.048) / g.density.sqrt())),
         None => ColorGrain::new(stock, emulsion).map(Granularity::Dyes),
     };
@@ -322,17 +323,17 @@ fn granularity(
     }
 }
 
-/// Whether the stock's granularity, of its silver or of its layers, is assumed.
+/// Returns whether the stock's granularity, that of its silver or of its layers, is assumed.
 fn granularity_is_assumed(stock: &Stock) -> bool {
     stock.granularity.is_some_and(|g| g.assumed) || stock.assumed.granularity.is_some()
 }
 
-/// Whether the stock's own halation, or the base that it is computed with, is assumed.
+/// Returns whether the stock's own halation, or the base that it is computed with, is assumed.
 fn halation_is_assumed(stock: &Stock) -> bool {
     stock.halation.as_ref().is_some_and(|h| h.assumed) || stock.bases.first().is_some_and(|b| b.assumed)
 }
 
-/// That of each layer; all `None` where there is none.
+/// Returns the halation of each layer; all `None` if there is none.
 fn halation(p: &Switches<'_>, params: &Params, stock: &Stock, faults: &mut Faults) -> Vec<Option<HalationBase>> {
     let none = vec![None; stock.layers.len()];
     let base = stock.bases.first();
@@ -343,18 +344,17 @@ fn halation(p: &Switches<'_>, params: &Params, stock: &Stock, faults: &mut Fault
         (None, Some(h)) => (None, Some(h)),
     };
     if own.is_some_and(|h| h.backing.is_some() && h.transmittance.is_some()) {
-        let fault = params.fault("halation.transmittance", "`backing` has a transmittance of its own");
+        let fault = params.fault("halation.transmittance", "`backing` already implies a transmittance");
         faults.push(fault.hint("leave one of the two out"));
         return none;
     }
-    // What the stock's file assumes fills nothing in where only what is measured or stated counts.
+    // With `assumed: off`, assumed values of the stock's file do not fill in what the scene leaves out.
     let fills = of_stock.filter(|_| p.assumed == Assumed::On || !halation_is_assumed(stock));
     let entering = own.and_then(|h| h.entering).or_else(|| fills.map(|h| h.scattered));
     let stated = own.and_then(|h| h.transmittance.or_else(|| h.backing.map(Backing::transmittance)));
     let (Some(entering), Some(transmittance)) = (entering, stated.or_else(|| fills.map(|h| h.backing))) else {
-        let fault =
-            params.fault("halation", format!("{} does not say what light comes back from its base", stock.name));
-        faults.push(fault.hint("`halation: {entering: 0.3, backing: dye}`"));
+        let fault = params.fault("halation", format!("{} does not say how much light its base reflects", stock.name));
+        faults.push(fault.hint("write, for example, `halation: {entering: 0.3, backing: dye}`"));
         return none;
     };
     let thickness_mm = own.and_then(|h| h.thickness).map(|t| t.mm()).or_else(|| base.map(|b| b.thickness_mm));
@@ -374,7 +374,7 @@ fn halation(p: &Switches<'_>, params: &Params, stock: &Stock, faults: &mut Fault
         transmittance,
         reflected,
     };
-    // A frame of no pixels is enough to have the values checked.
+    // Building it for an empty frame is enough to check the values.
     if let Err(error) = Halation::new(&base(0), &Raster::new(0, 0, 1.0)) {
         faults.push(params.fault("halation", error.to_string()));
         return none;

@@ -1,4 +1,4 @@
-//! Built-in film processes.
+//! Built-in film processes: `stock`, a film from a data file, and `three-strip`, a three-strip camera.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

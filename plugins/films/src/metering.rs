@@ -1,4 +1,4 @@
-//! How the camera finds its exposure.
+//! The camera's light meter: metering modes, the metered area, and the exposure that follows.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -10,57 +10,58 @@ use spectra_film::print::metered_exposure_lx_s;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::v_lambda;
 
-/// The channel that the meter reads: photometric lux-seconds, or those of the film where the stock says so.
+/// Name of the channel that the meter reads: photometric lux-seconds, or lux-seconds of the film's own sensitivity if the stock says so.
 pub(crate) const METER: &str = "meter";
 
-/// `metering` as written in a scene.
+/// The value of `metering` as written in a scene: how the camera sets the exposure.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Metering {
-    /// The exposure time is the scene's.
+    /// The scene states the exposure time.
     #[default]
     Manual,
-    /// The mean of the frame is taken for a mid gray.
+    /// The mean of the frame is exposed as a mid gray.
     Average,
-    /// The mean of a round spot is.
+    /// The mean of a round spot is exposed as a mid gray.
     Spot,
-    /// The mean of the frame is, its middle counted more, and lights no more than eight times the rest.
+    /// A center-weighted mean of the frame, in which no pixel counts for more than eight times the median, is exposed as a mid gray.
     Camera,
 }
 
-/// `exposure` as written in a scene.
+/// The value of `exposure` as written in a scene: a time, or `metered`.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ExposureParams {
-    /// For this time, s if bare.
+    /// Exposure time, s if bare.
     Time(Positive<Time>),
-    /// The camera finds it.
+    /// The word `metered`: the camera sets the exposure.
     Metered(MeteredWord),
 }
 
-/// The word of `exposure`.
+/// The word `metered` as the value of `exposure`.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MeteredWord {
-    /// The camera finds it.
+    /// The camera sets the exposure.
     Metered,
 }
 
-/// What a scene says of how a film is exposed.
+/// Exposure settings of a scene, from `exposure` and `metering` together.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exposed {
-    /// How the camera finds its exposure.
+    /// Metering mode of the camera.
     pub metering: Metering,
-    /// A picture that was exposed already is taken as it is.
+    /// Whether a source picture that was exposed already keeps its exposure.
     pub keeps: bool,
-    /// The time, s, that light is recorded for: the scene's, or 1 s where the camera meters. The meter's time does not depend on it.
+    /// Time for which light is recorded, s: the scene's, or 1 s if the camera meters. The metered time does not depend on it.
     pub time_s: f64,
-    /// A stated time has no effect.
+    /// Whether a stated exposure time has no effect, because the camera meters.
     pub is_overruled: bool,
 }
 
 impl Exposed {
-    /// By `exposure` and `metering`, either of which may be left out.
+    /// Combines `exposure` and `metering`, either of which may be left out. Fails if neither says how to expose, or if they contradict
+    /// each other.
     pub(crate) fn new(
         exposure: Option<ExposureParams>,
         metering: Option<Metering>,
@@ -73,10 +74,10 @@ impl Exposed {
             }
             (Some(ExposureParams::Time(_)), Some(metering)) => metered(metering, false, true),
             (Some(ExposureParams::Metered(_)), Some(Metering::Manual)) => {
-                let fault = params.fault("metering", "`exposure: metered` is found by the camera, not by hand");
+                let fault = params.fault("metering", "`exposure: metered` is set by the camera, not by hand");
                 return Err(fault.hint("leave `metering` out, or state a time, such as `exposure: 1/125 s`"));
             }
-            // How the camera meters is stated, so it meters.
+            // A stated metering mode means that the camera meters every source, even a picture that was exposed already.
             (Some(ExposureParams::Metered(_)), Some(metering)) => metered(metering, false, false),
             (Some(ExposureParams::Metered(_)), None) => metered(Metering::Camera, true, false),
             (None, None | Some(Metering::Manual)) => {
@@ -88,27 +89,27 @@ impl Exposed {
     }
 }
 
-/// Which frames of an animation the camera meters.
+/// The value of `meter` as written in a scene: the frames of an animation that the camera meters.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub enum Metered {
-    /// The first one, for all.
+    /// The first frame, which sets the exposure of all.
     #[default]
     First,
-    /// Each by itself.
+    /// Every frame sets its own exposure.
     Each,
 }
 
-/// `spot` as written in a scene.
+/// The map `spot` as written in a scene: the round area that is metered.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SpotParams {
-    /// Its center, in shares of the frame's width and height from the upper left corner, each 0 to 1.
+    /// Center of the spot as fractions of the frame's width and height from the upper left corner, each 0 to 1.
     #[serde(default = "center")]
     #[schemars(inner(range(min = 0, max = 1)))]
     pub center: [f64; 2],
-    /// Its diameter, in shares of the frame's height, above 0 to 4.
+    /// Diameter of the spot as a fraction of the frame's height, above 0 to 4.
     #[serde(default = "diameter")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 4))]
     pub diameter: f64,
@@ -122,23 +123,24 @@ fn diameter() -> f64 {
     0.1
 }
 
-/// What is said where an exposure time is stated that the meter overrules.
+/// Returns the warning that the meter overrules a stated exposure time, if it does.
 pub(crate) fn overruled(is_overruled: bool) -> Vec<String> {
-    let text = "the camera meters, so `exposure` has no effect; leave one of them out, `metering` or `exposure`";
+    let text = "the camera meters, so `exposure` has no effect; leave out either `metering` or `exposure`";
     if is_overruled { vec![text.to_owned()] } else { Vec::new() }
 }
 
-/// A meter, set for a speed.
+/// A light meter that is set to a film speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meter {
     metering: Metering,
     spot: SpotParams,
-    /// Exposure that what is metered is to get, lx s.
+    /// Exposure that the metered area is to get, lx s.
     target_lx_s: f64,
 }
 
 impl Meter {
-    /// A meter for the speed `speed`, with a compensation in stops.
+    /// Creates a meter for the film speed `speed`, with an exposure compensation in stops. Fails if a spot or a compensation is given that
+    /// the metering mode does not use.
     pub(crate) fn new(
         params: &Params,
         metering: Metering,
@@ -163,17 +165,17 @@ impl Meter {
         Ok(Self { metering, spot, target_lx_s })
     }
 
-    /// Whether it chooses the exposure time.
+    /// Returns whether the meter chooses the exposure time.
     pub(crate) fn is_on(&self) -> bool {
         self.metering != Metering::Manual
     }
 
-    /// The meter in a word; `None` of one that is off.
+    /// The metering mode in a word; `None` if the exposure is manual.
     pub(crate) fn word(&self) -> Option<&'static str> {
         self.is_on().then(|| self.metering.word())
     }
 
-    /// How the film is exposed, where `exposure_time_s` is the scene's time.
+    /// Describes how the film is exposed; `exposure_time_s` is the scene's time, s.
     pub(crate) fn words(&self, exposure_time_s: f64) -> String {
         match self.metering {
             Metering::Manual => format!("exposed for {}", shutter::words(exposure_time_s)),
@@ -181,7 +183,8 @@ impl Meter {
         }
     }
 
-    /// The channel that it needs beside the film's: photopic, or with the response of the film's `own`.
+    /// Returns the channel that the meter needs in addition to the film's, if it is on: photopic, or with the response of `own`, a channel
+    /// of the film.
     pub(crate) fn channel(&self, grid: &Grid, own: Option<&Channel>) -> Option<Channel> {
         let v = v_lambda();
         let photopic = || grid.wavelengths_nm().map(|w| LUMINOUS_EFFICACY_LM_PER_W * v.at(w)).collect();
@@ -192,7 +195,7 @@ impl Meter {
         })
     }
 
-    /// Whether the middle of a pixel lies in what is metered.
+    /// Returns whether the middle of a pixel lies in the metered area.
     pub(crate) fn looks_at(&self, size: &FrameSize, pixel: u32) -> bool {
         match self.metering {
             Metering::Manual => false,
@@ -207,7 +210,7 @@ impl Meter {
         }
     }
 
-    /// What a pixel that it looks at counts: of a camera, 1 in the middle and a fifth in the corners.
+    /// Returns the weight of a metered pixel: with `metering: camera` 1 in the middle and a fifth in the corners, otherwise 1.
     fn weight(&self, size: &FrameSize, pixel: u32) -> f64 {
         if self.metering != Metering::Camera {
             return 1.0;
@@ -217,20 +220,20 @@ impl Meter {
         1.0 / (1.0 + 2.0 * (x * x + y * y))
     }
 
-    /// How many times longer the meter wants the frame exposed; 1 where it sees no light.
+    /// Returns the factor by which the meter lengthens the exposure; 1 if it is off or sees no light.
     pub(crate) fn factor(&self, exposure: &ExposureFrame) -> f64 {
         if self.metering == Metering::Manual {
             return 1.0;
         }
         let Some(channel) = exposure.channel(METER) else { return 1.0 };
-        // Lights would make all else dark.
+        // Without a limit, lights in the frame would make everything else dark.
         let most = match self.metering {
             Metering::Camera => LIGHTS * median(&channel.values),
             _ => f32::INFINITY,
         };
         let most = if most > 0.0 { most } else { f32::INFINITY };
         let (mut sum, mut all) = (0.0, 0.0);
-        // Row by row in their order, in double precision: the same on any machine.
+        // Summed row by row in a fixed order and in double precision, so that the result is the same on any machine.
         for (pixel, value) in (0_u32..).zip(&channel.values) {
             if value.is_finite() && self.looks_at(&exposure.size, pixel) {
                 let weight = self.weight(&exposure.size, pixel);
@@ -243,11 +246,11 @@ impl Meter {
     }
 }
 
-/// A light counts no more than so many times the median of the frame.
+/// Largest weight of a light in `metering: camera`, as a multiple of the median of the frame.
 const LIGHTS: f32 = 8.0;
 
 impl Metering {
-    /// As a scene has it.
+    /// The word for this mode in a scene.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Manual => "manual",
@@ -258,7 +261,7 @@ impl Metering {
     }
 }
 
-/// The median of what is finite; 0 of nothing.
+/// Returns the median of the finite values; 0 if there are none.
 fn median(values: &[f32]) -> f32 {
     let mut all: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
     if all.is_empty() {

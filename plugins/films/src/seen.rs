@@ -1,4 +1,4 @@
-//! From a developed film to the picture that a scene asks for.
+//! Turns a developed film into the picture that a scene asks for: a print, a scan, a projection or the film itself.
 
 use crate::settings::StockParams;
 use crate::stocks::load_stock;
@@ -13,13 +13,14 @@ use spectra_film::print::{Paper, Print, USUAL_GRADE};
 use spectra_film::stock::{Medium, Process, Stock};
 use spectra_spectrum::{Emission, find_emission_in};
 
-/// A picture and what to call it.
+/// A picture process and its description in words.
 pub(crate) struct Seen {
     pub picture: Picture,
     pub words: String,
 }
 
-/// The way from a developed `film` to a picture that `p` asks for; a mid gray subject left `gray_lx_s` on it.
+/// Builds the process that turns a developed `film` into the picture that `p` asks for. `gray_lx_s` is the exposure that a mid gray
+/// subject left on the film, lx s.
 pub(crate) fn seen(
     p: &StockParams,
     params: &Params,
@@ -33,7 +34,7 @@ pub(crate) fn seen(
     let view = p.view.unwrap_or(usual);
     let printed = view == View::Print;
     if p.paper.is_some() && (film.layers() != 1 || stock.process == Process::Reversal) {
-        let text = format!("`paper` is for black-and-white negatives, and {} is none", stock.name);
+        let text = format!("`paper` is for black-and-white negatives, which {} is not", stock.name);
         let hint = if stock.process == Process::Reversal {
             "leave it out"
         } else {
@@ -108,13 +109,13 @@ pub(crate) fn seen(
     }
 }
 
-/// The lights of a print.
+/// The lights by which a print is made and viewed.
 struct Lights {
-    /// That it is looked at by.
+    /// Light by which the print is viewed.
     light: Emission,
-    /// The printer's; the print stock's reference light if none is named.
+    /// Lamp of the printer; the print stock's reference light if `None`.
     lamp: Option<Emission>,
-    /// How the print is shown.
+    /// White, black and surround of the finished picture.
     look: Look,
 }
 
@@ -130,7 +131,7 @@ fn print(
     let on = match (&p.print, &p.paper, &stock.print) {
         (Some(_), Some(_), _) => {
             let fault = params.fault("paper", "a print is either on a print stock or on paper");
-            return Err(fault.hint("`print` or `paper`").into());
+            return Err(fault.hint("keep either `print` or `paper`").into());
         }
         (Some(name), None, _) => Some(name.clone()),
         (None, None, Some(usual)) => Some(usual.clone()),
@@ -156,7 +157,7 @@ fn print(
     let lamp = lights.lamp.as_ref().unwrap_or(&print_stock.reference);
     let positive = Positive::printed(film, gray_lx_s, &print_stock, emulsion, lamp, &lights.light, lights.look);
     let positive = positive.map_err(|error| {
-        // Where the scene names no print stock, it is the camera film that asks for this one.
+        // If the scene names no print stock, this one came from the camera film's file.
         let key = if p.print.is_some() { "print" } else { "stock" };
         let text = match &error {
             PositiveError::NoPrintStock { .. } => error.to_string(),
@@ -174,12 +175,12 @@ fn print(
     Ok(Seen { picture: Picture::Positive(Box::new(positive)), words: format!("printed on {}", print_stock.name) })
 }
 
-/// Paper hangs in a lit room.
+/// Checks that no surround is set for a print on paper, which hangs in a lit room.
 fn no_surround(p: &StockParams, params: &Params) -> Result<(), Faults> {
     if p.surround.is_none() {
         return Ok(());
     }
-    let fault = params.fault("surround", "a print on paper is looked at in a lit room");
+    let fault = params.fault("surround", "a print on paper is viewed in a lit room");
     Err(fault.hint("leave it out, or print on film: `print: kodak-vision-2383`").into())
 }
 
@@ -203,7 +204,7 @@ fn on_paper(
     };
     if grade.is_some() && p.paper.is_some_and(|p| p.range.is_some()) {
         let fault = params.fault("paper.range", "a grade has its own range");
-        return Err(fault.hint("`grade` or `range`").into());
+        return Err(fault.hint("keep either `grade` or `range`").into());
     }
     if p.white.is_some() {
         let fault = params.fault("white", "the white of a print on paper is the paper");

@@ -1,4 +1,4 @@
-//! `film: stock`, film from a data file: exposed, developed, and printed, scanned or projected.
+//! The film kind `stock`: film from a data file, exposed, developed, and printed, scanned or projected.
 
 use crate::beyond::{beyond, ends};
 use crate::effects::{Assumed, Effects, mtf50, pixel_mm};
@@ -27,7 +27,7 @@ use spectra_film::raster::Raster;
 use spectra_film::stock::{MeterResponse, Process, Stock, unknown_reciprocity};
 use std::any::Any;
 
-/// A film from a data file.
+/// A camera film from a data file, with its development and the way it is viewed.
 #[derive(Clone, Debug)]
 pub struct StockFilm {
     stock: Stock,
@@ -35,35 +35,35 @@ pub struct StockFilm {
     emulsion: Emulsion,
     channels: Vec<Channel>,
     exposure_time_s: f64,
-    /// An exposure time was stated, and the camera meters.
+    /// Whether an exposure time was stated although the camera meters.
     is_overruled: bool,
     keeps_exposure: bool,
     meters: Metered,
     meter: Meter,
     effects: Effects,
     frame: Option<FrameEffects>,
-    /// What a mid gray subject leaves on it.
+    /// Exposure of a mid gray subject, lx s.
     gray_lx_s: f64,
-    /// Of the lens between film and picture, cycles/mm.
+    /// Frequency at which the lens between film and picture keeps half of the contrast, cycles/mm; `None` without a lens.
     mtf50: Option<f64>,
-    /// What it ends in is no picture but a scale of densities.
+    /// Whether the result is a scale of densities and not a picture.
     is_data: bool,
     picture: Picture,
     words: String,
 }
 
 impl StockFilm {
-    /// The film that `params` describe.
+    /// Builds the film that `params` describe.
     ///
     /// # Errors
-    /// What is wrong with the parameters or with the stock's file.
+    /// Faults in the parameters or in the stock's file.
     pub fn build(params: &Params, context: &Context<'_>) -> Result<Self, Faults> {
         let p: StockParams = params.parse()?;
         let stock = load_stock(&p.stock, "stock", params, context.resources)?;
         let mut faults = Faults::new();
         let Some(iso) = stock.iso.filter(|_| stock.process != Process::Print) else {
             let fault = params.fault("stock", format!("{} is not a camera film", stock.name));
-            return Err(fault.hint("a print stock is named at `print`").into());
+            return Err(fault.hint("name a print stock at `print`").into());
         };
         let exposed = faults.take(Exposed::new(p.exposure, p.metering, params).map_err(Faults::from));
         let metering = exposed.map_or(Metering::Average, |exposed| exposed.metering);
@@ -81,7 +81,8 @@ impl StockFilm {
         let effects = faults.take(Effects::new(&(&p).into(), params, &stock, &emulsion));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let gray_lx_s = metered_exposure_lx_s(speed);
-        // Curves that lie elsewhere than the speed says: the likeliest cause of what cannot be printed, and else a picture too light or dark.
+        // Curves that do not match the stated speed are the likeliest reason why a film cannot be printed, and otherwise make the picture
+        // too light or too dark.
         let doubts = stock.doubts();
         let seen = seen(&p, params, context.resources, &stock, &emulsion, gray_lx_s).map_err(|mut faults| {
             for fault in faults.0.iter_mut().filter(|fault| fault.hint.is_none()) {
@@ -89,7 +90,7 @@ impl StockFilm {
             }
             faults
         })?;
-        // The speeds of the bundled stocks are their makers', whatever the digitized curves give.
+        // Bundled stocks keep their makers' speeds, whatever the digitized curves give, so only the user's own files are checked.
         let is_own = p.stock.ends_with(".yaml") || p.stock.ends_with(".yml");
         for doubt in doubts.iter().filter(|_| is_own) {
             let (what, remedy) = doubt.split_once(": ").unwrap_or((doubt.as_str(), "see `spectra film info`"));
@@ -120,19 +121,19 @@ impl StockFilm {
         })
     }
 
-    /// The stock.
+    /// The stock, as read from its file.
     #[must_use]
     pub fn stock(&self) -> &Stock {
         &self.stock
     }
 
-    /// The stock as developed.
+    /// The emulsion of the stock, with its curves for the chosen development.
     #[must_use]
     pub fn emulsion(&self) -> &Emulsion {
         &self.emulsion
     }
 
-    /// The print on paper that it ends in, as metered, if it does.
+    /// The print on paper, at the metered exposure; `None` if the film is not printed on paper.
     #[must_use]
     pub fn print(&self) -> Option<&Print> {
         match &self.picture {
@@ -141,11 +142,11 @@ impl StockFilm {
         }
     }
 
-    /// What the layers are exposed to, lx s, after scatter in the emulsion and reflection from the base: a plane a layer, in
+    /// Returns the exposure of the layers, lx s, after scatter in the emulsion and reflection from the base: one plane per layer, in
     /// the order of the stock.
     ///
     /// # Errors
-    /// A text that says which channel is missing.
+    /// A message that names the missing channel, or says that pixels must be square.
     pub fn exposed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
         let factor = self.meter.factor(exposure) as f32;
         let raster = self.effects.raster(exposure.size)?;
@@ -159,15 +160,15 @@ impl StockFilm {
         layers.collect()
     }
 
-    /// The developed film: a plane of amounts a layer (see [`spectra_film::deposit::Deposit`]), in the order of the stock.
+    /// Develops the film and returns one plane of amounts per layer (see [`spectra_film::deposit::Deposit`]), in the order of the stock.
     ///
     /// # Errors
-    /// A text that says which channel is missing.
+    /// A message that names the missing channel, or says that pixels must be square.
     pub fn developed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
         self.planes(exposure, false).map(|planes| planes.amounts)
     }
 
-    /// What a place without film is shown as.
+    /// Returns the color, linear RGB, of a place where there is no film.
     fn hole(&self, reach: Reach) -> [f32; 3] {
         match &self.picture {
             Picture::Paper(print) => [print.metered.picture(0.0) as f32; 3],
@@ -175,7 +176,7 @@ impl StockFilm {
         }
     }
 
-    /// The developed film, and where it is `kept` what its layers were exposed to, as layers of a file.
+    /// Develops the film; if `kept`, also returns the exposure of its layers as layers of a file.
     fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<Planes, String> {
         let factor = self.meter.factor(exposure);
         let time_s = self.exposure_time_s * factor;
@@ -213,7 +214,7 @@ impl StockFilm {
         Ok(Planes { amounts, exposed, raster, laid })
     }
 
-    /// The developed film as the lens after it sees it, and what is `wanted` beside it, as layers of a file.
+    /// Develops the film, applies the blur of the lens that views it, and returns the other `wanted` planes as layers of a file.
     fn seen_through(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<(Planes, Vec<ExposureChannel>), String> {
         let mut planes = self.planes(exposure, wanted.layers)?;
         let mut layers = std::mem::take(&mut planes.exposed);
@@ -229,7 +230,7 @@ impl StockFilm {
         Ok((planes, layers))
     }
 
-    /// The picture of a developed film.
+    /// Prints, scans or projects a developed film and returns the finished picture.
     fn printed(&self, negative: &Planes, mut layers: Vec<ExposureChannel>, wanted: Wanted) -> Result<Finished, String> {
         let Planes { amounts, raster, laid, .. } = negative;
         let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
@@ -243,7 +244,7 @@ impl StockFilm {
             layers.extend(print.map(|(layer, values)| layer_of("print", &layer, "", values)));
         }
         let (mut shown, mut open): (Vec<[f32; 3]>, _) = match (&self.picture, &planes[..]) {
-            // Paper is a gray between its own black and white: any screen has it.
+            // A print on paper is a gray between the paper's black and white, which any screen can show.
             (Picture::Paper(print), [silver]) => (print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(), None),
             (Picture::Positive(positive), planes) => {
                 (positive.picture(planes), wanted.open.then(|| positive.open_picture(planes)))
@@ -262,26 +263,26 @@ impl StockFilm {
     }
 }
 
-/// Exposure of what stands on a film's edge, over that of a mid gray: dense on any film.
+/// Exposure of the letters on a film's edge, as a multiple of the exposure of a mid gray; dense on any film.
 const EDGE_PRINT: f64 = 30.0;
 
-/// A developed film.
+/// The planes of a developed film.
 struct Planes {
-    /// A plane of amounts a layer.
+    /// One plane of amounts per layer.
     amounts: Vec<Vec<f32>>,
-    /// What the layers were exposed to, if it was kept.
+    /// Exposure of the layers, if it was kept.
     exposed: Vec<ExposureChannel>,
-    /// Where its pixels lie: with a border it is larger than the frame.
+    /// Position of the pixels on the film; with a border the planes are larger than the frame.
     raster: Raster,
     laid: Option<Laid>,
 }
 
-/// A layer of a file.
+/// Returns a plane as a layer of a file, named `group.layer`.
 fn layer_of(group: &str, layer: &str, unit: &str, values: Vec<f32>) -> ExposureChannel {
     ExposureChannel { name: format!("{group}.{layer}"), unit: unit.to_owned(), values }
 }
 
-/// The emulsion, and the name of its development.
+/// Returns the emulsion with the curves of the chosen development or push, and the development in words.
 fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsion, String), Faults> {
     let known: Vec<&str> = stock.developments().collect();
     let chosen = p.development.as_deref().or(known.first().copied()).unwrap_or_default();
@@ -294,21 +295,21 @@ fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsi
         return Ok((emulsion, chosen.to_owned()));
     };
     let developed = pushed_or_assumed(stock, chosen, stops).map_err(|e| {
-        let other = "set another `iso`: the same film, exposed otherwise";
+        let other = "set another `iso` to expose the same film differently";
         let hint = match &e {
-            PushError::Beyond { .. } | PushError::BeyondAssumed { .. } => format!("a `push` within that, or {other}"),
+            PushError::Beyond { .. } | PushError::BeyondAssumed { .. } => format!("a smaller `push`, or {other}"),
             _ => format!("leave `push` out, or {other}"),
         };
         params.fault("push", e.to_string()).hint(hint)
     })?;
     let emulsion = Emulsion::with_curves(stock, developed.curves).map_err(|e| params.fault("push", e.to_string()))?;
     if developed.minutes.is_none() && p.assumed == Assumed::Off {
-        let text = format!("what a push does to {} is assumed, and `assumed: off` leaves that out", stock.name);
+        let text = format!("the effect of a push on {} is assumed, and `assumed: off` excludes that", stock.name);
         return Err(params.fault("push", text).hint("leave out one of the two").into());
     }
     let how = match developed.minutes {
         Some(minutes) => format!("{minutes:.1} min (pushed {stops:+} stops)"),
-        None => format!("{chosen} (pushed {stops:+} stops, assumed: as the median of other films)"),
+        None => format!("{chosen} (pushed {stops:+} stops, assumed: the median of other films)"),
     };
     Ok((emulsion, how))
 }
@@ -359,7 +360,7 @@ impl Film for StockFilm {
             let [across, down] = pixel_mm(size);
             if (across / down - 1.0).abs() > 0.01 {
                 let text = format!("`frame` needs square pixels, not {across:.5} x {down:.5} mm");
-                return Err([text, "a resolution of the format's shape".to_owned()]);
+                return Err([text, "set a `resolution` with the aspect ratio of the format".to_owned()]);
             }
             frame.check(size)?;
         }
@@ -413,7 +414,7 @@ impl Film for StockFilm {
 
     fn print(&self, negative: &Negative, wanted: Wanted) -> Result<Finished, String> {
         let made = negative.downcast_ref::<(Planes, Vec<ExposureChannel>)>();
-        let (negative, layers) = made.ok_or_else(|| format!("{} makes other negatives", self.stock.name))?;
+        let (negative, layers) = made.ok_or_else(|| format!("{} did not make this negative", self.stock.name))?;
         self.printed(negative, layers.clone(), wanted)
     }
 

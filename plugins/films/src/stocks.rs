@@ -1,16 +1,16 @@
-//! Stocks by their names.
+//! Loading of stocks by name.
 
 use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::resources::Resources;
 use spectra_film::stock::Stock;
 
-/// The stock that `key` names.
+/// Loads the stock `name`, which the scene names at `key`.
 pub(crate) fn load_stock(name: &str, key: &str, params: &Params, resources: &dyn Resources) -> Result<Stock, Faults> {
     Stock::load(name, resources).map_err(|faults| place_at(faults, params, key, name))
 }
 
-/// A file that is not found has no place of its own: the key that names it has.
+/// Places the fault of a file that was not found at `key`, which names the file, and suggests similar names.
 fn place_at(faults: Faults, params: &Params, key: &str, name: &str) -> Faults {
     let place = |fault: Fault| {
         if fault.place.is_some() {

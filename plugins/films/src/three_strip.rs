@@ -1,4 +1,4 @@
-//! `film: three-strip`, three separation negatives behind a beam splitter, printed by dye transfer.
+//! The film kind `three-strip`: three separation negatives behind a beam splitter, printed by dye transfer.
 
 use crate::effects::{Assumed, Effects, HalationSetting, Off, OpticsSetting, Switches, mtf50, pixel_mm};
 use crate::metering::{Exposed, ExposureParams, METER, Meter, Metered, Metering, SpotParams, overruled};
@@ -24,17 +24,17 @@ use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmitt
 
 /// Three separation negatives behind a beam splitter, printed by dye transfer.
 ///
-/// The Technicolor camera of the 1930s: a prism divides the light between two gates, a green filter stands before one
-/// film, and a pair of films behind a magenta filter takes blue in front and red behind. Each record becomes a matrix
-/// that carries its dye (yellow, magenta, cyan) to the print.
+/// This is the Technicolor camera of the 1930s. A prism divides the light between two gates. A green filter stands in
+/// front of the film in one gate; in the other, a pair of films behind a magenta filter records blue on the front film
+/// and red on the rear one. Each record becomes a matrix that carries its dye (yellow, magenta, cyan) to the print.
 ///
-/// Here each record is any black-and-white stock of one layer behind filters. The three are balanced so that a neutral
-/// subject in the light of `balance` exposes them alike, and each is exposed for its own speed; `iso` is the speed of
-/// the whole camera.
+/// Here each record is any black-and-white stock with one layer, behind filters. The three are balanced so that a
+/// neutral subject in the light of `balance` exposes them alike, and each is exposed for its own speed; `iso` is the
+/// speed of the whole camera.
 ///
-/// Each record has the scatter, the adjacency, the halation and the grain of its stock's file. The pair lies emulsion to
-/// emulsion: what the red record sees was scattered in the blue one before, which makes it the softest, and behind the blue
-/// one there is no base that would throw light back. `optics` stands for what matrices and transfer lose.
+/// Each record has the scatter, adjacency, halation and grain of its stock's file. The pair lies emulsion to emulsion:
+/// light for the red record is scattered in the blue one first, so the red record is the softest. Behind the blue one
+/// there is no base that would reflect light. `optics` stands for the detail lost in matrices and dye transfer.
 ///
 /// # Example
 /// ```yaml
@@ -52,65 +52,67 @@ use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmitt
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ThreeStripParams {
-    /// Exposure time, s if bare; or `metered`: a picture of integers, which was exposed already, is taken as it is (18 % of its white is
-    /// a mid gray), and anything else is metered by `metering: camera`. Leave it out where `metering` says how the camera meters.
+    /// Exposure time, s if bare, or `metered`. With `metered`, a source picture of integers, which was exposed already, keeps its
+    /// exposure (18 % of its white is a mid gray), and anything else is metered by `metering: camera`. Leave it out if `metering` says
+    /// how the camera meters.
     pub exposure: Option<ExposureParams>,
-    /// How the camera finds its exposure: `manual`, `average`, `spot`, or `camera`, the mean of the frame with its middle counted more and
-    /// lights no more than eight times the median. A metered frame is exposed so that the metered area gets 10/S lx s, the exposure of a
-    /// mid gray.
+    /// Metering mode of the camera: `manual`, `average`, `spot` or `camera`. `camera` is a center-weighted mean of the frame in which no
+    /// pixel counts for more than eight times the median. A metered frame is exposed so that the metered area gets 10/S lx s, the exposure
+    /// of a mid gray.
     pub metering: Option<Metering>,
-    /// Which frame of an animation is metered: the `first` one, for all of them, or `each` by itself, which may flicker; `first` if left
-    /// out.
+    /// Frames of an animation that are metered: `first` meters the first one and exposes all alike; `each` meters every frame, which may
+    /// make the animation flicker. `first` if left out.
     #[serde(default)]
     pub meter: Metered,
-    /// The spot of `metering: spot`; a tenth of the height in the middle of the frame if left out.
+    /// Spot of `metering: spot`. If left out, a spot in the middle of the frame whose diameter is a tenth of the frame's height.
     pub spot: Option<SpotParams>,
-    /// Stops by which a metered frame is exposed more than the meter says, -10 to 10; 0 if left out.
+    /// Exposure compensation of a metered frame, stops, -10 to 10, positive for more exposure; 0 if left out.
     #[schemars(range(min = -10, max = 10))]
     pub compensation: Option<f64>,
-    /// The ISO speed of the whole camera, behind beam splitter and filters, more than 0; 5 if left out.
+    /// ISO speed of the whole camera, with beam splitter and filters, more than 0; 5 if left out.
     pub iso: Option<AboveZero<f64>>,
-    /// The light in which a neutral subject exposes all three records alike: the name of a light or a file.
+    /// Light in which a neutral subject exposes all three records alike: the name of a light or a file.
     #[serde(default = "daylight")]
     pub balance: String,
-    /// The light by which the print is viewed: the name of a light or a file.
+    /// Light by which the print is viewed: the name of a light or a file.
     #[serde(default = "daylight")]
     pub light: String,
-    /// What is shown as white: `film`, the clear print, or `lamp`, the bare light.
+    /// White of the picture: `film`, the clear print, or `lamp`, the bare light.
     #[serde(default)]
     pub white: WhiteParams,
-    /// What is shown as black: `kept`, no light, so that the print keeps the black that it has, or `stretched`, the darkest of it.
+    /// Black of the picture: `kept` shows no light as black, so that the print keeps its own black; `stretched` shows the darkest tone of
+    /// the print as black.
     #[serde(default)]
     pub black: BlackParams,
-    /// What surrounds the print: `average` shows its own density, mid gray as 18 %; `dark` and `dim` as an eye sees it that has adapted
-    /// to such a room (CIECAM02), lighter and softer.
+    /// Surround of the print: `average` shows the print's own density, mid gray as 18 %; `dark` and `dim` show the print as an eye
+    /// adapted to such a room sees it (CIECAM02), lighter and softer.
     #[serde(default)]
     pub surround: SurroundParams,
-    /// The print, with its dyes and the curves of its matrices: a bundled stock or a YAML file beside the scene, of
-    /// layers called blue, green and red.
+    /// Print stock, with its dyes and the curves of its matrices: a bundled stock or a YAML file beside the scene, with layers called
+    /// blue, green and red.
     #[serde(default = "technicolor")]
     pub print: String,
-    /// The negative of the red record, and what stands before it; Double-X behind wratten-32 and wratten-25 if left out.
+    /// Negative of the red record and the filters in front of it; Double-X behind wratten-32 and wratten-25 if left out.
     #[serde(default = "red")]
     pub red: RecordParams,
-    /// The negative of the green record, and what stands before it; Double-X behind wratten-58 if left out.
+    /// Negative of the green record and the filters in front of it; Double-X behind wratten-58 if left out.
     #[serde(default = "green")]
     pub green: RecordParams,
-    /// The negative of the blue record, and what stands before it; Double-X behind wratten-47 if left out.
+    /// Negative of the blue record and the filters in front of it; Double-X behind wratten-47 if left out.
     #[serde(default = "blue")]
     pub blue: RecordParams,
-    /// Whether emulsions scatter light, where the file of their stock states its MTF; `true` if left out.
+    /// Whether emulsions scatter light, if the files of their stocks state their MTF; `true` if left out.
     pub scatter: Option<bool>,
-    /// Whether edges stand out in development, where the MTF in the file of a stock exceeds 1; `true` if left out.
+    /// Whether edges stand out in development, if the MTF in the file of a stock exceeds 1; `true` if left out.
     pub adjacency: Option<bool>,
     /// Reflection from the back of the green and the red record, or `off`; as in the files of their stocks if left out.
     pub halation: Option<HalationSetting>,
-    /// Whether there is grain, where the file of a stock states its granularity; `true` if left out.
+    /// Whether there is grain, if the file of a stock states its granularity; `true` if left out.
     pub grain: Option<bool>,
-    /// What the matrices and the transfer of the dyes lose of fine detail, as a lens, or `off`; half of the contrast is left at
-    /// 60 cycles/mm if left out, which is assumed.
+    /// Fine detail that matrices and dye transfer lose, expressed as a lens, or `off`. If left out, half of the contrast is kept at
+    /// 60 cycles/mm, which is assumed.
     pub optics: Option<OpticsSetting>,
-    /// Whether effects count whose figures are assumed in the file of a stock, rather than measured or stated: `on` or `off`.
+    /// Whether effects whose figures are assumed in the file of a stock, rather than measured or stated, are applied: `on` or `off`.
     #[serde(default)]
     pub assumed: Assumed,
     /// Seed of the grain, 0 or more.
@@ -118,16 +120,16 @@ pub struct ThreeStripParams {
     pub grain_seed: u64,
 }
 
-/// One record: a stock behind filters.
+/// One record of a three-strip camera: a stock behind filters.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RecordParams {
-    /// The stock, a black-and-white negative of a single layer: a bundled one or a YAML file beside the scene.
+    /// Stock of the record, a black-and-white negative with a single layer: a bundled one or a YAML file beside the scene.
     pub stock: String,
-    /// How it is developed: a name from the stock's file; the first one there if left out.
+    /// Development of the stock: a name from its file; the first one there if left out.
     pub development: Option<String>,
-    /// Transmittances before it, by name or file: the filter of the beam splitter, a dyed emulsion in front of it. None
-    /// if left out.
+    /// Filters in front of the stock, as names or files of transmittances: for example, the filter of the beam splitter, or a dyed
+    /// emulsion in front. No filters if left out.
     #[serde(default)]
     pub filters: Vec<String>,
 }
@@ -137,11 +139,11 @@ fn record(stock: &str, development: Option<&str>, filters: &[&str]) -> RecordPar
     RecordParams { stock: stock.into(), development: development.map(Into::into), filters }
 }
 
-// As J. Ball described the camera ("The Technicolor process of three-color cinematography", J. SMPE 25, 127, 1935): a green
-// filter before one film; a magenta one before the pair of the others, the front film of which sees blue and is dyed red.
-// The stock of all three is a later one whose sensitivity is known, behind a blue filter where the front film saw blue only:
-// records of one contrast, as the process needs them, and the steepest that its sheet has: the print then has the contrast for
-// which the process was known.
+// J. Ball described the camera ("The Technicolor process of three-color cinematography", J. SMPE 25, 127, 1935): a green
+// filter in front of one film, and a magenta filter in front of the pair, whose front film sees only blue and is dyed red.
+// Here all three records use a later stock whose sensitivity is known; a blue filter stands in for the blue-sensitive front film.
+// One stock gives all records the same contrast, as the process needs. The development is the steepest on the stock's sheet, which
+// gives the print the contrast for which the process was known.
 fn red() -> RecordParams {
     record("kodak-double-x-5222", Some("12-min"), &["wratten-32", "wratten-25"])
 }
@@ -167,38 +169,38 @@ fn technicolor() -> String {
 pub struct ThreeStrip {
     channels: Vec<Channel>,
     exposure_time_s: f64,
-    /// An exposure time was stated, and the camera meters.
+    /// Whether an exposure time was stated although the camera meters.
     is_overruled: bool,
     keeps_exposure: bool,
     meters: Metered,
     meter: Meter,
     positive: Positive,
-    /// Each record by itself, in the order of the print's layers.
+    /// Emulsion of each record, in the order of the print's layers.
     developed: [Emulsion; 3],
     effects: [Effects; 3],
-    /// What long exposures lose on each record.
+    /// Reciprocity failure of each record; `None` if it is not known.
     reciprocity: [Option<Reciprocity>; 3],
-    /// Names of those of the three stocks whose reciprocity is not known.
+    /// Names of the stocks whose reciprocity failure is not known, separated by commas.
     unknown: String,
-    /// Of what the matrices and the transfer lose, cycles/mm.
+    /// Frequency at which matrices and dye transfer keep half of the contrast, cycles/mm; `None` if they lose nothing.
     mtf50: Option<f64>,
     words: String,
 }
 
-/// Speed of the camera, about what it had in the daylight of 1935.
+/// Default ISO speed of the camera, about its speed in daylight in 1935.
 const SPEED: f64 = 5.0;
 
-/// Records in the order of the print's layers.
+/// Names of the records, in the order of the print's layers.
 const RECORDS: [&str; 3] = ["blue", "green", "red"];
-/// The front film of the pair, and the one behind it.
+/// Index of the front film of the pair; `RED` is the film behind it.
 const BLUE: usize = 0;
 const RED: usize = 2;
 
 impl ThreeStrip {
-    /// The camera that `params` describe.
+    /// Builds the camera that `params` describe.
     ///
     /// # Errors
-    /// What is wrong with the parameters or with a stock's file.
+    /// Faults in the parameters or in a stock's file.
     pub fn build(params: &Params, context: &Context<'_>) -> Result<Self, Faults> {
         let p: ThreeStripParams = params.parse()?;
         let iso = p.iso.map_or(SPEED, AboveZero::get);
@@ -233,11 +235,11 @@ impl ThreeStrip {
         let layers: Vec<&str> = print.layers.iter().map(|l| l.name.as_str()).collect();
         if layers != RECORDS {
             let fault = params.fault("print", format!("{} has no dyes for three records", print.name));
-            return Err(fault.hint("a print stock of layers called blue, green and red").into());
+            return Err(fault.hint("name a print stock with layers called blue, green and red").into());
         }
         let development = print.developments().next().unwrap_or_default().to_owned();
         let printed = Emulsion::new(&print, &development).map_err(|e| params.fault("print", e.to_string()))?;
-        // Each record's exposure counts from its own speed, so that a mid gray is as dense as its stock would have it.
+        // Each record is exposed for the speed of its own stock, so that a mid gray gets the density it should have on that stock.
         let film = Emulsion::separations([0, 1, 2].map(|i| records[i].curve.clone()));
         let gray = metered_exposure_lx_s(iso);
         let scaled: Vec<f64> = records.iter().map(|r| metered_exposure_lx_s(r.iso) / gray).collect();
@@ -261,7 +263,7 @@ impl ThreeStrip {
                 key: &key,
                 scatter: p.scatter,
                 adjacency: p.adjacency,
-                // The pair lies emulsion to emulsion, blue in front.
+                // The pair lies emulsion to emulsion, with blue in front, so no base lies behind the blue record.
                 halation: if i == BLUE { Some(HalationSetting::Word(Off::Off)) } else { p.halation },
                 grain: p.grain,
                 assumed: p.assumed,
@@ -299,15 +301,16 @@ impl ThreeStrip {
 }
 
 impl ThreeStrip {
-    /// Densities of the three negatives, in the order blue, green, red.
+    /// Develops the three negatives and returns their densities, one plane each, in the order blue, green, red.
     ///
     /// # Errors
-    /// A text that says which channel is missing.
+    /// A message that names the missing channel, or says that pixels must be square.
     pub fn negatives(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
         self.records(exposure, |_, _, _| ())
     }
 
-    /// The same; `exposed` sees the light of each record where it fell after scatter, with what the meter makes of it.
+    /// Develops the three negatives. For each record, calls `exposed` with its name, its plane of exposure after scatter and halation,
+    /// and the meter's factor for that plane.
     fn records(
         &self,
         exposure: &ExposureFrame,
@@ -334,7 +337,7 @@ impl ThreeStrip {
     }
 }
 
-/// One negative of the camera.
+/// One negative of the camera, with its filters.
 struct Record {
     key: &'static str,
     name: String,
@@ -350,7 +353,7 @@ impl Record {
         let stock = load_stock(&p.stock, &at, params, context.resources)?;
         let (Some(iso), [layer]) = (stock.iso, &stock.layers[..]) else {
             let fault = params.fault(&at, format!("{} is not a camera film with one layer", stock.name));
-            return Err(fault.hint("a black-and-white negative such as `kodak-double-x-5222`").into());
+            return Err(fault.hint("name a black-and-white negative such as `kodak-double-x-5222`").into());
         };
         let development = match &p.development {
             Some(name) => layer.development(name),
@@ -377,7 +380,8 @@ impl Record {
         self.stock.layers[0].sensitivity.at(wavelength_nm) * passes
     }
 
-    /// The channel of its exposure: photometric lux seconds of `balance`, before the filters.
+    /// Returns the channel of the record's exposure, scaled so that light of the spectrum `balance` counts as its photometric lux-seconds
+    /// in front of the filters. Fails if the filters pass none of that light to which the stock is sensitive.
     fn channel(&self, balance: &Emission, params: &Params, context: &Context<'_>) -> Result<Channel, Faults> {
         let power = balance.to_power(&BAND);
         let on_band = |f: &dyn Fn(f64) -> f64| BAND.wavelengths_nm().map(f).collect::<Vec<f64>>();
@@ -385,7 +389,7 @@ impl Record {
         let lux = LUMINOUS_EFFICACY_LM_PER_W * power.seen_by(&on_band(&|w| v.at(w)));
         let seen = power.seen_by(&on_band(&|w| self.sees(w)));
         if !(seen > 0.0 && seen.is_finite()) {
-            let text = format!("behind its filters, {} sees nothing of that light", self.name);
+            let text = format!("behind its filters, {} records none of the light of `balance`", self.name);
             return Err(params.fault(&format!("{}.filters", self.key), text).into());
         }
         let response = context.grid.wavelengths_nm().map(|w| self.sees(w) * lux / seen).collect();

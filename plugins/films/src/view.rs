@@ -1,4 +1,4 @@
-//! How the developed film is looked at.
+//! Viewing of the developed film: parameters of prints, scans and projections, and prints on paper.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -8,32 +8,32 @@ use spectra_film::positive::{Positive, ScanScale};
 use spectra_film::print::{Paper, Print};
 use std::borrow::Cow;
 
-/// `view` as written in a scene.
+/// The value of `view` as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum View {
-    /// A negative printed on paper or on a print stock.
+    /// A negative is printed on paper or on a print stock.
     Print,
-    /// The film itself on a light table.
+    /// The film itself is viewed on a light table.
     Negative,
-    /// A negative scanned and turned around.
+    /// A negative is scanned and inverted.
     Scan,
-    /// A reversal film, projected.
+    /// A reversal film is projected.
     Projection,
 }
 
-/// `scan` as written in a scene.
+/// The value of `scan` as written in a scene.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum ScanParams {
-    /// A picture to look at, its highlights under a soft shoulder.
+    /// A picture to look at, with a soft shoulder for the highlights.
     #[default]
     Picture,
-    /// Density over unexposed film as Cineon files hold it: value = (95 + density / 0.002) / 1023.
+    /// Density over unexposed film, as in Cineon files: value = (95 + density / 0.002) / 1023.
     Log,
     /// Density over unexposed film on the scale of ADX16: value = (1520 + 8000 density) / 65535.
     Adx,
-    /// Density, base included: value = density / 4.
+    /// Density including the base: value = density / 4.
     Density,
 }
 
@@ -48,14 +48,14 @@ impl From<ScanParams> for ScanScale {
     }
 }
 
-/// `white` as written in a scene.
+/// The value of `white` as written in a scene: what is shown as white.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum WhiteParams {
-    /// The clear film or print.
+    /// The clear film or print is white.
     #[default]
     Film,
-    /// The bare light.
+    /// The bare light is white.
     Lamp,
 }
 
@@ -68,14 +68,14 @@ impl From<WhiteParams> for PictureWhite {
     }
 }
 
-/// `black` as written in a scene.
+/// The value of `black` as written in a scene: what is shown as black.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum BlackParams {
-    /// The medium keeps its black; a print on paper reflects half a percent of the room's light besides.
+    /// The medium keeps its own black; a print on paper also reflects half a percent of the room's light.
     #[default]
     Kept,
-    /// The darkest of print or slide is shown as black.
+    /// The darkest tone of print or slide is shown as black.
     Stretched,
 }
 
@@ -88,15 +88,15 @@ impl From<BlackParams> for PictureBlack {
     }
 }
 
-/// `surround` as written in a scene.
+/// The value of `surround` as written in a scene.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum SurroundParams {
-    /// As an eye sees it that has adapted to a dark room.
+    /// The picture as seen by an eye adapted to a dark room.
     Dark,
-    /// As an eye sees it in a dim one.
+    /// The picture as seen by an eye adapted to a dim room.
     Dim,
-    /// The density of the film itself.
+    /// The picture with the density of the film itself.
     #[default]
     Average,
 }
@@ -111,19 +111,20 @@ impl From<SurroundParams> for Surround {
     }
 }
 
-/// `paper` as written in a scene; see [`Paper`].
+/// The map `paper` as written in a scene; see [`Paper`].
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PaperParams {
-    /// Contrast: 0 (soft) to 5 (hard), of ISO ranges R155, 127, 105, 87, 72 and 57, and straight between; or `auto`, the
-    /// grade and the exposure that print the lightest 1 % of this frame at the beginning of the paper's exposure range and the
-    /// darkest at its end, if grade 5 can: a flatter frame is printed on grade 2, as metered. 2 if left out.
+    /// Paper grade, 0 (soft) to 5 (hard): ISO ranges R155, 127, 105, 87, 72 and 57, interpolated linearly between grades. `auto` chooses
+    /// grade and exposure for each frame, so that the lightest 1 % of it are printed at the beginning of the paper's exposure range and
+    /// the darkest 1 % at its end. A frame too flat for grade 5 is printed on grade 2, as metered. 2 if left out.
     pub grade: Option<Grade>,
-    /// Exposure range, log10 of exposure (the ISO range over 100), more than 0; that of the grade if left out.
+    /// Exposure range of the paper, log10 of exposure (the ISO range divided by 100), more than 0; that of the grade if left out.
     pub range: Option<AboveZero<f64>>,
     /// Maximum density over the paper's white, more than 0; 2.1, a glossy paper, if left out.
     pub maximum_density: Option<AboveZero<f64>>,
-    /// Width of the toe, where the highlights are, log10 of exposure, above 0 to 2; 0.2 of grade 2 and as much wider as the range if left out.
+    /// Width of the toe, where the highlights are, log10 of exposure, above 0 to 2. If left out, 0.2 for grade 2, and in proportion to the
+    /// range for others.
     #[schemars(range(max = 2))]
     pub toe: Option<AboveZero<f64>>,
     /// Sharpness of the shoulder, where the shadows are, 1 to 64; 6 if left out.
@@ -131,42 +132,42 @@ pub struct PaperParams {
     pub shoulder: Option<AboveZero<f64>>,
 }
 
-/// `grade` as written.
+/// The value of `grade` as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(untagged)]
 pub enum Grade {
-    /// As the frame needs it.
+    /// The word `auto`: the grade that suits the frame.
     Auto(AutoWord),
-    /// 0 to 5.
+    /// A paper grade, 0 to 5.
     Number(f64),
 }
 
-/// The word.
+/// The word `auto` as the value of `grade`.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum AutoWord {
-    /// As the frame needs it.
+    /// The grade that suits the frame.
     Auto,
 }
 
-/// A print on paper: made for one frame, or for all of the film.
+/// A print on paper, with one grade and exposure for all frames or with its own for each.
 #[derive(Clone, Debug)]
 pub(crate) struct PaperPrint {
-    /// As the meter says.
+    /// The print at the exposure that the meter chose.
     pub metered: Print,
     /// The paper, if grade and exposure are chosen for each frame.
     pub automatic: Option<Paper>,
-    /// What is shown as black.
+    /// Black of the finished picture.
     pub black: PictureBlack,
 }
 
 impl PaperPrint {
-    /// The picture of a negative.
+    /// Returns the finished picture of a negative, given its densities: one gray value per pixel.
     pub(crate) fn pictures(&self, density: &[f32]) -> Result<Vec<f32>, String> {
         Ok(self.of(density)?.pictures(density))
     }
 
-    /// Densities of the print of a negative over the paper's white.
+    /// Returns the densities of the print over the paper's white, given the densities of the negative.
     pub(crate) fn densities(&self, density: &[f32]) -> Result<Vec<f32>, String> {
         let print = self.of(density)?;
         Ok(density.iter().map(|d| print.density(f64::from(*d)) as f32).collect())
@@ -179,11 +180,11 @@ impl PaperPrint {
     }
 }
 
-/// The positive that the film ends in.
+/// The process that turns a developed film into the finished picture.
 #[derive(Clone, Debug)]
 pub(crate) enum Picture {
-    /// Paper under silver.
+    /// A print of a black-and-white negative on paper.
     Paper(Box<PaperPrint>),
-    /// All else.
+    /// Any other print, a scan, a projection, or the film itself.
     Positive(Box<Positive>),
 }

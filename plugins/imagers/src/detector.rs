@@ -1,4 +1,4 @@
-//! `imager: detector`: a plane with any registered response; and what all planes share that record by themselves.
+//! `imager: detector`: a plane with any registered response. [`DetectorPlane`] is the base of other plane imagers, too.
 
 use crate::params::Frame;
 use crate::plane::Plane;
@@ -11,10 +11,10 @@ use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::Channel;
 use spectra_core::stage::{Digitize, Imager, Launch, Receive, Response};
 
-/// A frame of detectors that see what a `response` says.
+/// A frame of detectors with any `response`.
 ///
-/// For detectors of your own (sensitivities from files), a light meter, the eye at night. Each channel holds the
-/// integral of irradiance times response, and with an exposure time that times the seconds.
+/// Use it for detectors of your own (sensitivities from files), a light meter or the eye at night. Each channel holds the
+/// integral of irradiance times response. With an exposure time it is multiplied by the seconds.
 ///
 /// # Example
 /// ```yaml
@@ -29,14 +29,14 @@ use spectra_core::stage::{Digitize, Imager, Launch, Receive, Response};
 pub struct DetectorParams {
     #[serde(flatten)]
     frame: Frame,
-    /// What it sees.
+    /// Spectral response of the detectors: their channels.
     response: Part<StageOf<dyn Response>>,
-    /// Exposure time, s if bare. With it the channels are multiplied by it.
+    /// Exposure time, s if bare. If it is given, the channels are multiplied by it.
     #[serde(default)]
     exposure: Option<Positive<Time>>,
 }
 
-/// A plane whose pixels all see alike.
+/// A plane imager whose pixels all have the same response.
 #[derive(Clone, Debug)]
 pub struct DetectorPlane<R> {
     pub(crate) plane: Plane,
@@ -45,7 +45,7 @@ pub struct DetectorPlane<R> {
 }
 
 impl<R: Response> DetectorPlane<R> {
-    /// Detectors of that response on that frame; with an exposure time, s, they add up light over it.
+    /// Creates detectors with this response on the frame `plane`. With an exposure time, s, they integrate light over it.
     #[must_use]
     pub fn of(plane: Plane, response: R, exposure_time_s: Option<f64>) -> Self {
         Self { plane, response, exposure_time_s }

@@ -1,4 +1,4 @@
-//! `imager: film`, a plane that a film lies on: the film decides what is recorded.
+//! `imager: film`: a plane that carries a film, which decides what is recorded.
 
 use crate::params::Frame;
 use crate::plane::Plane;
@@ -10,21 +10,21 @@ use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::stage::{Imager, Launch, Receive, Response};
 
-/// A frame with a film on it; what it records is the film's.
+/// A frame that carries a film, which decides what is recorded.
 ///
-/// The section `film` of the scene says which film, and how it is exposed and developed; several films side by side
+/// The section `film` of the scene names the film and says how it is exposed and developed. Several films side by side
 /// record the same light.
 ///
-/// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
-/// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
-/// camera), or bent.
+/// `resolution` is the number of pixels across and down. If its aspect ratio differs from that of the frame, the pixels
+/// are not square. The frame lies in the image plane of the lens unless you shift it, tilt it (as on a view camera) or
+/// curve it.
 ///
 /// # Example
 /// ```yaml
 /// {kind: film, format: 135, resolution: [960, 640]}
 /// ```
 /// ```yaml
-/// # A view camera, swung for a tilted plane of focus
+/// # A view camera, tilted for a tilted plane of focus
 /// kind: film
 /// format: 4x5
 /// resolution: [1000, 800]
@@ -39,14 +39,14 @@ pub struct FilmPlaneParams {
     frame: Frame,
 }
 
-/// A plane imager without channels of its own.
+/// A plane imager without a response of its own.
 #[derive(Clone, Debug)]
 pub struct FilmPlane {
     plane: Plane,
 }
 
 impl FilmPlane {
-    /// A film on that frame.
+    /// Creates an imager for a film on the frame `plane`.
     #[must_use]
     pub fn new(plane: Plane) -> Self {
         Self { plane }

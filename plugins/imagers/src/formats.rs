@@ -1,18 +1,18 @@
-//! Sizes of image frames, by the names that photographers use.
+//! Sizes of image frames, under the names that photographers use.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer};
 
-/// A named frame size.
+/// A frame size with a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Format {
-    /// Name in a scene.
+    /// Name of the format in a scene.
     pub name: &'static str,
-    /// Width, mm.
+    /// Width of the frame, mm.
     pub width_mm: f64,
-    /// Height, mm.
+    /// Height of the frame, mm.
     pub height_mm: f64,
-    /// Where the size comes from.
+    /// Standard or other source of the size.
     pub source: &'static str,
 }
 
@@ -27,7 +27,7 @@ const SHEET: &str = "ISO 1012, films in sheets: nominal size, of which a holder 
 const CINE_35: &str = "SMPTE ST 59, 35-mm motion-picture film: camera aperture";
 const CINE_65: &str = "SMPTE ST 215, 65-mm motion-picture film: camera aperture";
 
-/// All formats.
+/// All named frame formats.
 pub const FORMATS: [Format; 30] = [
     format("135", 36.0, 24.0, STILL_135),
     format("135-half-frame", 24.0, 18.0, STILL_135),
@@ -61,7 +61,7 @@ pub const FORMATS: [Format; 30] = [
     format("1-inch", 13.2, 8.8, "sensors of that name: image area"),
 ];
 
-/// The name of a format as written; `135` is one.
+/// The name of a format as written in a scene; `135` is a name, too.
 #[derive(Clone, Debug)]
 pub(crate) struct FormatName(pub(crate) String);
 
@@ -94,13 +94,14 @@ impl JsonSchema for FormatName {
     }
 }
 
-/// All formats as a program reads them in the schema of an imager: name, size in mm, source.
+/// Lists all formats for the schema of an imager, which programs read: name, size in mm, source.
 pub fn listed() -> serde_json::Value {
     let of = |f: &Format| serde_json::json!({ "name": f.name, "width_mm": f.width_mm, "height_mm": f.height_mm, "source": f.source });
     FORMATS.iter().map(of).collect()
 }
 
-/// The format called `name`; `120 6x6` is `6x6`, `35mm` and `full-frame` are `135`; case does not matter.
+/// Finds the format called `name`, in upper or lower case. `120 6x6` means `6x6`; `35mm`, `full-frame` and `24x36` mean `135`.
+/// `None` for an unknown name.
 #[must_use]
 pub fn format_named(name: &str) -> Option<&'static Format> {
     let name = name.trim().to_ascii_lowercase().replace([' ', '_'], "-");

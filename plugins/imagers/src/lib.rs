@@ -1,4 +1,4 @@
-//! Built-in imagers: frames of pixels in the image plane, or shifted, tilted, curved.
+//! The built-in imagers: frames of pixels in the image plane, which may be shifted, tilted or curved.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

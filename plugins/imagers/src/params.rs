@@ -1,4 +1,4 @@
-//! The parameters that all plane imagers share: the frame.
+//! The parameters of the frame, which all plane imagers share.
 
 use crate::formats::{FORMATS, FormatName, format_named};
 use crate::plane::{MAX_PIXELS, MAX_SIDE_PX, Plane};
@@ -13,66 +13,68 @@ use spectra_core::registry::Context;
 use spectra_glass::Catalogue;
 use spectra_spectrum::find_transmittance_in;
 
-/// The frame as a scene writes it, shared by all imagers: a named format or width and height, the number of pixels, how it stands.
+/// The frame as written in a scene, shared by all imagers: a named format or width and height, the number of pixels, and its
+/// position and shape.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Frame {
-    /// Size by name, such as `135` (36 x 24 mm), `6x6` or `super-35`; or else `width` and `height`.
+    /// Name of the frame size, such as `135` (36 x 24 mm), `6x6` or `super-35`. Write either this or `width` and `height`.
     #[serde(default)]
     #[schemars(extend("x-formats" = crate::formats::listed()))]
     pub(crate) format: Option<FormatName>,
-    /// Width of the frame, 0.001 mm to 100 m, mm if bare; together with `height`, in place of `format`.
+    /// Width of the frame, 0.001 mm to 100 m, mm if bare; written with `height` instead of `format`.
     #[serde(default)]
     #[schemars(range(min = 1e-3, max = 1e5))]
     pub(crate) width: Option<Positive<Length>>,
-    /// Height of the frame, 0.001 mm to 100 m, mm if bare.
+    /// Height of the frame, 0.001 mm to 100 m, mm if bare; written with `width` instead of `format`.
     #[serde(default)]
     #[schemars(range(min = 1e-3, max = 1e5))]
     pub(crate) height: Option<Positive<Length>>,
-    /// The largest part of the frame of this shape, such as `16:9` or 1.85 (width over height), about its center; all
-    /// of it if left out.
+    /// Aspect ratio to which the frame is cropped about its center, such as `16:9` or 1.85 (width over height); not cropped if
+    /// left out.
     #[serde(default)]
     pub(crate) crop: Option<Crop>,
-    /// Pixels across and down, 1 to 32768 each and at most 200 million; or those across alone, and as many down as
-    /// make them square.
+    /// Number of pixels across and down, 1 to 32768 each and at most 200 million in all; or only the number across, and as
+    /// many down as make pixels square.
     pub(crate) resolution: Resolution,
-    /// Where the center of the frame lies in the image plane, along x and y, mm if bare; +y is up. The image is
-    /// upside down: a frame moved up shows more of what is below. It counts from what `around` names; not shifted if left out.
+    /// Position of the center of the frame in the image plane, along x and y, mm if bare; +y is up. The image is upside
+    /// down: a frame moved up shows more of what is below. The shift is measured from the point that `around` names; not
+    /// shifted if left out.
     #[serde(default)]
     #[schemars(inner(range(min = -1e5, max = 1e5)))]
     pub(crate) shift: Option<[Length; 2]>,
-    /// Where `shift` counts from: the `axis` (the default), or where the light of the `source` lands, for a spot of a point beside
-    /// the axis or the spectrum of a prism.
+    /// Point from which `shift` is measured: the `axis` (the default), or the point where the light of the `source` lands. Use
+    /// `source` for the spot of an off-axis point or the spectrum of a prism.
     #[serde(default)]
     pub(crate) around: Around,
-    /// Turns of the frame about its own center, about x and then about the y that turned along, degrees if
-    /// bare, right-handed: a positive one about x moves the upper edge away from the lens. Within 80 degrees;
-    /// across the axis if left out.
+    /// Tilt of the frame about its own center, first about x, then about the y axis that was turned with it, degrees if bare,
+    /// right-handed. A positive tilt about x moves the upper edge away from the lens. At most 80 degrees each; perpendicular
+    /// to the axis if left out.
     #[serde(default)]
     #[schemars(inner(range(min = -80, max = 80)))]
     pub(crate) tilt: Option<[Angle; 2]>,
-    /// The bend of a frame that is not flat.
+    /// Shape and radius of a curved frame; flat if left out.
     #[serde(default)]
     pub(crate) curvature: Option<Curvature>,
-    /// Plates of glass before a flat frame: cover glass, filters against ultraviolet and infrared. The frame
-    /// stands where they put the image, and the lens is focused through them. None if left out.
+    /// Plates of glass in front of a flat frame: cover glass, filters against ultraviolet and infrared. The frame stands where
+    /// they put the image, and the lens is focused through them. No plates if left out.
     #[serde(default)]
     pub(crate) cover: Vec<CoverParams>,
-    /// Plates of a crystal before a flat frame that split every point in two, against false colors. None if left
+    /// Plates of a crystal in front of a flat frame that split every point in two, against false colors. No plates if left
     /// out.
     #[serde(default)]
     pub(crate) low_pass: Vec<LowPassParams>,
 }
 
-/// Where the center of a frame lies that is not shifted.
+/// The center of a frame that is not shifted, as written in a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub(crate) enum Around {
-    /// On the axis.
+    /// The optical axis of the lens.
     #[default]
     Axis,
-    /// Where the light of the source lands.
+    /// The point where the light of the source lands.
     Source,
 }
 
@@ -80,9 +82,9 @@ pub(crate) enum Around {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum Resolution {
-    /// Pixels across.
+    /// Number of pixels across; those down make pixels square.
     Across(Side),
-    /// Pixels across and down.
+    /// Numbers of pixels across and down.
     Both([Side; 2]),
 }
 
@@ -92,23 +94,23 @@ type Side = Whole<1, { MAX_SIDE_PX as u64 }>;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum Crop {
-    /// Width over height.
+    /// Ratio of width to height.
     Ratio(#[schemars(range(min = MIN_RATIO, max = MAX_RATIO))] f64),
-    /// Width and height, such as `16:9`.
+    /// Width and height as text, such as `16:9`.
     Words(String),
 }
 
 const MIN_RATIO: f64 = 0.01;
 const MAX_RATIO: f64 = 100.0;
 
-/// How a frame is curved, as written in a scene.
+/// The curvature of a frame, as written in a scene.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Curvature {
-    /// `cylinder`: bent along x, as film in a curved gate; or `sphere`.
+    /// Shape of the frame: `cylinder` (curved along x, like film in a curved gate) or `sphere`.
     pub shape: CurvatureShape,
-    /// Radius, mm if bare; positive where its center lies behind the frame, negative where the frame is hollow toward
-    /// the lens. It bends the frame by 60 degrees to a side at most.
+    /// Radius, mm if bare; positive if its center lies behind the frame, negative if the frame is concave toward the lens.
+    /// The frame may span at most 60 degrees to each side.
     pub radius: Length,
 }
 
@@ -122,41 +124,42 @@ pub enum CurvatureShape {
     Sphere,
 }
 
-/// A plate of glass before the frame, as written in a scene. Reflections at its surfaces are not counted.
+/// A plate of glass in front of the frame, as written in a scene. Reflections at its surfaces are neglected.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CoverParams {
-    /// A glass of the catalogue, such as `SCHOTT/N-BK7`; its absorption is included.
+    /// Name of a glass of the catalog, such as `SCHOTT/N-BK7`; its absorption is included.
     pub glass: String,
     /// Thickness, mm if bare, at most 100 mm.
     #[schemars(range(max = 100))]
     pub thickness: Positive<Length>,
-    /// Air behind it, mm if bare: for information only, since it changes nothing.
+    /// Air gap behind the plate, mm if bare: for information only, since it changes nothing.
     #[serde(default)]
     pub gap: Option<NonNegative<Length>>,
-    /// A further transmittance, by name or from a file beside the scene: a coating against infrared, a dyed layer. None
-    /// if left out.
+    /// Further transmittance, by name or from a file beside the scene: a coating against infrared, a dyed layer. No further
+    /// loss if left out.
     #[serde(default)]
     pub transmittance: Option<String>,
 }
 
-/// A birefringent plate before the frame, as written in a scene, its axis at 45 degrees to it.
+/// A birefringent plate in front of the frame, as written in a scene, with its optic axis at 45 degrees to the plate.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LowPassParams {
-    /// `quartz` (the default), `lithium-niobate`, or a uniaxial crystal of the catalogue without its `-o` or `-e`.
+    /// Crystal of the plate: `quartz` (the default), `lithium-niobate`, or a uniaxial crystal of the catalog without its `-o`
+    /// or `-e`.
     #[serde(default)]
     pub crystal: Option<String>,
-    /// Thickness, mm if bare, at most 100 mm: 1.5 mm of quartz split by 8.8 um.
+    /// Thickness, mm if bare, at most 100 mm: 1.5 mm of quartz split a point by 8.8 um.
     #[schemars(range(max = 100))]
     pub thickness: Positive<Length>,
-    /// Where the second point lies, from +x toward +y, degrees if bare; 0 if left out.
+    /// Direction of the second point, from +x toward +y, degrees if bare; 0 if left out.
     #[serde(default)]
     pub azimuth: Option<Angle>,
 }
 
 impl Frame {
-    /// Checks it, before anything is allocated by it.
+    /// Checks the parameters, before any memory is allocated by them, and builds the frame.
     pub(crate) fn plane(&self, params: &Params, context: &Context<'_>) -> Result<Plane, Faults> {
         let mut faults = Faults::new();
         let size = faults.take(self.size(params));
@@ -173,7 +176,7 @@ impl Frame {
         }
     }
 
-    /// The plates before it.
+    /// Builds the plates in front of the frame.
     fn plates(&self, params: &Params, context: &Context<'_>) -> Result<Plates, Faults> {
         let mut faults = Faults::new();
         let catalogue = Catalogue::bundled();
@@ -203,7 +206,9 @@ impl Frame {
             };
             let ray = |which: &str| {
                 let found = catalogue.medium(&format!("{crystal}-{which}"));
-                found.map_err(|e| params.fault(&key("crystal"), e.to_string()).hint("quartz or lithium-niobate"))
+                found.map_err(|e| {
+                    params.fault(&key("crystal"), e.to_string()).hint("write `quartz` or `lithium-niobate`")
+                })
             };
             let (ordinary, extraordinary) = (faults.take(ray("o")), faults.take(ray("e")));
             if let (Some(o), Some(e)) = (ordinary, extraordinary) {
@@ -212,12 +217,13 @@ impl Frame {
         }
         if self.curvature.is_some() && !(self.cover.is_empty() && self.low_pass.is_empty()) {
             let key = if self.cover.is_empty() { "low-pass" } else { "cover" };
-            faults.push(params.fault(key, "plates stand before a flat frame only").hint("leave `curvature` out"));
+            faults
+                .push(params.fault(key, "a curved frame cannot have plates").hint("remove `curvature`, or the plates"));
         }
         faults.into_result(Plates::new(grid, plates))
     }
 
-    /// Its size.
+    /// Determines the size of the frame in pixels and mm.
     fn size(&self, params: &Params) -> Result<FrameSize, Faults> {
         let mut faults = Faults::new();
         let crop = faults.take(self.crop.as_ref().map(|crop| ratio(crop, params)).transpose());
@@ -235,16 +241,16 @@ impl Frame {
         faults.into_result(FrameSize { width_px, height_px, width_mm, height_mm })
     }
 
-    /// Pixels that are not square are rarely meant: the picture looks squeezed.
+    /// Warns if pixels are not square, which is rarely intended: the picture looks squeezed.
     fn warn_unless_square(&self, size: &FrameSize, params: &Params, context: &Context<'_>) {
         let [across, down] = [size.width_px, size.height_px];
         let ratio = size.height_mm / size.width_mm;
-        // As near to square as whole numbers of pixels come is square.
+        // Accept pixels that are as nearly square as whole numbers of pixels allow.
         if down.abs_diff(square_px(across, ratio)) <= 1 || across.abs_diff(square_px(down, 1.0 / ratio)) <= 1 {
             return;
         }
         let aspect = size.width_mm / f64::from(across) / (size.height_mm / f64::from(down));
-        // Nobody sees 1 %.
+        // Nobody sees a difference of 1 %.
         if (aspect - 1.0).abs() < 0.01 {
             return;
         }
@@ -268,31 +274,31 @@ impl Frame {
                     let known = FORMATS.map(|f| f.name);
                     let fault = params.fault("format", format!("unknown format `{name}`"));
                     let hint = names::hint(name, &known, "spectra list format");
-                    let other = if hint.starts_with("known: ") { "; or state width and height" } else { "" };
+                    let other = if hint.starts_with("known: ") { "; or write `width` and `height`" } else { "" };
                     Err(fault.hint(format!("{hint}{other}")))
                 }
             },
-            // Far beyond any camera; keeps areas and their inverses well inside of what a double holds.
+            // The limits are far beyond any camera; they keep areas and their inverses well within the range of a double.
             (None, Some(width), Some(height)) => Ok((width.mm(), height.mm())),
             (None, None, None) => Err(params
-                .fault("format", "how large is the imager? `format` is missing")
-                .hint("`format: 135`, or width and height")),
-            (Some(_), ..) => {
-                Err(params.fault("format", "the size is given twice").hint("either format, or width and height"))
-            }
+                .fault("format", "the size of the frame is missing")
+                .hint("write `format: 135`, or `width` and `height`")),
+            (Some(_), ..) => Err(params
+                .fault("format", "the size of the frame is given twice")
+                .hint("write either `format`, or `width` and `height`")),
             (None, Some(_), None) => {
-                Err(params.fault("width", "`height` is missing").hint("width and height go together"))
+                Err(params.fault("width", "`height` is missing").hint("write both `width` and `height`"))
             }
             (None, None, Some(_)) => {
-                Err(params.fault("height", "`width` is missing").hint("width and height go together"))
+                Err(params.fault("height", "`width` is missing").hint("write both `width` and `height`"))
             }
         }
     }
 
-    /// How it stands; `size` as far as it is known.
+    /// Determines the position and shape of the frame; `size` is `None` if it has faults.
     fn standing(&self, params: &Params, size: Option<FrameSize>, context: &Context<'_>) -> Result<Standing, Faults> {
         let mut faults = Faults::new();
-        // The scene builds the imager again once it knows where the light lands.
+        // The scene builds the imager a second time, once it knows where the light lands.
         let from_mm = match self.around {
             Around::Axis => [0.0; 2],
             Around::Source => context.landing_mm.unwrap_or([0.0; 2]),
@@ -305,7 +311,7 @@ impl Frame {
     }
 }
 
-/// Pixels down that are square, for those across and height over width of the frame.
+/// Returns the number of pixels down that makes pixels square, for the number across and the ratio of height to width.
 fn square_px(across: u32, ratio: f64) -> u32 {
     (f64::from(across) * ratio).round().clamp(1.0, f64::from(u32::MAX)) as u32
 }
@@ -314,7 +320,7 @@ fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a.max(1) } else { gcd(b, a % b) }
 }
 
-/// Width over height: a number, or two with a colon between them.
+/// Reads the ratio of width to height: a number, or two with a colon between them.
 fn ratio(crop: &Crop, params: &Params) -> Result<f64, Fault> {
     let ratio = match crop {
         Crop::Ratio(ratio) => Some(*ratio),
@@ -324,26 +330,26 @@ fn ratio(crop: &Crop, params: &Params) -> Result<f64, Fault> {
         }),
     };
     ratio.filter(|ratio| (MIN_RATIO..=MAX_RATIO).contains(ratio)).ok_or_else(|| {
-        let hint = "width to height, as in `crop: 16:9`, or their ratio, as in `crop: 1.85`";
-        params.fault("crop", "not a frame shape").hint(hint)
+        let hint = "write width and height, as in `crop: 16:9`, or their ratio, as in `crop: 1.85`";
+        params.fault("crop", "this is not an aspect ratio").hint(hint)
     })
 }
 
-/// The sides that were written are within their range; one that was reckoned need not be.
+/// Checks the number of pixels. Sides written in the scene are known to be within their range, but a computed one may not be.
 fn resolution_faults([width, height]: [u32; 2], params: &Params) -> Vec<Fault> {
     let pixels = u64::from(width) * u64::from(height);
     let fault = if height > MAX_SIDE_PX {
         let text = format!("a side of {height} pixels is out of range");
         Some(params.fault("resolution", text).hint(format!("at most {MAX_SIDE_PX}")))
     } else {
-        let text = format!("{width} x {height} are {} megapixels", pixels / 1_000_000);
-        let fault = || params.fault("resolution", text).hint(format!("at most {}", MAX_PIXELS / 1_000_000));
+        let text = format!("{width} x {height} pixels are {} megapixels", pixels / 1_000_000);
+        let fault = || params.fault("resolution", text).hint(format!("at most {} megapixels", MAX_PIXELS / 1_000_000));
         (pixels > MAX_PIXELS).then(fault)
     };
     fault.into_iter().collect()
 }
 
-/// The bend, which must leave the frame well within a half of the cylinder or sphere.
+/// Reads the curvature. The frame must stay well within one half of the cylinder or sphere.
 fn bend(curvature: &Curvature, params: &Params, size: Option<FrameSize>) -> Result<Bend, Fault> {
     let radius_mm = curvature.radius.mm();
     let bend = match curvature.shape {

@@ -1,5 +1,5 @@
-//! A frame of pixels: what each imager is made of. Flat in the nominal image plane and centered on the axis unless it is
-//! told to stand otherwise.
+//! A frame of pixels, the base of every imager. It lies flat in the nominal image plane and centered on the axis unless it
+//! is given another position or shape.
 
 use crate::plates::Plates;
 use crate::standing::Standing;
@@ -14,12 +14,12 @@ use spectra_core::stage::{Launch, Receive};
 use spectra_core::{Loss, RayBatch};
 use std::sync::Arc;
 
-/// Most pixels along one side.
+/// Largest number of pixels along one side.
 pub const MAX_SIDE_PX: u32 = 32_768;
-/// Most pixels of a frame.
+/// Largest number of pixels of a frame.
 pub const MAX_PIXELS: u64 = 200_000_000;
 
-/// A frame of pixels: at z = 0, upright and centered, with nothing before it, unless it is told otherwise.
+/// A frame of pixels. By default it lies at z = 0, upright and centered, with no plates in front of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     size: FrameSize,
@@ -27,49 +27,49 @@ pub struct Plane {
     plates: Option<Arc<Plates>>,
 }
 
-/// Where a ray meets a frame.
+/// The point where a ray meets a frame.
 pub(crate) struct Met {
-    /// The point, mm, frame of the nominal image plane.
+    /// Point in the coordinates of the nominal image plane, mm.
     pub(crate) point: DVec3,
-    /// The place on the frame, mm.
+    /// Position x on the frame, mm.
     pub(crate) x: f64,
-    /// The place on the frame, mm.
+    /// Position y on the frame, mm.
     pub(crate) y: f64,
-    /// Share of the light that the plates let pass.
+    /// Fraction of the light that the plates transmit.
     pub(crate) passed: f64,
 }
 
 impl Plane {
-    /// A flat frame of that size, at z = 0, upright and centered.
+    /// Creates a flat frame of this size, at z = 0, upright and centered.
     #[must_use]
     pub fn new(size: FrameSize) -> Self {
         Self { size, standing: Standing::NOMINAL, plates: None }
     }
 
-    /// The same, shifted, tilted or curved.
+    /// Returns this frame shifted, tilted or curved as `standing` says.
     #[must_use]
     pub fn standing(self, standing: Standing) -> Self {
         Self { standing, ..self }
     }
 
-    /// The same behind plates, which are parallel to it; it must be flat.
+    /// Returns this frame behind plates that are parallel to it. The frame must be flat.
     #[must_use]
     pub fn behind(self, plates: Plates) -> Self {
         Self { plates: (!plates.is_empty()).then(|| Arc::new(plates)), ..self }
     }
 
-    /// Its size; where it is curved, along its surface.
+    /// Size of the frame; on a curved frame, measured along its surface.
     #[must_use]
     pub fn size(&self) -> FrameSize {
         self.size
     }
 
-    /// The plates before it, as focus sees them.
+    /// Returns the plates in front of the frame for focusing; `None` if there are none.
     pub(crate) fn cover(&self) -> Option<CoverStack> {
         self.plates.as_ref().map(|plates| plates.cover())
     }
 
-    /// Where a ray that travels along `way` meets it, see [`Standing::meet`]; through the plates, if there are any.
+    /// Intersects the frame with a ray that travels along `way` (see [`Standing::meet`]), through the plates if there are any.
     pub(crate) fn meet(&self, from: DVec3, way: DVec3, wavelength_nm: f64, numbers: Option<RayNumbers>) -> Option<Met> {
         let (point, x, y) = self.standing.meet(from, way)?;
         let Some(plates) = &self.plates else { return Some(Met { point, x, y, passed: 1.0 }) };
@@ -78,17 +78,17 @@ impl Plane {
         Some(Met { point: self.standing.at(x, y).0, x, y, passed })
     }
 
-    /// Whether plates before it split points.
+    /// Returns whether plates in front of the frame split points.
     pub(crate) fn splits(&self) -> bool {
         self.plates.as_ref().is_some_and(|plates| plates.splits())
     }
 
-    /// The axes of its surface at a place, see [`Standing::axes`].
+    /// Returns the axes of the frame's surface at a point of it, see [`Standing::axes`].
     pub(crate) fn axes(&self, x_mm: f64, y_mm: f64) -> glam::DMat3 {
         self.standing.axes(x_mm, y_mm)
     }
 
-    /// Whether it is as [`Plane::new`] makes it.
+    /// Returns whether the frame is as [`Plane::new`] makes it.
     fn is_plain(&self) -> bool {
         self.standing == Standing::NOMINAL && self.plates.is_none()
     }
@@ -132,14 +132,14 @@ impl Launch for Plane {
         for i in 0..c.x.len() {
             let (x, y) = self.size.point_of(c.tag[i], u[i], v[i]);
             let (point, normal) = self.standing.at(x, y);
-            // As near as the frame seems through the plates.
+            // Launch from where the frame appears to be through the plates.
             [c.x[i], c.y[i], c.z[i]] = (point + normal * lift_mm).to_array();
             [c.l[i], c.m[i], c.n[i]] = normal.to_array();
         }
     }
 
-    /// Moves the rays from where the frame seems to be near the axis to where Snell's law has them. Rays were aimed before
-    /// that, at a region that leaves room for it.
+    /// Moves the rays from the apparent frame, which is exact near the axis only, to where Snell's law puts them. Rays were
+    /// aimed before that, at a region that leaves room for this shift.
     fn admit(&self, rays: &mut RayBatch, _isa: Isa) {
         let Some(plates) = &self.plates else { return };
         let axes = self.axes(0.0, 0.0);
@@ -182,17 +182,17 @@ impl Vectorized for ReceiveBatch<'_> {
         let beside = Loss::OutOfFrame.state(0);
         let c = self.rays.columns_mut();
         let len = c.x.len();
-        // Equal lengths, said once, take the bounds checks out of the loop.
+        // Slicing to equal lengths once removes the bounds checks from the loop.
         let (x, y, z) = (&mut c.x[..len], &mut c.y[..len], &mut c.z[..len]);
         let (l, m, n) = (&c.l[..len], &c.m[..len], &c.n[..len]);
         let (state, tag) = (&mut c.state[..len], &mut c.tag[..len]);
         for i in 0..len {
             let t = -z[i] / n[i];
             let (px, py) = (x[i] + t * l[i], y[i] + t * m[i]);
-            // As FrameSize::pixel_at has it, to the bit.
+            // The same as FrameSize::pixel_at, to the bit.
             let column = (0.5 - px / width_mm) * columns;
             let row = (0.5 + py / height_mm) * rows;
-            // Also where a ray runs along the plane and the place is no number.
+            // Also false if a ray runs along the plane and the position is NaN.
             let inside = (column >= 0.0) & (row >= 0.0) & (column < columns) & (row < rows);
             let pixel = whole(row, last_row).0 * width_px + whole(column, last_column).0;
             let alive = state[i] == ALIVE;
@@ -223,12 +223,12 @@ impl Vectorized for PlaceBatch<'_> {
         let (l, m, n) = (&mut c.l[..len], &mut c.m[..len], &mut c.n[..len]);
         let (tag, u, v) = (&c.tag[..len], &self.u[..len], &self.v[..len]);
         for i in 0..len {
-            // Pixels number below 2^28 and columns below 2^16: a quotient just under a whole number is at least
-            // 2^-16 under it, so the division of doubles cannot round up to it, and truncation gives the row.
+            // There are fewer than 2^28 pixels and fewer than 2^16 columns. A quotient just below a whole number is
+            // therefore at least 2^-16 below it. The division of doubles cannot round up to it, and truncation gives the row.
             let pixel = f64::from(tag[i] as i32);
             let (_, row) = whole(pixel / columns, rows - 1.0);
             let column = pixel - row * columns;
-            // As FrameSize::point_of has it, to the bit.
+            // The same as FrameSize::point_of, to the bit.
             x[i] = (0.5 - (column + u[i]) / columns) * width_mm;
             y[i] = ((row + v[i]) / rows - 0.5) * height_mm;
             z[i] = 0.0;
@@ -253,8 +253,8 @@ mod tests {
         u
     }
 
-    /// Launched from pixels all over the frame, on every tier: the points are those of the frame, and going back along
-    /// any slope each ray is received by the pixel that it left.
+    /// Rays are launched from pixels all over the frame, on every instruction set. They start at points of the frame, and a
+    /// ray that returns along any slope is received by the pixel that it left.
     #[test]
     fn receive_undoes_launch() {
         let plane = Plane::new(size());
@@ -295,8 +295,9 @@ mod tests {
         }
     }
 
-    /// Shifted, tilted and curved: points lie on the shape, normals are unit and stand on it, areas are kept (by
-    /// differences), and a ray from any side of the lens is received by the pixel and place that it was aimed at.
+    /// On a frame that is shifted, tilted and curved, points lie on the shape, normals are unit vectors perpendicular to it,
+    /// and areas are kept (by differences). A ray from any side of the lens is received by the pixel and at the point that it
+    /// was aimed at.
     #[test]
     fn a_frame_stands_as_it_is_told() {
         let bends = [
@@ -336,7 +337,7 @@ mod tests {
                 let way = (point - from).normalize();
                 let (met, mx, my) = standing.meet(from, way).expect("met");
                 assert!((met - point).length() < 1e-12 && (mx - x).abs() + (my - y).abs() < 1e-12, "{bend:?}");
-                // A little inward, clear of the pixel's border by more than the rounding.
+                // Stay a little inside the pixel, clear of its border by more than the rounding.
                 let (x, y) = size().point_of(pixels[i], 0.001 + 0.998 * u[i], 0.001 + 0.998 * v[i]);
                 let way = (standing.at(x, y).0 - from).normalize();
                 [c.x[i], c.y[i], c.z[i]] = from.to_array();
@@ -349,8 +350,8 @@ mod tests {
         }
     }
 
-    /// Distances by hand: on the cylinder and the sphere a point is the radius away from the axis and the center; a tilt
-    /// about x of 30 degrees moves the upper edge by half its height away from the lens.
+    /// Distances agree with geometry: on the cylinder and the sphere a point is one radius away from the axis or the center.
+    /// A tilt of 30 degrees about x moves the upper edge away from the lens by half its height.
     #[test]
     fn shapes_are_where_geometry_says() {
         let shift = DVec3::new(3.0, -2.0, 0.0);
@@ -370,12 +371,12 @@ mod tests {
         let (p, n) = tilted.at(0.0, 12.0);
         assert!((p - DVec3::new(0.0, 12.0 * 0.75_f64.sqrt(), 6.0)).length() < 1e-12, "{p}");
         assert!((n - DVec3::new(0.0, 0.5, -(0.75_f64.sqrt()))).length() < 1e-12, "{n}");
-        // From behind nothing is received.
+        // A ray from behind is not received.
         assert!(tilted.meet(DVec3::new(0.0, 0.0, 5.0), DVec3::NEG_Z).is_none());
     }
 
-    /// Behind a tilted stack of plates, launched rays that travel back along their way land where they came from: the
-    /// two ways through the plates undo each other, for each branch.
+    /// Behind a tilted stack of plates, launched rays that return along their path land where they came from: the two
+    /// directions through the plates undo each other, for each branch.
     #[test]
     fn plates_are_the_same_from_both_sides() {
         use crate::plates::Plate;
@@ -454,8 +455,8 @@ mod tests {
         assert_eq!(rays.tags(), [319 * 961 + 480, 77, 77, 77, 77, 77]);
     }
 
-    /// Light of constant irradiance over more than the frame: each pixel gets the share of the flux that is its area,
-    /// within five standard errors, and none is lost or doubled.
+    /// Light of constant irradiance falls on more than the frame. Each pixel gets the flux of its area, within five standard
+    /// errors, and none is lost or counted twice.
     #[test]
     fn flux_falls_on_pixels_by_their_area() {
         let size = FrameSize { width_px: 12, height_px: 8, width_mm: 36.0, height_mm: 24.0 };

@@ -1,13 +1,13 @@
-//! Plane-parallel plates before a frame: cover glass, filters, and crystals that split every point in two.
+//! Plane-parallel plates in front of a frame: cover glass, filters, and crystals that split every point in two.
 //!
-//! Through a plate light goes on in its direction, moved aside: a plate of thickness t takes t (tan i - tan i') from
-//! where it would land, with i' by Snell's law. Gaps between plates change nothing. Near the axis that is a shift of the
-//! focus by t (1 - 1/n) away from the lens.
+//! A plate shifts a ray sideways without changing its direction. With a plate of thickness t the ray lands
+//! t (tan i - tan i') closer to the normal, with i' from Snell's law. Gaps between plates change nothing. Near the axis this
+//! shifts the focus by t (1 - 1/n) away from the lens.
 //!
-//! A uniaxial crystal cut at 45 degrees to its axis sends half of unpolarized light, the extraordinary ray, aside by
-//! t (ne^2 - no^2) / (ne^2 + no^2) (M. Born, E. Wolf, Principles of Optics, 15.3). Behind it light is taken as
-//! unpolarized again, as by the quarter-wave plate that stands between two such plates in a camera: two plates make four
-//! points.
+//! A uniaxial crystal cut at 45 degrees to its axis shifts half of unpolarized light, the extraordinary ray, sideways by
+//! t (ne^2 - no^2) / (ne^2 + no^2) (M. Born, E. Wolf, Principles of Optics, 15.3). The light behind it is treated as
+//! unpolarized again, as it is behind the quarter-wave plate between two such plates in a camera. Two plates therefore make
+//! four points.
 
 use glam::{DVec2, DVec3};
 use spectra_core::cover::{CoverPlate, CoverStack};
@@ -15,21 +15,21 @@ use spectra_core::numbers::RayNumbers;
 use spectra_core::spectral::Grid;
 use spectra_glass::Medium;
 
-/// One plate.
+/// A plane-parallel plate of glass or crystal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plate {
     thickness_mm: f64,
-    /// On the grid of the band.
+    /// Refractive index on the grid of the band; of the ordinary ray in a crystal.
     index: Vec<f64>,
     transmittance: Vec<f64>,
-    /// Where the extraordinary ray goes, mm, on the grid; empty in glass.
+    /// Sideways shift of the extraordinary ray, mm, on the grid; empty for glass.
     separation_mm: Vec<f64>,
     azimuth: DVec2,
 }
 
 impl Plate {
-    /// A plate of a glass, behind whose surfaces a share of light is lost by absorption; `filter` is a further
-    /// transmittance by wavelength.
+    /// Creates a glass plate, mm thick, with the absorption of its glass. `filter` is a further transmittance as a function of
+    /// the wavelength in nm.
     #[must_use]
     pub fn glass(medium: &Medium, thickness_mm: f64, filter: impl Fn(f64) -> f64, grid: &Grid) -> Self {
         let passed = |w: f64| medium.internal_transmittance(w, thickness_mm).unwrap_or(1.0) * filter(w);
@@ -42,8 +42,8 @@ impl Plate {
         }
     }
 
-    /// A plate of a uniaxial crystal whose axis stands at 45 degrees to it; the extraordinary ray goes toward `azimuth_rad`
-    /// from the frame's +x.
+    /// Creates a plate of a uniaxial crystal, mm thick, whose optic axis is at 45 degrees to the plate. The extraordinary ray
+    /// is shifted toward `azimuth_rad`, measured from the frame's +x.
     #[must_use]
     pub fn crystal(
         ordinary: &Medium,
@@ -64,10 +64,10 @@ impl Plate {
     }
 }
 
-/// Crystals whose branches one number chooses: far fewer than it has digits.
+/// Number of crystals whose branches are chosen by the digits of one random number; it has far more digits.
 const PLATES_A_NUMBER: u32 = 16;
 
-/// A stack of plates.
+/// A stack of plates in front of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plates {
     grid: Grid,
@@ -75,41 +75,41 @@ pub struct Plates {
 }
 
 impl Plates {
-    /// Plates in any order, on the grid that they were made for.
+    /// Creates a stack from plates in any order, on the grid for which they were made.
     #[must_use]
     pub fn new(grid: &Grid, plates: Vec<Plate>) -> Self {
         Self { grid: *grid, plates }
     }
 
-    /// Whether there is none.
+    /// Returns whether the stack has no plates.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.plates.is_empty()
     }
 
-    /// Whether one of them splits points, which takes numbers.
+    /// Returns whether a plate splits points, which needs random numbers.
     #[must_use]
     pub fn splits(&self) -> bool {
         self.plates.iter().any(|plate| !plate.separation_mm.is_empty())
     }
 
-    /// How much nearer to the lens the frame seems to be, mm: near the axis, in the middle of the band.
+    /// Apparent shift of the frame toward the lens, mm, near the axis and in the middle of the band.
     #[must_use]
     pub fn lift_mm(&self) -> f64 {
         self.plates.iter().map(|p| p.thickness_mm * (1.0 - 1.0 / p.index[p.index.len() / 2])).sum()
     }
 
-    /// The same as focus sees it. The extraordinary rays of crystals count as ordinary ones: what sets them apart is moved
-    /// aside, and as sharp.
+    /// Returns the stack for focusing. The extraordinary rays of crystals count as ordinary ones: they form a second image that
+    /// is shifted sideways but equally sharp.
     #[must_use]
     pub fn cover(&self) -> CoverStack {
         let plate = |p: &Plate| CoverPlate { thickness_mm: p.thickness_mm, index: p.index.clone() };
         CoverStack::new(&self.grid, self.plates.iter().map(plate).collect())
     }
 
-    /// For light of direction `way` (unit, in the axes of the frame, z away from the lens): how far beside its straight
-    /// continuation it lands, mm, and the share that passes. `numbers` choose between the ordinary and the extraordinary ray
-    /// of each crystal; without them it is the ordinary one.
+    /// Passes light of direction `way` (unit, in the axes of the frame, z away from the lens) through the stack. Returns how
+    /// far from its straight continuation it lands, mm, and the fraction that passes. `numbers` choose between the ordinary
+    /// and the extraordinary ray of each crystal; without them it is the ordinary one.
     #[must_use]
     pub fn pass(&self, way: DVec3, wavelength_nm: f64, numbers: Option<RayNumbers>) -> (DVec2, f64) {
         let sideways = DVec2::new(way.x, way.y);
@@ -122,8 +122,8 @@ impl Plates {
             beside -= sideways * (plate.thickness_mm * (1.0 / way.z - 1.0 / (index * index - sin2).sqrt()));
             passed *= self.grid.interpolate(&plate.transmittance, wavelength_nm);
             if !plate.separation_mm.is_empty() {
-                // Half of the light takes either branch. The binary digits of one number choose for some plates together, so
-                // that all combinations come equally often.
+                // Half of the light takes either branch. The binary digits of one number choose for several plates, so that
+                // all combinations are equally frequent.
                 if crystals % PLATES_A_NUMBER == 0 {
                     choice = numbers.map_or(0.0, |numbers| numbers.number(crystals / PLATES_A_NUMBER));
                 }
@@ -151,8 +151,8 @@ mod tests {
         Catalogue::bundled().medium(name).expect("bundled")
     }
 
-    /// Through N-BK7 of 2 mm a cone is sharp t (1 - 1/n) farther away: 0.6815 mm at the d line (n = 1.51680, SCHOTT). A
-    /// steep ray lands where Snell's law, surface by surface, says.
+    /// 2 mm of N-BK7 shift the focus of a cone by t (1 - 1/n), 0.6815 mm at the d line (n = 1.51680, SCHOTT). A steep ray
+    /// lands where Snell's law at each surface says.
     #[test]
     fn cover_glass_shifts_the_focus() {
         let plates = Plates::new(&BAND, vec![Plate::glass(&medium("SCHOTT/N-BK7"), 2.0, |_| 1.0, &BAND)]);
@@ -168,7 +168,7 @@ mod tests {
         let (beside, _) = plates.pass(DVec3::new(0.0, -libm::sin(angle), libm::cos(angle)), nm, None);
         let want = 2.0 * (libm::tan(angle) - libm::tan(inside));
         assert!((beside.y - want).abs() < 2e-5, "{} {want}", beside.y);
-        // What focus is told is the same.
+        // The stack for focusing gives the same values.
         let cover = plates.cover();
         assert!((cover.shift_mm(nm) + beside_of(&plates, 1e-4, nm) / 1e-4).abs() < 1e-8);
         assert!((cover.depth_mm(0.8, nm) + beside_of(&plates, 0.8, nm) / 0.8).abs() < 1e-13);
@@ -178,7 +178,7 @@ mod tests {
         plates.pass(DVec3::new(slope, 0.0, 1.0).normalize(), nm, None).0.x
     }
 
-    /// Two plates, two thicknesses: they add, whatever their order.
+    /// The shifts of two plates add.
     #[test]
     fn plates_add() {
         let plate = |t: f64| Plate::glass(&medium("SCHOTT/N-BK7"), t, |_| 0.9, &BAND);
@@ -188,8 +188,9 @@ mod tests {
         assert!((two - one).length() < 1e-15 && (passed - 0.81).abs() < 0.01, "{two} {one} {passed}");
     }
 
-    /// Quartz at 589 nm has no = 1.54424 and ne = 1.55335: 0.005881 of its thickness. One plate makes two points of equal
-    /// strength, two crossed ones four: of 2^n samples each gets exactly its share. Without numbers all light is ordinary.
+    /// Quartz at 589 nm has no = 1.54424 and ne = 1.55335, so it splits by 0.005881 of its thickness. One plate makes two
+    /// points of equal strength, two crossed plates four: of 2^n samples each point gets exactly its share. Without random
+    /// numbers all light is ordinary.
     #[test]
     fn crystals_split_points() {
         let (o, e) = (medium("SiO2/Ghosh-o"), medium("SiO2/Ghosh-e"));
@@ -203,7 +204,7 @@ mod tests {
             let plates = Plates::new(&BAND, plates);
             let mut counts = std::collections::BTreeMap::new();
             for i in 0..n {
-                // Nearly straight on: a pencil that a plate alone would not move by a nanometer.
+                // Nearly straight on: refraction moves such rays by less than 0.01 um.
                 let way = DVec3::new(1e-9 * i as f64, 0.0, 1.0).normalize();
                 assert!(plates.pass(way, 589.3, None).0.length() < 1e-5);
                 let (beside, _) = plates.pass(way, 589.3, c.numbers.of(i));

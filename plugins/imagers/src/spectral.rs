@@ -1,4 +1,4 @@
-//! `imager: spectral`: a plane that records the spectrum itself, one channel a band.
+//! `imager: spectral`: a plane that records the spectrum itself, one channel per band.
 
 use crate::balance::{Balance, WhiteBalance};
 use crate::detector::DetectorPlane;
@@ -16,15 +16,15 @@ use spectra_film::display::{White, finish_xyz};
 use spectra_spectrum::Observer;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 
-/// A frame that records the spectrum itself: one channel a band, in W m^-2 nm^-1.
+/// A frame that records the spectrum itself: one channel per band, in W m^-2 nm^-1.
 ///
-/// For looking at any film, sensor or observer afterwards, and for hyperspectral test data. The value of a channel
-/// is the mean spectral irradiance of its band. In the OpenEXR file channels are named by the middle of their band,
-/// as the spectral OpenEXR layout has it: `S0.550,0nm`. The picture shows the colors that an eye sees.
+/// Use it to apply any film, sensor or observer afterwards, and for hyperspectral test data. The value of a channel is the
+/// mean spectral irradiance of its band. In the OpenEXR file each channel is named after the middle of its band, as the
+/// spectral OpenEXR layout prescribes: `S0.550,0nm`. The picture shows the colors that an eye sees.
 ///
-/// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
-/// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
-/// camera), or bent.
+/// `resolution` is the number of pixels across and down. If its aspect ratio differs from that of the frame, the pixels
+/// are not square. The frame lies in the image plane of the lens unless you shift it, tilt it (as on a view camera) or
+/// curve it.
 ///
 /// # Example
 /// ```yaml
@@ -44,34 +44,34 @@ pub struct SpectralParams {
     frame: Frame,
     /// Number of bands of equal width, a whole number from 1 to 256.
     bands: Whole<1, MAX_BANDS>,
-    /// First and last wavelength, nm if bare; 380 to 780 nm if absent.
+    /// First and last wavelength, nm if bare; 380 to 780 nm if left out.
     #[serde(default)]
     range: Option<[Wavelength; 2]>,
-    /// The light that the picture shows as white, as of the imager `xyz`: a light by name, `{temperature: 3200 K}` or `auto-gray`. The
-    /// channels stay as they are; without it the picture has the tint of its light.
+    /// Light that the picture shows as white, as for the imager `xyz`: a light by name, `{temperature: 3200 K}` or `auto-gray`.
+    /// The channels do not change. If it is left out, the picture has the tint of its light.
     #[serde(default)]
     white_balance: Option<WhiteBalance>,
 }
 
-/// Most bands.
+/// Largest number of bands.
 const MAX_BANDS: u64 = 256;
 
-/// A spectrograph. A channel is named by the middle of its band as the spectral OpenEXR convention has it
-/// (A. Fichet, R. Pacanowski, A. Wilkie, "An OpenEXR layout for spectral images", J. Computer Graphics Techniques 10, 2021):
-/// `S0.550,0nm`; its value is the mean spectral irradiance of the band, W m^-2 nm^-1.
+/// The response of a spectrograph, one channel per band. The value of a channel is the mean spectral irradiance of its band,
+/// W m^-2 nm^-1. Its name is the middle of the band, as the spectral OpenEXR convention prescribes: `S0.550,0nm` (A. Fichet,
+/// R. Pacanowski, A. Wilkie, "An OpenEXR layout for spectral images", J. Computer Graphics Techniques 10, 2021).
 #[derive(Clone, Debug)]
 pub struct Bands {
     channels: Vec<Channel>,
-    /// CIE XYZ, lux, of one unit in each band.
+    /// CIE XYZ, lux, for 1 W m^-2 nm^-1 in each band.
     xyz: Vec<[f64; 3]>,
     balance: Balance,
 }
 
-/// A plane of spectrographs.
+/// A plane imager with a spectrograph at each pixel.
 pub type SpectralPlane = DetectorPlane<Bands>;
 
 impl SpectralPlane {
-    /// `bands` bands of equal width from `first_nm` to `last_nm`, on `grid`.
+    /// Creates an imager on the frame `plane` with `bands` bands of equal width from `first_nm` to `last_nm`, on `grid`.
     #[must_use]
     pub fn new(plane: Plane, grid: &Grid, bands: usize, first_nm: f64, last_nm: f64) -> Self {
         let width_nm = (last_nm - first_nm) / bands as f64;
@@ -90,7 +90,7 @@ impl SpectralPlane {
         Self::of(plane, Bands { channels, xyz, balance: Balance::Screen }, None)
     }
 
-    /// The same, whose picture shows another light as white.
+    /// Returns this imager with another light shown as white in its picture.
     #[must_use]
     pub fn with_balance(mut self, balance: Balance) -> Self {
         self.response.balance = balance;
@@ -98,8 +98,9 @@ impl SpectralPlane {
     }
 }
 
-/// Response at a node of the grid, 1/nm: the part of the node's cell that lies in the band, over the band's width. The
-/// responses of bands side by side add up to that of one band. The first and the last node have half a cell, and count half in an integral.
+/// Returns the response of a band at a node of the grid, 1/nm: the fraction of the node's cell that lies in the band, divided by
+/// the band's width. Adjacent bands together see every wavelength exactly once. The first and the last node have half a cell and
+/// count half in an integral.
 fn share(node: usize, low_nm: f64, width_nm: f64, grid: &Grid) -> f64 {
     let (nm, half) = (grid.wavelength_nm(node), 0.5 * grid.step_nm);
     let (from, to) = ((nm - half).max(grid.start_nm), (nm + half).min(grid.end_nm()));
@@ -112,7 +113,7 @@ impl Response for Bands {
         self.channels.clone()
     }
 
-    /// The colors of the bands, as an eye sees them, under automatic exposure.
+    /// Shows the colors of the bands as an eye sees them, with automatic exposure.
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
         self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
     }
@@ -144,9 +145,9 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     let [first, last] = range.map_or([380.0, 780.0], |range| range.map(|w| w.nm()));
     let grid = &context.grid;
     if !(first >= grid.start_nm && last <= grid.end_nm() && last - first >= bands as f64 * grid.step_nm) {
-        let fault = params.fault("range", format!("no {bands} bands between {first} and {last} nm"));
+        let fault = params.fault("range", format!("{bands} bands do not fit between {first} and {last} nm"));
         faults.push(fault.hint(format!(
-            "within the band of the scene, {} to {} nm, each band at least {} nm wide",
+            "write a range within the band of the scene, {} to {} nm, with bands at least {} nm wide",
             grid.start_nm,
             grid.end_nm(),
             grid.step_nm
@@ -169,8 +170,8 @@ mod tests {
         FrameSize { width_px: 2, height_px: 1, width_mm: 2.0, height_mm: 1.0 }
     }
 
-    /// Light of one W m^-2 nm^-1 everywhere has 1 in every band; bands side by side see every wavelength once; names are those
-    /// of the convention.
+    /// A spectrum of 1 W m^-2 nm^-1 gives 1 in every band, adjacent bands see every wavelength once, and names follow the
+    /// convention.
     #[test]
     fn bands_share_the_spectrum() {
         let imager = SpectralPlane::new(Plane::new(size()), &BAND, 16, 400.0, 700.0);
@@ -185,7 +186,7 @@ mod tests {
         }
     }
 
-    /// Bands that reach the ends of the grid hold all that is there: a mean of 1 in each, as everywhere.
+    /// Bands that reach the ends of the grid include all light there: their mean is 1 as in all other bands.
     #[test]
     fn bands_at_the_ends_of_the_grid_are_whole() {
         for bands in [1, 7, 48, 240] {
@@ -197,8 +198,8 @@ mod tests {
         }
     }
 
-    /// The picture of an equal-energy spectrum is as bright as the sum of y-bar says, whatever the bands: 106.857 nm
-    /// (CIE 1931, 1 nm sums from 360 to 830 nm; 380-780 nm hold all but 1e-4 of it).
+    /// The picture of an equal-energy spectrum has the luminance that the sum of y-bar gives, for any number of bands: 106.857 nm
+    /// (CIE 1931, 1 nm sums from 360 to 830 nm; 380-780 nm contain all but 1e-4 of it).
     #[test]
     fn the_preview_is_photometric() {
         for bands in [1, 8, 40] {

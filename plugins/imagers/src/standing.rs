@@ -1,19 +1,19 @@
-//! How a frame stands: moved across the axis, tilted, curved. Places on it keep their area.
+//! Position and shape of a frame: shifted across the axis, tilted, curved. Curving keeps areas on the frame.
 
 use glam::{DMat3, DQuat, DVec3};
 use spectra_core::math;
 
-/// The shape of a frame. A radius is positive where its center lies behind the frame (at larger z).
+/// The shape of a frame. A radius is positive if its center lies behind the frame (at larger z).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bend {
-    /// None.
+    /// A flat frame.
     Flat,
-    /// Bent along x; x on the frame is the length of the arc.
+    /// A frame curved along x; x on the frame is the length of the arc.
     Cylinder {
         /// Radius, mm.
         radius_mm: f64,
     },
-    /// Part of a sphere. A place on the frame is told by its azimuth and by the length of the chord from the middle, so
+    /// A part of a sphere. A point on the frame is given by its azimuth and by the length of the chord from the center, so
     /// that equal areas stay equal (J. H. Lambert, 1772).
     Sphere {
         /// Radius, mm.
@@ -22,7 +22,8 @@ pub enum Bend {
 }
 
 impl Bend {
-    /// The smallest radius, of either sign, at which a frame of that size spans no more than 60 degrees to each side, mm.
+    /// Returns the smallest radius, mm, regardless of sign, at which a frame of this size spans no more than 60 degrees to each
+    /// side.
     pub(crate) fn least_radius_mm(self, width_mm: f64, height_mm: f64) -> f64 {
         match self {
             Self::Flat => 0.0,
@@ -31,7 +32,7 @@ impl Bend {
         }
     }
 
-    /// The point and the unit normal toward the lens at (x, y) of the frame, mm.
+    /// Returns the point, mm, and the unit normal toward the lens at (x, y) on the frame, mm.
     fn at(self, x: f64, y: f64) -> (DVec3, DVec3) {
         match self {
             Self::Flat => (DVec3::new(x, y, 0.0), DVec3::NEG_Z),
@@ -50,9 +51,10 @@ impl Bend {
         }
     }
 
-    /// Where a ray that goes toward larger z meets the frame from the front: the point, and (x, y) on the frame, mm.
+    /// Intersects the front of the frame with a ray toward larger z. Returns the point and (x, y) on the frame, mm; `None` if
+    /// the ray misses.
     fn meet(self, from: DVec3, way: DVec3) -> Option<(DVec3, f64, f64)> {
-        // From the tangent plane on, so that the near crossing is the small root.
+        // Start in the tangent plane, so that the near crossing is the small root.
         let on_plane = from - way * (from.z / way.z);
         let (p, r) = match self {
             Self::Flat => {
@@ -70,25 +72,25 @@ impl Bend {
         };
         let (x, y) = match self {
             Self::Sphere { .. } => {
-                // The chord, along the azimuth of the point.
+                // Convert to the length of the chord, along the azimuth of the point.
                 let k = (1.0 - p.length_squared() / (4.0 * r * r)).sqrt();
                 (p.x / k, p.y / k)
             }
             _ => (r * math::asin(p.x / r), p.y),
         };
         let (_, normal) = self.at(x, y);
-        // On the half that faces the lens, and from the front; false where nothing is met and all is no number.
+        // On the half that faces the lens, and from the front. False if the ray misses, since all values are then NaN.
         (p.z / r < 1.0 && way.dot(normal) < 0.0).then_some((p, x, y))
     }
 }
 
-/// The near root of a t^2 + 2 b t + c = 0 along a ray.
+/// Returns the point of a ray at the near root of a t^2 + 2 b t + c = 0.
 fn near(from: DVec3, way: DVec3, a: f64, b: f64, c: f64) -> DVec3 {
     let root = (b * b - a * c).sqrt();
     from - way * (c / (b + if b < 0.0 { -root } else { root }))
 }
 
-/// Shift, tilt and bend of a frame in the frame of the nominal image plane.
+/// Shift, tilt and curvature of a frame, in the coordinates of the nominal image plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
     center_mm: DVec3,
@@ -98,30 +100,32 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// Flat in the nominal image plane, its center on the axis.
+    /// A flat frame in the nominal image plane with its center on the axis.
     pub const NOMINAL: Self = Self { center_mm: DVec3::ZERO, rotation: DMat3::IDENTITY, bend: Bend::Flat };
 
-    /// A frame whose center is moved along x and y (mm), and which is turned about it: about x, then about the y that
-    /// turned along (rad, right-handed).
+    /// Creates a frame whose center is shifted along x and y (mm). It is turned about its center: first about x, then about
+    /// the y axis that was turned with it (rad, right-handed).
     #[must_use]
     pub fn new(shift_mm: [f64; 2], tilt_rad: [f64; 2], bend: Bend) -> Self {
         let [(sx, cx), (sy, cy)] = tilt_rad.map(|t| (math::sin(t), math::cos(t)));
         let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, cx, sx), DVec3::new(0.0, -sx, cx));
         let about_y = DMat3::from_cols(DVec3::new(cy, 0.0, -sy), DVec3::Y, DVec3::new(sy, 0.0, cy));
-        // Exactly upright where nothing turns.
+        // Exactly upright if there is no tilt.
         let rotation = if tilt_rad == [0.0; 2] { DMat3::IDENTITY } else { about_x * about_y };
         Self { center_mm: DVec3::new(shift_mm[0], shift_mm[1], 0.0), rotation, bend }
     }
 
-    /// The point (mm, frame of the nominal image plane) and the unit normal toward the lens at (x, y) of the frame, mm.
+    /// Returns the point (mm, coordinates of the nominal image plane) and the unit normal toward the lens at (x, y) on the
+    /// frame, mm.
     #[must_use]
     pub fn at(&self, x_mm: f64, y_mm: f64) -> (DVec3, DVec3) {
         let (point, normal) = self.bend.at(x_mm, y_mm);
         (self.center_mm + self.rotation * point, self.rotation * normal)
     }
 
-    /// Where a ray through `from_mm` that travels along `way` (unit, toward the imager) meets the front of the frame: the
-    /// point (mm, frame of the nominal image plane), and its place (x, y) on the frame, mm.
+    /// Intersects the front of the frame with a ray through `from_mm` that travels along `way` (unit, toward the imager).
+    /// Returns the point (mm, coordinates of the nominal image plane) and its position (x, y) on the frame, mm; `None` if the
+    /// ray misses.
     #[must_use]
     pub fn meet(&self, from_mm: DVec3, way: DVec3) -> Option<(DVec3, f64, f64)> {
         let back = self.rotation.transpose();
@@ -129,8 +133,8 @@ impl Standing {
         Some((self.center_mm + self.rotation * point, x, y))
     }
 
-    /// The axes of the frame's surface at (x, y) of it: along x, along y, and away from the lens (unit, frame of the
-    /// nominal image plane).
+    /// Returns the unit axes of the frame's surface at (x, y) on it, mm: along x, along y, and away from the lens, in the
+    /// coordinates of the nominal image plane.
     #[must_use]
     pub fn axes(&self, x_mm: f64, y_mm: f64) -> DMat3 {
         let away = -self.bend.at(x_mm, y_mm).1;

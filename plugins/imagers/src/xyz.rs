@@ -1,4 +1,4 @@
-//! `imager: xyz`, a plane that measures CIE 1931 XYZ in absolute units: a perfect tristimulus colorimeter.
+//! `imager: xyz`: a plane that measures CIE 1931 XYZ in absolute units, a perfect tristimulus colorimeter.
 
 use crate::balance::{Balance, WhiteBalance};
 use crate::detector::DetectorPlane;
@@ -16,14 +16,14 @@ use spectra_film::display::{White, finish_xyz};
 use spectra_spectrum::Observer;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 
-/// A frame that measures CIE 1931 XYZ in lux, or lux-seconds where it is given an exposure time.
+/// A frame that measures CIE 1931 XYZ in lux, or in lux-seconds if it has an exposure time.
 ///
-/// A perfect tristimulus colorimeter at each pixel, without noise: the imager for measuring, and for pictures that
-/// show what an eye would see there. Y is illuminance on the frame (683 lm/W times V).
+/// Each pixel is a perfect tristimulus colorimeter without noise. Use it for measurements, and for pictures that show what
+/// an eye would see there. Y is the illuminance on the frame (683 lm/W times V).
 ///
-/// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
-/// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
-/// camera), or bent.
+/// `resolution` is the number of pixels across and down. If its aspect ratio differs from that of the frame, the pixels
+/// are not square. The frame lies in the image plane of the lens unless you shift it, tilt it (as on a view camera) or
+/// curve it.
 ///
 /// # Example
 /// ```yaml
@@ -45,23 +45,24 @@ pub struct XyzParams {
     #[serde(default)]
     exposure: Option<Positive<Time>>,
     /// The Y that the picture shows as white, with its unit: an illuminance such as `20 lx`, or an exposure such as
-    /// `0.4 lx s` where an exposure time is given. Without it, automatic exposure shows the 99th percentile of Y as
+    /// `0.4 lx s` if an exposure time is given. If it is left out, automatic exposure shows the 99th percentile of Y as
     /// 0.9.
     #[serde(default)]
     white: Option<String>,
-    /// What becomes of colors that a screen cannot show: `desaturate` (luminance stays, the default), `perceptual`
-    /// (hue and lightness as they are seen stay), `compress` (with white added until they fit: the colors of a spectrum stay apart) or
-    /// `clip` (each of red, green and blue by itself: vivid).
+    /// Mapping of colors that a screen cannot show. `desaturate` (the default) keeps luminance; `perceptual` keeps perceived hue
+    /// and lightness. `compress` adds white until they fit, so that the colors of a spectrum stay distinct. `clip` clips red,
+    /// green and blue separately, which looks vivid.
     #[serde(default)]
     gamut: Option<GamutMapping>,
-    /// The light that the picture shows as white: the name of a light or a file (`D55`, `A`, `"blackbody:3200"`), a
-    /// `{temperature: 3200 K}` as a camera has it (1000 to 25000 K: a black body below 4000 K, daylight from there on), or
-    /// `auto-gray`, the mean of the frame. The channels stay as they are; without it the picture has the tint of its light.
+    /// Light that the picture shows as white. Write the name of a light or a file (`D55`, `A`, `"blackbody:3200"`), a color
+    /// temperature as on a camera (`{temperature: 3200 K}`), or `auto-gray`, the mean of the frame. Temperatures are 1000 to
+    /// 25000 K: a black body below 4000 K, daylight from there on. The channels do not change. If it is left out, the picture
+    /// has the tint of its light.
     #[serde(default)]
     white_balance: Option<WhiteBalance>,
 }
 
-/// What becomes of colors that a screen cannot show.
+/// Mapping of colors that a screen cannot show, as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -72,7 +73,7 @@ enum GamutMapping {
     Clip,
 }
 
-/// CIE 1931 XYZ in lux.
+/// A response with the channels X, Y and Z of CIE 1931, in lux.
 #[derive(Clone, Debug)]
 pub struct XyzResponse {
     channels: Vec<Channel>,
@@ -82,7 +83,7 @@ pub struct XyzResponse {
 }
 
 impl XyzResponse {
-    /// Channels on `grid`.
+    /// Creates the channels on `grid`, with `white` for the picture.
     #[must_use]
     pub fn new(grid: &Grid, white: White) -> Self {
         let functions = Observer::cie_1931_2deg().on_grid(grid);
@@ -111,24 +112,25 @@ impl Response for XyzResponse {
     }
 }
 
-/// A plane XYZ imager.
+/// A plane imager that measures XYZ.
 pub type XyzPlane = DetectorPlane<XyzResponse>;
 
 impl XyzPlane {
-    /// An imager on that frame whose channels are given on `grid`, in lx s where there is an exposure time.
+    /// Creates an imager on the frame `plane` with channels on `grid`. They are in lx s if there is an exposure time, s, and
+    /// otherwise in lx.
     #[must_use]
     pub fn new(plane: Plane, grid: &Grid, exposure_time_s: Option<f64>, white: White) -> Self {
         Self::of(plane, XyzResponse::new(grid, white), exposure_time_s)
     }
 
-    /// The same, showing colors beyond the screen's another way.
+    /// Returns this imager with another mapping for colors that a screen cannot show.
     #[must_use]
     pub fn with_gamut(mut self, gamut: Gamut) -> Self {
         self.response.gamut = gamut;
         self
     }
 
-    /// The same, whose picture shows another light as white.
+    /// Returns this imager with another light shown as white in its picture.
     #[must_use]
     pub fn with_balance(mut self, balance: Balance) -> Self {
         self.response.balance = balance;
@@ -160,7 +162,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Imager>, Faul
     faults.into_result(Box::new(imager))
 }
 
-/// White in the unit of the channels, whose dimension depends on whether there is an exposure time.
+/// Reads the white in the unit of the channels: an exposure if there is an exposure time, otherwise an illuminance.
 fn stated_white(params: &Params, text: &str, timed: bool) -> Result<White, Fault> {
     let white = if timed {
         Positive::<Exposure>::from_text(text).map(|v| v.lx_s())

@@ -1,4 +1,4 @@
-// Calls OpenImageIO for bridge.rs. Every fault leaves as a std::exception, which cxx turns into an `Err`.
+// Calls OpenImageIO for bridge.rs. Every failure leaves as a std::exception, which cxx turns into an `Err`.
 
 #include "spectra-plugin-oiio/src/bridge.h"
 #include "spectra-plugin-oiio/src/bridge.rs.h"
@@ -26,7 +26,7 @@ namespace Filesystem = OIIO::Filesystem;
 std::string own(rust::Str text) { return std::string(text.data(), text.size()); }
 std::string own(const rust::String &text) { return std::string(text.data(), text.size()); }
 
-// Names and texts come from files, which may hold anything.
+// Names and texts come from files and may hold any bytes.
 rust::String lossy(const std::string &text) { return rust::String::lossy(text.data(), text.size()); }
 
 [[noreturn]] void fail(std::string cause, const char *otherwise) {
@@ -35,25 +35,25 @@ rust::String lossy(const std::string &text) { return rust::String::lossy(text.da
     throw std::runtime_error(cause.empty() ? otherwise : cause);
 }
 
-// What is no std::exception would end the program at the border.
+// Turns any other exception into a std::exception, because it would end the program at the bridge.
 template<class F> auto guarded(F body) {
     try {
         return body();
     } catch (const std::exception &) {
         throw;
     } catch (...) {
-        throw std::runtime_error("OpenImageIO failed without a word");
+        throw std::runtime_error("OpenImageIO failed without an error message");
     }
 }
 
-// The library lists its formats when it is first asked for one, and hands out the list so far to who asks meanwhile for it:
-// one thread waits for the other here.
+// The library lists its formats when it is first asked for one. A second thread that asks meanwhile would get an incomplete list, so
+// threads wait for each other here.
 void know_formats() {
     static std::once_flag once;
     std::call_once(once, [] { OIIO::ImageInput::create("openexr"); });
 }
 
-// Hands what the library writes to Rust.
+// Passes the bytes that the library writes to Rust.
 class ToRust final : public Filesystem::IOProxy {
 public:
     explicit ToRust(Sink &sink) : IOProxy("", Write), m_sink(sink) {}
@@ -111,7 +111,7 @@ Header header_of(const OIIO::ImageSpec &spec) {
         header.channels.push_back(lossy(std::string(spec.channel_name(channel))));
     header.alpha = spec.alpha_channel;
     header.integers = !spec.format.is_floating_point();
-    // Of a DPX file's transfer characteristics the library names but a few as a color space.
+    // The library translates only a few transfer characteristics of DPX files to a color space.
     const auto transfer = spec.get_string_attribute("dpx:Transfer");
     header.color_space = lossy(std::string(spec.get_string_attribute("oiio:ColorSpace", transfer)));
     header.orientation = spec.get_int_attribute("Orientation", 1);
@@ -125,7 +125,7 @@ void read_opened(OIIO::ImageInput &input, const OIIO::ImageSpec &spec, Receiver 
     const Wanted wanted = receiver.begin(header);
     if (wanted.end <= wanted.first)
         return;
-    // Some rows at a time: whole strips or tiles, of 4 MiB or little more.
+    // Reads some rows at a time: whole strips or tiles of about 4 MiB.
     const std::size_t row = std::size_t(spec.width) * std::size_t(wanted.end - wanted.first);
     const bool tiled = spec.tile_width > 0;
     const int unit = std::max(tiled ? spec.tile_height : spec.get_int_attribute("tiff:RowsPerStrip", 64), 1);
@@ -153,7 +153,7 @@ rust::String endings() {
     return guarded([] {
         know_formats();
         std::string all;
-        // Formats that are only written have endings too.
+        // The extension list includes formats that can only be written.
         const auto formats = OIIO::Strutil::splits(OIIO::get_string_attribute("input_format_list"), ",");
         for (const auto &entry : OIIO::Strutil::splits(OIIO::get_string_attribute("extension_list"), ";")) {
             const auto format = entry.substr(0, entry.find(':'));
@@ -182,7 +182,7 @@ void read(rust::Str format, rust::Str path, bool from_memory, rust::Slice<const 
         if (!input)
             fail(OIIO::geterror(), "no such format");
         OIIO::ImageSpec wish, spec;
-        // Cover multiplied into code values, which the library would do, darkens edges.
+        // The library would multiply code values by alpha, which darkens edges.
         wish.attribute("oiio:UnassociatedAlpha", 1);
         if (from_memory)
             input->set_ioproxy(&memory);
@@ -205,7 +205,7 @@ void write(const Plan &plan, const Pixels &pixels, Sink &sink) {
         output->set_ioproxy(&proxy);
         const OIIO::ImageSpec spec = spec_of(plan);
         if (!output->open(own(plan.path), spec))
-            fail(output->geterror(), "the file cannot be begun");
+            fail(output->geterror(), "the file cannot be created");
         const int step = plan.tile > 0 ? plan.tile : 64;
         for (int first = 0; first < plan.height; first += step) {
             const int end = std::min(first + step, plan.height);
@@ -228,7 +228,7 @@ void make_texture(const Plan &plan, const Pixels &pixels, rust::Str path) {
         OIIO::ImageBuf buffer(spec);
         const auto rows = rows_of(plan, pixels, 0, plan.height);
         if (!buffer.set_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, rows.data()))
-            fail(buffer.geterror(), "the pixels cannot be taken");
+            fail(buffer.geterror(), "the pixels cannot be copied");
         OIIO::ImageSpec wish;
         wish.attribute("maketx:filtername", "box");
         if (!OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, buffer, own(path), wish))

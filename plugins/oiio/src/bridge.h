@@ -1,4 +1,4 @@
-// The C++ side of bridge.rs; see there for what each function does.
+// The C++ side of bridge.rs, which documents each function.
 #pragma once
 
 #include "rust/cxx.h"

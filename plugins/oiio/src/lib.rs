@@ -1,11 +1,11 @@
-//! Picture files by OpenImageIO: DPX, JPEG 2000, WebP, PSD, textures and more in, tiled OpenEXR out.
+//! Picture files with OpenImageIO: reads DPX, JPEG 2000, WebP, PSD, textures and more, and writes tiled OpenEXR.
 //!
-//! Empty without the feature `oiio`, so that a plain build needs neither a C++ compiler nor a C++ library. With it the
-//! crate registers a `spectra_pictures::library::PictureLibrary`, and the picture sources and the `exr` output find
-//! it there. The library is called through a bridge of this crate's own (`bridge.h`), for OpenImageIO 2.4 and later.
+//! The crate is empty without the feature `oiio`, so that a plain build needs neither a C++ compiler nor a C++ library.
+//! With the feature it registers a `spectra_pictures::library::PictureLibrary`, which the picture sources and the `exr` output use.
+//! A bridge of this crate (`bridge.h`) calls the library, OpenImageIO 2.4 or later.
 //!
-//! What its readers do with a hostile file is the library's own doing: its exceptions become errors, sizes are
-//! checked before pictures are unpacked, but a fault in one of its readers can end the program.
+//! Hostile files: exceptions of the library become errors, and sizes are checked before pictures are unpacked. A bug in one of the
+//! library's readers can still crash the program.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![cfg(feature = "oiio")]

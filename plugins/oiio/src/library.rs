@@ -1,4 +1,4 @@
-//! OpenImageIO, registered.
+//! Registers OpenImageIO as a picture library.
 
 use crate::bridge::ffi;
 use crate::{reading, writing};
@@ -6,12 +6,12 @@ use spectra_core::resources::Found;
 use spectra_core::sink::Out;
 use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 
-/// The library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
+/// The picture library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
 #[derive(Clone, Copy, Debug)]
 pub struct OpenImageIo;
 
 impl OpenImageIo {
-    /// Endings of the files that it reads, without the dot.
+    /// Returns the extensions of the files that OpenImageIO reads, without the dot.
     #[must_use]
     pub fn endings() -> Vec<String> {
         reading::endings()

@@ -1,4 +1,4 @@
-//! From the library's pixels to a [`FilePicture`].
+//! Reads files with OpenImageIO and converts the pixels to a [`FilePicture`].
 
 use crate::bridge::ffi::{self, Header, Wanted};
 use crate::stated;
@@ -7,28 +7,28 @@ use spectra_pictures::library::{FilePicture, PictureLimits};
 use std::io::Write;
 use std::path::Path;
 
-/// Formats that are no still pictures of light: pictures made up from the file's name, depth, films, volumes.
+/// Formats that are not still pictures of light: pictures generated from the file name, depth, movies, volumes.
 const NO_PICTURES: [&str; 5] = ["null", "zfile", "ffmpeg", "openvdb", "term"];
-/// Formats that may say of a million pixels in a few bytes that they are all alike.
+/// Formats that can store a million identical pixels in a few bytes.
 const DENSE: [&str; 3] = ["webp", "jpeg2000", "heif"];
-/// No other packs more pixels into a byte: deflate ends near 1 032 to 1, at one bit a pixel or more.
+/// Upper limit of pixels per byte for all other formats: deflate reaches about 1 032 to 1, at one bit per pixel or more.
 const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 
-/// Name of the format that has this ending.
+/// Returns the name of the format that has this file extension.
 fn format_of(ending: &str) -> Result<String, String> {
     let all = ffi::endings().map_err(|e| e.to_string())?;
     let mut formats = all.split(';').filter_map(|entry| entry.split_once(':'));
     let found = formats.find(|(_, endings)| endings.split(',').any(|own| own.eq_ignore_ascii_case(ending)));
     let Some((format, _)) = found else {
-        return Err(format!("OpenImageIO {} reads no `.{ending}` files", ffi::version()));
+        return Err(format!("OpenImageIO {} does not read `.{ending}` files", ffi::version()));
     };
     if NO_PICTURES.contains(&format) {
-        return Err(format!("a `.{ending}` file is no still picture"));
+        return Err(format!("a `.{ending}` file is not a still picture"));
     }
     Ok(format.to_owned())
 }
 
-/// Endings of all files that are read, in the library's order.
+/// Returns the extensions of all files that can be read, in the library's order.
 pub(crate) fn endings() -> Vec<String> {
     let all = ffi::endings().unwrap_or_default();
     let formats = all.split(';').filter_map(|entry| entry.split_once(':'));
@@ -36,10 +36,10 @@ pub(crate) fn endings() -> Vec<String> {
     pictures.flat_map(|(_, endings)| endings.split(',').map(str::to_owned)).collect()
 }
 
-/// How much of a file's beginning is looked at for the size that it states.
+/// Number of bytes at the start of a file that are searched for the stated size.
 const BEGINNING_BYTES: u64 = 1 << 20;
 
-/// The first picture of a file; without `pixels` only what its header says.
+/// Reads the first picture of a file; without `pixels`, only its header.
 pub(crate) fn read(ending: &str, file: &Found, limits: PictureLimits, pixels: bool) -> Result<FilePicture, String> {
     let format = format_of(ending)?;
     let text = |cause: cxx::Exception| tidy(cause.what());
@@ -61,20 +61,20 @@ pub(crate) fn read(ending: &str, file: &Found, limits: PictureLimits, pixels: bo
     if ffi::reads_memory(&format).map_err(text)? {
         ffi::read(&format, &format!("picture.{ending}"), true, &bytes, &mut receiver).map_err(text)?;
     } else {
-        // These readers take a path only.
+        // These readers accept only a path.
         let system = |cause: std::io::Error| format!("a temporary copy cannot be written: {cause}");
         let mut copy = tempfile::Builder::new().suffix(&format!(".{ending}")).tempfile().map_err(system)?;
         copy.write_all(&bytes).map_err(system)?;
         copy.flush().map_err(system)?;
         let Some(path) = copy.path().to_str() else {
-            return Err("the folder of temporary files has a name that is no UTF-8".to_owned());
+            return Err("the path of the folder for temporary files is not valid UTF-8".to_owned());
         };
         from(path, &mut receiver)?;
     }
     receiver.picture()
 }
 
-/// One line of what the library says, however much that is.
+/// Joins a message of the library into one line of at most 400 characters, without a final full stop.
 fn tidy(said: &str) -> String {
     let mut words = said.split_whitespace().collect::<Vec<_>>().join(" ");
     if let Some((end, _)) = words.char_indices().nth(400) {
@@ -83,25 +83,25 @@ fn tidy(said: &str) -> String {
     words.trim_end_matches('.').to_owned()
 }
 
-/// What of the header is needed once the pixels are there.
+/// The parts of the header that are needed while the pixels arrive, and the pixels.
 struct Begun {
     header: Header,
-    /// Channels of red, green and blue among those read.
+    /// Positions of red, green and blue among the channels read.
     rgb: [usize; 3],
     alpha: Option<usize>,
-    /// How many are read.
+    /// Number of channels read.
     step: usize,
     colors: Vec<[f32; 3]>,
     cover: Vec<f32>,
 }
 
-/// Takes the header, judges it, makes room for the pixels, and takes them row by row.
+/// Receives a file from the bridge: checks the header, allocates the pixels and accepts them row by row.
 pub(crate) struct Receiver {
     format: String,
     limits: PictureLimits,
-    /// Bytes of the file, where that bounds the pixels.
+    /// Size of the file, bytes; `None` for formats in which it does not limit the number of pixels.
     file_bytes: Option<u64>,
-    /// Whether pixels are wanted.
+    /// Whether pixels are read, or only the header.
     pixels: bool,
     begun: Option<Begun>,
 }
@@ -118,27 +118,29 @@ impl Receiver {
             return Err("the picture has no pixels".to_owned());
         }
         if width.max(height) > u64::from(side_px) || width * height > pixels {
-            return Err(format!("{width} x {height} pixels; at most {pixels} in all and {side_px} a side are read"));
+            return Err(format!(
+                "the picture is too large: {width} x {height} pixels; at most {pixels} in total and {side_px} per side"
+            ));
         }
         match self.file_bytes {
-            Some(bytes) if width * height > bytes.saturating_mul(MAX_PIXELS_PER_BYTE) => {
-                Err(format!("the header says {width} x {height} pixels, which {bytes} bytes cannot hold"))
-            }
+            Some(bytes) if width * height > bytes.saturating_mul(MAX_PIXELS_PER_BYTE) => Err(format!(
+                "the header states {width} x {height} pixels, but a file of {bytes} bytes cannot hold them"
+            )),
             _ => Ok(()),
         }
     }
 
-    /// Called by the bridge once the file is open: says which channels are wanted.
+    /// Checks the header and returns the channels to read. The bridge calls it once the file is open.
     pub(crate) fn begin(&mut self, header: &Header) -> Result<Wanted, String> {
         for window in [header.display, header.data] {
             self.check([2, 3].map(|i| u64::try_from(window[i]).unwrap_or(0)))?;
         }
         if header.deep || header.slices != 1 {
-            return Err("it holds a volume, or several samples a pixel, and no flat picture".to_owned());
+            return Err("the file holds a volume or several samples per pixel, not a flat picture".to_owned());
         }
         if self.format == "dpx" && header.orientation > 4 {
-            // OpenImageIO 2.4 takes its rows for as long as its columns are.
-            return Err("a DPX file stored column by column is not read".to_owned());
+            // OpenImageIO 2.4 takes the length of a column for the length of a row.
+            return Err("DPX files stored column by column cannot be read".to_owned());
         }
         let place = |name: &str| header.channels.iter().position(|own| own.eq_ignore_ascii_case(name));
         let alpha = usize::try_from(header.alpha).ok().filter(|at| *at < header.channels.len());
@@ -148,7 +150,10 @@ impl Receiver {
                 let colors: Vec<usize> = (0..header.channels.len()).filter(|at| Some(*at) != alpha).collect();
                 let [gray] = colors[..] else {
                     let names: Vec<String> = header.channels.iter().take(12).map(|c| format!("`{c}`")).collect();
-                    return Err(format!("no channels R, G and B, nor a single one, but {}", names.join(", ")));
+                    return Err(format!(
+                        "the file has neither channels R, G and B nor a single channel, but {}",
+                        names.join(", ")
+                    ));
                 };
                 [gray; 3]
             }
@@ -158,9 +163,9 @@ impl Receiver {
         let step = last + 1 - first;
         // Channels between the wanted ones are read with them.
         if step > 16 {
-            return Err("the channels of color lie too far apart".to_owned());
+            return Err("the color channels lie too far apart: they span more than 16 channels".to_owned());
         }
-        // Where the file holds nothing of the window that is shown there is no light.
+        // Parts of the display window that the file does not store have no light.
         let shown = if self.pixels { header.display[2] as usize * header.display[3] as usize } else { 0 };
         self.begun = Some(Begun {
             header: header.clone(),
@@ -173,8 +178,7 @@ impl Receiver {
         Ok(Wanted { first: first as i32, end: if self.pixels { last as i32 + 1 } else { first as i32 } })
     }
 
-    /// Called by the bridge with whole rows of what the file holds, from its row `first` on, channel by channel within a
-    /// pixel.
+    /// Accepts whole rows of the stored pixels, from row `first` on; the channels of a pixel follow each other. The bridge calls it.
     pub(crate) fn rows(&mut self, first: i64, values: &[f32]) {
         let Some(Begun { header, rgb, alpha, step, colors, cover }) = &mut self.begun else { return };
         let [x, y, width, height] = header.display;
@@ -198,7 +202,7 @@ impl Receiver {
 
     fn picture(self) -> Result<FilePicture, String> {
         let Some(Begun { header, alpha, colors, cover, .. }) = self.begun else {
-            return Err("the library gave no picture".to_owned());
+            return Err("the library returned no picture".to_owned());
         };
         let [_, _, width, height] = header.display;
         let pixel_aspect = f64::from(header.pixel_aspect);

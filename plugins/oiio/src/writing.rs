@@ -1,4 +1,4 @@
-//! Pictures out: any format that the library writes, and textures.
+//! Writes pictures in any format that OpenImageIO writes, and textures.
 
 use crate::bridge::ffi::{self, Plan};
 use spectra_core::sink::Out;
@@ -6,12 +6,12 @@ use spectra_pictures::library::TiledExr;
 use std::io::{self, SeekFrom};
 use std::path::Path;
 
-/// How a sample is stored.
+/// Data types in which samples are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Samples {
-    /// 8 bits: 255 is 1.
+    /// 8-bit integers: 255 is 1.
     U8,
-    /// 16 bits, or fewer where the attribute `oiio:BitsPerSample` says so: the largest is 1.
+    /// 16-bit integers, or fewer bits if the attribute `oiio:BitsPerSample` says so. The largest value is 1.
     U16,
     /// 16-bit floating point.
     F16,
@@ -30,28 +30,28 @@ impl Samples {
     }
 }
 
-/// A picture to be written by [`write()`] or [`make_texture`].
+/// A picture to write with [`write()`] or [`make_texture`].
 #[derive(Clone, Debug)]
 pub struct Written<'a> {
-    /// Name of the format, such as `jpeg2000`.
+    /// Name of the format, for example `jpeg2000`.
     pub format: &'a str,
-    /// Ending of such files, such as `jp2`, which may tell variants of the format.
+    /// File extension, for example `jp2`. It may select a variant of the format.
     pub ending: &'a str,
     /// Width, pixels.
     pub width_px: u32,
     /// Height, pixels.
     pub height_px: u32,
-    /// Width over height of a pixel, where it is to be said.
+    /// Width over height of a pixel; `None` leaves it out of the file.
     pub pixel_aspect: Option<f32>,
-    /// How samples are stored.
+    /// Data type of the samples.
     pub samples: Samples,
-    /// Side of a tile, pixels; rows if `None`.
+    /// Side of a tile, pixels; `None` writes rows.
     pub tile_px: Option<u32>,
-    /// Name and values, row by row from the top, of each channel, in the order of the file.
+    /// Name and values of each channel, in the order of the file. Values go row by row from the top.
     pub channels: &'a [(&'a str, &'a [f32])],
-    /// Attributes of text.
+    /// Names and values of text attributes.
     pub texts: &'a [(String, String)],
-    /// Attributes that are whole numbers.
+    /// Names and values of integer attributes.
     pub integers: &'a [(String, i32)],
 }
 
@@ -59,14 +59,14 @@ impl Written<'_> {
     fn plan(&self) -> Result<Plan, String> {
         let pixels = u64::from(self.width_px) * u64::from(self.height_px);
         if pixels == 0 || self.channels.is_empty() {
-            return Err("a picture without pixels or channels".to_owned());
+            return Err("the picture has no pixels or no channels".to_owned());
         }
         for (name, values) in self.channels {
             if values.len() as u64 != pixels {
                 return Err(format!("channel `{name}` has {} values for {pixels} pixels", values.len()));
             }
         }
-        let side = |px: u32| i32::try_from(px).map_err(|_| format!("a side of {px} pixels"));
+        let side = |px: u32| i32::try_from(px).map_err(|_| format!("a side of {px} pixels is too long"));
         Ok(Plan {
             format: self.format.to_owned(),
             path: format!("picture.{}", self.ending),
@@ -84,37 +84,38 @@ impl Written<'_> {
     }
 }
 
-/// Writes a picture in a format that takes an open file; it must be empty.
+/// Writes a picture to `to`, which must be empty. The format must support writing to an open file.
 ///
 /// # Errors
-/// What the system or the library says.
+/// The message of the system or of the library.
 pub fn write(to: &mut dyn Out, picture: &Written<'_>) -> Result<(), String> {
     let plan = picture.plan()?;
     let mut sink = Sink { file: to, size: 0, fault: None };
     let written = ffi::write(&plan, &Pixels::new(picture), &mut sink);
     match (sink.fault, written) {
-        // The system's word is the cause of what the library says.
+        // An error of the system is the cause of the library's error.
         (Some(fault), _) => Err(fault.to_string()),
         (None, written) => written.map_err(|e| e.what().trim().to_owned()),
     }
 }
 
-/// Writes a texture as `maketx` does: tiled, with all sizes down to one pixel. The format is told by the ending
-/// of the path, `tx` or `exr`.
+/// Writes a texture as `maketx` does: tiled, with all levels down to one pixel. The extension of the path, `tx` or `exr`, selects the
+/// format.
 ///
 /// # Errors
-/// What the library says.
+/// The message of the library, or a path that is not valid UTF-8.
 pub fn make_texture(path: &Path, picture: &Written<'_>) -> Result<(), String> {
     let plan = picture.plan()?;
-    let path = path.to_str().ok_or("the path is no UTF-8")?;
+    let path = path.to_str().ok_or("the path is not valid UTF-8")?;
     ffi::make_texture(&plan, &Pixels::new(picture), path).map_err(|e| e.what().trim().to_owned())
 }
 
-/// See `spectra_pictures::library::PictureLibrary::write_tiled_exr`.
+/// Implements `spectra_pictures::library::PictureLibrary::write_tiled_exr`.
 pub(crate) fn tiled_exr(to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String> {
     let mut texts = picture.attributes.to_vec();
     let said = |name: &str, text: &str| (name.to_owned(), text.to_owned());
-    // In the order of rows, so that threads do not show in the file; and the library would write the time of day.
+    // The order of lines is fixed so that the file does not depend on threads. The empty `DateTime` keeps the library from writing the time
+    // of day.
     texts.extend([said("compression", "zip"), said("openexr:lineOrder", "increasingY"), said("DateTime", "")]);
     write(
         to,
@@ -133,7 +134,7 @@ pub(crate) fn tiled_exr(to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), 
     )
 }
 
-/// The pixels of a picture, some rows at a time.
+/// The pixels of a picture, handed out some rows at a time.
 pub(crate) struct Pixels<'a> {
     width: usize,
     channels: &'a [(&'a str, &'a [f32])],
@@ -144,7 +145,7 @@ impl<'a> Pixels<'a> {
         Self { width: picture.width_px as usize, channels: picture.channels }
     }
 
-    /// Called by the bridge: whole rows from `first` on, channel by channel within a pixel.
+    /// Fills whole rows from `first` on; the channels of a pixel follow each other. The bridge calls it.
     pub(crate) fn fill(&self, first: i32, to: &mut [f32]) {
         let start = first as usize * self.width;
         for (pixel, to) in to.chunks_exact_mut(self.channels.len()).enumerate() {
@@ -155,7 +156,7 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// The file that the library writes to.
+/// The file to which the library writes.
 pub(crate) struct Sink<'a> {
     file: &'a mut dyn Out,
     /// Bytes written so far.
@@ -164,7 +165,7 @@ pub(crate) struct Sink<'a> {
 }
 
 impl Sink<'_> {
-    /// Called by the bridge: whether the bytes are written.
+    /// Writes bytes at an offset and returns whether that succeeded. The bridge calls it.
     pub(crate) fn write_at(&mut self, bytes: &[u8], offset: i64) -> bool {
         let mut attempt = || -> io::Result<()> {
             let offset = u64::try_from(offset).map_err(|_| io::ErrorKind::InvalidInput)?;
@@ -183,7 +184,7 @@ impl Sink<'_> {
         }
     }
 
-    /// Called by the bridge: bytes written so far.
+    /// Bytes written so far. The bridge calls it.
     pub(crate) fn size(&self) -> i64 {
         self.size
     }

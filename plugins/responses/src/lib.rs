@@ -1,4 +1,4 @@
-//! Built-in responses: what a detector sees, channel by channel, and the picture that it makes of that. An
+//! Built-in responses: the spectral sensitivity of a detector's channels, and the picture made from them. An
 //! `imager: {kind: detector, response: ...}` has one.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

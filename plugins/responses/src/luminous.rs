@@ -1,4 +1,4 @@
-//! `kind: photopic` and `kind: scotopic`: light as bright as an eye sees it.
+//! The responses `photopic` and `scotopic`: light weighted by the sensitivity of the eye.
 
 use crate::shown::finish;
 use schemars::JsonSchema;
@@ -11,13 +11,13 @@ use spectra_core::stage::Response;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Sensitivity, v_lambda, v_prime};
 
-/// Scotopic lumens a watt at the peak of V', lm/W (CIE 018:2019: 683 V'(507) / V'(555) = 1700).
+/// Scotopic luminous efficacy at the peak of V', lm/W (CIE 018:2019: 683 V'(507) / V'(555) = 1700).
 const SCOTOPIC_EFFICACY_LM_PER_W: f64 = 1700.0;
 
 /// A light meter: illuminance by V(lambda), in lux; the picture is gray.
 ///
-/// What a luxmeter in the image plane would read, pixel by pixel: for the fall of light toward the corners, or the light
-/// of a lamp on a wall.
+/// Each pixel holds the reading of a luxmeter in the image plane. Use it for the falloff of light toward the corners, or
+/// for the light of a lamp on a wall.
 ///
 /// # Example
 /// ```yaml
@@ -28,13 +28,13 @@ const SCOTOPIC_EFFICACY_LM_PER_W: f64 = 1700.0;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PhotopicParams {
-    /// The lux (lux seconds on a detector with an exposure time) that the picture shows as white; automatic if absent.
+    /// Illuminance that the picture shows as white, lux (lux-seconds on a detector with an exposure time); automatic if left out.
     pub white: Option<Positive<f64>>,
 }
 
 /// The eye at night: scotopic illuminance by V'(lambda), in scotopic lux; the picture is gray.
 ///
-/// Blue grows light and red grows dark against day, as J. E. Purkinje saw.
+/// Compared with daylight vision, blue becomes lighter and red darker, as J. E. Purkinje observed.
 ///
 /// # Example
 /// ```yaml
@@ -45,11 +45,12 @@ pub struct PhotopicParams {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ScotopicParams {
-    /// The scotopic lux (lux seconds on a detector with an exposure time) that the picture shows as white; automatic if absent.
+    /// Illuminance that the picture shows as white, scotopic lux (lux-seconds on a detector with an exposure time); automatic if left
+    /// out.
     pub white: Option<Positive<f64>>,
 }
 
-/// One channel, weighed as an eye weighs light.
+/// A response of one channel that is weighted by the sensitivity of the eye.
 #[derive(Clone, Debug)]
 pub struct Luminous {
     channel: Channel,

@@ -1,4 +1,4 @@
-//! `kind: sensitivities`: channels by their spectral sensitivities.
+//! The response `sensitivities`: channels given by their spectral sensitivities.
 
 use crate::shown::finish;
 use schemars::JsonSchema;
@@ -11,11 +11,11 @@ use spectra_core::stage::Response;
 use spectra_spectrum::{find_emission_in, find_sensitivity_in};
 use std::collections::BTreeMap;
 
-/// A detector by the spectral sensitivities of its channels.
+/// A detector is described by the spectral sensitivities of its channels.
 ///
-/// Sensitivities are files beside the scene, bundled names, or spectra written out.
-/// A channel holds the integral of irradiance times sensitivity: W m^-2 where the sensitivity is a number without unit.
-/// The picture has the channels as red, green and blue (three channels) or gray (one); otherwise a `matrix` says how.
+/// Sensitivities are files beside the scene, bundled names, or spectra written out. A channel holds the integral of
+/// irradiance times sensitivity, W m^-2 if the sensitivity has no unit. The picture shows three channels as red, green and
+/// blue, and one channel as gray. For other numbers of channels, a `matrix` says how to make the picture.
 ///
 /// # Example
 /// ```yaml
@@ -26,27 +26,27 @@ use std::collections::BTreeMap;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SensitivitiesParams {
-    /// Sensitivities by the names of the channels, 1 to 64: each a file beside the scene (`mine.csv`, `mine.csv#red`), a
-    /// bundled name, or a spectrum written out (`gaussian:550,20`).
+    /// Map from the names of 1 to 64 channels to their sensitivities: each is a file beside the scene (`mine.csv`,
+    /// `mine.csv#red`), a bundled name, or a spectrum written out (`gaussian:550,20`).
     pub channels: Part<BTreeMap<String, String>>,
-    /// Linear red, green and blue (sRGB primaries) of the picture: three rows, each with one factor per channel. It works on
-    /// channels that are 1 in `balance`.
+    /// Matrix from the channels to linear red, green and blue (sRGB primaries) of the picture: three rows, each with one factor per
+    /// channel. It applies to channels scaled to 1 in the light of `balance`.
     pub matrix: Option<Vec<Vec<f64>>>,
-    /// The light in which every channel counts as 1, so that white is white; D65 if absent.
+    /// Light in which every channel counts as 1, so that white is white; D65 if left out.
     pub balance: Option<String>,
-    /// How much of the light of `balance` the picture shows as white, W m^-2 over the band (J m^-2 on a detector with an
-    /// exposure time); automatic if absent.
+    /// Irradiance by the light of `balance` that the picture shows as white, W m^-2 over the band (J m^-2 on a detector with an
+    /// exposure time); automatic if left out.
     pub white: Option<Positive<f64>>,
 }
 
-/// Most channels.
+/// Largest number of channels.
 const MAX_CHANNELS: usize = 64;
 
-/// Channels, and the picture of them.
+/// A response with freely given channels and a matrix that makes the picture.
 #[derive(Clone, Debug)]
 pub struct Sensitivities {
     channels: Vec<Channel>,
-    /// Rows of linear red, green and blue, from the channels.
+    /// Rows of factors that turn the channels into linear red, green and blue.
     rgb_from_channels: [Vec<f64>; 3],
     white: Option<f64>,
 }
@@ -85,9 +85,9 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Response>, Fa
         let seen = power.seen_by(&channel.response);
         if !(seen > 0.0) {
             let key = format!("channels.{}", channel.name);
-            faults.push(params.fault(&key, "it sees nothing of the light of `balance`").hint("another `balance`"));
+            faults.push(params.fault(&key, "it records none of the `balance` light").hint("choose another `balance`"));
         }
-        // One watt of that light, whatever its own power.
+        // Scales the channel to the power of the light, so that it counts as 1 for each W m^-2.
         scale.push(total / seen);
     }
     let Some(rows) = faults.into_result(rows)? else { return Err(Faults::new()) };
@@ -95,7 +95,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Response>, Fa
     Ok(Box::new(Sensitivities { channels, rgb_from_channels, white: p.white.map(|w| w.get()) }))
 }
 
-/// The channels in the order of the scene.
+/// Reads the channels, in the order of the scene.
 fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<Vec<Channel>, Faults> {
     let Value::Map(entries) = &node.node().value else {
         let fault = node.fault("a map of channels is expected here");
@@ -110,7 +110,7 @@ fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<
     for (key, value) in entries {
         let name = &key.text;
         let fault = |text: String| value.fault(text).path(format!("{}.channels.{name}", params.path()));
-        // A channel is part of an EXR's, where a dot parts layers.
+        // The name becomes part of the channel's name in an EXR file, where a dot separates layers.
         let letter = |c: char| c.is_alphanumeric() || "-_".contains(c);
         if name.is_empty() || name.len() > 64 || !name.chars().all(letter) {
             faults.push(fault(format!("`{name}` is not a valid name of a channel")).hint("letters, digits, - and _"));
@@ -124,14 +124,14 @@ fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<
         let Some(sensitivity) = faults.take(found) else { continue };
         let response = sensitivity.on_grid(&context.grid);
         if response.iter().all(|v| *v == 0.0) {
-            faults.push(fault(format!("`{text}` sees nothing of the band")));
+            faults.push(fault(format!("`{text}` is zero in the whole band")));
         }
         channels.push(Channel { name: name.clone(), unit: "W.m^-2".into(), response });
     }
     faults.into_result(channels)
 }
 
-/// The rows of the picture.
+/// Returns the three rows of the matrix that makes the picture from the channels.
 fn rows(params: &Params, p: &SensitivitiesParams, channels: &[Channel]) -> Result<[Vec<f64>; 3], Faults> {
     let count = channels.len();
     let unit = |of: usize| (0..count).map(|k| f64::from(u8::from(k == of))).collect::<Vec<f64>>();
@@ -140,8 +140,8 @@ fn rows(params: &Params, p: &SensitivitiesParams, channels: &[Channel]) -> Resul
             1 => Ok([unit(0), unit(0), unit(0)]),
             3 => Ok([unit(0), unit(1), unit(2)]),
             _ => {
-                let fault = params.fault("channels", format!("nothing says how {count} channels make a picture"));
-                Err(fault.hint("`matrix`: three rows for red, green and blue, each with one factor per channel").into())
+                let fault = params.fault("channels", format!("{count} channels need a `matrix` to make a picture"));
+                Err(fault.hint("give it three rows for red, green and blue, each with one factor per channel").into())
             }
         };
     };

@@ -1,11 +1,11 @@
-//! Pictures of linear light in sRGB primaries.
+//! Pictures from linear light in sRGB primaries.
 
 use spectra_color::{Gamut, RgbSpace};
 use spectra_core::frame::{ExposureChannel, ExposureFrame, Finished, Wanted};
 use spectra_film::display::{White, finish_xyz};
 
-/// Shows a linear red, green and blue a pixel; where luminance reaches `white` the picture is white, without one automatic
-/// exposure shows its 99th percentile as 0.9.
+/// Makes a picture from linear red, green and blue values of each pixel. A luminance of `white` is shown as white; without `white`,
+/// automatic exposure shows the 99th percentile as 0.9.
 pub(crate) fn finish(
     exposure: &ExposureFrame,
     white: Option<f64>,

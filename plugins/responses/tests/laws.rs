@@ -1,4 +1,4 @@
-//! Every built-in response keeps the laws of responses.
+//! Checks that every built-in response obeys the laws of responses.
 
 use spectra_plugin_responses as _;
 use spectra_testing::{ResponseLaws, response};

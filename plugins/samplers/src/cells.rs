@@ -1,25 +1,25 @@
-//! A density that is constant on each cell of a grid.
+//! A density of wavelengths that is constant on each cell of a grid.
 
 use spectra_core::spectral::Grid;
 
-/// A density that is constant between neighboring points of a grid. It is known at any wavelength in
-/// one look-up, which [`crate::Quantiles`] take a search for.
+/// A density of wavelengths that is constant between neighboring points of a grid. One look-up gives the density at any
+/// wavelength; [`crate::Quantiles`] need a search for that.
 #[derive(Clone, Debug)]
 pub struct Cells {
     grid: Grid,
     per_step: f64,
     /// Density of each cell, 1/nm.
     density_per_nm: Vec<f64>,
-    /// Share of the draws below the upper end of each cell.
+    /// Probability of a draw below the upper end of each cell.
     upper: Vec<f64>,
 }
 
-/// Part of a cell; its edges are known to some 1e-13 of it.
+/// Margin that draws keep from the edges of a cell, as a fraction of the cell; the edges are known to about 1e-13 of it.
 const INSIDE: f64 = 1e-9;
 
 impl Cells {
-    /// The mean of a density, given at the points of a grid in any scale, over each cell. `None` where
-    /// it is zero everywhere (or not finite, or negative).
+    /// Builds the density from the values `density` at the points of a grid, in any scale, by their mean over each cell. `None` if they
+    /// are zero everywhere, or if one is negative or not finite.
     #[must_use]
     pub fn of(grid: Grid, density: &[f64]) -> Option<Self> {
         if density.iter().any(|d| !(d.is_finite() && *d >= 0.0)) {
@@ -39,20 +39,20 @@ impl Cells {
         Some(Self { grid, per_step: 1.0 / grid.step_nm, upper: upper.collect(), density_per_nm })
     }
 
-    /// The wavelength (nm) below which a share `u` in [0, 1) of the draws lies.
+    /// Returns the wavelength, nm, below which the probability of a draw is `u`, in [0, 1).
     #[must_use]
     pub fn quantile(&self, u: f64) -> f64 {
-        // A last cell of no density is never drawn: the search ends at the first that reaches all of the sum.
+        // A last cell of zero density is never drawn: the search ends at the first cell that reaches the whole sum.
         let total = self.upper[self.upper.len() - 1];
         let at = self.upper.partition_point(|p| *p <= u && *p < total);
         let below = if at == 0 { 0.0 } else { self.upper[at - 1] };
         let mass = self.upper[at] - below;
-        // Inside of the cell: at its edge the density found again might be that of the neighbor, or none.
+        // The draw stays inside the cell: at its edge, a later look-up might find the density of the neighbor, or zero.
         let part = if mass > 0.0 { ((u - below) / mass).clamp(INSIDE, 1.0 - INSIDE) } else { 0.5 };
         self.grid.start_nm + self.grid.step_nm * (at as f64 + part)
     }
 
-    /// Density at a wavelength, 1/nm; 0 outside of the grid.
+    /// Density at a wavelength, 1/nm; 0 outside the grid.
     #[inline(always)]
     #[must_use]
     pub fn density_per_nm(&self, wavelength_nm: f64) -> f64 {

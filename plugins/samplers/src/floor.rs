@@ -1,4 +1,5 @@
-//! The share of the samples that follows what the channels see, so that no density is zero there.
+//! The floor: a fraction of the samples that follows the response of the channels, so that the density is nowhere zero where a channel
+//! is sensitive.
 
 use crate::Cells;
 use crate::seen::Seen;
@@ -8,31 +9,31 @@ use spectra_core::params::{NonNegative, Quantity, Ratio, schema_of};
 use spectra_core::quantity;
 use spectra_core::spectral::Grid;
 
-/// Share of the samples that follow the summed response of all channels, whatever else a strategy
-/// draws: 0 to below 1, as `5 %` or `0.05`.
+/// Fraction of the samples that follow the summed response of all channels, whatever else a strategy draws. It is 0 to below 1, written as
+/// `5 %` or `0.05`.
 ///
-/// A density that is zero where any channel sees is a bias. (A uniform floor over the band would cost
-/// ten times as much: its strata straddle the edges of what a film sees.)
+/// A density that is zero where a channel is sensitive causes bias. (A uniform floor over the band would cost ten times as much, because
+/// its strata straddle the ends of a film's sensitivity.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Floor(f64);
 
 impl Floor {
-    /// None: the strategy's own density must reach everything that is seen.
+    /// No floor: the strategy's own density must be positive wherever a channel is sensitive.
     pub const NONE: Self = Self(0.0);
 
-    /// A share, if it is 0 or more and below 1.
+    /// Creates a floor of `share` of the samples; `None` unless it is 0 or more and below 1.
     #[must_use]
     pub fn new(share: f64) -> Option<Self> {
         (0.0..1.0).contains(&share).then_some(Self(share))
     }
 
-    /// The share.
+    /// Fraction of the samples, 0 to below 1.
     #[must_use]
     pub fn share(self) -> f64 {
         self.0
     }
 
-    /// The density to draw it from; `None` where the share is 0.
+    /// Returns the density from which the floor draws; `None` if the fraction is 0.
     pub(crate) fn cells(self, grid: Grid, seen: &Seen) -> Option<Cells> {
         if self.0 > 0.0 { Cells::of(grid, &seen.response) } else { None }
     }
@@ -61,7 +62,7 @@ impl Serialize for Floor {
 }
 
 impl Default for Floor {
-    /// 1/16: four strata of 64.
+    /// Returns a floor of 1/16, which is four strata of 64.
     fn default() -> Self {
         Self(0.0625)
     }

@@ -1,13 +1,13 @@
-//! One Gaussian term of the source followed: the sample carries what that term alone emits.
+//! Sampling that follows one Gaussian term of the source: the sample carries the light of that term alone.
 //!
-//! A term is drawn in proportion to the absolute value of its integral over the band, and the wavelength from it. The
-//! sample is the term's own light, not the source's: its weight is what the term emits over what the source does, so
-//! that the radiance which a renderer multiplies in becomes that of the term. What the fit leaves over, source less terms, is
-//! followed as one more term, a table of either sign; without it the estimate would be that of the fit, not of the scene.
+//! A term is drawn in proportion to the absolute value of its integral over the band, and then a wavelength from the term. The
+//! sample is the term's own light, not the source's: its weight is the ratio of the term's emission to the source's, so that the
+//! radiance that a renderer multiplies in becomes that of the term. The residual of the fit, source minus terms, is followed as
+//! one more term, a table of either sign. Without it the estimate would be that of the fit, not of the scene.
 //!
-//! Only the source's term is followed. To follow one of every factor (filters, glass, detector) and to
-//! integrate their product exactly needs no wavelength; but a term has no single index of refraction, and so no path
-//! through a lens. See [`crate::OneTerm`].
+//! Only a term of the source is followed. Following one term of every factor (filters, glass, detector) and integrating their
+//! product exactly needs no wavelength; but then there is no single index of refraction, and so no path through a lens. See
+//! [`crate::OneTerm`].
 
 use crate::truncated_gaussian::EDGE;
 use crate::{Cells, Continuum};
@@ -15,36 +15,37 @@ use spectra_core::isa::Isa;
 use spectra_core::spectral::Grid;
 use spectra_spectrum::{GaussianMixture, TruncatedGaussian};
 
-/// A term that can be followed.
+/// A term of the source that can be drawn.
 #[derive(Clone, Debug)]
 struct Term {
     sign: f64,
     probability: f64,
-    /// Upper end of its part of [0, 1).
+    /// Upper end of this term's interval of [0, 1).
     upper: f64,
     gaussian: TruncatedGaussian,
 }
 
-/// Terms of a source, and what they leave over.
+/// The Gaussian terms of a source and the residual of the fit.
 #[derive(Clone, Debug)]
 pub(crate) struct Followed {
     grid: Grid,
-    /// The source itself, at the points of the grid.
+    /// Values of the source itself at the points of the grid.
     source: Vec<f64>,
     mixture: GaussianMixture,
     terms: Vec<Term>,
-    /// Integral of all terms without their signs, and of what is left over.
+    /// Integral of the absolute values of all terms and of the residual; `rest` is that of the residual alone.
     all: f64,
     rest: f64,
     left_over: Cells,
 }
 
-/// Part of the source that the density of what is left over has everywhere: between two points of the grid at which a
-/// fit is exact it is not.
+/// Fraction of the source that is added everywhere to the density of the residual. It is needed because a fit that is exact at two points
+/// of the grid is not exact between them.
 const LEAST: f64 = 1e-3;
 
 impl Followed {
-    /// The terms of `mixture` on the band of `grid`, beside what is left of `source`, given at its points.
+    /// Prepares the terms of `mixture` on the band of `grid`, and the residual of `source`, given at the points of the grid. Fails if no
+    /// term reaches the band.
     pub(crate) fn new(mixture: &GaussianMixture, grid: Grid, source: &[f64]) -> Result<Self, String> {
         let (min_nm, max_nm) = (grid.start_nm, grid.end_nm());
         let integrals: Vec<f64> = mixture.terms().iter().map(|t| t.band_integral(min_nm, max_nm).abs()).collect();
@@ -66,7 +67,7 @@ impl Followed {
         Ok(Self { grid, source: source.to_vec(), mixture: mixture.clone(), terms, all, rest, left_over })
     }
 
-    /// Whether the terms do not cancel so far that a sample weighs more than a hundred times what it should.
+    /// Returns whether the terms cancel so little at a wavelength that a sample has at most a hundred times its proper weight.
     pub(crate) fn can_follow(&self, wavelength_nm: f64) -> bool {
         let source = self.source_at(wavelength_nm);
         source == 0.0 || source.abs() > 0.01 * self.all * self.density_per_nm(wavelength_nm)
@@ -81,13 +82,13 @@ impl Continuum for Followed {
     fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64], _isa: Isa) {
         let share = self.rest / self.all;
         for ((u, nm), weight) in u.iter().zip(wavelength_nm).zip(weight) {
-            // What is left over lies behind the terms.
+            // The residual's interval comes after those of the terms.
             let at = self.terms.partition_point(|t| t.upper <= *u);
             let emitted = match self.terms.get(at) {
                 Some(term) => {
                     let part = (u - (term.upper - term.probability)) / term.probability;
                     *nm = term.gaussian.quantile(part.clamp(EDGE, 1.0 - EDGE));
-                    // The term over its own density and probability: its sign, times the integral of all.
+                    // The term divided by its density and its probability is its sign times the integral of all.
                     term.sign * self.all
                 }
                 None => {

@@ -1,13 +1,13 @@
-//! `kind: gaussian-terms`: a few signed Gaussian terms, fitted to the source, as the density.
+//! The strategy `gaussian-terms`: the density is a few signed Gaussian terms, fitted to the source.
 //!
-//! Three ways to draw from them. Collapsed: the terms without their signs are one density, and a sample weighs one over
-//! it. Term, then wavelength: a term is drawn in proportion to the absolute value of its integral over the band, the
-//! wavelength from it, and the sample keeps the sign of its term; for given wavelengths the mean of the weights is
-//! the same, but where terms cancel they scatter about it, so that it never is the better one. One term: the term is
-//! followed, and the sample is its light alone ([`crate::followed`]). The latter two are there to be measured.
+//! There are three ways to draw from the terms. Collapsed: the sum of their absolute values is one density, and the weight of a
+//! sample is one over it. Term, then wavelength: a term is drawn in proportion to the absolute value of its integral over the band,
+//! then a wavelength from the term, and the sample keeps the term's sign. At a given wavelength the mean of the weights is the
+//! same, but where terms cancel the weights scatter about it, so this way is never better. One term: the term is followed, and the
+//! sample is its light alone ([`crate::followed`]). The latter two exist to be measured.
 //!
-//! None is biased by what the fit leaves over: the source itself is evaluated at the wavelength, or what is left over
-//! followed too.
+//! No way is biased by the residual of the fit: either the source itself is evaluated at the wavelength, or the residual is
+//! followed, too.
 
 use crate::followed::Followed;
 use crate::seen::Seen;
@@ -22,28 +22,28 @@ use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{GaussianMixture, TruncatedGaussian, fit_gaussians};
 
-/// How a wavelength is drawn from signed terms.
+/// The way in which a wavelength is drawn from signed terms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Follow {
-    /// From the sum of the terms without their signs.
+    /// Draws the wavelength from the sum of the terms' absolute values.
     #[default]
     Collapsed,
-    /// A term, whose sign stays with the sample, then the wavelength from it.
+    /// Draws a term, whose sign stays with the sample, and then a wavelength from that term.
     TermThenWavelength,
-    /// A term, whose light alone is the sample, at a wavelength drawn from it. It takes no floor.
+    /// Draws a term and a wavelength from it; the sample is the light of that term alone. The floor is ignored.
     OneTerm,
 }
 
 /// A few Gaussian terms, fitted to the source.
 ///
-/// The source's continuum is fitted by signed Gaussians, and wavelengths are drawn from them. No way of drawing is
-/// biased by what the fit leaves over: the source itself is evaluated at the wavelength, or what is left over is
-/// followed too. They differ in their noise.
+/// The source's continuum is fitted by signed Gaussians, and wavelengths are drawn from them. `follow` says how. No way
+/// of drawing is biased by the residual of the fit: either the source itself is evaluated at the wavelength, or the
+/// residual is followed, too. The ways differ in their noise.
 ///
-/// `collapsed` draws from the sum of the terms without their signs, and is the one to use. `term-then-wavelength` draws
-/// a term, then a wavelength from it, and keeps the term's sign: where terms cancel, its weights scatter. `one-term`
-/// lets the sample be the light of its term alone, and is there to be measured; it takes no floor.
+/// `collapsed` draws from the sum of the terms' absolute values, and is the one to use. `term-then-wavelength` draws a
+/// term, then a wavelength from it, and keeps the term's sign: where terms cancel, its weights scatter. With `one-term`
+/// the sample is the light of its term alone; it exists to be measured, and ignores the floor.
 ///
 /// # Example
 /// ```yaml
@@ -59,23 +59,23 @@ pub struct GaussianTermsParams {
     #[serde(default = "usual_terms")]
     #[schemars(range(min = 1, max = MOST_TERMS))]
     pub terms: u32,
-    /// How a wavelength is drawn from the terms: `collapsed` (the usual), `term-then-wavelength` or `one-term`.
+    /// Way in which a wavelength is drawn from the terms: `collapsed` (the usual), `term-then-wavelength` or `one-term`.
     #[serde(default)]
     pub follow: Follow,
-    /// Share of the samples that follow the summed response of all channels instead, 0 to below 1, so that nothing that
-    /// is seen is never drawn; 1/16 if left out.
+    /// Fraction of the samples that follow the summed response of all channels instead, 0 to below 1, so that every wavelength to which
+    /// a channel is sensitive can be drawn; 1/16 if left out.
     #[serde(default)]
     pub floor: Floor,
 }
 
-/// Most terms.
+/// Largest number of terms.
 const MOST_TERMS: u32 = 32;
 
 fn usual_terms() -> u32 {
     6
 }
 
-/// The strategy.
+/// The strategy `gaussian-terms`: draws wavelengths from signed Gaussian terms.
 #[derive(Clone, Debug)]
 pub struct GaussianTerms {
     terms: Terms,
@@ -90,13 +90,13 @@ enum Terms {
 }
 
 impl GaussianTerms {
-    /// As many terms as stated, fitted to the source when it is known; `None` unless they are 1 to 32.
+    /// Creates the strategy with `terms` terms, which are fitted once the source is known; `None` unless there are 1 to 32.
     #[must_use]
     pub fn fitted(terms: usize, follow: Follow, floor: Floor) -> Option<Self> {
         (1..=MOST_TERMS as usize).contains(&terms).then_some(Self { terms: Terms::Fitted(terms), follow, floor })
     }
 
-    /// Terms that are known.
+    /// Creates the strategy with the given terms, without fitting.
     #[must_use]
     pub fn given(mixture: GaussianMixture, follow: Follow, floor: Floor) -> Self {
         Self { terms: Terms::Given(mixture), follow, floor }
@@ -114,7 +114,7 @@ impl WavelengthSampler for GaussianTerms {
         let mixture = match &self.terms {
             Terms::Given(mixture) => mixture,
             Terms::Fitted(terms) => {
-                // Where there is no continuum to fit, what is seen of any.
+                // Without a continuum the terms are fitted to the response of the channels.
                 let fit_to = if seen.has_continuum { &system.source.continuum } else { &seen.response };
                 fitted = fit_gaussians(&grid, fit_to, *terms).map_err(|e| format!("no terms fit the source: {e}"))?;
                 &fitted.mixture
@@ -124,38 +124,38 @@ impl WavelengthSampler for GaussianTerms {
             let followed = Followed::new(mixture, grid, &system.source.continuum)?;
             if let Some(nm) = seen.wavelengths_nm(&grid).find(|w| !followed.can_follow(*w)) {
                 return Err(format!(
-                    "the terms cancel at {nm} nm, where a channel sees: a sample of one term would weigh a hundred times \
-                     what it should; take fewer or more terms, or `follow: collapsed`"
+                    "the terms cancel at {nm} nm, where a channel is sensitive: a sample of one term would have a hundred times \
+                     its proper weight; use fewer or more terms, or `follow: collapsed`"
                 ));
             }
             return Ok(Box::new(seen.mixture(system, Some(followed))?));
         }
         let floor = self.floor.cells(grid, &seen).map(|cells| (self.floor.share(), cells));
         let signed = Signed::new(mixture, self.follow, floor, grid.start_nm, grid.end_nm())?;
-        // A narrow term that takes away takes most at its center.
+        // A narrow negative term subtracts most at its center, so the centers are checked, too.
         let centers = mixture.terms().iter().map(|t| t.center_nm());
         let centers = centers.filter(|w| grid.interpolate(&seen.response, *w) > 0.0);
         if let Some(nm) = seen.wavelengths_nm(&grid).chain(centers).find(|w| !signed.can_draw(*w)) {
             return Err(format!(
-                "the terms cancel, or are all far away, at {nm} nm, where a channel sees; \
-                 take more terms, a floor, or `follow: collapsed`"
+                "the terms cancel, or are all far away, at {nm} nm, where a channel is sensitive; \
+                 use more terms, a floor, or `follow: collapsed`"
             ));
         }
         Ok(Box::new(seen.mixture(system, Some(signed))?))
     }
 }
 
-/// A term that can be drawn.
+/// One signed term that can be drawn.
 #[derive(Clone, Debug)]
 struct Term {
     sign: f64,
     probability: f64,
-    /// Upper end of its part of [0, 1).
+    /// Upper end of this term's interval of [0, 1).
     upper: f64,
     gaussian: TruncatedGaussian,
 }
 
-/// Signed terms, and a floor that comes before them in [0, 1).
+/// A continuum of signed terms, with a floor whose interval of [0, 1) comes before theirs.
 #[derive(Clone, Debug)]
 struct Signed {
     floor: Option<(f64, Cells)>,
@@ -196,7 +196,7 @@ impl Signed {
         self.floor.as_ref().map_or(0.0, |(share, cells)| share * cells.density_per_nm(wavelength_nm))
     }
 
-    /// What a sample's weight is one over, but for its sign.
+    /// Returns the divisor that gives a sample its weight, apart from its sign; 1/nm.
     fn divisor(&self, wavelength_nm: f64) -> f64 {
         let term = |t: &Term| {
             let density = t.probability * t.gaussian.density(wavelength_nm);
@@ -205,7 +205,7 @@ impl Signed {
         self.of_floor(wavelength_nm) + self.terms.iter().map(term).sum::<f64>()
     }
 
-    /// Whether weights stay in bounds: the density is not as good as 0, and the signed one above a
+    /// Returns whether weights stay in bounds at a wavelength: the density is not practically 0, and the signed sum is more than a
     /// hundredth of it.
     fn can_draw(&self, wavelength_nm: f64) -> bool {
         let density = self.density_per_nm(wavelength_nm);
@@ -230,7 +230,7 @@ impl Continuum for Signed {
                 }
             }
             let divisor = self.divisor(*nm);
-            // Where terms cancel nothing is seen, or the strategy would have been refused.
+            // Where terms cancel, no channel is sensitive: otherwise the strategy would have been refused.
             *weight *= if divisor == 0.0 { 0.0 } else { sign / divisor };
         }
     }

@@ -1,13 +1,13 @@
-//! `kind: hero`: one number for a group of samples, rotated among them.
+//! The strategy `hero`: the samples of a group share one number, which is rotated among them.
 //!
-//! After A. Wilkie, S. Nawaz, M. Droske, A. Weidlich and J. Hanika, "Hero wavelength spectral sampling", Computer Graphics
-//! Forum 33(4), 123 (2014): the hero's wavelength is drawn, the others of its group lie around it at equal distances. There
-//! the wavelengths of a group share a path; a lens disperses them, so here every sample keeps a path of its own, and the
-//! distances are equal in probability, not in nanometres: the rotation is of the number, before the density is
-//! inverted, so that each wavelength has exactly the density of the strategy that it is made of.
+//! The method follows A. Wilkie, S. Nawaz, M. Droske, A. Weidlich and J. Hanika, "Hero wavelength spectral sampling", Computer
+//! Graphics Forum 33(4), 123 (2014): the hero's wavelength is drawn, and the others of its group lie around it at equal distances.
+//! In the paper the wavelengths of a group share a path. A lens disperses them, so here every sample has its own path. The
+//! distances are equal in probability, not in nanometers: the number is rotated before the density is inverted, so that each
+//! wavelength has exactly the density of the underlying strategy.
 //!
-//! A group of k is k strata with one jitter for all. With independent numbers it takes the noise of the wavelength from
-//! k samples to that of k even ones; Sobol points are more even than that already.
+//! A group of k is k strata with one common jitter. With independent numbers, the noise of the wavelength falls from that of k
+//! independent samples to that of k evenly spaced ones. Sobol points are already more even than that.
 
 use crate::SourceTimesResponse;
 use schemars::JsonSchema;
@@ -20,11 +20,10 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
 /// Groups of samples share one number, rotated among them.
 ///
-/// The wavelength of the first of a group is drawn, those of the others lie around it at equal distances in
-/// probability: a group of k is k strata with one jitter for all, and each wavelength has exactly the density of the
-/// strategy that is named. Each sample keeps a path of its own, since a lens disperses them. With `numbers: random` a
-/// group takes the noise of the wavelength from k samples to that of k even ones; Sobol points are more even than that
-/// already.
+/// The first wavelength of a group is drawn, and the others lie around it at equal distances in probability. A group of k
+/// is thus k strata with one common jitter, and each wavelength has exactly the density of the named strategy. Each
+/// sample has its own path, since a lens disperses wavelengths. With `numbers: random`, the noise of the wavelength falls
+/// from that of k independent samples to that of k evenly spaced ones. Sobol points are already more even than that.
 ///
 /// # Example
 /// ```yaml
@@ -39,12 +38,12 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct HeroParams {
-    /// Wavelengths of a group, 2 to 1024; 4 if left out.
+    /// Number of wavelengths in a group, 2 to 1024; 4 if left out.
     #[serde(default = "usual_group")]
     #[schemars(range(min = 2, max = MOST))]
     pub group: u32,
-    /// The strategy whose density is drawn from, any but `hero` itself: a name, or a map with its `kind`;
-    /// `source-times-response` if left out.
+    /// Strategy whose density is used, any except `hero` itself: a name, or a map with its `kind`; `source-times-response` if left
+    /// out.
     pub density: Option<Part<StageOf<dyn WavelengthSampler>>>,
 }
 
@@ -54,14 +53,14 @@ fn usual_group() -> u32 {
     4
 }
 
-/// The strategy.
+/// The strategy `hero`: rotates one number among the samples of a group.
 pub struct Hero {
     group: u32,
     density: Box<dyn WavelengthSampler>,
 }
 
 impl Hero {
-    /// Groups of `group` wavelengths, drawn from the density of another strategy; `None` unless they are 2 to 1024.
+    /// Creates the strategy with groups of `group` wavelengths and the density of another strategy; `None` unless `group` is 2 to 1024.
     #[must_use]
     pub fn new(group: u32, density: Box<dyn WavelengthSampler>) -> Option<Self> {
         (2..=MOST).contains(&group).then_some(Self { group, density })
@@ -74,7 +73,7 @@ impl WavelengthSampler for Hero {
     }
 }
 
-/// A density whose numbers are rotated.
+/// A density whose numbers are rotated within groups.
 struct Rotated {
     group: u32,
     density: Box<dyn WavelengthDensity>,

@@ -1,7 +1,7 @@
-//! `kind: inverse-transform`: any named spectrum as the density, by inverting its integral.
+//! The strategy `inverse-transform`: the density is any named spectrum, drawn by inverting its integral.
 //!
-//! A share of the samples (see [`Floor`]) follows what the channels see, so that a spectrum that is zero
-//! where one of them sees is no bias; without it, such a spectrum is refused.
+//! A fraction of the samples (see [`Floor`]) follows the response of the channels, so that a spectrum that is zero where a channel
+//! is sensitive causes no bias. Without a floor, such a spectrum is refused.
 
 use crate::seen::Seen;
 use crate::{Floor, Quantiles};
@@ -13,12 +13,12 @@ use spectra_core::spectral::{Grid, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{Found, Observer, find_in};
 
-/// In proportion to any named spectrum.
+/// Wavelengths are drawn in proportion to any named spectrum.
 ///
-/// The density is the spectrum over its integral, drawn by inverting that integral. A density in the form of human
-/// vision (`y-bar`) is the habit of many renderers; on film it is a poor one, since film sees below 400 nm where y-bar
-/// is next to nothing. `floor` keeps a spectrum that is zero where a channel sees from being a bias; with `floor: 0`
-/// such a spectrum is refused.
+/// The density is the spectrum divided by its integral, and is drawn by inverting that integral. Many renderers use a
+/// density shaped like human vision (`y-bar`). On film it is a poor choice, since film is sensitive below 400 nm, where
+/// y-bar is close to zero. `floor` keeps a spectrum that is zero where a channel is sensitive from causing bias; with
+/// `floor: 0` such a spectrum is refused.
 ///
 /// # Example
 /// ```yaml
@@ -30,28 +30,28 @@ use spectra_spectrum::{Found, Observer, find_in};
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct InverseTransformParams {
-    /// What to draw in proportion to: `x-bar`, `y-bar` or `z-bar` (CIE 1931, 2 degrees), a bundled spectrum such as
+    /// Spectrum to draw in proportion to: `x-bar`, `y-bar` or `z-bar` (CIE 1931, 2 degrees), a bundled spectrum such as
     /// `D65`, a file beside the scene, or an inline one such as `gaussian:550,50`. It needs a continuum.
     pub spectrum: String,
-    /// Share of the samples that follow the summed response of all channels instead, 0 to below 1, so that nothing that
-    /// is seen is never drawn; 1/16 if left out.
+    /// Fraction of the samples that follow the summed response of all channels instead, 0 to below 1, so that every wavelength to which
+    /// a channel is sensitive can be drawn; 1/16 if left out.
     #[serde(default)]
     pub floor: Floor,
 }
 
-/// The strategy.
+/// The strategy `inverse-transform`: draws wavelengths in proportion to a spectrum.
 #[derive(Clone, Debug)]
 pub struct InverseTransform {
     name: String,
     grid: Grid,
-    /// On that grid, in any scale.
+    /// Values of the spectrum on `grid`, in any scale.
     spectrum: Vec<f64>,
     floor: Floor,
 }
 
 impl InverseTransform {
-    /// A density in proportion to `spectrum`, given on `grid` and called `name` in messages; `None` unless it has a
-    /// value for each point, all finite, none negative and one positive.
+    /// Creates the strategy for `spectrum`, given on `grid` in any scale and called `name` in messages. `None` unless it has one value
+    /// per point of the grid, all finite and not negative, and at least one positive.
     #[must_use]
     pub fn new(name: &str, grid: Grid, spectrum: Vec<f64>, floor: Floor) -> Option<Self> {
         let sound = spectrum.len() == grid.count
@@ -75,7 +75,7 @@ impl WavelengthSampler for InverseTransform {
             };
             if let Some(i) = (0..grid.count - 1).find(blind) {
                 return Err(format!(
-                    "`{}` is zero at {} nm, where a channel sees: that light would never be sampled; add a `floor`",
+                    "`{}` is zero at {} nm, where a channel is sensitive: that light would never be sampled; add a `floor`",
                     self.name,
                     grid.wavelength_nm(i)
                 ));
@@ -95,7 +95,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
         Some(i) => Observer::cie_1931_2deg().on_grid(&grid)[i].clone(),
         None => match find_in(&name, context.resources).map_err(|e| e.faults(fault))? {
             Found::Emission(light) if light.continuum().is_none() => {
-                let text = format!("`{name}` has lines only, which are no density over wavelengths");
+                let text = format!("`{name}` has lines only, and so no density over wavelengths");
                 return Err(fault(text).hint("`kind: lines` draws the source's lines").into());
             }
             Found::Emission(light) => light.on_grid(&grid),
@@ -105,7 +105,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
         },
     };
     let sampler = InverseTransform::new(&name, grid, spectrum, floor)
-        .ok_or_else(|| fault(format!("`{name}` has nothing in the band")))?;
+        .ok_or_else(|| fault(format!("`{name}` is zero in the whole band")))?;
     Ok(Box::new(sampler))
 }
 

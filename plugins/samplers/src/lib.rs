@@ -1,22 +1,22 @@
-//! Built-in ways to draw a wavelength.
+//! Built-in strategies for drawing wavelengths.
 //!
-//! All strategies share one form, a [`Mixture`]: lines are drawn as lines, and beside them a
-//! [`Continuum`], mostly [`Quantiles`] of a density. They differ in the density that they build it from.
+//! All strategies share one form, a [`Mixture`] of spectral lines and a [`Continuum`], which is mostly the [`Quantiles`] of a
+//! density. They differ in that density.
 //!
 //! | `kind` | density |
 //! |---|---|
-//! | `source-times-response` | the source's power times what the imager sees (the default) |
+//! | `source-times-response` | the source's power times the imager's response (the default) |
 //! | `inverse-transform` | any named spectrum |
 //! | `truncated-gaussian` | one Gaussian, cut off at the ends of the band |
 //! | `gaussian-terms` | Gaussian terms fitted to the source |
-//! | `hero` | that of another strategy, one number rotated among the samples of a group |
-//! | `uniform` | the same everywhere |
-//! | `stratified` | the same everywhere, in strata of equal width |
-//! | `lines` | the source's lines, where it has nothing else |
+//! | `hero` | the density of another strategy; one number is rotated among the samples of a group |
+//! | `uniform` | constant over the band |
+//! | `stratified` | constant over the band, in strata of equal width |
+//! | `lines` | the source's lines, for a source that has nothing else |
 //!
-//! `gaussian-terms` draws from all its terms at once, from one whose sign the sample keeps, or follows one. What follows a
-//! term of every factor has no wavelength and can pass no lens: it is no sampler, but [`OneTerm`] does it for
-//! spectral integrals.
+//! `gaussian-terms` draws from all its terms at once, or from one term whose sign the sample keeps, or follows the light of one
+//! term. Following one term of every factor gives no wavelength, so it cannot pass a lens and is not a sampler; [`OneTerm`] does it
+//! for spectral integrals.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -1,4 +1,4 @@
-//! `kind: lines`: the source's spectral lines only, in proportion to their power.
+//! The strategy `lines`: draws only the source's spectral lines, in proportion to their power.
 
 use crate::{Mixture, Quantiles, Shares};
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
-/// The strategy.
+/// The strategy `lines`: draws the source's spectral lines in proportion to their power.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lines;
 
@@ -27,11 +27,11 @@ impl WavelengthSampler for Lines {
     }
 }
 
-/// The source's spectral lines only, by their power.
+/// Only the source's spectral lines are drawn, in proportion to their power.
 ///
-/// For gas lamps, and for pictures whose color model is of lines (`color: {kind: fraunhofer}`). Each line is drawn in
-/// proportion to its power, whatever the imager sees of it. A source with a continuum is refused, since drawing lines
-/// only would forget it.
+/// Use it for gas lamps, and for pictures whose color model consists of lines (`color: {kind: fraunhofer}`). Each line is
+/// drawn in proportion to its power, whatever the imager's response to it. A source with a continuum is refused, since
+/// drawing only lines would miss it.
 ///
 /// # Example
 /// ```yaml

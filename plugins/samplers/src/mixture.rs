@@ -1,4 +1,4 @@
-//! Lines drawn as lines, and a continuum beside them.
+//! The mixture of spectral lines and a continuum from which wavelengths are drawn.
 
 use crate::Quantiles;
 use spectra_core::batch::CONTINUUM;
@@ -6,53 +6,52 @@ use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::Line;
 use spectra_core::stage::WavelengthDensity;
 
-/// A way to draw from a continuum alone.
+/// A density of wavelengths in a continuum, without lines, that can be drawn.
 pub trait Continuum: Send + Sync {
-    /// Draws one wavelength a number of `u` in [0, 1): writes it (nm), and multiplies the weight by one
-    /// over the density (nm). All slices are of one length.
+    /// Draws one wavelength for each number of `u` in [0, 1): writes the wavelength, nm, and multiplies the weight by one over the
+    /// density, nm. All slices have the same length.
     fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64], isa: Isa);
 
-    /// Density at a wavelength, 1/nm, of integral 1.
+    /// Density at a wavelength, 1/nm; its integral is 1.
     fn density_per_nm(&self, wavelength_nm: f64) -> f64;
 }
 
-/// How the lines share their part of the samples.
+/// The way in which lines share their part of the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shares {
-    /// In proportion to their weights. Where one channel sees, and the weights are power times its
-    /// response, each sample of a line source is its exact exposure.
+    /// Probabilities are proportional to the weights. With a single channel, and weights that are power times its response, each
+    /// sample of a line source gives the exact exposure.
     Proportional,
-    /// In proportion, rounded to a whole number of 64 strata (or of a greater power of 2, where there
-    /// are many lines), one at least. As many stratified samples hold each line exactly as often as
-    /// its probability says, so that the exposure of every channel is exact.
+    /// Probabilities are proportional to the weights, rounded to a whole number of at least one of 64 strata (or of a larger power of 2
+    /// if there are many lines). With as many stratified samples as strata, each line is drawn exactly as often as its probability
+    /// says, so the exposure of every channel is exact.
     WholeStrata,
 }
 
-/// Fewest and most strata that lines are rounded to; fewer samples than a pixel usually gets, and the
+/// Least and largest number of strata to which lines are rounded. The least is fewer samples than a pixel usually gets; the largest is the
 /// size of a block that Sobol points fill evenly.
 const STRATA: [u32; 2] = [64, 4096];
 
-/// The last number before 1: what is rescaled to [0, 1) may be rounded up to 1.
+/// The largest number below 1; numbers rescaled to [0, 1) may otherwise be rounded up to 1.
 const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
-/// Numbers that go through small buffers at a time.
+/// Number of samples processed at a time in small buffers.
 pub(crate) const CHUNK: usize = 256;
 
-/// A density made of lines with probabilities and a continuum.
+/// A density of wavelengths: lines with probabilities, and a continuum.
 #[derive(Clone, Debug)]
 pub struct Mixture<C = Quantiles> {
-    /// Lines that can be drawn: (number in the source, wavelength nm, probability).
+    /// Lines that can be drawn: (number in the source, wavelength in nm, probability).
     lines: Vec<(u32, f64, f64)>,
-    /// Upper ends of the lines' parts of [0, 1).
+    /// Upper ends of the lines' intervals of [0, 1).
     upper: Vec<f64>,
     line_share: f64,
     continuum: Option<C>,
 }
 
 impl<C> Mixture<C> {
-    /// A mixture of the source's `lines`, drawn by `weights` shared out as `shares` says, and a
-    /// continuum; the lines together get `line_share` of the samples, rounded to whole strata. `None`
-    /// where nothing can be drawn.
+    /// Creates a mixture of the source's `lines`, whose probabilities follow from `weights` and `shares`, and a continuum. The lines
+    /// together get the fraction `line_share` of the samples, rounded to whole strata. `None` if nothing can be drawn.
     #[must_use]
     pub fn new(lines: &[Line], weights: &[f64], shares: Shares, line_share: f64, continuum: Option<C>) -> Option<Self> {
         let seen: Vec<usize> = (0..lines.len().min(weights.len())).filter(|i| weights[*i] > 0.0).collect();
@@ -78,18 +77,18 @@ impl<C> Mixture<C> {
     }
 }
 
-/// Share of all lines and the probability of each.
+/// Returns the probability of all lines together and that of each line.
 fn share_out(weights: &[f64], shares: Shares, line_share: f64, beside_continuum: bool) -> (f64, Vec<f64>) {
     if weights.is_empty() {
         return (0.0, Vec::new());
     }
-    // A stratum for each line costs the continuum less than lines that are drawn now and then would: its error falls with
-    // more than the number of strata, theirs does not.
+    // Each line gets at least one stratum. This costs the continuum less than lines that are drawn only now and then would: the error of
+    // the continuum falls faster than the number of strata grows, that of the lines does not.
     let of_lines = |strata: u32, least: u32| {
         let most = if beside_continuum { strata - 1 } else { strata };
         ((line_share * f64::from(strata)).round() as u32).max(least).min(most)
     };
-    // Lines may take half of the strata for that.
+    // To that end, lines may take half of the strata.
     let enough = |strata: &u32| weights.len() as u32 <= if beside_continuum { strata / 2 } else { *strata };
     let fine = (0..).map(|k| STRATA[0] << k).take_while(|s| *s <= STRATA[1]).find(enough);
     match (shares, fine) {
@@ -107,8 +106,8 @@ fn share_out(weights: &[f64], shares: Shares, line_share: f64, beside_continuum:
     }
 }
 
-/// Adams's method of apportionment: each gets one, and the next always goes to the one that has most
-/// weight for each that it has.
+/// Apportions `strata` to the weights by Adams's method: each gets one, and the next always goes to the one with the largest weight per
+/// stratum.
 fn apportion(weights: &[f64], strata: u32) -> Vec<u32> {
     let mut counts = vec![1; weights.len()];
     for _ in weights.len() as u32..strata {
@@ -129,7 +128,7 @@ impl<C: Continuum> WavelengthDensity for Mixture<C> {
             return;
         }
         let rest = 1.0 - self.line_share;
-        // What belongs to the continuum is drawn together, as vectors.
+        // Draws from the continuum are collected and made together, as vectors.
         let (mut at, mut numbers) = ([0_usize; CHUNK], [0.0; CHUNK]);
         let (mut nm, mut inverse) = ([0.0; CHUNK], [1.0; CHUNK]);
         for first in (0..u.len()).step_by(CHUNK) {
@@ -203,7 +202,7 @@ mod tests {
         (0..count).map(|i| Line { wavelength_nm: 400.0 + i as f64, power: 1.0 }).collect()
     }
 
-    /// By hand: seats of Adams's method for 10 : 5 : 1.
+    /// Seats by Adams's method for 10 : 5 : 1, worked out by hand; no line is left out.
     #[test]
     fn apportionment_leaves_no_line_out() {
         assert_eq!(apportion(&[10.0, 5.0, 1.0], 8), [5, 2, 1]);
@@ -211,7 +210,7 @@ mod tests {
         assert_eq!(apportion(&[3.0], 64), [64]);
     }
 
-    /// Every line begins and ends at an edge of a stratum; too many lines for 64 get more strata.
+    /// Every line's interval begins and ends at the edge of a stratum. Lines that are too many for 64 strata get more.
     #[test]
     fn lines_fill_whole_strata() {
         for (count, share, strata) in [(3, 0.3, 64.0), (32, 0.5, 64.0), (33, 0.5, 128.0), (500, 1.0, 512.0)] {
@@ -226,7 +225,7 @@ mod tests {
         }
     }
 
-    /// More lines than any strata can hold are drawn in proportion.
+    /// Lines that are too many for any number of strata get proportional probabilities.
     #[test]
     fn very_many_lines_are_proportional() {
         let m = Mixture::<Quantiles>::new(&lines(5000), &[2.0; 5000], Shares::WholeStrata, 1.0, None).unwrap();

@@ -1,55 +1,55 @@
-//! A continuous density by its quantiles.
+//! A continuous density of wavelengths, stored as its quantiles.
 
 use spectra_core::math::whole;
 use spectra_core::spectral::Grid;
 
-/// Number of quantile intervals, equal in probability.
+/// Number of quantile intervals of equal probability.
 pub const INTERVALS: usize = 1024;
-/// Number of edges of their parts at the most: 16 kB.
+/// Largest number of edges of the parts into which intervals are cut; they take 16 kB.
 const EDGES: usize = 4096;
-/// Steps of the whole range in which edges are kept: 31 bits, finer than a millionth of a nanometre. A multiple of three
+/// Number of steps of the whole range in which edges are stored: 31 bits, finer than a millionth of a nanometer. It is a multiple of three
 /// times the number of intervals, so that the edges of a uniform density are exact.
 const UNITS: i32 = 15 << 27;
 
-/// A density that is constant between neighboring quantiles and positive on its whole range. The
-/// draw is monotone in its number, so strata stay strata, and its density is known exactly.
+/// A density that is constant between neighboring quantiles and positive on its whole range. A draw is monotone in its number, so strata
+/// stay strata, and the density of the draw is known exactly.
 ///
-/// Where the density is low (at the ends of what is seen, between two peaks), one of 1024 intervals can be
-/// 50 nm wide, and a source times response that falls by orders of magnitude within it scatters more than all
-/// others together. So each interval is cut into parts of equal probability, as many as its width has steps of
-/// 1/3000 of the whole range. Under 64 strata the relative error of XYZ in daylight falls from 0.015 to 0.004 by
-/// it, that of an orthochromatic film from 0.003 to 0.001: a tenth above the density without any intervals.
+/// Where the density is low (at the ends of the sensitive range, or between two peaks), one of 1024 intervals can be 50 nm wide. If
+/// source times response falls by orders of magnitude within it, that interval adds more scatter than all others together. Each
+/// interval is therefore cut into parts of equal probability, one for each 1/3000 of the whole range in its width. With 64 strata this
+/// lowers the relative error of XYZ in daylight from 0.015 to 0.004, and that of an orthochromatic film from 0.003 to 0.001. The exact
+/// density, without intervals, would have errors a tenth smaller.
 ///
-/// Edges are whole numbers of 31 bits: they are what the density is, so nothing is lost by that, and the table leaves room
-/// in the first level of the cache (32 or 48 kB) for the rays.
+/// Edges are stored as 31-bit integers. They define the density, so rounding loses nothing, and the table leaves room for the rays in the
+/// first-level cache (32 or 48 kB).
 #[derive(Clone, Debug)]
 pub struct Quantiles {
     start_nm: f64,
     end_nm: f64,
-    /// Length of one of [`UNITS`].
+    /// Length of one of the [`UNITS`] steps, nm.
     unit_nm: f64,
-    /// First part of each interval in the low 16 bits, number of its parts in the high ones.
+    /// Index of each interval's first part in the low 16 bits, number of its parts in the high 16 bits.
     intervals: Box<[u32; INTERVALS]>,
-    /// Edges of the parts, in units from the start; the last is repeated to the end.
+    /// Edges of the parts, in units from the start; unused entries at the end repeat the last edge.
     edges: Box<[i32; EDGES]>,
 }
 
-/// Numbers that are drawn at a time.
+/// Number of wavelengths drawn at a time.
 pub(crate) const CHUNK: usize = 64;
 
-/// Finer steps in which the density is summed, per point of the grid.
+/// Number of steps per step of the grid in which the density is integrated.
 const STEPS: usize = 16;
 
 impl Quantiles {
-    /// Quantiles of a density given on a grid, linear between points, in any scale; its zeros at
-    /// either end are cut off. `None` where it is zero everywhere (or not finite, or negative).
+    /// Computes the quantiles of a density given on a grid, linear between points, in any scale. Zeros at either end are cut off. `None`
+    /// if the density is zero everywhere, or if a value is negative or not finite.
     #[must_use]
     pub fn of(grid: Grid, density: &[f64]) -> Option<Self> {
         let cumulative = Cumulative::of(grid, density)?;
         let whole: Vec<f64> = (0..=INTERVALS).map(|k| k as f64 / INTERVALS as f64).collect();
         let bounds = cumulative.quantiles(&whole);
         let (start_nm, end_nm) = (bounds[0], bounds[INTERVALS]);
-        // The sum of their roundings up is below one a piece, so that all edges find room.
+        // Rounding up adds less than one part per interval, so there is room for all edges.
         let widest = (end_nm - start_nm) / (EDGES - 1 - INTERVALS) as f64;
         let mut intervals = Box::new([0; INTERVALS]);
         let mut shares = Vec::with_capacity(EDGES);
@@ -64,7 +64,7 @@ impl Quantiles {
         let mut edges = Box::new([UNITS; EDGES]);
         let (mut before, many) = (-1, shares.len());
         for (i, (edge, nm)) in edges.iter_mut().zip(cumulative.quantiles(&shares)).enumerate() {
-            // Each part has some width, however narrow the peak: no weight is 0.
+            // Each part has a positive width, however narrow the peak, so that no weight is 0.
             let nearest = ((nm - start_nm) * per_unit).round_ties_even() as i32;
             before = nearest.max(before + 1).min(UNITS - (many - 1 - i) as i32);
             *edge = before;
@@ -72,7 +72,7 @@ impl Quantiles {
         Some(Self { start_nm, end_nm, unit_nm: (end_nm - start_nm) / f64::from(UNITS), intervals, edges })
     }
 
-    /// The wavelength (nm) at `u` in [0, 1), and one over the density there (nm).
+    /// Draws the wavelength for the number `u` in [0, 1); returns it, nm, and one over the density there, nm.
     #[inline(always)]
     #[must_use]
     pub fn draw(&self, u: f64) -> (f64, f64) {
@@ -91,8 +91,8 @@ impl Quantiles {
         (nm, width * self.unit_nm * (INTERVALS as f64 * f64::from(parts)))
     }
 
-    /// [`Quantiles::draw`] for up to [`CHUNK`] numbers: writes wavelengths, and multiplies weights by one over the density. What
-    /// needs no table is done in vectors.
+    /// Draws like [`Quantiles::draw`] for up to [`CHUNK`] numbers: writes wavelengths, nm, and multiplies weights by one over the density.
+    /// Steps that need no table run in vectors.
     #[inline(always)]
     pub(crate) fn draw_chunk(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64]) {
         let len = u.len().min(CHUNK);
@@ -134,7 +134,7 @@ impl Quantiles {
         if !(wavelength_nm >= self.start_nm && wavelength_nm <= self.end_nm) {
             return 0.0;
         }
-        // As a draw finds it, so that a draw at an edge finds its own part.
+        // Edges are computed as in a draw, so that a wavelength drawn at an edge finds its own part.
         let nm = |edge: &i32| self.start_nm + f64::from(*edge) * self.unit_nm;
         let last = (self.intervals[INTERVALS - 1] & 0xffff) + (self.intervals[INTERVALS - 1] >> 16);
         let last = last as usize;
@@ -145,11 +145,11 @@ impl Quantiles {
     }
 }
 
-/// The integral of a density, in fine steps.
+/// The cumulative integral of a density, in fine steps.
 struct Cumulative {
     start_nm: f64,
     step_nm: f64,
-    /// At the ends of the steps.
+    /// Integral up to each end of a step, in any scale.
     at: Vec<f64>,
 }
 
@@ -170,7 +170,7 @@ impl Cumulative {
         Some(Self { start_nm, step_nm, at })
     }
 
-    /// Wavelengths (nm) of `shares`, which increase from 0 to 1.
+    /// Returns the wavelengths, nm, below which the fractions `shares` of the integral lie; `shares` increase from 0 to 1.
     fn quantiles(&self, shares: &[f64]) -> Vec<f64> {
         let steps = self.at.len() - 1;
         let nm = |step: f64| self.start_nm + self.step_nm * step;
@@ -185,7 +185,7 @@ impl Cumulative {
             nm(step as f64 + part)
         };
         let mut all: Vec<f64> = shares.iter().map(inner).collect();
-        // Zeros within the range belong to the first and last part.
+        // Zeros at the ends of the range belong to the first and last part.
         all[0] = nm(0.0);
         all[shares.len() - 1] = nm(steps as f64);
         all
@@ -207,8 +207,7 @@ mod tests {
         }
     }
 
-    /// A density with a gap in its middle: nothing is forgotten beside the gap, and every draw's
-    /// weight is one over the stated density.
+    /// Wavelengths beside a gap in the middle of a density can still be drawn, and every draw's weight is one over the stated density.
     #[test]
     fn gaps_and_edges_keep_a_positive_density() {
         let density: Vec<f64> =
@@ -224,7 +223,7 @@ mod tests {
         assert_eq!(q.density_per_nm(398.0), 0.0);
     }
 
-    /// A density that falls by ten decades over the band: no part is wide where intervals are.
+    /// A density that falls by ten decades over the band is still accurate where intervals are wide.
     #[test]
     fn tails_are_cut_finely() {
         let density: Vec<f64> = BAND.wavelengths_nm().map(|w| libm::exp(-(w - 350.0) / 20.0)).collect();
@@ -243,7 +242,7 @@ mod tests {
         assert!(Quantiles::of(BAND, &vec![f64::NAN; BAND.count]).is_none());
     }
 
-    /// Together each number draws what it draws alone, bit by bit, on every tier.
+    /// A batch draws bit by bit what single numbers draw, on every instruction set.
     #[test]
     fn together_is_as_alone() {
         use crate::mixture::Continuum;

@@ -1,34 +1,34 @@
-//! What the channels see of the source.
+//! The light of the source as the channels see it.
 
 use crate::{Mixture, Shares};
 use spectra_core::spectral::{Grid, SystemResponse};
 
-/// The source through the sum of all channels' responses.
+/// The source multiplied by the sum of all channels' responses.
 pub(crate) struct Seen {
-    /// Sum of the responses, each scaled to a peak of 1.
+    /// Sum of the responses, each scaled to a peak of 1, at the points of the grid.
     pub response: Vec<f64>,
-    /// Integral of it, nm.
+    /// Integral of `response`, nm.
     pub of_response: f64,
-    /// The continuum (its absolute value) times the response, per nanometre.
+    /// Absolute value of the continuum times `response`, per nanometer.
     pub product: Vec<f64>,
-    /// Integral of that.
+    /// Integral of `product` over the band.
     pub of_continuum: f64,
-    /// The same of each line.
+    /// Absolute power of each line times the response at its wavelength.
     pub lines: Vec<f64>,
-    /// Sum of those.
+    /// Sum of the values in `lines`.
     pub of_lines: f64,
-    /// Whether there is a continuum, seen or not.
+    /// Whether the source has a continuum, whether or not a channel responds to it.
     pub has_continuum: bool,
-    /// Number of channels that see anything.
+    /// Number of channels with any response.
     pub channels: usize,
 }
 
-/// The least that lines or continuum get of the samples where there are both: what is dim on the whole
-/// may be all there is in some place of a picture.
+/// Least fraction of the samples that lines or continuum get if there are both: light that is dim on the whole may be the only light in
+/// some part of a picture.
 const LEAST: f64 = 0.05;
 
 impl Seen {
-    /// Fails where no channel sees anything.
+    /// Multiplies the source by the channels' responses. Fails if no channel has any response.
     pub fn of(system: &SystemResponse) -> Result<Self, String> {
         let grid = system.grid;
         let response = system.summed_response();
@@ -51,34 +51,35 @@ impl Seen {
         })
     }
 
-    /// Whether a continuum is to be drawn: one that is seen nowhere is dark, but it may be lit elsewhere on the
-    /// source, so it is kept if it is there.
+    /// Returns whether a continuum must be drawn. A continuum to which no channel responds is drawn, too, because the spectrum may differ
+    /// elsewhere on the source.
     pub fn draws_continuum(&self) -> bool {
         self.has_continuum || self.of_lines == 0.0
     }
 
-    /// The lines' share of the samples where there is a continuum too.
+    /// Returns the fraction of the samples for the lines if there is also a continuum.
     pub fn line_share(&self) -> f64 {
         let all = self.of_lines + self.of_continuum;
         if all > 0.0 { (self.of_lines / all).clamp(LEAST, 1.0 - LEAST) } else { 0.5 }
     }
 
-    /// A density of integral 1: `shape` (in any scale), but for `floor` of it, which is the summed response.
+    /// Returns a density of integral 1 that is a mixture: the fraction `floor` is the summed response, the rest is `shape`, given in any
+    /// scale with its integral `of_shape`.
     pub fn with_floor(&self, shape: &[f64], of_shape: f64, floor: f64) -> Vec<f64> {
         let scale = if of_shape > 0.0 { (1.0 - floor) / of_shape } else { 0.0 };
         let floor = floor / self.of_response;
         shape.iter().zip(&self.response).map(|(s, r)| s * scale + r * floor).collect()
     }
 
-    /// The lines by what is seen of them, beside `continuum`.
+    /// Builds the mixture of the lines, weighted by the channels' response to them, and `continuum`. Fails if there is nothing to draw.
     pub fn mixture<C>(&self, system: &SystemResponse, continuum: Option<C>) -> Result<Mixture<C>, String> {
-        // Rounding would take from one channel the exactness that it has by itself.
+        // A single channel is exact with proportional shares; rounding to strata would spoil that.
         let shares = if self.channels > 1 { Shares::WholeStrata } else { Shares::Proportional };
         Mixture::new(&system.source.lines, &self.lines, shares, self.line_share(), continuum)
             .ok_or_else(|| "the imager sees none of the source's light".to_owned())
     }
 
-    /// Wavelengths (nm) at which a channel sees, sixteen in each cell of the grid, its ends not among them.
+    /// Returns wavelengths, nm, at which a channel is sensitive: sixteen in the interior of each cell of the grid.
     pub fn wavelengths_nm<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = f64> + 'a {
         const IN_CELL: u32 = 16;
         let cells = (0..grid.count - 1).filter(|i| self.response[*i] > 0.0 || self.response[*i + 1] > 0.0);

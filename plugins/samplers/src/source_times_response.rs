@@ -1,10 +1,11 @@
-//! `kind: source-times-response`: the source's power times what the imager can see (the default).
+//! The strategy `source-times-response`: the density is the source's power times the imager's response (the default).
 //!
-//! A density that is zero where any channel sees is a bias, so the product is mixed with 5 % of the
-//! summed response of all channels. (A uniform floor over the band would cost ten times as much:
-//! its strata straddle the edges of what a film sees.)
+//! A density that is zero where a channel is sensitive causes bias, so the product is mixed with 5 % of the summed response of all
+//! channels. (A uniform floor over the band would cost ten times as much, because its strata straddle the ends of a film's
+//! sensitivity.)
 //!
-//! Lines beside no continuum, or no more channels than one, come out exact; see [`crate::Shares`].
+//! A source of lines only comes out exact: with one channel in every sample, with several in 64 stratified ones; see
+//! [`crate::Shares`].
 
 use crate::seen::Seen;
 use crate::{Mixture, Quantiles};
@@ -16,10 +17,10 @@ use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
-/// Share of the samples that follow the summed response alone.
+/// Fraction of the samples that follow the summed response alone.
 const FLOOR: f64 = 0.05;
 
-/// The strategy.
+/// The strategy `source-times-response`: draws wavelengths by the source's power times the imager's response.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SourceTimesResponse;
 
@@ -40,14 +41,14 @@ impl WavelengthSampler for SourceTimesResponse {
     }
 }
 
-/// The source's power times what the imager sees; lines as lines.
+/// Wavelengths are drawn by the source's power times the imager's response.
 ///
-/// The strategy that is taken where a scene names none, and the one to render with: wavelengths are drawn where their
-/// light matters, so the noise that they add is small whatever the film. Spectral lines are drawn as lines, each at its
-/// own wavelength and in proportion to what is seen of it.
+/// This is the default, and the strategy to render with. Wavelengths are drawn where their light matters, so the noise
+/// that they add is small whatever the film. Spectral lines are drawn as lines, each at its own wavelength and in
+/// proportion to its power times the response to it.
 ///
-/// Of the samples 5 % follow the summed response of all channels alone, so that the density is nowhere zero where a
-/// channel sees: that would be a bias.
+/// 5 % of the samples follow the summed response of all channels alone, so that the density is nowhere zero where a
+/// channel is sensitive. A zero there would cause bias.
 ///
 /// # Example
 /// ```yaml

@@ -1,14 +1,13 @@
-//! `kind: stratified`: the band in strata of equal width, each drawn equally often, with a jitter of its own.
+//! The strategy `stratified`: strata of equal width, each drawn equally often and jittered independently.
 //!
-//! The number says which stratum; where in it is decided by a hash of all of the number's bits. As many
-//! evenly spread numbers as there are strata put one draw into each, at independent places: the textbook's
-//! jittered sampling. `uniform` takes the place in the stratum from the number too, and so hands on all of
-//! the evenness that Sobol points have: at as many samples as strata both are alike, with more samples
-//! `uniform` goes on to fill the strata evenly, while here the draws in a stratum stay independent. It is a
-//! yardstick for the strategies, not one to render with. With independent numbers it is `uniform`.
+//! The number of a sample chooses the stratum; a hash of all bits of the number chooses the place in it. As many evenly spread
+//! numbers as there are strata put one draw into each, at independent places: the textbook's jittered sampling. `uniform` also
+//! takes the place in the stratum from the number, and so keeps all the evenness of Sobol points. With as many samples as strata
+//! both are alike. With more samples `uniform` continues to fill the strata evenly, while the draws in a stratum here stay
+//! independent. The strategy is a yardstick for others, not one to render with. With independent numbers it equals `uniform`.
 //!
-//! A Sobol number has 32 bits, so a stratum of 64 has 2^26 places: their mean is off its middle by
-//! about 1e-4 of the stratum's own spread, and that of all strata together by 2e-5.
+//! A Sobol number has 32 bits, so one of 64 strata has 2^26 places. Their mean is off the stratum's middle by about 1e-4 of the
+//! stratum's own spread, and the mean of all strata together by 2e-5.
 
 use crate::{Continuum, Mixture, Shares};
 use schemars::JsonSchema;
@@ -20,11 +19,11 @@ use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
-/// Strata of the band of equal width, jittered independently.
+/// The band is divided into strata of equal width, each jittered independently.
 ///
-/// The textbook's jittered sampling, as a yardstick: the number of a sample says which stratum, a hash of it where in
-/// the stratum. `kind: uniform` hands on all of the evenness of Sobol points and is the better one beyond as many
-/// samples as strata. Where the source has lines beside a continuum, they get half of the samples.
+/// This is the textbook's jittered sampling, as a yardstick: the number of a sample chooses the stratum, and a hash of
+/// the number the place in it. `kind: uniform` keeps all the evenness of Sobol points and is better with more samples
+/// than strata. If the source has both lines and a continuum, the lines get half of the samples.
 ///
 /// # Example
 /// ```yaml
@@ -33,7 +32,7 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StratifiedParams {
-    /// Number of strata of the band, 1 to 65536; 64 if left out.
+    /// Number of strata in the band, 1 to 65536; 64 if left out.
     #[serde(default = "usual_strata")]
     #[schemars(range(min = 1, max = MOST))]
     pub strata: u32,
@@ -45,14 +44,14 @@ fn usual_strata() -> u32 {
     64
 }
 
-/// The strategy.
+/// The strategy `stratified`: draws one jittered wavelength per stratum of the band.
 #[derive(Clone, Copy, Debug)]
 pub struct Stratified {
     strata: u32,
 }
 
 impl Stratified {
-    /// A band cut into `strata` parts; `None` for none or more than 65 536.
+    /// Creates the strategy with the band cut into `strata` parts; `None` unless there are 1 to 65 536.
     #[must_use]
     pub fn new(strata: u32) -> Option<Self> {
         (1..=MOST).contains(&strata).then_some(Self { strata })
@@ -75,7 +74,7 @@ impl WavelengthSampler for Stratified {
     }
 }
 
-/// Equal strata from one wavelength to another.
+/// Strata of equal width from one wavelength to another.
 #[derive(Clone, Copy, Debug)]
 struct Strata {
     start_nm: f64,

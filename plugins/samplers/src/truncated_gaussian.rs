@@ -1,8 +1,8 @@
-//! `kind: truncated-gaussian`: one Gaussian, cut off at the ends of the band.
+//! The strategy `truncated-gaussian`: the density is one Gaussian, cut off at the ends of the band.
 //!
-//! Drawn by the inverse of the normal distribution ([`TruncatedGaussian`]), safe however far out its center lies. A
-//! share of the samples (see [`Floor`]) follows what the channels see, and all are weighed by the density of both
-//! together: far from the center the Gaussian is as good as zero.
+//! Wavelengths are drawn by the inverse of the normal distribution ([`TruncatedGaussian`]), which is safe however far outside the
+//! band the center lies. Far from the center the Gaussian is practically zero, so a fraction of the samples (see [`Floor`]) follows
+//! the response of the channels. All samples are weighted by the density of both together.
 
 use crate::mixture::CHUNK;
 use crate::seen::Seen;
@@ -16,12 +16,12 @@ use spectra_core::spectral::{Grid, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_spectrum::{SpectrumError, TruncatedGaussian};
 
-/// One Gaussian, cut off at the ends of the band.
+/// Wavelengths are drawn from one Gaussian, cut off at the ends of the band.
 ///
-/// Drawn by the inverse of the normal distribution, safe however far out its center lies. For a narrow source or
-/// detector, and as a yardstick. Far from the center the Gaussian is as good as zero: `floor` sees to it that what a
-/// channel sees there is drawn nonetheless, and without one a Gaussian that does not reach all of it is refused. One that
-/// reaches nothing of it is refused with a floor, too.
+/// Use it for a narrow source or detector, and as a yardstick. The draw inverts the normal distribution, which is safe
+/// however far outside the band the center lies. Far from the center the Gaussian is practically zero. `floor` ensures
+/// that wavelengths there are drawn if a channel is sensitive to them; without a floor, a Gaussian that does not reach
+/// all of them is refused. A Gaussian that reaches none of them is refused even with a floor.
 ///
 /// # Example
 /// ```yaml
@@ -30,17 +30,17 @@ use spectra_spectrum::{SpectrumError, TruncatedGaussian};
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct TruncatedGaussianParams {
-    /// Center, nm if bare; it may lie outside of the band.
+    /// Center of the Gaussian, nm if bare; it may lie outside the band.
     pub center: Wavelength,
     /// Standard deviation before the ends are cut off, nm if bare; 1e-6 to 1e6 nm.
     pub sigma: Wavelength,
-    /// Share of the samples that follow the summed response of all channels instead, 0 to below 1, so that nothing that
-    /// is seen is never drawn; 1/16 if left out.
+    /// Fraction of the samples that follow the summed response of all channels instead, 0 to below 1, so that every wavelength to which
+    /// a channel is sensitive can be drawn; 1/16 if left out.
     #[serde(default)]
     pub floor: Floor,
 }
 
-/// The strategy.
+/// The strategy `truncated-gaussian`: draws wavelengths from one Gaussian and a floor.
 #[derive(Clone, Copy, Debug)]
 pub struct TruncatedGaussianSampler {
     center_nm: f64,
@@ -49,17 +49,17 @@ pub struct TruncatedGaussianSampler {
 }
 
 impl TruncatedGaussianSampler {
-    /// A Gaussian around `center_nm` of standard deviation `sigma_nm`, beside a floor.
+    /// Creates the strategy with a Gaussian centered at `center_nm` with the standard deviation `sigma_nm`, and a floor.
     ///
     /// # Errors
-    /// As [`TruncatedGaussian::new`].
+    /// Same as [`TruncatedGaussian::new`]: a center or standard deviation out of range.
     pub fn new(center_nm: f64, sigma_nm: f64, floor: Floor) -> Result<Self, SpectrumError> {
         TruncatedGaussian::new(center_nm, sigma_nm, 350.0, 830.0)?;
         Ok(Self { center_nm, sigma_nm, floor })
     }
 
-    /// An error where the Gaussian draws nothing between the least and the greatest wavelength that a channel sees: every
-    /// ray but those of the floor would be lost. A center in mm for one in nm ends here.
+    /// Fails if the Gaussian is practically zero from the shortest to the longest wavelength to which a channel is sensitive: then every
+    /// ray except those of the floor would be lost. A center written in mm instead of nm ends here.
     fn reaches(&self, gaussian: &TruncatedGaussian, seen: &Seen, grid: &Grid) -> Result<(), String> {
         let (low, high) =
             seen.wavelengths_nm(grid).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), w| (a.min(w), b.max(w)));
@@ -67,7 +67,7 @@ impl TruncatedGaussianSampler {
             return Ok(());
         }
         Err(format!(
-            "truncated-gaussian: from its center at {} nm a `sigma` of {} nm does not reach what the channels see, {low:.0} to {high:.0} nm; set `center` within",
+            "truncated-gaussian: centered at {} nm with a `sigma` of {} nm, it does not reach what the channels see, {low:.0} to {high:.0} nm; set `center` within that",
             self.center_nm, self.sigma_nm
         ))
     }
@@ -87,7 +87,7 @@ impl WavelengthSampler for TruncatedGaussianSampler {
             && let Some(nm) = seen.wavelengths_nm(&system.grid).find(|w| !is_drawn(gaussian.density(*w)))
         {
             return Err(format!(
-                "at {nm} nm, where a channel sees, the Gaussian is too far from its center to be sampled; add a `floor`"
+                "at {nm} nm, where a channel is sensitive, the Gaussian is too weak to be sampled; add a `floor`"
             ));
         }
         let continuum = seen.draws_continuum().then_some(WithFloor { gaussian, floor });
@@ -95,17 +95,16 @@ impl WavelengthSampler for TruncatedGaussianSampler {
     }
 }
 
-/// Whether a density (1/nm) is more than what never happens: less than once in 1e12 samples and nanometres, its
-/// weight would be noise without end.
+/// Returns whether a density, 1/nm, is high enough to be drawn at all. Below one draw per 1e12 samples and nanometer, the weights would
+/// cause unbounded noise.
 fn is_drawn(density_per_nm: f64) -> bool {
     density_per_nm > 1e-12
 }
 
-/// The least and one less the greatest share that is drawn: at 0 and 1 themselves a density may be 0, and a weight
-/// infinite.
+/// Margin that numbers keep from 0 and from 1: at 0 and 1 themselves a density may be 0 and a weight infinite.
 pub(crate) const EDGE: f64 = 0.5 * f64::EPSILON;
 
-/// A Gaussian, and the share and the density of the floor beside it.
+/// A continuum made of a Gaussian and a floor, the latter with its fraction and density.
 #[derive(Clone, Debug)]
 struct WithFloor {
     gaussian: TruncatedGaussian,
@@ -113,7 +112,7 @@ struct WithFloor {
 }
 
 impl Continuum for WithFloor {
-    /// In passes over small buffers: what fills vectors apart from what looks things up.
+    /// Draws in passes over small buffers, which separate the vectorized steps from the look-ups.
     fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64], isa: Isa) {
         let share = self.floor.as_ref().map_or(0.0, |f| f.0);
         let (rest, inverse) = (1.0 - share, 1.0 / (1.0 - share));
@@ -149,7 +148,7 @@ impl Continuum for WithFloor {
     }
 }
 
-/// Numbers behind the floor's share, on [0, 1) again.
+/// Rescales the numbers above the floor's interval to [0, 1).
 struct Rescale<'a> {
     u: &'a [f64],
     share: f64,
@@ -167,7 +166,7 @@ impl Vectorized for Rescale<'_> {
     }
 }
 
-/// Weights over the density of floor and Gaussian together.
+/// Divides weights by the density of floor and Gaussian together.
 struct Weigh<'a> {
     of_floor: &'a [f64],
     density: &'a [f64],

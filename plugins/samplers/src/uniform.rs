@@ -1,4 +1,4 @@
-//! `kind: uniform`: every wavelength of the band alike; where the source has lines too, they get half.
+//! The strategy `uniform`: a constant density over the band; if the source also has lines, they get half of the samples.
 
 use crate::{Mixture, Quantiles, Shares};
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
-/// The strategy.
+/// The strategy `uniform`: draws every wavelength of the band alike.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Uniform;
 
@@ -26,11 +26,10 @@ impl WavelengthSampler for Uniform {
     }
 }
 
-/// Every wavelength of the band alike.
+/// Every wavelength of the band is drawn alike.
 ///
-/// A yardstick for the other strategies, and the choice where the spectrum itself is what one looks for at every
-/// wavelength. Where the source has lines beside a continuum, they get half of the samples; where it has lines only,
-/// all of them.
+/// It is a yardstick for the other strategies, and the choice if you want the spectrum itself at every wavelength. If the
+/// source has both lines and a continuum, the lines get half of the samples; if it has only lines, they get all.
 ///
 /// # Example
 /// ```yaml

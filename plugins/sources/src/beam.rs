@@ -1,4 +1,4 @@
-//! `kind: beam`: a thin beam of parallel light.
+//! `kind: beam`: a thin beam of parallel light, round or cut by a slit.
 
 use crate::white;
 use schemars::JsonSchema;
@@ -12,9 +12,9 @@ use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 
 /// A thin beam of parallel light, round or cut by a slit.
 ///
-/// For prisms, gratings and anything on an optical bench: a ray box. All of its rays run in one direction from a disk
-/// (`diameter`) or a rectangle (`slit`) across the beam. It is rendered from the source (`direction: forward`); with
-/// `output: [{kind: rays}]` its way is drawn.
+/// Use it as a ray box for prisms, gratings and anything on an optical bench. All of its rays run in one direction, from a
+/// disk (`diameter`) or a rectangle (`slit`) perpendicular to the beam. It is rendered from the source
+/// (`direction: forward`). To draw its path, write `output: [{kind: rays}]`.
 ///
 /// # Example
 /// ```yaml
@@ -26,21 +26,21 @@ use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct BeamParams {
-    /// Distance of its start from the first vertex, mm if bare.
+    /// Distance of the start of the beam from the first vertex, mm if bare.
     distance: Positive<Length>,
-    /// Where it starts (to the photographer's right, up), mm if bare; on the axis if absent.
+    /// Position of the start of the beam (to the photographer's right, and up), mm if bare; on the axis if left out.
     position: Option<[Length; 2]>,
-    /// Angles that it is tilted by (toward the photographer's right, upward), degrees if bare, each within 85.9
-    /// degrees; along the axis if absent.
+    /// Tilt of the beam (toward the photographer's right, and upward), degrees if bare, each within 85.9 degrees; along the
+    /// axis if left out.
     direction: Option<[Angle; 2]>,
-    /// Diameter of a round beam, mm if bare; or else `slit`.
+    /// Diameter of a round beam, mm if bare. Write either this or `slit`.
     diameter: Option<Positive<Length>>,
-    /// Width and height of a slit that cuts the beam, mm if bare; or else `diameter`.
+    /// Width and height of a slit that cuts the beam, mm if bare. Write either this or `diameter`.
     slit: Option<[Positive<Length>; 2]>,
-    /// Its spectrum: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5800`.
+    /// Spectrum of the beam: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5800`.
     #[serde(default = "daylight")]
     spectrum: String,
-    /// Radiant power in the band, W if bare.
+    /// Radiant power of the beam in the band, W if bare.
     #[serde(default = "power")]
     power: Positive<Power>,
 }
@@ -64,13 +64,15 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
             return Err(params.fault("slit", "`diameter` and `slit` exclude each other").into());
         }
         (None, None) => {
-            let fault = params.fault("diameter", "how wide is the beam? `diameter` is missing");
-            return Err(fault.hint("`diameter: 1 mm`, or `slit: [0.2 mm, 5 mm]`").into());
+            let fault = params.fault("diameter", "the width of the beam is missing");
+            return Err(fault.hint("write `diameter: 1 mm`, or `slit: [0.2 mm, 5 mm]`").into());
         }
     };
     let angles = p.direction.map_or([0.0; 2], |d| d.map(|a| a.rad()));
     if let Some(bad) = angles.iter().position(|a| a.abs() >= 1.5) {
-        return Err(params.fault(&format!("direction[{bad}]"), "a beam tilted by 86 degrees or more").into());
+        return Err(params
+            .fault(&format!("direction[{bad}]"), "the tilt of the beam must be less than 86 degrees")
+            .into());
     }
     let slopes = angles.map(tan);
     let length = (1.0 + slopes[0] * slopes[0] + slopes[1] * slopes[1]).sqrt();
@@ -97,7 +99,7 @@ struct Beam {
     start_mm: [f64; 3],
     direction: [f64; 3],
     shape: Shape,
-    /// W/nm, and W in lines.
+    /// Radiant power, W/nm, and W in lines.
     spectrum: SpectralPower,
 }
 
@@ -116,12 +118,12 @@ impl Source for Beam {
     }
 }
 
-/// mm^2 a m^2: flux over an area in mm^2 is to be irradiance in W m^-2.
+/// Square millimeters per square meter. With this factor, flux over an area in mm^2 is irradiance in W m^-2.
 const MM2_PER_M2: f64 = 1e6;
 
 impl Emit for Beam {
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
-        // Across the beam: horizontal, and what completes it. The frame's x runs to the photographer's right.
+        // Two unit vectors perpendicular to the beam, the first one horizontal. x runs to the photographer's right.
         let [l, m, n] = self.direction;
         let flat = (l * l + n * n).sqrt();
         let (right, up) = ([n / flat, 0.0, -l / flat], [-l * m / flat, flat, -m * n / flat]);

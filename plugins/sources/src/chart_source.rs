@@ -1,4 +1,4 @@
-//! `kind: chart`: a test chart drawn by the program.
+//! `kind: chart`: a test chart that the program draws.
 
 use crate::chart::{self, Chart, Ink};
 use crate::flat::{Flat, Places, Texture};
@@ -17,8 +17,8 @@ use spectra_spectrum::{Observer, Reflectance, SpectrumError, find_reflectance_in
 
 /// A test chart drawn by the program: resolution, color patches, gray card, star.
 ///
-/// A flat, Lambertian sheet across the axis, sharp at any magnification since it is drawn, not sampled. The height
-/// follows from the chart. The charts are:
+/// The chart is a flat, Lambertian sheet perpendicular to the axis. It is sharp at any magnification, since it is drawn, not
+/// sampled. Its height follows from its width. The charts are:
 ///
 /// - `resolution`: stars, slanted edges, wedges, line groups, circles, grays and color patches;
 /// - `color-checker`: the 24 patches of a ColorChecker on a black frame, with their measured reflectances;
@@ -30,7 +30,7 @@ use spectra_spectrum::{Observer, Reflectance, SpectrumError, find_reflectance_in
 /// - `step-wedge`: 21 gray steps of density 0.15, in both directions;
 /// - `text`: lines of text in falling sizes, black on white and white on black.
 ///
-/// `luminance` and `illuminant` say how bright a perfect white on it would be, and in what light.
+/// `luminance` sets how bright a perfect white on the chart would be, and `illuminant` in what light.
 ///
 /// # Example
 /// ```yaml
@@ -47,29 +47,29 @@ use spectra_spectrum::{Observer, Reflectance, SpectrumError, find_reflectance_in
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ChartParams {
-    /// Which chart: `resolution`, `color-checker`, `gray-card` and so on; `patches` shows your own `reflectances`.
+    /// Name of the chart: `resolution`, `color-checker`, `gray-card` and so on; `patches` shows your own `reflectances`.
     chart: String,
     /// Patches of `chart: patches`: a table beside the scene whose columns are reflectances, or a list of reflectances by name.
     reflectances: Option<OwnReflectances>,
-    /// Distance of its plane from the first vertex, mm if bare.
+    /// Distance of the chart from the first vertex, mm if bare.
     distance: Positive<Length>,
-    /// Width of the chart, mm if bare; the height follows. Or `fill`: 2 % more than what the frame sees there through this
-    /// lens; what does not fit into the frame's shape is cut off.
+    /// Width of the chart, mm if bare; the height follows. `fill` makes it 2 % wider than what the frame sees there through
+    /// this lens; parts that do not fit into the shape of the frame are cut off.
     width: Width,
-    /// What lies beyond the chart: `black`, nothing; `clamp`, what its border shows; `mirror`, the chart mirrored. `black`
-    /// if absent, with a warning where the frame sees it. With `clamp` and `mirror` light is traced backward only.
+    /// Light beyond the chart: `black` (none), `clamp` (continues the border) or `mirror` (mirrors the chart). `black` if left
+    /// out, with a warning if the frame sees it. With `clamp` and `mirror` light is traced backward only.
     edge: Option<Edge>,
-    /// The light that falls on it: the name of a spectrum, a file beside the scene, or an expression such as
+    /// Light that falls on the chart: the name of a spectrum, a file beside the scene, or an expression such as
     /// `blackbody:3200`.
     #[serde(default = "daylight")]
     illuminant: String,
-    /// Luminance of a perfect white on it, cd/m2 if bare.
+    /// Luminance of a perfect white on the chart, cd/m2 if bare.
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
-    /// How RGB becomes a spectrum. If absent, patches have their measured reflectances; if given,
-    /// every ink is this model's spectrum of its sRGB color.
+    /// Color model that turns RGB into a spectrum. If left out, patches have their measured reflectances; if given, every ink
+    /// has this model's spectrum for its sRGB color.
     color: Option<Part<StageOf<dyn ColorModel>>>,
-    /// Seed of charts with anything random in them (`star-field`), 0 or more.
+    /// Seed of charts with random parts (`star-field`), 0 or more.
     #[serde(default)]
     seed: u64,
 }
@@ -78,13 +78,13 @@ struct ChartParams {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 enum OwnReflectances {
-    /// A table of several.
+    /// A table with one reflectance per column.
     Table(String),
-    /// Several by name.
+    /// A list of reflectances by name.
     Names(Vec<String>),
 }
 
-/// Most patches of one's own.
+/// Largest number of patches with the user's reflectances.
 const MAX_PATCHES: usize = 1000;
 
 fn daylight() -> String {
@@ -106,7 +106,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         })
     };
     let Some(p) = faults.take(params.parse::<ChartParams>()) else {
-        // Whatever else is wrong, an unknown chart or light is said in the same go.
+        // Whatever else is wrong, an unknown chart or light is reported at the same time.
         let text = |key: &str| params.get(key).and_then(|node| node.as_str());
         faults.take(
             text("chart")
@@ -123,7 +123,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         chart::OWN_PATCHES => Ok(chart::own_patches(own.len() as u16, width_mm)),
         name => named(name, Some(width_mm), p.seed),
     };
-    // Drawn at any width, it has its shape.
+    // The aspect ratio does not depend on the width, so draw the chart at any width first.
     let chart = faults.take(drawn(distance_mm)).and_then(|any| {
         let aspect = any.width_mm() / any.height_mm();
         let width_mm = faults.take(p.width.mm(aspect, distance_mm, [0.0; 2], context.view, params))?;
@@ -158,18 +158,20 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     Ok(Box::new(Flat { texture, distance_mm }))
 }
 
-/// The reflectances that the user brings.
+/// Reads the user's reflectances for `chart: patches`.
 fn own_reflectances(p: &ChartParams, params: &Params, context: &Context<'_>) -> Result<Vec<Reflectance>, Faults> {
     let is_own = p.chart == chart::OWN_PATCHES;
     let stated = match (&p.reflectances, is_own) {
         (None, false) => return Ok(Vec::new()),
         (Some(_), false) => {
-            let fault = params.fault("reflectances", format!("the chart `{}` has patches of its own", p.chart));
-            return Err(fault.hint("`chart: patches`").into());
+            let fault = params.fault("reflectances", format!("the chart `{}` has its own patches", p.chart));
+            return Err(fault.hint("write `chart: patches`").into());
         }
         (None, true) => {
             let fault = params.fault("chart", "`patches` needs `reflectances`");
-            return Err(fault.hint("`reflectances: my-paints.csv`: one column per patch beside wavelength_nm").into());
+            return Err(fault
+                .hint("write `reflectances: my-paints.csv`, a table with `wavelength_nm` and one column per patch")
+                .into());
         }
         (Some(stated), true) => stated,
     };
@@ -194,16 +196,16 @@ fn own_reflectances(p: &ChartParams, params: &Params, context: &Context<'_>) -> 
         }
     }
     if faults.is_empty() && !(1..=MAX_PATCHES).contains(&found.len()) {
-        let fault = params.fault("reflectances", format!("{} patches", found.len()));
-        faults.push(fault.hint(format!("1 to {MAX_PATCHES}")));
+        let fault = params.fault("reflectances", format!("{} reflectances are given", found.len()));
+        faults.push(fault.hint(format!("write 1 to {MAX_PATCHES} reflectances")));
     }
     faults.into_result(found)
 }
 
-/// Spectra of the inks, and of a perfect white.
+/// The spectra of the inks, and the spectrum of a perfect white.
 type Inks = (Vec<SpectralPower>, SpectralPower);
 
-/// Inks as measured, under the light. Colors without a measured spectrum go through the default model.
+/// Returns the spectra of the inks as measured, under the light. Colors without a measured spectrum use the default model.
 fn measured(
     chart: &Chart,
     own: &[Reflectance],
@@ -217,14 +219,14 @@ fn measured(
         spectra.push(match ink {
             Ink::Gray(reflectance) => light.scaled(*reflectance),
             Ink::Patch(name) => lit(light, &patch(name, params)?),
-            // A chart of own patches has as many as there are; where some were faulty it is never seen.
+            // The chart has as many patches as there are reflectances. If one was faulty, the chart is never used.
             Ink::Own(i) => own.get(usize::from(*i)).map_or_else(|| light.scaled(0.0), |r| lit(light, r)),
             Ink::Rgb(encoded) => {
                 if model.is_none() {
                     model = Some(build_stage::<dyn ColorModel>(&params.nothing_said("color"), context)?);
                 }
                 let Some(model) = &model else { return Err(Faults::new()) };
-                // The model's white and the light have one chromaticity; give them one luminance.
+                // The model's white and the light have the same chromaticity; give them the same luminance.
                 let of_white = white::luminance_cd_m2(&model.spectrum([1.0; 3]));
                 let scale = white::luminance_cd_m2(light) / of_white;
                 model.spectrum(encoded.map(|v| Transfer::Srgb.decode(v))).scaled(scale)
@@ -234,7 +236,7 @@ fn measured(
     Ok((spectra, light.clone()))
 }
 
-/// Every ink through one color model, by its color in sRGB.
+/// Returns the spectra that one color model gives for the sRGB colors of the inks.
 fn by_model(chart: &Chart, own: &[Reflectance], light: &SpectralPower, model: &dyn ColorModel) -> Inks {
     let spectra = chart
         .inks()
@@ -252,7 +254,8 @@ fn by_model(chart: &Chart, own: &[Reflectance], light: &SpectralPower, model: &d
     (spectra, model.spectrum([1.0; 3]))
 }
 
-/// A patch's color in linear sRGB, white being a perfect reflector under D65; negative where sRGB does not hold it.
+/// Returns the color of a patch in linear sRGB, where white is a perfect reflector under D65. Components are negative for colors
+/// outside sRGB.
 fn linear_srgb(reflectance: &Reflectance, light: &SpectralPower) -> [f64; 3] {
     let daylight = spectra_spectrum::find_emission("D65").map_or_else(|_| light.clone(), |e| e.to_power(&light.grid));
     let observer = Observer::cie_1931_2deg();
@@ -261,7 +264,7 @@ fn linear_srgb(reflectance: &Reflectance, light: &SpectralPower) -> [f64; 3] {
     RgbSpace::srgb().from_xyz(xyz)
 }
 
-/// A patch's column in the bundled table: `neutral 5 (.70 D)` is `neutral-5`.
+/// Returns the name of a patch's column in the bundled table: `neutral 5 (.70 D)` is `neutral-5`.
 fn column(name: &str) -> String {
     let plain = name.split(" (").next().unwrap_or(name);
     // The table calls the white and black patches by their color alone.
@@ -286,7 +289,7 @@ struct ChartTexture {
     chart: Chart,
     palette: Palette,
     mean: SpectralPower,
-    /// Light of a perfect white on it.
+    /// Spectrum of a perfect white on the chart.
     white: SpectralPower,
     peak_over_mean: f64,
     edge: Edge,
@@ -295,7 +298,7 @@ struct ChartTexture {
 impl ChartTexture {
     fn new(chart: Chart, palette: Palette, spectra: &[SpectralPower], white: SpectralPower) -> Self {
         let mut areas = chart.areas().to_vec();
-        // An ink too small to be met still must be able to be seen: it keeps the density positive.
+        // An ink too small to be counted may still be hit by rays: a tiny area keeps the density positive.
         areas.iter_mut().for_each(|a| *a = a.max(1e-6));
         let mean = palette.mean(&areas);
         let peak = spectra.iter().map(white::luminance_cd_m2).fold(0.0, f64::max);
@@ -304,7 +307,7 @@ impl ChartTexture {
         Self { chart, palette, mean, white, peak_over_mean, edge: Edge::Black }
     }
 
-    /// The inks at up to [`CHUNK`] places, also beyond the border.
+    /// Finds the inks at up to [`CHUNK`] points, also beyond the border.
     fn folded_ink(&self, x_mm: &[f64], y_mm: &[f64], inks: &mut [u16], isa: Isa) {
         let [x, y] = [(x_mm, self.chart.width_mm()), (y_mm, self.chart.height_mm())].map(|(places, side)| {
             let mut folded = [0.0_f64; CHUNK];
@@ -317,7 +320,7 @@ impl ChartTexture {
     }
 }
 
-/// Places that are looked at together.
+/// Number of points that are looked up together.
 const CHUNK: usize = 256;
 
 impl Texture for ChartTexture {

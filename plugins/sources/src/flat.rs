@@ -1,51 +1,52 @@
-//! A flat, Lambertian picture across the axis: what charts and pictures have in common.
+//! A flat, Lambertian picture perpendicular to the axis: the common code of charts and pictures.
 
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source};
 use spectra_core::{Loss, RayBatch, loss::ALIVE};
 
-/// What lies on the plane. Coordinates are mm from its centre: +x as the photographer's right, +y up.
+/// The picture on a plane. Coordinates are mm from its center: +x to the photographer's right, +y up.
 pub(crate) trait Texture: Send + Sync {
     /// Multiplies each weight by the radiance at (`x_mm`, `y_mm`): W m^-2 sr^-1 nm^-1, or
-    /// W m^-2 sr^-1 on a line; 0 outside of the picture.
+    /// W m^-2 sr^-1 on a line; 0 outside the picture.
     fn shine(&self, at: Places<'_>, weight: &mut [f64], isa: Isa);
 
-    /// Draws a place on the picture from (`u`, `v`) in [0, 1)^2: x, y and the area of which it is a
-    /// fair sample (one over the density), mm^2.
+    /// Draws a point on the picture from (`u`, `v`) in [0, 1)^2. Returns x, y, mm, and the area that the sample represents
+    /// (the inverse of its density), mm^2.
     fn draw(&self, u: f64, v: f64) -> (f64, f64, f64);
 
-    /// Half the width and height of the spots that it is made of, if it is: see [`Emit::spots_mm`].
+    /// Half the width and height of the spots that the picture consists of, mm; `None` if it does not consist of spots. See
+    /// [`Emit::spots_mm`].
     fn spots_mm(&self) -> Option<[f64; 2]> {
         None
     }
 
-    /// As [`Texture::draw`], in the middle of a spot.
+    /// Draws a point as [`Texture::draw`] does, but in the center of a spot.
     fn draw_middle(&self, u: f64, v: f64) -> (f64, f64, f64) {
         self.draw(u, v)
     }
 
-    /// Whether there is nothing beyond its border: what has none cannot emit from all of it.
+    /// Returns whether the picture is dark beyond its border. One that continues without end cannot emit from all of its area.
     fn is_bounded(&self) -> bool {
         true
     }
 
-    /// Light summed over the picture, in any scale.
+    /// Spectrum of the light of the whole picture, in any scale.
     fn spectrum(&self) -> &SpectralPower;
 
-    /// The light of what is white in the picture, in any scale.
+    /// Spectrum of white in the picture, in any scale.
     fn white(&self) -> &SpectralPower {
         self.spectrum()
     }
 
-    /// Peak over mean brightness.
+    /// Ratio of the peak to the mean brightness.
     fn peak_over_mean(&self) -> f64;
 
-    /// What it is, for the log.
+    /// Description of the picture for the log.
     fn describe(&self) -> String;
 }
 
-/// Where and at which wavelengths a texture is asked.
+/// Points and wavelengths at which a texture is evaluated.
 #[derive(Clone, Copy)]
 pub(crate) struct Places<'a> {
     pub x_mm: &'a [f64],
@@ -85,7 +86,7 @@ impl<T: Texture> Source for Flat<T> {
 }
 
 impl<T: Texture> Flat<T> {
-    /// Starts rays at the places that are drawn.
+    /// Starts rays at the points that `drawn` returns.
     #[inline(always)]
     fn start(&self, rays: &mut RayBatch, isa: Isa, drawn: impl Fn(usize) -> (f64, f64, f64)) {
         let c = rays.columns_mut();
@@ -122,7 +123,7 @@ impl<T: Texture> Radiance for Flat<T> {
     fn radiance(&self, rays: &mut RayBatch, isa: Isa) {
         let c = rays.columns_mut();
         isa.run(ToPlane { distance_mm: self.distance_mm, c: [c.z, c.l, c.m, c.n], x: c.x, y: c.y });
-        // A ray that runs away from the plane sees none of it.
+        // A ray that runs away from the plane gets no light from it.
         for (n, state) in c.n.iter().zip(c.state.iter_mut()) {
             if *state == ALIVE && !(*n < 0.0) {
                 *state = Loss::Absorbed.state(0);
@@ -148,7 +149,7 @@ impl Vectorized for Cosine<'_> {
     }
 }
 
-/// Moves rays along themselves into the plane; z stays, nobody asks for it again.
+/// Moves rays along their direction to the plane. Leaves z unchanged, since it is not used again.
 struct ToPlane<'a> {
     distance_mm: f64,
     c: [&'a [f64]; 4],

@@ -1,4 +1,4 @@
-//! How wide a flat source is, what lies beyond its border, and whether it fills the frame.
+//! Width of a flat source, light beyond its border, and whether the source fills the frame.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -6,36 +6,38 @@ use spectra_core::params::{Fault, Length, Node, Params, Positive, Value};
 use spectra_core::registry::Context;
 use spectra_core::view::{Sight, View};
 
-/// `width: fill` makes a source this much larger than what the frame sees of it, so that no border shows between the
-/// points of the frame that were looked from.
+/// Factor by which `width: fill` makes a source larger than the part that the frame sees. The frame is probed at some points
+/// only, and no border may show between them.
 const MARGIN: f64 = 1.02;
-/// Widest angle, degrees, that a flat picture is seen under without a word: beyond it a picture is mostly border, drawn out.
+/// Largest angle, degrees, under which a flat picture is seen without a warning. Beyond it, stretched borders fill most of the
+/// frame.
 const WIDEST_DEG: f64 = 130.0;
-/// A share of the frame that sees nothing and is not worth a word.
+/// Fraction of the frame that may lie outside the source without a warning.
 const NOTHING: f64 = 0.01;
 
-/// `width` as written.
+/// `width` as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum Width {
-    /// As wide as the frame sees there.
+    /// The word `fill`: as wide as the frame sees at that distance.
     Fill(FillWord),
     /// A width, mm if bare.
     Width(Positive<Length>),
 }
 
-/// The word.
+/// The word `fill`, as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum FillWord {
-    /// As wide as the frame sees there.
+    /// The word `fill`: as wide as the frame sees at that distance.
     Fill,
 }
 
 impl Width {
-    /// The width, mm, of a picture whose width is `aspect` times its height and whose center is at `center_mm` on the plane
-    /// `distance_mm` in front of the first vertex. To fill the frame is to hold all that it sees on that plane, by real rays
-    /// through all that the lens passes, and 2 % more. Where no lens is known a source is as wide as it is far.
+    /// Returns the width, mm, of a picture whose width is `aspect` times its height and whose center is at `center_mm` on the
+    /// plane `distance_mm` in front of the first vertex. A picture that fills the frame covers all that the frame sees on that
+    /// plane, found with real rays through the whole opening of the lens, and 2 % more. Without a lens it is as wide as it is
+    /// distant. Fails if no plane fills the frame.
     pub(crate) fn mm(
         &self,
         aspect: f64,
@@ -62,28 +64,28 @@ impl Width {
     }
 }
 
-/// The width that fills the frame, mm.
+/// Returns the width that fills the frame, mm; `None` if no plane does.
 pub(crate) fn needed_mm(view: &View, aspect: f64, distance_mm: f64, center_mm: [f64; 2]) -> Option<f64> {
     let [x, y] = view.half_size_mm(distance_mm, center_mm)?;
     Some(2.0 * MARGIN * x.max(y * aspect)).filter(|mm| *mm > 0.0)
 }
 
-/// What lies beyond the border of a flat source.
+/// The light beyond the border of a flat source.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub(crate) enum Edge {
-    /// Nothing.
+    /// No light beyond the border.
     #[default]
     Black,
-    /// What its border shows.
+    /// The light at the nearest point of the border.
     Clamp,
-    /// Itself, mirrored there, again and again.
+    /// The source mirrored at its borders, repeatedly.
     Mirror,
 }
 
 impl Edge {
-    /// A place along a side from 0 to `size`, brought to where something is; `None` where nothing is.
+    /// Maps a position along a side of length `size` into 0 to `size`; `None` if there is no light at that position.
     pub(crate) fn place(self, at: f64, size: f64) -> Option<f64> {
         if at >= 0.0 && at <= size {
             return Some(at);
@@ -99,7 +101,7 @@ impl Edge {
     }
 }
 
-/// A flat source on its plane.
+/// Size and position of a flat source on its plane.
 pub(crate) struct Placed {
     pub width_mm: f64,
     pub height_mm: f64,
@@ -113,7 +115,7 @@ impl Placed {
         (x - self.center_mm[0]).abs() <= 0.5 * self.width_mm && (y - self.center_mm[1]).abs() <= 0.5 * self.height_mm
     }
 
-    /// Warns where a lens sees so much that no flat picture can stand before it as one would expect: a fisheye.
+    /// Warns if the lens sees too wide an angle for a flat picture, as a fisheye does.
     pub(crate) fn warn_of_fisheye(&self, what: &str, params: &Params, context: &Context<'_>) {
         let half = context.view.and_then(|view| view.half_size_mm(self.distance_mm, self.center_mm));
         let Some([x, y]) = half else { return };
@@ -123,17 +125,17 @@ impl Placed {
             return;
         }
         let text = format!(
-            "this lens sees {seen:.0} degrees from corner to corner: {what} is {} wide to fill the frame, of which its middle shows a small part",
+            "this lens sees {seen:.0} degrees from corner to corner: {what} is {} wide to fill the frame, whose center shows only a small part of it",
             length(self.width_mm)
         );
         let hint = format!(
-            "take a lens of less than {WIDEST_DEG:.0} degrees for a flat picture: `spectra list lens` shows them all"
+            "for a flat picture use a lens of less than {WIDEST_DEG:.0} degrees; `spectra list lens` lists all lenses"
         );
         context.warn(params.fault("width", text).hint(hint));
     }
 
-    /// Warns where part of the frame sees nothing of a source that has a border and does not say that it is meant.
-    /// `what` is what it is called, such as `the picture`.
+    /// Warns if part of the frame lies outside a source whose border is not marked as intended. `what` names the source, such
+    /// as `the picture`.
     pub(crate) fn warn_unless_filled(&self, what: &str, params: &Params, context: &Context<'_>) {
         let Some(view) = context.view else { return };
         let Some(missed) = view.share_missed(|sight| self.holds(sight)).filter(|missed| *missed >= NOTHING) else {
@@ -143,7 +145,7 @@ impl Placed {
         let Some(needed_mm) = needed_mm(view, aspect, self.distance_mm, self.center_mm) else { return };
         let text = format!("the frame is not filled: {:.0} % of it lies outside {what}", (100.0 * missed).max(1.0));
         let hint = match bare(params.get("width")) {
-            // 1.5 for 1.5 m: a bare number is in mm.
+            // Someone wrote 1.5 for 1.5 m, but a bare number is in mm.
             Some(mm) if (0.2..5.0).contains(&(1000.0 * mm / needed_mm)) => {
                 format!("{mm} mm wide: did you mean `{mm} m`? Or `width: fill`")
             }
@@ -153,7 +155,7 @@ impl Placed {
     }
 }
 
-/// A number that was written without a unit.
+/// Returns a number that was written without a unit; `None` for anything else.
 fn bare(node: Option<&Node>) -> Option<f64> {
     match node.map(|node| &node.value) {
         Some(Value::Number(number)) => Some(number.value),
@@ -161,7 +163,7 @@ fn bare(node: Option<&Node>) -> Option<f64> {
     }
 }
 
-/// A length as one would write it, of two or three digits and not less than it is.
+/// Formats a length as a person would write it, rounded up to two or three digits.
 fn length(mm: f64) -> String {
     let (value, unit) = match mm {
         mm if mm >= 1e6 => (mm / 1e6, "km"),

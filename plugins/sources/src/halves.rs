@@ -1,27 +1,27 @@
-//! A source with lights in it: whole, and as two.
+//! A source with bright lights: the whole, and its two parts, the lights and the rest.
 
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source, Split};
 
-/// Which light of a source a copy of it stands for.
+/// The part of a source's light that a copy of it represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Half {
-    /// All.
+    /// All light of the source.
     Whole,
-    /// That of the bright pixels.
+    /// The light of the bright pixels.
     Lights,
-    /// That of all others.
+    /// The light of all other pixels.
     Rest,
-    /// None: the lights of what has none.
+    /// No light: the lights of a picture that has none.
     Nothing,
 }
 
-/// A source whose copies stand for its lights and for the rest.
+/// A source with copies that represent its lights and the rest.
 pub(crate) struct Halves<S> {
     pub whole: S,
     pub lights: S,
     pub rest: S,
-    /// See [`Split::pays`].
+    /// Whether splitting reduces noise, see [`Split::pays`].
     pub pays: bool,
 }
 

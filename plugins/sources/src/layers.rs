@@ -1,8 +1,8 @@
-//! `kind: layers`: pictures one behind the other, each with its own cover.
+//! `kind: layers`: pictures one behind the other, each with its own coverage (alpha).
 //!
-//! A ray from the lens meets them from the front to the back: each adds its light (which is multiplied by its cover
-//! already) times what the ones in front of it let pass (T. Porter and T. Duff, "Compositing digital images", SIGGRAPH
-//! 1984). Nothing is guessed: what a layer hides, the one behind it knows.
+//! A ray from the lens meets the layers from front to back. Each adds its light, which is already multiplied by its
+//! coverage, times the transmission of the layers in front of it (T. Porter and T. Duff, "Compositing digital images",
+//! SIGGRAPH 1984). Hidden parts are not guessed: the layer behind has them.
 
 use crate::flat::Texture;
 use crate::frame::{Edge, Placed, Width};
@@ -22,15 +22,15 @@ use spectra_core::{Isa, RayBatch};
 use spectra_pictures::read::Header;
 use std::sync::Arc;
 
-/// Picture files one behind the other, with cover: what is hidden is known.
+/// Picture files one behind the other, each with alpha.
 ///
-/// For composed scenes: a foreground, people, a backdrop, each with its alpha. A ray from the lens meets the layers
-/// from the front to the back; each adds its light, times what the ones in front of it let pass. A blurred foreground
-/// shows what it hides, since the layer behind it has it.
+/// Use it for composed scenes: a foreground, people and a backdrop, each with its alpha. A ray from the lens meets the
+/// layers from front to back. Each adds its light, times the transmission of the layers in front of it. Behind the edges of
+/// a blurred foreground the hidden parts are correct, since the layer behind has them.
 ///
-/// Colors are as of `kind: picture`. Alpha of integer files is taken as straight, of floating point as multiplied in,
-/// as OpenEXR has it; a picture without alpha covers all that is behind it. Where a layer has an `edge` without end,
-/// light is traced from the imager only (`direction: backward`).
+/// Colors are handled as in `kind: picture`. Alpha is taken as straight in integer files and as premultiplied in
+/// floating-point files, as OpenEXR defines it. A picture without alpha covers everything behind it. If a layer has
+/// `edge: clamp` or `edge: mirror`, light is traced from the imager only (`direction: backward`).
 ///
 /// # Example
 /// ```yaml
@@ -46,39 +46,39 @@ use std::sync::Arc;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayersParams {
-    /// The layers, 1 to 64, from the front to the back.
+    /// List of layers, 1 to 64, from front to back.
     #[schemars(length(min = 1, max = 64))]
     layers: Vec<Part<LayerParams>>,
-    /// The light that white has the chromaticity of: the name of a spectrum, a file beside the scene, or an expression
-    /// such as `blackbody:3200`.
+    /// Light whose chromaticity is white: the name of a spectrum, a file beside the scene, or an expression such as
+    /// `blackbody:3200`.
     #[serde(default = "daylight")]
     illuminant: String,
     /// Luminance of white (255 of 8 bits, 1.0 of floating point), cd/m2 if bare.
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
-    /// How RGB becomes a spectrum: a color model; `smooth` if absent.
+    /// Color model that turns RGB into a spectrum; `smooth` if left out.
     color: Option<Part<StageOf<dyn ColorModel>>>,
 }
 
-/// One layer.
+/// One layer, as written in a scene.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerParams {
-    /// A picture file, as for `kind: picture`, beside the scene; at most 1 GiB.
+    /// Picture file beside the scene, as for `kind: picture`; at most 1 GiB.
     file: String,
-    /// How code values are encoded, as for `kind: picture`.
+    /// Encoding of the code values, as for `kind: picture`.
     transfer: Option<String>,
-    /// The layer of an OpenEXR file; its plain R, G and B if absent.
+    /// Layer of an OpenEXR file; its plain R, G and B if left out.
     layer: Option<String>,
-    /// Distance of its plane from the first vertex, mm if bare; farther than that of the layer before it.
+    /// Distance of the layer from the first vertex, mm if bare; larger than that of the layer before it in the list.
     distance: Positive<Length>,
-    /// Width of the picture on that plane, mm if bare; the height follows. Or `fill`, as for `kind: picture`.
+    /// Width of the picture on that plane, mm if bare, or `fill`, as for `kind: picture`; the height follows.
     width: Width,
-    /// What lies beyond it, its cover as its color: `black` (nothing, the default), `clamp` or `mirror`.
+    /// Light and alpha beyond the picture: `black` (none, the default), `clamp` or `mirror`.
     edge: Option<Edge>,
-    /// Its center on that plane (to the photographer's right, up), mm if bare; on the axis if absent.
+    /// Center of the picture on that plane (to the photographer's right, and up), mm if bare; on the axis if left out.
     center: Option<[Length; 2]>,
-    /// Luminance of its white, cd/m2 if bare; that of all layers if absent.
+    /// Luminance of this layer's white, cd/m2 if bare; that of all layers if left out.
     luminance: Option<Positive<Luminance>>,
 }
 
@@ -104,7 +104,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let Some(layer) = faults.take(own.parse::<LayerParams>()) else { continue };
         let distance_mm = layer.distance.mm();
         if distance_mm <= before_mm {
-            let text = format!("{distance_mm} mm is not behind the layer before it, at {before_mm} mm");
+            let text = format!("a layer at {distance_mm} mm is not behind the previous one, at {before_mm} mm");
             faults.push(own.fault("distance", text).hint("list layers from front to back"));
         }
         before_mm = distance_mm;
@@ -129,7 +129,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let luminance_cd_m2 = layer.luminance.unwrap_or(p.luminance).cd_per_m2();
         let making = Making { model: std::sync::Arc::clone(model), width_mm, luminance_cd_m2, edge };
         let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm };
-        // What is in front need not fill the frame; nothing is behind the last.
+        // Only the last layer must fill the frame, since there is nothing behind it.
         let is_last = i + 1 == p.layers.len();
         if is_last && width.is_fill() {
             placed.warn_of_fisheye("the last layer", &own, context);
@@ -158,7 +158,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     })))
 }
 
-/// A layer whose file was not read yet.
+/// A layer whose file has not been read yet.
 struct Pending {
     file: PictureFile,
     header: Header,
@@ -173,7 +173,7 @@ impl Pending {
         Layer { map, cover: None, distance_mm: self.distance_mm, center_mm: self.center_mm }
     }
 
-    /// The layer, and what is doubtful in its file.
+    /// Reads the layer. Also returns warnings about its file.
     fn read(&self) -> Result<(Layer, Vec<Warning>), Faults> {
         let mut linear = self.making.read(&self.file, self.header.overscan)?;
         let doubts = self.file.doubts(&linear);
@@ -185,19 +185,20 @@ impl Pending {
 
 struct Layer {
     map: PictureMap,
-    /// Cover of each pixel; all of it if absent.
+    /// Coverage (alpha) of each pixel, 0 to 1; `None` if the layer covers everything.
     cover: Option<Arc<Vec<f32>>>,
     distance_mm: f64,
     center_mm: [f64; 2],
 }
 
 impl Layer {
-    /// One half of its light; it covers as before.
+    /// Returns this layer with one half of its light, and with the same coverage.
     fn half(&self, half: Half) -> Self {
         Self { map: self.map.half(half), cover: self.cover.clone(), ..*self }
     }
 
-    /// Coefficients of the light, which part of it is this one's, and the cover where a ray meets it.
+    /// Returns, where a ray meets the layer, the coefficients of the light, the fraction of it that belongs to this half, and the
+    /// coverage.
     fn at(&self, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> ([f32; 3], f32, f32) {
         let t = (-self.distance_mm - z) / n;
         let place = self.map.place(x + t * l - self.center_mm[0], y + t * m - self.center_mm[1]);
@@ -207,7 +208,7 @@ impl Layer {
         (spot.mix(|cell| self.map.coefficients[cell]), self.map.share(&spot, |cell| cell), cover)
     }
 
-    /// The cover where a ray meets it.
+    /// Returns the coverage where a ray meets the layer; 0 beside it.
     fn cover_at(&self, at: [f64; 3], way: [f64; 3]) -> f32 {
         let t = (-self.distance_mm - at[2]) / way[2];
         let place = self.map.place(at[0] + t * way[0] - self.center_mm[0], at[1] + t * way[1] - self.center_mm[1]);
@@ -221,13 +222,13 @@ struct Layers {
     layers: Vec<Layer>,
     spectrum: SpectralPower,
     peak_over_mean: f64,
-    /// Which part of the rays starts on a layer or one before it.
+    /// Cumulative fractions of rays that start on each layer, from front to back.
     sums: Vec<f64>,
 }
 
 impl Layers {
     fn new(layers: Vec<Layer>) -> Self {
-        // As large as each is seen from the lens; what hides what matters little to the choice of wavelengths.
+        // Weight layers by their size as seen from the lens. Occlusion matters little for the choice of wavelengths.
         let seen = |l: &Layer| l.map.width_mm * l.map.height_mm / (l.distance_mm * l.distance_mm);
         let mut spectrum = layers[0].map.mean.scaled(seen(&layers[0]));
         for layer in &layers[1..] {
@@ -236,7 +237,7 @@ impl Layers {
             spectrum.lines.iter_mut().zip(&more.lines).for_each(|(a, b)| a.power += b.power);
         }
         let peak_over_mean = layers.iter().map(|l| l.map.peak_over_mean).fold(1.0, f64::max) * layers.len() as f64;
-        // A layer with little light gets its share, too.
+        // Layers with little light get some rays, too.
         let light = |l: &Layer| white::luminance_cd_m2(&l.map.mean).max(0.0) * seen(l);
         let all: f64 = layers.iter().map(light).sum();
         let bright = layers.iter().filter(|l| light(l) > 0.0).count().max(1) as f64;
@@ -328,7 +329,7 @@ impl Emit for Layers {
         }
     }
 
-    /// What stands before a layer takes its part once the direction is known.
+    /// Multiplies by the transmission of the layers in front, which is known once the direction is set.
     fn radiate(&self, rays: &mut RayBatch, _: Isa) {
         let c = rays.columns_mut();
         for start in (0..c.x.len()).step_by(CHUNK) {

@@ -1,32 +1,34 @@
-//! A source whose large files are read when light is traced, not when a scene is checked.
+//! A source whose large files are read only when light is traced, not when a scene is checked.
 
 use spectra_core::params::{Faults, Warning};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source, Split, Still};
 use std::sync::OnceLock;
 
-/// What was read, and what is doubtful in it.
+/// The data that was read, with warnings about it.
 type Read<T> = Result<(T, Vec<Warning>), Faults>;
-/// How the source itself is made.
+/// A function that reads the files and makes the source.
 type Reader = Box<dyn Fn() -> Read<Box<dyn Source>> + Send + Sync>;
-/// How its pixels are read.
+/// A function that reads the pixels of a picture.
 type StillReader = Box<dyn Fn() -> Read<Still> + Send + Sync>;
 
-/// A white source of the same size and place until [`Source::prepare`] is called, then the real one.
+/// A source that stands in for a file: white with the same size and position until [`Source::prepare`] is called, then the real
+/// source.
 pub(crate) struct Lazy {
     stand_in: Box<dyn Source>,
     reader: Reader,
     read: OnceLock<Box<dyn Source>>,
-    /// Whether the real one emits rays.
+    /// Whether the real source emits rays.
     emits: bool,
     still: Option<StillReader>,
-    /// Of a picture: mid gray as a part of white, and whether it was exposed already.
+    /// Mid gray as a fraction of white, and whether the picture is already exposed; `None` if the source is not a picture.
     picture: Option<(f64, bool)>,
     doubts: OnceLock<Vec<Warning>>,
 }
 
 impl Lazy {
-    /// `stand_in` answers for radiance, and emits rays if it `emits`, as the real one does.
+    /// Creates a source that uses `stand_in` until `reader` is called. `emits` says whether the real source emits rays; if not, the
+    /// stand-in does not, either.
     pub(crate) fn new(
         stand_in: Box<dyn Source>,
         emits: bool,
@@ -43,13 +45,13 @@ impl Lazy {
         }
     }
 
-    /// The same, a flat picture whose pixels are read by `still`.
+    /// Returns this source as a flat picture whose pixels `still` reads.
     pub(crate) fn with_still(self, still: impl Fn() -> Read<Still> + Send + Sync + 'static) -> Self {
         Self { still: Some(Box::new(still)), ..self }
     }
 
-    /// The same, a picture whose mid gray is `gray` of white, the light of the stand-in; `is_exposed` if it was taken by a camera that found
-    /// its exposure.
+    /// Returns this source as a picture whose mid gray is `gray` times white, the light of the stand-in. `is_exposed` says whether a
+    /// camera has already chosen its exposure.
     pub(crate) fn of_picture(self, gray: f64, is_exposed: bool) -> Self {
         Self { picture: Some((gray, is_exposed)), ..self }
     }
@@ -63,7 +65,7 @@ impl Source for Lazy {
     fn prepare(&self) -> Result<(), Faults> {
         if self.read.get().is_none() {
             let (source, doubts) = (self.reader)()?;
-            // Where two threads read it at once, one of two equal ones is kept.
+            // If two threads read it at the same time, one of the two equal results is kept.
             let _ = self.doubts.set(doubts);
             let _ = self.read.set(source);
         }

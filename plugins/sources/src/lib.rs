@@ -1,4 +1,4 @@
-//! Built-in light sources.
+//! The built-in light sources.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -1,4 +1,4 @@
-//! Spectra of a few inks, tabulated for fast look-up by ink and wavelength.
+//! Spectra of a few inks, tabulated for fast lookup by ink and wavelength.
 
 use crate::flat::Places;
 use spectra_core::batch::CONTINUUM;
@@ -6,20 +6,20 @@ use spectra_core::isa::Vectorized;
 use spectra_core::math::whole;
 use spectra_core::spectral::{Grid, Line, SpectralPower};
 
-/// Radiance spectra of numbered inks; number `len` and beyond is dark.
+/// Radiance spectra of numbered inks. Numbers beyond the last ink are dark.
 #[derive(Clone, Debug)]
 pub(crate) struct Palette {
     grid: Grid,
-    /// One row of `grid.count` an ink, and a dark one at the end.
+    /// One row of `grid.count` values per ink, and a dark one at the end.
     tables: Vec<f64>,
     lines_nm: Vec<f64>,
-    /// One row of `lines_nm.len()` an ink, and a dark one at the end.
+    /// One row of `lines_nm.len()` powers per ink, and a dark one at the end.
     powers: Vec<f64>,
     inks: usize,
 }
 
 impl Palette {
-    /// Tabulates the spectra, which share a grid. Lines at the same wavelength become one.
+    /// Tabulates the spectra, which share a grid. Lines at the same wavelength are merged.
     pub(crate) fn new(grid: Grid, spectra: &[SpectralPower]) -> Self {
         let mut lines_nm: Vec<f64> = spectra.iter().flat_map(|s| &s.lines).map(|l| l.wavelength_nm).collect();
         lines_nm.sort_by(f64::total_cmp);
@@ -38,7 +38,7 @@ impl Palette {
         Self { grid, tables, lines_nm, powers, inks: spectra.len() }
     }
 
-    /// The sum of the inks' spectra, weighted.
+    /// Returns the weighted sum of the inks' spectra.
     pub(crate) fn mean(&self, weights: &[f64]) -> SpectralPower {
         let count = self.grid.count;
         let sum = |rows: &[f64], width: usize, column: usize| -> f64 {
@@ -53,7 +53,7 @@ impl Palette {
         }
     }
 
-    /// Work that multiplies each weight by the radiance of its ink.
+    /// Returns a job that multiplies each weight by the radiance of its ink.
     pub(crate) fn shine<'a>(&'a self, ink: &'a [u16], at: Places<'a>, weight: &'a mut [f64]) -> Shine<'a> {
         Shine { palette: self, ink, at, weight }
     }
@@ -86,11 +86,11 @@ impl Vectorized for Shine<'_> {
     }
 }
 
-/// Rays that are worked on at a time.
+/// Number of rays that are processed together.
 const CHUNK: usize = 64;
 
 impl Palette {
-    /// The radiance of an ink.
+    /// Returns the radiance of an ink at a wavelength or on a line.
     #[inline(always)]
     fn at(&self, ink: u16, wavelength_nm: f64, line: u32) -> f64 {
         let (grid, width) = (self.grid, self.lines_nm.len());
@@ -110,7 +110,7 @@ impl Palette {
         }
     }
 
-    /// Multiplies up to [`CHUNK`] weights by [`Palette::at`], none of them on a line: what needs no table in vectors.
+    /// Multiplies up to [`CHUNK`] weights by [`Palette::at`], none of them on a line. The parts without a table lookup are vectorized.
     #[inline(always)]
     fn shine_smoothly(&self, ink: &[u16], wavelength_nm: &[f64], weight: &mut [f64]) {
         let grid = self.grid;
@@ -135,7 +135,7 @@ impl Palette {
         let [from, to] = &ends;
         for i in 0..len {
             let place = part[i];
-            // Beside the band it may be no number.
+            // Outside the band it may be NaN.
             let radiance = from[i] + (to[i] - from[i]) * place;
             weight[i] *= if (0.0..=1.0).contains(&place) { radiance } else { 0.0 };
         }
@@ -147,7 +147,8 @@ mod tests {
     use super::*;
     use spectra_core::Isa;
 
-    /// In vectors each ray gets what its ink has alone, bit by bit, on every tier; beside the band and beyond the inks nothing.
+    /// Vectorized lookups give the same bits as single ones, on every instruction set. Outside the band and beyond the last ink the
+    /// result is 0.
     #[test]
     fn side_by_side_is_as_alone() {
         let grid = Grid { start_nm: 380.0, step_nm: 5.0, count: 71 };

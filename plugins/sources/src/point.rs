@@ -1,4 +1,4 @@
-//! `kind: point`: one point of light.
+//! `kind: point`: a point source of light.
 
 use crate::picture::color_model;
 use crate::white;
@@ -11,13 +11,14 @@ use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Emit, Source};
 use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 
-/// One point of light at a finite distance.
+/// A point source of light at a finite distance.
 ///
-/// For spots, point spread functions, flare and stars. It shines alike to all sides, with the stated radiant intensity
-/// in the band. It is rendered from the source (`direction: forward`), since no ray from the imager would ever meet it.
+/// Use it for spots, point spread functions, flare and stars. It radiates equally in all directions, with the given radiant
+/// intensity in the band. It is rendered from the source (`direction: forward`), since no ray from the imager would ever
+/// meet it.
 ///
-/// It stands on a plane across the axis: at a `position` there, or under the angles of `field` as seen from the first
-/// vertex; on the axis where neither is given. Coordinates are the photographer's: to the right, and up.
+/// The point lies on a plane perpendicular to the axis: at a `position` there, or under the angles of `field` as seen from
+/// the first vertex. If neither is given, it lies on the axis. Coordinates are the photographer's: to the right, and up.
 ///
 /// # Example
 /// ```yaml
@@ -32,27 +33,27 @@ use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PointParams {
-    /// Distance of the plane that holds it from the first vertex, mm if bare.
+    /// Distance of the plane of the point from the first vertex, mm if bare.
     distance: Positive<Length>,
-    /// Place on that plane (to the photographer's right, up), mm if bare; on the axis if absent.
+    /// Position on that plane (to the photographer's right, and up), mm if bare; on the axis if left out.
     position: Option<[Length; 2]>,
-    /// In place of `position`: the angles under which it is seen from the first vertex (right, up), degrees if bare,
-    /// each within 85.9 degrees.
+    /// Direction of the point as seen from the first vertex (right, up), instead of `position`; degrees if bare, each within
+    /// 85.9 degrees.
     field: Option<[Angle; 2]>,
-    /// Its spectrum: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5800`; D65 if
-    /// neither it nor `rgb` is given.
+    /// Spectrum of the point: the name of a light or lamp, a file beside the scene, or an expression such as
+    /// `blackbody:5800`; D65 if neither this nor `rgb` is given.
     spectrum: Option<String>,
-    /// In place of `spectrum`: its color in sRGB, red, green and blue of 0 to 255. `intensity` says how bright it is.
+    /// Color of the point in sRGB (red, green and blue, 0 to 255), instead of `spectrum`. `intensity` sets its brightness.
     #[schemars(inner(range(min = 0, max = 255)))]
     rgb: Option<[f64; 3]>,
-    /// With `rgb`, how the color becomes a spectrum: a color model, `smooth` if absent.
+    /// Color model that turns `rgb` into a spectrum; `smooth` if left out.
     color: Option<Part<StageOf<dyn ColorModel>>>,
-    /// Radiant intensity in the band, W/sr if bare.
+    /// Radiant intensity of the point in the band, W/sr if bare.
     #[serde(default = "intensity")]
     intensity: Positive<RadiantIntensity>,
 }
 
-/// The spectrum of a point that says none, and white of its colors.
+/// Default spectrum of a point, and the white of its `rgb` colors.
 const DAYLIGHT: &str = "D65";
 
 fn intensity() -> Positive<RadiantIntensity> {
@@ -72,7 +73,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         (None, Some(field)) => {
             if let Some(bad) = field.iter().position(|a| a.rad().abs() >= 1.5) {
                 return Err(params
-                    .fault(&format!("field[{bad}]"), "a field angle of 86 degrees or more".to_owned())
+                    .fault(&format!("field[{bad}]"), "the field angle must be less than 86 degrees".to_owned())
                     .into());
             }
             field.map(|a| distance_mm * spectra_core::math::tan(a.rad()))
@@ -86,11 +87,11 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     Ok(Box::new(Point { place: [x_mm, y_mm, -distance_mm], spectrum }))
 }
 
-/// Its light in any scale.
+/// Returns the spectrum of the point, in any scale.
 fn light(p: &PointParams, params: &Params, context: &Context<'_>) -> Result<SpectralPower, Faults> {
     let Some(rgb) = p.rgb else {
         if p.color.is_some() {
-            let fault = params.fault("color", "`color` says how an `rgb` becomes a spectrum, and there is none");
+            let fault = params.fault("color", "`color` turns `rgb` into a spectrum, but there is no `rgb`");
             return Err(fault.hint("leave `color` out, or write `rgb: [255, 128, 64]`").into());
         }
         return white::light("spectrum", p.spectrum.as_deref().unwrap_or(DAYLIGHT), params, context);
@@ -102,8 +103,8 @@ fn light(p: &PointParams, params: &Params, context: &Context<'_>) -> Result<Spec
             .into());
     }
     if rgb == [0.0; 3] {
-        let fault = params.fault("rgb", "black is no light");
-        return Err(fault.hint("the color of the light; `intensity` says how bright it is").into());
+        let fault = params.fault("rgb", "the color of a light cannot be black");
+        return Err(fault.hint("write the color of the light; `intensity` sets its brightness").into());
     }
     let daylight = white::light("rgb", DAYLIGHT, params, context)?;
     let model = color_model(p.color.clone(), &daylight, params, context)?;
@@ -112,7 +113,7 @@ fn light(p: &PointParams, params: &Params, context: &Context<'_>) -> Result<Spec
 
 struct Point {
     place: [f64; 3],
-    /// W sr^-1 nm^-1, and W/sr in lines.
+    /// Radiant intensity, W sr^-1 nm^-1, and W/sr in lines.
     spectrum: SpectralPower,
 }
 
@@ -131,7 +132,7 @@ impl Source for Point {
     }
 }
 
-/// mm^2 a m^2: flux over an area in mm^2 is to be irradiance in W m^-2.
+/// Square millimeters per square meter. With this factor, flux over an area in mm^2 is irradiance in W m^-2.
 const MM2_PER_M2: f64 = 1e6;
 
 impl Emit for Point {
@@ -148,6 +149,6 @@ impl Emit for Point {
         }
     }
 
-    /// A point shines alike to all sides.
+    /// Leaves the weights unchanged, since a point radiates equally in all directions.
     fn radiate(&self, _: &mut RayBatch, _: Isa) {}
 }

@@ -1,4 +1,4 @@
-//! `kind: sun`: a disk of light at infinity, by itself or over another source.
+//! `kind: sun`: a disk of light at infinity, alone or over another source.
 
 use crate::white;
 use schemars::JsonSchema;
@@ -11,14 +11,14 @@ use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source, Split};
 use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 
-/// The sun: a disk of even brightness at infinity.
+/// The sun: a disk of uniform brightness at infinity.
 ///
-/// It stands under the angles of `field`, as seen from the lens, and lights a surface that faces it with `illuminance`. With `over` it is
-/// added to another source, such as a picture of the sky: the sun is traced from itself, the other from the film, and ghosts of the
-/// sun come by themselves where they are bright enough to matter. It does not hide behind what the picture shows.
+/// The angles of `field` give its direction as seen from the lens. A surface that faces the sun receives `illuminance`. With `over`
+/// the sun is added to another source, such as a picture of the sky. The sun is then traced forward, from the sun, and the other
+/// source backward, from the film. Ghosts of the sun appear where they are bright enough to matter. Objects in the picture do not
+/// hide the sun.
 ///
-/// The default diameter is the mean one of the sun, 0.53 degrees; the moon's is nearly the same. A disk darkens toward its limb in
-/// truth; this one does not.
+/// The default diameter is the mean one of the sun, 0.53 degrees; that of the moon is nearly the same. Limb darkening is not modeled.
 ///
 /// # Example
 /// ```yaml
@@ -30,18 +30,18 @@ use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SunParams {
-    /// The angles under which its middle is seen (to the photographer's right, up), degrees if bare, each within 85.9 degrees.
+    /// Direction of the center of the sun (to the photographer's right, and up), degrees if bare, each within 85.9 degrees.
     field: [Angle; 2],
-    /// Its angular diameter, degrees if bare, up to 20 degrees.
+    /// Angular diameter of the sun, degrees if bare, up to 20 degrees.
     #[serde(default = "diameter")]
     diameter: Positive<Angle>,
-    /// Its spectrum: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5400`.
+    /// Spectrum of the sun: the name of a light or lamp, a file beside the scene, or an expression such as `blackbody:5400`.
     #[serde(default = "spectrum")]
     spectrum: String,
-    /// Illuminance of a surface that faces it, in front of the lens, lx if bare.
+    /// Illuminance on a surface in front of the lens that faces the sun, lx if bare.
     #[serde(default = "illuminance")]
     illuminance: Positive<Illuminance>,
-    /// The source that it is added to: a picture, a chart. Black if absent.
+    /// Source to which the sun is added, such as a picture or a chart; black if left out.
     over: Option<Part<StageOf<dyn Source>>>,
 }
 
@@ -57,8 +57,9 @@ fn illuminance() -> Positive<Illuminance> {
     Positive::from_bare(100_000.0)
 }
 
-/// Largest angle of the field, and largest diameter, rad.
+/// Limit of the angles of `field`, rad.
 const WIDEST: f64 = 1.5;
+/// Largest diameter of the disk, rad.
 const LARGEST: f64 = 0.35;
 
 spectra_core::register!(source "sun": SunParams, build);
@@ -67,12 +68,12 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let p: SunParams = params.parse()?;
     let mut faults = Faults::new();
     if let Some(bad) = p.field.iter().position(|a| a.rad().abs() >= WIDEST) {
-        faults.push(params.fault(&format!("field[{bad}]"), "a field angle of 86 degrees or more"));
+        faults.push(params.fault(&format!("field[{bad}]"), "the field angle must be less than 86 degrees"));
     }
     let radius_rad = 0.5 * p.diameter.rad();
     if 2.0 * radius_rad > LARGEST {
-        let fault = params.fault("diameter", "a disk of more than 20 degrees");
-        faults.push(fault.hint("the sun has 0.53 degrees; what is larger is a picture"));
+        let fault = params.fault("diameter", "the disk is larger than 20 degrees");
+        faults.push(fault.hint("the sun has 0.53 degrees; for a larger light use a picture"));
     }
     let named = faults.take(white::light("spectrum", &p.spectrum, params, context));
     let over = match p.over {
@@ -84,14 +85,14 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     if !(lux > 0.0) {
         let fault =
             params.fault("spectrum", format!("`{}` has no visible light, so no illuminance can be set", p.spectrum));
-        return Err(fault.hint("a light with a part between 380 and 780 nm, such as D65").into());
+        return Err(fault.hint("write a light with power between 380 and 780 nm, such as D65").into());
     }
     if over.is_some() && !named.lines.is_empty() {
         let fault = params.fault(
             "spectrum",
             format!("`{}` has spectral lines, which a sun over another source cannot have", p.spectrum),
         );
-        return Err(fault.hint("a continuous spectrum such as `blackbody:5800` or D65").into());
+        return Err(fault.hint("write a continuous spectrum such as `blackbody:5800` or D65").into());
     }
     let [right, up] = p.field.map(|a| tan(a.rad()));
     let length = (1.0 + right * right + up * up).sqrt();
@@ -109,16 +110,17 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     })
 }
 
-/// Distance of the plane that rays start on, mm: the rays from one point of it are parallel within 1e-9 over a lens of 10 mm.
+/// Distance of the plane on which rays start, mm. The rays from one of its points are parallel within 1e-9 over a lens of 10 mm.
 const FAR_MM: f64 = 1e10;
 
 struct Disk {
-    /// Unit vector from the lens to its middle.
+    /// Unit vector from the lens to the center of the disk.
     toward: [f64; 3],
-    /// Tangent and cosine of its angular radius.
+    /// Tangent of the angular radius of the disk.
     radius: f64,
+    /// Cosine of the angular radius of the disk.
     cos_radius: f64,
-    /// Of a surface that faces it, W m^-2 nm^-1, and W m^-2 in lines.
+    /// Irradiance on a surface that faces the sun: W m^-2 nm^-1, and W m^-2 in spectral lines.
     irradiance: SpectralPower,
     field_deg: [f64; 2],
 }
@@ -133,12 +135,12 @@ impl Disk {
         }
     }
 
-    /// Whether a ray from the lens in this direction meets it.
+    /// Returns whether a ray from the lens in this direction meets the disk.
     fn is_met(&self, [l, m, n]: [f64; 3]) -> bool {
         l * self.toward[0] + m * self.toward[1] + n * self.toward[2] >= self.cos_radius
     }
 
-    /// Radiance in irradiances: one over its solid angle, 1/sr.
+    /// Returns the radiance per irradiance: the inverse of the solid angle of the disk, 1/sr.
     fn per_solid_angle(&self) -> f64 {
         1.0 / (std::f64::consts::PI * self.radius * self.radius)
     }
@@ -165,7 +167,7 @@ impl Source for Disk {
 
 impl Emit for Disk {
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
-        // Across its direction: horizontal, and what completes it.
+        // Two unit vectors perpendicular to the direction of the sun, the first one horizontal.
         let [l, m, n] = self.toward;
         let flat = (l * l + n * n).sqrt();
         let (right, up) = ([-n / flat, 0.0, l / flat], [-l * m / flat, flat, -m * n / flat]);
@@ -175,12 +177,12 @@ impl Emit for Disk {
             let (a, b) = (self.radius * a, self.radius * b);
             let at = |k: usize| FAR_MM * (self.toward[k] + a * right[k] + b * up[k]);
             (c.x[i], c.y[i], c.z[i]) = (at(0), at(1), at(2));
-            // An intensity: irradiance times the square of the distance.
+            // The weight is an intensity: irradiance times the square of the distance.
             c.weight[i] *= self.irradiance(c.wavelength_nm[i], c.line[i]) * FAR_MM * FAR_MM;
         }
     }
 
-    /// All of it faces the lens.
+    /// Leaves the weights unchanged, since the whole disk faces the lens.
     fn radiate(&self, _: &mut RayBatch, _: Isa) {}
 }
 
@@ -196,7 +198,7 @@ impl Radiance for Disk {
     }
 }
 
-/// A sun over another source.
+/// A sun that is added to another source.
 struct Over {
     disk: Disk,
     over: Box<dyn Source>,
@@ -218,7 +220,7 @@ impl Source for Over {
     fn white(&self) -> &SpectralPower {
         self.over.white()
     }
-    /// Of the sun over the other one's mean: as it is where a white of the luminance of a sunlit card fills the frame.
+    /// Estimates the sun's radiance over the mean of the other source, as if a white card lit by the sun filled the frame.
     fn peak_over_mean(&self) -> f64 {
         self.over.peak_over_mean().max(std::f64::consts::PI * self.disk.per_solid_angle())
     }
@@ -240,7 +242,7 @@ impl Radiance for Over {
     fn radiance(&self, rays: &mut RayBatch, isa: Isa) {
         let met = |rays: &RayBatch, i: usize| {
             let [l, m, n] = rays.directions();
-            // Lines are the other source's.
+            // Spectral lines belong to the other source.
             rays.states()[i] == ALIVE && rays.lines()[i] == CONTINUUM && self.disk.is_met([l[i], m[i], n[i]])
         };
         let of_sun: Vec<(usize, f64)> = (0..rays.len())
@@ -255,7 +257,7 @@ impl Radiance for Over {
         }
         let c = rays.columns_mut();
         for (i, own) in of_sun {
-            // Where the other source has nothing, the sun shines still.
+            // The sun also shines where the other source has no light.
             let beside = if c.state[i] == ALIVE { c.weight[i] } else { 0.0 };
             c.state[i] = ALIVE;
             c.weight[i] = beside + own;
@@ -284,8 +286,8 @@ mod tests {
         }
     }
 
-    /// Emitted and looked at, it is the same light: rays from places of it meet it, and fill it evenly; its radiance times its solid angle
-    /// is its irradiance.
+    /// Emission and radiance describe the same disk: rays that start on the disk meet it and fill it evenly, and its radiance times its
+    /// solid angle is its irradiance.
     #[test]
     fn both_ways_are_the_same_disk() {
         let disk = disk(0.4, -0.3);
@@ -301,14 +303,14 @@ mod tests {
         let mut off_axis = 0.0;
         for i in 0..c.x.len() {
             let distance = (c.x[i] * c.x[i] + c.y[i] * c.y[i] + c.z[i] * c.z[i]).sqrt();
-            // Flux over an area in mm^2 at the lens is irradiance in W/m2.
+            // The weight over the squared distance is the irradiance in W/m2.
             assert!((c.weight[i] / (distance * distance) / 2.0 - 1.0).abs() < 1e-4);
             (c.l[i], c.m[i], c.n[i]) = (c.x[i] / distance, c.y[i] / distance, c.z[i] / distance);
             let cosine = c.l[i] * disk.toward[0] + c.m[i] * disk.toward[1] + c.n[i] * disk.toward[2];
             off_axis += 2.0 * (1.0 - cosine) / steps as f64 / steps as f64;
             c.weight[i] = 1.0;
         }
-        // The mean of the squared angle of an even disk is half the square of its radius.
+        // The mean squared angle of a uniform disk is half the square of its radius.
         assert!((off_axis / (0.5 * 0.00462 * 0.00462) - 1.0).abs() < 1e-3, "{off_axis}");
         Radiance::radiance(&disk, &mut rays, isa);
         let solid_angle = std::f64::consts::PI * 0.00462 * 0.00462;

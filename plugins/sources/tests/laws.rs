@@ -1,4 +1,4 @@
-//! Every built-in source that needs no file of its own keeps the laws of sources.
+//! Every built-in source that needs no file passes the checks that apply to all sources.
 
 use spectra_plugin_colors as _;
 use spectra_plugin_sources as _;

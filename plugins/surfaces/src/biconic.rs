@@ -1,4 +1,4 @@
-//! `kind: biconic`: two conic sections across each other.
+//! `kind: biconic`: a surface with different conic sections in the x-z and the y-z plane.
 
 use crate::shared;
 use schemars::JsonSchema;
@@ -7,8 +7,8 @@ use spectra_core::params::{Faults, LengthOrInfinity, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
-/// z = (cx x^2 + cy y^2) / (1 + sqrt(1 - (1 + kx) cx^2 x^2 - (1 + ky) cy^2 y^2)), with the curvatures cx, cy and the conic
-/// constants kx, ky of the x-z and y-z sections.
+/// A biconic surface. Its sag is z = (cx x^2 + cy y^2) / (1 + sqrt(1 - (1 + kx) cx^2 x^2 - (1 + ky) cy^2 y^2)), with the
+/// curvatures cx, cy and the conic constants kx, ky of the x-z and y-z sections.
 ///
 /// In a lens file: `{kind: biconic, radius-x: 50, radius-y: 60, conic-x: -0.5, thickness: 5, glass: SCHOTT/N-BK7}`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Biconic {
 }
 
 impl Biconic {
-    /// Radii, mm, and conic constants in the x-z and in the y-z section.
+    /// Creates a biconic from the radii, mm, and the conic constants, each in the x-z and in the y-z section.
     #[must_use]
     pub fn new(radius_mm: (f64, f64), conic: (f64, f64)) -> Self {
         Self {
@@ -27,7 +27,7 @@ impl Biconic {
         }
     }
 
-    /// Numerator of the sag, and the root in its denominator.
+    /// Returns the numerator of the sag and the square root in its denominator; `None` beyond the rim.
     fn parts(&self, x: f64, y: f64) -> Option<(f64, f64)> {
         let ((cx, cy), (kx, ky)) = (self.curvature_per_mm, self.one_plus_conic);
         let square = 1.0 - kx * cx * cx * x * x - ky * cy * cy * y * y;
@@ -58,11 +58,11 @@ impl SagShape for Biconic {
     }
 }
 
-/// Two conic sections across each other.
+/// A surface with different conic sections along x and along y.
 ///
-/// For astigmatic surfaces that have their own radius and conic constant in the x-z and in the y-z section. Its sag is
+/// Use it for astigmatic surfaces with a different radius and conic constant in the x-z and in the y-z section. Its sag is
 /// z = (cx x^2 + cy y^2) / (1 + sqrt(1 - (1 + kx) cx^2 x^2 - (1 + ky) cy^2 y^2)), with cx = 1 / `radius-x` and so on.
-/// Between the two sections it is not the surface of revolution that a toroid is.
+/// Unlike a toroid, it is not a surface of revolution.
 ///
 /// # Example
 /// ```yaml
@@ -77,9 +77,9 @@ impl SagShape for Biconic {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct BiconicParams {
-    /// Radius in the x-z section, mm if bare, not 0: positive where the center lies at larger z; `inf` is straight.
+    /// Radius in the x-z section, mm if bare, not 0: positive if the center lies at larger z; `inf` is straight.
     radius_x: LengthOrInfinity,
-    /// Radius in the y-z section, mm if bare, not 0: positive where the center lies at larger z; `inf` is straight.
+    /// Radius in the y-z section, mm if bare, not 0: positive if the center lies at larger z; `inf` is straight.
     radius_y: LengthOrInfinity,
     /// Conic constant of the x-z section, any number: 0 is a circle.
     #[serde(default)]

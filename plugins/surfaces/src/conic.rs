@@ -1,4 +1,4 @@
-//! `kind: conic`: a surface of revolution of a conic section.
+//! `kind: conic`: a conic section rotated about the axis.
 
 use crate::shared::{self, ConicSection};
 use schemars::JsonSchema;
@@ -7,20 +7,22 @@ use spectra_core::params::{Faults, LengthOrInfinity, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
-/// z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) for the curvature c = 1 / radius and the conic constant k: a hyperboloid
-/// below k = -1, a paraboloid at -1, an ellipsoid above (prolate below 0, a sphere at 0, oblate beyond).
+/// A conic of revolution, with the sag z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)), the curvature c = 1 / radius and the
+/// conic constant k: a hyperboloid below k = -1, a paraboloid at -1, an ellipsoid above (prolate below 0, a sphere at 0,
+/// oblate above 0).
 ///
-/// In a lens file: `{kind: conic, radius: -200, conic: -1, mirror: true, thickness: -100}` is a parabolic mirror.
+/// In a lens file, `{kind: conic, radius: -200, conic: -1, mirror: true, thickness: -100}` is a parabolic mirror.
 ///
-/// Only the sheet, or the half, that holds the vertex is surface; a ray meets it where it crosses in the sense of travel.
+/// Only the sheet of a hyperboloid, or the half of an ellipsoid, that contains the vertex belongs to the surface. A ray
+/// meets the surface where it crosses it in the direction of travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conic {
     section: ConicSection,
 }
 
 impl Conic {
-    /// A conic of this radius of curvature at the vertex, mm (positive where the center lies at larger z; infinite is a
-    /// plane), and this conic constant.
+    /// Creates a conic of this radius of curvature at the vertex, mm (positive if the center lies at larger z, infinite
+    /// for a plane), and this conic constant.
     #[must_use]
     pub fn new(radius_mm: f64, conic: f64) -> Self {
         Self::of_curvature(1.0 / radius_mm, conic)
@@ -41,11 +43,13 @@ impl KernelShape for Conic {
         Some(Self { section: self.section.scaled(factor) })
     }
 
-    /// Half the gradient of c (r^2 + (1 + k) z^2) - 2 z, turned round: unit length on spheres only.
+    /// The normal is minus half the gradient of c (r^2 + (1 + k) z^2) - 2 z, which has unit length only on spheres.
     const UNIT_NORMAL: bool = false;
 
-    /// From the point of the ray nearest to the vertex (a source far away would cost digits), as for the sphere: a t^2 - 2 b t + q = 0 with a = c (1 + k n^2), b = n - c (x l + y m + (1 + k) z n) and
-    /// q = c (r^2 + (1 + k) z^2) - 2 z, solved by t = q / (b + sqrt(b^2 - a q)). There the ray crosses in the sense of travel.
+    /// Starts at the point of the ray nearest to the vertex, since a distant source would cost digits. Then solves, as for the
+    /// sphere, a t^2 - 2 b t + q = 0 with a = c (1 + k n^2), b = n - c (x l + y m + (1 + k) z n) and
+    /// q = c (r^2 + (1 + k) z^2) - 2 z. The root t = q / (b + sqrt(b^2 - a q)) is the one where the ray crosses in the
+    /// direction of travel.
     #[inline(always)]
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let c = R::constant(self.section.curvature_per_mm);
@@ -60,7 +64,7 @@ impl KernelShape for Conic {
         let discriminant = b * b - a * q;
         let cosine = ray.along(discriminant.sqrt());
         let distance = q / (b + cosine);
-        // The other half of an ellipsoid, the other sheet of a hyperboloid: there the normal would point to -z.
+        // On the other half of an ellipsoid, or the other sheet of a hyperboloid, the normal would point to -z.
         let on_vertex_sheet = R::constant(1.0) - c * (flat_z + flat_n * distance);
         Hit { distance: near + distance, cosine, valid: discriminant.min(on_vertex_sheet) }
     }
@@ -80,14 +84,14 @@ impl KernelShape for Conic {
     }
 }
 
-/// A surface of revolution of a conic section.
+/// A conic section rotated about the axis.
 ///
-/// For mirrors of telescopes, for aspheres that have no higher terms, for anything that images one point perfectly onto
+/// Use it for telescope mirrors, for aspheres without higher terms, and for anything that images one point perfectly onto
 /// another. Its sag is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) with the curvature c = 1 / radius and the conic
 /// constant k: a hyperboloid below k = -1, a paraboloid at -1, a prolate ellipsoid from there to 0, a sphere at 0, an
 /// oblate ellipsoid above.
 ///
-/// Of an ellipsoid only the half that holds the vertex is surface, of a hyperboloid only the sheet.
+/// Only the half of an ellipsoid, or the sheet of a hyperboloid, that contains the vertex belongs to the surface.
 ///
 /// # Example
 /// ```yaml
@@ -97,7 +101,7 @@ impl KernelShape for Conic {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ConicParams {
-    /// Radius of curvature at the vertex, mm if bare, not 0: positive where the center lies at larger z; `inf` is a
+    /// Radius of curvature at the vertex, mm if bare, not 0: positive if the center lies at larger z; `inf` is a
     /// plane.
     radius: LengthOrInfinity,
     /// Conic constant k, any number: 0 is a sphere, -1 a paraboloid.

@@ -1,4 +1,4 @@
-//! `kind: cylinder`: curved in one section only.
+//! `kind: cylinder`: a circular cylinder, curved in one section only.
 
 use crate::shared;
 use schemars::JsonSchema;
@@ -7,11 +7,12 @@ use spectra_core::params::{Faults, LengthOrInfinity, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
-/// A circular cylinder. The straight lines on it run along x or y; across them it is a circle.
+/// A circular cylinder. The straight lines on it run along x or y; its section across them is a circle.
 ///
-/// In a lens file: `{kind: cylinder, radius: 80, axis: y, thickness: 4, glass: SCHOTT/N-BK7}` has power in the x-z plane.
+/// In a lens file, `{kind: cylinder, radius: 80, axis: y, thickness: 4, glass: SCHOTT/N-BK7}` has power in the x-z plane.
 ///
-/// Only the half that holds the vertex is surface; a ray meets it where it crosses in the sense of travel.
+/// Only the half that contains the vertex belongs to the surface. A ray meets the surface where it crosses it in the
+/// direction of travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     /// Curvature in the x-z section, 1/mm.
@@ -20,18 +21,18 @@ pub struct Cylinder {
     y_per_mm: f64,
 }
 
-/// Along which the straight lines of a [`Cylinder`] run.
+/// The axis along which the straight lines of a [`Cylinder`] run.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum CylinderAxis {
-    /// Along x: curved in the y-z plane.
+    /// The lines run along x: the surface is curved in the y-z plane.
     X,
-    /// Along y: curved in the x-z plane.
+    /// The lines run along y: the surface is curved in the x-z plane.
     Y,
 }
 
 impl Cylinder {
-    /// A cylinder of this radius, mm: positive where its axis lies at larger z; infinite is a plane.
+    /// Creates a cylinder of this radius, mm: positive if its axis lies at larger z, infinite for a plane.
     #[must_use]
     pub fn new(radius_mm: f64, axis: CylinderAxis) -> Self {
         let c = 1.0 / radius_mm;
@@ -47,8 +48,8 @@ impl KernelShape for Cylinder {
         Some(Self { x_per_mm: self.x_per_mm / factor, y_per_mm: self.y_per_mm / factor })
     }
 
-    /// From the point of the ray nearest to the vertex, as for the sphere without the coordinate along the axis: with the curvatures c, d of the two sections, of which one
-    /// is 0, the surface is c x^2 + d y^2 + (c + d) z^2 - 2 z = 0.
+    /// Starts at the point of the ray nearest to the vertex. Then solves as for the sphere, but without the coordinate along the
+    /// axis. The surface is c x^2 + d y^2 + (c + d) z^2 - 2 z = 0 with the curvatures c and d of the two sections, one of which is 0.
     #[inline(always)]
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let (cx, cy) = (R::constant(self.x_per_mm), R::constant(self.y_per_mm));
@@ -84,11 +85,11 @@ impl KernelShape for Cylinder {
     }
 }
 
-/// A circular cylinder: power in one section only.
+/// A circular cylinder, with power in one section only.
 ///
-/// For anamorphic attachments and line foci. Across its `axis` it is a circle of the stated radius, along it straight.
-/// Only the half that holds the vertex is surface. Turned about z by `tilt: [0, 0, 30 deg]`, the axis stands at any
-/// angle.
+/// Use it for anamorphic attachments and line foci. Its section across the `axis` is a circle of the stated radius; along
+/// the axis it is straight. Only the half that contains the vertex belongs to the surface. A tilt about z, such as
+/// `tilt: [0, 0, 30 deg]`, turns the axis to any angle.
 ///
 /// # Example
 /// ```yaml
@@ -98,9 +99,9 @@ impl KernelShape for Cylinder {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct CylinderParams {
-    /// Radius, mm if bare, not 0: positive where the axis of the cylinder lies at larger z; `inf` is a plane.
+    /// Radius, mm if bare, not 0: positive if the axis of the cylinder lies at larger z; `inf` is a plane.
     radius: LengthOrInfinity,
-    /// Along which the straight lines run, `x` or `y`: with `x` it is curved in the y-z plane.
+    /// Direction of the straight lines on the surface, `x` or `y`: with `x` it is curved in the y-z plane.
     axis: CylinderAxis,
 }
 

@@ -1,4 +1,4 @@
-//! `kind: even-asphere`: a conic with a polynomial in even powers of the radius on top.
+//! `kind: even-asphere`: a conic plus a polynomial in even powers of the radius.
 
 use crate::conic::Conic;
 use crate::shared::{self, ConicSection, MOST_COEFFICIENTS};
@@ -9,40 +9,41 @@ use spectra_core::params::{Faults, LengthOrInfinity, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Near, Ray, Real, Surface, Travel, nearest_crossing};
 
-/// z = conic sag + a2 r^2 + a4 r^4 + ..., with up to `TERMS` coefficients: the sizes are compiled apart, so that the
-/// polynomial is straight code.
+/// An even asphere, with the sag z = conic sag + a2 r^2 + a4 r^4 + ... and up to `TERMS` coefficients. Each size is
+/// compiled separately, so that the polynomial is code without a loop.
 ///
 /// In a lens file: `{kind: even-asphere, radius: 12.3, conic: -0.8, coefficients: [0, 1.2e-5, -3e-8], glass: SCHOTT/N-BK7}`.
 ///
-/// With u = z - polynomial(r^2) the surface is c (r^2 + (1 + k) u^2) - 2 u = 0, without a square root. Steps start where the ray meets
-/// a conic that fits at the vertex. The first two are those of Ostrowski's method, of fourth order for one slope and two heights (A. M.
-/// Ostrowski, Solution of Equations and Systems of Equations, 1966, chapter 11); Newton's follow, of which mostly one is enough, and
-/// the last one leaves the normal behind. Rays that such steps do not plainly lead home go to [`nearest_crossing`].
+/// With u = z - polynomial(r^2) the surface is c (r^2 + (1 + k) u^2) - 2 u = 0, without a square root. The iteration starts where the
+/// ray meets a conic that fits at the vertex. The first two steps are those of Ostrowski's method, which reaches fourth order with one
+/// slope and two heights (A. M. Ostrowski, Solution of Equations and Systems of Equations, 1966, chapter 11). Newton steps follow;
+/// mostly one is enough, and the last one also yields the normal. A ray for which these steps do not clearly converge is passed to
+/// [`nearest_crossing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvenAsphere<const TERMS: usize> {
     section: ConicSection,
-    /// Where the steps start.
+    /// Conic that fits at the vertex, where the steps start.
     start: ConicSection,
-    /// a2, a4, ...
+    /// Coefficients a2, a4, ..., in mm^(1 - power).
     coefficients: [f64; TERMS],
-    /// a2, 2 a4, 3 a6, ...: of the derivative by the square of the radius.
+    /// Coefficients a2, 2 a4, 3 a6, ... of the derivative with respect to the square of the radius.
     slopes: [f64; TERMS],
 }
 
-/// Sizes of [`EvenAsphere`] that are compiled.
+/// Values of `TERMS` for which [`EvenAsphere`] is compiled.
 const SIZES: [usize; 3] = [4, 8, MOST_COEFFICIENTS];
 
 impl<const TERMS: usize> EvenAsphere<TERMS> {
-    /// An asphere of this radius of curvature, mm, conic constant, and coefficients a2, a4, ... in mm^(1 - power).
+    /// Creates an asphere of this radius of curvature, mm, conic constant, and coefficients a2, a4, ... in mm^(1 - power).
     ///
     /// # Panics
-    /// If there are more coefficients than `TERMS`.
+    /// Panics if there are more coefficients than `TERMS`.
     #[must_use]
     pub fn new(radius_mm: f64, conic: f64, coefficients: &[f64]) -> Self {
         let section = ConicSection::new(1.0 / radius_mm, conic);
         let mut all = [0.0; TERMS];
         all[..coefficients.len()].copy_from_slice(coefficients);
-        // The curvature at the vertex is the whole one; the rim is not nearer than that of the conic part.
+        // The starting conic has the total curvature at the vertex, and its rim is at least as far out as that of the conic part.
         let (c, whole) = (section.curvature_per_mm, section.curvature_per_mm + 2.0 * all[0]);
         let ratio = c / whole;
         let one_plus_conic = if ratio > 0.0 { section.one_plus_conic * ratio * ratio * ratio.min(1.0) } else { 0.0 };
@@ -54,14 +55,15 @@ impl<const TERMS: usize> EvenAsphere<TERMS> {
         }
     }
 
-    /// The polynomial at a square of the radius, and its derivative by that.
+    /// Returns the polynomial at a squared radius, and its derivative with respect to the squared radius.
     #[inline(always)]
     fn polynomial<R: Real>(&self, radius2: R) -> (R, R) {
         (radius2 * sum(&self.coefficients, radius2), sum(&self.slopes, radius2))
     }
 
-    /// Half the height over the surface times the length of the gradient (zero on the surface), from the square of the radius and from u;
-    /// and the z component of the conic part's normal, which is negative on the wrong sheet.
+    /// Returns the height function u - c (r^2 + (1 + k) u^2) / 2 at a squared radius and u, and the z component of the conic part's
+    /// normal. The height function is zero on the surface; near it, it is half the height above the surface times the length of the
+    /// gradient. The z component is negative on the wrong sheet.
     #[inline(always)]
     fn height<R: Real>(&self, radius2: R, u: R) -> (R, R) {
         let c = R::constant(self.section.curvature_per_mm);
@@ -70,7 +72,8 @@ impl<const TERMS: usize> EvenAsphere<TERMS> {
         (R::constant(0.5) * (u * (one + sheet) - c * radius2), sheet)
     }
 
-    /// At a distance along a ray: the height, its derivative along the ray (direction . normal), and what makes the normal.
+    /// Returns, at the distance `t` along a ray, the height function, its derivative along the ray (direction . normal), and the two
+    /// numbers that give the normal.
     #[inline(always)]
     fn height_and_slope<R: Real>(&self, [x, y, z]: [R; 3], [l, m, n]: [R; 3], t: R) -> (R, R, [R; 2]) {
         let (x, y, z) = (x + t * l, y + t * m, z + t * n);
@@ -81,7 +84,7 @@ impl<const TERMS: usize> EvenAsphere<TERMS> {
         (value, sheet * n - across * (x * l + y * m), [across, sheet])
     }
 
-    /// Sag, and its derivative by the square of the radius.
+    /// Returns the sag, mm, and its derivative with respect to the squared radius, 1/mm; `None` beyond the rim.
     fn sag_and_slope(&self, radius2: f64) -> Option<(f64, f64)> {
         let (sag, slope) = self.section.sag_and_slope(radius2)?;
         let (p, dp) = self.polynomial(radius2);
@@ -89,8 +92,8 @@ impl<const TERMS: usize> EvenAsphere<TERMS> {
     }
 }
 
-/// a0 + a1 x + a2 x^2 + ...: terms of even and of odd place are summed apart, by the square of x, as two short chains of operations
-/// instead of a long one.
+/// Evaluates a0 + a1 x + a2 x^2 + .... The even and the odd terms are summed separately in powers of x^2, which makes two short
+/// chains of operations instead of a long one.
 #[inline(always)]
 fn sum<R: Real, const TERMS: usize>(a: &[f64; TERMS], x: R) -> R {
     const { assert!(TERMS.is_multiple_of(2) && TERMS >= 2) };
@@ -103,19 +106,22 @@ fn sum<R: Real, const TERMS: usize>(a: &[f64; TERMS], x: R) -> R {
     even + x * odd
 }
 
-/// A step may be this part of the one before: see [`nearest_crossing`].
+/// Largest ratio of a step to the one before it that still counts as converging: see [`nearest_crossing`].
 const SHORTER: f64 = 0.4;
 /// Steps below this, mm, may be rounding.
 const NOISE_MM: f64 = 1e-11;
-/// A ray has arrived with a step of at most this, mm, or so many times the rounding of its distance: then the normal is right, too.
+/// A ray has arrived once a step is at most this, mm, plus [`ROUNDINGS`] times its distance. The normal is then right, too.
 const ARRIVED_MM: f64 = 1e-13;
+/// Rounding error that is allowed in a step, as a fraction of the distance along the ray.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
-/// The second step is that of Ostrowski's method where the first one was longer than this, mm, and left at most this part of the height;
-/// else what it divides by may be rounding, or far from what it stands for. Then it goes by the slope of the first one.
+/// The second step is Ostrowski's only if the first one was longer than this, mm. Otherwise its divisor may be pure rounding, and the
+/// step uses the slope of the first one.
 const PLAIN_MM: f64 = 1e-6;
+/// The second step is Ostrowski's only if the first one left at most this fraction of the height. Otherwise its divisor may be a poor
+/// estimate of the slope, and the step uses the slope of the first one.
 const PLAIN: f64 = 0.1;
 
-/// Not negative where a step is well below the size of the last one.
+/// Returns a number that is not negative if a step is clearly shorter than the last one.
 #[inline(always)]
 fn shorter<R: Real>(step: R, last: R) -> R {
     R::constant(SHORTER) * last + R::constant(NOISE_MM) - step.abs()
@@ -137,7 +143,7 @@ impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
         Hit { valid: R::constant(1.0), ..Conic::of_section(self.start).hit(ray) }
     }
 
-    /// A step of Newton's method; keeps it, and one over the slope.
+    /// Takes a Newton step. Keeps the step and the inverse of the slope.
     #[inline(always)]
     fn approach<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>, hit: Hit<R>) -> Near<R> {
         let (value, slope, _) = self.height_and_slope(ray.position, ray.direction, hit.distance);
@@ -146,7 +152,7 @@ impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
         Near { distance: hit.distance - step, kept: [step, inverse], step: step.abs(), valid: hit.valid }
     }
 
-    /// With the height of before, and the height here by the slope of before, h0 and h1: a step of h1 h0 / (h0 - 2 h1).
+    /// Takes Ostrowski's step h1 h0 / (h0 - 2 h1), where h0 and h1 are the heights before and now, both divided by the first slope.
     #[inline(always)]
     fn correct<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
         let ([x, y, z], [l, m, n], t) = (ray.position, ray.direction, near.distance);
@@ -159,13 +165,13 @@ impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
         Near { distance: t - step, step: step.abs(), valid: near.valid.min(shorter(step, near.step)), ..near }
     }
 
-    /// A step of Newton's method; keeps what makes the normal.
+    /// Takes a Newton step. Keeps the two numbers that give the normal.
     #[inline(always)]
     fn settle<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
         let (value, slope, kept) = self.height_and_slope(ray.position, ray.direction, near.distance);
         let step = value / slope;
         let rounding = R::constant(ARRIVED_MM) + R::constant(ROUNDINGS) * near.distance.abs();
-        // NaN, once in, reaches the last step, and `min` passes it on from there.
+        // A NaN persists up to the last step, and `min` passes it on from there.
         let valid = near.valid.min(kept[1]).min(ray.along(slope)).min(shorter(step, near.step));
         let left = (rounding - step.abs()).choose(R::constant(0.0), step.abs());
         Near { distance: near.distance - step, kept, step: left, valid }
@@ -211,14 +217,14 @@ impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
     }
 }
 
-/// A conic with a polynomial in even powers of the radius on top.
+/// A conic plus a polynomial in even powers of the radius.
 ///
-/// The usual asphere of molded and polished lenses. Its sag is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a2 r^2 +
+/// This is the usual asphere of molded and polished lenses. Its sag is z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a2 r^2 +
 /// a4 r^4 + a6 r^6 + ..., with the curvature c = 1 / radius, the conic constant k and `coefficients: [a2, a4, a6,
 /// ...]`.
 ///
 /// The first coefficient is that of r^2. Patents mostly begin with the fourth power: write a 0 before it. Lengths are
-/// in millimeters, so an has the unit mm^(1 - n); a prescription that is scaled by s has coefficients an / s^(n - 1).
+/// in millimeters, so a_n has the unit mm^(1 - n). A prescription scaled by s has the coefficients a_n / s^(n - 1).
 ///
 /// # Example
 /// ```yaml
@@ -233,13 +239,13 @@ impl<const TERMS: usize> KernelShape for EvenAsphere<TERMS> {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct EvenAsphereParams {
-    /// Radius of curvature of the conic part, mm if bare, not 0: positive where the center lies at larger z; `inf` is
-    /// none.
+    /// Radius of curvature of the conic part, mm if bare, not 0: positive if the center lies at larger z; `inf` means no
+    /// curvature.
     radius: LengthOrInfinity,
     /// Conic constant k, any number: 0 is a sphere.
     #[serde(default)]
     conic: f64,
-    /// a2, a4, a6, ... in mm^(1 - power): the first is that of r^2. At most 20; missing ones are 0.
+    /// Coefficients a2, a4, a6, ... in mm^(1 - power), from that of r^2 on. At most 20; missing ones are 0.
     #[schemars(length(max = MOST_COEFFICIENTS))]
     coefficients: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! `kind: grating`: ruled lines on a sphere or a plane.
+//! `kind: grating`: a diffraction grating ruled on a sphere or a plane.
 
 use crate::sphere::Sphere;
 use glam::DVec3;
@@ -12,25 +12,26 @@ use spectra_core::surface::{Action, Bending, BentRay, Intersection, KernelShape,
 
 const MM_PER_NM: f64 = 1e-6;
 
-/// A diffraction grating: lines in parallel planes along the axis, equally spaced on the vertex plane, on a sphere.
+/// A diffraction grating on a sphere. Its lines lie in parallel planes along the axis, equally spaced on the vertex plane.
 ///
-/// In a lens file: `{kind: grating, lines-per-mm: 600, order: 1, mirror: true, thickness: -100}` is a plane reflection
-/// grating whose order 1 goes up.
+/// In a lens file, `{kind: grating, lines-per-mm: 600, order: 1, mirror: true, thickness: -100}` is a plane reflection
+/// grating whose first order goes up.
 ///
 /// In the tangent plane of the surface the direction changes by n' d' - n d = order x wavelength x G (G. H. Spencer and
-/// M. V. R. K. Murty, "General ray-tracing procedure", J. Opt. Soc. Am. 52, 672 (1962)), where G, of `lines-per-mm`
-/// length, points across the lines: along +y for `direction: 0`, turned by `direction` right-handed about +z (90 is -x).
-/// So order 1 turns light toward G. All light goes into the one order; an order that does not exist, because its sine
-/// would exceed 1, counts as totally reflected.
+/// M. V. R. K. Murty, "General ray-tracing procedure", J. Opt. Soc. Am. 52, 672 (1962)). G has the length `lines-per-mm`
+/// and points across the lines: along +y for `direction: 0`, turned by `direction` right-handed about +z (90 is -x).
+/// Order 1 turns light toward G. All light goes into the one order. An order that does not exist, because its sine would
+/// exceed 1, counts as totally reflected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grating {
     sphere: Sphere,
-    /// Order times lines per mm, across the lines.
+    /// Vector across the lines whose length is the order times the lines per mm, 1/mm.
     order_lines_per_mm: DVec3,
 }
 
 impl Grating {
-    /// A grating of `order`, on a sphere of this radius, mm (infinite is a plane).
+    /// Creates a grating for one `order` on a sphere of this radius, mm (infinite for a plane). `direction_rad` turns the direction
+    /// across the lines from +y, right-handed about +z.
     #[must_use]
     pub fn new(lines_per_mm: f64, order: i32, radius_mm: f64, direction_rad: f64) -> Self {
         let size = f64::from(order) * lines_per_mm;
@@ -92,13 +93,13 @@ impl ScalarShape for Grating {
 
 /// A diffraction grating, plane or on a sphere, in one order.
 ///
-/// For spectrographs and for diffractive elements, in transmission or, with `mirror: true`, in reflection. The lines
+/// Use it for spectrographs and diffractive elements, in transmission or, with `mirror: true`, in reflection. The lines
 /// lie in parallel planes along the axis, equally spaced on the vertex plane. In the tangent plane of the surface the
 /// direction changes by n' d' - n d = order x wavelength x G, where G has the length `lines-per-mm` and points across
 /// the lines: order 1 turns light toward G.
 ///
-/// All light goes into the one order: there is no blaze and no efficiency. An order that does not exist, since its sine
-/// would exceed 1, counts as totally reflected.
+/// All light goes into the one order: blaze and diffraction efficiency are not modeled. An order that does not exist,
+/// because its sine would exceed 1, counts as totally reflected.
 ///
 /// # Example
 /// ```yaml
@@ -114,12 +115,11 @@ impl ScalarShape for Grating {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GratingParams {
-    /// Lines per millimeter, 1/mm if bare: `600 lines/mm`. Zero or more.
+    /// Number of lines per millimeter, 1/mm if bare, such as `600 lines/mm`; zero or more.
     lines_per_mm: spectra_core::params::NonNegative<SpatialFrequency>,
-    /// Order of diffraction, any sign; 0 is the undiffracted light.
+    /// Diffraction order, of any sign; 0 is the undiffracted light.
     order: i32,
-    /// Radius of the sphere that it is ruled on, mm if bare, not 0: positive where the center lies at larger z; a plane
-    /// if left out.
+    /// Radius of the ruled sphere, mm if bare, not 0: positive if the center lies at larger z; a plane if left out.
     #[serde(default = "plane")]
     radius: LengthOrInfinity,
     /// Direction across the lines, degrees if bare, right-handed about +z from +y: 0 turns order 1 toward +y, 90 toward

@@ -1,4 +1,4 @@
-//! Built-in optical surfaces.
+//! The built-in kinds of optical surfaces.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

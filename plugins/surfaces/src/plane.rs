@@ -1,4 +1,4 @@
-//! `kind: plane` and `kind: stop`: flat across the axis.
+//! `kind: plane` and `kind: stop`: planes perpendicular to the axis.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -7,11 +7,11 @@ use spectra_core::registry::Context;
 pub use spectra_core::surface::Plane;
 use spectra_core::surface::{Kernel, Surface};
 
-/// A plane across the axis.
+/// A plane perpendicular to the axis.
 ///
-/// The flat face of a plano-convex lens, of a window, of a filter in the beam; with `mirror: true` a flat mirror. It
-/// has no parameters of its own. `{kind: sphere, radius: inf}` is the same surface; a plane that is not across the axis
-/// is `kind: tilted-plane`.
+/// Use it for the flat face of a plano-convex lens, a window or a filter in the beam; with `mirror: true` it is a flat
+/// mirror. It has no parameters of its own. `{kind: sphere, radius: inf}` is the same surface. For a plane that is not
+/// perpendicular to the axis use `kind: tilted-plane`.
 ///
 /// # Example
 /// ```yaml
@@ -23,13 +23,13 @@ struct PlaneParams {}
 
 spectra_core::register!(surface "plane": PlaneParams, build_plane);
 
-/// The aperture stop: it clips, and its size sets the f-number.
+/// The aperture stop: it clips rays, and its size sets the f-number.
 ///
-/// A plane across the axis that does not refract, in the surrounding medium. A lens has one stop: either a surface of
-/// this kind, or a glass surface with `stop: true`. `f-number` of a scene opens or closes it until the real marginal
-/// ray has that f-number; `semi-diameter` is its size unless the scene sets one.
+/// The stop is a plane perpendicular to the axis, in the surrounding medium, and does not refract. A lens has one stop:
+/// either a surface of this kind, or a glass surface with `stop: true`. The scene's `f-number` opens or closes it until
+/// the real marginal ray has that f-number; without one, `semi-diameter` is its size.
 ///
-/// Blades, or an opening of any other shape, are given by its `aperture`.
+/// For blades, or an opening of any other shape, write `aperture`.
 ///
 /// # Example
 /// ```yaml

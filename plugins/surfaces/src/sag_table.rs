@@ -6,19 +6,19 @@ use spectra_core::params::{Faults, Length, Params, Positive};
 use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
-/// Fewest points a side: a cubic needs them.
+/// Smallest number of points along a side: a cubic spline needs four.
 const FEWEST: usize = 4;
-/// Most points a side.
+/// Largest number of points along a side.
 const MOST: usize = 1024;
-/// Largest file that is read, bytes: 1024 x 1024 numbers of 24 characters.
+/// Size limit of the file, bytes: 1024 x 1024 numbers of 24 characters.
 const MAX_BYTES: u64 = 26_000_000;
 
-/// Sag at the points of a square grid around the vertex, bicubic between them: the tensor product of cubic splines
-/// (continuous to the second derivative, not-a-knot ends), so cubic surfaces are met exactly. There is no surface beyond
-/// the outermost points.
+/// A surface given by its sag at the points of a square grid around the vertex. The sag between the points is the tensor
+/// product of cubic splines (continuous to the second derivative, with not-a-knot ends), so cubic surfaces are reproduced
+/// exactly. There is no surface beyond the outermost points.
 ///
-/// In a lens file: `{kind: sag-table, step: 0.5, file: measured.csv, glass: SCHOTT/N-BK7}`. Rows run along x from -x to +x,
-/// the first row is that at the smallest y.
+/// In a lens file: `{kind: sag-table, step: 0.5, file: measured.csv, glass: SCHOTT/N-BK7}`. Rows run along x from -x to +x;
+/// the first row has the smallest y.
 ///
 /// Spline: C. de Boor, "Bicubic spline interpolation", J. Math. and Phys. 41, 212 (1962).
 #[derive(Clone, Debug, PartialEq)]
@@ -26,13 +26,14 @@ pub struct SagTable {
     step_mm: f64,
     columns: usize,
     rows: usize,
-    /// Row by row: sag, its derivatives by x, by y and by both, in mm a cell.
+    /// Nodes row by row: the sag and its derivatives with respect to x, to y and to both, in mm per cell.
     nodes: Vec<[f64; 4]>,
 }
 
 impl SagTable {
-    /// The surface through these sags, mm: rows of equal length, from the smallest y up, each from the smallest x up.
-    /// `None` if a side has fewer than 4 or more than 1024 points, rows differ in length, or a number is not finite.
+    /// Creates the surface through these sags, mm: rows of equal length in order of rising y, each in order of rising x.
+    /// `step_mm` is the distance between neighboring points, mm. `None` if a side has fewer than 4 or more than 1024 points,
+    /// rows differ in length, or a number is not finite.
     #[must_use]
     pub fn new(step_mm: f64, sag_mm: &[Vec<f64>]) -> Option<Self> {
         let (rows, columns) = (sag_mm.len(), sag_mm.first()?.len());
@@ -41,7 +42,7 @@ impl SagTable {
             return None;
         }
         let mut nodes: Vec<[f64; 4]> = sag_mm.iter().flatten().map(|z| [*z, 0.0, 0.0, 0.0]).collect();
-        // From the sag its derivatives along rows and along columns; from those by x, along columns, the mixed ones.
+        // Differentiate the sag along rows and along columns, then the x derivatives along columns for the mixed ones.
         for row in 0..rows {
             differentiate(&mut nodes, row * columns, 1, columns, 0, 1);
         }
@@ -52,7 +53,7 @@ impl SagTable {
         Some(Self { step_mm, columns, rows, nodes })
     }
 
-    /// Sag, mm, and slopes at a point.
+    /// Returns the sag, mm, and the slopes along x and y at a point; `None` outside the grid.
     fn at(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64, f64)> {
         let place = |v: f64, count: usize| {
             let last = (count - 1) as f64;
@@ -68,7 +69,7 @@ impl SagTable {
         let (mut z, mut by_x, mut by_y) = (0.0, 0.0, 0.0);
         for (dj, di) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let [f, fx, fy, fxy] = self.nodes[(j + dj) * self.columns + i + di];
-            // Of each node: the weights of its value and of its derivative.
+            // Weights of this node's value and of its derivative, and the derivatives of these weights.
             let (x0, x1, dx0, dx1) = (a[di], a[2 + di], da[di], da[2 + di]);
             let (y0, y1, dy0, dy1) = (b[dj], b[2 + dj], db[dj], db[2 + dj]);
             z += y0 * (x0 * f + x1 * fx) + y1 * (x0 * fy + x1 * fxy);
@@ -79,7 +80,8 @@ impl SagTable {
     }
 }
 
-/// Weights, at u in a cell, of the values at both ends and of the derivatives there; and their derivatives.
+/// Returns the Hermite weights at `u` (0 to 1) in a cell, and their derivatives. The order is: values at both ends, then
+/// derivatives at both ends.
 fn hermite(u: f64) -> ([f64; 4], [f64; 4]) {
     let w = 1.0 - u;
     (
@@ -88,8 +90,8 @@ fn hermite(u: f64) -> ([f64; 4], [f64; 4]) {
     )
 }
 
-/// Derivatives, a cell, of the cubic spline through `count` nodes from `first` on, `stride` apart: of the number `from`
-/// of each, into the number `to`.
+/// Differentiates the cubic spline through `count` nodes, from index `first` on and `stride` apart. Reads component `from`
+/// of each node and writes the derivative per cell to component `to`.
 fn differentiate(nodes: &mut [[f64; 4]], first: usize, stride: usize, count: usize, from: usize, to: usize) {
     let f = |nodes: &[[f64; 4]], i: usize| nodes[first + i * stride][from];
     let last = count - 1;
@@ -127,23 +129,23 @@ impl SagShape for SagTable {
     }
 
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
-        // The slope of a cubic spline is continuous and its curvature piecewise linear: a cell to either side.
+        // The curvature of a cubic spline is piecewise linear, so the slopes half a cell to either side give its value.
         let h = 0.5 * self.step_mm;
         let slope = |x: f64, y: f64| self.slope(x, y).unwrap_or((0.0, 0.0));
         ((slope(h, 0.0).0 - slope(-h, 0.0).0) / (2.0 * h), (slope(0.0, h).1 - slope(0.0, -h).1) / (2.0 * h))
     }
 }
 
-/// Sag at the points of a grid, bicubic between them.
+/// A surface given by its sag at the points of a grid.
 ///
-/// For a measured surface (an interferogram, a profilometer's scan) or one computed elsewhere. The grid is
-/// square-meshed and centered on the vertex; between its points lies the tensor product of cubic splines, continuous to
-/// the second derivative, so that cubic surfaces are met exactly. There is no surface beyond the outermost points: rays
+/// Use it for a measured surface (an interferogram, a profilometer's scan) or one computed elsewhere. The grid has square
+/// cells and is centered on the vertex. Between its points the sag is the tensor product of cubic splines, continuous to
+/// the second derivative, so cubic surfaces are reproduced exactly. There is no surface beyond the outermost points: rays
 /// that pass there count as missed.
 ///
-/// Rows run along x from the smallest to the largest, the first row is that at the smallest y. The sags stand in the
-/// file itself (`sag`) or in a CSV file (`file`), one row per line, numbers separated by commas; lines that begin with
-/// `#` are ignored.
+/// Rows run along x from the smallest to the largest; the first row has the smallest y. Write the sags in the lens file
+/// itself (`sag`) or in a CSV file (`file`), one row per line, with commas between the numbers. Lines that begin with `#`
+/// are ignored.
 ///
 /// # Example
 /// ```yaml
@@ -168,12 +170,12 @@ impl SagShape for SagTable {
 struct SagTableParams {
     /// Distance between neighboring points, along x and along y, mm if bare, more than 0.
     step: Positive<Length>,
-    /// Rows of sags, mm: from the smallest y up, each from the smallest x up; 4 to 1024 a side. Or else `file`.
+    /// Rows of sags, mm, in order of rising y, each in order of rising x; 4 to 1024 per side. Write either this or `file`.
     #[serde(default)]
     #[schemars(length(min = FEWEST, max = MOST), inner(length(min = FEWEST, max = MOST)))]
     sag: Option<Vec<Vec<f64>>>,
-    /// A CSV file beside the scene with those rows, mm; empty lines and lines that begin with `#` are ignored. Or else
-    /// `sag`.
+    /// CSV file beside the scene with the rows of sags, mm; empty lines and lines that begin with `#` are ignored. Write
+    /// either this or `sag`.
     #[serde(default)]
     file: Option<String>,
 }
@@ -186,7 +188,10 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Surface>, Fau
         (Some(rows), None) => ("sag", rows),
         (None, Some(file)) => ("file", read(params, context, &file)?),
         (None, None) => {
-            return Err(params.fault_here("no sags are given").hint("`sag: [[...], ...]` or `file: NAME.csv`").into());
+            return Err(params
+                .fault_here("no sags are given")
+                .hint("write `sag: [[...], ...]` or `file: NAME.csv`")
+                .into());
         }
         (Some(_), Some(_)) => {
             return Err(params.fault("file", "both `sag` and `file` are given").hint("leave one of them out").into());
@@ -196,7 +201,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Surface>, Fau
     let columns = rows.first().map_or(0, Vec::len);
     for (what, count) in [("rows", rows.len()), ("columns", columns)] {
         if !(FEWEST..=MOST).contains(&count) {
-            faults.push(params.fault(key, format!("{count} {what}; a table has {FEWEST} to {MOST}")));
+            faults.push(params.fault(key, format!("{count} {what}; a table needs {FEWEST} to {MOST}")));
         }
     }
     for (j, row) in rows.iter().enumerate() {
@@ -215,12 +220,12 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Surface>, Fau
     }
 }
 
-/// The rows of a CSV file.
+/// Reads the rows of sags, mm, from a CSV file.
 fn read(params: &Params, context: &Context<'_>, file: &str) -> Result<Vec<Vec<f64>>, Faults> {
     let fault = |text: String| Faults::from(params.fault("file", text));
     let found = context.resources.read(file, &[], &[], MAX_BYTES).map_err(|e| fault(format!("{file}: {e}")))?;
     let Ok(text) = std::str::from_utf8(&found.bytes) else {
-        return Err(fault(format!("{}: this is no text", found.name)));
+        return Err(fault(format!("{}: this is not a text file", found.name)));
     };
     let mut rows = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {

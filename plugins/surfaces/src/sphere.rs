@@ -6,17 +6,17 @@ use spectra_core::params::{Faults, LengthOrInfinity, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
-/// Part of a sphere around (0, 0, radius). A ray meets it on the half that holds the vertex, at the
-/// root nearer to the vertex.
+/// Half of a sphere around (0, 0, radius): the half that contains the vertex. A ray meets it at the root
+/// nearer to the vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     curvature_per_mm: f64,
-    /// Size of the radius.
+    /// Absolute value of the radius, mm.
     size_mm: f64,
 }
 
 impl Sphere {
-    /// A sphere of this radius, mm: positive where the centre lies at larger z; infinite is a plane.
+    /// Creates a sphere of this radius, mm: positive if the center lies at larger z, infinite for a plane.
     #[must_use]
     pub fn new(radius_mm: f64) -> Self {
         Self { curvature_per_mm: 1.0 / radius_mm, size_mm: radius_mm.abs() }
@@ -28,8 +28,8 @@ impl KernelShape for Sphere {
         Some(Self { curvature_per_mm: self.curvature_per_mm / factor, size_mm: self.size_mm * factor.abs() })
     }
 
-    /// With b = n - c (p . d) and q = c p^2 - 2 z the distance t solves c t^2 - 2 b t + q = 0. The form
-    /// t = q / (b + sqrt(b^2 - c q)) does not cancel for long radii, and holds for a plane.
+    /// Solves c t^2 - 2 b t + q = 0 for the distance t, with b = n - c (p . d) and q = c p^2 - 2 z. The form
+    /// t = q / (b + sqrt(b^2 - c q)) loses no digits for long radii, and is also valid for a plane.
     #[inline(always)]
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let c = R::constant(self.curvature_per_mm);
@@ -37,10 +37,10 @@ impl KernelShape for Sphere {
         let b = n - c * (x * l + y * m + z * n);
         let q = c * (ray.radius2 + z * z) - (z + z);
         let discriminant = b * b - c * q;
-        // The root nearer to the vertex is the one where the ray crosses in the sense of travel.
+        // At the root nearer to the vertex the ray crosses the surface in the direction of travel.
         let cosine = ray.along(discriminant.sqrt());
         let distance = q / (b + cosine);
-        // All points of the sphere lie on one side of the vertex plane: the half is a matter of size.
+        // All points of the sphere lie on one side of the vertex plane, so |z| tells which half a point is on.
         let on_vertex_half = R::constant(self.size_mm) - (z + distance * n).abs();
         Hit { distance, cosine, valid: discriminant.min(on_vertex_half) }
     }
@@ -51,7 +51,7 @@ impl KernelShape for Sphere {
         [-(c * x), -(c * y), R::constant(1.0) - c * z]
     }
 
-    /// The normal is linear in the point, so one product with the curvature serves all three.
+    /// Bends the direction. The normal is linear in the point, so one product with the curvature serves all three components.
     #[inline(always)]
     fn bend<R: Real>(&self, [x, y, z]: [R; 3], [l, m, n]: [R; 3], mu: R, push: R) -> [R; 3] {
         let curved = push * R::constant(self.curvature_per_mm);
@@ -72,12 +72,12 @@ impl KernelShape for Sphere {
 
 /// Part of a sphere.
 ///
-/// The surface that nearly every lens is made of, and the default kind in a lens file. Its sag is z = c r^2 / (1 +
+/// Nearly every lens is made of spheres, so this is the default kind in a lens file. The sag is z = c r^2 / (1 +
 /// sqrt(1 - c^2 r^2)) with the curvature c = 1 / radius and r the distance from the axis.
 ///
-/// The radius is positive where the center of curvature lies at larger z, that is toward the image: a biconvex lens in
-/// air has a positive first and a negative second radius. Only the half that holds the vertex is surface; a ray that
-/// passes outside it counts as missed.
+/// The radius is positive if the center of curvature lies at larger z, that is, toward the image: a biconvex lens in
+/// air has a positive first and a negative second radius. Only the half of the sphere that contains the vertex belongs
+/// to the surface. A ray that passes outside it counts as missed.
 ///
 /// # Example
 /// ```yaml
@@ -89,7 +89,7 @@ impl KernelShape for Sphere {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SphereParams {
-    /// Radius of curvature, mm if bare, not 0: positive where the center lies at larger z; `inf` is a plane.
+    /// Radius of curvature, mm if bare, not 0: positive if the center lies at larger z; `inf` is a plane.
     radius: LengthOrInfinity,
 }
 
@@ -100,7 +100,7 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     if p.radius.mm() == 0.0 {
         return Err(params
             .fault("radius", "a sphere cannot have a radius of 0")
-            .hint("a plane is `radius: inf` or `kind: plane`")
+            .hint("for a plane write `radius: inf` or `kind: plane`")
             .into());
     }
     Ok(Box::new(Kernel(Sphere::new(p.radius.mm()))))
@@ -120,7 +120,7 @@ mod tests {
         }
     }
 
-    /// Closed form: a ray parallel to the axis at height h meets the sphere at its sag
+    /// Closed form: a ray parallel to the axis at height h meets the sphere at the sag
     /// R - sqrt(R^2 - h^2), with cosine sqrt(R^2 - h^2) / R.
     #[test]
     fn parallel_rays_land_on_the_sag() {
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn rays_that_pass_beside_it_miss() {
         assert!(!(hit(10.0, [0.0, 10.1, -5.0], [0.0, 0.0, 1.0]).valid >= 0.0));
-        // It meets the far half only: the half without the vertex is not part of the surface.
+        // This ray meets only the far half of the sphere, which is not part of the surface.
         assert!(!(hit(10.0, [0.0, -20.0, 15.0], [0.0, 1.0, 0.0]).valid >= 0.0));
     }
 

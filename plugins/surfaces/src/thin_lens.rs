@@ -8,18 +8,18 @@ use spectra_core::params::{Faults, Length, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{Action, Bending, BentRay, Intersection, PerRay, ScalarShape, Surface};
 
-/// An ideal lens: every plane across the axis is imaged sharp and to scale, n'/s' = n/s + 1/f at any angle. With u the
-/// slope against the axis and h the place on the lens, n' u' = n u - h / f.
+/// An ideal lens: it images every plane perpendicular to the axis sharply and to scale, n'/s' = n/s + 1/f at any angle.
+/// With u the slope of a ray against the axis and h its height on the lens, n' u' = n u - h / f.
 ///
 /// In a lens file: `{kind: thin-lens, focal-length: 50, semi-diameter: 12, thickness: 50}`. With `mirror: true` it is an
-/// ideal mirror of that focal length, positive where it gathers light.
+/// ideal mirror of that focal length, positive if it converges light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinLens {
     power_per_mm: f64,
 }
 
 impl ThinLens {
-    /// A lens of this focal length in air, mm: positive gathers light; infinite does nothing.
+    /// Creates a lens of this focal length in air, mm: a positive one converges light, an infinite one has no effect.
     #[must_use]
     pub fn new(focal_length_mm: f64) -> Self {
         Self { power_per_mm: 1.0 / focal_length_mm }
@@ -49,7 +49,7 @@ impl ScalarShape for ThinLens {
     }
 
     fn redirect(&self, at: &Bending) -> Option<Result<DVec3, Loss>> {
-        // Slopes count along the light, so that a lens gathers it in either sense.
+        // Slopes are measured along the light, so that a lens converges it in either direction of travel.
         let along = at.direction.z.abs();
         let (after, sense) = match at.action {
             Action::Reflect => (at.n_before, -at.direction.z.signum()),
@@ -64,7 +64,8 @@ impl ScalarShape for ThinLens {
         true
     }
 
-    /// What makes all paths from a point of the plane that the lens is focused on to its image as long as the one through the center.
+    /// Returns the phase that makes all paths equal to the one through the center. The paths run from a point of the plane that the
+    /// lens is focused on to its image.
     fn phase_mm(&self, ray: &BentRay) -> f64 {
         let image_mm = ray.n_after / (self.power_per_mm - ray.n_before / ray.object_mm);
         ray.n_before * Self::shorter_mm(ray.point, -ray.before, ray.object_mm)
@@ -73,15 +74,16 @@ impl ScalarShape for ThinLens {
 }
 
 impl ThinLens {
-    /// By how much the way from the center to a point is longer than that from a place on the lens, mm: the point lies along
-    /// `toward` from the place, at this depth (mm along the axis; negative for a point on the other side, whose ways are negative).
+    /// Returns by how much the path to a point is longer from the center of the lens than from `place`, mm. The point lies
+    /// along `toward` from `place`, at this depth (mm along the axis). A negative depth means the other side of the lens, where
+    /// path lengths count as negative.
     fn shorter_mm(place: DVec3, toward: DVec3, depth_mm: f64) -> f64 {
         if depth_mm.is_infinite() {
             return toward.dot(place);
         }
         let aside = toward * (depth_mm / toward.z.abs());
         let ways = (place + aside).length() + aside.length();
-        // The difference of the squares of two lengths over their sum: exact for far points, too.
+        // The difference of two squared lengths over the sum of the lengths: exact for distant points, too.
         let difference = (2.0 * aside.dot(place) + place.length_squared()) / ways;
         if ways > 0.0 { difference * depth_mm.signum() } else { 0.0 }
     }
@@ -89,16 +91,16 @@ impl ThinLens {
 
 /// An ideal lens without thickness or aberration.
 ///
-/// For a first layout, for an idealized relay or eyepiece, for tests. Every plane across the axis is imaged sharp and
-/// to scale, n'/s' = n/s + 1/f, at any angle: with u the slope of a ray against the axis and h its height on the lens,
-/// n' u' = n u - h / f. The focal length is the same at all wavelengths.
+/// Use it for a first layout, an idealized relay or eyepiece, or a test. It images every plane perpendicular to the axis
+/// sharply and to scale, n'/s' = n/s + 1/f, at any angle. With u the slope of a ray against the axis and h its height on
+/// the lens, n' u' = n u - h / f. The focal length is the same at all wavelengths.
 ///
-/// Its optical path, in `lens trace` and for diffraction, is a convention, since no lens is ideal for all distances at once: all paths
-/// from a point at the distance that the lens is focused at (infinity if it is not focused), as what stands before images it, to the
-/// image are equal.
+/// Its optical path, in `lens trace` and for diffraction, is a convention, since no lens is ideal for all distances at once.
+/// Take a point at the focus distance (infinity if the lens is not focused), as imaged by the surfaces in front of the thin
+/// lens. All paths from that point to its image are equal.
 ///
-/// It has no glass of its own: what stands behind it is air unless `glass` says otherwise. With `mirror: true` it is an
-/// ideal mirror, with a positive focal length if it converges light. Coatings and Fresnel losses skip it.
+/// It has no glass of its own: the medium behind it is air unless you write `glass`. With `mirror: true` it is an ideal
+/// mirror, with a positive focal length if it converges light. It has no coating and no Fresnel losses.
 ///
 /// # Example
 /// ```yaml
@@ -116,7 +118,7 @@ spectra_core::register!(surface "thin-lens": ThinLensParams, build);
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let p: ThinLensParams = params.parse()?;
     if p.focal_length.mm() == 0.0 {
-        return Err(params.fault("focal-length", "a focal length of 0 is no lens").into());
+        return Err(params.fault("focal-length", "a lens cannot have a focal length of 0").into());
     }
     Ok(Box::new(PerRay(ThinLens::new(p.focal_length.mm()))))
 }

@@ -1,4 +1,4 @@
-//! `kind: tilted-plane`: a plane that is not across the axis; what follows stays on the old axis.
+//! `kind: tilted-plane`: a plane that is not perpendicular to the axis; the surfaces behind it stay on the old axis.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -7,10 +7,10 @@ use spectra_core::params::{Angle, Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
-/// A plane through the vertex, turned by right-handed rotations about x, then about the new y. So its sag is
+/// A plane through the vertex, turned by right-handed rotations, first about x, then about the new y axis. Its sag is
 /// z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x): a positive tilt about x moves the upper part to larger z.
 ///
-/// In a lens file: `{kind: tilted-plane, tilt-x: 30, thickness: 20, glass: SCHOTT/N-SF11}` is the face of a prism.
+/// In a lens file, `{kind: tilted-plane, tilt-x: 30, thickness: 20, glass: SCHOTT/N-SF11}` is the face of a prism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TiltedPlane {
     /// Unit normal, toward +z.
@@ -18,7 +18,7 @@ pub struct TiltedPlane {
 }
 
 impl TiltedPlane {
-    /// A plane with these tilts about x and y, rad, each of less than a right angle.
+    /// Creates a plane with these tilts about x and y, rad, each of less than a right angle.
     #[must_use]
     pub fn new(tilt_x_rad: f64, tilt_y_rad: f64) -> Self {
         let (sx, cx, sy, cy) = (sin(tilt_x_rad), cos(tilt_x_rad), sin(tilt_y_rad), cos(tilt_y_rad));
@@ -37,7 +37,7 @@ impl KernelShape for TiltedPlane {
         let ([x, y, z], [l, m, n]) = (ray.position, ray.direction);
         let cosine = l * a + m * b + n * c;
         let height = x * a + y * b + z * c;
-        // A ray along the plane never meets it: 0 is made negative.
+        // A ray along the plane never meets it: subtracting makes a cosine of 0 invalid.
         Hit { distance: -height / cosine, cosine, valid: ray.along(cosine) - R::constant(f64::MIN_POSITIVE) }
     }
 
@@ -56,12 +56,12 @@ impl KernelShape for TiltedPlane {
     }
 }
 
-/// A plane that is not across the axis.
+/// A plane that is not perpendicular to the axis.
 ///
-/// The face of a prism, or of a tilted plate, where what follows stays on the old axis: unlike `tilt`, which turns any
-/// surface about its vertex, and unlike a `coordinate-break`, which turns all that follows, the tilt here is part of
-/// the shape. The plane goes through the vertex and is turned right-handed about x, then about the y that turned along;
-/// so z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x).
+/// Use it for the face of a prism or of a tilted plate if the surfaces behind it stay on the old axis. The tilt is part of
+/// the shape here, unlike `tilt`, which turns any surface about its vertex, and `coordinate-break`, which turns
+/// everything behind it. The plane goes through the vertex and is turned right-handed, first about x, then about the y
+/// axis that was turned with it: z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x).
 ///
 /// # Example
 /// ```yaml
@@ -75,8 +75,8 @@ struct TiltedPlaneParams {
     #[serde(default = "no_tilt")]
     #[schemars(extend("exclusiveMinimum" = -90, "exclusiveMaximum" = 90))]
     tilt_x: Angle,
-    /// Rotation about the y axis so turned, degrees if bare, between -90 and 90: positive moves the part at +x to
-    /// smaller z.
+    /// Rotation about the y axis after the first rotation, degrees if bare, between -90 and 90: positive moves the part at
+    /// +x to smaller z.
     #[serde(default = "no_tilt")]
     #[schemars(extend("exclusiveMinimum" = -90, "exclusiveMaximum" = 90))]
     tilt_y: Angle,

@@ -7,21 +7,22 @@ use spectra_core::params::{Faults, LengthOrInfinity, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
-/// The curve z = g(y) = conic sag + a2 y^2 + a4 y^4 + ..., rotated about the line through (z = `rotation-radius`) parallel to
-/// y: (R - z)^2 + x^2 = (R - g(y))^2. Infinite, the rotation is a shift along x.
+/// A toroid: the curve z = g(y) = conic sag + a2 y^2 + a4 y^4 + ..., rotated about a line. The line is parallel to y at
+/// z = R = `rotation-radius`, so the surface is (R - z)^2 + x^2 = (R - g(y))^2. If R is infinite, the curve is shifted
+/// along x.
 ///
 /// In a lens file: `{kind: toroid, radius: 40, rotation-radius: 55, thickness: 4, glass: SCHOTT/N-BK7}`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Toroid {
     section: ConicSection,
-    /// 0, a2, a4, ...: by powers of y^2.
+    /// Coefficients 0, a2, a4, ... of the powers of y^2.
     coefficients: Vec<f64>,
     rotation_per_mm: f64,
 }
 
 impl Toroid {
-    /// Radius, mm, conic constant and coefficients a2, a4, ... (mm^(1 - power)) of the curve; distance of the axis of
-    /// rotation from the vertex, mm, positive where it lies at larger z.
+    /// Creates a toroid from its curve (radius, mm, conic constant, and coefficients a2, a4, ... in mm^(1 - power)) and the
+    /// distance of the axis of rotation from the vertex, mm, positive if the axis lies at larger z.
     #[must_use]
     pub fn new(radius_mm: f64, conic: f64, coefficients: &[f64], rotation_radius_mm: f64) -> Self {
         Self {
@@ -31,15 +32,15 @@ impl Toroid {
         }
     }
 
-    /// The curve at y, mm, and its derivative.
+    /// Returns the sag of the curve at y, mm, and its derivative; `None` beyond the rim of the conic part.
     fn curve(&self, y: f64) -> Option<(f64, f64)> {
         let (sag, slope) = self.section.sag_and_slope(y * y)?;
         let (p, dp) = polynomial(&self.coefficients, y * y);
         Some((sag + p, 2.0 * y * (slope + dp)))
     }
 
-    /// With v = 1 - g / R the surface is z = g + x^2 / (R v (1 + w)), w = sqrt(1 - x^2 / (R v)^2): the curve, `R v` inverted,
-    /// and w. Beyond the axis of rotation (v < 0) there is no surface.
+    /// Returns g, g', 1 / (R v) and w at (x, y). With v = 1 - g / R and w = sqrt(1 - x^2 / (R v)^2) the surface is
+    /// z = g + x^2 / (R v (1 + w)). `None` beyond the axis of rotation (v < 0), where there is no surface.
     fn parts(&self, x: f64, y: f64) -> Option<(f64, f64, f64, f64)> {
         let (g, dg) = self.curve(y)?;
         let v = 1.0 - g * self.rotation_per_mm;
@@ -63,7 +64,7 @@ impl SagShape for Toroid {
         Some(g + x_mm * x_mm * around / (1.0 + root))
     }
 
-    /// By the implicit form: dz/dx = x / (R - z), dz/dy = g' (R - g) / (R - z), and R - z = (R - g) w.
+    /// Uses the implicit form: dz/dx = x / (R - z), dz/dy = g' (R - g) / (R - z), and R - z = (R - g) w.
     fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
         let (_, dg, around, root) = self.parts(x_mm, y_mm)?;
         Some((x_mm * around / root, dg / root))
@@ -77,13 +78,13 @@ impl SagShape for Toroid {
 
 /// A curve in the y-z plane, rotated about an axis parallel to y.
 ///
-/// For anamorphic and astigmatic elements: barrels, tires and their aspheric variants. The curve is z = g(y) = c y^2 /
+/// Use it for anamorphic and astigmatic elements: barrels, tires and their aspheric variants. The curve is z = g(y) = c y^2 /
 /// (1 + sqrt(1 - (1 + k) c^2 y^2)) + a2 y^2 + a4 y^4 + ..., with c = 1 / radius; rotated about the line at z = R =
 /// `rotation-radius` it is (R - z)^2 + x^2 = (R - g(y))^2. With R = inf it is shifted along x instead of rotated: a
 /// cylinder whose section is the curve.
 ///
-/// The radius is that of the y-z section, the rotation radius that of the x-z section at the vertex; both are positive
-/// where their centers lie at larger z. There is no surface beyond the axis of rotation.
+/// `radius` belongs to the y-z section, `rotation-radius` to the x-z section at the vertex. Both are positive if their
+/// centers lie at larger z. There is no surface beyond the axis of rotation.
 ///
 /// # Example
 /// ```yaml
@@ -92,18 +93,18 @@ impl SagShape for Toroid {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ToroidParams {
-    /// Radius of the curve in the y-z plane, mm if bare, not 0: positive where its center lies at larger z; `inf` is
+    /// Radius of the curve in the y-z plane, mm if bare, not 0: positive if its center lies at larger z; `inf` is
     /// straight.
     radius: LengthOrInfinity,
     /// Conic constant k of the curve, any number: 0 is a circle.
     #[serde(default)]
     conic: f64,
-    /// a2, a4, ... of the curve, in mm^(1 - power): the first is that of y^2. At most 20; missing ones are 0.
+    /// Coefficients a2, a4, ... of the curve, in mm^(1 - power), from that of y^2 on. At most 20; missing ones are 0.
     #[serde(default)]
     #[schemars(length(max = MOST_COEFFICIENTS))]
     coefficients: Vec<f64>,
-    /// Distance from the vertex, mm if bare, not 0, at which the axis of rotation crosses the z axis, positive at
-    /// larger z; `inf`: not curved along x.
+    /// Distance from the vertex to the point where the axis of rotation crosses the z axis, mm if bare, not 0: positive at
+    /// larger z. With `inf` the surface is not curved along x.
     rotation_radius: LengthOrInfinity,
 }
 

@@ -1,4 +1,4 @@
-//! `kind: zernike`: a conic with Zernike polynomials on top.
+//! `kind: zernike`: a conic plus Zernike polynomials.
 
 use crate::shared::{self, ConicSection, polynomial};
 use schemars::JsonSchema;
@@ -7,36 +7,38 @@ use spectra_core::params::{Faults, Length, LengthOrInfinity, Params, Positive};
 use spectra_core::registry::Context;
 use spectra_core::surface::{FromSag, PerRay, SagShape, Surface};
 
-/// The most coefficients taken: radial orders up to 14 in Noll's order.
+/// Largest number of coefficients: radial orders up to 14 in Noll's order.
 const MOST: usize = 120;
 
-/// z = conic sag + sum of c_j Z_j(x / R, y / R), for the normalization radius R; angles count from +x toward +y.
+/// A Zernike surface, with the sag z = conic sag + sum of c_j Z_j(x / R, y / R) for the normalization radius R. Angles are
+/// measured from +x toward +y.
 ///
 /// In a lens file: `{kind: zernike, radius: 100, normalization-radius: 12, coefficients: [0, 0, 0, 2e-4], ordering: fringe}`.
 ///
-/// The polynomials go on beyond the normalization radius. `noll`: R. J. Noll, "Zernike polynomials and atmospheric turbulence",
-/// J. Opt. Soc. Am. 66, 207 (1976), each of mean square 1 over the disk. `fringe`: the order of the University of Arizona,
-/// each 1 at the rim (J. C. Wyant and K. Creath, "Basic wavefront aberration theory", Applied Optics and Optical
-/// Engineering XI (1992)), continued by the same rule.
+/// The polynomials continue beyond the normalization radius. In the order `noll` each has a mean square of 1 over the disk
+/// (R. J. Noll, "Zernike polynomials and atmospheric turbulence", J. Opt. Soc. Am. 66, 207 (1976)). In the order `fringe`,
+/// that of the University of Arizona, each is 1 at the rim (J. C. Wyant and K. Creath, "Basic wavefront aberration theory",
+/// Applied Optics and Optical Engineering XI (1992)), continued by the same rule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Zernike {
     section: ConicSection,
     per_mm: f64,
-    /// By azimuthal order m: the polynomials in (r/R)^2 that belong to Re (x + i y)^m and to Im (x + i y)^m.
+    /// Polynomials in (r/R)^2 that multiply Re (x + i y)^m and Im (x + i y)^m, for each azimuthal order m.
     orders: Vec<[Vec<f64>; 2]>,
 }
 
-/// In which order the polynomials of a [`Zernike`] come, and how large they are.
+/// Order and normalization of the polynomials of a [`Zernike`].
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum ZernikeOrdering {
-    /// Noll's, of mean square 1.
+    /// Noll's order, with a mean square of 1.
     Noll,
-    /// The Fringe or University of Arizona order, 1 at the rim.
+    /// The Fringe or University of Arizona order, with the value 1 at the rim.
     Fringe,
 }
 
-/// Radial order n, azimuthal order m, whether it goes with the sine, and the factor before the radial polynomial.
+/// Returns, for polynomial `j` (from 1), the radial order n, the azimuthal order m, whether it has the sine, and the factor of the
+/// radial polynomial.
 fn term(ordering: ZernikeOrdering, j: u32) -> (u32, u32, bool, f64) {
     match ordering {
         ZernikeOrdering::Noll => {
@@ -44,7 +46,7 @@ fn term(ordering: ZernikeOrdering, j: u32) -> (u32, u32, bool, f64) {
             while (n + 1) * (n + 2) / 2 < j {
                 n += 1;
             }
-            // Place within the radial order, from 0; |m| rises by 2 every second place.
+            // Index within the radial order, from 0; |m| rises by 2 at every second index.
             let place = j - n * (n + 1) / 2 - 1;
             let m = if n % 2 == 0 { 2 * place.div_ceil(2) } else { 2 * (place / 2) + 1 };
             let size = if m == 0 { f64::from(n + 1) } else { f64::from(2 * (n + 1)) };
@@ -63,7 +65,7 @@ fn term(ordering: ZernikeOrdering, j: u32) -> (u32, u32, bool, f64) {
     }
 }
 
-/// The radial polynomial of orders n, m without its factor rho^m, by powers of rho^2.
+/// Returns the coefficients of the radial polynomial of orders n, m in powers of rho^2, without its factor rho^m.
 fn radial(n: u32, m: u32) -> Vec<f64> {
     let factorial = |k: u32| (1..=k).map(f64::from).product::<f64>();
     let top = (n - m) / 2;
@@ -76,7 +78,8 @@ fn radial(n: u32, m: u32) -> Vec<f64> {
 }
 
 impl Zernike {
-    /// Radius, mm, and conic constant of the conic part; normalization radius, mm; coefficients, mm, from j = 1.
+    /// Creates a surface from the radius, mm, and conic constant of the conic part, the normalization radius, mm, and the
+    /// coefficients, mm of sag, from j = 1 on.
     #[must_use]
     pub fn new(
         radius_mm: f64,
@@ -106,7 +109,7 @@ impl Zernike {
         Self { section: ConicSection::new(1.0 / radius_mm, conic), per_mm: 1.0 / normalization_radius_mm, orders }
     }
 
-    /// The sum of the polynomials at (x, y) in units of the normalization radius, with its derivatives there.
+    /// Returns the sum of the polynomials, mm, and its derivatives at (x, y), which are in units of the normalization radius.
     fn sum(&self, x: f64, y: f64) -> (f64, f64, f64) {
         let radius2 = x * x + y * y;
         let (mut value, mut by_x, mut by_y) = (0.0, 0.0, 0.0);
@@ -153,7 +156,7 @@ impl SagShape for Zernike {
         Some((sag + sum, slope))
     }
 
-    /// The conic is steepest at the rim; of the polynomials all powers add up there.
+    /// Bounds the sag by the conic's value at the rim plus the sum of the absolute values of all polynomial terms there.
     fn extent_mm(&self, radius_mm: f64) -> Option<[f64; 2]> {
         let rim = self.section.sag_mm(radius_mm * radius_mm)?;
         let rho = radius_mm * self.per_mm;
@@ -170,7 +173,7 @@ impl SagShape for Zernike {
         Some([rim.min(0.0) - most, rim.max(0.0) + most])
     }
 
-    /// From the terms of x^2 and y^2: those of (r/R)^2, and of the cosine of twice the angle.
+    /// Computed from the terms in x^2 and y^2: (r/R)^2, and (r/R)^2 times the cosine of twice the angle.
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         let power = |m: usize, i: usize| self.orders.get(m).and_then(|o| o[0].get(i)).copied().unwrap_or(0.0);
         let (round, oval) = (2.0 * power(0, 1), 2.0 * power(2, 0));
@@ -179,19 +182,19 @@ impl SagShape for Zernike {
     }
 }
 
-/// A conic with Zernike polynomials on top.
+/// A conic plus a sum of Zernike polynomials.
 ///
-/// For figure errors as an interferometer reports them, and for freeform surfaces. The sag is that of a conic of the
-/// stated radius and conic constant, plus the sum of c_j Z_j(x / R, y / R), with R the normalization radius and
-/// `coefficients: [c_1, c_2, ...]` in mm of sag. Angles count from +x toward +y. The polynomials go on beyond the
-/// normalization radius, where they grow fast: state a `semi-diameter`.
+/// Use it for figure errors as an interferometer reports them, and for freeform surfaces. The sag is that of a conic of
+/// the given radius and conic constant, plus the sum of c_j Z_j(x / R, y / R), with R the normalization radius and
+/// `coefficients: [c_1, c_2, ...]` in mm of sag. Angles are measured from +x toward +y. The polynomials continue beyond
+/// the normalization radius, where they grow fast: write a `semi-diameter`.
 ///
-/// `ordering: noll` counts the polynomials as Noll does, each with a mean square of 1 over the disk; `ordering: fringe`
-/// counts as the University of Arizona does, each 1 at the rim, continued by the same rule.
+/// `ordering: noll` numbers the polynomials as Noll does, each with a mean square of 1 over the disk. `ordering: fringe`
+/// numbers them as the University of Arizona does, each 1 at the rim, continued by the same rule.
 ///
 /// # Example
 /// ```yaml
-/// # Defocus, the fourth of the fringe order, a wavelength of 550 nm deep, on a flat window
+/// # Defocus (number 4 of the fringe order) of one wavelength of 550 nm, on a flat window
 /// kind: zernike
 /// normalization-radius: 12
 /// coefficients: [0, 0, 0, 5.5e-4]
@@ -206,7 +209,7 @@ impl SagShape for Zernike {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ZernikeParams {
-    /// Radius of curvature of the conic part, mm if bare, not 0: positive where the center lies at larger z; none if
+    /// Radius of curvature of the conic part, mm if bare, not 0: positive if the center lies at larger z; no curvature if
     /// left out.
     #[serde(default = "plane")]
     radius: LengthOrInfinity,
@@ -215,10 +218,10 @@ struct ZernikeParams {
     conic: f64,
     /// Radius at which the polynomials are normalized, mm if bare, more than 0.
     normalization_radius: Positive<Length>,
-    /// c_1, c_2, ... from the first polynomial (piston) on, mm of sag; at most 120, missing ones are 0.
+    /// Coefficients c_1, c_2, ... from the first polynomial (piston) on, mm of sag; at most 120, missing ones are 0.
     #[schemars(length(max = MOST))]
     coefficients: Vec<f64>,
-    /// How the polynomials are counted and how large they are: `noll` (mean square 1) or `fringe` (1 at the rim).
+    /// Numbering and normalization of the polynomials: `noll` (mean square 1) or `fringe` (1 at the rim).
     ordering: ZernikeOrdering,
 }
 

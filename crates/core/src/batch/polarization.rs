@@ -1,12 +1,13 @@
-//! The state of polarization of rays: Stokes numbers about an axis of their own.
+//! State of polarization of rays: Stokes parameters about an axis that each ray carries.
 //!
-//! Born and Wolf, Principles of Optics, section 1.4.2. With the field E_a along the axis a and E_b along b = d x a, where d is the
-//! direction of the ray, and the time factor exp(i omega t): Q = |E_a|^2 - |E_b|^2, U = 2 Re(E_a E_b*), V = 2 Im(E_a E_b*). They
-//! are kept as parts of the intensity, which is the ray's weight: whatever only dims light leaves them as they are.
+//! Born and Wolf, Principles of Optics, section 1.4.2. With the field E_a along the axis a and E_b along b = d x a, where d is
+//! the direction of the ray, and the time factor exp(i omega t): Q = |E_a|^2 - |E_b|^2, U = 2 Re(E_a E_b*), V = 2 Im(E_a E_b*).
+//! They are stored relative to the intensity, which is the ray's weight, so anything that only dims light leaves them
+//! unchanged.
 
 use super::Column;
 
-/// The columns of a batch.
+/// Polarization columns of a batch.
 #[derive(Clone, Debug)]
 pub(super) struct PolarizationColumns {
     q: Column<f64>,
@@ -33,23 +34,23 @@ impl PolarizationColumns {
 
 /// The states of polarization of a batch, ray by ray.
 ///
-/// `q u v` are Q / I, U / I, V / I: 0 for unpolarized light, squares of together 1 for light that is wholly polarized. The `axis`
-/// is a unit vector across the ray, in the frame of its direction; (0, 0, 0) where none was needed yet, which only unpolarized
-/// light may have.
+/// `q`, `u` and `v` are Q / I, U / I and V / I. They are 0 for unpolarized light; their squares sum to 1 for fully polarized
+/// light. The `axis` is a unit vector perpendicular to the ray, in the frame of its direction. It is (0, 0, 0) if no axis was
+/// needed yet, which only unpolarized light may have.
 #[derive(Debug, Default)]
 pub struct Polarization<'a> {
-    /// More of the light swings along the axis (1) or across it (-1).
+    /// Q / I: 1 for light polarized along the axis, -1 for light polarized across it.
     pub q: &'a mut [f64],
-    /// At 45 degrees to the axis.
+    /// U / I: linear polarization at 45 degrees to the axis.
     pub u: &'a mut [f64],
-    /// Circular.
+    /// V / I: circular polarization.
     pub v: &'a mut [f64],
-    /// The axis.
+    /// Unit vector of the axis, or (0, 0, 0).
     pub axis: [&'a mut [f64]; 3],
 }
 
 impl Polarization<'_> {
-    /// Whether the batch carries none.
+    /// Returns whether the batch carries no polarization.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.q.is_empty()
@@ -71,15 +72,15 @@ impl Polarization<'_> {
         }
     }
 
-    /// Turns the axis of ray `i` about its `direction` until it lies along the unit vector `onto`, which is across it too. The
-    /// light stays what it is.
+    /// Rotates the axis of ray `i` about its `direction` until it lies along the unit vector `onto`, which is also
+    /// perpendicular to the ray. The state of polarization stays the same.
     pub fn turn(&mut self, i: usize, direction: [f64; 3], onto: [f64; 3]) {
         let a: [f64; 3] = std::array::from_fn(|k| self.axis[k][i]);
         if a != [0.0; 3] {
             let [d, s] = [direction, onto];
             let b = [d[1] * a[2] - d[2] * a[1], d[2] * a[0] - d[0] * a[2], d[0] * a[1] - d[1] * a[0]];
             let (along, across) = (a[0] * s[0] + a[1] * s[1] + a[2] * s[2], b[0] * s[0] + b[1] * s[1] + b[2] * s[2]);
-            // Cosine and sine of twice the angle; the same for vectors that are a rounding from unit length.
+            // Cosine and sine of twice the angle; the division by `size` allows for vectors that are off unit length by rounding.
             let size = along * along + across * across;
             let (cos, sin) = ((along * along - across * across) / size, 2.0 * along * across / size);
             let (q, u) = (self.q[i], self.u[i]);
@@ -96,7 +97,7 @@ impl Polarization<'_> {
 mod tests {
     use crate::RayBatch;
 
-    /// Light along x: seen from an axis at 30 degrees Q = cos 60, U = -sin 60; and back.
+    /// Light along x: about an axis at 30 degrees Q = cos 60, U = -sin 60; then back.
     #[test]
     fn an_axis_turns_about_the_ray() {
         let mut rays = RayBatch::new(2).with_polarization();

@@ -15,30 +15,30 @@ mod shown;
 pub use nearest::nearest;
 pub(crate) use shown::shown;
 
-/// Shortest part of a name that can stand for it, in letters and digits.
+/// Shortest part of a name that can stand for the name, in letters and digits.
 const SHORTEST: usize = 3;
-/// Longer texts are never names.
+/// Longest text that can be a name, bytes.
 const LONGEST: usize = 120;
 
-/// What a typed name stands for.
+/// Result of looking up a name that was typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Match<'a> {
-    /// This name.
+    /// Exactly this name matches.
     One(&'a str),
-    /// All of these contain what was typed, in the order in which they were given, those in folders last.
+    /// Several names match, in the order in which they were given, those in folders last.
     Several(Vec<&'a str>),
-    /// None of them.
+    /// No name matches.
     Nothing,
 }
 
-/// Lower case without spaces, hyphens and underscores; names that differ only in these are the same.
+/// Converts a name to lower case without spaces, hyphens and underscores; names that differ only in these are the same.
 #[must_use]
 pub fn normalized(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, ' ' | '-' | '_')).flat_map(char::to_lowercase).collect()
 }
 
 /// Finds the name among `known` that `typed` stands for. The first of these rules that finds any applies: the exact name; the
-/// same name but for case, spaces, hyphens and underscores; names that contain every word of `typed` (`helios`, `canon 50`),
+/// same name except for case, spaces, hyphens and underscores; names that contain every word of `typed` (`helios`, `canon 50`),
 /// where each word has at least two letters or digits and all of them together at least three.
 pub fn find<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Match<'a> {
     let typed = typed.trim();
@@ -67,13 +67,13 @@ pub fn find<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Match<
     of(known.into_iter().filter(|name| holds(name)).collect())
 }
 
-/// Most names that a message lists in full.
+/// Largest number of names that a message lists in full.
 const LISTED: usize = 12;
-/// How many of a longer list it names.
+/// Number of names that a message shows of a longer list.
 const SHOWN: usize = 10;
 
-/// Names in a message: `a, b, c`. Of more than twelve the first ten, how many more there are, and the command that shows all
-/// of them, such as `spectra list lens`; "" where there is none.
+/// Formats names for a message: `a, b, c`. Of more than twelve names it shows the first ten, how many more there are, and
+/// `command`, which shows all of them, such as `spectra list lens`. An empty `command` is left out.
 #[must_use]
 pub fn listed<S: AsRef<str>>(names: &[S], command: &str) -> String {
     let shown = if names.len() > LISTED { SHOWN } else { names.len() };
@@ -87,8 +87,8 @@ pub fn listed<S: AsRef<str>>(names: &[S], command: &str) -> String {
     text
 }
 
-/// The hint for a name that is none of `known`: the nearest one, those that contain what was typed, or all. `command` is as
-/// for [`listed`].
+/// Returns the hint for a name that is not in `known`: the nearest name, the names that contain what was typed, or all names.
+/// `command` is used as in [`listed`].
 ///
 /// ```
 /// use spectra_core::names::hint;
@@ -115,7 +115,7 @@ pub fn hint<S: AsRef<str>>(typed: &str, known: &[S], command: &str) -> String {
 
 fn of(mut found: Vec<&str>) -> Match<'_> {
     found.dedup();
-    // What lies in folders is for special ends: `surfaces/onion-biotar` comes after all lenses beside the folder.
+    // Files in folders serve special purposes: `surfaces/onion-biotar` comes after all lenses outside of folders.
     found.sort_by_key(|name| name.contains('/'));
     match found[..] {
         [] => Match::Nothing,

@@ -1,10 +1,10 @@
-//! The known name nearest to what was typed.
+//! Search for the known name nearest to what was typed.
 
 use super::{Match, find};
 
-/// The known name nearest to `name` by edit distance (insertions, deletions, replacements, swaps of neighbors; case is ignored,
-/// and `_` equals `-`), if it is near enough: one edit for short names, a third of the length for long ones. The first one if
-/// several are equally near; else the only one that `name` is a part of ([`find`]).
+/// Returns the known name nearest to `name` by edit distance (insertions, deletions, replacements, swaps of neighbors; case is
+/// ignored, and `_` equals `-`), if it is near enough: one edit for short names, a third of the length for long ones. If
+/// several are equally near, the first one; if none is near enough, the only name that contains `name` ([`find`]).
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     /// No key is longer than this. Limits the work, which grows with the product of both lengths.
@@ -27,13 +27,13 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         }
         let allowed = |a: &[char], b: &[char]| (a.len().max(b.len()) / 3).max(1);
         let distance = edit_distance(&name, &other);
-        // `portra-400` is no `tri-x-400`: equal figures do not make up for other words.
+        // `portra-400` is not `tri-x-400`: equal digits do not make up for different words.
         let words = |text: &[char]| -> Vec<char> { text.iter().copied().filter(|c| !c.is_ascii_digit()).collect() };
         let (own, others) = (words(&name), words(&other));
         if distance > allowed(&name, &other) || edit_distance(&own, &others) > allowed(&own, &others) {
             continue;
         }
-        // A letter must remain: `G` is not a misspelt `R`.
+        // At least one letter must agree: `G` is not a misspelled `R`.
         let near = distance < name.len().max(other.len());
         if near && best.is_none_or(|(least, _)| distance < least) {
             best = Some((distance, candidate));
@@ -48,7 +48,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     }
 }
 
-/// Optimal string alignment distance.
+/// Computes the optimal string alignment distance.
 fn edit_distance(a: &[char], b: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).collect();

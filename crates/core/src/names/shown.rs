@@ -1,11 +1,11 @@
-//! A person's own words in a message.
+//! Text of a user, as messages quote it.
 
 use std::fmt::Write;
 
 /// Longest part of a user's text that a message repeats, in characters.
 const SHOWN: usize = 48;
 
-/// A user's text as messages quote it: on one line, without control characters, of limited length.
+/// Formats a user's text for a message: on one line, without control characters, of limited length.
 pub(crate) fn shown(text: &str) -> String {
     let mut out = String::new();
     for (i, c) in text.chars().enumerate() {

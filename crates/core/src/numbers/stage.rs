@@ -1,16 +1,35 @@
 //! Numbers that a stage draws for itself: a pure function of (seed, estimator, stream, sample, stage, event).
 //!
-//! Each pair of them is a copy of the first two Sobol dimensions of its own, shuffled and scrambled by a hash of all but the
-//! sample (padding: B. Burley, "Practical hash-based Owen scrambling", J. Computer Graphics Techniques 9 (2020), section 4). So
-//! strata do not end with the dimensions of one sequence, pairs are independent of each other, and a stage more, or an event
-//! more, moves no number of another.
+//! A stage that makes random choices (a surface that scatters, a plate that splits light, a source or an imager) says so by `draws`. It
+//! draws by *event*, a decision that it makes for a ray: [`RayNumbers::number`], [`RayNumbers::pair`], or [`RayNumbers::generator`] for the
+//! crates `rand` and `rand_distr`.
+//!
+//! **Strata do not run out.** Each pair of numbers is its own copy of the first two Sobol dimensions, shuffled and scrambled by a hash of
+//! everything but the sample (padding: B. Burley, "Practical hash-based Owen scrambling", J. Computer Graphics Techniques 9 (2020), section
+//! 4). Of every aligned 2^n samples of a pixel, the numbers of each event form a net. Pairs are independent of each other.
+//!
+//! **One more stage or event changes no number of another.** A surface is identified by its kind, by its position among the surfaces of
+//! that kind that draw (counted from the front), and by how often the path met it before. Source and imager are identified as such.
+//!
+//! **Numbers stay with their ray.** A batch carries stream and sample (`RayBatch::with_numbers`), also where rays are dropped. It carries
+//! them only if a stage of the scene draws; other scenes pay nothing. `set_stage` states which stage draws next, so no signature mentions
+//! it.
+//!
+//! **Without numbers there is no chance.** Drawings, focus, f-numbers and the search for what passes trace batches without numbers. A stage
+//! then does what it does to most of the light: it lets it pass straight, or treats it as the ordinary ray.
+//!
+//! The search for what passes ends where chance begins: it goes from the side that rays start on to the first surface that draws. Forward,
+//! rays are aimed at all of a filter in front of the lens; backward, at the exit pupil as it is without the filter.
+//!
+//! `plugins/examples/diffusion-filter` is an example. Its steps are as likely one way as back and keep the etendue, so both directions
+//! agree with weights of 1.
 
 use super::{GOLDEN, Kind, Numbers, SampleRng, fill_strata, mix64, owen_scramble_reversed, point_reversed};
 use super::{unit_from_u32, unit_from_u64};
 use crate::batch::Column;
 use std::ops::Range;
 
-/// A name, as 64 bits.
+/// Hashes a name to 64 bits.
 const fn hash(name: &str, mut from: u64) -> u64 {
     let mut i = 0;
     while i < name.len() {
@@ -25,23 +44,23 @@ const fn hash(name: &str, mut from: u64) -> u64 {
 pub struct StageKey(u64);
 
 impl StageKey {
-    /// The source.
+    /// Key of the source.
     pub const SOURCE: Self = Self::new("source", 0);
-    /// The imager, with what stands before its pixels.
+    /// Key of the imager, including what lies in front of its pixels.
     pub const IMAGER: Self = Self::new("imager", 0);
 
-    /// Of the stage `kind`; `which` counts those of the same kind that draw.
+    /// Returns the key of a stage of this `kind`; `which` counts the stages of the same kind that draw.
     #[must_use]
     pub const fn new(kind: &str, which: u64) -> Self {
         Self(hash(kind, mix64(which.wrapping_add(GOLDEN))))
     }
 }
 
-/// The numbers of one ray at one stage.
+/// Random numbers of one ray at one stage.
 ///
-/// A stage draws by event: a decision that it takes for a ray, counted by the stage from 0. The same event of the same ray
-/// gives the same numbers whenever it is asked, in a batch of any size, and whoever else is in it. Over the samples of a pixel
-/// (forward: over all paths) each event's numbers are spread as evenly as those of the pupil.
+/// A stage draws by event. An event is a decision that the stage makes for a ray; the stage counts its events from 0. The same
+/// event of the same ray always gives the same numbers, whatever the size of the batch and the other rays in it. Over the
+/// samples of a pixel (forward: over all paths), the numbers of each event are spread as evenly as those of the pupil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayNumbers {
     kind: Kind,
@@ -50,21 +69,21 @@ pub struct RayNumbers {
 }
 
 impl RayNumbers {
-    /// One number in [0, 1).
+    /// Returns one number in [0, 1) for an event.
     #[must_use]
     pub fn number(&self, event: u32) -> f64 {
         self.coordinate(event, 0)
     }
 
-    /// Two numbers in [0, 1) that fill the square evenly. The first is [`RayNumbers::number`] of the same event.
+    /// Returns two numbers in [0, 1) that fill the square evenly. The first is [`RayNumbers::number`] of the same event.
     #[must_use]
     pub fn pair(&self, event: u32) -> [f64; 2] {
         [self.coordinate(event, 0), self.coordinate(event, 1)]
     }
 
-    /// A generator for code that uses `rand` or `rand_distr`: as many numbers as it likes, independent of each other and of
-    /// those of other events, rays and stages. They have no strata, so [`RayNumbers::pair`] gives less noise where one or two
-    /// numbers do.
+    /// Returns a generator for code that uses `rand` or `rand_distr`. It gives any amount of numbers, independent of each other
+    /// and of those of other events, rays and stages. They are not stratified, so [`RayNumbers::pair`] gives less noise where
+    /// one or two numbers are enough.
     ///
     /// ```
     /// use rand_distr::{Distribution, Poisson};
@@ -105,7 +124,7 @@ impl RayNumbers {
     }
 }
 
-/// What the stage at work may draw, for the rays of a batch.
+/// Random numbers that the current stage may draw for the rays of a batch.
 #[derive(Debug)]
 pub struct StageNumbers<'a> {
     kind: Option<Kind>,
@@ -119,7 +138,7 @@ impl StageNumbers<'_> {
         Self { kind: None, stage: StageKey(0), streams: &mut [], samples: &mut [] }
     }
 
-    /// The numbers of ray `i`; `None` where there are none, as in drawings and in the search for focus.
+    /// Returns the numbers of ray `i`; `None` if rays have no numbers, as in drawings and in the search for focus.
     #[inline]
     #[must_use]
     pub fn of(&self, i: usize) -> Option<RayNumbers> {
@@ -127,7 +146,7 @@ impl StageNumbers<'_> {
         Some(RayNumbers { kind: self.kind?, key, sample: self.samples[i] })
     }
 
-    /// Moves ray `from` to `to`.
+    /// Moves the numbers of ray `from` to ray `to`.
     #[inline(always)]
     pub(crate) fn keep(&mut self, from: usize, to: usize) {
         if let (Some(stream), Some(sample)) = (self.streams.get(from).copied(), self.samples.get(from).copied()) {
@@ -139,10 +158,10 @@ impl StageNumbers<'_> {
 /// The columns that a batch carries for [`StageNumbers`].
 #[derive(Clone, Debug)]
 pub(crate) struct RayColumns {
-    /// `None` until the rays have their places.
+    /// Kind of numbers; `None` until the rays have their places.
     pub kind: Option<Kind>,
     pub stage: StageKey,
-    /// Seed, estimator and stream in one.
+    /// Hash of seed, estimator and stream.
     streams: Column<u64>,
     samples: Column<u64>,
 }

@@ -1,10 +1,10 @@
-//! A node on a walk through its tree, with the way to it.
+//! A node on a walk through its tree, with the path to it.
 
 use super::fault::Fault;
 use super::node::Node;
 use super::path::{Step, joined};
 
-/// A node, the step that led to it, and the node before it. Copied freely: a path is only written out for a fault.
+/// A node, the step that led to it, and the node before it. It is copied freely; the path is only written out for a fault.
 #[derive(Clone, Copy)]
 pub(super) struct At<'n, 'p> {
     pub node: &'n Node,
@@ -22,7 +22,7 @@ impl<'n, 'p> At<'n, 'p> {
         At { node, prefix: self.prefix, way: Some((step, self)) }
     }
 
-    /// The key under which it stands, if it has one.
+    /// Key of the node, if it has one.
     pub(super) fn key(&self) -> Option<&'n str> {
         match self.way {
             Some((Step::Key(key), _)) => Some(key),
@@ -35,7 +35,7 @@ impl<'n, 'p> At<'n, 'p> {
         self.way.map_or_else(|| self.prefix.to_owned(), |(step, before)| joined(&before.path(), step))
     }
 
-    /// A fault here, in words of which a line that starts with `hint: ` is the hint.
+    /// Creates a fault at this node. A line of `words` that starts with `hint: ` becomes the hint.
     pub(super) fn fault(&self, words: &str) -> Fault {
         let (message, hint) =
             words.split_once("\nhint: ").map_or((words, None), |(m, hint)| (m, Some(hint.to_owned())));

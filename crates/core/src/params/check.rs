@@ -1,7 +1,8 @@
-//! A tree held against the schema of a type: all faults in one pass, each at its token.
+//! Check of a tree against the schema of a type: all faults in one pass, each at its token.
 //!
-//! Of JSON Schema it knows what `schemars` writes of parameters: types, words, limits, keys, lists, alternatives. A number may stand
-//! where a text is wanted (`format: 135`), and `x-quantity` makes a text with a unit a number, so that limits hold for both.
+//! The check knows the part of JSON Schema that `schemars` writes for parameters: types, words, limits, keys, lists,
+//! alternatives. A number may stand where a text is wanted (`format: 135`), and `x-quantity` makes a text with a unit a number,
+//! so that limits hold for both.
 
 use super::at::At;
 use super::fault::{Fault, Faults};
@@ -15,10 +16,10 @@ use crate::quantity::{Form, Limits, Reading};
 use serde_json::Value as Schema;
 use std::sync::Arc;
 
-/// Most faults that one map reports.
+/// Largest number of faults that one map reports.
 const MOST_FAULTS: usize = 100;
 
-/// What helps where a key has no value, in a file or on the command line.
+/// Returns the hint for a key without a value, in a file or on the command line.
 fn no_value(node: &Node) -> String {
     let before = node.file.text.get(..node.span.offset).unwrap_or("");
     if node.file.is_argument() && before.trim_end().ends_with('=') {
@@ -28,7 +29,7 @@ fn no_value(node: &Node) -> String {
     }
 }
 
-/// Everything in which a tree does not keep to a schema, in the order of the file.
+/// Returns everything in which a tree violates a schema, in the order of the file.
 pub(super) fn check(at: &At<'_, '_>, schema: &Schema) -> Result<(), Faults> {
     let mut check = Check { root: schema, faults: Vec::new() };
     check.value(at, schema);
@@ -42,12 +43,12 @@ pub(super) fn check(at: &At<'_, '_>, schema: &Schema) -> Result<(), Faults> {
 }
 
 struct Check<'s> {
-    /// Where references lead.
+    /// Schema in which references are looked up.
     root: &'s Schema,
     faults: Vec<Fault>,
 }
 
-/// What a schema lists under a keyword.
+/// Returns the list that a schema has under a keyword.
 fn list<'s>(schema: &'s Schema, keyword: &str) -> &'s [Schema] {
     schema.get(keyword).and_then(Schema::as_array).map_or(&[], Vec::as_slice)
 }
@@ -64,12 +65,12 @@ fn has_type(schema: &Schema, name: &str) -> bool {
     schema.get("type").is_some_and(|t| t == name || t.as_array().is_some_and(|all| all.iter().any(|t| t == name)))
 }
 
-/// The ways in which a value may be written, if there are several.
+/// Returns the alternatives for a value, if there are several.
 fn ways(schema: &Schema) -> impl Iterator<Item = &Schema> {
     list(schema, "anyOf").iter().chain(list(schema, "oneOf"))
 }
 
-/// The words of a closed list; `None` where other values are allowed too.
+/// Returns the words of a closed list; `None` if other values are allowed too.
 fn words(schema: &Schema) -> Option<Vec<&str>> {
     if let Some(word) = schema.get("const").and_then(Schema::as_str) {
         return Some(vec![word]);
@@ -85,7 +86,7 @@ fn has_only_null(schema: &Schema) -> bool {
     schema.get("type").is_some_and(|t| t == "null")
 }
 
-/// What a schema calls a value.
+/// Returns the names that a schema has for the type of a value.
 fn kinds(value: &Value) -> &'static [&'static str] {
     match value {
         Value::Null => &["null"],
@@ -147,7 +148,7 @@ impl<'s> Check<'s> {
             || ways(schema).any(|way| self.allows_nothing(self.resolved(way)))
     }
 
-    /// `found ..., expected ...`, with what usually helps.
+    /// Reports `found ..., expected ...`, with a hint that usually helps.
     fn mismatch(&mut self, at: &At<'_, '_>, expected: &str, hint: Option<String>) {
         let text = match &at.node.value {
             Value::String(text) => Some(text),
@@ -189,15 +190,15 @@ impl<'s> Check<'s> {
         }
     }
 
-    /// One of several ways: the only one of the node's kind, or that with the fewest faults.
+    /// Checks a value that has several alternatives: the only one of the node's type, or the one with the fewest faults.
     fn one_of(&mut self, at: &At<'_, '_>, ways: Vec<&'s Schema>) {
         let of_kind = |names| ways.iter().copied().filter(|way| self.fits(at.node, way, names)).collect::<Vec<_>>();
         let mut fitting = of_kind(kinds(&at.node.value));
         if fitting.is_empty() && matches!(at.node.value, Value::Number(_)) {
-            // Its spelling.
+            // A number may stand for its spelling.
             fitting = of_kind(&["string"]);
         }
-        // Of maps that want one key each, the key is a choice.
+        // If each alternative is a map with one required key, that key is a choice.
         let one_key = |way: &&'s Schema| match texts(self.resolved(way), "required")[..] {
             [key] => Some(key),
             _ => None,
@@ -211,13 +212,13 @@ impl<'s> Check<'s> {
             self.unknown(&at.child(Step::Key(&key.text), node), key, at.node, &known);
             return;
         }
-        // Of a number that is wrong in each way, the quantity is told and not the word.
+        // If a number is wrong in each way, the message is about the quantity, not the word.
         fitting.sort_by_key(|way| words(self.resolved(way)).is_some());
         let mut best: Option<Vec<Fault>> = None;
         for way in &fitting {
             let mut inner = Check { root: self.root, faults: Vec::new() };
             inner.value(at, way);
-            // A word that was nearly written was meant.
+            // A word that is nearly right is the one that was meant.
             let near = |words: Vec<&str>| at.node.as_str().is_some_and(|text| nearest(text, words).is_some());
             let is_meant = words(self.resolved(way)).is_some_and(near);
             if is_meant || best.as_ref().is_none_or(|best| inner.faults.len() < best.len()) {
@@ -254,7 +255,7 @@ impl<'s> Check<'s> {
         }
     }
 
-    /// Whether a node may be meant for a schema that allows values of these types.
+    /// Returns whether a node may be meant for a schema that allows values of these types.
     fn fits(&self, node: &Node, schema: &'s Schema, types: &[&str]) -> bool {
         let schema = self.resolved(schema);
         let scalar = matches!(node.value, Value::Number(_) | Value::String(_));
@@ -264,7 +265,7 @@ impl<'s> Check<'s> {
             || ways(schema).any(|way| self.fits(node, way, types))
     }
 
-    /// A schema in words.
+    /// Describes a schema in words.
     fn form(&self, schema: &'s Schema) -> String {
         let schema = self.resolved(schema);
         if let Some(words) = words(schema) {
@@ -320,7 +321,7 @@ impl<'s> Check<'s> {
         let text = shown(&number.text);
         match Exact::of(&number.text) {
             Exact::Is(value) if (least..=most).contains(&value) => {}
-            // A version.
+            // A version number: only one value is allowed.
             _ if least == most => {
                 let key = at.key().unwrap_or("it");
                 self.say(at, &format!("unknown value {text} for `{key}`\nhint: this program reads `{key}: {least}`"));
@@ -430,7 +431,7 @@ impl<'s> Check<'s> {
         }
     }
 
-    /// Reports an unknown key; gives the key that was meant, if it is clear.
+    /// Reports an unknown key; returns the key that was meant, if it is clear.
     fn unknown<'f>(&mut self, at: &At<'_, '_>, key: &Key, map: &Node, fields: &[&'f str]) -> Option<&'f str> {
         let free = fields.iter().copied().filter(|field| map.get(field).is_none());
         let near = nearest(&key.text, free);
@@ -448,7 +449,7 @@ impl<'s> Check<'s> {
     }
 }
 
-/// How to write a list of `len` values that was written as a text, such as `960x640`.
+/// Returns how to write a list of `len` values that was written as a text, such as `960x640`.
 fn list_hint(text: &str, len: usize) -> String {
     let parts: Vec<&str> =
         text.split(['x', 'X', '\u{d7}', '*', ',', ';', '/', ' ']).filter(|p| !p.is_empty()).collect();
@@ -459,7 +460,7 @@ fn list_hint(text: &str, len: usize) -> String {
     }
 }
 
-/// What a key that cannot be one was meant to be: a decimal comma within braces, an `=` in place of the colon.
+/// Returns what an impossible key was meant to be: a decimal comma within braces, an `=` in place of the colon.
 fn slip(key: &Key, value: &Node, fields: &[&str]) -> Option<String> {
     if !matches!(value.value, Value::Null) {
         return None;

@@ -7,43 +7,44 @@ use std::sync::Arc;
 /// One fault: what was found and expected, where, and what to write instead.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// What is wrong, on one line.
+    /// Message that says what is wrong, on one line.
     pub message: String,
-    /// Where; `None` if it has no place, such as a missing file.
+    /// Place of the fault; `None` if it has none, as for a missing file.
     pub place: Option<(Arc<SourceFile>, Span)>,
     /// Path of the key, such as `source.color.R` or `surfaces[3].radius`; may be empty.
     pub path: String,
-    /// What to write instead, or what to do.
+    /// Hint: what to write instead, or what to do.
     pub hint: Option<String>,
 }
 
 impl Fault {
-    /// A fault without a place.
+    /// Creates a fault without a place.
     #[must_use]
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), place: None, path: String::new(), hint: None }
     }
 
-    /// The same with a hint.
+    /// Adds a hint to the fault.
     #[must_use]
     pub fn hint(self, hint: impl Into<String>) -> Self {
         Self { hint: Some(hint.into()), ..self }
     }
 
-    /// The same at a place.
+    /// Places the fault in a file.
     #[must_use]
     pub fn at(self, file: Arc<SourceFile>, span: Span) -> Self {
         Self { place: Some((file, span)), ..self }
     }
 
-    /// The same with the path of the key.
+    /// Sets the path of the key.
     #[must_use]
     pub fn path(self, path: impl Into<String>) -> Self {
         Self { path: path.into(), ..self }
     }
 
-    /// The same at a part of the text that it is about: `len` characters from character `at` (from 0) of `text`, which stands
-    /// where the fault is. Where that cannot be found in the file, as on the command line, the message says it.
+    /// Narrows the fault to a part of the text that it is about: `len` characters from character `at` (from 0) of `text`, which
+    /// stands where the fault is. If that text cannot be found in the file, as on the command line, the message states the
+    /// character.
     #[must_use]
     pub fn within(mut self, text: &str, at: usize, len: usize) -> Self {
         let offset_of = |character: usize| text.char_indices().nth(character).map_or(text.len(), |(offset, _)| offset);
@@ -65,7 +66,7 @@ impl Fault {
         self
     }
 
-    /// Its place for display: `file:line:column`, or the command-line argument.
+    /// Formats the place for display: `file:line:column`, or the command-line argument.
     #[must_use]
     pub fn place_text(&self) -> Option<String> {
         self.place.as_ref().map(|(file, span)| {
@@ -75,7 +76,7 @@ impl Fault {
 }
 
 impl fmt::Display for Fault {
-    /// One line: `file:line:column: message (hint)`.
+    /// Writes one line: `file:line:column: message (hint)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(place) = self.place_text() {
             write!(f, "{place}: ")?;
@@ -95,40 +96,40 @@ impl std::error::Error for Fault {}
 pub struct Faults(pub Vec<Fault>);
 
 impl Faults {
-    /// No faults yet.
+    /// Creates an empty list of faults.
     #[must_use]
     pub const fn new() -> Self {
         Self(Vec::new())
     }
 
-    /// Adds one.
+    /// Adds one fault to the list.
     pub fn push(&mut self, fault: Fault) {
         self.0.push(fault);
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no faults.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// How many there are.
+    /// Number of faults in the list.
     #[must_use]
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Iterates over them.
+    /// Iterates over the faults in order.
     pub fn iter(&self) -> std::slice::Iter<'_, Fault> {
         self.0.iter()
     }
 
-    /// The value of a result, if it has one; its faults are kept here, so that the next part can be checked too.
+    /// Returns the value of a result, if it has one. Its faults are kept here, so that the next part can be checked too.
     pub fn take<T>(&mut self, result: Result<T, impl Into<Self>>) -> Option<T> {
         result.map_err(|faults| self.0.extend(faults.into().0)).ok()
     }
 
-    /// The value, if nothing is wrong.
+    /// Returns the value, if there are no faults.
     ///
     /// # Errors
     /// These faults, if there are any.
@@ -174,7 +175,7 @@ impl<'a> IntoIterator for &'a Faults {
 }
 
 impl fmt::Display for Faults {
-    /// One line a fault.
+    /// Writes one line per fault.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, fault) in self.0.iter().enumerate() {
             if i > 0 {

@@ -11,25 +11,25 @@ pub const MAX_DEPTH: usize = 64;
 /// A number as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
-    /// Its value; infinite if it is too large for an f64.
+    /// Value of the number; infinite if it is too large for an f64.
     pub value: f64,
-    /// Its spelling, so that integers keep all digits and a name such as `135` stays a name.
+    /// Spelling, so that integers keep all digits and a name such as `135` stays a name.
     pub text: String,
 }
 
 /// The key of a map.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Key {
-    /// Its text.
+    /// Text of the key.
     pub text: String,
-    /// Its place, in the same file as its value.
+    /// Place of the key, in the same file as its value.
     pub span: Span,
 }
 
 /// The content of a node.
 #[derive(Clone, Debug)]
 pub enum Value {
-    /// Nothing, `null` or `~`.
+    /// No value: nothing is written, or `null` or `~`.
     Null,
     /// `true` or `false`.
     Bool(bool),
@@ -44,8 +44,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// The value of an unquoted scalar by the core schema of YAML 1.2 (section 10.3.2), with strict booleans: only `true` and
-    /// `false`.
+    /// Reads an unquoted scalar by the core schema of YAML 1.2 (section 10.3.2), with strict booleans: only `true` and `false`.
     #[must_use]
     pub fn from_plain(text: &str) -> Self {
         match text {
@@ -60,7 +59,7 @@ impl Value {
     }
 }
 
-/// The value of a number's spelling by the core schema; infinite on overflow.
+/// Reads the spelling of a number by the core schema; infinite on overflow.
 fn plain_number(text: &str) -> Option<f64> {
     if let Some(digits) = text.strip_prefix("0x") {
         return radix(digits, 16);
@@ -92,28 +91,28 @@ fn radix(digits: &str, base: u32) -> Option<f64> {
 /// A value with its place.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// Its content.
+    /// Content of the node.
     pub value: Value,
-    /// Where it was written.
+    /// Place where the node was written.
     pub span: Span,
-    /// The file that it was written in.
+    /// File in which the node was written.
     pub file: Arc<SourceFile>,
 }
 
 impl Node {
-    /// A node.
+    /// Creates a node from a value and its place.
     #[must_use]
     pub fn new(value: Value, span: Span, file: Arc<SourceFile>) -> Self {
         Self { value, span, file }
     }
 
-    /// The value under a key, if this is a map that has it.
+    /// Returns the value under a key, if this is a map that has it.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Node> {
         self.entry(key).map(|(_, node)| node)
     }
 
-    /// The key and the value under it, if this is a map that has it.
+    /// Returns the key and the value under it, if this is a map that has it.
     #[must_use]
     pub fn entry(&self, key: &str) -> Option<(&Key, &Node)> {
         match &self.value {
@@ -122,7 +121,7 @@ impl Node {
         }
     }
 
-    /// An element of a list.
+    /// Returns an element of a list, if this is a list that has it.
     #[must_use]
     pub fn element(&self, index: usize) -> Option<&Node> {
         match &self.value {
@@ -131,7 +130,7 @@ impl Node {
         }
     }
 
-    /// Its text, if it is one; for a number, its spelling.
+    /// Returns the text of a string, or the spelling of a number.
     #[must_use]
     pub fn as_str(&self) -> Option<&str> {
         match &self.value {
@@ -141,19 +140,19 @@ impl Node {
         }
     }
 
-    /// Whether it was written in quotes.
+    /// Returns whether the value was written in quotes.
     #[must_use]
     pub fn is_quoted(&self) -> bool {
         matches!(self.file.text.as_bytes().get(self.span.offset), Some(b'"' | b'\'')) && self.span.len > 1
     }
 
-    /// The place that messages about it point to: the part of it on its first line.
+    /// Place that messages about this node point to: its part on the first line.
     #[must_use]
     pub fn place(&self) -> (Arc<SourceFile>, Span) {
         (Arc::clone(&self.file), self.span.first_line(&self.file.text))
     }
 
-    /// A fault at this place.
+    /// Creates a fault at this place.
     #[must_use]
     pub fn fault(&self, message: impl Into<String>) -> Fault {
         Fault { place: Some(self.place()), ..Fault::new(message) }

@@ -8,7 +8,7 @@ use super::reader::{self, Readable};
 use super::text::found;
 use crate::names::shown;
 
-/// The key that names a stage.
+/// Key that names the kind of a stage.
 const KIND: &str = "kind";
 
 /// The parameters of one stage: a map without its `kind`, with its places and its path in the file.
@@ -21,15 +21,15 @@ pub struct Params {
 }
 
 impl Params {
-    /// The parameters of a stage at a path: a map with or without `kind`, or just the name of a kind.
+    /// Creates the parameters of a stage at a path. The node is a map with or without `kind`, or just the name of a kind.
     ///
     /// # Errors
-    /// It is neither, or its `kind` is not a name.
+    /// A fault if the node is neither, or if its `kind` is not a name.
     pub fn stage(node: Node, path: &str) -> Result<Self, Faults> {
         Self::kinded(node, path, KIND)
     }
 
-    /// The same where another key names the kind, such as the `shape` of an aperture.
+    /// Creates the parameters of a stage if another key than `kind` names the kind, such as the `shape` of an aperture.
     ///
     /// # Errors
     /// As [`Params::stage`].
@@ -59,10 +59,10 @@ impl Params {
         Ok(Self { node, kind, path: path.to_owned() })
     }
 
-    /// The parameters of something that has no kinds, such as a file or a section. `kind` is an ordinary key here.
+    /// Creates the parameters of something that has no kinds, such as a file or a section. `kind` is an ordinary key here.
     ///
     /// # Errors
-    /// It is not a map.
+    /// A fault if the node is not a map.
     pub fn section(node: Node, path: &str) -> Result<Self, Faults> {
         match &node.value {
             Value::Map(_) => Ok(Self { node, kind: None, path: path.to_owned() }),
@@ -78,17 +78,17 @@ impl Params {
         }
     }
 
-    /// The same kind with another map, at another path.
+    /// Returns parameters of the same kind, with another map at another path.
     pub(super) fn with_node(&self, node: Node, path: &str) -> Self {
         Self { node, kind: self.kind.clone(), path: path.to_owned() }
     }
 
-    /// The same map, of no kind.
+    /// Returns the same map without its kind.
     pub(super) fn without_kind(self) -> Self {
         Self { kind: None, ..self }
     }
 
-    /// The same without the keys whose value is null.
+    /// Returns these parameters without the keys whose value is null.
     #[must_use]
     pub fn without_nulls(&self) -> Self {
         let mut node = self.node.clone();
@@ -98,31 +98,31 @@ impl Params {
         Self { node, ..self.clone() }
     }
 
-    /// The `kind`, if one is named.
+    /// Name of the kind, if one is given.
     #[must_use]
     pub fn kind(&self) -> Option<&str> {
         self.kind.as_ref().and_then(|(_, name)| name.as_str())
     }
 
-    /// Its path in the file, such as `source` or `surfaces[3]`; empty for the file itself.
+    /// Path of the map in the file, such as `source` or `surfaces[3]`; empty for the file itself.
     #[must_use]
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// The map, without `kind`.
+    /// Returns the map, without `kind`.
     #[must_use]
     pub fn node(&self) -> &Node {
         &self.node
     }
 
-    /// The value under a key.
+    /// Returns the value under a key, if the key is there.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Node> {
         self.node.get(key)
     }
 
-    /// The typed parameters.
+    /// Reads the map as typed parameters.
     ///
     /// # Errors
     /// Everything that is wrong with this map, in one go: unknown keys, wrong types, units of another dimension,
@@ -131,8 +131,8 @@ impl Params {
         reader::parse(&self.node, &self.path)
     }
 
-    /// A fault placed at the value of a key (`radius`, `color.R`, `blades[2]`), or at the map if there is no such key. For what a
-    /// type cannot express, such as combinations of keys.
+    /// Creates a fault placed at the value of a key (`radius`, `color.R`, `blades[2]`), or at the map if there is no such key.
+    /// For conditions that a type cannot express, such as combinations of keys.
     #[must_use]
     pub fn fault(&self, key: &str, message: impl Into<String>) -> Fault {
         let node = match &self.kind {
@@ -142,14 +142,14 @@ impl Params {
         node.fault(message).path(join(&self.path, key))
     }
 
-    /// A fault placed at the map itself.
+    /// Creates a fault placed at the map itself.
     #[must_use]
     pub fn fault_here(&self, message: impl Into<String>) -> Fault {
         self.node.fault(message).path(&self.path)
     }
 }
 
-/// A path of keys behind another one.
+/// Appends a path of keys to another one.
 fn join(path: &str, key: &str) -> String {
     match steps(key) {
         Ok(steps) => steps.into_iter().fold(path.to_owned(), |path, step| joined(&path, step)),
@@ -158,7 +158,7 @@ fn join(path: &str, key: &str) -> String {
 }
 
 impl Node {
-    /// A value of this type, such as the whole of a file.
+    /// Reads this node as a value of type `T`, such as the whole of a file.
     ///
     /// # Errors
     /// Everything that is wrong with it, in one go.

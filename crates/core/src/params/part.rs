@@ -1,4 +1,4 @@
-//! A field that keeps its node: the map of a nested stage, or another part that is read for itself.
+//! Fields that keep their node: the map of a nested stage, or another part that is read later.
 
 use super::fault::{Fault, Faults};
 use super::node::Node;
@@ -21,33 +21,33 @@ pub struct StageNode {
 }
 
 impl StageNode {
-    /// A node with its path in the file.
+    /// Creates a part from a node and its path in the file.
     #[must_use]
     pub fn new(node: Node, path: impl Into<String>) -> Self {
         Self { node, path: path.into() }
     }
 
-    /// What was written.
+    /// Returns the node as it was written.
     #[must_use]
     pub fn node(&self) -> &Node {
         &self.node
     }
 
-    /// Its path in the file, such as `source.color`.
+    /// Path of the node in the file, such as `source.color`.
     #[must_use]
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// As the parameters of a stage: a map with or without `kind`, or just the name of a kind.
+    /// Reads the node as the parameters of a stage: a map with or without `kind`, or just the name of a kind.
     ///
     /// # Errors
-    /// It is neither.
+    /// A fault if it is neither.
     pub fn params(&self) -> Result<Params, Faults> {
         Params::stage(self.node.clone(), &self.path)
     }
 
-    /// As a value of a known type.
+    /// Reads the node as a value of a known type.
     ///
     /// # Errors
     /// Everything that is wrong with it.
@@ -55,7 +55,7 @@ impl StageNode {
         reader::parse(&self.node, &self.path)
     }
 
-    /// A fault placed here.
+    /// Creates a fault placed at this node.
     #[must_use]
     pub fn fault(&self, message: impl Into<String>) -> Fault {
         self.node.fault(message).path(&self.path)
@@ -68,14 +68,14 @@ impl<'de> Deserialize<'de> for StageNode {
     }
 }
 
-/// A part of the form `T` that is kept as written and read later: the schema is that of `T`, and a fault in it is found when it is
-/// read. Of a nested stage, `Part<StageOf<dyn ColorModel>>`, see [`crate::registry::StageOf`].
+/// A part of the form `T` that is kept as written and read later. Its schema is that of `T`, and a fault in it is found when it
+/// is read. A nested stage is a `Part<StageOf<dyn ColorModel>>`; see [`crate::registry::StageOf`].
 ///
-/// It does not work inside serde's untagged or flattened types, which buffer values without their places.
+/// A part does not work inside serde's untagged or flattened types, which buffer values without their places.
 pub struct Part<T>(StageNode, PhantomData<fn() -> T>);
 
 impl<T> Part<T> {
-    /// The part as its type.
+    /// Reads the part as its type.
     ///
     /// # Errors
     /// Everything that is wrong with it.
@@ -129,7 +129,7 @@ impl<T: JsonSchema> JsonSchema for Part<T> {
     }
 }
 
-/// Any value: what is there is decided later.
+/// Any value; its meaning is decided later.
 impl JsonSchema for StageNode {
     fn inline_schema() -> bool {
         true

@@ -6,23 +6,23 @@ use super::params::Params;
 use std::sync::Arc;
 
 impl Params {
-    /// The stage under a key, if the key is there.
+    /// Returns the stage under a key, if the key is there.
     ///
     /// # Errors
-    /// What is there cannot be a stage.
+    /// A fault if the value cannot be a stage.
     pub fn stage_at(&self, key: &str) -> Result<Option<Self>, Faults> {
         self.get(key).map(|node| Self::stage(node.clone(), &self.path_of(key))).transpose()
     }
 
-    /// A stage that the scene does not mention: the registry's default kind with its default parameters. Its faults are placed at
-    /// this map.
+    /// Returns the parameters of a stage that the scene does not mention: the registry's default kind with its default
+    /// parameters. Its faults are placed at this map.
     #[must_use]
     pub fn nothing_said(&self, key: &str) -> Self {
         let map = Node::new(Value::Map(Vec::new()), self.node().span, Arc::clone(&self.node().file));
         self.with_node(map, &self.path_of(key)).without_kind()
     }
 
-    /// The parameters under `keys`, and the rest (with the kind).
+    /// Splits the map into the parameters under `keys` and the rest. Both keep the kind.
     #[must_use]
     pub fn split(&self, keys: &[impl AsRef<str>]) -> (Self, Self) {
         let (mut inside, mut outside) = (Vec::new(), Vec::new());

@@ -16,7 +16,7 @@ pub enum Step<'a> {
     Index(usize),
 }
 
-/// The steps of a path such as `surfaces[3].radius`.
+/// Splits a path such as `surfaces[3].radius` into its steps.
 ///
 /// # Errors
 /// What is wrong with the path.
@@ -46,7 +46,7 @@ pub fn steps(path: &str) -> Result<Vec<Step<'_>>, String> {
     Ok(steps)
 }
 
-/// `path` with one more step.
+/// Returns `path` with one more step.
 pub(super) fn joined(path: &str, step: Step<'_>) -> String {
     match step {
         Step::Key(key) if path.is_empty() => shown(key),
@@ -56,7 +56,7 @@ pub(super) fn joined(path: &str, step: Step<'_>) -> String {
 }
 
 impl Node {
-    /// The node at a path, if there is one; `None` also for an ill-formed path.
+    /// Returns the node at a path, if there is one; `None` also for an ill-formed path.
     #[must_use]
     pub fn at_path(&self, path: &str) -> Option<&Node> {
         steps(path).ok()?.into_iter().try_fold(self, Node::step)
@@ -87,7 +87,7 @@ impl Node {
     pub fn set_path(&mut self, path: &str, node: Node) -> Result<(), Fault> {
         let steps = steps(path).map_err(|message| node.fault(message))?;
         let file = Arc::clone(&node.file);
-        // The key that this writes stands in the argument; the value behind it has the exact place.
+        // A key that is created points to the argument; the value behind it has its exact place.
         let whole = Span { len: file.text.find('=').unwrap_or(0), ..Span::default() };
         let made = if file.is_argument() { whole } else { node.span };
         self.put(&steps, "", made, node).map_err(|message| {
@@ -96,7 +96,7 @@ impl Node {
         })
     }
 
-    /// Puts a node where the steps lead, `path` being that of this one. What is made stands at `made`.
+    /// Puts a node where the steps lead; `path` is the path of this node. New keys and maps get the place `made`.
     fn put(&mut self, steps: &[Step<'_>], path: &str, made: Span, node: Node) -> Result<(), String> {
         let Some((&step, rest)) = steps.split_first() else {
             *self = node;
@@ -111,7 +111,7 @@ impl Node {
                 Some((key, value)) => {
                     value.put(rest, &inner, made, node)?;
                     if rest.is_empty() {
-                        // A key stands in the file of its value.
+                        // A key has the same file as its value.
                         key.span = made;
                     }
                 }
@@ -134,7 +134,7 @@ impl Node {
         Ok(())
     }
 
-    /// A node with the maps and lists around it that the steps to it want.
+    /// Wraps a node in the maps and lists that the steps to it need.
     fn around(node: Self, steps: &[Step<'_>], path: &str, made: Span) -> Result<Self, String> {
         let Some((&step, rest)) = steps.split_first() else { return Ok(node) };
         let file = Arc::clone(&node.file);

@@ -24,7 +24,7 @@ impl Default for Span {
 }
 
 impl Span {
-    /// The part of it on its first line; messages point there when a value spans several lines.
+    /// Returns the part of the span on its first line; messages point there if a value spans several lines.
     #[must_use]
     pub fn first_line(self, text: &str) -> Self {
         let covered = text.get(self.offset..).unwrap_or("");
@@ -37,27 +37,27 @@ impl Span {
 /// A text that values were read from: a file or an argument.
 #[derive(Clone, PartialEq, Eq)]
 pub struct SourceFile {
-    /// Its name in messages: a path, `bundled:...`, or the argument `--set path=value`.
+    /// Name in messages: a path, `bundled:...`, or the argument `--set path=value`.
     pub name: String,
-    /// Content.
+    /// Content of the file or argument.
     pub text: String,
 }
 
 impl SourceFile {
-    /// A named text.
+    /// Creates a text with its name.
     #[must_use]
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self { name: name.into(), text: text.into() }
     }
 
-    /// Whether it is an argument of the command line instead of a file; then messages give no line and column.
+    /// Returns whether this text is an argument of the command line instead of a file; messages then give no line and column.
     #[must_use]
     pub fn is_argument(&self) -> bool {
         self.name.starts_with("--")
     }
 
-    /// The folder that relative paths in it start from: empty (the working folder) for an argument, `None` for a text without a
-    /// folder on disk.
+    /// Folder that relative paths in the text start from: empty (the working folder) for an argument, `None` for a text without
+    /// a folder on disk.
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         if self.is_argument() {

@@ -1,4 +1,5 @@
-//! From a [`Node`] to a typed value: the tree is held against the schema of the type, then serde reads what is known to be right.
+//! Reading a typed value from a [`Node`]: the tree is checked against the schema of the type, then serde reads what is known to
+//! be right.
 
 use super::at::At;
 use super::check::check;
@@ -23,29 +24,30 @@ pub trait Readable: DeserializeOwned + JsonSchema + 'static {}
 
 impl<T: DeserializeOwned + JsonSchema + 'static> Readable for T {}
 
-/// Schemas by their types: to make one takes longer than to read a section by it, and a viewer reads a scene again at each change.
+/// Cache of schemas by type. Making a schema takes longer than reading a section with it, and a viewer reads a scene again at
+/// each change.
 static SCHEMAS: LazyLock<RwLock<HashMap<TypeId, Arc<serde_json::Value>>>> = LazyLock::new(RwLock::default);
 
-/// The schema of a type, with all that it holds in its place.
+/// Returns the schema of a type, with all subschemas inlined.
 fn schema<T: Readable>() -> Arc<serde_json::Value> {
     let of = TypeId::of::<T>();
     if let Some(known) = SCHEMAS.read().unwrap_or_else(PoisonError::into_inner).get(&of) {
         return Arc::clone(known);
     }
-    // Made while nothing is held: a type may ask for others.
+    // Made without holding the lock: a type may ask for other schemas.
     let settings = SchemaSettings::draft2020_12().with(|s| s.inline_subschemas = true);
     let made = Arc::new(settings.into_generator().into_root_schema_for::<T>().to_value());
     Arc::clone(SCHEMAS.write().unwrap_or_else(PoisonError::into_inner).entry(of).or_insert(made))
 }
 
-/// The keys of a map, for [`super::Params::split`].
+/// Returns the keys of the map of a type, for [`super::Params::split`].
 #[must_use]
 pub fn keys_of<T: Readable>() -> Vec<String> {
     let properties = schema::<T>().get("properties").and_then(serde_json::Value::as_object).cloned();
     properties.map_or_else(Vec::new, |all| all.into_iter().map(|(key, _)| key).collect())
 }
 
-/// A value from a node, or everything that is wrong with it. `prefix` is the path of the node.
+/// Reads a value from a node, or returns everything that is wrong with it. `prefix` is the path of the node.
 pub(super) fn parse<T: Readable>(node: &Node, prefix: &str) -> Result<T, Faults> {
     let at = At::root(node, prefix);
     check(&at, &schema::<T>())?;
@@ -59,8 +61,8 @@ pub(super) fn parse<T: Readable>(node: &Node, prefix: &str) -> Result<T, Faults>
 /// The name by which a field asks for the node itself.
 const NODE: &str = "spectra::node";
 
-/// The node that a deserializer stands at. serde hands over only plain values; of all types that cross it, an error alone may carry
-/// any other (its source), so the node comes as one.
+/// Returns the node that a deserializer stands at. serde hands over only plain values; of all types that cross it, only an
+/// error may carry any other type (as its source), so the node comes as an error.
 pub(super) fn node<'de, D: Deserializer<'de>>(deserializer: D) -> Result<StageNode, D::Error> {
     struct Refused;
 
@@ -91,7 +93,7 @@ impl fmt::Display for Handed {
 
 impl std::error::Error for Handed {}
 
-/// What stopped a reader.
+/// Reason why a reader stopped.
 #[derive(Debug)]
 struct ReadError(Box<Inner>);
 
@@ -136,7 +138,7 @@ impl Error for ReadError {
     }
 }
 
-/// The deserializer of a node that keeps to its schema. What goes wrong nevertheless is placed at the innermost node.
+/// Deserializer of a node that conforms to its schema. Any error that remains is placed at the innermost node.
 #[derive(Clone, Copy)]
 struct Reader<'de, 'p>(At<'de, 'p>);
 
@@ -173,7 +175,7 @@ impl<'de> Deserializer<'de> for Reader<'de, '_> {
         let read = match &self.0.node.value {
             Value::Null => visitor.visit_unit(),
             Value::Bool(value) => visitor.visit_bool(*value),
-            // Whole numbers keep all digits. The sign of -0 is one that only a float has.
+            // Whole numbers keep all digits; -0 is read as a float, since only a float keeps its sign.
             Value::Number(number) => match Exact::of(&number.text) {
                 Exact::Is(value) if value != 0 || !number.value.is_sign_negative() => {
                     match (u64::try_from(value), i64::try_from(value)) {

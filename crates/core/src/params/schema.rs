@@ -3,25 +3,25 @@
 use schemars::{Schema, json_schema};
 use serde_json::{Map, Value, json};
 
-/// The keyword of a schema at which a check stops: what is there is read later.
+/// Keyword of a schema at which a check stops, because the value there is read later.
 pub(super) const PART: &str = "x-part";
 
-/// One of several kinds of a map, as the schema of each.
+/// A map of one of several kinds, each with its own schema.
 pub struct Kinds<'a> {
-    /// The key that names the kind.
+    /// Key that names the kind.
     pub key: &'a str,
-    /// Names, each with the schema of a map without that key.
+    /// Names of the kinds, each with the schema of a map without that key.
     pub kinds: Vec<(&'a str, Schema)>,
-    /// The kind that is taken where none is named.
+    /// Kind that is used if none is named.
     pub default: Option<&'a str>,
-    /// Keys that every kind takes beside its own: the schema of a map.
+    /// Keys that every kind takes in addition to its own: the schema of a map.
     pub shared: Option<&'a Schema>,
-    /// Whether a kind's name alone, as a text, stands for it.
+    /// Whether the name of a kind alone, as a text, stands for it.
     pub by_name: bool,
 }
 
 impl Kinds<'_> {
-    /// The schema. It is made of `if` and `then`, not of alternatives, so that a fault is told about the kind that was meant.
+    /// Returns the schema. It is made of `if` and `then`, not of alternatives, so that faults refer to the kind that was meant.
     #[must_use]
     pub fn schema(&self) -> Schema {
         let names: Vec<&str> = self.kinds.iter().map(|(name, _)| *name).collect();
@@ -38,7 +38,7 @@ impl Kinds<'_> {
             }
             cases.push(json!({ "if": is(name), "then": whole }));
         }
-        // What it says of each kind is the first paragraph of the kind's own description.
+        // The description of each kind is the first paragraph of the kind's own description.
         let mut said = format!("Its {}.", self.key);
         for (name, own) in &self.kinds {
             if let Some(text) = own.get("description").and_then(Value::as_str) {
@@ -57,7 +57,7 @@ impl Kinds<'_> {
         schema
     }
 
-    /// A map with its kind, the kind's own keys and the shared ones.
+    /// Returns the schema of a map with its kind, the kind's own keys and the shared ones.
     fn whole(&self, name: &str, own: &Schema) -> Value {
         let description = own.get("description").cloned().unwrap_or_else(|| "".into());
         let mut properties = Map::new();

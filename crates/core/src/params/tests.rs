@@ -1,4 +1,4 @@
-//! What the tree walk does beyond single values, on trees made by hand.
+//! Tests of the tree walk beyond single values, on trees made by hand.
 
 use super::*;
 use schemars::JsonSchema;
@@ -23,7 +23,7 @@ fn list(elements: &[Node]) -> Node {
     node(Value::Seq(elements.to_vec()))
 }
 
-/// `path: message` of each fault.
+/// Returns `path: message` of each fault.
 fn said<T>(result: Result<T, Faults>) -> Vec<String> {
     let faults = result.err().unwrap_or_default();
     let mut said: Vec<String> = faults.iter().map(|fault| format!("{}: {}", fault.path, fault.message)).collect();

@@ -1,4 +1,4 @@
-//! What was found, in the words of a message.
+//! Descriptions of what was found, for messages.
 
 use super::node::{Node, Value};
 use crate::names::shown;

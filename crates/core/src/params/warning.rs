@@ -16,14 +16,14 @@ impl From<Fault> for Warning {
 }
 
 impl From<String> for Warning {
-    /// One without a place.
+    /// Creates a warning without a place.
     fn from(message: String) -> Self {
         Self(Fault::new(message))
     }
 }
 
 impl fmt::Display for Warning {
-    /// One line: `file:line:column: message (hint)`.
+    /// Writes one line: `file:line:column: message (hint)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)
     }
@@ -40,20 +40,20 @@ pub struct Warnings {
 /// sensor is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataEnd {
-    /// Where the table is named; the message is its name.
+    /// Place where the table is named; the message is its name.
     pub place: Fault,
     /// First and last wavelength of its rows, nm.
     pub measured_nm: [f64; 2],
 }
 
 impl Warnings {
-    /// None yet.
+    /// Creates a collector without any warnings.
     #[must_use]
     pub const fn new() -> Self {
         Self { all: RefCell::new(Vec::new()), ends: RefCell::new(Vec::new()) }
     }
 
-    /// Adds one, unless it already exists.
+    /// Adds a warning, unless it is already there.
     pub fn push(&self, warning: impl Into<Warning>) {
         let warning = warning.into();
         let mut all = self.all.borrow_mut();
@@ -62,13 +62,13 @@ impl Warnings {
         }
     }
 
-    /// The warnings added so far.
+    /// Returns the warnings added so far.
     #[must_use]
     pub fn all(&self) -> Vec<Warning> {
         self.all.borrow().clone()
     }
 
-    /// All warnings, in the order in which they were added.
+    /// Returns all warnings, in the order in which they were added.
     #[must_use]
     pub fn into_vec(self) -> Vec<Warning> {
         self.all.into_inner()
@@ -79,7 +79,7 @@ impl Warnings {
         self.ends.borrow_mut().push(end);
     }
 
-    /// The tables added so far.
+    /// Returns the tables added so far.
     #[must_use]
     pub fn ends(&self) -> Vec<DataEnd> {
         self.ends.borrow().clone()

@@ -11,13 +11,13 @@ use std::borrow::Cow;
 pub struct Whole<const MIN: u64, const MAX: u64>(u64);
 
 impl<const MIN: u64, const MAX: u64> Whole<MIN, MAX> {
-    /// The number, if it is within the range.
+    /// Returns the number, if it is within the range.
     #[must_use]
     pub const fn new(value: u64) -> Option<Self> {
         if MIN <= value && value <= MAX { Some(Self(value)) } else { None }
     }
 
-    /// A number known at compile time.
+    /// Creates a number that is known at compile time.
     ///
     /// # Panics
     /// If the number is outside the range.
@@ -27,19 +27,19 @@ impl<const MIN: u64, const MAX: u64> Whole<MIN, MAX> {
         Self(value)
     }
 
-    /// The number.
+    /// Returns the number as 64 bits.
     #[must_use]
     pub const fn get(self) -> u64 {
         self.0
     }
 
-    /// The number as a `usize`, clamped to the largest one that the machine has.
+    /// Returns the number as a `usize`, clamped to the largest one that the machine has.
     #[must_use]
     pub fn size(self) -> usize {
         usize::try_from(self.0).unwrap_or(usize::MAX)
     }
 
-    /// The number as 32 bits.
+    /// Returns the number as 32 bits.
     #[must_use]
     pub const fn get_u32(self) -> u32 {
         const { assert!(MAX <= u32::MAX as u64, "the range exceeds 32 bits") };
@@ -47,19 +47,19 @@ impl<const MIN: u64, const MAX: u64> Whole<MIN, MAX> {
     }
 }
 
-/// A spelling, read as a whole number.
+/// Result of reading a spelling as a whole number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Exact {
-    /// This number.
+    /// The spelling is this number.
     Is(i128),
-    /// Too large for 128 bits.
+    /// The number is too large for 128 bits.
     Beyond,
-    /// It has a fraction or is not a number.
+    /// The spelling has a fraction or is not a number.
     Not,
 }
 
 impl Exact {
-    /// The value of a number's spelling by the core schema of YAML: digits are read exactly, and `2.5e3` is 2500.
+    /// Reads the spelling of a number by the core schema of YAML: digits are read exactly, and `2.5e3` is 2500.
     pub(super) fn of(text: &str) -> Self {
         for (prefix, radix) in [("0x", 16), ("0o", 8)] {
             if let Some(digits) = text.strip_prefix(prefix) {
@@ -78,12 +78,12 @@ impl Exact {
         let (whole, fraction) = figure.split_once('.').unwrap_or((figure, ""));
         let digits = format!("{whole}{fraction}");
         let kept = digits.trim_end_matches('0');
-        // Its value is `significant` times ten to the power of `zeros`.
+        // The value is `significant` times ten to the power of `zeros`.
         let significant = kept.trim_start_matches('0');
         if significant.is_empty() {
             return Self::Is(0);
         }
-        // An exponent that i64 does not hold is beyond all digits that a file can have.
+        // An exponent that i64 cannot hold exceeds all digits that a file can have.
         let beyond = if exponent.starts_with('-') { i64::MIN / 2 } else { i64::MAX / 2 };
         let zeros = exponent.parse::<i64>().unwrap_or(beyond).clamp(i64::MIN / 2, i64::MAX / 2)
             + (digits.len() - kept.len()) as i64
@@ -125,7 +125,7 @@ impl<const MIN: u64, const MAX: u64> JsonSchema for Whole<MIN, MAX> {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let mut schema = json_schema!({"type": "integer", "minimum": MIN});
-        // The full range of 64 bits is no bound that a person has to know.
+        // Nobody has to know the full range of 64 bits.
         if MAX < u64::MAX {
             schema.insert("maximum".to_owned(), MAX.into());
         }
@@ -133,7 +133,7 @@ impl<const MIN: u64, const MAX: u64> JsonSchema for Whole<MIN, MAX> {
     }
 }
 
-/// The limits of a schema of whole numbers.
+/// Returns the limits of a schema of whole numbers.
 pub(super) fn limits_of(schema: &serde_json::Value) -> (i128, i128) {
     let bits =
         schema.get("format").and_then(|format| format.as_str()?.trim_start_matches(['u', 'i', 'n', 't']).parse().ok());

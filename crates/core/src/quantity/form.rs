@@ -1,4 +1,4 @@
-//! How a quantity is written: a bare number in a stated unit, or a text with a unit whose dimension is checked.
+//! The forms in which a quantity is written: a bare number in a stated unit, or a text with a unit whose dimension is checked.
 
 use super::limits::Limits;
 use super::units::{Dimension, Reading, Unit};
@@ -8,10 +8,10 @@ use serde_json::Value;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// Which signs a quantity may have.
+/// The signs that a quantity may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
-    /// Any.
+    /// Any sign.
     Any,
     /// Zero or more.
     NonNegative,
@@ -20,7 +20,7 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// The stricter of two.
+    /// Returns the stricter of two bounds.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -41,26 +41,26 @@ impl Bound {
 
 /// A typed quantity in a scene file. Its constants feed messages, documentation and schemas.
 pub trait Quantity: Copy {
-    /// What it measures.
+    /// Dimension that the quantity measures.
     const DIMENSION: Dimension;
-    /// What it is called, without an article.
+    /// Name of the quantity, without an article.
     const NOUN: &'static str = Self::DIMENSION.noun();
     /// The unit of a bare number; empty if it has none.
     const BARE_UNIT: &'static str;
-    /// An example of how to write it.
+    /// An example of how to write the quantity.
     const EXAMPLE: &'static str;
-    /// Which signs it may have.
+    /// Signs that the quantity may have.
     const BOUND: Bound = Bound::Any;
-    /// Whether it may be infinite (`inf`).
+    /// Whether the quantity may be infinite (`inf`).
     const INFINITY: bool = false;
 
-    /// From a number in [`Self::BARE_UNIT`] that obeys the bound.
+    /// Creates the quantity from a number in [`Self::BARE_UNIT`] that obeys the bound.
     fn from_bare(value: f64) -> Self;
 
-    /// Its number in [`Self::BARE_UNIT`].
+    /// Returns the number in [`Self::BARE_UNIT`].
     fn bare(self) -> f64;
 
-    /// From a number in any unit of the dimension.
+    /// Creates the quantity from a number in any unit of the dimension.
     #[must_use]
     fn from_unit(value: f64, unit: &Unit) -> Self {
         match Unit::find(Self::BARE_UNIT) {
@@ -89,7 +89,7 @@ pub trait Quantity: Copy {
     }
 }
 
-/// How a quantity is written and what is allowed: a [`Quantity`] with the limits of one key.
+/// The written form of a quantity and its limits: a [`Quantity`] with the limits of one key.
 #[derive(Clone, Copy)]
 pub(crate) struct Form<'a> {
     noun: &'a str,
@@ -102,11 +102,11 @@ pub(crate) struct Form<'a> {
 }
 
 impl<'a> Form<'a> {
-    /// What a schema made by [`super::schema_of`] says, perhaps with narrower limits.
+    /// Reads the form from a schema made by [`super::schema_of`], perhaps with narrower limits.
     pub(crate) fn of(schema: &'a Value) -> Option<Self> {
         let text = |key: &str| schema.get(key).and_then(Value::as_str);
         let (noun, unit) = (text("x-quantity")?, text("x-unit").unwrap_or_default());
-        // Only what is no number has a unit; per cent is written as one.
+        // A plain number has no dimension, although its empty unit is also that of ratios.
         let dimension = match Unit::find(unit) {
             Some(found) if noun != Dimension::Number.noun() => found.dimension,
             _ => Dimension::Number,
@@ -126,14 +126,14 @@ impl<'a> Form<'a> {
         self.example
     }
 
-    /// The right form in words: `a positive length such as 50 mm`.
+    /// Describes the right form in words: `a positive length such as 50 mm`.
     pub(crate) fn expected(&self) -> String {
         let noun = format!("{}{}", self.limits.adjective(), self.noun);
         let or_infinity = if self.infinity { " or `inf`" } else { "" };
         format!("{} such as {}{or_infinity}", with_article(&noun), self.example)
     }
 
-    /// A text as a number in its unit; in that of a bare number where it has none.
+    /// Reads a text as a number and its unit; there is no unit if the number is bare.
     pub(crate) fn read(&self, text: &str) -> Result<(f64, Option<&'static Unit>), String> {
         let expected = self.expected();
         let as_in = format!("write it as in `{}`", self.example);
@@ -171,7 +171,7 @@ impl<'a> Form<'a> {
         }
     }
 
-    /// Whether a number in the unit of a bare one is within the limits.
+    /// Checks that a number in the unit of bare numbers is within the limits.
     pub(crate) fn allowed(&self, value: f64, written: &str) -> Result<(), String> {
         let written = shown(written);
         if !value.is_finite() {
@@ -215,7 +215,7 @@ impl<'a> Form<'a> {
     }
 }
 
-/// A noun with its article, such as `a length`, `an angle`, `an f-number`.
+/// Returns a noun with its article, such as `a length`, `an angle`, `an f-number`.
 pub(crate) fn with_article(noun: &str) -> String {
     let vowel = noun.starts_with(['a', 'e', 'i', 'o', 'u']) || noun.starts_with("f-");
     format!("{} {noun}", if vowel { "an" } else { "a" })
@@ -229,7 +229,7 @@ pub(crate) fn found_text(text: &str) -> String {
     }
 }
 
-/// The symbol of a unit that is written out, or as another field writes it.
+/// Returns the usual symbol of a unit that is written out, or written as in another field.
 fn usual_symbol(unit: &str) -> Option<&'static str> {
     Some(match unit.to_ascii_lowercase().as_str() {
         "th" | "sec" | "secs" | "second" | "seconds" => "s",
@@ -249,7 +249,7 @@ fn usual_symbol(unit: &str) -> Option<&'static str> {
     })
 }
 
-/// Deserializes any quantity that has been checked: what its `Deserialize` calls.
+/// Deserializes any quantity and checks its bound; the quantity's `Deserialize` calls this.
 ///
 /// # Errors
 /// What was found and what is expected.
@@ -267,7 +267,7 @@ impl<Q: Quantity> Visitor<'_> for QuantityVisitor<Q> {
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Q, E> {
-        // The words for a number are those for its text.
+        // The message for a number is the one for its text.
         if value.is_finite() && Q::BOUND.limits().allow(value) {
             Ok(Q::from_bare(value))
         } else {

@@ -25,13 +25,13 @@ macro_rules! newtype {
         pub struct $name(f64);
 
         impl $name {
-            #[doc = concat!("From a number in ", $unit, "; not checked.")]
+            #[doc = concat!("Creates the quantity from a number in ", $unit, "; not checked.")]
             #[must_use]
             pub const fn $from(value: f64) -> Self {
                 Self(value)
             }
 
-            #[doc = concat!("Its number in ", $unit, ".")]
+            #[doc = concat!("Returns the number in ", $unit, ".")]
             #[must_use]
             pub const fn $get(self) -> f64 {
                 self.0
@@ -39,7 +39,7 @@ macro_rules! newtype {
         }
 
         impl From<$name> for f64 {
-            #[doc = concat!("Its number in ", $unit, ".")]
+            #[doc = concat!("Returns the number in ", $unit, ".")]
             fn from(quantity: $name) -> f64 {
                 quantity.0
             }
@@ -121,7 +121,7 @@ quantity! {
 }
 
 newtype! {
-    /// An angle, any sign: `12 deg`, `0.2 rad`, `30 arcmin`; a bare number is in degrees, and it is kept in radians.
+    /// An angle, any sign: `12 deg`, `0.2 rad`, `30 arcmin`; a bare number is in degrees. It is stored in radians.
     Angle, from_rad, rad, "rad"
 }
 
@@ -159,13 +159,13 @@ pub struct NonNegative<Q>(Q);
 macro_rules! bounded {
     ($name:ident) => {
         impl<Q: Quantity> $name<Q> {
-            /// The quantity, if it obeys the bound.
+            /// Wraps the quantity if it obeys the bound.
             #[must_use]
             pub fn new(quantity: Q) -> Option<Self> {
                 Bound::$name.limits().allow(quantity.bare()).then_some(Self(quantity))
             }
 
-            /// The quantity.
+            /// Returns the quantity without its bound.
             #[must_use]
             pub fn get(self) -> Q {
                 self.0
@@ -215,7 +215,7 @@ bounded!(NonNegative);
 /// A quantity, or infinity, which is written `inf` (or `.inf`, `infinity`).
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub enum OrInfinity<Q> {
-    /// A finite one.
+    /// A finite quantity.
     Finite(Q),
     /// Positive infinity.
     Infinite,
@@ -225,7 +225,7 @@ pub enum OrInfinity<Q> {
 pub type LengthOrInfinity = OrInfinity<Length>;
 
 impl<Q> OrInfinity<Q> {
-    /// The quantity, if it is finite.
+    /// Returns the quantity if it is finite.
     #[must_use]
     pub fn finite(self) -> Option<Q> {
         match self {
@@ -236,14 +236,14 @@ impl<Q> OrInfinity<Q> {
 }
 
 impl<Q: Quantity + Into<f64>> From<OrInfinity<Q>> for f64 {
-    /// Its number in the quantity's own unit, or infinity.
+    /// Returns the number in the quantity's own unit, or infinity.
     fn from(quantity: OrInfinity<Q>) -> f64 {
         quantity.finite().map_or(f64::INFINITY, Into::into)
     }
 }
 
 impl OrInfinity<Length> {
-    /// Its number in mm, or infinity.
+    /// Returns the length in mm, or infinity.
     #[must_use]
     pub fn mm(self) -> f64 {
         self.into()
@@ -251,7 +251,7 @@ impl OrInfinity<Length> {
 }
 
 impl OrInfinity<Positive<Length>> {
-    /// Its number in mm, or infinity.
+    /// Returns the length in mm, or infinity.
     #[must_use]
     pub fn mm(self) -> f64 {
         self.into()

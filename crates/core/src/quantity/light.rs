@@ -1,11 +1,11 @@
-//! Which wavelengths are those of light.
+//! The wavelengths that are accepted as light.
 
 use std::fmt;
 
-/// The shortest wavelength that is taken for light, nm: glass passes none that is shorter, nor does a spectrum begin there. What is
-/// written below it was meant in another unit.
+/// Shortest wavelength that is accepted as light, nm. Glass passes none that is shorter, and no spectrum begins there. A
+/// smaller number was meant in another unit.
 pub const SHORTEST_LIGHT_NM: f64 = 50.0;
-/// The longest that a hint proposes, nm.
+/// Longest wavelength that a hint proposes, nm.
 const LONGEST_NM: f64 = 50_000.0;
 
 /// A wavelength too short for light, nm.
@@ -21,11 +21,11 @@ impl fmt::Display for NotLight {
 impl std::error::Error for NotLight {}
 
 impl NotLight {
-    /// What to write instead.
+    /// Returns a hint that says what to write instead.
     #[must_use]
     pub fn hint(self) -> String {
         let sizes = [("um", 1e3), ("mm", 1e6), ("m", 1e9)];
-        // Without what a product has behind the digits that were written.
+        // Drops the digits that multiplication adds behind those that were written.
         let in_nm = |size: f64| (self.0 * size * 1e6).round() / 1e6;
         match sizes.into_iter().find(|(_, size)| (SHORTEST_LIGHT_NM..=LONGEST_NM).contains(&in_nm(*size))) {
             Some((unit, size)) => format!("{} {unit} is {nm} nm: write {nm}", self.0, nm = in_nm(size)),
@@ -34,7 +34,7 @@ impl NotLight {
     }
 }
 
-/// The wavelength, nm, if it can be that of light.
+/// Returns the wavelength, nm, if it can be that of light.
 ///
 /// # Errors
 /// [`NotLight`] below [`SHORTEST_LIGHT_NM`].

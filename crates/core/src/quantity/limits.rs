@@ -5,9 +5,9 @@ use serde_json::Value;
 /// Limits of a number: the keywords `minimum`, `exclusiveMinimum`, `maximum` and `exclusiveMaximum` of JSON Schema.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Limits {
-    /// The lower one, and whether it is itself allowed.
+    /// Lower limit, and whether the limit itself is allowed.
     least: Option<(f64, bool)>,
-    /// The upper one, likewise.
+    /// Upper limit, and whether the limit itself is allowed.
     most: Option<(f64, bool)>,
 }
 
@@ -28,14 +28,14 @@ impl Limits {
         }
     }
 
-    /// NaN is never allowed.
+    /// Returns whether a value is within the limits; NaN never is.
     pub(crate) fn allow(self, value: f64) -> bool {
         let above = self.least.is_none_or(|(least, included)| value > least || (included && value == least));
         let below = self.most.is_none_or(|(most, included)| value < most || (included && value == most));
         above && below && !value.is_nan()
     }
 
-    /// `positive `, `non-negative ` or nothing.
+    /// Returns `positive `, `non-negative ` or nothing.
     pub(crate) fn adjective(self) -> &'static str {
         match self.least {
             Some((least, included)) if least > 0.0 || (least == 0.0 && !included) => "positive ",
@@ -44,12 +44,12 @@ impl Limits {
         }
     }
 
-    /// Whether a value has the wrong sign for them: then the adjective says what is wrong.
+    /// Returns whether a value has the wrong sign for these limits; the adjective then says what is wrong.
     pub(crate) fn sign_is_wrong(self, value: f64) -> bool {
         !self.adjective().is_empty() && value <= 0.0
     }
 
-    /// `from 1 mm to 5 mm`, `0 or more`, with a unit behind each number (or before it, where it ends in `/`).
+    /// Describes the limits: `from 1 mm to 5 mm`, `0 or more`, with a unit after each number (or before it, if the unit ends in `/`).
     pub(crate) fn words(self, unit: &str) -> String {
         let number = |value: f64| match unit {
             _ if value == 0.0 || unit.is_empty() => format!("{value}"),

@@ -1,7 +1,7 @@
 //! Quantities as people write them: `50 mm`, `f/2.8`, `1/125 s`.
 //!
-//! A [`Quantity`] is a type with a dimension, the unit of its bare number and a bound; it knows how it is read, shown and described in a
-//! schema. Nothing here knows of files: what is wrong is said as a text, and [`crate::params`] puts it at its place.
+//! A [`Quantity`] is a type with a dimension, the unit of its bare number and a bound; it knows how it is read, shown and
+//! described in a schema. This module knows nothing of files: errors are texts, and [`crate::params`] attaches their place.
 
 mod form;
 mod kinds;

@@ -5,7 +5,7 @@
 
 use std::borrow::Cow;
 
-/// What kind of quantity a unit measures.
+/// The kind of quantity that a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Dimension {
     /// A number without a unit.
@@ -43,7 +43,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// Its name, without an article.
+    /// Name of the dimension, without an article.
     #[must_use]
     pub const fn noun(self) -> &'static str {
         match self {
@@ -66,21 +66,21 @@ impl Dimension {
         }
     }
 
-    /// All spellings of its units; each unit's preferred spelling comes first.
+    /// Preferred spellings of all units of this dimension.
     #[must_use]
     pub fn units(self) -> Vec<&'static str> {
         UNITS.iter().filter(|u| u.dimension == self).map(|u| u.symbols[0]).collect()
     }
 }
 
-/// A unit.
+/// A unit of measurement with its spellings.
 #[derive(Debug, PartialEq)]
 pub struct Unit {
-    /// Its spellings; messages use the first.
+    /// Spellings of the unit; messages use the first.
     pub symbols: &'static [&'static str],
-    /// What it measures.
+    /// Dimension that the unit measures.
     pub dimension: Dimension,
-    /// Its size relative to a reference of the dimension that makes sizes whole numbers.
+    /// Size of the unit relative to a reference of its dimension, chosen to make sizes whole numbers.
     size: f64,
 }
 
@@ -89,15 +89,15 @@ impl Unit {
         Self { symbols, dimension, size }
     }
 
-    /// The unit with this spelling (`µ` and `μ` are read as `u`, superscripts as digits, a raised dot as a space).
+    /// Finds the unit with this spelling (`µ` and `μ` are read as `u`, superscripts as digits, a raised dot as a space).
     #[must_use]
     pub fn find(spelling: &str) -> Option<&'static Self> {
         let spelling = normal_spelling(spelling);
         UNITS.iter().find(|u| u.symbols.contains(&spelling.as_ref()))
     }
 
-    /// How many `other` equal `value` of this unit; both must have the same dimension. Divides instead of multiplying by a
-    /// rounded inverse, so that `550 nm` is 550 nm and `5 um` is the f64 nearest to 0.005 mm.
+    /// Converts `value` of this unit to `other`; both must have the same dimension. Divides instead of multiplying by a rounded
+    /// inverse, so that `550 nm` is 550 nm and `5 um` is the f64 nearest to 0.005 mm.
     #[must_use]
     pub fn convert(&self, value: f64, other: &Self) -> f64 {
         if self.size >= other.size { value * (self.size / other.size) } else { value / (other.size / self.size) }
@@ -107,7 +107,7 @@ impl Unit {
 use Dimension as D;
 
 pub(super) static UNITS: &[Unit] = &[
-    // Reference: nanometre.
+    // Reference: nanometer.
     Unit::new(&["nm"], D::Length, 1.0),
     Unit::new(&["um", "micron", "microns"], D::Length, 1e3),
     Unit::new(&["mm"], D::Length, 1e6),
@@ -173,7 +173,7 @@ fn normal_spelling(text: &str) -> Cow<'_, str> {
     Cow::Owned(out.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" "))
 }
 
-/// A text, read as a quantity.
+/// Result of reading a text as a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reading<'a> {
     /// A number without a unit.
@@ -195,15 +195,15 @@ pub enum Reading<'a> {
     TooLarge,
     /// A number with a decimal comma.
     DecimalComma,
-    /// Anything else.
+    /// Any other text.
     Text,
 }
 
 impl<'a> Reading<'a> {
-    /// Reads a text. One that is too long for a quantity is plain text.
+    /// Reads a text as a quantity. A text that is too long for one is plain text.
     #[must_use]
     pub fn of(text: &'a str) -> Self {
-        /// Length of the longest f64 written out, with a unit.
+        /// Length of the longest f64 when written out, with a unit.
         const LONGEST: usize = 1200;
         let text = text.trim();
         if text.len() > LONGEST {
@@ -253,7 +253,7 @@ impl<'a> Reading<'a> {
     }
 }
 
-/// The decimal number at the start of a text, and the rest of the text.
+/// Reads the decimal number at the start of a text; also returns the rest of the text.
 fn number(text: &str) -> Option<(f64, &str)> {
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
     let end = decimal_end(unsigned)?;
@@ -261,7 +261,7 @@ fn number(text: &str) -> Option<(f64, &str)> {
     Some((text[..end].parse().ok()?, &text[end..]))
 }
 
-/// Where the decimal number at the start of `text` (without a sign) ends, in bytes; `None` if there is no number.
+/// Returns where the decimal number at the start of `text` (without a sign) ends, in bytes; `None` if there is no number.
 pub(crate) fn decimal_end(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();

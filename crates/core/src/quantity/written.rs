@@ -1,4 +1,4 @@
-//! How a quantity is written down: its JSON Schema, and its value as documentation shows it.
+//! Writing quantities: the JSON Schema of a quantity, and its value as documentation shows it.
 //!
 //! The keywords beyond JSON Schema are `x-quantity` (what is measured), `x-unit` (unit of a bare number) and `x-infinity`.
 
@@ -12,7 +12,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 
-/// The schema of a quantity: a number, or a text of the form that [`Quantity::from_text`] reads.
+/// Returns the schema of a quantity: a number, or a text of the form that [`Quantity::from_text`] reads.
 #[must_use]
 pub fn schema_of<Q: Quantity>() -> Schema {
     let mut schema = json_schema!({
@@ -35,7 +35,7 @@ pub fn schema_of<Q: Quantity>() -> Schema {
     schema
 }
 
-/// The texts of a dimension, as a regular expression of the dialect that all validators share.
+/// Returns the texts of a dimension as a regular expression, in the dialect that all validators share.
 fn pattern(dimension: Dimension, bound: Bound, infinity: bool) -> String {
     let sign = if bound == Bound::Any { "[+-]?" } else { r"\+?" };
     let figure = r"([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
@@ -53,7 +53,7 @@ fn pattern(dimension: Dimension, bound: Bound, infinity: bool) -> String {
     format!(r"^(\s*{front}{sign}{figure}(\s*/\s*{figure})?{units}\s*{infinity})$")
 }
 
-/// A spelling of a unit as a regular expression, with the signs that count as the same.
+/// Returns a spelling of a unit as a regular expression that also accepts equivalent characters.
 fn escaped(symbol: &str) -> String {
     let mut out = String::new();
     for (i, c) in symbol.chars().enumerate() {
@@ -71,7 +71,7 @@ fn escaped(symbol: &str) -> String {
     out
 }
 
-/// The value as documentation shows it: a number where there is no unit, else a text with it.
+/// Serializes the value as documentation shows it: a number if there is no unit, else a text with the unit.
 fn written<Q: Quantity, S: Serializer>(quantity: Q, serializer: S) -> Result<S::Ok, S::Error> {
     let value = quantity.bare();
     match (Q::BARE_UNIT, value.is_finite()) {
@@ -82,7 +82,7 @@ fn written<Q: Quantity, S: Serializer>(quantity: Q, serializer: S) -> Result<S::
     }
 }
 
-/// How a quantity is read, shown and checked: all by its [`Quantity`].
+/// Implements reading, showing and checking of a quantity, all by its [`Quantity`].
 macro_rules! written {
     ($($name:ident $(<$inner:ident>)?)*) => {$(
         impl<'de $(, $inner: Quantity)?> Deserialize<'de> for $name $(<$inner>)? {

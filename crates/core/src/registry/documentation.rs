@@ -16,34 +16,34 @@ pub struct Documentation {
     pub examples: Vec<String>,
     /// Sources of formulas and data.
     pub references: Vec<String>,
-    /// Its parameters, in the order of their declaration.
+    /// Parameters, in the order of their declaration.
     pub parameters: Vec<Parameter>,
 }
 
-/// One parameter.
+/// Documentation of one parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Its key; `.` goes into a map, `[]` into a list.
+    /// Key of the parameter; `.` goes into a map, `[]` into a list.
     pub key: String,
-    /// How it is written, in words.
+    /// Form of the value, in words.
     #[serde(rename = "type")]
     pub kind: String,
     /// Unit of a bare number; empty if it has none.
     pub unit: String,
     /// Allowed values, in words; empty if the type allows all.
     pub range: String,
-    /// Its default; `None` if it must be given, or if leaving it out has a meaning of its own.
+    /// Default value; `None` if the parameter must be given, or if leaving it out has a meaning of its own.
     pub default: Option<Value>,
-    /// Whether it must be given.
+    /// Whether the parameter must be given.
     pub required: bool,
-    /// What it means.
+    /// Meaning of the parameter.
     pub description: String,
-    /// Examples of its value.
+    /// Examples of the value.
     pub examples: Vec<Value>,
 }
 
 impl Documentation {
-    /// The documentation of parameters with this schema.
+    /// Extracts the documentation from the schema of the parameters.
     #[must_use]
     pub fn of(schema: SchemaOf) -> Self {
         let mut generator = SchemaGenerator::default();
@@ -57,7 +57,7 @@ impl Documentation {
         found
     }
 
-    /// Takes a description apart.
+    /// Splits a description into its sections.
     fn read(description: &str) -> Self {
         let mut sections: Vec<(String, Vec<&str>)> = vec![(String::new(), Vec::new())];
         let mut in_block = false;
@@ -95,7 +95,7 @@ impl Documentation {
     }
 }
 
-/// The items of a list of Markdown; lines that go on belong to the item before.
+/// Returns the items of a Markdown list; continued lines belong to the item before.
 fn items(lines: &[&str]) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for line in lines.iter().map(|line| line.trim()).filter(|line| !line.is_empty()) {
@@ -114,7 +114,7 @@ fn items(lines: &[&str]) -> Vec<String> {
 /// Deepest nesting that is shown.
 const DEEPEST: usize = 4;
 
-/// Adds those parameters of a map whose keys are wanted, and those of the maps in them.
+/// Adds the parameters of a map whose keys are wanted, and the parameters of the maps in them.
 fn parameters(
     schema: &Value,
     definitions: &Map<String, Value>,
@@ -128,7 +128,7 @@ fn parameters(
         schema.get("required").and_then(Value::as_array).is_some_and(|all| all.iter().any(|k| k.as_str() == Some(key)))
     };
     for (key, property) in properties {
-        // The key that names the kind has been said.
+        // The key that names the kind needs no entry.
         if property.get("const").is_some() || !wanted(key) {
             continue;
         }
@@ -145,7 +145,7 @@ fn parameters(
             description: said.and_then(Value::as_str).unwrap_or_default().replace('\n', " "),
             examples: inner.get("examples").and_then(Value::as_array).cloned().unwrap_or_default(),
         });
-        // What has a page of its own is not told here.
+        // Parts with a page of their own are documented there.
         if depth < DEEPEST && inner.get("x-see").is_none() {
             let inside =
                 if is(inner, "array") { inner.get("items").map(|i| resolved(i, definitions)) } else { Some(inner) };
@@ -159,8 +159,8 @@ fn parameters(
     }
 }
 
-/// Adds the parameters of each kind of a map, and before them, once, those that all kinds take alike. `at` is the map's
-/// own path, and what stands between it and a key.
+/// Adds the parameters of each kind of a map and, once before them, those that all kinds share. `at` is the path of the map,
+/// and the separator between it and a key.
 fn of_kinds(
     schema: &Value,
     definitions: &Map<String, Value>,
@@ -183,7 +183,7 @@ fn of_kinds(
     }
 }
 
-/// Unit of a bare number; of a list, of its items.
+/// Returns the unit of a bare number, or of the items of a list.
 fn unit<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a str {
     if let Some(unit) = schema.get("x-unit").and_then(Value::as_str) {
         return unit;
@@ -194,7 +194,7 @@ fn unit<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a str {
     inner.map(|s| if std::ptr::eq(s, schema) { "" } else { unit(s, definitions) }).find(|u| !u.is_empty()).unwrap_or("")
 }
 
-/// The maps among the alternatives of a schema.
+/// Returns the maps among the alternatives of a schema.
 fn maps<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> Vec<&'a Value> {
     if schema.get("properties").is_some() {
         return vec![schema];
@@ -202,7 +202,7 @@ fn maps<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> Vec<&'a V
     alternatives(schema).map(|a| resolved(a, definitions)).filter(|a| a.get("properties").is_some()).collect()
 }
 
-/// The kinds of a map that has a key for its kind, see [`crate::params::Kinds`]: each with its schema.
+/// Returns the kinds of a map that has a key for its kind, each with its schema; see [`crate::params::Kinds`].
 fn kinds(schema: &Value) -> Vec<(&str, &Value)> {
     let one = schema.get("else").filter(|e| e.get("$ref").is_none()).unwrap_or(schema);
     let all = one.get("allOf").and_then(Value::as_array).into_iter().flatten();
@@ -227,7 +227,7 @@ fn is(schema: &Value, name: &str) -> bool {
     }
 }
 
-/// What a reference leads to; of something or null, the something.
+/// Follows references. If a schema allows something or null, it follows the something.
 fn resolved<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a Value {
     let mut at = schema;
     for _ in 0..8 {
@@ -251,7 +251,7 @@ fn is_null(schema: &Value) -> bool {
     schema.get("type").and_then(Value::as_str) == Some("null")
 }
 
-/// What a value is written as, in words.
+/// Describes the form of a value in words.
 fn kind(schema: &Value, definitions: &Map<String, Value>) -> String {
     let schema = resolved(schema, definitions);
     if let Some(words) = schema.get("x-words").and_then(Value::as_str) {
@@ -316,7 +316,7 @@ fn bound<'a>(schema: &'a Value, key: &str) -> Option<&'a Value> {
     schema.get(key)
 }
 
-/// Which values are allowed, in words.
+/// Describes the allowed values in words.
 fn range(schema: &Value) -> String {
     let mut parts = Vec::new();
     let least = schema.get("minimum").filter(|v| v.as_f64() != Some(f64::from(i32::MIN)));
@@ -327,7 +327,7 @@ fn range(schema: &Value) -> String {
         (Some(least), None) => parts.push(format!(">= {least}")),
         _ => {}
     }
-    // Where both are stated the greater one says it all.
+    // If both are stated, the greater one is enough.
     let below = schema.get("exclusiveMinimum").filter(|b| least.is_none_or(|l| l.as_f64() <= b.as_f64()));
     if let Some(below) = below {
         parts.push(format!("> {below}"));
@@ -386,7 +386,7 @@ mod tests {
         #[schemars(length(max = 20))]
         #[serde(default)]
         terms: Vec<f64>,
-        /// Its tip.
+        /// The tip.
         tip: Option<Tip>,
     }
 
@@ -395,7 +395,7 @@ mod tests {
     #[serde(deny_unknown_fields, rename_all = "kebab-case")]
     #[allow(dead_code, reason = "only its schema is looked at")]
     struct Tip {
-        /// Its shape.
+        /// The shape.
         shape: Shape,
     }
 
@@ -403,9 +403,9 @@ mod tests {
     #[serde(rename_all = "kebab-case")]
     #[allow(dead_code, reason = "only its schema is looked at")]
     enum Shape {
-        /// As made.
+        /// Freshly made.
         Sharp,
-        /// As worn.
+        /// Worn by use.
         VeryRound,
     }
 

@@ -1,6 +1,6 @@
 //! The registry: name -> typed parameters -> stage.
 //!
-//! A plugin crate registers each of its stages where it builds it:
+//! A plugin crate registers each of its stages next to the function that builds it:
 //!
 //! ```
 //! use schemars::JsonSchema;
@@ -40,11 +40,37 @@
 //! # assert_eq!(spectra_core::registry::list()[0].documentation().summary, "A paraboloid.");
 //! ```
 //!
-//! The documentation of a stage comes from the doc comments of its parameters ([`Documentation`]), and what an editor completes
-//! comes from their types ([`definitions`]).
+//! The documentation of a stage comes from the doc comments of its parameters ([`Documentation`]). Completion in editors comes
+//! from their types ([`definitions`]). `tests/it/documentation.rs` builds every example where a stage of its kind stands, and again
+//! with a key that must be refused. `xtask/validate_schemas.py` checks the schemas against every file of the repository by an
+//! independent validator.
 //!
-//! The order of registration differs between builds, and two crates may register the same name. [`check`] refuses that, and the
-//! command calls it before anything else.
+//! # Registries
+//!
+//! Everything that a file names by a kind is an entry of a registry: a name, the schema of its parameters, and a builder. A registry
+//! belongs to the crate that owns the trait (or the type) that every kind becomes, and is declared there by
+//! [`declare!`](crate::declare):
+//!
+//! | registry | declared in | a kind becomes | named by |
+//! |---|---|---|---|
+//! | `source`, `color`, `wavelengths`, `surface`, `imager`, `response`, `film` | `core` | the stage | `kind` |
+//! | `output` | `scene` | `dyn Output` | `kind`, or its name alone |
+//! | `spectrum` | `spectrum` | `dyn SpectrumKind`, which makes a spectrum of others and of what is wanted | `kind` |
+//! | `coating` | `lens` | a `Coating`: layers, or a measured curve | `kind`, or its name alone; a map with `layer` or `layers` |
+//! | `aperture` | `lens` | a `Shape` | `shape` |
+//! | `formula` | `glass` | a `Formula`: a function of coefficients | `formula`, beside the other keys of a glass |
+//!
+//! A kind is looked up once, when a file is read. What is traced afterwards are concrete types (`Coating`, `Shape`, the rational fit
+//! of a `Formula`), so a kind from a plugin costs no time per ray. [`list`] goes over everything that is declared. `spectra list`,
+//! `spectra doc`, `spectra schema`, the check for duplicates and the tests therefore know no kind by name. Keys that all kinds share
+//! (`assumed` of a coating, `center` of an aperture) are a separate struct, split off by `params::keys_of` before a kind reads the
+//! others. Lists of words that no plugin may extend are enums.
+//!
+//! Two versions of a crate that declares a registry would be two registries in one program, one of them silently empty. `links` in
+//! the manifest of each such crate (`core`, `spectrum`, `glass`, `lens`, `scene`) makes that an error of cargo.
+//!
+//! The order of registration differs between builds, and two crates may register the same name. [`check`] refuses duplicate
+//! names; the command calls it before anything else.
 
 mod documentation;
 mod schema;
@@ -63,25 +89,25 @@ use schemars::{Schema, SchemaGenerator};
 #[doc(hidden)] // for `register!` and `declare!`
 pub use {inventory, schemars::JsonSchema};
 
-/// What a builder may use besides its parameters.
+/// The context that a builder may use besides its parameters.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
-    /// Files by name.
+    /// Access to files by name.
     pub resources: &'a dyn Resources,
-    /// The band that light is computed on.
+    /// Band on which light is computed.
     pub grid: Grid,
-    /// For a color model: the light that the source's colors are seen under.
+    /// Light under which the colors of the source are seen, for a color model.
     pub illuminant: Option<&'a SpectralPower>,
-    /// For a source: what the frame sees in front of the lens; `None` if the scene has no valid lens.
+    /// View of the frame in front of the lens, for a source; `None` if the scene has no valid lens.
     pub view: Option<&'a View>,
-    /// For an imager: where the light of the source lands in the image plane, mm; `None` where that is not known yet.
+    /// Point of the image plane where the light of the source lands, mm, for an imager; `None` if that is not known yet.
     pub landing_mm: Option<[f64; 2]>,
-    /// Where warnings go, if anywhere; see [`Context::warn`].
+    /// Collector of warnings, if there is one; see [`Context::warn`].
     pub warnings: Option<&'a Warnings>,
 }
 
 impl<'a> Context<'a> {
-    /// A context with files and a band, and nothing else.
+    /// Creates a context with files and a band, and nothing else.
     #[must_use]
     pub const fn new(resources: &'a dyn Resources, grid: Grid) -> Self {
         Self { resources, grid, illuminant: None, view: None, landing_mm: None, warnings: None }
@@ -95,30 +121,30 @@ impl<'a> Context<'a> {
     }
 }
 
-/// How a stage is built from its parameters.
+/// Function that builds a stage from its parameters.
 pub type Build<S> = fn(&Params, &Context<'_>) -> Result<Box<S>, Faults>;
 
-/// The JSON Schema of a stage's own parameters: a map without `kind`.
+/// Function that returns the JSON Schema of a stage's own parameters: a map without `kind`.
 pub type SchemaOf = fn(&mut SchemaGenerator) -> Schema;
 
 /// One registered stage; see [`crate::register!`].
 pub struct Entry<S: ?Sized + 'static> {
-    /// Its name in a scene (`kind: name`), kebab-case.
+    /// Name of the stage in a scene (`kind: name`), kebab-case.
     pub name: &'static str,
-    /// The crate that registers it.
+    /// Crate that registers the stage.
     pub package: &'static str,
-    /// That crate's version.
+    /// Version of that crate.
     pub version: &'static str,
-    /// Whether it is the default where a scene names no kind.
+    /// Whether this stage is the default if a scene names no kind.
     pub default: bool,
-    /// The schema of its parameters, with their documentation.
+    /// Schema of the stage's parameters, with their documentation.
     pub schema: SchemaOf,
-    /// Builds it.
+    /// Function that builds the stage.
     pub build: Build<S>,
 }
 
 impl<S: ?Sized> Entry<S> {
-    /// An entry whose parameters are a `P`; see the fields.
+    /// Creates an entry whose parameters have the type `P`; see the fields.
     #[must_use]
     pub const fn new<P: JsonSchema>(
         name: &'static str,
@@ -182,20 +208,20 @@ macro_rules! register {
     };
 }
 
-/// A kind of stage, as the registry knows it: the trait that its stages implement, or the type that they are made into.
+/// A kind of stage, as the registry knows it: the trait that its stages implement, or the type that they build.
 pub trait Stage: 'static {
-    /// Its name in messages and in `spectra list`.
+    /// Name of this kind of stage in messages and in `spectra list`.
     const NAME: &'static str;
-    /// The key that names one of its kinds in a file.
+    /// Key that names one of the registered stages in a file.
     const KEY: &'static str;
-    /// All entries, in the order in which the linker placed them.
+    /// Returns all entries, in the order in which the linker placed them.
     fn entries() -> Vec<&'static Entry<Self>>;
 }
 
-/// Declares a kind of stage: `declare!(SourceEntry, dyn Source, "source", "A registered source.");`. The crate that owns the trait
-/// (or the type that every kind is made into) does so, once; stages of it are then registered by
-/// `register!(path::SourceEntry, "name": Params, build)`. The key that names a kind is `kind`, or what is written last. That crate's
-/// manifest states `links`: two versions of it in one program would be two registries.
+/// Declares a kind of stage: `declare!(SourceEntry, dyn Source, "source", "A registered source.");`. The crate that owns the
+/// trait (or the type that every stage builds) does so, once. Its stages are then registered by
+/// `register!(path::SourceEntry, "name": Params, build)`. The key that names a stage is `kind`, unless the last argument states
+/// another one. The manifest of that crate states `links`: two versions of it in one program would be two registries.
 #[macro_export]
 macro_rules! declare {
     ($entry:ident, $stage:ty, $name:literal, $doc:literal) => {
@@ -206,7 +232,7 @@ macro_rules! declare {
         pub struct $entry($crate::registry::Entry<$stage>);
 
         impl $entry {
-            /// An entry whose parameters are a `P`; see the fields of [`Entry`]($crate::registry::Entry).
+            /// Creates an entry whose parameters have the type `P`; see the fields of [`Entry`]($crate::registry::Entry).
             #[must_use]
             pub const fn new<P: $crate::registry::JsonSchema>(
                 name: &'static str,
@@ -233,11 +259,11 @@ macro_rules! declare {
     };
 }
 
-/// A kind of stage that is declared; see [`crate::declare!`].
+/// A declared kind of stage; see [`crate::declare!`].
 pub struct Declared(fn() -> Vec<Listed>);
 
 impl Declared {
-    /// The kind that a trait stands for.
+    /// Declares the kind of stage that `S` stands for.
     #[must_use]
     pub const fn of<S: Stage + ?Sized>() -> Self {
         Self(|| S::entries().into_iter().map(Listed::of).collect())
@@ -246,7 +272,7 @@ impl Declared {
 
 inventory::collect!(Declared);
 
-/// Every stage that is registered, sorted by stage and name.
+/// Lists every registered stage, sorted by kind of stage and name.
 #[must_use]
 pub fn list() -> Vec<Listed> {
     let mut all: Vec<Listed> = inventory::iter::<Declared>.into_iter().flat_map(|kind| (kind.0)()).collect();
@@ -254,30 +280,30 @@ pub fn list() -> Vec<Listed> {
     all
 }
 
-declare!(SourceEntry, dyn Source, "source", "A registered source.");
+declare!(SourceEntry, dyn Source, "source", "A registered kind of source.");
 declare!(ColorEntry, dyn ColorModel, "color", "A registered color model.");
 declare!(SamplerEntry, dyn WavelengthSampler, "wavelengths", "A registered wavelength sampler.");
-declare!(SurfaceEntry, dyn Surface, "surface", "A registered surface.");
-declare!(ImagerEntry, dyn Imager, "imager", "A registered imager.");
+declare!(SurfaceEntry, dyn Surface, "surface", "A registered kind of surface.");
+declare!(ImagerEntry, dyn Imager, "imager", "A registered kind of imager.");
 declare!(ResponseEntry, dyn Response, "response", "A registered response of a detector.");
 declare!(FilmEntry, dyn Film, "film", "A registered film process.");
 
-/// A registered stage without what builds it.
+/// A registered stage without its build function.
 #[derive(Clone, Copy, Debug)]
 pub struct Listed {
     /// Kind of stage.
     pub stage: &'static str,
-    /// The key that names it in a file.
+    /// Key that names the stage in a file.
     pub key: &'static str,
-    /// Name in a scene.
+    /// Name of the stage in a scene.
     pub name: &'static str,
-    /// Crate.
+    /// Crate that registers the stage.
     pub package: &'static str,
-    /// Version of the crate.
+    /// Version of that crate.
     pub version: &'static str,
-    /// Whether it is the default where a scene names no kind.
+    /// Whether this stage is the default if a scene names no kind.
     pub default: bool,
-    /// The schema of its parameters.
+    /// Schema of the stage's parameters.
     pub schema: SchemaOf,
 }
 
@@ -294,14 +320,14 @@ impl Listed {
         }
     }
 
-    /// Its documentation, as `spectra doc` shows it.
+    /// Documentation of the stage, as `spectra doc` shows it.
     #[must_use]
     pub fn documentation(&self) -> Documentation {
         Documentation::of(self.schema)
     }
 }
 
-/// Checks the registry: no name registered twice, none malformed, at most one default per stage.
+/// Checks the registry: no name is registered twice, none is malformed, and each kind of stage has at most one default.
 ///
 /// # Errors
 /// One line per fault; a duplicate names both crates.
@@ -335,7 +361,7 @@ fn check_list(all: &[Listed]) -> Result<(), Vec<String>> {
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
-/// Builds the stage that `params` name by their `kind` (or the default one).
+/// Builds the stage that `params` name by their `kind` (or the default stage).
 ///
 /// # Errors
 /// The kind is unknown (the nearest known ones are named), or the stage's own parameters are wrong.

@@ -1,4 +1,4 @@
-//! JSON Schema of what can stand where a stage is wanted.
+//! JSON Schema of the values that may stand for a stage.
 
 use super::{Listed, Stage};
 use crate::params::Kinds;
@@ -19,7 +19,7 @@ use std::marker::PhantomData;
 /// }
 /// ```
 ///
-/// It refers to a definition that [`definitions`] writes.
+/// The schema refers to a definition that [`definitions`] writes.
 pub struct StageOf<S: ?Sized>(PhantomData<S>);
 
 impl<S: Stage + ?Sized> JsonSchema for StageOf<S> {
@@ -36,12 +36,12 @@ impl<S: Stage + ?Sized> JsonSchema for StageOf<S> {
     }
 }
 
-/// The name of a registered stage of a kind, where a file names it beside other keys: its words are those that are registered.
+/// The name of a registered stage of a kind, for files that write it beside other keys. The allowed words are the registered names.
 #[derive(Clone, Debug)]
 pub struct NameOf<S: ?Sized>(String, PhantomData<fn() -> Box<S>>);
 
 impl<S: ?Sized> NameOf<S> {
-    /// The name.
+    /// Returns the name of the stage.
     #[must_use]
     pub fn get(&self) -> &str {
         &self.0
@@ -69,8 +69,8 @@ impl<S: Stage + ?Sized> JsonSchema for NameOf<S> {
     }
 }
 
-/// The schema of a map with one of the registered kinds of a stage. `shared` are keys that all of them take beside their own, and
-/// `by_name` says whether a kind's name alone stands for it.
+/// Returns the schema of a map with one of the registered stages of a kind. `shared` holds keys that all of them take in
+/// addition to their own; `by_name` says whether a stage's name alone stands for it.
 pub fn kinds<S: Stage + ?Sized>(generator: &mut SchemaGenerator, shared: Option<&Schema>, by_name: bool) -> Schema {
     let all: Vec<Listed> = super::list().into_iter().filter(|l| l.stage == S::NAME).collect();
     of_listed(&all, generator, shared, by_name)
@@ -87,8 +87,8 @@ fn of_listed(all: &[Listed], generator: &mut SchemaGenerator, shared: Option<&Sc
     kinds.schema()
 }
 
-/// Writes one definition a kind of stage (`source`, `surface`, ...) into a generator, with everything that is registered.
-/// `shared` are keys that all stages of a kind take beside their own: a schema of a map, by kind.
+/// Writes one definition per kind of stage (`source`, `surface`, ...) into a generator, with everything that is registered.
+/// `shared` holds keys that all stages of a kind take in addition to their own: a schema of a map, by kind.
 pub fn definitions(generator: &mut SchemaGenerator, shared: &[(&str, Schema)]) {
     for all in super::list().chunk_by(|a, b| a.stage == b.stage) {
         let stage = all[0].stage;

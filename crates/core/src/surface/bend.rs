@@ -1,8 +1,8 @@
 //! Snell's law in vector form: d' = mu d + push N, with the unit direction d, the unit normal N pointing either way, and mu the
 //! index before over the index after. A mirror has mu = 1, push = -2 d . N.
 
-/// The push along the normal for a ray that arrives at `cosine` = d . N, and the square of the cosine after the surface, which is
-/// negative (or NaN) where the ray is totally reflected.
+/// Returns the push along the normal for a ray that arrives at `cosine` = d . N, and the square of the cosine after the
+/// surface. The square is negative (or NaN) if the ray is totally reflected.
 ///
 /// `POSITIVE` states the sign of the cosine, which refraction keeps.
 #[inline(always)]
@@ -13,8 +13,8 @@ pub(super) fn snell<const POSITIVE: bool>(cosine: f64, mu: f64) -> (f64, f64) {
     (if POSITIVE { root - along } else { -root - along }, k)
 }
 
-/// The same for a normal whose squared length is `length2`: `along` is d . N, and the returned square of the cosine is
-/// multiplied by `length2`.
+/// Computes [`snell`] for a normal whose squared length is `length2`: `along` is d . N, and the returned square of the cosine
+/// is multiplied by `length2`.
 #[inline(always)]
 pub(super) fn snell_of_length<const POSITIVE: bool>(along: f64, mu: f64, length2: f64) -> (f64, f64) {
     let along = mu * along;

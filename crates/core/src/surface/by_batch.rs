@@ -1,8 +1,8 @@
-//! Surfaces given by their sag, a batch at a time: the rays of a chunk take each step side by side, so that the sag is vectorised
-//! where the compiler can, and divisions and roots of many rays are under way at once where it cannot.
+//! Intersection of whole batches with surfaces given by their sag. The rays of a chunk take each step side by side. The sag is
+//! then vectorized where the compiler can do it; elsewhere divisions and roots of many rays are in flight at once.
 //!
-//! Where the search of a single ray ([`super::FromSag`]) asks for slopes at every step, this one takes secants: one sag a step,
-//! and the slopes once, where the ray arrives. A ray whose steps do not plainly lead home is searched alone. What becomes of a ray
+//! The search of a single ray ([`super::FromSag`]) asks for slopes at every step. This one uses secants: one sag per step, and
+//! the slopes once, where the ray arrives. A ray whose steps do not clearly converge is searched alone. The result for a ray
 //! does not depend on its neighbors: once it has arrived it stays where it is.
 
 use super::search::{ARRIVED_MM, NOISE_MM, SHORTER};
@@ -12,24 +12,24 @@ use crate::isa::{Isa, Vectorized};
 use crate::loss::{ALIVE, Loss};
 use glam::DVec3;
 
-/// Rays that step side by side: what is known of them fits into the first cache.
+/// Number of rays that step side by side; their data fit into the first-level cache.
 const CHUNK: usize = 64;
-/// Most steps.
+/// Largest number of steps.
 const STEPS: usize = 12;
-/// A ray has arrived once the square of its step, over the step before, is at most this, mm: were the steps to shrink on by no more
-/// than they last did, about so much would be left. Steps of secants shrink faster and faster.
+/// A ray has arrived once the square of its step, over the step before, is at most this, mm. About so much distance would be
+/// left if the steps kept shrinking at the last rate; steps of secants shrink faster and faster.
 const LEFT_MM: f64 = 1e-13;
 
 type Column = [f64; CHUNK];
 
-/// What is known of where the rays of a chunk meet the surface.
+/// Intersections of the rays of a chunk with the surface.
 struct Meeting {
     /// Distance from the vertex plane, mm; NaN where a ray misses.
     t: Column,
     slope: [Column; 2],
-    /// Positive where the steps led home.
+    /// Positive where the steps converged.
     found: Column,
-    /// How far a ray is from ending behind the rim, mm^2, and by total reflection.
+    /// Margin of a ray against clipping at the rim, mm^2, and against total reflection; negative if it ends.
     margin: [Column; 2],
 }
 
@@ -50,8 +50,8 @@ impl Part<'_> {
     }
 }
 
-/// As [`super::Surface::interact`], by the sag; `alone` is how a single ray is searched. `beside` tells which rays, by position and direction, pass beside the surface: they end there as
-/// vignetted.
+/// Does the work of [`super::Surface::interact`] with the sag. `alone` searches a single ray. `beside` tells which rays, by
+/// position and direction, pass beside the surface; they end as vignetted.
 pub(super) fn interact<S: SagShape>(
     shape: &S,
     alone: &impl ScalarShape,
@@ -108,7 +108,7 @@ pub(super) fn interact<S: SagShape>(
     lost
 }
 
-/// Moves rays to the vertex plane, so that a far source costs no digits, and steps from there to the surface.
+/// Moves rays to the vertex plane, so that a far source costs no precision, and steps from there to the surface.
 struct Meet<'a, 'b, S> {
     shape: &'a S,
     part: &'a mut Part<'b>,
@@ -132,13 +132,13 @@ impl<S: SagShape> Vectorized for Meet<'_, '_, S> {
             let to_plane = -z[i] / n[i];
             (x[i], y[i], z[i]) = (x[i] + to_plane * l[i], y[i] + to_plane * m[i], z[i] + to_plane * n[i]);
             open[i] = if (state[i] == ALIVE) & to_plane.is_finite() { 1.0 } else { 0.0 };
-            // The first step is that to a flat surface.
+            // The first step is the one to a flat surface.
             (before[i], step[i], last[i]) = (0.0, -1.0, f64::INFINITY);
             t[i] = 0.0;
         }
         for number in 0..STEPS {
             for i in 0..len {
-                // A plugin's code never sees the place of a ray that has ended.
+                // A plugin's code never sees the position of a ray that has ended.
                 let (at_x, at_y) = if open[i] > 0.0 { (x[i] + t[i] * l[i], y[i] + t[i] * m[i]) } else { (0.0, 0.0) };
                 let sag = shape.sag_mm(at_x, at_y);
                 height[i] = z[i] + t[i] * n[i] - sag.unwrap_or(f64::NAN);
@@ -169,7 +169,7 @@ impl<S: SagShape> Vectorized for Meet<'_, '_, S> {
             (slope_x[i], slope_y[i]) = slope.unwrap_or((f64::NAN, f64::NAN));
         }
         for i in 0..len {
-            // It crosses the surface in its direction of travel.
+            // The ray must cross the surface in its direction of travel.
             let slope = 1.0 - (l[i] * slope_x[i] + m[i] * slope_y[i]) / n[i];
             found[i] = if slope > 0.0 { found[i] } else { 0.0 };
         }
@@ -180,11 +180,11 @@ const REFRACT: u8 = 0;
 const REFLECT: u8 = 1;
 const PASS: u8 = 2;
 
-/// Brings rays to where they meet the surface, and bends them there.
+/// Moves rays to their points on the surface, and bends them there.
 struct Turn<'a, 'b> {
     part: &'a mut Part<'b>,
     met: &'a mut Meeting,
-    /// Index before, and one over that after.
+    /// Index before the surface, and one over the index after it.
     mu: [&'a [f64]; 2],
 }
 
@@ -229,7 +229,7 @@ impl<const ACTION: u8> Vectorized for TurnBy<'_, '_, ACTION> {
     }
 }
 
-/// Books the rays that ended, in the order of the light; returns how many did.
+/// Records the rays that ended, in the order in which light meets the causes; returns how many.
 fn book(state: &mut [u64], met: &Meeting, number: u32) -> usize {
     let mut lost = 0;
     for (i, state) in state.iter_mut().enumerate().filter(|(_, state)| **state == ALIVE) {

@@ -1,4 +1,4 @@
-//! A surface by its sag: how rays find it.
+//! Intersection of rays with a surface that is given by its sag.
 
 use super::per_ray::passes_beside;
 use super::search::nearest_crossing;
@@ -7,8 +7,8 @@ use crate::RayBatch;
 use crate::isa::Isa;
 use glam::DVec3;
 
-/// Turns a [`SagShape`] into a [`ScalarShape`]: a ray hits it where it crosses the sag in its direction of travel. Under
-/// [`PerRay`](super::PerRay) whole batches step toward it side by side.
+/// Turns a [`SagShape`] into a [`ScalarShape`]: a ray hits it where it crosses the sag in its direction of travel. In
+/// [`PerRay`](super::PerRay), the rays of a batch step toward it side by side.
 #[derive(Clone, Debug)]
 pub struct FromSag<S>(pub S);
 
@@ -18,7 +18,7 @@ impl<S: SagShape> ScalarShape for FromSag<S> {
             return None;
         }
         let travel = if direction.z > 0.0 { Travel::Forward } else { Travel::Backward };
-        // Distances count from the vertex plane, so that a far source costs no digits.
+        // Distances count from the vertex plane, so that a far source costs no precision.
         let to_plane = -position.z / direction.z;
         let origin = position + to_plane * direction;
         let height = |t: f64| {

@@ -1,4 +1,16 @@
-//! The fast tier: a branch-free intersection, vectorised over the batch.
+//! The fast tier: branch-free intersection, vectorized over the batch.
+//!
+//! Intersection and refraction are two loops over a batch (256 rays unless a scene states otherwise). In one loop the division and the
+//! square roots of a ray would wait for each other; in two, those of many rays are under way at once. Columns are separate function
+//! arguments, so that the compiler knows that they do not overlap. The cause of a loss is determined only for rays that ended. The
+//! reciprocal of the index is evaluated with the index (one division for both), so refraction divides by nothing.
+//!
+//! Kernels store in the batch how far each ray came and the versine of the angle by which it was bent
+//! ([`Weighing`](crate::batch::Weighing)). That is all that a glass needs to absorb and a coating to reflect. For other surfaces the tracer
+//! computes both from copies of the positions and directions before.
+//!
+//! A ray stays where it has arrived, so its bits do not depend on its neighbors. A ray whose steps do not clearly shrink is passed to a
+//! bracketed search. Every ray therefore lands on its sheet or is booked as missed.
 
 use super::{Action, Interface, Surface, Travel, bend};
 use crate::RayBatch;
@@ -11,15 +23,15 @@ use std::sync::Arc;
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// A constant.
+    /// Returns the constant of this value.
     fn constant(value: f64) -> Self;
     /// Square root; NaN for a negative number.
     fn sqrt(self) -> Self;
-    /// Absolute value.
+    /// Returns the absolute value.
     fn abs(self) -> Self;
-    /// The smaller of the two; `other` if this one is NaN.
+    /// Returns the smaller number; `other` if this one is NaN.
     fn min(self, other: Self) -> Self;
-    /// `chosen` if this is zero or more, `otherwise` if it is negative or NaN.
+    /// Returns `chosen` if this is zero or more, `otherwise` if it is negative or NaN.
     fn choose(self, chosen: Self, otherwise: Self) -> Self;
 }
 
@@ -49,7 +61,7 @@ impl Real for f64 {
 /// A ray in the frame of the surface, in a batch that travels toward the imager (`FORWARD`) or away from it.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<R, const FORWARD: bool> {
-    /// A point on it, mm.
+    /// A point on the ray, mm.
     pub position: [R; 3],
     /// Unit direction.
     pub direction: [R; 3],
@@ -58,7 +70,7 @@ pub struct Ray<R, const FORWARD: bool> {
 }
 
 impl<R: Real, const FORWARD: bool> Ray<R, FORWARD> {
-    /// `size` with the sign of the direction of travel: positive forward. Most intersections are solved by a square root of
+    /// Gives `size` the sign of the direction of travel: positive forward. Most intersections are solved by a square root of
     /// either sign; this picks the one on the side that the light comes from.
     #[inline(always)]
     pub fn along(&self, size: R) -> R {
@@ -66,7 +78,7 @@ impl<R: Real, const FORWARD: bool> Ray<R, FORWARD> {
     }
 }
 
-/// Where a ray hits a surface.
+/// The intersection of a ray with a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<R> {
     /// Distance along the ray, mm; may be negative.
@@ -78,71 +90,71 @@ pub struct Hit<R> {
     pub valid: R,
 }
 
-/// How far a ray has come on its steps toward a surface.
+/// State of a ray on its steps toward a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Near<R> {
     /// Distance along the ray, mm.
     pub distance: R,
-    /// What the shape keeps for the next step.
+    /// Values that the shape keeps for the next step.
     pub kept: [R; 2],
     /// Size of the last step, mm; 0 once the ray has arrived.
     pub step: R,
-    /// As [`Hit::valid`].
+    /// Negative or NaN if the ray misses; see [`Hit::valid`].
     pub valid: R,
 }
 
-/// Most times that [`KernelShape::settle`] runs; a ray that has not arrived then is searched for.
+/// Largest number of times that [`KernelShape::settle`] runs. A ray that has not arrived by then is searched for.
 const MOST_SETTLING: usize = 4;
 
 /// A surface in branch-free code. Mark its methods `#[inline(always)]`.
 pub trait KernelShape: Send + Sync + std::fmt::Debug + 'static {
-    /// Where the ray hits the surface; for a ray along the axis, the vertex.
+    /// Intersects the ray with the surface. A ray along the axis hits the vertex.
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R>;
-    /// Whether rays come to the surface by steps, from the distance that `hit` guesses: then `approach`, `correct` and `settle`
-    /// run over the batch one after the other, the last of them again while a ray has not arrived. Each step is its own loop over the
-    /// batch: within one loop the steps of a ray would wait for each other, while separate loops keep several rays in flight. Such a
-    /// shape has no `UNIT_NORMAL`.
+    /// Whether rays come to the surface in steps, starting at the distance that `hit` guesses. Then `approach`, `correct` and
+    /// `settle` run over the batch one after the other; `settle` runs again while a ray has not arrived. Each step is its own
+    /// loop over the batch, which keeps several rays in flight; in a single loop the steps of a ray would wait for each other.
+    /// Such a shape sets `UNIT_NORMAL` to false.
     const STEPS: bool = false;
-    /// The first step.
+    /// Takes the first step toward the surface, see [`KernelShape::STEPS`].
     #[inline(always)]
     fn approach<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, hit: Hit<R>) -> Near<R> {
         Near { distance: hit.distance, kept: [hit.cosine; 2], step: R::constant(0.0), valid: hit.valid }
     }
-    /// The second step.
+    /// Takes the second step toward the surface.
     #[inline(always)]
     fn correct<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
         near
     }
-    /// The last step, which says by [`Near::step`] whether there has to be another one, and keeps what [`KernelShape::normal_kept`]
-    /// asks for.
+    /// Takes the last step toward the surface. [`Near::step`] says whether another one is needed. Keeps what
+    /// [`KernelShape::normal_kept`] needs.
     #[inline(always)]
     fn settle<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
         near
     }
-    /// What [`KernelShape::settle`] keeps, for a point of the surface.
+    /// Returns what [`KernelShape::settle`] keeps, for a point of the surface.
     #[inline(always)]
     fn keep<R: Real>(&self, _point: [R; 3]) -> [R; 2] {
         [R::constant(0.0); 2]
     }
-    /// The normal from what was kept.
+    /// Computes the normal from the values that were kept.
     #[inline(always)]
     fn normal_kept<R: Real>(&self, point: [R; 3], _kept: [R; 2]) -> [R; 3] {
         self.normal(point)
     }
     /// Normal at a point of the surface, toward +z at the vertex; of unit length if [`KernelShape::UNIT_NORMAL`] says so.
     fn normal<R: Real>(&self, point: [R; 3]) -> [R; 3];
-    /// Whether the normal has unit length. It need not where that would cost a square root: Snell's law works with any length,
-    /// at the price of a division.
+    /// Whether the normal has unit length. Set this to false if unit length would cost a square root: Snell's law works with
+    /// any length, at the price of a division.
     const UNIT_NORMAL: bool = true;
     /// Whether [`KernelShape::search`] tries again for rays that [`KernelShape::hit`] calls invalid. The distance of an invalid
     /// hit must then be 0.
     const SEARCHES: bool = false;
-    /// Distance, mm, along a ray that `hit` could not settle, by slower and safer code; `None` if the ray misses.
+    /// Finds the distance, mm, along a ray that `hit` could not settle, with slower and safer code; `None` if the ray misses.
     fn search(&self, _position: [f64; 3], _direction: [f64; 3], _travel: Travel) -> Option<f64> {
         None
     }
-    /// The direction after the surface, `mu * direction + push * normal(point)`. A shape whose normal is linear in the point
-    /// can save a few operations here. Used with unit normals only.
+    /// Returns the direction after the surface, `mu * direction + push * normal(point)`. A shape whose normal is linear in the
+    /// point can save a few operations here. Used with unit normals only.
     #[inline(always)]
     fn bend<R: Real>(&self, point: [R; 3], direction: [R; 3], mu: R, push: R) -> [R; 3] {
         let normal = self.normal(point);
@@ -152,15 +164,15 @@ pub trait KernelShape: Send + Sync + std::fmt::Debug + 'static {
             mu * direction[2] + push * normal[2],
         ]
     }
-    /// As [`Surface::sag_mm`].
+    /// Sag at a point, mm from the vertex plane; see [`Surface::sag_mm`].
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
-    /// As [`Surface::vertex_curvature_per_mm`].
+    /// Curvature at the vertex along x and y, 1/mm; see [`Surface::vertex_curvature_per_mm`].
     fn vertex_curvature_per_mm(&self) -> (f64, f64);
-    /// As [`Surface::is_stop`].
+    /// Returns whether this is the aperture stop; see [`Surface::is_stop`].
     fn is_stop(&self) -> bool {
         false
     }
-    /// As [`Surface::scaled`].
+    /// Returns this shape with all lengths times `factor`; see [`Surface::scaled`].
     fn scaled(&self, _factor: f64) -> Option<Self>
     where
         Self: Sized,
@@ -214,10 +226,10 @@ const REFRACT: u8 = 0;
 const REFLECT: u8 = 1;
 const PASS: u8 = 2;
 
-/// Intersection and bending run as two loops over the batch. In a single loop the two square roots and the division wait for
-/// each other and the work behind them fills the processor's schedulers; apart, the roots of several rays overlap (measured:
-/// 1.3 times the rays per second). Values that both need go through scratch columns: loads and stores are free here,
-/// arithmetic is not. The cause of a loss is worked out only where a ray ended.
+/// Runs intersection and bending as two loops over the batch. In a single loop the two square roots and the division wait for
+/// each other, and the work behind them fills the processor's schedulers. In separate loops the roots of several rays overlap
+/// (measured: 1.3 times the rays per second). Values that both loops need go through scratch columns: loads and stores are free
+/// here, arithmetic is not. The cause of a loss is worked out only for rays that ended.
 #[inline]
 fn interact_along<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     shape: &S,
@@ -274,7 +286,7 @@ impl<S: KernelShape, const FORWARD: bool> Vectorized for Intersect<'_, S, FORWAR
     }
 }
 
-/// Bends every ray at its point on the surface and books those that end.
+/// Bends every ray at its point on the surface and records those that end.
 struct Bend<'a, S, const ACTION: u8, const FORWARD: bool> {
     shape: &'a S,
     rays: &'a mut RayBatch,
@@ -313,8 +325,8 @@ fn search<S: KernelShape>(shape: &S, rays: &mut RayBatch, travel: Travel) {
     }
 }
 
-/// Columns are separate arguments, so the compiler knows that none overlaps another and need not compare addresses at every
-/// call.
+/// Intersects all rays with the surface. Columns are separate arguments, so the compiler knows that none overlaps another and
+/// need not compare addresses at every call.
 #[inline(always)]
 fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     shape: &S,
@@ -349,8 +361,9 @@ fn intersect_loop<S: KernelShape, const FORWARD: bool>(
     unsure
 }
 
-/// The same for a shape that rays come to by steps. Between them the column of x^2 + y^2, which bending rewrites, holds the
-/// distance. What becomes of a ray does not depend on its neighbors: once it has arrived it stays where it is.
+/// Intersects all rays with a shape that they come to in steps. Between the steps, the column of x^2 + y^2, which bending
+/// rewrites, holds the distance. The result for a ray does not depend on its neighbors: once it has arrived it stays where it
+/// is.
 #[inline(always)]
 fn step_loops<S: KernelShape, const FORWARD: bool>(
     shape: &S,
@@ -405,7 +418,7 @@ const CORRECT: u8 = 1;
 const SETTLE: u8 = 2;
 const SETTLE_ON: u8 = 3;
 
-/// One step of all rays; [`SETTLE_ON`] of those that have not arrived.
+/// Takes one step with all rays; [`SETTLE_ON`] moves only those that have not arrived.
 #[inline(always)]
 fn near_loop<S: KernelShape, const FORWARD: bool, const STEP: u8>(
     shape: &S,
@@ -435,7 +448,8 @@ fn near_loop<S: KernelShape, const FORWARD: bool, const STEP: u8>(
     }
 }
 
-/// Moves the rays that have arrived, and leaves their way in place of the last step; returns whether any living one has not.
+/// Moves the rays that have arrived, and replaces the last step by the distance traveled. Returns whether any living ray has
+/// not arrived.
 #[inline(always)]
 fn move_loop(
     x: &mut [f64],
@@ -509,7 +523,7 @@ fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
         let d = [l[i], m[i], n[i]];
         let r2 = q[0] * q[0] + q[1] * q[1];
         radius2[i] = r2;
-        // NaN where the ray missed: `min` passes over it to the validity.
+        // NaN if the ray missed: `min` then takes the validity.
         let mut margin = clip2 - r2;
         if ACTION != PASS && !S::UNIT_NORMAL {
             let g = if S::STEPS {
@@ -548,14 +562,14 @@ fn bend_loop<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     any
 }
 
-/// Whether a margin is negative, or NaN.
+/// Returns whether a margin is negative, or NaN.
 #[inline(always)]
 fn ends(margin: f64) -> bool {
     !(margin >= 0.0)
 }
 
-/// Books the rays that ended here, in the order of the light: a ray that misses cannot be clipped, and a clipped one cannot be
-/// totally reflected. Returns how many ended.
+/// Records the rays that ended here, and returns how many. Causes are tested in the order in which light meets them: a ray that
+/// misses cannot be clipped, and a clipped one cannot be totally reflected.
 #[inline(always)]
 fn book(rays: &mut RayBatch, at: &Interface<'_>) -> usize {
     let missed = Loss::Missed.state(at.number);

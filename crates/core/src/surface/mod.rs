@@ -1,9 +1,9 @@
-//! Optical surfaces, and the two tiers in which a plugin writes one.
+//! Optical surfaces, and the two ways in which a plugin writes one.
 //!
 //! A [`Surface`] works on a whole batch, but nobody has to write that by hand:
-//! - [`PerRay`] makes a surface of plain scalar code ([`ScalarShape`]: one ray in, one intersection out, early return
-//!   allowed); [`SagShape`] asks for even less, just a sag;
-//! - [`Kernel`] makes a surface of branch-free code ([`KernelShape`]) that the compiler vectorises for every instruction set.
+//! - [`PerRay`] makes a surface from plain scalar code ([`ScalarShape`]: one ray in, one intersection out, early return
+//!   allowed); [`SagShape`] asks for even less, only a sag;
+//! - [`Kernel`] makes a surface from branch-free code ([`KernelShape`]) that the compiler vectorizes for every instruction set.
 //!
 //! Both clip at the clear semi-diameter, refract or reflect, and count the rays lost.
 
@@ -29,14 +29,14 @@ use crate::RayBatch;
 use crate::isa::Isa;
 use std::sync::Arc;
 
-/// What a surface does with a ray that hits it inside its clear aperture.
+/// The action of a surface on a ray that hits it inside its clear aperture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Refract by Snell's law, from the medium before to the one after.
     Refract,
-    /// Reflect.
+    /// Reflect the ray.
     Reflect,
-    /// Leave it alone: a stop, an image plane.
+    /// Leave the ray alone, as at a stop or an image plane.
     Pass,
 }
 
@@ -58,16 +58,17 @@ pub enum Travel {
     Backward,
 }
 
-/// What the lens tells a surface about its place in the system.
+/// The place of a surface in the system, as the lens describes it to the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Interface<'a> {
-    /// Number of the surface, from 1; losses are booked under it.
+    /// Number of the surface, from 1; losses are counted under it.
     pub number: u32,
-    /// Distance along z from the vertex of the surface traced before, in whose frame the rays arrive, to this vertex, mm.
+    /// Distance along z, mm, from the vertex of the surface traced before, in whose frame the rays arrive, to the vertex of
+    /// this surface.
     pub shift_mm: f64,
     /// Square of the clear semi-diameter, mm^2; infinity clips nothing.
     pub clip_radius2_mm2: f64,
-    /// What happens at this surface.
+    /// Action of this surface on rays.
     pub action: Action,
     /// Direction in which the batch travels.
     pub travel: Travel,
@@ -77,7 +78,7 @@ pub struct Interface<'a> {
     pub after: IndexColumns<'a>,
 }
 
-/// A surface of a lens. Its own frame: vertex at the origin, +z toward the imager.
+/// A surface of a lens. Its frame has the vertex at the origin and +z toward the imager.
 pub trait Surface: Send + Sync + std::fmt::Debug {
     /// Sag at a point, mm from the vertex plane; `None` where the surface does not reach.
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
@@ -93,51 +94,53 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         ((n_after - n_before) * x, (n_after - n_before) * y)
     }
 
-    /// Whether this is the aperture stop, which bends no light and whose size sets the f-number.
+    /// Returns whether this is the aperture stop, which bends no light and whose size sets the f-number.
     fn is_stop(&self) -> bool {
         false
     }
 
-    /// Whether it acts differently by azimuth although its sag is round, as a ruled grating does.
+    /// Returns whether the surface acts differently by azimuth although its sag is round, as a ruled grating does.
     fn is_directional(&self) -> bool {
         false
     }
 
-    /// Whether it draws numbers ([`crate::numbers::RayNumbers`]), as a surface does that scatters a share of the light, or splits
-    /// it. Light may then leave it in another direction than the one that it has where nobody draws, so the search for what passes
-    /// a lens ends here.
+    /// Returns whether the surface draws random numbers ([`crate::numbers::RayNumbers`]), as one does that scatters or splits a
+    /// share of the light. Light may then leave the surface in another direction than it does without random numbers, so the
+    /// search for rays that pass a lens ends here.
     fn draws(&self) -> bool {
         false
     }
 
-    /// Whether [`Surface::interact`] leaves in the batch how far each living ray came, and by which angle it was bent
-    /// ([`way_mm`](crate::batch::Weighing::way_mm), [`versine`](crate::batch::Weighing::versine)). Where it does not, whoever needs that
-    /// works it out from positions and directions before and after.
+    /// Returns whether [`Surface::interact`] records in the batch how far each living ray traveled and by which angle it was
+    /// deflected ([`way_mm`](crate::batch::Weighing::way_mm), [`versine`](crate::batch::Weighing::versine)). If it does not,
+    /// code that needs these values computes them from positions and directions before and after.
     fn notes_meeting(&self) -> bool {
         false
     }
 
-    /// Whether the surface adds to the optical path of rays: see [`Surface::phase_mm`].
+    /// Returns whether the surface adds to the optical path of rays; see [`Surface::phase_mm`].
     fn has_phase(&self) -> bool {
         false
     }
 
-    /// Optical path, mm, that the surface adds to a ray beside index times way; the same for light that runs back along the ray. Surfaces
-    /// that refract by Snell's law, or reflect, add none. One that bends light otherwise does, or wavefronts behind it are wrong:
-    /// along the surface, n' d' - n d is the gradient of what it adds (order times wavelength times place across the lines for a
-    /// grating). Facets and other steps of a shape that refracts add none either: their path is that of their geometry.
+    /// Optical path, mm, that the surface adds to a ray in addition to index times distance; the same for light that runs back
+    /// along the ray. Surfaces that refract by Snell's law or reflect add none. A surface that deflects light by another law
+    /// must add some, or wavefronts behind it are wrong: along the surface, n' d' - n d is the gradient of the added path
+    /// (order times wavelength times position across the lines for a grating). Facets and other steps of a shape that refracts
+    /// add none either, because their geometry accounts for the path.
     fn phase_mm(&self, _ray: &BentRay) -> f64 {
         0.0
     }
 
-    /// The same surface with all its lengths times `factor`, so that rays are bent alike at places that lie as many times farther out;
-    /// `None` where it does not know how. What depends on wavelengths, such as the lines of a grating, stays as it is.
+    /// Returns this surface with all lengths times `factor`, so that rays are deflected alike at points that lie `factor` times
+    /// as far out; `None` if the surface cannot be scaled. What depends on wavelengths, such as the lines of a grating, stays
+    /// as it is.
     fn scaled(&self, _factor: f64) -> Option<Arc<dyn Surface>> {
         None
     }
 
     /// Moves the living rays of the batch, given in the frame of the surface before, onto this surface in its own frame, and
-    /// bends them. Rays that end get their cause and this surface's number. Works in either direction of travel. Returns how
-    /// many rays ended here.
+    /// bends them. Rays that end get their cause and the number of this surface. Works in either direction of travel. Returns
+    /// how many rays ended here.
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize;
 }

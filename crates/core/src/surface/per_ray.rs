@@ -8,7 +8,7 @@ use crate::numbers::RayNumbers;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Where a ray meets a surface.
+/// The intersection of a ray with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intersection {
     /// Distance along the ray, mm; may be negative.
@@ -17,12 +17,12 @@ pub struct Intersection {
     pub normal: DVec3,
 }
 
-/// A ray at the point where it meets a surface, about to be bent.
+/// A ray at its intersection with a surface, before it is bent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bending {
-    /// The point, mm, frame of the surface.
+    /// Point on the surface, mm, frame of the surface.
     pub point: DVec3,
-    /// Unit direction before.
+    /// Unit direction before the surface.
     pub direction: DVec3,
     /// Unit normal on the side that the ray goes to (`direction . normal` is not negative).
     pub normal: DVec3,
@@ -32,69 +32,69 @@ pub struct Bending {
     pub n_before: f64,
     /// Refractive index of the medium that the ray would enter.
     pub n_after: f64,
-    /// What happens here; never [`Action::Pass`], which leaves the direction alone.
+    /// Action of the surface; never [`Action::Pass`], which leaves the direction alone.
     pub action: Action,
     /// Direction of travel along z.
     pub travel: Travel,
-    /// What a shape that [draws](ScalarShape::draws) may draw for this ray; `None` where nothing is left to chance, as in
-    /// drawings and in the search for focus: then it does what it does to most of the light.
+    /// Random numbers for this ray, for a shape that [draws](ScalarShape::draws). `None` if nothing is left to chance, as in
+    /// drawings and in the search for focus. The shape then does what it does to most of the light.
     pub numbers: Option<RayNumbers>,
 }
 
-/// A surface in scalar code.
+/// A surface in scalar code, which handles one ray at a time.
 pub trait ScalarShape: Send + Sync + std::fmt::Debug + 'static {
-    /// Where the ray through `position` (mm, frame of the surface) along the unit `direction` meets
-    /// the surface; `None` where it does not.
+    /// Intersects the ray through `position` (mm, frame of the surface) along the unit `direction` with the surface; `None` if
+    /// they do not meet.
     fn intersect(&self, position: DVec3, direction: DVec3) -> Option<Intersection>;
-    /// As [`Surface::sag_mm`].
+    /// Sag at a point, mm from the vertex plane; see [`Surface::sag_mm`].
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
-    /// As [`Surface::vertex_curvature_per_mm`].
+    /// Curvature at the vertex along x and y, 1/mm; see [`Surface::vertex_curvature_per_mm`].
     fn vertex_curvature_per_mm(&self) -> (f64, f64);
-    /// As [`Surface::paraxial_power_per_mm`].
+    /// Power for paraxial optics, 1/mm; see [`Surface::paraxial_power_per_mm`].
     fn paraxial_power_per_mm(&self, n_before: f64, n_after: f64) -> (f64, f64) {
         let (x, y) = self.vertex_curvature_per_mm();
         ((n_after - n_before) * x, (n_after - n_before) * y)
     }
-    /// Least and largest sag within a radius of the axis, mm, or bounds of them: rays that pass beside that part of space end
-    /// as vignetted before anybody solves for where they meet the surface. `None` (the default) where nothing is known.
+    /// Smallest and largest sag within a radius of the axis, mm, or bounds of them. Rays that pass beside that part of space
+    /// end as vignetted, without a search for their intersection. `None` (the default) if no bounds are known.
     fn extent_mm(&self, _radius_mm: f64) -> Option<[f64; 2]> {
         None
     }
-    /// For surfaces that bend light by another law than Snell's, such as an ideal lens or a grating: the unit direction after
-    /// the surface, or why the ray ends. `None`, the default, refracts or reflects as the action says. Such a surface has a
-    /// [phase](ScalarShape::phase_mm), too.
+    /// Returns the unit direction after the surface, or why the ray ends, for surfaces that bend light by another law than
+    /// Snell's, such as an ideal lens or a grating. `None`, the default, refracts or reflects as the action says. A surface
+    /// with its own law also has a [phase](ScalarShape::phase_mm).
     fn redirect(&self, _at: &Bending) -> Option<Result<DVec3, Loss>> {
         None
     }
-    /// As [`Surface::has_phase`].
+    /// Returns whether the surface adds to the optical path; see [`Surface::has_phase`].
     fn has_phase(&self) -> bool {
         false
     }
-    /// As [`Surface::phase_mm`].
+    /// Optical path, mm, that the surface adds to a ray; see [`Surface::phase_mm`].
     fn phase_mm(&self, _ray: &BentRay) -> f64 {
         0.0
     }
-    /// As [`Surface::is_stop`].
+    /// Returns whether this is the aperture stop; see [`Surface::is_stop`].
     fn is_stop(&self) -> bool {
         false
     }
-    /// As [`Surface::is_directional`].
+    /// Returns whether the surface acts differently by azimuth; see [`Surface::is_directional`].
     fn is_directional(&self) -> bool {
         false
     }
-    /// As [`Surface::draws`].
+    /// Returns whether the surface draws random numbers; see [`Surface::draws`].
     fn draws(&self) -> bool {
         false
     }
-    /// As [`Surface::scaled`].
+    /// Returns this shape with all lengths times `factor`; see [`Surface::scaled`].
     fn scaled(&self, _factor: f64) -> Option<Self>
     where
         Self: Sized,
     {
         None
     }
-    /// As [`Surface::interact`], for shapes that can do more for a batch than one ray after the other; `None`, the default, where
-    /// there is nothing better.
+    /// Does the work of [`Surface::interact`] for shapes that can handle a batch better than ray by ray; `None`, the default,
+    /// if there is nothing better.
     #[doc(hidden)]
     fn by_batch(&self, _rays: &mut RayBatch, _interface: &Interface<'_>, _isa: Isa) -> Option<usize> {
         None
@@ -169,10 +169,10 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     }
 }
 
-/// Whether a ray passes beside the cylinder around the axis that holds the clear part of a surface.
+/// Returns whether a ray passes beside the cylinder around the axis that holds the clear part of a surface.
 #[inline]
 pub(super) fn passes_beside(p: DVec3, d: DVec3, clip_radius2_mm2: f64, [low, high]: [f64; 2]) -> bool {
-    /// What rounding may take from the bounds.
+    /// Allowance for rounding of the bounds.
     const SLACK: f64 = 1e-9;
     if d.z == 0.0 {
         return false;
@@ -180,7 +180,7 @@ pub(super) fn passes_beside(p: DVec3, d: DVec3, clip_radius2_mm2: f64, [low, hig
     let slack = SLACK * (1.0 + low.abs().max(high.abs()));
     let (a, b) = ((low - slack - p.z) / d.z, (high + slack - p.z) / d.z);
     let across2 = d.x * d.x + d.y * d.y;
-    // Nearest to the axis between the two ends.
+    // The point nearest to the axis between the two ends.
     let nearest = -(p.x * d.x + p.y * d.y) / across2;
     let t = if across2 > 0.0 { nearest.clamp(a.min(b), a.max(b)) } else { a };
     let (x, y) = (p.x + t * d.x, p.y + t * d.y);

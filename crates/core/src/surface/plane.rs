@@ -1,4 +1,4 @@
-//! The plane across the axis: of windows, stops and the openings of matte boxes.
+//! The plane perpendicular to the axis: windows, stops and the openings of matte boxes.
 
 use super::{Hit, KernelShape, Ray, Real};
 
@@ -9,13 +9,13 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// A refracting plane.
+    /// Creates a refracting plane surface.
     #[must_use]
     pub fn refracting() -> Self {
         Self { stop: false }
     }
 
-    /// The aperture stop.
+    /// Creates the plane of the aperture stop.
     #[must_use]
     pub fn stop() -> Self {
         Self { stop: true }
@@ -26,7 +26,7 @@ impl KernelShape for Plane {
     #[inline(always)]
     fn hit<R: Real, const FORWARD: bool>(&self, ray: Ray<R, FORWARD>) -> Hit<R> {
         let n = ray.direction[2];
-        // A ray along the plane never meets it: 0 is made negative.
+        // A ray parallel to the plane never meets it, so 0 is made negative.
         Hit { distance: -ray.position[2] / n, cosine: n, valid: ray.along(n) - R::constant(f64::MIN_POSITIVE) }
     }
 

@@ -1,14 +1,14 @@
-//! The least that makes a surface: its sag.
+//! Surfaces that are given by their sag alone.
 
 /// A surface given by its sag z(x, y).
 pub trait SagShape: Send + Sync + std::fmt::Debug + 'static {
     /// Sag at a point, mm from the vertex plane; `None` where the surface does not reach.
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
 
-    /// Slopes dz/dx and dz/dy. By default taken from the sag by differences; give them where you know them, and tracing is
+    /// Slopes dz/dx and dz/dy. The default takes differences of the sag. Implement it if you know the slopes: tracing is then
     /// faster and exact.
     fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
-        // Rounding of the sag over the step, and the fourth power of the step, meet near 1e-11 here.
+        // At this step the rounding of the sag and the error of the differences are both near 1e-11.
         let h = 1e-3;
         let along = |dx: f64, dy: f64| -> Option<f64> {
             let a = self.sag_mm(x_mm - dx, y_mm - dy)?;
@@ -20,12 +20,12 @@ pub trait SagShape: Send + Sync + std::fmt::Debug + 'static {
         Some((along(h, 0.0)?, along(0.0, h)?))
     }
 
-    /// Sag and slopes at once: give it where both cost less together than apart.
+    /// Sag and slopes at once. Implement it if both cost less together than apart.
     fn sag_and_slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, (f64, f64))> {
         Some((self.sag_mm(x_mm, y_mm)?, self.slope(x_mm, y_mm)?))
     }
 
-    /// As [`super::Surface::scaled`].
+    /// Returns this shape with all lengths times `factor`; see [`super::Surface::scaled`].
     fn scaled(&self, _factor: f64) -> Option<Self>
     where
         Self: Sized,
@@ -33,12 +33,14 @@ pub trait SagShape: Send + Sync + std::fmt::Debug + 'static {
         None
     }
 
-    /// As [`super::ScalarShape::extent_mm`]: give it where the sag is costly, and most rays of a search pass beside the surface.
+    /// Smallest and largest sag within a radius of the axis, mm; see [`super::ScalarShape::extent_mm`]. Implement it if the sag
+    /// is costly and most rays of a search pass beside the surface.
     fn extent_mm(&self, _radius_mm: f64) -> Option<[f64; 2]> {
         None
     }
 
-    /// As [`super::Surface::vertex_curvature_per_mm`]; by default from differences of the sag.
+    /// Curvature at the vertex along x and y, 1/mm; see [`super::Surface::vertex_curvature_per_mm`]. The default takes
+    /// differences of the sag.
     fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         let h = 1e-3;
         let second = |dx: f64, dy: f64| {

@@ -1,26 +1,26 @@
-//! Where a ray crosses a surface given by its sag: a few steps of Newton's method where they clearly converge, a bracketed search
-//! where they do not.
+//! Search for the point where a ray crosses a surface given by its sag: a few steps of Newton's method where they clearly
+//! converge, a bracketed search where they do not.
 
 use super::Travel;
 use glam::DVec3;
 
 /// Steps of Newton's method before the search takes over; each about doubles the digits.
 const NEWTON_STEPS: usize = 12;
-/// A step counts as converging if it is at most this fraction of the one before. Below one half, no other crossing can lie between
-/// the start and the limit of the steps (the condition of Kantorovich's theorem on Newton's method).
+/// A step counts as converging if it is at most this fraction of the step before. Below one half, no other crossing can lie
+/// between the start and the limit of the steps (the condition of Kantorovich's theorem on Newton's method).
 pub(super) const SHORTER: f64 = 0.4;
-/// Steps below this, mm, may be rounding, or the noise of slopes taken by differences.
+/// Steps below this, mm, may be rounding, or the noise of slopes taken from differences.
 pub(super) const NOISE_MM: f64 = 1e-8;
 /// Once a step is smaller than this, mm, the ray has arrived.
 pub(super) const ARRIVED_MM: f64 = 1e-13;
 
 /// First step of the search, as a fraction of the distance between ray and vertex.
 const FIRST_STEP: f64 = 0.01;
-/// Least such distance, mm.
+/// Smallest distance between ray and vertex that counts for the first step, mm.
 const SMALLEST_MM: f64 = 0.1;
 /// Each step is longer than the one before by this factor.
 const GROWTH: f64 = 1.1;
-/// Steps to either side: the last ones end 45 distances away.
+/// Number of steps to either side; the last ones end 45 such distances away.
 const RINGS: usize = 64;
 /// Halvings toward the rim of a surface: 1e-9 of a step.
 const RIM_HALVINGS: usize = 30;
@@ -29,9 +29,9 @@ const EXTREMUM_HALVINGS: usize = 30;
 /// Steps within a bracket, each at least a halving.
 const BRACKET_STEPS: usize = 120;
 
-/// The distance, mm, at which the ray crosses z = sag(x, y) in its direction of travel (forward: from smaller z to larger). If it
-/// does so more than once, the crossing nearest to `start_mm` or, if the search has to start elsewhere, nearest to the point of
-/// the ray that is closest to the vertex.
+/// Returns the distance, mm, at which the ray crosses z = sag(x, y) in its direction of travel (forward: from smaller z to
+/// larger). If there are several crossings, it is the one nearest to `start_mm` or, if the search has to start elsewhere,
+/// nearest to the point of the ray that is closest to the vertex.
 ///
 /// `height` returns z - sag at a distance along the ray, and its derivative along the ray; `None` where the surface does not
 /// reach.
@@ -58,7 +58,7 @@ pub fn nearest_crossing(
     })
 }
 
-/// Newton's method, as long as every step is well below the one before.
+/// Runs Newton's method, as long as every step is well below the one before.
 fn newton(height: &impl Fn(f64) -> Option<(f64, f64)>, start: f64, sense: f64) -> Option<f64> {
     if !start.is_finite() {
         return None;
@@ -76,7 +76,7 @@ fn newton(height: &impl Fn(f64) -> Option<(f64, f64)>, start: f64, sense: f64) -
             return (slope * sense > 0.0).then_some(t);
         }
     }
-    // With slopes by differences the steps end in rounding noise, which is as good as arrived.
+    // With slopes from differences the steps end in rounding noise, which is as good as arrived.
     let (_, slope) = height(t)?;
     (last <= 10.0 * ARRIVED_MM + 10.0 * f64::EPSILON * t.abs() && slope * sense > 0.0).then_some(t)
 }
@@ -84,12 +84,12 @@ fn newton(height: &impl Fn(f64) -> Option<(f64, f64)>, start: f64, sense: f64) -
 /// A place along the ray, the height there, and its derivative.
 type Place = (f64, f64, f64);
 
-/// Two points between which the surface is crossed once from below to above, (below, above): looked for outward from the
-/// middle, to both sides in turn.
+/// Finds two points, (below, above), between which the ray crosses the surface once from below to above. Searches outward from
+/// the middle, to both sides in turn.
 fn march(height: &impl Fn(f64) -> Option<(f64, f64)>, middle: f64, first: f64) -> Option<(f64, f64)> {
     let place = |t: f64| height(t).map(|(value, slope)| (t, value, slope));
     let here = place(middle);
-    // Each side: the place reached, and what is there.
+    // For each side: the place reached, and what is there.
     let mut sides = [(middle, here), (middle, here)];
     let mut step = first;
     for _ in 0..RINGS {
@@ -115,7 +115,7 @@ fn march(height: &impl Fn(f64) -> Option<(f64, f64)>, middle: f64, first: f64) -
     None
 }
 
-/// The crossing from below to above between two places: plain where their signs differ so; where they are alike, behind a
+/// Brackets the crossing from below to above between two places. If both have the same sign, the crossing may lie beside a
 /// summit or a valley between them.
 fn between(place: &impl Fn(f64) -> Option<Place>, low: Place, high: Place) -> Option<(f64, f64)> {
     if low.1 < 0.0 && high.1 >= 0.0 {
@@ -140,7 +140,7 @@ fn between(place: &impl Fn(f64) -> Option<Place>, low: Place, high: Place) -> Op
     None
 }
 
-/// The last place that has surface between `on`, which has, and `off`, which has not.
+/// Finds the last place with surface between `on`, which has surface, and `off`, which has none.
 fn rim(place: &impl Fn(f64) -> Option<Place>, on: Place, off: f64) -> Place {
     let (mut on, mut off) = (on, off);
     for _ in 0..RIM_HALVINGS {
@@ -153,7 +153,7 @@ fn rim(place: &impl Fn(f64) -> Option<Place>, on: Place, off: f64) -> Place {
     on
 }
 
-/// Newton's method held in a bracket: a step that leaves it, or is not below half of the one before, is a halving.
+/// Runs Newton's method in a bracket: a step that leaves it, or is not below half of the one before, becomes a bisection.
 fn within(height: &impl Fn(f64) -> Option<(f64, f64)>, below: f64, above: f64, sense: f64) -> Option<f64> {
     let (mut below, mut above) = (below, above);
     let mut t = 0.5 * (below + above);

@@ -1,6 +1,6 @@
-//! The cells of a line of a table.
+//! Splits a line of a table into cells.
 
-/// Cells of a line, without blanks and quotes around them.
+/// Splits a line into cells, without the blanks and quotes around them.
 pub(super) fn cells(line: &str, separator: char) -> Vec<&str> {
     let mut cells = Vec::new();
     let mut quoted = false;

@@ -1,6 +1,6 @@
-//! What columns are called.
+//! Names of the columns of a table.
 
-/// What a column holds.
+/// Content of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Column {
     Lens,
@@ -15,15 +15,15 @@ pub(super) enum Column {
     SemiDiameter,
     Diameter,
     Conic,
-    /// Coefficient of this power of the radius.
+    /// Coefficient of this power of the distance from the axis.
     Coefficient(u32),
     Coefficients,
     Comment,
-    /// A figure that follows from others, or is none of a surface.
+    /// A value that follows from others, or does not belong to a surface.
     Unused,
 }
 
-/// Names without case, blanks, dashes and units.
+/// Column names in lower case, without blanks, dashes and units.
 const NAMES: [(&str, Column); 122] = [
     ("lens", Column::Lens),
     ("name", Column::Lens),
@@ -149,7 +149,7 @@ const NAMES: [(&str, Column); 122] = [
     ("焦点距離", Column::Unused),
 ];
 
-/// The column of a name, which may have a unit behind it.
+/// Returns the column with this name, which a unit may follow; `None` if it is unknown.
 pub(super) fn by_name(name: &str) -> Option<Column> {
     let (bare, _) = super::units::split(name);
     let plain: String = bare
@@ -166,24 +166,24 @@ pub(super) fn by_name(name: &str) -> Option<Column> {
     (power.is_multiple_of(2) && (2..=40).contains(&power)).then_some(Column::Coefficient(power))
 }
 
-/// Names that a person may write, for a hint.
+/// Hint that lists names of columns.
 pub(super) const HINT: &str = "known columns: lens, surface, type, radius, curvature, thickness, glass, nd, vd, semi-diameter, \
                                diameter, conic, a2, a4, ..., comment; a unit may follow in brackets: radius [in]";
 
-/// The power of a length that figures of a column are.
+/// Returns the power of a length in which the values of a column are measured.
 pub(super) fn power(column: Column) -> Option<i32> {
     match column {
         Column::Radius | Column::Thickness | Column::SemiDiameter | Column::Diameter => Some(1),
         Column::Curvature => Some(-1),
         Column::Coefficient(power) => Some(1 - power as i32),
-        // Of r^2; each one behind it has two powers less.
+        // Use the power for r^2; each following coefficient has two powers less.
         Column::Coefficients => Some(-1),
         _ => None,
     }
 }
 
-/// Millimeters of the unit of a column: of a length as it stands, of its powers as `1/in`, `in^-3`, `1/in^3`, or the bare unit of the
-/// lens. `None` where it is none, or another power than the column's.
+/// Returns the unit of a column in mm. A length has its unit as it is, a power of it one like `1/in`, `in^-3` or `1/in^3`, or the bare unit
+/// of the lens. `None` if it is not a unit, or has a power that the column does not have.
 pub(super) fn unit_mm(unit: &str, column: Column) -> Option<f64> {
     let wanted = power(column)?;
     let unit: String = unit.to_lowercase().chars().filter(|c| !c.is_whitespace() && *c != '^').collect();

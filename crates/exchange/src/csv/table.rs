@@ -1,4 +1,4 @@
-//! Rows to surfaces.
+//! Converts the rows of a table to surfaces.
 
 use super::cells::cells;
 use super::columns::{self, Column, HINT, by_name};
@@ -9,10 +9,10 @@ use crate::prescription::{Item, Medium, Prescription, Shape, Surface};
 use crate::{MAX_ITEMS, glass, number};
 use spectra_core::params::{Fault, Faults};
 
-/// Reads the text of a table; `name` is how faults name it.
+/// Reads the text of a table. `name` is the name of the file in error messages; the catalogs `own` are searched for its glasses first.
 ///
 /// # Errors
-/// No usable columns, no rows, several lenses in one table, and each cell that cannot be read, with its place.
+/// The table has no usable columns, no rows or several lenses. Each cell that cannot be read is reported, with its position.
 pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
     let printed = patent::plain(text);
     let retyped = patent::retype(&printed);
@@ -36,7 +36,7 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
         let column = by_name(cell);
         let doubled = column.is_some_and(|column| columns.contains(&Some(column)));
         if doubled {
-            faults.push(source.fault(cell, format!("column `{}` comes twice", shown(cell))));
+            faults.push(source.fault(cell, format!("column `{}` appears twice", shown(cell))));
         }
         if column.is_none() && !cell.is_empty() {
             faults.push(source.fault(cell, format!("unknown column `{}`", shown(cell))).hint(HINT));
@@ -94,23 +94,23 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
     faults.into_result(lens)
 }
 
-/// Whether indices stand for the line e, by their heading.
+/// Whether the indices are at the line e, according to their heading.
 fn head_line_is_e(heads: &[&str]) -> bool {
     heads.iter().any(|head| head.eq_ignore_ascii_case("ne"))
 }
 
-/// What rows so far have said.
+/// State carried from row to row.
 #[derive(Default)]
 struct Seen {
-    /// Whether the table has no column of thicknesses, which is told once.
+    /// Whether the table has no column of thicknesses, which is reported once.
     no_thickness: bool,
-    /// The last number of a surface.
+    /// Latest number of a surface.
     number: Option<f64>,
-    /// First line with a radius of 0, and how many there are.
+    /// First line with a radius of 0, and the number of such lines.
     zero_radii: Option<(usize, usize)>,
 }
 
-/// Millimeters of the unit of each column that holds lengths or their powers.
+/// Returns the unit, mm, of each column that states one for lengths or their powers.
 fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults: &mut Faults) -> Vec<(Column, f64)> {
     let mut found = Vec::new();
     let mut silent = Vec::new();
@@ -121,13 +121,13 @@ fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults:
             Some(unit) => match columns::unit_mm(unit, column) {
                 Some(mm) => found.push((column, mm)),
                 None => {
-                    let text = format!("`{}` is no unit of this column", shown(unit));
+                    let text = format!("`{}` is not a unit for this column", shown(unit));
                     let hint = match columns::power(column) {
                         Some(1) => units::HINT.to_owned(),
                         _ if column == Column::Coefficients => {
-                            "the unit of the lens, as in `coefficients [mm]`".to_owned()
+                            "write the unit of the lens, as in `coefficients [mm]`".to_owned()
                         }
-                        power => format!("such as [mm^{}]", power.unwrap_or(1)),
+                        power => format!("write a unit such as [mm^{}]", power.unwrap_or(1)),
                     };
                     faults.push(source.fault(head, text).hint(hint));
                 }
@@ -136,20 +136,19 @@ fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults:
     }
     if found.iter().any(|(_, mm)| *mm != 1.0) {
         for (head, column) in silent {
-            let text = format!("`{}` states no unit where other columns do", shown(head));
+            let text = format!("`{}` states no unit, but other columns do", shown(head));
             let power = match columns::power(column) {
                 Some(power) if power != 1 && column != Column::Coefficients => format!("^{power}"),
                 _ => String::new(),
             };
-            let hint = format!("write it behind the name, such as `{} [mm{power}]`", shown(head));
+            let hint = format!("write it after the name, such as `{} [mm{power}]`", shown(head));
             faults.push(source.fault(head, text).hint(hint));
         }
     }
     found
 }
 
-/// The fault of a table in which commas stand between cells and in numbers: rows are longer than the head, and no number has
-/// a point.
+/// Returns a fault if commas both separate cells and are decimal commas: rows are longer than the header, and no number has a point.
 fn decimal_commas<'a>(source: &Source, head: &str, rows: impl Iterator<Item = &'a str>) -> Option<Fault> {
     let columns = cells(head, ',').len();
     let (mut count, mut longer, mut first) = (0, 0, None);
@@ -167,11 +166,11 @@ fn decimal_commas<'a>(source: &Source, head: &str, rows: impl Iterator<Item = &'
     }
     let (row, filled) = first.filter(|_| 2 * longer >= count)?;
     let text =
-        format!("{filled} cells where the head has {columns}: commas stand between cells and, it seems, in numbers");
-    Some(source.fault(row, text).hint("write numbers with a point, or separate cells by semicolons or tabs"))
+        format!("{filled} cells, but the header has {columns}: commas seem to be in numbers as well as between cells");
+    Some(source.fault(row, text).hint("write numbers with a decimal point, or separate cells with semicolons or tabs"))
 }
 
-/// What helps where a cell is no number.
+/// Returns a hint for a cell that is not a number.
 fn hint_of(cell: &str) -> Option<String> {
     if patent::is_variable(cell) {
         let text = "the gap varies with zoom or focus: write its value at one setting, in mm, from the patent's table of variable gaps";
@@ -179,14 +178,14 @@ fn hint_of(cell: &str) -> Option<String> {
     }
     let point = cell.replacen(',', ".", 1);
     if number::parse(&point).is_some() {
-        return Some(format!("write it with a point, `{}`, or separate cells by semicolons or tabs", shown(&point)));
+        return Some(format!("write it with a point, `{}`, or separate cells with semicolons or tabs", shown(&point)));
     }
     let at = cell.find(|c: char| !(c.is_ascii_digit() || "+-.,".contains(c)))?;
     let (figure, unit) = cell.split_at(at);
     number::parse(&figure.replacen(',', ".", 1))?;
     units::length_mm(unit)?;
     let unit = unit.trim();
-    Some(format!("units go into the head of the column, such as `radius [{unit}]`; here `{figure}`"))
+    Some(format!("write the unit in the column header, such as `radius [{unit}]`, and here `{figure}`"))
 }
 
 struct Row<'a, 'f> {
@@ -197,37 +196,38 @@ struct Row<'a, 'f> {
     cells: Vec<(Column, &'a str)>,
     units_mm: &'f [(Column, f64)],
     seen: &'f mut Seen,
-    /// Where glasses are looked for first.
+    /// Catalogs that are searched for glasses first.
     own: &'a [OwnCatalogue],
 }
 
 impl<'a> Row<'a, '_> {
-    /// What stands in a column; `None` where nothing does.
+    /// Text of the cell in a column; `None` if it is empty or missing.
     fn text(&self, column: Column) -> Option<&'a str> {
         self.cells.iter().find(|(c, cell)| *c == column && !cell.is_empty()).map(|(_, cell)| *cell)
     }
 
-    /// A number, in mm and powers of it where it is a length or one of its powers.
+    /// Parses a number. Lengths and their powers are converted to mm.
     fn number(&mut self, column: Column) -> Option<f64> {
         let cell = self.text(column)?;
         let value = self.parse(cell)?;
         Some(columns::power(column).map_or(value, |power| self.in_mm(column, value, power)))
     }
 
-    /// A figure of a column in mm to a power.
+    /// Converts a value of a column to mm to a power.
     fn in_mm(&self, column: Column, value: f64, power: i32) -> f64 {
         let mm = self.units_mm.iter().find(|(known, _)| *known == column).map_or(1.0, |(_, mm)| *mm);
         let scale = (0..power.unsigned_abs()).fold(1.0, |product, _| product * mm);
         if power < 0 { value / scale } else { value * scale }
     }
 
-    /// Rows stand in the order of the light: their numbers rise.
+    /// Checks that the surface numbers rise, since rows are in the order of the light.
     fn count(&mut self) {
         let Some(cell) = self.text(Column::Number) else { return };
         let Some(number) = number::parse(cell).filter(|number| number.is_finite()) else { return };
         if let Some(last) = self.seen.number.filter(|last| number <= *last) {
             let fault = self.source.fault(cell, format!("surface {number} comes after surface {last}"));
-            self.faults.push(fault.hint("rows stand in the order of the light, and numbers rise from row to row"));
+            self.faults
+                .push(fault.hint("write rows in the order of the light, with numbers that rise from row to row"));
         }
         self.seen.number = Some(number);
     }
@@ -262,7 +262,7 @@ impl<'a> Row<'a, '_> {
                 lens.name = shown(name);
             } else if lens.name != shown(name) {
                 let fault = self.source.fault(name, format!("a second lens, `{}`, after `{}`", shown(name), lens.name));
-                self.faults.push(fault.hint("a table holds one lens: take the rows of one"));
+                self.faults.push(fault.hint("a table holds one lens: keep the rows of one"));
                 return;
             }
         }
@@ -295,7 +295,7 @@ impl<'a> Row<'a, '_> {
             let cell = self.text(Column::Glass).or(self.text(Column::Index)).unwrap_or_default();
             let fault = self.source.fault(cell, "the glass behind this surface needs a thickness");
             self.faults
-                .push(fault.hint("fill the column `thickness`, the distance to the next surface; 0 where they touch"));
+                .push(fault.hint("fill in `thickness`, the distance to the next surface; write 0 where they touch"));
         }
         let semi_diameter_mm = match self.finite(Column::SemiDiameter) {
             Some(size) => Some(size),
@@ -336,7 +336,7 @@ impl<'a> Row<'a, '_> {
         if let (Some(index), Some(cell)) = (nd, self.text(Column::Index))
             && !(1.0..=4.0).contains(&index)
         {
-            self.faults.push(self.source.fault(cell, format!("an index of {index}")).hint("it lies between 1 and 4"));
+            self.faults.push(self.source.fault(cell, format!("an index of {index}")).hint("write one from 1 to 4"));
             return Medium::Air;
         }
         let found = match (self.text(Column::Glass), nd) {
@@ -372,7 +372,7 @@ impl<'a> Row<'a, '_> {
         }
     }
 
-    /// Of r^2, r^4, ...
+    /// Returns the coefficients of r^2, r^4, ..., without zeros at the end.
     fn coefficients(&mut self) -> Vec<f64> {
         let mut coefficients = Vec::new();
         if let Some(cell) = self.text(Column::Coefficients) {

@@ -35,7 +35,7 @@ fn other_habits() {
     let Item::Surface(first) = &lens.items[0] else { panic!("a surface") };
     assert_eq!(first.shape, Shape::EvenAsphere { radius: 50.5, conic: 0.0, coefficients: vec![0.0, 1.5e-6] });
     assert_eq!((first.semi_diameter_mm, lens.items.len(), lens.object_distance_mm), (Some(10.0), 2, None));
-    // `1` and `2` are no types, and a radius of 0 is none.
+    // Notes: `1` and `2` are not types, and a radius of 0 is a plane.
     assert_eq!(lens.left_out.len(), 3);
 }
 
@@ -56,7 +56,7 @@ fn faults_have_row_and_column() {
         ("", "empty"),
         ("thickness\n1\n", "no column `radius`"),
         ("radius\n", "no surfaces"),
-        ("radius,r\n1,2\n", "comes twice"),
+        ("radius,r\n1,2\n", "appears twice"),
         ("lens,radius\na,1\nb,2\n", "t.csv:3:1: a second lens, `b`"),
     ] {
         assert!(read("t.csv", text).unwrap_err().to_string().contains(word), "{text}");
@@ -67,7 +67,7 @@ fn message(text: &str) -> String {
     read("t.csv", text).map_or_else(|faults| faults.to_string(), |lens| panic!("{text}: {lens:?}"))
 }
 
-/// A lens in any unit is the same lens in millimeters, coefficients too.
+/// A lens in any unit is the same lens in millimeters, including its coefficients.
 #[test]
 fn units_of_the_head_count() {
     let mm = "radius,thickness,glass,semi-diameter,a4,a6\n508,127,N-BK7,50.8,0,0\n-508,254,,50.8,0,0\n";
@@ -80,7 +80,7 @@ fn units_of_the_head_count() {
         let found = read("t.csv", text).unwrap_or_else(|faults| panic!("{faults}"));
         assert_eq!(found, wanted, "{text}");
     }
-    // z / in = a4 (r / in)^4: at r = 1 in 0.001 in.
+    // The sag in inches is a4 (r / in)^4: 0.001 in at r = 1 in.
     let form = |text: &str| match read("t.csv", text).expect("a lens").surfaces().next().map(|s| s.shape.clone()) {
         Some(Shape::EvenAsphere { radius, coefficients, .. }) => (radius, coefficients),
         other => panic!("{other:?}"),
@@ -95,9 +95,9 @@ fn units_of_the_head_count() {
         assert!((radius - 508.0).abs() < 1e-9 && (sag_mm - 0.0254).abs() < 1e-15, "{text}: {radius} {sag_mm}");
     }
     for (text, word) in [
-        ("radius [furlong],thickness\n1,1\n", "t.csv:1:1: `furlong` is no unit of this column"),
+        ("radius [furlong],thickness\n1,1\n", "t.csv:1:1: `furlong` is not a unit for this column"),
         ("radius [furlong],thickness\n1,1\n", "`radius [in]`"),
-        ("radius [in],thickness\n1,1\n", "t.csv:1:13: `thickness` states no unit where other columns do"),
+        ("radius [in],thickness\n1,1\n", "t.csv:1:13: `thickness` states no unit, but other columns do"),
         ("radius [in],thickness [in],a4\n1,1,0\n", "such as `a4 [mm^-3]`"),
         ("radius [mm],thickness [mm],a4 [mm^-5]\n1,1,0\n", "such as [mm^-3]"),
     ] {
@@ -139,13 +139,13 @@ fn slips_with_commas_and_units_have_hints() {
     assert!(faults.0[0].hint.as_deref().is_some_and(|hint| hint.contains("`1.628`")), "{faults}");
     let faults = read("t.csv", "radius,thickness,nd\n50,5,2,5,1,628\n-50,5,40,2,1\n").expect_err("faults");
     assert_eq!(faults.0.len(), 1, "{faults}");
-    assert!(faults.to_string().contains("t.csv:2:1: 6 cells where the head has 3"), "{faults}");
+    assert!(faults.to_string().contains("t.csv:2:1: 6 cells, but the header has 3"), "{faults}");
     assert!(faults.0[0].hint.as_deref().is_some_and(|hint| hint.contains("semicolons")), "{faults}");
     let faults = read("t.csv", "radius,thickness\n50 mm,2\n-50,40\n").expect_err("faults");
-    assert!(faults.0[0].hint.as_deref().is_some_and(|hint| hint.contains("`radius [mm]`; here `50`")), "{faults}");
+    assert!(faults.0[0].hint.as_deref().is_some_and(|hint| hint.contains("`radius [mm]`, and here `50`")), "{faults}");
 }
 
-/// The table of the guide is a lens without anything to tell.
+/// The table in the guide is a lens without any notes.
 #[test]
 fn the_table_of_the_guide() {
     let guide = include_str!("../../../../docs/guide/src/lens-from-patent.md");
@@ -158,7 +158,7 @@ fn the_table_of_the_guide() {
     assert_eq!((&surfaces[3].shape, surfaces.len()), (&Shape::Stop, 4));
 }
 
-/// Radii, thicknesses and indices of a table, the number of the stop from 1, and the notes.
+/// Returns radii, thicknesses and indices of a table, the number of the stop from 1, and the notes.
 fn printed(text: &str) -> (Vec<[f64; 3]>, Option<usize>, String) {
     let lens = read("t.csv", text).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
     let surfaces: Vec<_> = lens.surfaces().collect();
@@ -177,7 +177,7 @@ fn printed(text: &str) -> (Vec<[f64; 3]>, Option<usize>, String) {
     (rows, stop, notes.join("\n"))
 }
 
-/// A triplet, as six offices and typists print it; each must be the same lens.
+/// A triplet as six patent offices and typists print it: each must be read as the same lens.
 #[test]
 fn tables_as_patents_print_them() {
     const TRIPLET: [[f64; 3]; 7] = [
@@ -218,7 +218,7 @@ fn tables_as_patents_print_them() {
     }
 }
 
-/// What follows a table: coefficients of aspheres, and gaps that vary.
+/// Reads what follows a table: coefficients of aspheres, and gaps that vary.
 #[test]
 fn coefficients_and_gaps_below_a_table() {
     let text = "Surface No.  r  d  nd  vd\n1*  50.0  5.0  1.5168  64.2\n2  -40.0  d2\n3  30.0  2.0  1.62  36.3\n4*  ∞  (BF)\n\
@@ -237,43 +237,43 @@ fn coefficients_and_gaps_below_a_table() {
     assert_eq!(
         notes,
         [
-            "line 3: the gap `d2` varies: its first value, 1.50, is taken true",
-            "line 5: `(BF)` is no number: the film stands where the lens is focused false"
+            "line 3: the gap `d2` varies: its first value, 1.50, is used true",
+            "line 5: `(BF)` is not a number: the film is placed where the lens is in focus false"
         ]
     );
-    // Without values the gap is asked for, without coefficients the asphere is told of.
+    // Without values the gap is requested, and without coefficients the asphere is noted.
     let fault = read("t.txt", &text[..text.find("Aspherical").unwrap()]).unwrap_err().to_string();
     assert!(fault.contains("`d2` is not a number") && fault.contains("write its value at one setting"), "{fault}");
     let (_, _, notes) = printed("No. r d nd vd\n1* 50 5 1.5168 64.2\n2 -40 47\n3 30 2 1.62 36.3\n4 -90 40\n");
-    assert!(notes.contains("surface 1 is marked as an asphere, and no coefficients follow"), "{notes}");
+    assert!(notes.contains("surface 1 is marked as an asphere, but no coefficients follow"), "{notes}");
 }
 
-/// A table with separators and headings keeps its meaning, whatever words stand in it or above it.
+/// A table with separators and headings keeps its meaning, whatever words are in it or above it.
 #[test]
 fn plain_tables_stay_what_they_are() {
     let inches =
         "radius [in],thickness [in],nd,vd,comment\n2,0.2,1.5168,64.2,behind the aperture stop\n-2,4,,,Zoom group\n";
     let (rows, stop, notes) = printed(inches);
     assert_eq!((rows[0][0], rows.len(), stop), (50.8, 2, None), "{notes}");
-    // A title above it changes nothing of conics and coefficients.
+    // A title above the table does not change conics and coefficients.
     let text = "radius,thickness,nd,vd,conic,a4\n50,5,1.5168,64.2,-1.5,1e-6\n-40,47,,,,\n";
     let shape = |text: &str| read("t.csv", text).expect("a lens").surfaces().next().expect("a surface").shape.clone();
     assert_eq!(shape(&format!("A singlet of mine\n{text}")), shape(text));
-    // Comments are no equations, and a first cell of a row no heading.
+    // Comments are not equations, and the first cell of a row is not a heading.
     let (rows, ..) = printed(&format!("# r1 = 99, r2 = 98 and r3 = 97\n{text}"));
     assert_eq!(rows[0][0], 50.0);
     let kinds = "type,radius,thickness,nd,vd\naspherical,50,5,1.5168,64.2\naspherical,-40,47,,\n";
     assert_eq!(printed(kinds).0.len(), 2);
-    // Two figures in a cell are no number, nor a remark in quotes two cells.
+    // Two figures in a cell are not a number, and a quoted remark is not two cells.
     assert!(read("t.csv", "radius,thickness\n1 0,5\n").is_err());
     let quoted = "no,radius,thickness,nd,vd,comment\n1,50,5,1.5168,64.2,\"front, coated\"\n2 stop,inf,3,,,\n";
     let lens = read("t.csv", quoted).expect("a lens");
     let surfaces: Vec<_> = lens.surfaces().collect();
     assert_eq!((surfaces[0].comment.as_str(), surfaces[1].stop), ("front, coated", true));
-    // Indices of the line e are told apart.
+    // Indices at the line e are distinguished.
     let e = read("t.csv", "radius,thickness,ne,ve\n50,5,1.5187,64\n-40,47,,\n").expect("a lens");
     assert_eq!(e.reference_line.as_deref(), Some("e"));
-    // A focal length below a block of aspheres is no coefficient, and a second example another lens.
+    // A focal length below a block of aspheres is not a coefficient, and a second example is another lens.
     let two = "No. r d nd vd\n1* 50 5 1.5168 64.2\n2 -40 47\n3 inf 1\nAspherical surface data\n1st surface\nK = -1 A4 = 1e-6\n\
                Various data\nf = 50.00\nF = 2.8\nExample 2\nNo. r d nd vd\n1* 99 5 1.6 60\nAspherical surface data\n1st surface\nK = -9 A4 = 9e-6\n";
     let Shape::EvenAsphere { conic, coefficients, .. } = shape(two) else { panic!("an asphere") };

@@ -1,9 +1,9 @@
-//! Units in the heads of columns.
+//! Units in the headings of columns.
 
-/// A hint for a unit that is not known.
-pub(super) const HINT: &str = "mm, cm, m, in (inch) and um are known, as in `radius [in]`; without a unit it is mm";
+/// Hint for an unknown unit.
+pub(super) const HINT: &str = "write mm, cm, m, in (inch) or um, as in `radius [in]`; without a unit it is mm";
 
-/// Millimeters of a unit of length.
+/// Returns a unit of length in mm; `None` if it is unknown.
 pub(super) fn length_mm(unit: &str) -> Option<f64> {
     Some(match unit.trim().to_lowercase().as_str() {
         "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => 1.0,
@@ -15,7 +15,7 @@ pub(super) fn length_mm(unit: &str) -> Option<f64> {
     })
 }
 
-/// A column's name and its unit: in brackets, or behind the last `_` or blank where that is one.
+/// Splits a heading into name and unit. The unit is in brackets, or follows the last `_` or blank if it is a known one.
 pub(super) fn split(head: &str) -> (&str, Option<&str>) {
     if let Some((name, rest)) = head.split_once(['[', '(']) {
         return (name, Some(rest.trim_end_matches([']', ')', ' '])));

@@ -1,4 +1,4 @@
-//! Commands, one by one.
+//! Reads the commands of a file one by one.
 
 use super::glass::Private;
 use super::lens::{Aperture, Decenter, DecenterKind, Form, Raw, Role, build};
@@ -10,7 +10,7 @@ use crate::{MAX_ITEMS, number};
 use spectra_core::params::Faults;
 use std::collections::BTreeMap;
 
-/// Commands that choose rays, draw, vary or print.
+/// Commands that only select rays, draw, vary or print.
 const HARMLESS: [&str; 52] = [
     "LEN", "GO", "INI", "WTF", "WTW", "VUX", "VLX", "VUY", "VLY", "PIM", "CCY", "CCX", "THC", "GLC", "GC1", "GC2",
     "GC3", "CUM", "THM", "DER", "CLS", "POL", "CA", "AC", "BC", "CC", "DC", "EC", "FC", "GC", "HC", "JC", "KC", "ADC",
@@ -18,10 +18,11 @@ const HARMLESS: [&str; 52] = [
     "FCY", "XAC",
 ];
 
-/// Reads the text of a file; `name` is how faults name it.
+/// Reads the text of a `.seq` file. `name` is the name of the file in error messages; the catalogs `own` are searched for its glasses
+/// first.
 ///
 /// # Errors
-/// It has no surfaces, or a figure is no number.
+/// The file has no surfaces or more than [`MAX_ITEMS`], or a value without which there is no lens is not a number.
 pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let mut reader = Reader { source: &source, ..Reader::new(&source) };
@@ -34,22 +35,22 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
     reader.finish(own)
 }
 
-/// Everything that commands have said so far.
+/// State of reading: everything that the commands have defined so far.
 struct Reader<'a> {
     source: &'a Source,
     lens: Prescription,
     faults: Faults,
-    /// Whether curvatures are given as radii, where the file says it.
+    /// Whether curvatures are given as radii; `None` if the file does not say.
     radius_mode: Option<bool>,
     unit_mm: f64,
     surfaces: Vec<Raw>,
-    /// Indices of the file's own glasses come at these wavelengths, nm.
+    /// Wavelengths, nm, of the index tables of the file's own glasses.
     private_nm: Vec<f64>,
     private: Vec<Private>,
     in_private: bool,
-    /// Line of the command that is read.
+    /// Line of the current command.
     line: usize,
-    /// Line of what sets the size of the beam.
+    /// Line of the command that sets the size of the beam.
     aperture_line: usize,
     fields: BTreeMap<&'static str, Vec<f64>>,
     unknown: BTreeMap<String, (usize, usize)>,
@@ -74,7 +75,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A figure without which there is no lens.
+    /// Parses a value without which there is no lens; anything else is a fault.
     fn needed(&mut self, word: &str) -> Option<f64> {
         let value = number::parse(word);
         if value.is_none() {
@@ -83,7 +84,7 @@ impl<'a> Reader<'a> {
         value
     }
 
-    /// Any other one: of a word in its place is told.
+    /// Parses any other value; anything else is noted.
     fn number(&mut self, word: &str) -> Option<f64> {
         let value = number::parse(word);
         if value.is_none() {
@@ -96,17 +97,17 @@ impl<'a> Reader<'a> {
         words.iter().take(128).filter_map(|word| self.number(word)).collect()
     }
 
-    /// The value behind a command, and the surface that it is for: `THI S3 5.0`, or the one that was begun last.
+    /// Returns the value after a command, and the index of its surface: the named one as in `THI S3 5.0`, or the latest.
     fn value(&mut self, command: &str, words: &[&str], is_needed: bool) -> Option<(usize, f64)> {
         let (at, words) = self.target(words)?;
         let Some((word, more)) = words.split_first() else {
             self.lens.leave_out(self.line, true, format!("{command} without a value"));
             return None;
         };
-        // A solve, by which the program finds the value anew: `THI HMY 0.0` behind `S 50 5`.
+        // A solve, with which the program recomputes the value: `THI HMY 0.0` after `S 50 5`.
         if is_needed && self.surfaces[at].states(command) && word.starts_with(|c: char| c.is_ascii_alphabetic()) {
             let is_solve = word.bytes().all(|b| b.is_ascii_alphabetic());
-            let text = format!("{command} {}: the value of its surface's own line is carried", words.join(" "));
+            let text = format!("{command} {}: the value on the surface's own line is carried", words.join(" "));
             self.lens.leave_out(self.line, !is_solve, shown(&text));
             return None;
         }
@@ -115,14 +116,15 @@ impl<'a> Reader<'a> {
         Some((at, value))
     }
 
-    /// Tells of words behind those that a command has.
+    /// Notes words after the values that a command has.
     fn note_more(&mut self, command: &str, more: &[&str]) {
         if !more.is_empty() {
-            self.lens.leave_out(self.line, true, shown(&format!("{} behind {command} and its value", more.join(" "))));
+            self.lens.leave_out(self.line, true, shown(&format!("unexpected {} after {command}", more.join(" "))));
         }
     }
 
-    /// The surface that a command is for: `S3`, `SO`, `SI`, or the last one; and the words behind. `None` is told.
+    /// Returns the index of the surface that a command is for (`S3`, `SO`, `SI`, or the latest), and the remaining words. `None` if it does
+    /// not exist, which is noted.
     fn target<'w>(&mut self, words: &'w [&'w str]) -> Option<(usize, &'w [&'w str])> {
         let last = self.surfaces.len().checked_sub(1)?;
         let Some(first) = words.first() else { return Some((last, words)) };
@@ -154,7 +156,7 @@ impl<'a> Reader<'a> {
                     let formula = words.first().filter(|word| number::parse(word).is_none());
                     let indices = if let Some(formula) = formula {
                         let text = format!(
-                            "the file's own glass {} is by a formula, {}: not read",
+                            "the file's own glass {} has a formula, {}, which is not read",
                             shown(&name),
                             shown(formula)
                         );
@@ -171,7 +173,7 @@ impl<'a> Reader<'a> {
             }
             return;
         }
-        // Long names are those of three letters.
+        // Shorten long command names to three letters.
         let known =
             if upper.len() > 3 && upper.bytes().all(|b| b.is_ascii_alphabetic()) { &upper[..3] } else { &upper };
         match known {
@@ -236,18 +238,16 @@ impl<'a> Reader<'a> {
             "M" | "MM" => self.unit_mm = 1.0,
             "C" | "CM" => self.unit_mm = 10.0,
             "I" | "IN" => self.unit_mm = 25.4,
-            _ => {
-                self.faults.push(self.source.fault(word, "unknown unit").hint("M (mm), C (cm) and I (inch) are known"))
-            }
+            _ => self.faults.push(self.source.fault(word, "unknown unit").hint("write M (mm), C (cm) or I (inch)")),
         }
     }
 
-    /// `S radius thickness glass`.
+    /// Reads `S radius thickness glass`.
     fn begin(&mut self, role: Role, line: usize, words: &[&str]) {
         let mut raw = Raw::new(role, line);
         let mut words = words;
         let mut stated = [false; 2];
-        // What begins as a number is none of a glass, unless a number goes before it.
+        // A word that begins like a number is not a glass, unless a number precedes it.
         let is_figure = |word: &str| word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
         for (at, into) in [&mut raw.bend, &mut raw.thickness].into_iter().enumerate() {
             let Some(word) = words.first() else { break };
@@ -266,15 +266,15 @@ impl<'a> Reader<'a> {
                 raw.set_glass(word);
             }
             if let Some(more) = words.get(1) {
-                self.lens.leave_out(line, true, format!("{} behind the glass of a surface", shown(more)));
+                self.lens.leave_out(line, true, format!("unexpected {} after the glass of a surface", shown(more)));
             }
         }
         self.surfaces.push(raw);
     }
 
-    /// A command that belongs to a surface; false where it is none.
+    /// Reads a command that belongs to a surface; returns false if it is another command.
     fn surface_command(&mut self, command: &str, words: &[&str], line: usize) -> bool {
-        /// Powers of the coefficients A, B, ... ; there is no I.
+        /// Powers of the coefficients A, B, ...; there is no I.
         const POWERS: [(&str, u32); 9] =
             [("A", 4), ("B", 6), ("C", 8), ("D", 10), ("E", 12), ("F", 14), ("G", 16), ("H", 18), ("J", 20)];
         if self.surfaces.is_empty() {
@@ -360,7 +360,7 @@ impl<'a> Reader<'a> {
         true
     }
 
-    /// `CIR 12`, `CIR EDG 12`, `CIR OBS L'A' 0.4`, `REX 5`.
+    /// Reads an aperture: `CIR 12`, `CIR EDG 12`, `CIR OBS L'A' 0.4`, `REX 5`.
     fn aperture(&mut self, command: &str, words: &[&str], line: usize) {
         let Some((at, words)) = self.target(words) else { return };
         let mut use_of = Aperture::CLEAR;
@@ -428,10 +428,10 @@ impl<'a> Reader<'a> {
         self.lens.fields = fields(&self.fields, units);
         for (text, (line, count)) in std::mem::take(&mut self.unknown) {
             let times = if count > 1 { format!(" ({count} times)") } else { String::new() };
-            self.lens.leave_out(line, true, format!("the command {text}{times} is unknown"));
+            self.lens.leave_out(line, true, format!("unknown command {text}{times}"));
         }
         build(&mut self.lens, &self.surfaces, self.radius_mode, units, (&self.private, own));
-        // Its f-number is that of the cone at the image.
+        // For an object at a finite distance the f-number of CODE V is that of the cone at the image.
         if let (Some(SystemAperture::FNumber(n)), Some(_)) = (self.lens.system_aperture, self.lens.object_distance_mm) {
             self.lens.system_aperture = Some(SystemAperture::ImageNumericalAperture(0.5 / n));
         }

@@ -1,21 +1,22 @@
-//! Glass names of CODE V.
+//! Glass names of CODE V files.
 
 use crate::glass::{Catalogues, Found, OwnCatalogue, look_up, maker_of_catalogue, model};
 use crate::number;
 use crate::prescription::Medium;
 use spectra_glass::lines::{C, D, F};
 
-/// A glass of which the file has a table of indices.
+/// A private glass: one for which the file has a table of indices.
 #[derive(Clone, Debug)]
 pub(super) struct Private {
-    /// Its name, upper case, without quotes.
+    /// Name of the glass, without quotes.
     pub(super) name: String,
-    /// (nm, index), in any order.
+    /// Points of the table (wavelength in nm, index), in any order.
     pub(super) points: Vec<(f64, f64)>,
 }
 
 impl Private {
-    /// Index at a wavelength: between neighbors linear in 1 / wavelength^2, the variable of Cauchy's formula.
+    /// Returns the index at a wavelength, interpolated linearly in 1 / wavelength^2, the variable of Cauchy's formula; `None` outside the
+    /// table.
     fn index(&self, nm: f64) -> Option<f64> {
         let x = |nm: f64| 1.0 / (nm * nm);
         let below = self.points.iter().filter(|p| p.0 <= nm).max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -27,7 +28,7 @@ impl Private {
         Some(below.1 + t * (above.1 - below.1))
     }
 
-    /// nd and Vd, if the table reaches from F to C.
+    /// Returns nd and Vd if the table covers F to C.
     fn figures(&self) -> Option<(f64, f64)> {
         let [nd, nf, nc] = [D, F, C].map(|line| self.index(line.wavelength_nm));
         let (nd, spread) = (nd?, nf? - nc?);
@@ -35,14 +36,14 @@ impl Private {
     }
 }
 
-/// The medium of a name: `NBK7_SCHOTT`, `516800.641700`, `1.5168:64.17`, `'E48'`, `1.5`.
+/// Returns the medium of a name: `NBK7_SCHOTT`, `516800.641700`, `1.5168:64.17`, `'E48'`, `1.5`.
 pub(super) fn medium(name: &str, private: &[Private], own: &[OwnCatalogue]) -> Found {
     let bare = name.trim_matches(['\'', '"']);
     if let Some(table) = private.iter().find(|table| table.name.eq_ignore_ascii_case(bare)) {
         return match table.figures() {
             Some((nd, vd)) => {
                 let (nd, vd) = (round(nd), round(vd));
-                let text = format!("glass {bare} of the file's own table is carried by its nd {nd} and Vd {vd}");
+                let text = format!("glass {bare} has a table in the file, carried by its nd {nd} and Vd {vd}");
                 let Found { medium, note } = model(nd, vd);
                 Found { medium, note: note.or(Some((false, text))) }
             }
@@ -67,7 +68,7 @@ pub(super) fn medium(name: &str, private: &[Private], own: &[OwnCatalogue]) -> F
     {
         return look_up(name, None, Catalogues { own, makers: &[maker] });
     }
-    // Written by other programs: substance and measurement.
+    // Names written by other programs: substance and measurement.
     if let Some((substance, author)) = bare.split_once('_') {
         let found = look_up(&format!("{substance}/{author}"), None, Catalogues::default());
         if !matches!(found.medium, Medium::Unknown { .. }) {
@@ -75,14 +76,15 @@ pub(super) fn medium(name: &str, private: &[Private], own: &[OwnCatalogue]) -> F
         }
         let found = look_up(substance, None, Catalogues::default());
         if let Medium::Glass { name, .. } = &found.medium {
-            let text = format!("{bare} is taken as {name}");
+            let text = format!("{bare} is read as {name}");
             return Found { note: Some((false, text)), ..found };
         }
     }
     look_up(bare, None, Catalogues { own, makers: &["SCHOTT"] })
 }
 
-/// nd and Vd that a name spells: digits of nd - 1, a point, digits of Vd, the first two of them whole; or nd:Vd; or an index.
+/// Returns the nd and Vd that a name spells: the digits of nd - 1, a point and the digits of Vd, the first two of them whole; or nd:Vd; or
+/// an index.
 fn figures(name: &str) -> Option<(f64, f64)> {
     if let Some((nd, vd)) = name.split_once(':') {
         return Some((number::parse(nd)?, number::parse(vd)?)).filter(|(nd, _)| (1.0..=4.0).contains(nd));
@@ -98,7 +100,7 @@ fn figures(name: &str) -> Option<(f64, f64)> {
     }
 }
 
-/// To six decimals: more would be invented.
+/// Rounds to six decimals, because more would not be meaningful.
 fn round(value: f64) -> f64 {
     format!("{value:.6}").parse().unwrap_or(value)
 }
@@ -135,7 +137,7 @@ mod tests {
         }
     }
 
-    /// N-BK7 sampled at a few lines gives back its nd and Vd within what interpolation can.
+    /// N-BK7 sampled at a few lines gives back its nd and Vd within the accuracy of interpolation.
     #[test]
     fn private_tables_have_figures() {
         let points =

@@ -1,4 +1,4 @@
-//! From what commands said to a prescription.
+//! Builds a prescription from the data that the commands have defined.
 
 use super::glass::{self, Private};
 use crate::glass::OwnCatalogue;
@@ -6,10 +6,10 @@ use crate::number;
 use crate::prescription::{ApertureShape, CoordinateBreak, Displacement, Item, Medium, Prescription, Shape, Surface};
 use std::collections::BTreeMap;
 
-/// Object distances (mm) from which an object is at infinity.
+/// Object distances, mm, from which an object counts as at infinity.
 const INFINITY_MM: f64 = 1e10;
 
-/// What a surface is in the file.
+/// Role of a surface in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     Object,
@@ -17,7 +17,7 @@ pub(super) enum Role {
     Image,
 }
 
-/// Forms that a command names; without one it is a conic.
+/// Shapes that a command names; without one the surface is a conic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     Conic,
@@ -28,20 +28,20 @@ pub(super) enum Form {
     Anamorphic,
 }
 
-/// How a decenter goes on behind its surface.
+/// Effect of a decenter on what follows its surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DecenterKind {
-    /// For all that follows.
+    /// Applies to everything that follows.
     Basic,
-    /// For this surface only.
+    /// Applies to this surface only.
     AndReturn,
     /// Undone behind the surface.
     Reverse,
-    /// Turned once more behind a mirror, so that the axis follows the light.
+    /// Applied once more behind a mirror, so that the axis follows the light.
     Bend,
 }
 
-/// A decenter as stated: lengths in the file's unit, angles in degrees. Angles about x and y are left-handed there.
+/// A decenter as stated: lengths in the file's unit, angles in degrees. Angles about x and y are left-handed in the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Decenter {
     pub(super) kind: DecenterKind,
@@ -59,29 +59,29 @@ pub(super) struct Aperture {
 }
 
 impl Aperture {
-    /// Light passes inside.
+    /// Use of an aperture: light passes inside.
     pub(super) const CLEAR: u8 = 0;
-    /// The edge of the element.
+    /// Use of an aperture: the edge of the element.
     pub(super) const EDGE: u8 = 1;
-    /// Light is stopped inside.
+    /// Use of an aperture: light is blocked inside.
     pub(super) const OBSCURES: u8 = 2;
-    /// A hole in the element.
+    /// Use of an aperture: a hole in the element.
     pub(super) const HOLE: u8 = 3;
 }
 
-/// One surface, the object or the image, as stated.
+/// A surface, the object or the image, as stated.
 #[derive(Clone, Debug)]
 pub(super) struct Raw {
     pub(super) role: Role,
     pub(super) line: usize,
-    /// Radius or curvature in y-z.
+    /// Radius or curvature in the y-z plane.
     pub(super) bend: f64,
-    /// Which of both, where the command says it.
+    /// Whether `bend` is a radius, if the command says so.
     pub(super) bend_is_radius: Option<bool>,
-    /// The same in x-z, with whether it is a radius.
+    /// Radius or curvature in the x-z plane, and whether it is a radius.
     pub(super) bend_x: Option<(f64, bool)>,
     pub(super) thickness: f64,
-    /// Whether the line that began it states its radius or curvature, and its thickness.
+    /// Whether the line that began the surface states its radius or curvature, and its thickness.
     pub(super) stated: [bool; 2],
     glass: Option<String>,
     pub(super) mirror: bool,
@@ -89,7 +89,7 @@ pub(super) struct Raw {
     pub(super) form: Form,
     pub(super) conic: f64,
     pub(super) conic_x: f64,
-    /// By power.
+    /// Coefficients by power.
     pub(super) coefficients: BTreeMap<u32, f64>,
     apertures: Vec<Aperture>,
     pub(super) decenter: Decenter,
@@ -119,7 +119,7 @@ impl Raw {
         }
     }
 
-    /// Whether the line that began it states the value of a command.
+    /// Whether the line that began the surface states the value of a command.
     pub(super) fn states(&self, command: &str) -> bool {
         match command {
             "RDY" | "CUY" => self.stated[0],
@@ -136,7 +136,7 @@ impl Raw {
         }
     }
 
-    /// The aperture of this use and label; a new one where there is none.
+    /// Returns the aperture with this use and label, adding it if there is none.
     pub(super) fn aperture(&mut self, use_of: u8, label: &str) -> &mut Aperture {
         let known = self.apertures.iter().position(|a| a.use_of == use_of && a.label == label);
         let at = known.unwrap_or_else(|| {
@@ -146,7 +146,7 @@ impl Raw {
         &mut self.apertures[at]
     }
 
-    /// Whether it states a form other than that of its radius in y-z.
+    /// Whether the surface has a shape beyond its radius in y-z.
     fn has_form(&self) -> bool {
         let is_set = |value: f64| value != 0.0;
         self.form != Form::Conic
@@ -161,7 +161,7 @@ impl Raw {
     }
 }
 
-/// A radius, mm, from a stated radius or curvature.
+/// Returns a radius, mm, from a stated radius or curvature.
 fn radius(value: f64, is_radius: bool, unit_mm: f64) -> f64 {
     match is_radius {
         _ if value == 0.0 || !value.is_finite() => f64::INFINITY,
@@ -170,7 +170,7 @@ fn radius(value: f64, is_radius: bool, unit_mm: f64) -> f64 {
     }
 }
 
-/// Fills the lens.
+/// Fills in the prescription.
 pub(super) fn build(
     lens: &mut Prescription,
     raws: &[Raw],
@@ -201,7 +201,7 @@ pub(super) fn build(
         let thickness_mm = if thickness_mm.is_finite() {
             thickness_mm
         } else {
-            lens.leave_out(raw.line, true, format!("surface {number}: an infinite thickness: 0 here"));
+            lens.leave_out(raw.line, true, format!("surface {number}: its infinite thickness is set to 0"));
             0.0
         };
         let before = medium.clone();
@@ -235,28 +235,28 @@ pub(super) fn build(
         place(lens, raw, surface, number, unit_mm);
     }
     if !raws.iter().any(|raw| raw.role == Role::Image) {
-        lens.leave_out(0, false, "no image surface: the last thickness is taken as the gap to the image");
+        lens.leave_out(0, false, "no image surface: the last thickness is used as the gap to the image");
     }
 }
 
-/// Where a file does not say whether it holds radii or curvatures: the program's default is curvatures, unless one of them would
-/// be that of a ball of less than two units.
+/// Guesses whether a file that does not say so states radii. Curvatures, the default of the program, are assumed unless one of the values
+/// would, as a curvature, belong to a ball with a diameter of less than two units.
 fn guess_mode(lens: &mut Prescription, raws: &[Raw]) -> bool {
     let largest = raws.iter().map(|raw| raw.bend.abs()).filter(|bend| bend.is_finite()).fold(0.0, f64::max);
     let radii = largest > 1.0;
     let what =
         if radii { "radii, since they are too large for curvatures" } else { "curvatures, the program's default" };
-    lens.leave_out(0, true, format!("RDM is missing: the figures of surfaces are taken as {what}"));
+    lens.leave_out(0, true, format!("RDM is missing: the values of surfaces are read as {what}"));
     radii
 }
 
-/// Tells of what an object has and cannot have here.
+/// Notes what the object has and cannot have here.
 fn object(lens: &mut Prescription, raw: &Raw, radius_mode: bool, unit_mm: f64) {
     if raw.radius_mm(radius_mode, unit_mm).is_finite() || raw.has_form() {
         lens.leave_out(raw.line, false, "the object is curved");
     }
     if raw.glass.is_some() || raw.mirror {
-        lens.leave_out(raw.line, true, "the object stands in a glass: air is in front of the lens here");
+        lens.leave_out(raw.line, true, "the object is in a glass: here air is in front of the lens");
     }
     if raw.apertures.iter().any(|aperture| aperture.shape.is_some() || aperture.center != [0.0; 2]) {
         lens.leave_out(raw.line, false, "the aperture of the object");
@@ -271,12 +271,11 @@ fn image(lens: &mut Prescription, raw: &Raw, defocus_mm: f64, radius_mode: bool,
         if let Some(last) = lens.items.last_mut() {
             *last.thickness_mm_mut() += defocus_mm;
         }
-        let text =
-            format!("The last gap holds the defocus of {} mm of the image surface.", number::shortest(defocus_mm));
+        let text = format!("The last gap includes the image surface's defocus of {} mm.", number::shortest(defocus_mm));
         lens.remarks.push(text);
     }
     if raw.radius_mm(radius_mode, unit_mm).is_finite() || raw.has_form() {
-        lens.leave_out(raw.line, true, "the image surface is curved: it is a plane here");
+        lens.leave_out(raw.line, true, "the image surface is curved: here it is a plane");
     }
     if raw.glass.is_some() || raw.mirror {
         lens.leave_out(raw.line, true, "a glass or a mirror behind the image surface");
@@ -299,7 +298,7 @@ fn image(lens: &mut Prescription, raw: &Raw, defocus_mm: f64, radius_mode: bool,
 fn shape(lens: &mut Prescription, raw: &Raw, number: usize, radius_mode: bool, unit_mm: f64) -> Shape {
     let radius_y = raw.radius_mm(radius_mode, unit_mm);
     let radius_x = raw.bend_x.map_or(f64::INFINITY, |(value, is_radius)| radius(value, is_radius, unit_mm));
-    // From the 4th power on; the first place is that of the square.
+    // Start at the 4th power; the first coefficient is that of the square.
     let mut coefficients: Vec<f64> = (1..=10)
         .map(|i| {
             let power: u32 = 2 * i;
@@ -315,7 +314,7 @@ fn shape(lens: &mut Prescription, raw: &Raw, number: usize, radius_mode: bool, u
     let has_x_radius = matches!(raw.form, Form::ToroidX | Form::ToroidY | Form::Anamorphic);
     let has_x_conic = matches!(raw.form, Form::ToroidX | Form::Anamorphic);
     if radius_x.is_finite() && !has_x_radius || raw.conic_x != 0.0 && !has_x_conic {
-        let text = format!("surface {number}: a radius or a conic constant in x-z, which its form does not have");
+        let text = format!("surface {number}: a radius or a conic constant in x-z, which its type does not have");
         lens.leave_out(raw.line, true, text);
     }
     let has_terms = !coefficients.is_empty();
@@ -364,7 +363,7 @@ fn apertures(lens: &mut Prescription, raw: &Raw, surface: &mut Surface, number: 
             lens.leave_out(
                 raw.line,
                 true,
-                format!("surface {number}: an aperture of which one size is missing or not positive"),
+                format!("surface {number}: an aperture with a size that is missing or not positive"),
             );
             continue;
         }
@@ -375,12 +374,12 @@ fn apertures(lens: &mut Prescription, raw: &Raw, surface: &mut Surface, number: 
                 surface.outer_semi_diameter_mm = Some(*outer)
             }
             (Aperture::EDGE, _) => {
-                lens.leave_out(raw.line, false, format!("surface {number}: an edge that is no circle"))
+                lens.leave_out(raw.line, false, format!("surface {number}: an edge that is not a circle"))
             }
             (Aperture::CLEAR, ApertureShape::Ring { outer, .. }) if centered => surface.semi_diameter_mm = Some(*outer),
             (use_of, _) => {
                 if use_of == Aperture::HOLE {
-                    let text = format!("surface {number}: a hole: light that would pass it is stopped");
+                    let text = format!("surface {number}: a hole: light that would pass through it is blocked");
                     lens.leave_out(raw.line, false, text);
                 }
                 let obscures = use_of != Aperture::CLEAR;
@@ -392,18 +391,18 @@ fn apertures(lens: &mut Prescription, raw: &Raw, surface: &mut Surface, number: 
     surface.outer_semi_diameter_mm = surface.outer_semi_diameter_mm.filter(|edge| *edge > clear);
 }
 
-/// Right-handed, mm.
+/// Converts a decenter to right-handed angles and mm.
 fn displacement(stated: &Decenter, unit_mm: f64) -> Displacement {
     let finite = |v: f64| if v.is_finite() { v } else { 0.0 };
     let [a, b, c] = stated.turn.map(finite);
-    // 0 - a, so that no minus stands before a zero.
+    // Write 0 - a, so that a zero has no minus sign.
     Displacement {
         decenter_mm: [finite(stated.shift[0]) * unit_mm, finite(stated.shift[1]) * unit_mm],
         tilt_deg: [0.0 - a, 0.0 - b, c],
     }
 }
 
-/// Puts a surface and the moves of the axis that belong to it.
+/// Adds a surface and the coordinate breaks that belong to it.
 fn place(lens: &mut Prescription, raw: &Raw, mut surface: Surface, number: usize, unit_mm: f64) {
     let by = displacement(&raw.decenter, unit_mm);
     let along_mm = raw.decenter.shift[2] * unit_mm;
@@ -429,7 +428,7 @@ fn place(lens: &mut Prescription, raw: &Raw, mut surface: Surface, number: usize
             lens.items.push(Item::Surface(Box::new(surface)));
         }
         DecenterKind::Reverse => {
-            // The transformation stands behind the surface, and is the inverse of the stated one.
+            // The transformation comes after the surface, and is the inverse of the stated one.
             let back =
                 Displacement { decenter_mm: by.decenter_mm.map(|v| 0.0 - v), tilt_deg: by.tilt_deg.map(|v| 0.0 - v) };
             surface.thickness_mm = 0.0;
@@ -439,7 +438,7 @@ fn place(lens: &mut Prescription, raw: &Raw, mut surface: Surface, number: usize
         DecenterKind::Bend => {
             if by.tilt_deg.iter().filter(|angle| **angle != 0.0).count() > 1 {
                 let text = format!(
-                    "surface {number}: BEN with turns about several axes: the axis behind it may not follow the light"
+                    "surface {number}: BEN with tilts about several axes: the axis behind it may not follow the light"
                 );
                 lens.leave_out(raw.line, true, text);
             }

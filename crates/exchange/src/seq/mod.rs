@@ -1,8 +1,8 @@
-//! CODE V's sequential command files, `.seq`.
+//! CODE V sequential command files, `.seq`.
 //!
-//! A file is commands of three letters and values, one a line or separated by `;`; `!` starts a comment, `&` at the end goes on in
-//! the next line. `SO`, `S` and `SI` begin the object, a surface, the image; what follows belongs to it. The meaning
-//! of commands is that of the CODE V reference manual (chapters Lens Data, Tilts and Decenters, Apertures).
+//! A file consists of commands of three letters with values, one per line or separated by `;`. `!` starts a comment, and `&` at the end
+//! continues on the next line. `SO`, `S` and `SI` begin the object, a surface and the image; the commands that follow belong to it.
+//! Commands have the meaning given in the CODE V reference manual (chapters Lens Data, Tilts and Decenters, Apertures).
 
 mod command;
 mod glass;

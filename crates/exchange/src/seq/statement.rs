@@ -1,15 +1,15 @@
-//! Text to commands.
+//! Splits the text of a file into commands.
 
 /// A command with its values.
 #[derive(Clone, Debug)]
 pub(super) struct Statement<'a> {
-    /// Line where it begins, from 1.
+    /// Line on which the command begins, from 1.
     pub(super) line: usize,
-    /// Command first; a text in quotes is one word, with its quotes.
+    /// The command, followed by its values. A quoted text is one word, with its quotes.
     pub(super) words: Vec<&'a str>,
 }
 
-/// All commands of a file.
+/// Splits a file into its commands.
 pub(super) fn split(text: &str) -> Vec<Statement<'_>> {
     let mut statements = Vec::new();
     let mut open: Option<Statement<'_>> = None;
@@ -44,7 +44,7 @@ pub(super) fn split(text: &str) -> Vec<Statement<'_>> {
     statements
 }
 
-/// Where the first word ends, bytes; quotes hold it together.
+/// Returns the end of the first word, bytes. Quotes hold a word together.
 fn end_of_word(text: &str) -> usize {
     let mut quote = None;
     for (at, c) in text.char_indices() {

@@ -25,7 +25,7 @@ fn radii_curvatures_and_units() {
     assert_eq!(radius("RDM N\nS 0.02 5 NBK7_SCHOTT\nSI 0 0"), 50.0);
     assert_eq!(radius("RDM\nDIM I\nS 2 5 NBK7_SCHOTT\nSI 0 0"), 50.8);
     assert_eq!(radius("RDM N\nCUY S1 0.5\nS 1 1\nCUY S0 0.04\nSI 0 0\n").recip().abs().recip(), 25.0);
-    // Nobody says which: the figures do.
+    // If the file does not say which, the values decide.
     assert_eq!(radius("S 50 5 NBK7_SCHOTT\nSI 0 0"), 50.0);
     assert_eq!(radius("S 0.02 5 NBK7_SCHOTT\nSI 0 0"), 50.0);
     assert!(lens("S 50 5\nSI 0 0").left_out.iter().any(|note| note.alters && note.text.contains("RDM is missing")));
@@ -71,7 +71,7 @@ fn glasses_mirrors_and_apertures() {
     assert_eq!(first("S 0 3\n STO").shape, Shape::Stop);
 }
 
-/// A thin lens of 100 mm in the stop, of glass of no thickness: what sets the size of the beam sets that of the stop.
+/// A thin lens of 100 mm in the stop, with glass of no thickness: the quantity that sets the size of the beam sets that of the stop.
 #[test]
 fn the_beam_sizes_the_stop() {
     let stop = |head: &str, object: &str, rim: &str| {
@@ -85,7 +85,7 @@ fn the_beam_sizes_the_stop() {
         ("DIM I\nEPD 10", "1e11", 127.0),
         ("FNO 5", "1e11", 10.0),
         ("NA 0.1", "1e11", 10.0),
-        // As large as the object: the image is 200 mm behind.
+        // Object and image have the same size: the image is 200 mm behind the lens.
         ("FNO 5", "200", 20.0),
         ("NA 0.1", "200", 20.0),
         ("NAO 0.1", "200", 20.0 / (1.0_f64 - 0.01).sqrt()),
@@ -102,7 +102,7 @@ fn the_beam_sizes_the_stop() {
     );
 }
 
-/// Tilts about x and y are left-handed there and right-handed here.
+/// Tilts about x and y are left-handed in CODE V and right-handed here.
 #[test]
 fn decenters_of_four_sorts() {
     let items = |text: &str| lens(&format!("RDM\n{text}\nSI 0 0\n")).items;
@@ -146,7 +146,7 @@ fn the_rest_is_told() {
     assert!(read("bad.seq", "").unwrap_err().to_string().contains("no surfaces"));
 }
 
-/// What the hint says clips, clips.
+/// Follows the hint on how to clip, and checks that the surface clips.
 #[test]
 fn hints_help_when_followed() {
     let hint = crate::Format::Seq.how_to_clip();
@@ -156,9 +156,9 @@ fn hints_help_when_followed() {
     assert!(crate::Format::Seq.how_to_stop().contains("`STO`") && first("S 50 1 NBK7_SCHOTT\n STO").stop);
 }
 
-/// A word in the place of a number ends nothing but where there is no lens without it: the radius and the thickness of a surface.
-/// Sets each value of each form to something else in turn, on the object and the image surface, too: what is read changes, or somebody is
-/// told. Nothing ends the reading but a radius or a thickness that cannot be read.
+/// Only the radius and the thickness of a surface, without which there is no lens, may make reading fail if they are not numbers. This test
+/// sets each value of each form to something else in turn, also on the object and the image surface. Either the result changes, or a note
+/// is added.
 #[test]
 fn no_value_of_a_surface_is_passed_over() {
     const FORMS: [&str; 6] = ["", " ASP\n", " CYL\n", " YTO\n RDX 30\n", " XTO\n RDX 30\n", " AAS\n RDX 30\n"];
@@ -172,7 +172,7 @@ fn no_value_of_a_surface_is_passed_over() {
         let [object, surface, image] = ["object", "surface", "image"].map(of);
         format!("RDM\nSO 0 1e13\n{object}S 50 5 NBK7_SCHOTT\n{surface}S -50 47\nSI 0 0\n{image}GO\n")
     };
-    // Of a form that is not carried all is told at once.
+    // A form that is not carried is noted once as a whole.
     let is_told = |before: &Prescription, after: &Prescription| {
         after.left_out.len() > before.left_out.len()
             || after.left_out.iter().any(|note| note.text.contains("carried by its radius in y-z"))
@@ -201,7 +201,7 @@ fn no_value_of_a_surface_is_passed_over() {
             };
             for command in commands {
                 let value = if LENGTHS.contains(&command) { "44" } else { "0.003" };
-                // A plane has no conic constant; the drawing of a color is none of light.
+                // Skip a conic constant of a plane and the color of a drawing, which have no effect on light.
                 let means_nothing = command == "HCO 3" || command == "THI" && at == "image";
                 if !means_nothing {
                     try_out(format!("{command} {value}"), &mut wrong);
@@ -244,7 +244,7 @@ fn words_among_values_are_told() {
         let faults = read("x.seq", &file(surface)).expect_err(surface).to_string();
         assert!(faults.contains("is not a number") && faults.contains("x.seq:"), "{faults}");
     }
-    // A glass by a formula ends nothing where no surface has it.
+    // A glass with a formula is no error if no surface has it.
     let private = "PRV\nPWL 550\n'GLUE' LAU 2.4 0 0.02\nEND\n";
     let lens = read("x.seq", &format!("{private}{}", file("S 50 5 NBK7_SCHOTT"))).expect("a lens");
     assert!(lens.left_out.iter().any(|note| !note.alters && note.text.contains("GLUE") && note.text.contains("LAU")));

@@ -1,4 +1,4 @@
-//! Our own lens files: written from a prescription, and read back into one.
+//! Lens files of this program: written from a prescription, and read back into one.
 
 mod quote;
 mod read;

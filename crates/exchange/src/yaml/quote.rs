@@ -1,6 +1,6 @@
-//! Texts as YAML.
+//! Quoting of texts for YAML.
 
-/// A text as a scalar of one line: plain where that cannot be misread, otherwise in double quotes.
+/// Writes a text as a scalar on one line: plain if it cannot be misread, otherwise in double quotes.
 pub(super) fn scalar(text: &str) -> String {
     let plain = text.starts_with(|c: char| c.is_ascii_alphabetic())
         && text.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '/' | '_' | '-' | '+' | '.'))
@@ -8,7 +8,7 @@ pub(super) fn scalar(text: &str) -> String {
     if plain { text.to_owned() } else { quoted(text) }
 }
 
-/// A text in double quotes (YAML 1.2, section 7.3.1).
+/// Writes a text in double quotes (YAML 1.2, section 7.3.1).
 pub(super) fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
@@ -19,7 +19,7 @@ pub(super) fn quoted(text: &str) -> String {
             }
             '\n' => out.push_str("\\n"),
             '\t' => out.push_str("\\t"),
-            // Controls, and what no printable stream may hold (section 5.1).
+            // Escape controls and characters that no printable stream may contain (section 5.1).
             c if c.is_control() || matches!(c, '\u{feff}' | '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}') => {
                 out.push_str(&format!("\\u{:04x}", u32::from(c)));
             }
@@ -30,7 +30,7 @@ pub(super) fn quoted(text: &str) -> String {
     out
 }
 
-/// A text as a comment: one line, printable.
+/// Makes a text printable on the single line of a comment.
 pub(super) fn comment(text: &str) -> String {
     let printable =
         |c: char| !(c.is_control() || matches!(c, '\u{feff}' | '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}'));

@@ -1,4 +1,4 @@
-//! A lens file as a prescription, for writing it in another format.
+//! Reads a lens file as a prescription, to write it in another format.
 
 use crate::prescription::{
     Aperture, ApertureShape, CoordinateBreak, Displacement, Item, Medium, Ordering, Prescription, Shape, Surface,
@@ -10,11 +10,11 @@ use spectra_core::resources::{Resource, ResourceError, Resources};
 use spectra_glass::file::{self, Figures, StatedLines};
 use spectra_glass::{LineTriple, ModelGlass, lines};
 
-/// Reads a lens file. What it holds that no other program knows is noted in `left_out`. The file is expected to be sound: a lens is
-/// loaded before it is written.
+/// Reads a lens file. Data that no other program has are listed in `left_out`. The file must be valid: a lens is loaded before it is
+/// exported.
 ///
 /// # Errors
-/// What is wrong with values that are looked at.
+/// An invalid value among those that are read.
 pub fn read(params: &Params) -> Result<Prescription, Faults> {
     let lines = match value::<StatedLines>(params, "reference-line")? {
         Some(lines) => lines.triple(params, "reference-line")?,
@@ -55,14 +55,14 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
         "focus",
     ];
     note_others(params, &known, "", &mut lens);
-    // What is assumed of a lens's time is no loss; what is stated dims the light, and bends nothing.
+    // An assumed coating is not reported as lost. A stated one is, as not altering: it dims the light but bends no ray.
     if let Some(coating) = params.get("coating").filter(|node| node.get("assumed").is_none()) {
         lens.leave_out(coating.span.line, false, "the coating");
     }
     for (key, what) in [
-        ("squeeze", "pictures are not widened there"),
-        ("groups", "the lens is written as it stands at infinity"),
-        ("focus", "the lens is written as it stands at infinity"),
+        ("squeeze", "other programs do not widen the picture"),
+        ("groups", "the lens is written as focused at infinity"),
+        ("focus", "the lens is written as focused at infinity"),
     ] {
         if let Some(node) = params.get(key) {
             lens.leave_out(node.span.line, false, format!("the key `{key}`: {what}"));
@@ -76,22 +76,22 @@ pub fn read(params: &Params) -> Result<Prescription, Faults> {
     faults.into_result(lens)
 }
 
-/// The value under a key.
+/// Parses the value of a key; `None` if the key is absent.
 fn value<T: Readable>(params: &Params, key: &str) -> Result<Option<T>, Faults> {
     params.get(key).map(|node| StageNode::new(node.clone(), format!("{}.{key}", params.path())).parse()).transpose()
 }
 
-/// A length, mm.
+/// Parses a length, mm.
 fn mm(params: &Params, key: &str) -> Result<Option<f64>, Faults> {
     Ok(value::<Length>(params, key)?.map(|length| length.mm()))
 }
 
-/// A radius, mm; infinite where it is not said.
+/// Parses a radius, mm; infinite if the key is absent.
 fn radius(params: &Params, key: &str) -> Result<f64, Faults> {
     Ok(value::<LengthOrInfinity>(params, key)?.map_or(f64::INFINITY, |length| length.mm()))
 }
 
-/// A number; 0 where it is not said.
+/// Parses a number; 0 if the key is absent.
 fn number(params: &Params, key: &str) -> Result<f64, Faults> {
     Ok(value(params, key)?.unwrap_or(0.0))
 }
@@ -100,7 +100,7 @@ fn coefficients(params: &Params) -> Result<Vec<f64>, Faults> {
     Ok(value(params, "coefficients")?.unwrap_or_default())
 }
 
-/// Degrees: a bare number as it stands, since turning it to radians and back would change its last digit.
+/// Parses an angle in degrees. A bare number is used as it is, since converting it to radians and back would change its last digit.
 fn degrees(node: &Node, path: &str) -> Result<f64, Faults> {
     match &node.value {
         Value::Number(number) => Ok(number.value),
@@ -125,7 +125,7 @@ fn displacement(params: &Params) -> Result<Displacement, Faults> {
     Ok(by)
 }
 
-/// Notes the keys that are not in `known`.
+/// Notes the keys that are not in `known` as left out.
 fn note_others(params: &Params, known: &[&str], whose: &str, lens: &mut Prescription) {
     if let Value::Map(entries) = &params.node().value {
         for (key, _) in entries {
@@ -136,7 +136,7 @@ fn note_others(params: &Params, known: &[&str], whose: &str, lens: &mut Prescrip
     }
 }
 
-/// Keys of every surface.
+/// Keys that every surface may have.
 const PLACE: [&str; 16] = [
     "thickness",
     "glass",
@@ -156,7 +156,7 @@ const PLACE: [&str; 16] = [
     "reversed",
 ];
 
-/// What a surface is that names no kind: the default of the registry, in which kinds of surfaces stand that this crate knows nothing of.
+/// Kind of a surface that names none: the default of the registry, which lists kinds of surfaces that this crate does not know.
 const USUAL_KIND: &str = "sphere";
 
 fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescription) -> Result<(), Faults> {
@@ -175,7 +175,7 @@ fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescripti
     let (shape, known) = shape(&kind, params)?;
     let (_, own) = params.split(&PLACE);
     if let Shape::Other { kind } = &shape {
-        lens.leave_out(line, true, format!("{whose}the kind `{kind}`, a plane instead"));
+        lens.leave_out(line, true, format!("{whose}the kind `{kind}`, written as a plane"));
     } else {
         note_others(&own, known, &whose, lens);
     }
@@ -186,7 +186,7 @@ fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescripti
     let surface = Surface {
         shape,
         thickness_mm: mm(params, "thickness")?.unwrap_or(0.0),
-        // A stop stands in the medium that is there.
+        // Give a stop the medium at its position.
         medium: if is_stop && !stated { stands_in() } else { medium(params, lines)? },
         mirror,
         stop: is_stop || value(params, "stop")?.unwrap_or(false),
@@ -197,7 +197,7 @@ fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescripti
         comment: value(params, "remark")?.unwrap_or_default(),
     };
     if value(params, "reversed")?.unwrap_or(false) {
-        lens.leave_out(line, true, format!("{whose}it stands the other way round"));
+        lens.leave_out(line, true, format!("{whose}the key `reversed`"));
     }
     if params.get("chamfer").is_some() {
         lens.leave_out(line, false, format!("{whose}the chamfer"));
@@ -206,7 +206,7 @@ fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescripti
     Ok(())
 }
 
-/// The form, and the keys that say all of it.
+/// Returns the shape, and the keys that define it completely.
 fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str]), Faults> {
     let r = || radius(params, "radius");
     let conic = || number(params, "conic");
@@ -279,7 +279,7 @@ fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str])
     })
 }
 
-/// The medium of a surface. Other programs state nd and Vd: what a lens states at other lines is turned into them.
+/// Returns the medium of a surface. Other programs state nd and Vd, so figures at other lines are converted to these.
 fn medium(params: &Params, lines: LineTriple) -> Result<Medium, Faults> {
     let pair = |n, v| -> Result<(Option<f64>, Option<f64>), Faults> { Ok((value(params, n)?, value(params, v)?)) };
     let (n, v, lines) = match pair("ne", "ve")? {
@@ -292,7 +292,7 @@ fn medium(params: &Params, lines: LineTriple) -> Result<Medium, Faults> {
     match glass.as_str() {
         Some(name) if name.eq_ignore_ascii_case("air") => Ok(Medium::Air),
         Some(name) => {
-            // Beside a name, figures only tell which glass of that name is meant.
+            // Figures next to a name only tell which glass of that name is meant.
             let (nd, vd) = match n.map(|n| at_d(n, v, lines)) {
                 Some(Medium::Model { nd, vd, .. }) if v.is_some() || lines == LineTriple::FDC => (Some(nd), vd),
                 _ => (None, None),
@@ -317,7 +317,7 @@ fn medium(params: &Params, lines: LineTriple) -> Result<Medium, Faults> {
     }
 }
 
-/// An index and an Abbe number for any lines as nd and Vd; at d, F and C they are what they were.
+/// Converts an index and an Abbe number for any lines to nd and Vd; figures at d, F and C stay as they are.
 fn at_d(n: f64, v: Option<f64>, lines: LineTriple) -> Medium {
     let model = v.filter(|_| lines != LineTriple::FDC).and_then(|v| ModelGlass::new(n, v, lines));
     model.map_or(Medium::Model { nd: n, vd: v, ng: None }, |model| figures_at_d(&spectra_glass::Medium::Model(model)))
@@ -329,14 +329,14 @@ fn figures_at_d(medium: &spectra_glass::Medium) -> Medium {
         other => Some(other.abbe_number(LineTriple::FDC)).filter(|vd| vd.is_finite()),
     };
     let nd = match medium {
-        // As it was written, to the last digit.
+        // Keep the number as it was written, to the last digit.
         spectra_glass::Medium::Model(model) if model.lines() == LineTriple::FDC => model.index_mid(),
         other => other.index(lines::D.wavelength_nm),
     };
     Medium::Model { nd, vd, ng: None }
 }
 
-/// A glass that is written out in a lens file and names a file of its own is not carried.
+/// Resources without any files: a glass in a lens file that refers to a file of its own is not carried over.
 struct NoFiles;
 
 impl Resources for NoFiles {

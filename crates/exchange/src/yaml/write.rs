@@ -1,4 +1,4 @@
-//! A prescription as a lens file.
+//! Writes a prescription as a lens file.
 
 use super::quote::{comment, quoted, scalar};
 use crate::number::shortest;
@@ -7,11 +7,11 @@ use crate::prescription::{
     Surface, SystemAperture,
 };
 
-/// Most notes that are written out.
+/// Largest number of notes that are written.
 const MOST_NOTES: usize = 200;
 
-/// The text of a lens file: what is not carried stands above it as comments, and what alters the light's way also in its
-/// remark. `source` is the name of the file that it comes from.
+/// Writes a lens file and returns its text. Everything that was not carried over is listed in comments at the top; notes that alter the
+/// path of light are repeated in the remark. `source` is the name of the file that the lens comes from.
 #[must_use]
 pub fn write(lens: &Prescription, source: Option<&str>) -> String {
     let mut out = String::new();
@@ -68,8 +68,8 @@ pub fn write(lens: &Prescription, source: Option<&str>) -> String {
     out
 }
 
-/// Where the sizes that clip come from: from the file, or, where the beam that it asks for is all that limits the light, from a ray that was
-/// computed.
+/// Returns the origin of the clear sizes: `stated` in the file, or `computed` if only the stop clips and its size was computed from the
+/// beam; `None` if nothing clips.
 fn rims(lens: &Prescription) -> Option<&'static str> {
     let clips = |surface: &Surface| surface.semi_diameter_mm.is_some() || !surface.apertures.is_empty();
     let of_its_own = |surface: &&Surface| clips(surface) && !(surface.stop && lens.stop_is_computed);
@@ -80,12 +80,12 @@ fn rims(lens: &Prescription) -> Option<&'static str> {
     }
 }
 
-/// The words of a lens that only a person reads.
+/// Returns the remark of the lens file, which only people read.
 fn remark(lens: &Prescription) -> String {
     let mut parts = Vec::new();
     let mut say = |text: String| parts.push(text);
     if let Some(distance) = lens.object_distance_mm {
-        say(format!("The object stands {} mm in front of the first surface.", shortest(distance)));
+        say(format!("The object is {} mm in front of the first surface.", shortest(distance)));
     }
     match lens.system_aperture {
         Some(SystemAperture::EntrancePupilDiameter(d)) => say(format!("Entrance pupil diameter {} mm.", shortest(d))),
@@ -126,7 +126,7 @@ fn remark(lens: &Prescription) -> String {
     parts.join(" ")
 }
 
-/// `inf`, or the shortest spelling.
+/// Formats a length: `inf`, or the shortest spelling.
 fn length(mm: f64) -> String {
     if mm.is_finite() { shortest(mm) } else { "inf".to_owned() }
 }
@@ -158,7 +158,7 @@ fn break_keys(axis: &CoordinateBreak) -> Vec<String> {
 
 fn surface_keys(surface: &Surface) -> Vec<String> {
     let mut keys = shape_keys(&surface.shape);
-    // A lens file states how thick a glass is, also where it is not.
+    // A lens file must state how thick a glass is, even if its thickness is 0.
     let begins_glass = !surface.mirror && !matches!(surface.medium, Medium::Air);
     if surface.thickness_mm != 0.0 || begins_glass {
         keys.push(format!("thickness: {}", shortest(surface.thickness_mm)));
@@ -268,7 +268,7 @@ fn shape_keys(shape: &Shape) -> Vec<String> {
             &[("radius-x", *radius_x), ("radius-y", *radius_y), ("conic-x", *conic_x), ("conic-y", *conic_y)],
         ),
         Shape::TiltedPlane { tan_x, tan_y } => {
-            // z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x): turned about x, then about the new y.
+            // Rotations: z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x), about x first and then about the new y.
             let about_x = libm::atan(*tan_y);
             let about_y = 0.0 - libm::atan(tan_x * libm::cos(about_x));
             with("tilted-plane", &[("tilt-x", about_x.to_degrees()), ("tilt-y", about_y.to_degrees())])

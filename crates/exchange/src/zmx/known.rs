@@ -1,4 +1,4 @@
-//! Keywords, by what they mean for a lens.
+//! Lists of keywords by their meaning for a lens.
 
 /// Records of a surface that are read.
 const SURFACE_READ: [&str; 31] = [
@@ -7,14 +7,14 @@ const SURFACE_READ: [&str; 31] = [
     "PZUP", "PKUP", "IGNR",
 ];
 
-/// Records of a surface that only say how it is drawn, named, varied or toleranced.
+/// Records of a surface that only define how it is drawn, named, varied or toleranced.
 const SURFACE_HARMLESS: [&str; 30] = [
     "SSID", "FIMP", "HIDE", "MIRR", "SLAB", "POPS", "OEMA", "CHZN", "OHZN", "VDSZ", "VPAR", "VCUR", "VCON", "VXDA",
     "SCOL", "SOPA", "RCOL", "DRAW", "TCEX", "MCHZ", "SCHZ", "VGLA", "VDIA", "SUPC", "COFR", "CDRW", "TOLE", "TCED",
     "EDGE", "TCMM",
 ];
 
-/// Records of the system that only say how it is computed, drawn or toleranced.
+/// Records of the system that are read elsewhere, or only define how it is computed, drawn or toleranced.
 const SYSTEM_HARMLESS: [&str; 48] = [
     "VERS", "DBDT", "AUTH", "IWDP", "STUD", "PFIL", "LANG", "GFAC", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "HYPR",
     "PICB", "FWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "LUID", "EERA", "BLNK", "MODE", "UNIT", "FTYP", "XFLN",
@@ -22,7 +22,7 @@ const SYSTEM_HARMLESS: [&str; 48] = [
     "NAME", "GCAT", "NOTE", "ENVD", "TEMP", "PRES",
 ];
 
-/// Vignetting factors: they choose rays, and stop none.
+/// Vignetting factors, which select rays but block none.
 const VIGNETTING: [&str; 9] = ["VDXN", "VDYN", "VCXN", "VCYN", "VANN", "ZVCX", "ZVCY", "ZVDX", "ZVDY"];
 
 fn in_list(list: &[&str], keyword: &str) -> bool {
@@ -34,17 +34,17 @@ pub(super) fn is_of_surface(keyword: &str) -> bool {
     in_list(&SURFACE_READ, keyword) || in_list(&SURFACE_HARMLESS, keyword)
 }
 
-/// Whether a surface record needs no word.
+/// Whether a record of a surface needs no note.
 pub(super) fn is_harmless_on_surface(keyword: &str) -> bool {
     in_list(&SURFACE_HARMLESS, keyword)
 }
 
-/// Whether a system record is read elsewhere or needs no word.
+/// Whether a record of the system is read elsewhere or needs no note.
 pub(super) fn is_harmless_in_system(keyword: &str) -> bool {
     in_list(&SYSTEM_HARMLESS, keyword)
 }
 
-/// Whether these are vignetting factors.
+/// Whether a keyword is a vignetting factor.
 pub(super) fn is_vignetting(keyword: &str) -> bool {
     in_list(&VIGNETTING, keyword)
 }

@@ -1,8 +1,8 @@
-//! Zemax OpticStudio's `.zmx`, sequential mode.
+//! Zemax OpticStudio lens files, `.zmx`, in sequential mode.
 //!
-//! A file is lines of a keyword of four letters and values: first those of the system, then one block a surface
-//! (`SURF n`), then merit function, tolerances and configurations. The meaning of records and surface types is that of
-//! the OpticStudio user manual (chapters Sequential Surfaces, Apertures, Coordinate Break).
+//! A file consists of lines with a keyword of four letters and values: first those of the system, then one block for each surface (`SURF
+//! n`), then merit function, tolerances and configurations. Records and surface types have the meaning given in the OpticStudio user manual
+//! (chapters Sequential Surfaces, Apertures, Coordinate Break).
 
 mod known;
 mod numbers;
@@ -18,5 +18,5 @@ mod write;
 pub use read::read;
 pub use write::{Written, encode, write};
 
-/// A note in files that are written here: the beam that the file states is that which rims let pass, and its stop has no size of its own.
+/// Note in files written here: the stop has no size of its own, and the stated beam is the one that the rims let pass.
 const OPEN_STOP: &str = "The stop is open: the rims of the lens limit the light.";

@@ -1,4 +1,4 @@
-//! A whole file.
+//! Reads a whole file.
 
 use super::record::{Record, Records, sort};
 use super::surface::{Block, GlassRecord};
@@ -10,13 +10,14 @@ use crate::{MAX_ITEMS, glass};
 use spectra_core::params::Faults;
 use std::collections::BTreeMap;
 
-/// Object distances (mm) beyond which an object is at infinity.
+/// Object distances, mm, from which an object counts as at infinity.
 const INFINITY_MM: f64 = 1e10;
 
-/// Reads the text of a file; `name` is how faults name it, `own` is where its glasses are looked for first.
+/// Reads the text of a `.zmx` file. `name` is the name of the file in error messages; the catalogs `own` are searched for its glasses
+/// first.
 ///
 /// # Errors
-/// It is not sequential, has no surfaces, or a figure is no number.
+/// The file is not sequential, has no surfaces or more than [`MAX_ITEMS`], or a value without which there is no lens is not a number.
 pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let records = sort(source.text());
@@ -75,7 +76,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Turns blocks into items: the first one is the object, the last one the image.
+    /// Converts blocks to items. The first block is the object, the last one the image.
     fn surfaces(&mut self, blocks: &[Block]) {
         let (object, image) = (&blocks[0], &blocks[blocks.len() - 1]);
         let distance = object.thickness_mm.unwrap_or(f64::INFINITY);
@@ -83,7 +84,7 @@ impl Reader<'_> {
             self.lens.object_distance_mm = Some(distance);
         }
         if object.glass.is_some() {
-            self.lens.leave_out(object.line, true, "the object stands in a glass: air is in front of the lens here");
+            self.lens.leave_out(object.line, true, "the object is in a glass: here air is in front of the lens");
         }
         if object.curvature_radius_mm.is_finite() {
             self.lens.leave_out(object.line, false, "the object is curved");
@@ -98,7 +99,7 @@ impl Reader<'_> {
             self.lens.leave_out(
                 image.line,
                 true,
-                format!("the image surface is curved, radius {radius} mm: it is a plane here"),
+                format!("the image surface is curved, radius {radius} mm: here it is a plane"),
             );
         }
         if image.conic != 0.0 && image.curvature_radius_mm.is_finite() || image.kind != "STANDARD" {
@@ -106,7 +107,7 @@ impl Reader<'_> {
             self.lens.leave_out(
                 image.line,
                 true,
-                format!("the form of the image surface ({kind}): it is a plane here"),
+                format!("the type of the image surface ({kind}): here it is a plane"),
             );
             image.parameters.set_all_aside();
             image.extra.set_all_aside();
@@ -121,9 +122,9 @@ impl Reader<'_> {
         if !image.after.is_empty() {
             self.lens.leave_out(image.line, false, "a tilt behind the image surface");
         }
-        // A break in front of the image is kept; the gap in front of it was that of the last surface.
+        // Keep a break in front of the image; the gap before it was that of the last surface.
         if self.lens.items.iter().all(|item| matches!(item, Item::Break(_))) {
-            // A lens has a surface: a plane that does nothing.
+            // Add a plane without effect, since a lens needs a surface.
             self.lens.items.push(Item::Surface(Box::default()));
         }
     }
@@ -131,14 +132,14 @@ impl Reader<'_> {
     fn surface(&mut self, number: usize, block: &Block) {
         let mut thickness_mm = block.thickness_mm.unwrap_or(0.0);
         if !thickness_mm.is_finite() {
-            self.lens.leave_out(block.line, true, format!("surface {number}: an infinite thickness: 0 here"));
+            self.lens.leave_out(block.line, true, format!("surface {number}: its infinite thickness is set to 0"));
             thickness_mm = 0.0;
         }
         for tilt in &block.before {
             self.lens.items.push(Item::Break(*tilt));
         }
         let before = self.media.last().cloned().unwrap_or_default();
-        // What comes behind a tilt is measured along the new axis.
+        // The thickness behind a tilt is measured along the new axis.
         let own_mm = if block.after.is_empty() { thickness_mm } else { 0.0 };
         if block.is_break() {
             self.media.push(before);
@@ -186,7 +187,8 @@ impl Reader<'_> {
         }
     }
 
-    /// A step along the axis where nothing is: on the way to a point about which what follows is turned, it runs against the light.
+    /// Adds an empty step along the axis. Such a step runs against the light on the way to a point about which the following surfaces are
+    /// tilted.
     fn move_along(&mut self, thickness_mm: f64) {
         match self.lens.items.last_mut() {
             Some(Item::Break(axis)) if axis.by.is_none() => axis.thickness_mm += thickness_mm,
@@ -194,7 +196,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The medium behind a surface that is no mirror.
+    /// Returns the medium behind a surface that is not a mirror.
     fn medium(&mut self, number: usize, block: &Block) -> Medium {
         let Some(stated) = &block.glass else { return Medium::Air };
         let found = match (stated.is_model, stated.pickup.and_then(|from| self.media.get(from))) {
@@ -204,7 +206,7 @@ impl Reader<'_> {
                 note: Some((true, format!("a glass with an index of {}", stated.nd))),
             },
             (true, None) => glass::model_off_normal(stated.nd, stated.vd, stated.deviation),
-            // 1.5 and 40 are what the program writes where nothing is known.
+            // Ignore 1.5 and 40, which the program writes if nothing is known.
             (false, _) => {
                 let known =
                     (1.0..=4.0).contains(&stated.nd) && stated.nd != 1.0 && (stated.nd, stated.vd) != (1.5, 40.0);
@@ -218,7 +220,7 @@ impl Reader<'_> {
     }
 }
 
-/// The stop of a system that floats by its size clips at that size.
+/// Makes the stop of a system that floats by its size clip at that size.
 fn float_by_stop(lens: &mut Prescription, blocks: &[Block], line: usize) {
     let size = blocks.iter().find(|block| block.stop).and_then(|block| block.aperture.semi_diameter_mm);
     let stop = lens.items.iter_mut().find_map(|item| match item {
@@ -236,14 +238,14 @@ fn float_by_stop(lens: &mut Prescription, blocks: &[Block], line: usize) {
         }
         None if !stop.apertures.is_empty() => {}
         None => {
-            let text = "FLOA: the stop states no size, so it limits nothing; write DIAM there, or `semi-diameter: ...` in the \
-                        imported lens file";
+            let text = "FLOA: the stop states no size, so it does not limit the light; write DIAM at the stop, or \
+                        `semi-diameter: ...` in the imported lens file";
             lens.leave_out(line, true, text);
         }
     }
 }
 
-/// Values that the program derives from others: they are carried as saved.
+/// Notes values that the program derives from others; they are carried as saved.
 fn note_solves(records: &Records<'_>, lens: &mut Prescription) {
     let is_solve = |record: &&Record<'_>| {
         let keyword = record.keyword.to_ascii_uppercase();
@@ -260,7 +262,7 @@ fn note_solves(records: &Records<'_>, lens: &mut Prescription) {
     }
 }
 
-/// Coatings change how much light goes on, not where.
+/// Notes coatings, which change how much light continues, but not where.
 fn note_coatings(records: &Records<'_>, lens: &mut Prescription) {
     let coats = || records.surfaces.iter().flatten().filter(|record| record.keyword.eq_ignore_ascii_case("COAT"));
     let Some(first) = coats().next() else { return };
@@ -272,7 +274,7 @@ fn note_coatings(records: &Records<'_>, lens: &mut Prescription) {
     lens.leave_out(first.line, false, format!("coatings of {count} surfaces ({})", names.join(", ")));
 }
 
-/// Merit function, tolerances and configurations.
+/// Notes merit function, tolerances and configurations.
 fn note_rest(rest: &[Record<'_>], lens: &mut Prescription) {
     let silent = |keyword: &str| ["BLNK", "MOFF"].contains(&keyword) || known::is_harmless_in_system(keyword);
     let mut operands: Vec<(usize, String)> = Vec::new();
@@ -286,7 +288,7 @@ fn note_rest(rest: &[Record<'_>], lens: &mut Prescription) {
             let number = |at| record.number(at).map_or(1, |n| n as usize);
             configurations = Some((record.line, number(0), number(1)));
         } else if is_tolerance && record.word(0).is_some_and(|word| word == "TOFF") || silent(&keyword) {
-            // An empty line of its editor.
+            // Skip an empty line of the editor.
         } else if configurations.is_some_and(|(_, count, _)| count > 1) && !is_tolerance {
             let text = shown(&format!("{keyword} {}", record.words().take(3).collect::<Vec<_>>().join(" ")));
             if varied.len() < 12 {

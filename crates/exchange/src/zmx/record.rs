@@ -1,20 +1,20 @@
-//! The lines of a file, sorted into system, surfaces and the rest.
+//! Sorts the lines of a file into system, surfaces and the rest.
 
 use super::known;
 
-/// One line that says something.
+/// A line of a file that is not empty.
 #[derive(Clone, Debug)]
 pub(super) struct Record<'a> {
-    /// Line, from 1.
+    /// Number of the line, from 1.
     pub(super) line: usize,
-    /// Its keyword.
+    /// Keyword at the start of the line.
     pub(super) keyword: &'a str,
-    /// What stands behind it.
+    /// Text after the keyword.
     pub(super) rest: &'a str,
 }
 
 impl<'a> Record<'a> {
-    /// Words behind the keyword; quotes hold one together.
+    /// Iterates over the words after the keyword; a quoted text is one word.
     pub(super) fn words(&self) -> impl Iterator<Item = &'a str> {
         let mut rest = self.rest;
         std::iter::from_fn(move || {
@@ -29,29 +29,29 @@ impl<'a> Record<'a> {
         })
     }
 
-    /// A word by its number, from 0.
+    /// Returns the word with this index, from 0.
     pub(super) fn word(&self, number: usize) -> Option<&'a str> {
         self.words().nth(number)
     }
 
-    /// A number that is there and is one.
+    /// Returns the word with this index as a number; `None` if it is missing or not a number.
     pub(super) fn number(&self, at: usize) -> Option<f64> {
         self.word(at).and_then(crate::number::parse)
     }
 }
 
-/// All lines of a file.
+/// The records of a file by their place.
 #[derive(Debug, Default)]
 pub(super) struct Records<'a> {
-    /// Before the first surface.
+    /// Records before the first surface.
     pub(super) system: Vec<Record<'a>>,
-    /// Each with its `SURF` line first.
+    /// Records of each surface, with its `SURF` record first.
     pub(super) surfaces: Vec<Vec<Record<'a>>>,
-    /// Merit function, tolerances, configurations.
+    /// Records of merit function, tolerances and configurations.
     pub(super) rest: Vec<Record<'a>>,
 }
 
-/// Sorts the lines. Surface records are indented in most files; where they are not, their keywords are known.
+/// Sorts the lines of a file. Records of a surface are indented in most files; in others they are recognized by their keywords.
 pub(super) fn sort(text: &str) -> Records<'_> {
     let mut records = Records::default();
     let mut in_surface = false;

@@ -1,15 +1,15 @@
-//! Surface types and the forms that they are.
+//! Converts surface types to shapes.
 
 use super::surface::Block;
 use crate::prescription::{Ordering, Prescription, Shape};
 
-/// Most coefficients of an asphere in a lens file.
+/// Largest number of coefficients of an asphere in a lens file.
 const MOST_COEFFICIENTS: usize = 20;
-/// Most unused numbers that are shown of one surface.
+/// Largest number of unused values that are listed for a surface.
 const MOST_SHOWN: usize = 6;
 
 impl Block {
-    /// The form of a surface; what cannot be carried is noted. `number` is the file's.
+    /// Returns the shape of a surface, and notes what cannot be carried over. `number` is the number of the surface in the file.
     pub(super) fn shape(&self, number: usize, lens: &mut Prescription) -> Shape {
         let (radius, conic) = (self.curvature_radius_mm, self.conic);
         let simple = Shape::conic(radius, conic);
@@ -22,7 +22,7 @@ impl Block {
                 if coefficients.is_empty() { simple } else { Shape::OddAsphere { radius, conic, coefficients } }
             }
             "XASPHERE" => {
-                // Both kinds of terms stand for the same powers.
+                // Add both kinds of terms, since they have the same powers.
                 let terms = self.polynomial(1..=8, 2, 2);
                 even(radius, conic, self.extended(number, 2, terms, lens))
             }
@@ -37,7 +37,7 @@ impl Block {
             }
             "TILTSURF" => Shape::TiltedPlane { tan_x: value(1), tan_y: value(2) },
             "PARAXIAL" => {
-                // How optical paths are counted.
+                // Ignore how optical paths are counted.
                 self.parameters.set_aside([2]);
                 let focal_length = value(1) * self.unit_mm;
                 if focal_length == 0.0 { Shape::Plane } else { Shape::ThinLens { focal_length } }
@@ -50,9 +50,9 @@ impl Block {
                         format!("surface {number}: the conic constant {conic} of a grating"),
                     );
                 }
-                let text = "the order of a grating is taken to turn light toward +y where it is positive";
+                let text = "a positive order of a grating is assumed to turn light toward +y";
                 lens.leave_out(self.line, false, format!("surface {number}: {text}"));
-                // Lines are not counted below zero: the order has the sign.
+                // The number of lines is not negative: the order has the sign.
                 let sign = if value(1) < 0.0 { -1.0 } else { 1.0 };
                 let (lines_per_mm, order) = (sign * value(1) * 1000.0, sign * value(2));
                 Shape::Grating { lines_per_mm, order, radius, conic: 0.0, direction_deg: 0.0 }
@@ -74,7 +74,7 @@ impl Block {
         }
     }
 
-    /// Parameters as coefficients of `first`, `first + step`, ... powers of a length, in mm; zeros at the end are cut off.
+    /// Returns parameters as coefficients of the powers `first`, `first + step`, ... of a length, in mm, without zeros at the end.
     fn polynomial(&self, parameters: std::ops::RangeInclusive<u32>, first: u32, step: u32) -> Vec<f64> {
         let mut power = first;
         let mut coefficients = Vec::new();
@@ -85,8 +85,8 @@ impl Block {
         trimmed(coefficients)
     }
 
-    /// Coefficients of an extended asphere: sum of a_i (r / R)^(step i), extra data 1 the number of terms, 2 R, then a_1, ...; added to
-    /// `others` of the same powers.
+    /// Returns the coefficients of an extended asphere, sum of a_i (r / R)^(step i), added to `others` of the same powers. Extra data 1 is
+    /// the number of terms, 2 is R, and then a_1, ... follow.
     fn extended(&self, number: usize, step: u32, others: Vec<f64>, lens: &mut Prescription) -> Vec<f64> {
         let value = |at: u32| self.extra.get(at);
         let terms = value(1).clamp(0.0, 240.0) as u32;
@@ -107,7 +107,8 @@ impl Block {
         coefficients
     }
 
-    /// Parameter 1 is the radius of rotation (0: none), then y^2, y^4, ...; extra data are Zernike terms.
+    /// Returns a toroid. Parameter 1 is the radius of rotation (0 for none), followed by the coefficients of y^2, y^4, ...; extra data are
+    /// Zernike terms.
     fn toroid(&self, number: usize, lens: &mut Prescription) -> Shape {
         let terms = self.extra.get(1);
         self.extra.set_aside([2]);
@@ -127,11 +128,11 @@ impl Block {
         }
     }
 
-    /// Extra data: number of terms, normalization radius, coefficients. Parameters are an even asphere and a decenter:
-    /// only where all of them are 0 is it what a lens file has.
+    /// Returns a Zernike surface. Extra data are the number of terms, the normalization radius and the coefficients. The parameters are an
+    /// even asphere and a decenter, which a lens file does not have: unless all of them are 0, returns `None`.
     fn zernike(&self, number: usize, ordering: Ordering, lens: &mut Prescription) -> Option<Shape> {
         let value = |at: u32| self.extra.get(at);
-        // How far it goes on beyond its radius.
+        // Ignore how far the surface extends beyond its radius.
         self.parameters.set_aside([0]);
         if !self.parameters.unused().is_empty() {
             self.parameters.set_all_aside();
@@ -151,7 +152,7 @@ impl Block {
         Some(Shape::Zernike { radius, conic, normalization_radius, coefficients, ordering })
     }
 
-    /// Tells of numbers that the type of the surface has no use for.
+    /// Notes values that the type of the surface does not use.
     pub(super) fn note_unused(&self, number: usize, lens: &mut Prescription) {
         for (what, numbers) in [("parameter", &self.parameters), ("extra data", &self.extra)] {
             let unused = numbers.unused();
@@ -176,7 +177,7 @@ fn even(radius: f64, conic: f64, coefficients: Vec<f64>) -> Shape {
     }
 }
 
-/// Without zeros at the end.
+/// Removes zeros at the end.
 fn trimmed(mut coefficients: Vec<f64>) -> Vec<f64> {
     while coefficients.last() == Some(&0.0) {
         coefficients.pop();
@@ -184,7 +185,7 @@ fn trimmed(mut coefficients: Vec<f64>) -> Vec<f64> {
     coefficients
 }
 
-/// A whole power by multiplication: the same bits everywhere.
+/// Computes an integer power by multiplication, so that the bits are the same on all machines.
 pub(super) fn power_of(base: f64, power: u32) -> f64 {
     (0..power).fold(1.0, |product, _| product * base)
 }

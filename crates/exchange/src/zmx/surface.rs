@@ -1,4 +1,4 @@
-//! One block of records: what a file says of a surface.
+//! Reads one block of records: the data of a surface.
 
 use super::known;
 use super::numbers::Numbers;
@@ -9,29 +9,29 @@ use crate::prescription::{Aperture, ApertureShape, CoordinateBreak, Displacement
 use spectra_core::params::Faults;
 use std::collections::BTreeMap;
 
-/// A glass as a file names it.
+/// A glass record of a file.
 #[derive(Clone, Debug)]
 pub(super) struct GlassRecord {
     /// Name, `MIRROR`, or `___BLANK`.
     pub(super) name: String,
-    /// Surface that it is picked up from.
+    /// Surface from which the glass is picked up.
     pub(super) pickup: Option<usize>,
-    /// Whether its figures are all that is known of it.
+    /// Whether the glass is defined by its figures alone.
     pub(super) is_model: bool,
-    /// Stated index and Abbe number; 1.5 and 40 where nobody stated them.
+    /// Stated index and Abbe number; 1.5 and 40 if none were stated.
     pub(super) nd: f64,
     pub(super) vd: f64,
-    /// How far the relative partial dispersion of g and F lies off the normal line.
+    /// Deviation of the relative partial dispersion of g and F from the normal line.
     pub(super) deviation: f64,
 }
 
 impl GlassRecord {
-    /// `GLAS name kind pickup nd Vd dPgF` and whether these vary.
+    /// Reads `GLAS name kind pickup nd Vd dPgF`; flags that follow, for variation, are ignored.
     fn read(record: &Record<'_>, number: &mut dyn FnMut(usize, bool) -> Option<f64>) -> Option<Self> {
         let name = record.word(0)?;
         let is_model = name.starts_with("___") || name.is_empty();
         let kind = number(1, false);
-        // Beside a name these are a catalogue's figures as they were then.
+        // Figures next to a name are those of a catalog at the time of writing.
         let needed = is_model && kind != Some(2.0);
         Some(Self {
             name: shown(name),
@@ -43,20 +43,20 @@ impl GlassRecord {
         })
     }
 
-    /// Whether it reflects: by its name, or, as old files have it, by an index of -1.
+    /// Whether the surface reflects: by its name or, in old files, by an index of -1.
     pub(super) fn is_mirror(&self) -> bool {
         self.name.eq_ignore_ascii_case("MIRROR") || self.is_model && self.pickup.is_none() && self.nd == -1.0
     }
 }
 
-/// Apertures of a surface.
+/// The apertures of a surface.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Apertures {
-    /// From the `DIAM` record, mm: where the program chose it, a size that clips nothing by itself.
+    /// Semi-diameter from the `DIAM` record, mm. If the program chose it, it does not clip.
     pub(super) semi_diameter_mm: Option<f64>,
-    /// Whether a person typed that size in: on a surface that bends light it clips, unless an aperture does.
+    /// Whether the user typed in that size: on a surface that bends light it then clips, unless there is an aperture.
     typed: bool,
-    /// An aperture that cannot be carried.
+    /// Whether there is an aperture that cannot be carried over.
     foreign: bool,
     mechanical_mm: Option<f64>,
     shape: Option<(ApertureShape, bool)>,
@@ -64,12 +64,12 @@ pub(super) struct Apertures {
 }
 
 impl Apertures {
-    /// Whether nothing clips.
+    /// Whether there is no aperture.
     pub(super) fn is_none(&self) -> bool {
         self.shape.is_none()
     }
 
-    /// Puts what clips, and the size for drawing, onto a surface; `bends` is whether it refracts or reflects.
+    /// Copies the clear size, the apertures and the size for drawing to a surface; `bends` says whether it refracts or reflects.
     pub(super) fn place(&self, surface: &mut Surface, bends: bool) {
         let drawn = self.semi_diameter_mm.unwrap_or(0.0).max(self.mechanical_mm.unwrap_or(0.0));
         match &self.shape {
@@ -90,13 +90,13 @@ impl Apertures {
     }
 }
 
-/// A surface, the object or the image, as a file states it; lengths in mm already, coefficients not.
+/// A surface, the object or the image, as stated by a file. Lengths are in mm already, coefficients are not.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub(super) line: usize,
-    /// `STANDARD` and so on, in upper case.
+    /// Type in upper case, such as `STANDARD`.
     pub(super) kind: String,
-    /// Infinite where flat.
+    /// Radius of curvature, mm; infinite if flat.
     pub(super) curvature_radius_mm: f64,
     pub(super) thickness_mm: Option<f64>,
     pub(super) glass: Option<GlassRecord>,
@@ -108,13 +108,13 @@ pub(super) struct Block {
     pub(super) stop: bool,
     pub(super) aperture: Apertures,
     pub(super) comment: String,
-    /// Tilts and decenters that belong to the surface itself, before and behind it.
+    /// Tilts and decenters of the surface itself, before and behind it.
     pub(super) before: Vec<CoordinateBreak>,
     pub(super) after: Vec<CoordinateBreak>,
     pub(super) unit_mm: f64,
 }
 
-/// Largest number of a parameter that means something.
+/// Largest number of a parameter that is read.
 const LARGEST_NUMBER: f64 = 500.0;
 
 impl Block {
@@ -144,7 +144,7 @@ impl Block {
         };
         for record in records.iter().skip(1) {
             let keyword = record.keyword.to_ascii_uppercase();
-            // Without what is needed there is no lens; of anything else that cannot be read is told.
+            // A required value that is not a number is a fault; any other is noted.
             let mut unread: Vec<String> = Vec::new();
             let mut number_of = |at: usize, is_needed: bool| {
                 let word = record.word(at)?;
@@ -204,22 +204,22 @@ impl Block {
                 "USAP" | "USOB" | "SPID" | "UDAP" | "UDAD" | "UDOB" => {
                     block.aperture.foreign = true;
                     let text =
-                        format!("{keyword} {}: an aperture of a file or of arms clips nothing here", record.rest);
+                        format!("{keyword} {}: an aperture from a file or a spider does not clip here", record.rest);
                     lens.leave_out(record.line, true, shown(&text));
                 }
                 "OBDC" => {
                     block.aperture.center_mm = [0, 1].map(|at| number(at).unwrap_or(0.0) * unit_mm);
                 }
                 "COMM" => block.comment = shown(record.rest),
-                // Told once for the whole lens.
+                // Coatings are noted once for the whole lens.
                 "COAT" => {}
                 "SCBD" => block.own_tilt(record, unit_mm, lens),
                 "IGNR" => {
                     if number(0).is_some_and(|flag| flag != 0.0) {
-                        lens.leave_out(record.line, true, "a surface that is ignored there: it is carried here");
+                        lens.leave_out(record.line, true, "a surface that the program ignores is carried here");
                     }
                 }
-                // Values of solves are in the records that they solve.
+                // Skip solves: their values are in the records that they solve.
                 "PPAR" | "PZUP" | "MAZH" | "CHZH" => {}
                 _ if known::is_harmless_on_surface(&keyword) => {}
                 _ => {
@@ -258,9 +258,9 @@ impl Block {
         }
     }
 
-    /// `SCBD side order pickup x y tilt-x tilt-y tilt-z`, side 1 before and 2 behind the surface.
+    /// Reads `SCBD side order pickup x y tilt-x tilt-y tilt-z`, where side 1 is before and 2 behind the surface.
     fn own_tilt(&mut self, record: &Record<'_>, unit_mm: f64, lens: &mut Prescription) {
-        // A word among the numbers makes the whole tilt one that cannot be read.
+        // A word among the numbers makes the whole tilt unreadable.
         let value = |at| record.word(at).map_or(0.0, |word| number::parse(word).unwrap_or(f64::NAN));
         let by = Displacement {
             decenter_mm: [value(3) * unit_mm, value(4) * unit_mm],
@@ -278,12 +278,12 @@ impl Block {
         }
     }
 
-    /// Whether it moves the axis and is no surface.
+    /// Whether this is a coordinate break instead of a surface.
     pub(super) fn is_break(&self) -> bool {
         self.kind == "COORDBRK"
     }
 
-    /// The move of the axis.
+    /// Returns the coordinate break.
     pub(super) fn coordinate_break(&self) -> CoordinateBreak {
         let value = |at: u32| self.parameters.get(at);
         CoordinateBreak {

@@ -1,4 +1,4 @@
-//! What a file says of the whole: unit, glass catalogues, beam, fields, wavelengths.
+//! Reads the data of the whole system: unit, glass catalogs, beam, fields, wavelengths.
 
 use super::record::Record;
 use super::{OPEN_STOP, known};
@@ -8,21 +8,21 @@ use crate::place::{Source, shown};
 use crate::prescription::{FieldKind, Fields, Prescription, SystemAperture, Wavelength};
 use spectra_core::params::Faults;
 
-/// What surfaces need to know.
+/// System data that reading the surfaces needs.
 pub(super) struct System {
-    /// Millimeters of a lens unit.
+    /// Length of a lens unit, mm.
     pub(super) unit_mm: f64,
-    /// Makers of the glass catalogues, in the order of the file.
+    /// Makers of the glass catalogs, in the order of the file.
     pub(super) makers: Vec<&'static str>,
-    /// Line of what sets the size of the beam.
+    /// Line of the record that sets the size of the beam.
     pub(super) aperture_line: usize,
-    /// Whether an f-number is that of the cone at the image, wherever the object is.
+    /// Whether an f-number is that of the cone at the image, whatever the object distance.
     pub(super) working: bool,
-    /// Whether the file says that its stop limits nothing.
+    /// Whether the file says that its stop does not limit the light.
     pub(super) open_stop: bool,
 }
 
-/// Most wavelengths and fields that are kept.
+/// Largest number of wavelengths and of fields that are kept.
 const MOST: usize = 64;
 
 pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescription, faults: &mut Faults) -> System {
@@ -36,7 +36,7 @@ pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescript
             "CM" => system.unit_mm = 10.0,
             "IN" | "INCH" | "INCHES" => system.unit_mm = 25.4,
             "M" | "METER" | "METERS" => system.unit_mm = 1000.0,
-            _ => faults.push(source.fault(word, "unknown unit").hint("MM, CM, IN and METER are known")),
+            _ => faults.push(source.fault(word, "unknown unit").hint("write MM, CM, IN or METER")),
         }
     }
     if let Some(record) = find("MODE")
@@ -70,7 +70,7 @@ pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescript
                 system.working = second;
             }
             "OBNA" => {
-                // With a 1 behind it, half the angle of the cone in degrees.
+                // A 1 after the value makes it half the angle of the cone, in degrees.
                 let na = positive.map(|n| if second { libm::sin(n.to_radians()) } else { n });
                 lens.system_aperture = na.map(SystemAperture::ObjectNumericalAperture);
             }
@@ -87,7 +87,7 @@ pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescript
         }
     }
     if let Some(line) = vignetting {
-        lens.leave_out(line, false, "vignetting factors: they choose rays only");
+        lens.leave_out(line, false, "vignetting factors: they only select rays");
     }
     system.open_stop = notes.iter().any(|text: &String| text == OPEN_STOP);
     notes.retain(|text| !text.is_empty() && text != OPEN_STOP);
@@ -108,7 +108,7 @@ fn environment(record: &Record<'_>, keyword: &str, lens: &mut Prescription) {
     let (t, p) = (temperature.unwrap_or(20.0), pressure.unwrap_or(1.0));
     if t != 20.0 || p != 1.0 {
         let text = format!(
-            "indices at {t} degrees Celsius and {p} atmospheres: those of 20 degrees and 1 atmosphere are used"
+            "indices at {t} degrees Celsius and {p} atmospheres: those at 20 degrees and 1 atmosphere are used"
         );
         lens.leave_out(record.line, adjusts, text);
     }
@@ -146,7 +146,7 @@ fn wavelengths(records: &[Record<'_>], active: Option<usize>, lens: &mut Prescri
     lens.primary = lens.primary.filter(|at| *at < lens.wavelengths.len());
 }
 
-/// Micrometers to nanometers, without digits that only the change of units brings in.
+/// Converts micrometers to nanometers, rounding away digits that only the conversion adds.
 fn nanometers(um: f64) -> f64 {
     let nm = um * 1000.0;
     format!("{nm:.9}").parse().unwrap_or(nm)

@@ -8,7 +8,7 @@ fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
     super::read(name, text, &[])
 }
 
-/// A file with these records in its one surface.
+/// Reads a file with these records in its only surface.
 fn with(system: &str, surface: &str) -> Prescription {
     let text = format!("{system}\nSURF 0\n  DISZ INFINITY\nSURF 1\n{surface}\nSURF 2\n  CURV 0\n");
     read("x.zmx", &text).unwrap_or_else(|faults| panic!("{faults}"))
@@ -87,15 +87,16 @@ fn every_type_has_its_form() {
     assert!(altering(&lens)[0].contains("BINARY_2"));
 }
 
-/// Sets each number of each type to something else in turn: the surface changes, or somebody is told. What changes neither is listed.
+/// Sets each value of each type to something else in turn: either the surface changes, or a note is added. The exceptions, which change
+/// neither, are listed.
 #[test]
 fn no_number_of_a_surface_is_passed_over() {
     const TYPES: [&str; 15] = [
         "STANDARD", "EVENASPH", "ODDASPHE", "XASPHERE", "XOSPHERE", "TOROIDAL", "BICONICX", "TILTSURF", "PARAXIAL",
         "DGRATING", "SZERNSAG", "FZERNSAG", "COORDBRK", "BINARY_2", "IRREGULA",
     ];
-    // How optical paths are counted; a normalization that no term uses, or that is the term's own; the number of terms beyond
-    // those that are stated, and how far a sag goes on beyond its radius.
+    // Exceptions: how optical paths are counted; a normalization that no term uses, or the term's own; the number of terms beyond those
+    // stated; and how far a sag extends beyond its radius.
     let means_nothing = |kind: &str, keyword: &str, at: u32| match (kind, keyword) {
         ("PARAXIAL", "PARM") => at == 2,
         ("SZERNSAG" | "FZERNSAG", "PARM") => at == 0,
@@ -121,7 +122,7 @@ fn no_number_of_a_surface_is_passed_over() {
                 .map(|record| ((*record).to_owned(), kind == "COORDBRK" && !record.starts_with("DISZ")))
                 .collect();
         changes.push(("GLAS ___BLANK 1 0 1.6 50 0.02".to_owned(), kind == "COORDBRK"));
-        // A tilted plane, an ideal lens and a move of the axis have no curvature.
+        // A tilted plane, an ideal lens and a coordinate break have no curvature.
         let flat = ["PARAXIAL", "TILTSURF"].contains(&kind);
         changes
             .iter_mut()
@@ -134,7 +135,7 @@ fn no_number_of_a_surface_is_passed_over() {
         }
         for (record, is_excused) in changes {
             let after = with("", &format!("{}  {record}\n", base(kind)));
-            // Of a type that nobody knows all is told at once.
+            // An unknown type is noted once as a whole.
             let is_told = told(&after) != told(&before) || told(&after).iter().any(|text| text.contains("is unknown"));
             if !is_excused && after.items == before.items && !is_told {
                 wrong.push(format!("{kind}: {record}"));
@@ -144,7 +145,7 @@ fn no_number_of_a_surface_is_passed_over() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What is not a number is told of, and refused where there is no lens without it.
+/// Values that are not numbers are noted, or refused if there is no lens without them.
 #[test]
 fn words_among_numbers_are_told() {
     for record in ["CURV 0.0x2", "DISZ five", "GLAS ___BLANK 1 0 1,6 50"] {
@@ -170,7 +171,7 @@ fn words_among_numbers_are_told() {
     }
 }
 
-/// The forms of object and image are told of.
+/// The shapes of object and image are noted.
 #[test]
 fn forms_of_object_and_image_are_told() {
     let lens = |object: &str, image: &str| {
@@ -189,8 +190,8 @@ fn forms_of_object_and_image_are_told() {
     }
 }
 
-/// Behind a lens that is turned about a point in front of it the file goes back to that point by gaps against the light: they are moves
-/// of the axis, and nothing is met there.
+/// Behind a lens that is tilted about a point in front of it, the file returns to that point by gaps against the light. These are moves of
+/// the axis, and no surface is met there.
 #[test]
 fn gaps_against_the_light_are_moves() {
     let glass = "GLAS N-BK7 0 0 1.5168 64.17";
@@ -214,8 +215,8 @@ fn an_index_of_minus_one_is_a_mirror() {
     assert_eq!(by_index, surface("", "  CURV -0.005\n  GLAS MIRROR 0 0 1.5 40 0 0 0 0 0 0"));
 }
 
-/// By the definition of relative partial dispersion: (ng - nF) / (nF - nC) = 0.6438 - 0.001682 Vd + deviation. It comes back from a
-/// file that is written here.
+/// Checks the definition of relative partial dispersion: (ng - nF) / (nF - nC) = 0.6438 - 0.001682 Vd + deviation. The deviation survives
+/// writing and reading back.
 #[test]
 fn a_model_glass_keeps_its_partial_dispersion() {
     for (nd, vd, off) in [(1.528_554, 76.975_515, 0.0258), (1.558_361, 54.157_173, -0.01)] {
@@ -274,7 +275,7 @@ fn apertures_clip_and_chosen_sizes_do_not() {
     assert_eq!(surface("FLOA", "  STOP\n  DIAM 4").semi_diameter_mm, Some(4.0));
 }
 
-/// A size that a person typed in is that of a rim, where light is bent and no aperture says otherwise.
+/// A typed-in size is that of a rim if the surface bends light and has no aperture.
 #[test]
 fn typed_sizes_clip_where_light_is_bent() {
     let sizes = |records: &str| {
@@ -292,7 +293,7 @@ fn typed_sizes_clip_where_light_is_bent() {
     let behind = "SURF 0\nSURF 1\n  GLAS N-BK7\n  DISZ 2\nSURF 2\n  DIAM 7 1\nSURF 3\n";
     let lens = read("x", behind).expect("a lens");
     assert_eq!(lens.surfaces().nth(1).and_then(|s| s.semi_diameter_mm), Some(7.0), "from glass into air");
-    // The edge of an element does not become a rim on its way out and back.
+    // The edge of an element does not become a rim when it is written and read back.
     for records in [format!("{glass}  DIAM 10 0"), format!("{glass}  DIAM 10 1\n  MEMA 12")] {
         let lens = with("", &records);
         let again = read("x", &super::write(&lens).text).expect("a lens");
@@ -302,8 +303,8 @@ fn typed_sizes_clip_where_light_is_bent() {
     }
 }
 
-/// An ideal lens of 100 mm, 20 mm in front of its stop: a ray along the axis is there at 0.8 of its height, and one from 300 mm
-/// in front comes down from 300 u at a slope of 2 u.
+/// An ideal lens of 100 mm stands 20 mm in front of its stop. A ray parallel to the axis is at 0.8 of its height there. One from 300 mm in
+/// front comes down from 300 u at a slope of 2 u.
 #[test]
 fn the_beam_sizes_the_stop() {
     let lens = |system: &str, object: &str, stop: &str| {
@@ -329,13 +330,17 @@ fn the_beam_sizes_the_stop() {
         assert!((size / wanted - 1.0).abs() < 1e-9, "{system}, {object}: {size} {wanted}");
         assert!(found.left_out.is_empty() && found.remarks[0].contains("marginal ray"), "{:?}", found.remarks);
     }
-    // The narrower one limits the light; the wider one is the edge of the element.
+    // The narrower size limits the light; the wider one is the edge of the element.
     assert_eq!(stop(&lens("ENPD 10", "INFINITY", "  STOP\n  CLAP 0 3 0")), Some(3.0));
     let wide = lens("ENPD 10", "INFINITY", "  STOP\n  CLAP 0 6.95 0");
     assert_eq!((stop(&wide), wide.surfaces().nth(1).and_then(|s| s.outer_semi_diameter_mm)), (Some(4.0), Some(6.95)));
     assert_eq!(stop(&lens("ENPD 10", "INFINITY", "  STOP\n  CLAP 0 4.0002 0")), Some(4.0002), "the same, rounded");
     for (system, surface, word) in [
-        ("ENPD 10", "", "the entrance pupil diameter of 10 mm limits nothing: no surface is the stop; write STOP"),
+        (
+            "ENPD 10",
+            "",
+            "the entrance pupil diameter of 10 mm does not limit the light: no surface is the stop; write STOP",
+        ),
         ("OBNA 0.1 0", "  STOP", "the object is at infinity"),
         ("ENPD 10", "  STOP\n  GLAS NOBODYS", "the index of NOBODYS is not known"),
         ("FLOA", "  STOP", "FLOA: the stop states no size"),
@@ -348,7 +353,7 @@ fn the_beam_sizes_the_stop() {
     }
 }
 
-/// A lens that is limited by its rims goes out with the beam that they let pass, and comes back with its stop as open as it was.
+/// A lens limited by its rims is written with the beam that they let pass, and read back with its stop as open as before.
 #[test]
 fn an_open_stop_stays_open() {
     let mut lens = with("", "  CURV 0.02\n  GLAS N-BK7\n  DISZ 5\n  STOP\n  CLAP 0 9 0");
@@ -379,7 +384,7 @@ fn glasses_by_name_figures_and_pickup() {
     assert_eq!(lens.surfaces().nth(1).map(|s| s.medium.clone()), Some(named("SCHOTT/N-BK7")));
 }
 
-/// A mirror keeps the medium that it stands in, a break too.
+/// A mirror keeps the medium in front of it, and so does a break.
 #[test]
 fn mirrors_and_breaks() {
     let text = "SURF 0\nSURF 1\n  CURV 0.01\n  GLAS N-BK7\n  DISZ 5\nSURF 2\n  TYPE COORDBRK\n  PARM 1 1\n  PARM 3 45\n  PARM 5 -2\n  PARM 6 1\n  DISZ 3\n\
@@ -389,7 +394,7 @@ fn mirrors_and_breaks() {
     assert_eq!(lens.items[1], Item::Break(CoordinateBreak { by, tilt_first: true, thickness_mm: 3.0 }));
     let surfaces: Vec<&Surface> = lens.surfaces().collect();
     assert!(surfaces[1].mirror && surfaces[1].medium == surfaces[0].medium);
-    // From glass into air: a plane that refracts, and so no mere stop.
+    // From glass into air: a plane that refracts, and therefore not a mere stop.
     assert!(surfaces[2].stop && surfaces[2].shape == Shape::Plane);
     assert!(altering(&lens)[0].contains("image surface is curved"));
 }
@@ -426,7 +431,7 @@ fn faults_have_places() {
     }
 }
 
-/// What the hint says clips, clips.
+/// Follows the hint on how to clip, and checks that the surface clips.
 #[test]
 fn hints_help_when_followed() {
     let hint = crate::Format::Zmx.how_to_clip();

@@ -1,4 +1,4 @@
-//! A prescription as a `.zmx`.
+//! Writes a prescription as a `.zmx` file.
 
 use super::OPEN_STOP;
 use crate::glass::{deviation, everyday_name, maker_of_catalogue};
@@ -11,16 +11,16 @@ use crate::prescription::{
 use spectra_glass::{Catalogue, Line, lines};
 use std::fmt::Write;
 
-/// A file, and what it could not hold.
+/// The text of a written file, and what it could not hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// The text of the file.
+    /// Text of the file.
     pub text: String,
-    /// What could not be carried, notes of the prescription included; lines are those of the lens file.
+    /// Notes of what could not be carried over, including those of the prescription; line numbers refer to the lens file.
     pub left_out: Vec<Note>,
 }
 
-/// The bytes of a file: ASCII where the text is, otherwise UTF-16 with its mark, as the program writes it.
+/// Encodes the text of a file as the program writes it: as ASCII if possible, otherwise as UTF-16 with a byte order mark.
 #[must_use]
 pub fn encode(text: &str) -> Vec<u8> {
     if text.is_ascii() {
@@ -29,8 +29,8 @@ pub fn encode(text: &str) -> Vec<u8> {
     [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect()
 }
 
-/// Writes a lens. Lengths are in mm, with all digits that a number has. Surfaces that are displaced alone stand
-/// between two coordinate breaks.
+/// Writes a lens as a `.zmx` file. Lengths are in mm, with all digits of the numbers. A surface that is displaced alone is written between
+/// two coordinate breaks.
 #[must_use]
 pub fn write(lens: &Prescription) -> Written {
     let mut writer = Writer {
@@ -46,7 +46,7 @@ pub fn write(lens: &Prescription) -> Written {
     writer.system(lens);
     writer.out.push_str(&body);
     if let Some(year) = lens.year {
-        writer.note(false, format!("the year {year}, by which a coating is assumed: read back, the surfaces are bare"));
+        writer.note(false, format!("the year {year}, from which a coating is assumed: surfaces read back are bare"));
     }
     Written { text: writer.out, left_out: writer.left_out }
 }
@@ -54,16 +54,16 @@ pub fn write(lens: &Prescription) -> Written {
 struct Writer {
     out: String,
     left_out: Vec<Note>,
-    /// Blocks written.
+    /// Number of blocks written so far.
     surfaces: usize,
-    /// Catalogues of the glasses, in order of appearance.
+    /// Catalogs of the glasses, in order of appearance.
     makers: Vec<String>,
     stop_written: bool,
-    /// No surface of the lens is its stop.
+    /// Whether no surface of the lens is its stop.
     needs_stop: bool,
 }
 
-/// One line of a surface; writing to a text cannot fail.
+/// Writes one line of a surface record. The result is ignored, because writing to a string cannot fail.
 macro_rules! record {
     ($writer:expr, $($text:tt)*) => {{
         let _ = write!($writer.out, "  ");
@@ -144,7 +144,7 @@ impl Writer {
         line(format!("PWAV {}", lens.primary.unwrap_or(0) + 1));
         if let Some(size) = missing {
             let text = format!(
-                "the lens states no size of its stop: the entrance pupil diameter {} is a guess",
+                "the lens does not state the size of its stop: the entrance pupil diameter {} is a guess",
                 shortest(2.0 * size)
             );
             self.note(false, text);
@@ -195,7 +195,7 @@ impl Writer {
         if surface.stop || self.needs_stop && !self.stop_written {
             record!(self, "STOP");
             if !surface.stop {
-                self.note(false, "the lens has no stop: its first surface is called one".to_owned());
+                self.note(false, "the lens has no stop: its first surface is marked as one".to_owned());
             }
             self.stop_written = true;
         }
@@ -210,7 +210,7 @@ impl Writer {
         }
         self.apertures(surface, number);
         if displaced {
-            // Back: the turns in the other order and sense, then the shift.
+            // Undo the displacement: the tilts in reverse order and direction, then the shift.
             let Displacement { decenter_mm: [x, y], tilt_deg: [a, b, c] } = surface.displacement;
             self.coordinate_break(&CoordinateBreak {
                 by: Displacement { decenter_mm: [-x, -y], tilt_deg: [-a, -b, -c] },
@@ -343,7 +343,7 @@ impl Writer {
                         }
                     }
                 }
-                // `vacuum`, or a name of several glasses that the stated index picks: the figures say it.
+                // The name is `vacuum`, or is shared by several glasses, of which the stated index selects one: write the figures.
                 Err(_) => match nd {
                     Some(nd) => {
                         let bare = name.rsplit('/').next().unwrap_or(name);
@@ -357,7 +357,7 @@ impl Writer {
     }
 
     fn apertures(&mut self, surface: &Surface, number: usize) {
-        // A typed size clips on a surface that bends light; that of the edge does not.
+        // A typed-in size clips on a surface that bends light; that of the edge does not.
         if let Some(size) = surface.semi_diameter_mm {
             record!(self, "DIAM {} 1 0 0 1 \"\"", shortest(size));
         } else if let Some(size) = surface.outer_semi_diameter_mm {
@@ -380,15 +380,15 @@ impl Writer {
                 (ApertureShape::Ellipse { half_width, half_height }, false) => ("ELAP", *half_width, *half_height),
                 (ApertureShape::Ellipse { half_width, half_height }, true) => ("ELOB", *half_width, *half_height),
                 (ApertureShape::Polygon { .. } | ApertureShape::Other { .. }, _) => {
-                    self.note(true, format!("surface {number}: an aperture that is no ring, rectangle or ellipse"));
+                    self.note(true, format!("surface {number}: an aperture that is not a ring, rectangle or ellipse"));
                     continue;
                 }
             };
             if written {
-                self.note(true, format!("surface {number}: a second aperture ({keyword}): a surface has one there"));
+                self.note(true, format!("surface {number}: a second aperture ({keyword}), where a .zmx holds one"));
                 continue;
             }
-            // A ring without an outer edge: larger than any lens.
+            // Give a ring without an outer edge a radius larger than any lens.
             record!(self, "{keyword} {} {} 0", shortest(a), shortest(b.min(1e6)));
             if aperture.center_mm != [0.0; 2] {
                 record!(self, "OBDC {} {}", shortest(aperture.center_mm[0]), shortest(aperture.center_mm[1]));

@@ -1,4 +1,4 @@
-//! Whatever the bytes: an answer or faults, never a panic, and what was read can be written and read again.
+//! Tests with arbitrary bytes: reading gives a lens or faults but never panics, and what was read can be written and read again.
 
 use proptest::prelude::*;
 use spectra_exchange::{Format, MAX_BYTES, read, yaml, zmx};

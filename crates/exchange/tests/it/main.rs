@@ -1,4 +1,4 @@
-//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+//! Integration tests of this crate through its public API, in one program so that dependencies are linked once.
 
 mod hostile;
 mod packages;

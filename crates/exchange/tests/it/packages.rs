@@ -1,4 +1,4 @@
-//! Files that come with two other open programs, against what those programs compute from them: `tests/data/README.md`.
+//! Compares files that come with two other open-source programs with what those programs compute from them: `tests/data/README.md`.
 
 use spectra_exchange::{Format, Item, Medium, Prescription, Shape, read};
 use spectra_glass::Catalogue;
@@ -25,7 +25,7 @@ fn index(medium: &Medium, nm: f64) -> f64 {
     }
 }
 
-/// Curvature at the vertex in y-z, 1/mm; and the power of an ideal lens.
+/// Returns the curvature at the vertex in y-z, 1/mm, and the power of an ideal lens, 1/mm.
 fn bend(shape: &Shape) -> (f64, f64) {
     match shape {
         Shape::Plane | Shape::Stop | Shape::TiltedPlane { .. } => (0.0, 0.0),
@@ -40,8 +40,8 @@ fn bend(shape: &Shape) -> (f64, f64) {
     }
 }
 
-/// Size of the focal length by a paraxial ray, mm: n' u' = n u - y (n' - n) c, with the sign of n turned by each mirror
-/// (W. J. Smith, Modern Optical Engineering, chapter 3). Tilts do not count.
+/// Absolute focal length from a paraxial ray, mm: n' u' = n u - y (n' - n) c, where each mirror reverses the sign of n (W. J. Smith, Modern
+/// Optical Engineering, chapter 3). Tilts are ignored.
 fn focal_length_mm(lens: &Prescription, nm: f64) -> f64 {
     let (mut y, mut slope, mut n) = (1.0, 0.0, 1.0);
     for item in &lens.items {
@@ -56,7 +56,7 @@ fn focal_length_mm(lens: &Prescription, nm: f64) -> f64 {
     (1.0 / slope).abs()
 }
 
-/// The last column is the allowed relative difference: 0.1 %, and less where both programs have the same glass data.
+/// The last column of the table is the allowed relative difference: 0.1 %, and less if both programs have the same glass data.
 #[test]
 fn focal_lengths_are_those_of_the_other_programs() {
     let table = std::fs::read_to_string(data("efl.csv")).expect("test data");
@@ -90,7 +90,7 @@ fn every_file_of_the_folders_is_read_and_written() {
                 read(Format::Zmx, "again.zmx", &spectra_exchange::zmx::encode(&written.text)).expect("readable");
             assert_eq!(again.surfaces().count(), lens.surfaces().count(), "{name}");
             let (a, b) = (focal_length_mm(&lens, 555.0), focal_length_mm(&again, 555.0));
-            // A medium that no catalogue there has goes by two figures, and that is told.
+            // A medium that no catalog of the other program has is written as two figures, which is noted.
             let by_figures = written.left_out.iter().any(|note| note.text.contains("is written by its nd and Vd"));
             let allowed = if by_figures { 1e-4 } else { 1e-12 };
             assert!(a.is_infinite() && b.is_infinite() || (a / b - 1.0).abs() < allowed, "{name}: {a} {b}");
@@ -100,7 +100,7 @@ fn every_file_of_the_folders_is_read_and_written() {
     assert!(count >= 25, "{count}");
 }
 
-/// What these files hold beyond radii and glasses.
+/// Checks data in these files other than radii and glasses.
 #[test]
 fn details_of_some_files() {
     let lens = load("optiland/lens_floa.zmx");
@@ -138,7 +138,7 @@ fn details_of_some_files() {
     assert!(lens.left_out.iter().any(|note| note.text.starts_with("vignetting factors")));
 }
 
-/// The size of the stop by a paraxial ray, against that which the other program gave it by real rays from all over the field.
+/// Compares the size of the stop from a paraxial ray with that which the other program computed by real rays over the whole field.
 #[test]
 fn stops_are_as_large_as_the_other_program_has_them() {
     for (name, wanted_mm) in [
@@ -151,7 +151,7 @@ fn stops_are_as_large_as_the_other_program_has_them() {
     ] {
         let lens = load(name);
         let size = lens.surfaces().find(|surface| surface.stop).and_then(|stop| stop.semi_diameter_mm);
-        // Aberrations of the pupil, most of all where mirrors are tilted.
+        // Pupil aberrations make a difference, most of all where mirrors are tilted.
         assert!(size.is_some_and(|size| (size / wanted_mm - 1.0).abs() < 0.06), "{name}: {size:?} {wanted_mm}");
     }
 }

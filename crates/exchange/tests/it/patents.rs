@@ -1,10 +1,10 @@
-//! Tables as patents print them, each against its figures typed by hand.
+//! Tables as printed in patents, each compared with its figures typed by hand.
 
 use serde_json::Value;
 use spectra_exchange::{Format, Medium, Shape, read};
 use std::path::Path;
 
-/// Tables in the manner of American, Japanese and German patents and of a forum, typed by somebody who had not seen the reader.
+/// Reads tables in the style of American, Japanese and German patents and of a forum, typed by somebody who had not seen the reader.
 #[test]
 fn tables_in_the_manner_of_patents_are_read() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/patents");
@@ -44,7 +44,7 @@ fn tables_in_the_manner_of_patents_are_read() {
                 (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * b.abs(),
                 (a, b) => a == b,
             };
-            // Of the last gap the table may state nothing.
+            // The table may state nothing for the last gap.
             let states_all = what != "thicknesses" || want.last().is_none_or(Option::is_some);
             let compared = if states_all { want.len() } else { want.len() - 1 };
             if got.len() != want.len() || !got.iter().zip(&want).take(compared).all(near) {
@@ -58,7 +58,7 @@ fn tables_in_the_manner_of_patents_are_read() {
         if stop != right["stop"].as_u64() {
             wrong.push(format!("{name}: the stop is {stop:?}"));
         }
-        // A stop in a sentence is told of.
+        // A stop that is only mentioned in a sentence must be noted.
         if stop.is_none() && !lens.left_out.iter().any(|note| note.alters && note.text.contains("the stop has no row"))
         {
             wrong.push(format!("{name}: nothing is said of the stop"));

@@ -3,7 +3,7 @@
 //! ```
 //! use spectra_film::curve::ToeShoulder;
 //!
-//! // ISO 80: 0.8/80 lx s gives 0.1 over base and fog; 1.5 further to the right, 0.66 a unit more.
+//! ISO 80: 0.8/80 lx s gives 0.1 above base and fog; 1.5 further to the right, the density is 1.5 * 0.66 higher.
 //! let curve = ToeShoulder::through([-2.0, 0.1], [-0.5, 0.1 + 1.5 * 0.66], 0.2, 2.5, 4.0).unwrap();
 //! assert!((curve.density(-2.0) - 0.1).abs() < 1e-12);
 //! ```
@@ -14,38 +14,37 @@ mod toe_shoulder;
 pub use tabulated::TabulatedCurve;
 pub use toe_shoulder::ToeShoulder;
 
-/// Density over base and fog at which the speed of a negative film is measured (ISO 6:1993).
+/// Density above base and fog at which the speed of a negative film is measured (ISO 6:1993).
 pub const SPEED_POINT_DENSITY: f64 = 0.1;
 
-/// Length on the axis of log10 exposure, from the speed point to the right, over which Ilford's sheets
-/// state the average gradient.
+/// Interval of log10 exposure, from the speed point to the right, over which Ilford's data sheets state the average gradient.
 pub const AVERAGE_GRADIENT_SPAN: f64 = 1.5;
 
-/// A curve that cannot be.
+/// Errors of characteristic curves.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CurveError {
-    /// A parameter outside of its range.
+    /// A parameter is outside its range.
     #[error("{what} must be {wanted}, not {value}")]
     OutOfRange {
-        /// The parameter.
+        /// Name of the parameter.
         what: &'static str,
-        /// What it may be.
+        /// Range of the parameter.
         wanted: &'static str,
-        /// What it was.
+        /// Value that was given.
         value: f64,
     },
     /// No curve of this family passes through the two points.
     #[error("a toe of {toe_width} leaves no room for the stated gradient; make it shorter")]
     ToeTooLong {
-        /// The toe's width, in log10 of exposure.
+        /// Width of the toe, in log10 of exposure.
         toe_width: f64,
     },
-    /// Points whose exposures do not increase, or whose densities turn.
+    /// Exposures do not increase, or densities are not monotone.
     #[error("point {index} of the curve: {wanted}")]
     Order {
-        /// The point, from 1.
+        /// Number of the point, from 1.
         index: usize,
-        /// What should hold.
+        /// The rule that the point violates.
         wanted: &'static str,
     },
 }
@@ -62,14 +61,14 @@ pub(crate) fn check(
 /// Density over log10 of exposure in lx s; monotone, with a limit at both ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CharacteristicCurve {
-    /// A closed form, for where no curve is printed.
+    /// A closed form, for films without a printed curve.
     ToeShoulder(ToeShoulder),
     /// A measured curve.
     Tabulated(TabulatedCurve),
 }
 
 impl CharacteristicCurve {
-    /// Density at an exposure, given as log10 of lx s; -infinity is no exposure.
+    /// Returns the density at an exposure, given as log10 of lx s; -infinity is no exposure.
     #[must_use]
     pub fn density(&self, log10_exposure: f64) -> f64 {
         match self {
@@ -78,7 +77,7 @@ impl CharacteristicCurve {
         }
     }
 
-    /// Slope of the curve: density per unit of log10 exposure.
+    /// Returns the slope of the curve: density per unit of log10 exposure.
     #[must_use]
     pub fn gradient(&self, log10_exposure: f64) -> f64 {
         match self {
@@ -87,7 +86,7 @@ impl CharacteristicCurve {
         }
     }
 
-    /// Returns the curve for `by` more in log10 of the exposure. A closed form stands where its speed put it.
+    /// Returns the curve shifted by `by` in log10 of the exposure. A closed form is not shifted, because its speed fixes it.
     #[must_use]
     pub(crate) fn slid(&self, by: f64) -> Self {
         match self {
@@ -96,7 +95,7 @@ impl CharacteristicCurve {
         }
     }
 
-    /// Where it bends: log10 exposures between which all but a thousandth of its density changes.
+    /// Returns the range of log10 exposures over which all but a thousandth of the density changes.
     #[must_use]
     pub fn span(&self) -> (f64, f64) {
         match self {
@@ -109,20 +108,20 @@ impl CharacteristicCurve {
         }
     }
 
-    /// Density of the unexposed film, as far as the curve holds it.
+    /// Density of the unexposed film, according to the curve.
     #[must_use]
     pub fn unexposed_density(&self) -> f64 {
         self.density(f64::NEG_INFINITY)
     }
 
-    /// Smallest and largest density.
+    /// Smallest and largest density of the curve.
     #[must_use]
     pub fn density_range(&self) -> (f64, f64) {
         let (a, b) = (self.density(f64::NEG_INFINITY), self.density(f64::INFINITY));
         (a.min(b), a.max(b))
     }
 
-    /// The exposure, log10 of lx s, that gives `density`; `None` at and beyond the limits of the curve.
+    /// Finds the exposure, log10 of lx s, that gives `density`; `None` at and beyond the limits of the curve.
     #[must_use]
     pub fn log10_exposure_at(&self, density: f64) -> Option<f64> {
         match self {
@@ -131,14 +130,14 @@ impl CharacteristicCurve {
         }
     }
 
-    /// The exposure, log10 of lx s, that gives 0.1 over the unexposed film.
+    /// Finds the exposure, log10 of lx s, that gives 0.1 above the unexposed film.
     #[must_use]
     pub fn speed_point(&self) -> Option<f64> {
         self.log10_exposure_at(self.unexposed_density() + SPEED_POINT_DENSITY)
     }
 
-    /// Slope of the straight line from the speed point to the point `span` further to the right in log10
-    /// exposure; Ilford's average gradient for a span of [`AVERAGE_GRADIENT_SPAN`], 1.3 in ISO 6.
+    /// Returns the slope of the straight line from the speed point to the point `span` further to the right in log10 exposure. With
+    /// [`AVERAGE_GRADIENT_SPAN`] this is Ilford's average gradient; ISO 6 uses 1.3.
     #[must_use]
     pub fn average_gradient(&self, span: f64) -> Option<f64> {
         let from = self.speed_point()?;

@@ -2,11 +2,10 @@
 
 use super::{CurveError, check};
 
-/// Points joined by cubics that never overshoot, held constant beyond the ends.
+/// Measured points joined by cubics that never overshoot, constant beyond the ends.
 ///
-/// Slopes at the points: F. N. Fritsch and J. Butland, "A method for constructing local monotone piecewise
-/// cubic interpolants", SIAM J. Sci. Stat. Comput. 5 (1984), eq. 5 (weighted harmonic mean); zero at
-/// the ends, where the curve meets its limits.
+/// Slopes at the points are weighted harmonic means (F. N. Fritsch and J. Butland, "A method for constructing local monotone piecewise
+/// cubic interpolants", SIAM J. Sci. Stat. Comput. 5 (1984), eq. 5). They are zero at the ends, where the curve meets its limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TabulatedCurve {
     log10_exposure: Vec<f64>,
@@ -15,12 +14,12 @@ pub struct TabulatedCurve {
 }
 
 impl TabulatedCurve {
-    /// A curve of points (log10 of exposure in lx s, density), exposures increasing, densities all rising
-    /// (negative) or all falling (reversal); equal neighbors are allowed.
+    /// Builds a curve from points (log10 of exposure in lx s, density). Exposures increase; densities all rise (negative) or all fall
+    /// (reversal), and equal neighbors are allowed.
     ///
     /// # Errors
-    /// [`CurveError::OutOfRange`] for fewer than two points or numbers that are not finite,
-    /// [`CurveError::Order`] where exposures do not increase or densities turn.
+    /// [`CurveError::OutOfRange`] for fewer than two points, numbers that are not finite, or densities outside 0 to 10;
+    /// [`CurveError::Order`] if exposures do not increase or densities are not monotone.
     pub fn new(points: &[[f64; 2]]) -> Result<Self, CurveError> {
         check("number of points", "at least 2", points.len() as f64, |n| n >= 2.0)?;
         for p in points {
@@ -50,23 +49,23 @@ impl TabulatedCurve {
         Ok(Self { log10_exposure, density, slope })
     }
 
-    /// The same curve, `by` further to the right in log10 of the exposure.
+    /// Returns the curve shifted by `by` to the right in log10 of the exposure.
     pub(crate) fn slid(&self, by: f64) -> Self {
         Self { log10_exposure: self.log10_exposure.iter().map(|x| x + by).collect(), ..self.clone() }
     }
 
-    /// Log10 exposures of its first and its last point.
+    /// Log10 exposures of the first and the last point.
     #[must_use]
     pub fn span(&self) -> (f64, f64) {
         (self.log10_exposure[0], self.log10_exposure[self.log10_exposure.len() - 1])
     }
 
-    /// Density at log10 of the exposure.
+    /// Returns the density at log10 of the exposure.
     #[must_use]
     pub fn density(&self, log10_exposure: f64) -> f64 {
         let x = &self.log10_exposure;
         let last = x.len() - 1;
-        // Also where it is no number: no exposure is what it most likely means.
+        // NaN most likely means no exposure.
         if log10_exposure.is_nan() || log10_exposure <= x[0] {
             return self.density[0];
         }
@@ -87,7 +86,7 @@ impl TabulatedCurve {
         d0 + t * (m0 + t * (c2 + t * c3))
     }
 
-    /// Density per unit of log10 exposure; 0 beyond the ends.
+    /// Returns the density per unit of log10 exposure; 0 beyond the ends.
     #[must_use]
     pub fn gradient(&self, log10_exposure: f64) -> f64 {
         let x = &self.log10_exposure;
@@ -102,8 +101,8 @@ impl TabulatedCurve {
         (m0 + t * (2.0 * (3.0 * (d1 - d0) - 2.0 * m0 - m1) + t * 3.0 * (2.0 * (d0 - d1) + m0 + m1))) / h
     }
 
-    /// Log10 of the exposure that gives `density`; `None` at and beyond the limits. Where the curve is
-    /// level, the leftmost such exposure.
+    /// Finds log10 of the exposure that gives `density`; `None` at and beyond the limits. If the curve is level there, returns the leftmost
+    /// such exposure.
     #[must_use]
     pub fn log10_exposure_at(&self, density: f64) -> Option<f64> {
         let last = self.density.len() - 1;
@@ -154,7 +153,7 @@ mod tests {
         }
     }
 
-    /// A straight line has equal slopes at the inner points, and the cubic between such is the line.
+    /// A straight line has equal slopes at the inner points, and the cubic between such points is the line.
     #[test]
     fn straight_parts_stay_straight() {
         let points: Vec<[f64; 2]> = (0..8).map(|i| [f64::from(i) * 0.3, 0.1 + f64::from(i) * 0.2]).collect();

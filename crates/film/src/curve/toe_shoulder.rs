@@ -1,14 +1,14 @@
-//! A closed form with a toe, a nearly straight part and a shoulder.
+//! A closed-form curve with a toe, a nearly straight part and a shoulder.
 
 use super::{CurveError, check};
 use spectra_core::math::{exp, expm1, log, log1p, pow};
 
-/// Density that rises from 0 over base and fog to a maximum.
+/// A density curve in closed form that rises from 0 above base and fog to a maximum.
 ///
-/// With x the log10 of exposure, the toe is t = g w ln(1 + exp((x - a) / w)): nothing far to the left, a
-/// straight line of slope g far to the right, bent over a few widths w around a. The shoulder folds it
-/// under the maximum m: D = t / (1 + (t / m)^p)^(1/p). Both steps are monotone, smooth, and have an
-/// inverse in closed form.
+/// With x the log10 of exposure, the toe is t = g w ln(1 + exp((x - a) / w)): 0 far to the left, a straight line of slope g far to the
+/// right, curved over a few widths w around a.
+/// The shoulder bends it below the maximum m: D = t / (1 + (t / m)^p)^(1/p). Both steps are monotone, smooth, and have an inverse in closed
+/// form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToeShoulder {
     foot: f64,
@@ -19,14 +19,13 @@ pub struct ToeShoulder {
 }
 
 impl ToeShoulder {
-    /// The curve through two points, each (log10 of exposure, density over base and fog), with a toe of
-    /// width `toe_width` (log10 of exposure), bending under `maximum_density` the more abruptly the
-    /// larger `shoulder_sharpness` is.
+    /// Builds the curve through two points, each (log10 of exposure, density above base and fog), with a toe of width `toe_width` (log10 of
+    /// exposure). The curve bends below `maximum_density`, more abruptly for a larger `shoulder_sharpness`.
     ///
     /// # Errors
-    /// [`CurveError::OutOfRange`] for points not to the upper right of each other, densities not between
-    /// 0 and the maximum, a width that is not positive or a sharpness outside of 1 to 64;
-    /// [`CurveError::ToeTooLong`] where the toe rises too slowly to reach the second point.
+    /// - [`CurveError::OutOfRange`]: the second point is not to the upper right of the first, a density is not between 0 and the maximum,
+    ///   the width is not above 0 and at most 2, or the sharpness is outside 1 to 64.
+    /// - [`CurveError::ToeTooLong`]: the toe rises too slowly to reach the second point.
     pub fn through(
         low: [f64; 2],
         high: [f64; 2],
@@ -44,8 +43,8 @@ impl ToeShoulder {
         let unfolded = |density: f64| unfold(density, maximum_density, shoulder_sharpness);
         let ratio = unfolded(high[1]) / unfolded(low[1]);
         let step = (high[0] - low[0]) / toe_width;
-        // (softplus(u + step) / softplus(u)) falls from exp(step) to 1 as u rises: bisect for the ratio.
-        // At -700 softplus is near the smallest normal number, at +700 it is straight to the last bit.
+        // softplus(u + step) / softplus(u) falls from exp(step) to 1 as u rises: bisect for the ratio. At -700 softplus is near the
+        // smallest normal number; at +700 it is straight to the last bit.
         let excess = |u: f64| softplus(u + step) / softplus(u) - ratio;
         let (mut left, mut right) = (-700.0, 700.0);
         if !(excess(left) > 0.0 && excess(right) < 0.0) {
@@ -71,12 +70,12 @@ impl ToeShoulder {
         })
     }
 
-    /// Density over base and fog at log10 of the exposure.
+    /// Returns the density above base and fog at log10 of the exposure.
     #[must_use]
     pub fn density(&self, log10_exposure: f64) -> f64 {
         let straight = self.slope * self.toe_width * softplus((log10_exposure - self.foot) / self.toe_width);
         let (p, m) = (self.sharpness, self.maximum);
-        // The smaller of the two over the larger, so that neither power overflows.
+        // Divides the smaller of the two by the larger, so that neither power overflows.
         if straight <= m {
             straight / pow(1.0 + pow(straight / m, p), 1.0 / p)
         } else {
@@ -84,7 +83,7 @@ impl ToeShoulder {
         }
     }
 
-    /// Density per unit of log10 exposure.
+    /// Returns the density per unit of log10 exposure.
     #[must_use]
     pub fn gradient(&self, log10_exposure: f64) -> f64 {
         let u = (log10_exposure - self.foot) / self.toe_width;
@@ -93,7 +92,7 @@ impl ToeShoulder {
         self.slope / (1.0 + exp(-u)) * pow(1.0 + pow(straight / m, p), -1.0 / p - 1.0)
     }
 
-    /// Log10 of the exposure that gives `density`, `None` unless it lies between 0 and the maximum.
+    /// Finds log10 of the exposure that gives `density`; `None` unless it lies between 0 and the maximum.
     #[must_use]
     pub fn log10_exposure_at(&self, density: f64) -> Option<f64> {
         if !(density > 0.0 && density < self.maximum) {
@@ -105,12 +104,12 @@ impl ToeShoulder {
     }
 }
 
-/// ln(1 + exp(u)).
+/// Returns ln(1 + exp(u)).
 fn softplus(u: f64) -> f64 {
     u.max(0.0) + log1p(exp(-u.abs()))
 }
 
-/// The straight value that the shoulder folds to `density`.
+/// Inverts the shoulder: returns the straight value that it bends to `density`.
 fn unfold(density: f64, maximum: f64, sharpness: f64) -> f64 {
     density / pow(1.0 - pow(density / maximum, sharpness), 1.0 / sharpness)
 }

@@ -1,4 +1,4 @@
-//! From RMS granularity to the size of grains and their clumps.
+//! Derives the size of grains and their clumps from RMS granularity.
 
 use crate::known::Known;
 use spectra_core::math::{acos, sin};
@@ -7,24 +7,24 @@ use std::f64::consts::PI;
 /// Diameter of the aperture that defines RMS granularity, mm.
 pub const APERTURE_MM: f64 = 0.048;
 
-/// A granularity that is none.
+/// A granularity or spectrum that is out of range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GrainError {
-    /// Out of range.
-    #[error("an RMS granularity lies between 0 and 200 (1000 times the deviation of the density), not {0}")]
+    /// The RMS granularity is out of range.
+    #[error("an RMS granularity must be 0 to 200 (1000 times the deviation of the density), not {0}")]
     OutOfRange(f64),
-    /// Out of range.
-    #[error("the Wiener spectrum falls to half between 1 and 1000 cycles/mm, not at {0}")]
+    /// The frequency of half power is out of range.
+    #[error("the Wiener spectrum must fall to half between 1 and 1000 cycles/mm, not at {0}")]
     HalfPower(f64),
 }
 
 /// Share of single crystals in the noise of large areas; the rest lies in clumps.
 pub(super) const CRYSTALS: f64 = 0.12;
 
-/// How many times as wide a clump is as a crystal.
+/// Width of a clump, in widths of a crystal.
 pub(super) const CLUMP: f64 = 5.0;
 
-/// Side of the cells of clumps, mm, where the Wiener spectrum falls to half at `half_power` cycles/mm.
+/// Side of the cells of clumps, mm, for a Wiener spectrum that falls to half at `half_power` cycles/mm.
 pub(super) fn clump_mm(half_power: f64) -> Result<f64, GrainError> {
     if !(1.0..=1000.0).contains(&half_power) {
         return Err(GrainError::HalfPower(half_power));
@@ -37,8 +37,7 @@ pub(super) fn clump_mm(half_power: f64) -> Result<f64, GrainError> {
     Ok(left / half_power)
 }
 
-/// The Wiener spectrum over its value at 0, at `f` cycles a clump, along an axis: cells spread by a quadratic B-spline have
-/// sinc^6.
+/// Wiener spectrum relative to its value at 0, at `f` cycles per clump, along an axis: cells spread by a quadratic B-spline have sinc^6.
 pub(super) fn wiener(f: f64) -> f64 {
     let spline = |f: f64| {
         let x = PI * f;
@@ -48,25 +47,25 @@ pub(super) fn wiener(f: f64) -> f64 {
     (1.0 - CRYSTALS) * spline(f) + CRYSTALS * spline(f / CLUMP)
 }
 
-/// Pixels, mm, through which the aperture is taken to be read: between the finest and the coarsest that hold a film's
-/// grain. Finer ones read up to 2 % more, those of 8 um as much less.
+/// Pixel size, mm, at which the aperture is assumed to be read: between the finest and the coarsest that hold a film's grain. Finer pixels
+/// read up to 2 % more, those of 8 um as much less.
 const READ_MM: f64 = 0.005;
 
-/// Variance times area (mm^2) of large areas, over the square of the deviation through the 48 um aperture.
+/// Variance times area (mm^2) of large areas, divided by the square of the deviation through the 48 um aperture.
 pub(super) fn selwyn_mm2(clump_mm: f64) -> f64 {
     static KNOWN: Known<u64, f64> = Known::new();
     *KNOWN.of(clump_mm.to_bits(), || found_selwyn_mm2(clump_mm))
 }
 
 fn found_selwyn_mm2(clump_mm: f64) -> f64 {
-    // A pixel averages, and stands at the aperture's rim for a part of itself: two boxes more, to the second order. A quadratic
-    // spline has the variance h^2 / 4, a box p^2 / 12.
+    // A pixel averages, and lies only partly inside at the edge of the aperture: two more boxes, to the second order. A quadratic spline
+    // has the variance h^2 / 4, a box p^2 / 12.
     let kept = |cell_mm: f64| kept_variance((cell_mm * cell_mm + 2.0 / 3.0 * READ_MM * READ_MM).sqrt(), APERTURE_MM);
     PI / 4.0 * APERTURE_MM * APERTURE_MM / ((1.0 - CRYSTALS) * kept(clump_mm) + CRYSTALS * kept(clump_mm / CLUMP))
 }
 
-/// Variance through a round aperture over that of grains that were points: cells spread by a quadratic B-spline
-/// are correlated by the quintic one, and the mean of that over pairs of points in the aperture is what is left.
+/// Variance through a round aperture, relative to that of point-like grains. Cells spread by a quadratic B-spline are correlated by the
+/// quintic one; the result is the mean of this over pairs of points in the aperture.
 pub(super) fn kept_variance(cell_mm: f64, aperture_mm: f64) -> f64 {
     const STEPS: i32 = 240;
     let step = 6.0 / f64::from(STEPS);
@@ -76,7 +75,7 @@ pub(super) fn kept_variance(cell_mm: f64, aperture_mm: f64) -> f64 {
         for i in 0..STEPS {
             let (x, y) = (place(i), place(j));
             let w = quintic(x) * quintic(y);
-            // Part of a disk that lies in the same disk moved by r.
+            // Fraction of a disk that overlaps the same disk moved by r.
             let r = ((x * x + y * y).sqrt() * cell_mm / aperture_mm).min(1.0);
             sum += w * 2.0 / PI * (acos(r) - r * (1.0 - r * r).sqrt());
             weight += w;
@@ -85,7 +84,7 @@ pub(super) fn kept_variance(cell_mm: f64, aperture_mm: f64) -> f64 {
     sum / weight
 }
 
-/// The quintic B-spline around 0, the correlation of the quadratic one with itself.
+/// The quintic B-spline around 0, which is the autocorrelation of the quadratic one.
 fn quintic(x: f64) -> f64 {
     let binomials = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
     let power = |t: f64| if t > 0.0 { t * t * t * t * t } else { 0.0 };
@@ -109,7 +108,7 @@ mod tests {
         }
     }
 
-    /// Small cells: 1 - (4 / (pi d)) E(r), where r is close to Rayleigh's of the deviation h / sqrt(2) an axis.
+    /// Small cells: 1 - (4 / (pi d)) E(r), where r is close to Rayleigh's distribution of the deviation h / sqrt(2) per axis.
     #[test]
     fn little_variance_is_lost_over_large_apertures() {
         let lost = 1.0 - kept_variance(0.001, 0.1);

@@ -1,33 +1,33 @@
-//! Granularity of color film: from what a microdensitometer reads through a filter to what each layer does.
+//! Granularity of color film: derives the granularity of each layer from microdensitometer readings through filters.
 
 use crate::emulsion::Emulsion;
 use crate::stock::Stock;
 use spectra_core::math::log10;
 use spectra_numerics::linear;
 
-/// Amount of dye that is there where nothing was exposed, in clouds of its own: what makes unexposed film grainy.
+/// Amount of dye in unexposed film, in clouds of its own, which makes unexposed film grainy.
 pub const FOG: f64 = 0.1;
 
-/// Neutral exposures that are looked at.
+/// Number of neutral exposures that are sampled.
 const STEPS: usize = 120;
 
-/// A layer has at least this part of the variance that its filter reads: more than all would be left to the others where the
-/// figures of the sheet do not agree.
+/// Smallest fraction of the variance that a filter reads which its own layer has. If the figures of the sheet are inconsistent, other
+/// layers would otherwise take more than all of it.
 const LEAST: f64 = 0.1;
 
-/// What the layers of a color film are as grainy as.
+/// Granularity of the layers of a color film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorGrain {
-    /// Of each layer: amount over that of unexposed (reversal: fully exposed) film, rising, and 1000 times its deviation
-    /// through 48 um.
+    /// Points of each layer: amount above that of unexposed (reversal: fully exposed) film, rising, and 1000 times its standard deviation through
+    /// 48 um.
     layers: Vec<Vec<[f64; 2]>>,
 }
 
 impl ColorGrain {
-    /// That of a stock whose layers all have a granularity over density; `None` of others.
+    /// Computes the granularity of a stock with three layers that all have granularity over density; `None` for others.
     ///
-    /// Each filter sees all three dyes, more or less: through it the variances of the layers add up, each times the square of
-    /// what a unit of its dye does to the density. The sheet's readings, of neutral film, are taken apart by that.
+    /// Each filter sees all three dyes, more or less. Through it the variances of the layers add up, each multiplied by the squared effect
+    /// of a unit of its dye on the density. The sheet's readings of neutral film are separated accordingly.
     #[must_use]
     pub fn new(stock: &Stock, emulsion: &Emulsion) -> Option<Self> {
         if stock.layers.iter().any(|l| l.granularity.len() < 2) || stock.layers.len() != 3 {
@@ -71,7 +71,7 @@ impl ColorGrain {
         Some(Self { layers })
     }
 
-    /// 1000 times the deviation of a layer through 48 um at an amount of dye, [`FOG`] included.
+    /// Returns 1000 times the standard deviation of a layer through 48 um at an amount of dye, including [`FOG`].
     #[must_use]
     pub fn rms(&self, layer: usize, amount: f64) -> f64 {
         // Below the fog there is only a part of it.
@@ -79,14 +79,14 @@ impl ColorGrain {
         part * between(&self.layers[layer], amount - FOG)
     }
 
-    /// The largest amount that is known of, [`FOG`] included.
+    /// Largest known amount of a layer, including [`FOG`].
     #[must_use]
     pub fn most(&self, layer: usize) -> f64 {
         self.layers[layer].last().map_or(FOG, |p| p[0] + FOG)
     }
 }
 
-/// Straight between points, held beyond.
+/// Interpolates linearly between points; constant beyond the ends.
 fn between(points: &[[f64; 2]], x: f64) -> f64 {
     let above = points.partition_point(|p| p[0] <= x);
     match (above.checked_sub(1).map(|i| points[i]), points.get(above)) {

@@ -1,27 +1,27 @@
-//! Counts of grains: Poisson's law, as a function of a standard normal number.
+//! Counts of grains: quantiles of Poisson's law as a function of a standard normal number.
 
 use spectra_core::math::exp;
 use spectra_numerics::normal;
 use std::sync::LazyLock;
 
-/// Nodes of the square root of the mean: steps an unit, and where the table ends.
+/// Nodes of the square root of the mean: steps per unit, and the end of the table.
 const STEPS: usize = 16;
 const END: usize = 8;
 
-/// Nodes of the normal number: from -LIMIT to LIMIT, so many steps a unit.
+/// Nodes of the normal number: from -LIMIT to LIMIT, FINENESS steps per unit.
 pub(super) const LIMIT: usize = 5;
 pub(super) const FINENESS: usize = 32;
 pub(super) const NODES: usize = 2 * LIMIT * FINENESS + 1;
 
-/// Quantiles of Poisson's law, sampled.
+/// Sampled quantiles of Poisson's law.
 pub(super) struct Counts {
     table: Vec<f32>,
-    /// Of each mean, what [`tie`] says.
+    /// Correlation of the counts of each mean; see [`row`].
     ties: Vec<f32>,
 }
 
 impl Counts {
-    /// The table, which is the same for all grain: it is made once.
+    /// Returns the shared table, which is the same for all grain and is computed once.
     pub(super) fn all() -> &'static Self {
         static ALL: LazyLock<Counts> = LazyLock::new(Counts::new);
         &ALL
@@ -33,12 +33,11 @@ impl Counts {
         Self { table: rows.concat(), ties }
     }
 
-    /// The mean to count with, where `mean` are expected in a pixel and `alone` is the part of the variance of large areas
-    /// that it has by itself (the rest comes from its ties to its neighbors).
+    /// Corrects the mean count, so that large areas keep their variance. `mean` grains are expected in a pixel, and `alone` is the fraction
+    /// of large-area variance that a pixel has on its own. The rest comes from its correlation with its neighbors.
     ///
-    /// Counts are less tied than the normal numbers that they come from, so larger areas would lose variance where
-    /// pixels are finer than grains, and some is lost between the nodes of [`Counts::quantile`]; fewer and larger grains
-    /// make up for both.
+    /// Counts are less correlated than the normal numbers from which they come, so larger areas would lose variance where pixels are finer
+    /// than grains. Interpolation between the nodes of [`Counts::quantile`] loses some too. Fewer and larger grains compensate for both.
     #[inline(always)]
     pub(super) fn evened(&self, mean: f32, alone: f32) -> f32 {
         if mean >= (END * END) as f32 {
@@ -58,11 +57,11 @@ impl Counts {
         mean * kept(mean * kept(first))
     }
 
-    /// The number of grains where `mean` are expected and the normal number is `z`: its mean over z is `mean`, so is
-    /// its variance; it rises with z.
+    /// Returns the number of grains if `mean` are expected and the normal number is `z`. Its mean and its variance over z are both `mean`,
+    /// and it rises with z.
     ///
-    /// Counts between nodes are interpolated, so they need not be whole. From 64 on: the expansion of E. A. Cornish and
-    /// R. A. Fisher (1938) to the third order, whose variance is exact.
+    /// Counts between nodes are interpolated, so they need not be whole. From 64 on, uses the expansion of E. A. Cornish and R. A. Fisher
+    /// (1938) to the third order, whose variance is exact.
     #[inline(always)]
     pub(super) fn quantile(&self, mean: f32, z: f32) -> f32 {
         let root = mean.sqrt();
@@ -70,7 +69,7 @@ impl Counts {
             return mean + root * z + (z * z - 1.0) / 6.0 + (z - z * z * z) / (72.0 * root);
         }
         let k = (root * STEPS as f32) as usize;
-        // Linear in the mean between nodes, so that it is kept.
+        // Linear in the mean between nodes, so that the mean is kept.
         let part = (mean * (STEPS * STEPS) as f32 - (k * k) as f32) / (2 * k + 1) as f32;
         let place = ((z + LIMIT as f32) * FINENESS as f32).max(0.0).min((NODES - 1) as f32);
         let i = (place as usize).min(NODES - 2);
@@ -84,11 +83,12 @@ impl Counts {
     }
 }
 
-/// The quantiles of one mean: of each node the mean over its cell of the normal distribution.
+/// Computes the quantiles of one mean: at each node, their mean over the node's cell of the normal distribution.
 ///
-/// Also their tie: the variance of a sum of many neighbors over that of normal numbers so tied, where the correlation falls with
-/// distance as a Gaussian. A part of the order k in Hermite's polynomials is tied by the correlation to the power k, and
-/// that of a Gaussian has an area k times as small (F. G. Mehler, 1866).
+/// Also computes how strongly counts are correlated: the variance of a sum of many neighbors relative to that of their normal numbers,
+/// whose correlation falls with distance as a Gaussian.
+/// The part of order k in Hermite polynomials is correlated by the correlation to the power k. The k-th power of a Gaussian has an area k
+/// times as small (F. G. Mehler, 1866).
 fn row(mean: f64) -> (Vec<f32>, f32) {
     let mut below = Vec::new(); // the distribution function
     let (mut term, mut sum) = (exp(-mean), 0.0);
@@ -106,7 +106,7 @@ fn row(mean: f64) -> (Vec<f32>, f32) {
             over / (high - low)
         })
         .collect();
-    // The interpolated function's mean, and its parts in Hermite's polynomials, by fine steps.
+    // The mean of the interpolated function, and its Hermite parts, by fine steps.
     const ORDERS: usize = 9;
     let fine = 8;
     let (mut parts, mut square, mut weight) = ([0.0; ORDERS], 0.0, 0.0);
@@ -141,7 +141,7 @@ fn row(mean: f64) -> (Vec<f32>, f32) {
 mod tests {
     use super::*;
 
-    /// Mean, variance and third moment of Poisson's law, by quadrature over the normal number.
+    /// Compares mean, variance and third moment with those of Poisson's law, by quadrature over the normal number.
     #[test]
     fn moments_are_poissons() {
         let counts = Counts::new();
@@ -176,13 +176,13 @@ mod tests {
         }
     }
 
-    /// With many grains counts are as tied as their numbers; with few, a pixel by itself loses nothing.
+    /// Counts of many grains are as correlated as their numbers; with few grains, a pixel on its own loses nothing.
     #[test]
     fn ties_loosen_where_grains_are_few() {
         let counts = Counts::new();
         assert_eq!(counts.evened(100.0, 0.0), 100.0);
-        // To the second order in 1 / sqrt(mean), the quantile's parts are z and (z^2 - 1) / 6: 1 / (18 mean) of the variance is
-        // of order 2, half of which is lost; and counts are whole numbers, with 1 / 12 for rounding, of high orders.
+        // To the second order in 1 / sqrt(mean), the quantile's parts are z and (z^2 - 1) / 6: 1 / (18 mean) of the variance is of order 2,
+        // half of which is lost. Rounding of counts to whole numbers adds 1 / 12, of high orders.
         for mean in [9.0, 25.0, 49.0] {
             let lost = 1.0 - counts.evened(mean, 0.0) / mean;
             // Between nodes, which are sqrt(mean) / 8 apart, a quarter of that at most.

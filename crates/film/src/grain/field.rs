@@ -1,26 +1,24 @@
-//! Standard normal numbers on a lattice of all scales.
+//! Standard normal numbers on a lattice at all scales.
 
-use spectra_core::numbers::mix64;
+use spectra_core::numbers::{GOLDEN, mix64};
 use spectra_numerics::normal;
 
-/// The coarsest level: one of its cells is 2^24 of the finest across.
+/// The coarsest level: one of its cells is as wide as 2^24 cells of the finest level.
 pub(super) const TOP: u32 = 24;
 
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// Numbers in the table of normals: 12 bits.
+/// Size of the table of normal numbers: 12 bits.
 const NORMALS: usize = 4096;
 
 /// A standard normal number for every cell of every level.
 ///
-/// The cell (i, j) of a level covers the cells (2i, 2j) to (2i + 1, 2j + 1) of the level below; its number is half the sum
-/// of theirs. Cells of one level are independent.
+/// The cell (i, j) of a level covers the cells (2i, 2j) to (2i + 1, 2j + 1) of the level below; its number is half their sum. Cells of one
+/// level are independent.
 pub(super) struct Field {
     key: u64,
     normals: Vec<f32>,
 }
 
-/// A rectangle of cells.
+/// A rectangle of cells with their numbers.
 #[derive(Default)]
 pub(super) struct Cells {
     x: i64,
@@ -32,7 +30,7 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// The cells of the row `y` from the column `x` on.
+    /// Returns the cells of the row `y` from the column `x` on.
     #[inline(always)]
     pub(super) fn row(&self, y: i64, x: i64) -> &[f32] {
         let row = (y - self.y) as usize;
@@ -43,7 +41,7 @@ impl Cells {
 impl Field {
     pub(super) fn new(seed: u64, layer: u32) -> Self {
         let key = mix64(mix64(seed.wrapping_add(GOLDEN)) ^ (u64::from(layer) + 1).wrapping_mul(GOLDEN));
-        // Quantiles at the middles of equal steps, scaled to the variance 1.
+        // Quantiles at the centers of equal steps, scaled to a variance of 1.
         let quantiles: Vec<f64> = (0..NORMALS).map(|k| normal::quantile((k as f64 + 0.5) / NORMALS as f64)).collect();
         let variance = quantiles.iter().map(|q| q * q).sum::<f64>() / NORMALS as f64;
         let normals = quantiles.iter().map(|q| (q / variance.sqrt()) as f32).collect();
@@ -71,7 +69,7 @@ impl Field {
             }
         }
         for l in (level..TOP).rev() {
-            // Of the level above, only what is asked for is split.
+            // Only the needed cells of the level above are split.
             let (x, y, width, height) = (begin(0, l + 1), begin(1, l + 1), count(0, l + 1), count(1, l + 1));
             std::mem::swap(&mut cells.values, &mut cells.parents);
             cells.values.resize(4 * width * height, 0.0);
@@ -86,8 +84,8 @@ impl Field {
         }
     }
 
-    /// Splits a row of cells into two rows of quarters: the four numbers of a cell (its own and three drawn) by the
-    /// Hadamard matrix of order 4, halved, which keeps them independent and their variance 1.
+    /// Splits a row of cells into two rows of quarters. Multiplies the four numbers of a cell (its own and three drawn) by the Hadamard
+    /// matrix of order 4, halved, which keeps them independent with variance 1.
     #[inline(always)]
     fn split(&self, key: u64, x: i64, parents: &[f32], upper: &mut [f32], lower: &mut [f32]) {
         let normals: &[f32; NORMALS] = self.normals.as_slice().try_into().expect("the table has its size");
@@ -138,8 +136,8 @@ mod tests {
         }
     }
 
-    /// Mean, variance, fourth moment, and no correlation with neighbors, rows, levels, layers or seeds: within 4
-    /// standard errors (4.5 where many are looked at).
+    /// Checks mean, variance, fourth moment, and the absence of correlation with neighbors, rows, levels, layers or seeds: within 4
+    /// standard errors (4.5 where many are checked).
     #[test]
     fn cells_are_independent_normals() {
         let side = 512;

@@ -1,31 +1,35 @@
 //! Grain: developed silver, or clouds of dye, that lie at random and in clumps, calibrated by RMS granularity.
 //!
-//! **Model.** P. G. Nutting ("On the absorption of light in heterogeneous media", Philosophical Magazine 26, 1913, 423):
-//! n grains an area, each of the area a, make the density D = log10(e) n a. Grains at random are counted by Poisson's law, so
-//! the density over an area A has the variance log10(e) a D / A: the standard deviation grows with the square root of
-//! the density, and times the square root of the area it is constant (E. W. H. Selwyn, "A theory of graininess",
-//! Photographic Journal 75, 1935, 571). The one constant comes from the RMS granularity of the maker's sheet: 1000 times
-//! the standard deviation through a circular aperture of 48 um at the density 1. Where a sheet plots granularity over
-//! density, as of color film, the variance follows that ([`Grain::by_density`]).
+//! **Model.** In P. G. Nutting's model ("On the absorption of light in heterogeneous media", Philosophical Magazine 26, 1913, 423), n
+//! grains per area, each of the area a, give the density D = log10(e) n a.
+//! The counts of random grains follow Poisson's law, so the density over an area A has the variance log10(e) a D / A. The standard
+//! deviation grows with the square root of the density.
+//! Its product with the square root of the area is constant (E. W. H. Selwyn, "A theory of graininess", Photographic Journal 75, 1935,
+//! 571).
+//! This constant comes from the RMS granularity of the maker's sheet: 1000 times the standard deviation through a circular aperture of 48
+//! um at the density 1. If a sheet plots granularity over density, as for color film, the variance follows the plot
+//! ([`Grain::by_density`]).
 //!
-//! **Clumps.** Crystals lie in clumps some times their width, so the noise is not white: its Wiener spectrum (variance
-//! times area, over spatial frequency) falls to half at 20 to 60 cycles/mm and on to a foot, which is that of single crystals
-//! (J. H. Altman and H. J. Zweig, "Effect of spread function on the storage of information on photographic emulsions",
-//! Photographic Science and Engineering 7, 1963, 173; C. E. K. Mees and T. H. James, "The Theory of the Photographic Process", 3rd edition,
-//! 1966, on granularity). Here it is the sum of two parts, 0.88 of clumps and 0.12 of crystals a fifth as wide; where it is at
-//! half is a datum. Small apertures see less than Selwyn's law from large ones would have it, as on film.
+//! **Clumps.** Crystals lie in clumps several times their width, so the noise is not white. Its Wiener spectrum (variance times area, over
+//! spatial frequency) falls to half at 20 to 60 cycles/mm and on to a foot, which is that of single crystals.
+//! Sources: J. H. Altman and H. J. Zweig, "Effect of spread function on the storage of information on photographic emulsions", Photographic
+//! Science and Engineering 7, 1963, 173; C. E. K. Mees and T. H. James, "The Theory of the Photographic Process", 3rd edition, 1966, on
+//! granularity.
+//! Here the spectrum is the sum of two parts: 0.88 of clumps, and 0.12 of crystals a fifth as wide. The frequency of half power is given.
+//! Small apertures see less noise than Selwyn's law predicts from large ones, as on film.
 //!
-//! **The same film at every zoom.** Clumps and crystals lie on square lattices fixed in the film. Each cell has a standard normal
-//! number, a pure function of (seed, layer, place), drawn from the top down: a
-//! cell's number and three of its own are turned into those of its four quarters by an orthogonal transform, so all
-//! cells of all levels are consistent, and a coarse cell is known without its fine ones. A pixel takes the cells
-//! that it covers by exact areas (a quadratic B-spline a cell, so that no edges show) from the level that suits its size: the
-//! cost is that of pixels, not of cells. Its number of grains is then the quantile of Poisson's law that belongs to its normal
-//! number, with the mean that its density and variance ask for: never negative, skew in the shadows, the mean density unchanged.
+//! **The same film at every zoom.** Clumps and crystals lie on square lattices fixed in the film. Each cell has a standard normal number, a
+//! pure function of (seed, layer, place), drawn from the coarsest level down.
+//! An orthogonal transform turns a cell's number and three further numbers into those of its four quarters. So all cells of all levels are
+//! consistent, and a coarse cell is known without its fine ones.
+//! A pixel takes the cells that it covers by exact areas (a quadratic B-spline per cell, so that no edges show) from the level that suits
+//! its size: the cost is that of pixels, not of cells.
+//! Its number of grains is the quantile of Poisson's law for its normal number, with the mean that its density and variance require. It is
+//! never negative, is skewed in the shadows, and keeps the mean density.
 //!
-//! **Limits.** Pixels that are much finer than a crystal show soft blobs, not the shapes of grains. Counts of
-//! neighboring pixels are tied by their normal numbers, not by splitting one count, so two resolutions of the same film agree
-//! less where grains are few. Layers are independent.
+//! **Limits.** Pixels much finer than a crystal show soft blobs, not the shapes of grains. Counts of neighboring pixels are correlated by
+//! their normal numbers, not by splitting one count. So two resolutions of the same film agree less where grains are few. Layers are
+//! independent.
 
 mod calibrate;
 mod color;
@@ -46,22 +50,22 @@ use rayon::prelude::*;
 use spectra_core::isa::{Isa, Vectorized};
 use spline::Taps;
 
-/// Side of the tiles that are worked on at once, pixels.
+/// Side of the square tiles that are processed at once, pixels.
 const TILE: usize = 64;
 
-/// Cells a pixel from which on the next coarser level is taken, of clumps and of crystals: the level has between this and
-/// twice this.
+/// Cells per pixel at which the next coarser level is used, for clumps and for crystals. The level in use has between this and twice this
+/// number.
 const CELLS_A_PIXEL: [f64; 2] = [4.0, 2.0];
 
-/// RMS granularity and cycles/mm at which the Wiener spectrum of a grainy film is at half, which stands for others: the
-/// finer the grain, the farther the spectrum goes, in proportion. Assumed.
+/// RMS granularity, and cycles/mm at which the Wiener spectrum is at half, of a grainy film. Other films are scaled from it: the finer the
+/// grain, the farther the spectrum extends, in proportion. Assumed.
 const USUAL: [f64; 2] = [17.0, 35.0];
 
-/// Steps of the variance over the amount.
+/// Number of steps of the variance over the amount.
 const STEPS: usize = 1024;
 
-/// Where the Wiener spectrum of film of the granularity `rms` is at half, cycles/mm, if nothing is known of it: assumed to be
-/// in inverse proportion, from 35 of Kodak Tri-X 400 (17), and within 20 to 100.
+/// Estimates the frequency, cycles/mm, at which the Wiener spectrum of a film of granularity `rms` is at half, if nothing is known of it.
+/// Assumed to be inversely proportional to the granularity, from 35 for Kodak Tri-X 400 (17), and limited to 20 to 100.
 #[must_use]
 pub fn usual_half_power(rms: f64) -> f64 {
     (USUAL[0] * USUAL[1] / rms).clamp(20.0, 100.0)
@@ -76,14 +80,14 @@ pub fn usual_half_power(rms: f64) -> f64 {
 /// let raster = Raster::new(96, 64, 0.006);
 /// let mut density = vec![1.0; raster.pixels()];
 /// grain.apply(&mut density, &raster);
-/// // A part of the frame is the same film.
+/// A part of the frame has the same grain.
 /// let mut part = vec![1.0; 10 * 10];
 /// grain.apply(&mut part, &raster.part(50, 20, 10, 10));
 /// assert_eq!(part[0], density[20 * 96 + 50]);
 /// # Ok::<(), spectra_film::grain::GrainError>(())
 /// ```
 pub struct Grain {
-    /// Variance times area of large areas, mm^2, over the amount: of each of [`STEPS`] steps up to the most.
+    /// Variance times area of large areas, mm^2, divided by the amount, at each of [`STEPS`] steps up to the largest amount.
     per_amount: Vec<f32>,
     steps_a_unit: f32,
     parts: [Part; 2],
@@ -91,9 +95,9 @@ pub struct Grain {
     isa: Isa,
 }
 
-/// Clumps, or crystals.
+/// One of the two parts of the noise: clumps, or crystals.
 struct Part {
-    /// Share of the variance of large areas.
+    /// Fraction of the variance of large areas.
     share: f64,
     /// Side of a cell of the finest level, mm.
     cell_mm: f64,
@@ -101,22 +105,23 @@ struct Part {
 }
 
 impl Grain {
-    /// Grain whose standard deviation through a circular aperture of 48 um is `rms_granularity` / 1000 at the density 1,
-    /// for instance 17 of Kodak Tri-X 400 or 14 of Eastman Double-X 5222, and grows with the root of the density. Its Wiener
-    /// spectrum is at half at `half_power` cycles/mm. Layers of a film share the `seed` and differ in `layer`. A
-    /// granularity of 0 is no grain.
+    /// Builds grain whose standard deviation through a circular aperture of 48 um is `rms_granularity` / 1000 at the density 1, for example
+    /// 17 for Kodak Tri-X 400 or 14 for Eastman Double-X 5222.
+    ///
+    /// The deviation grows with the square root of the density. The Wiener spectrum is at half at `half_power` cycles/mm. Layers of a film
+    /// share the `seed` and differ in `layer`. A granularity of 0 gives no grain.
     ///
     /// # Errors
-    /// [`GrainError`] for a granularity beside 0 to 200, or a frequency beside 1 to 1000.
+    /// [`GrainError`] for a granularity outside 0 to 200, or a frequency outside 1 to 1000.
     pub fn calibrated(rms_granularity: f64, half_power: f64, seed: u64, layer: u32) -> Result<Self, GrainError> {
         Self::by_density(|density| rms_granularity * density.sqrt(), 1.0, half_power, seed, layer)
     }
 
-    /// Grain whose deviation through 48 um, times 1000, is `rms(amount)` at an amount of silver or dye over none, up
-    /// to the amount `most`; beyond, it grows with the root of the amount.
+    /// Builds grain whose standard deviation through 48 um, times 1000, is `rms(amount)` at an amount of silver or dye above zero, up to
+    /// the amount `most`. Beyond that, the deviation grows with the square root of the amount.
     ///
     /// # Errors
-    /// [`GrainError`] for a granularity beside 0 to 200, or a frequency beside 1 to 1000.
+    /// [`GrainError`] for a granularity outside 0 to 200, or a frequency outside 1 to 1000.
     pub fn by_density(
         rms: impl Fn(f64) -> f64,
         most: f64,
@@ -128,7 +133,7 @@ impl Grain {
         let selwyn_mm2 = calibrate::selwyn_mm2(clump_mm);
         let mut per_amount = Vec::with_capacity(STEPS + 1);
         for step in 0..STEPS + 1 {
-            // Toward nothing as the root of the amount.
+            // Toward zero, the deviation falls as the square root of the amount.
             let amount = most * (step.max(1) as f64) / STEPS as f64;
             let rms = rms(amount);
             if !(0.0..=200.0).contains(&rms) {
@@ -151,13 +156,13 @@ impl Grain {
         })
     }
 
-    /// The Wiener spectrum at `frequency` cycles/mm along an axis, over its value at 0.
+    /// Returns the Wiener spectrum at `frequency` cycles/mm along an axis, relative to its value at 0.
     #[must_use]
     pub fn wiener(&self, frequency: f64) -> f64 {
         calibrate::wiener(frequency * self.parts[0].cell_mm)
     }
 
-    /// Variance times area of large areas at an amount, mm^2, over the amount.
+    /// Variance times area of large areas at an amount, mm^2, divided by the amount.
     #[inline(always)]
     fn per_amount(&self, amount: f32) -> f32 {
         let place = amount * self.steps_a_unit;
@@ -168,14 +173,14 @@ impl Grain {
         self.per_amount[k] + (self.per_amount[k + 1] - self.per_amount[k]) * (place - k as f32)
     }
 
-    /// Replaces a plane of density (over base and fog) by that of its grains, in place. The mean stays.
+    /// Replaces a plane of density (above base and fog) by that of its grains, in place. The mean stays.
     ///
-    /// The result of a pixel depends on its own density and its place on the film alone: any cut into tiles gives the
-    /// same bits. Densities of 0 and less, and no numbers, stay as they are, and so does all where the
-    /// pitch is not positive, or some meters. Memory: some tiles.
+    /// The result of a pixel depends only on its own density and its place on the film: any cut into tiles gives the same bits.
+    /// Densities that are not positive, and NaN, do not change. Nothing changes if the pitch is not positive, or is several meters. Memory:
+    /// a few tiles.
     ///
     /// # Panics
-    /// If the plane has another number of pixels than the raster.
+    /// If the number of pixels of the plane differs from that of the raster.
     pub fn apply(&self, density: &mut [f32], raster: &Raster) {
         assert_eq!(density.len(), raster.pixels(), "the plane has the size of its raster");
         let good_pitch = raster.pitch_mm > 0.0 && raster.pitch_mm.is_finite();
@@ -186,7 +191,7 @@ impl Grain {
         if layouts.iter().any(|layout| layout.columns.taps() > MOST_TAPS) {
             return;
         }
-        // Of a pixel, where the variance times the area of large areas is 1 mm^2.
+        // Variance of a pixel if the variance times the area of large areas is 1 mm^2.
         let variance: f32 =
             layouts.iter().map(|l| l.weight * l.weight * l.columns.mean_square() * l.columns.mean_square()).sum();
         let alone = (variance * (raster.pitch_mm * raster.pitch_mm) as f32).min(1.0);
@@ -206,7 +211,7 @@ impl Grain {
         );
     }
 
-    /// The level of a part whose cells suit a pixel, and what each column of pixels takes of them.
+    /// Chooses the level of a part whose cells suit a pixel, and computes the cells that each column of pixels takes.
     fn layout(&self, part: usize, raster: &Raster) -> Layout {
         let Part { share, cell_mm, .. } = &self.parts[part];
         let mut level = 0;
@@ -221,30 +226,31 @@ impl Grain {
     }
 }
 
-/// How a part's cells lie under the pixels.
+/// Position of a part's cells under the pixels.
 struct Layout {
     level: u32,
     cells_a_pixel: f64,
-    /// Root of the part's share over the side of a cell, 1/mm.
+    /// Square root of the part's share over the side of a cell, 1/mm.
     weight: f32,
     columns: Taps,
 }
 
-/// What pixels of one size become, by the grain's variances and the pixel's.
+/// Cache of tables for pixels of one size, by the grain's variances and the pixel's.
 static PIXELS: Known<(Vec<f32>, [u32; 3]), Pixels> = Known::new();
 
-/// Cells that a pixel takes along an axis, at most: eight from its beginning to its end, and those that reach in.
+/// Largest number of cells that a pixel takes along an axis: eight from its start to its end, and those that reach in.
 const MOST_TAPS: usize = 11;
 
-/// Cells along a tile that a line has room for: 64 pixels take 8 each and what reaches in.
+/// Number of cells along a tile for which a line has room: 64 pixels take 8 each, and those that reach in.
 const LINE: usize = 1024;
 
-/// Rows of tiles.
+/// One row of tiles.
 struct Strip<'a> {
     grain: &'a Grain,
     layouts: &'a [Layout; 2],
     rows: &'a [Taps; 2],
-    /// Of a pixel, where the variance times the area of large areas is 1 mm^2, 1/mm^2; and its part of that of large areas.
+    /// `variance`: variance of a pixel if the variance times the area of large areas is 1 mm^2, in 1/mm^2. `alone`: the fraction of
+    /// large-area variance that the pixel has on its own.
     variance: f32,
     alone: f32,
     pixels: &'a Pixels,
@@ -252,13 +258,13 @@ struct Strip<'a> {
     plane: &'a mut [f32],
 }
 
-/// The cells of a tile, and what its columns of pixels take of them.
+/// The cells of a tile, and the weights that its columns of pixels give them.
 struct Lines {
     cells: Cells,
-    /// The first column of the cells, and how many there are.
+    /// First column of the cells, and number of columns.
     x: i64,
     across: usize,
-    /// Of each column of pixels its first cell, counted from `x`, and tap by tap its weights.
+    /// First cell of each column of pixels, counted from `x`, and its weights, tap by tap.
     first: [u32; TILE],
     weights: [[f32; TILE]; MOST_TAPS],
     evening: [f32; TILE],
@@ -279,7 +285,7 @@ impl Lines {
         }
     }
 
-    /// Those of the columns `from` to before `to` of a part.
+    /// Loads the cells and weights of a part for the columns `from` up to but not including `to`.
     #[inline(always)]
     fn fill(&mut self, part: &Part, layout: &Layout, rows: &Taps, [from, to]: [usize; 2]) {
         let (x, across) = layout.columns.cells(from, to);
@@ -287,7 +293,7 @@ impl Lines {
         part.field.fill(layout.level, [x, y], [across, down], &mut self.cells);
         (self.x, self.across) = (x, across.min(LINE));
         for column in 0..TILE {
-            // Columns beside the plane are as its last one.
+            // Columns outside the plane repeat its last one.
             let on_plane = (from + column).min(to - 1);
             let (first, weights) = layout.columns.of(on_plane);
             self.first[column] = (first - x) as u32;
@@ -298,10 +304,10 @@ impl Lines {
         }
     }
 
-    /// Adds the normal numbers of a row of pixels, times `factor`, to `numbers`.
+    /// Adds the normal numbers of a row of pixels, multiplied by `factor`, to `numbers`.
     #[inline(always)]
     fn add(&mut self, rows: &Taps, row: usize, factor: f32, numbers: &mut [f32; TILE]) {
-        // Along the columns of cells.
+        // Sums the cells down each column of cells.
         let line = &mut self.line[..self.across];
         line.fill(0.0);
         let (first, weights) = rows.of(row);
@@ -324,10 +330,10 @@ impl Lines {
     }
 }
 
-/// [`Pixels::at`] where that has none.
+/// Computes the density that [`Pixels::at`] cannot look up.
 #[inline(never)]
 fn beyond(grain: &Grain, [variance, alone]: [f32; 2], density: f32, number: f32) -> f32 {
-    // A grain's density in this pixel, and the grains that are expected.
+    // The density of one grain in this pixel.
     let one = grain.per_amount(density) * variance;
     if !(density > 0.0 && density.is_finite() && one > 0.0) {
         return density;

@@ -1,23 +1,24 @@
-//! What the density of a pixel becomes, over that density and its normal number, sampled for pixels of one size.
+//! Table of the grainy density of a pixel over its mean density and its normal number, for pixels of one size.
 
 use super::count::{Counts, FINENESS, LIMIT, NODES};
 use rayon::prelude::*;
 
-/// Samples a unit of the root of the density, and how many: up to a density of 4.
+/// Samples per unit of the square root of the density, and number of samples: up to a density of 4.
 const STEPS: usize = 512;
 const ROWS: usize = 1024;
 
-/// Samples over the normal number are those of [`Counts`], in a row that a shift finds.
+/// Length of a row, a power of 2 so that a shift finds it. The samples over the normal number are those of [`Counts`].
 const ROW: usize = 512;
 const ALL: usize = ROWS * ROW;
 
-/// Densities, row by row.
+/// Grainy densities, row by row.
 pub(super) struct Pixels {
     values: Box<[f32; ALL]>,
 }
 
 impl Pixels {
-    /// Those of pixels in which a grain's density is `one(density)`, none where that is 0; `alone` as [`Counts::evened`] has it.
+    /// Builds the table for pixels in which a grain has the density `one(density)`, 0 for no grain. `alone` is defined in
+    /// [`Counts::evened`].
     pub(super) fn new(counts: &Counts, alone: f32, one: impl Fn(f32) -> f32 + Sync) -> Self {
         let mut values = vec![0.0_f32; ALL];
         values.par_chunks_mut(ROW).enumerate().for_each(|(k, row)| {
@@ -33,10 +34,10 @@ impl Pixels {
         Self { values }
     }
 
-    /// The density that `density` becomes by the number `z`; no number where it is not above 0, or beyond the last row, or where `z` is
-    /// beyond the nodes.
+    /// Looks up the grainy density of a pixel of density `density` with the number `z`. Returns NaN if the density is not above 0 or beyond
+    /// the last row, or if `z` lies beyond the nodes.
     ///
-    /// Between two rows linear in the density, so that the mean over z stays.
+    /// Between two rows it is linear in the density, so that the mean over z stays.
     #[inline(always)]
     pub(super) fn at(&self, density: f32, z: f32) -> f32 {
         let root = density.sqrt() * STEPS as f32;
@@ -57,7 +58,7 @@ impl Pixels {
 mod tests {
     use super::*;
 
-    /// The mean over the normal number is the density, and the variance the density times that of one grain: Poisson's law, by a sum
+    /// The mean over the normal number is the density, and the variance is the density times that of one grain: Poisson's law, by a sum
     /// over the normal distribution.
     #[test]
     fn grainy_densities_have_the_moments_of_poissons_law() {
@@ -74,7 +75,7 @@ mod tests {
                 let (mean, grains) = (sum / all, density / one);
                 let variance = squares / all - mean * mean;
                 assert!((mean / density - 1.0).abs() < 2e-3, "{density} of {one}: {mean}");
-                // Counts of few grains have variance of their own between the nodes.
+                // Counts of few grains have extra variance between the nodes.
                 let off = if grains < 2.0 { 0.2 } else { 0.03 };
                 assert!((variance / (density * one) - 1.0).abs() < off, "{density} of {one}: {variance}");
             }

@@ -1,7 +1,7 @@
-//! How much of each cell a pixel covers.
+//! Weights of the cells that a pixel covers.
 
-/// Integral from minus infinity to `t` of the quadratic B-spline around 0 (width 3, integral 1): a cell's number is
-/// spread by it, so that a picture finer than the cells shows no edges, and cells together cover evenly.
+/// Integral from minus infinity to `t` of the quadratic B-spline around 0 (width 3, integral 1). It spreads a cell's number, so that a
+/// picture finer than the cells shows no edges, and cells together cover evenly.
 fn integral(t: f64) -> f64 {
     if t <= -1.5 {
         0.0
@@ -16,18 +16,18 @@ fn integral(t: f64) -> f64 {
     }
 }
 
-/// Along one axis, the cells of each pixel with their weights; a pixel's weights sum to 1.
+/// Cells of each pixel along one axis, with their weights; a pixel's weights sum to 1.
 pub(super) struct Taps {
     taps: usize,
     first: Vec<i64>,
     weights: Vec<f32>,
-    /// What makes the variance of each pixel that of the mean pixel: pixels finer than cells have more in a cell's middle than
-    /// between two.
+    /// Factor for each pixel that gives it the variance of the mean pixel. Pixels finer than cells have more variance in the middle of a
+    /// cell than between two.
     evening: Vec<f32>,
     mean_square: f32,
 }
 
-/// The sum of the squared weights of the pixel from `begin` to `end`, in cells, whose cells begin at `first`.
+/// Returns the sum of the squared weights of the pixel from `begin` to `end`, in units of cells. Its cells begin at `first`.
 fn squares(begin: f64, end: f64, first: f64, taps: usize, mut each: impl FnMut(f64)) -> f64 {
     let mut sum = 0.0;
     for t in 0..taps {
@@ -41,9 +41,9 @@ fn squares(begin: f64, end: f64, first: f64, taps: usize, mut each: impl FnMut(f
 }
 
 impl Taps {
-    /// `pixels` from the pixel `offset` on; pixel 0 and cell 0 begin at the same place.
+    /// Computes the weights of `pixels` pixels from the pixel `offset` on; pixel 0 and cell 0 begin at the same place.
     pub(super) fn new(offset: i64, pixels: usize, cells_a_pixel: f64) -> Self {
-        // From the cell before that of its beginning to the one after that of its end.
+        // From the cell before the pixel's first one to the cell after its last one.
         let taps = cells_a_pixel.ceil() as usize + 3;
         let mut all = Self {
             taps,
@@ -52,7 +52,7 @@ impl Taps {
             evening: Vec::with_capacity(pixels),
             mean_square: 0.0,
         };
-        // Over all places that a pixel can have on the cells.
+        // Averages over all positions that a pixel can have on the cells.
         const PHASES: usize = 64;
         let at = |k: usize| (k as f64 + 0.5) / PHASES as f64;
         let mean =
@@ -79,23 +79,23 @@ impl Taps {
         (self.first[pixel], &self.weights[pixel * self.taps..(pixel + 1) * self.taps])
     }
 
-    /// Cells of a pixel.
+    /// Number of cells per pixel.
     pub(super) fn taps(&self) -> usize {
         self.taps
     }
 
-    /// What a pixel's sum is multiplied by, so that all pixels have the variance of the mean one.
+    /// Factor for a pixel's sum that gives every pixel the variance of the mean pixel.
     #[inline(always)]
     pub(super) fn evening(&self, pixel: usize) -> f32 {
         self.evening[pixel]
     }
 
-    /// Sum of a pixel's squared weights, in the mean over all places on the cells.
+    /// Sum of a pixel's squared weights, averaged over all positions on the cells.
     pub(super) fn mean_square(&self) -> f32 {
         self.mean_square
     }
 
-    /// First cell and number of the cells of the pixels from `from` to before `to`.
+    /// First cell, and number of cells, of the pixels from `from` up to but not including `to`.
     pub(super) fn cells(&self, from: usize, to: usize) -> (i64, usize) {
         let first = self.first[from];
         (first, (self.first[to - 1] - first) as usize + self.taps)
@@ -106,8 +106,7 @@ impl Taps {
 mod tests {
     use super::*;
 
-    /// Weights are positive, sum to 1, have their mean at the pixel's center, and the spline's integral is that of
-    /// its three pieces.
+    /// Weights are positive, sum to 1, and have their mean at the pixel's center. The spline's integral is that of its three pieces.
     #[test]
     fn weights_are_exact_areas() {
         for cells_a_pixel in [0.03, 0.5, 1.0, 3.3, 4.0, 7.99] {
@@ -125,7 +124,7 @@ mod tests {
                 }
             }
         }
-        // The spline itself: convolution of three unit boxes.
+        // The spline itself is the convolution of three unit boxes.
         let box3 = |t: f64| {
             let steps = 400;
             let mut inside = 0.0;

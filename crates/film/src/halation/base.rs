@@ -1,41 +1,42 @@
-//! What returns from the back of a film, and where.
+//! Light that returns from the back of a film, over the distance.
 
 use spectra_core::math::pow;
 use std::f64::consts::PI;
 
-/// The film behind an emulsion layer, as halation sees it.
+/// The base of a film and its backing, as they affect halation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalationBase {
-    /// Thickness of the base, mm: 0.125 of acetate roll and 35 mm film.
+    /// Thickness of the base, mm: 0.125 for acetate roll and 35 mm film.
     pub thickness_mm: f64,
-    /// Refractive index of the base, above 1, up to 4: 1.48 of acetate, 1.64 of polyester (in its plane).
+    /// Refractive index of the base, above 1, up to 4: 1.48 for acetate, 1.64 for polyester (in its plane).
     pub index: f64,
-    /// Light that enters the base, over the light that exposes the layer, 0 to 10: what the emulsion lets through.
+    /// Light that the emulsion lets through into the base, relative to the light that exposes the layer, 0 to 10.
     pub entering: f64,
-    /// Transmittance of base and backing together, passed once along the normal, 0 to 1. Light passes them twice; along
-    /// the angle theta each pass has the transmittance to the power 1/cos(theta).
+    /// Transmittance of base and backing together, for one pass along the normal, 0 to 1. Light passes them twice. At the angle theta each
+    /// pass has the transmittance to the power 1/cos(theta).
     pub transmittance: f64,
-    /// Share of the light that arrives at the emulsion from below which it throws down again, 0 to 0.95: what makes a further
-    /// trip.
+    /// Share of the light arriving at the emulsion from below that the emulsion reflects down again, 0 to 0.95. It starts a further trip.
     pub reflected: f64,
 }
 
-/// A value that halation cannot be computed with.
+/// An error for values with which halation cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HalationError {
-    /// Out of range.
+    /// A value is out of range.
     #[error("{what} {value} is out of range: {range}")]
     OutOfRange {
-        /// Which value.
+        /// Name of the value.
         what: &'static str,
-        /// The value.
+        /// Value that was given.
         value: f64,
-        /// What it may be.
+        /// Range of the value.
         range: &'static str,
     },
 }
 
 impl HalationBase {
+    /// Checks that all values are in range.
+    ///
     /// # Errors
     /// The first value that is out of range.
     pub(super) fn check(&self) -> Result<(), HalationError> {
@@ -44,7 +45,7 @@ impl HalationBase {
             ("index", self.index, self.index > 1.0 && self.index <= 4.0, "above 1, up to 4"),
             ("light entering the base", self.entering, (0.0..=10.0).contains(&self.entering), "0 to 10"),
             ("transmittance", self.transmittance, (0.0..=1.0).contains(&self.transmittance), "0 to 1"),
-            ("light thrown down again", self.reflected, (0.0..=0.95).contains(&self.reflected), "0 to 0.95"),
+            ("light reflected down again", self.reflected, (0.0..=0.95).contains(&self.reflected), "0 to 0.95"),
         ];
         match checks.into_iter().find(|(_, _, good, _)| !good) {
             Some((what, value, _, range)) => Err(HalationError::OutOfRange { what, value, range }),
@@ -52,14 +53,14 @@ impl HalationBase {
         }
     }
 
-    /// Where the ring of total reflection begins: 2 t tan(asin(1/n)), mm.
+    /// Radius at which the ring of total reflection begins: 2 t tan(asin(1/n)), mm.
     #[must_use]
     pub fn ring_radius_mm(&self) -> f64 {
         2.0 * self.thickness_mm / (self.index * self.index - 1.0).sqrt()
     }
 
-    /// Light that returns at once at the distance `r_mm` from a point, per mm^2, over the light that exposes the point; for
-    /// all of it see [`super::Trips`].
+    /// Returns the light that comes back after one trip at the distance `r_mm` from a point, per mm^2, relative to the light that exposes
+    /// the point. For all trips see [`super::Trips`].
     #[must_use]
     pub fn density_per_mm2(&self, r_mm: f64) -> f64 {
         let t2 = 4.0 * self.thickness_mm * self.thickness_mm;
@@ -67,7 +68,7 @@ impl HalationBase {
         self.entering * self.back(r_mm * r_mm / s2) * t2 / (PI * s2 * s2)
     }
 
-    /// What comes back of a ray with sin^2(theta) = `u`.
+    /// Fraction of a ray with sin^2(theta) = `u` that returns.
     fn back(&self, u: f64) -> f64 {
         let cosine = (1.0 - u).max(0.0).sqrt();
         // The path at grazing incidence is endless: nothing is left unless nothing is absorbed.
@@ -81,31 +82,32 @@ impl HalationBase {
         through * internal_reflectance(self.index, u)
     }
 
-    /// Light that returns at once, over the light that exposes: the integral of [`HalationBase::density_per_mm2`].
+    /// Returns the light that comes back after one trip, relative to the light that exposes: the integral of
+    /// [`HalationBase::density_per_mm2`].
     #[must_use]
     pub fn returned(&self) -> f64 {
         self.returned_weighted(|_| 1.0)
     }
 
-    /// Light that returns at once within the distance `r_mm`, over the light that exposes.
+    /// Returns the light that comes back after one trip within the distance `r_mm`, relative to the light that exposes.
     #[must_use]
     pub fn returned_within(&self, r_mm: f64) -> f64 {
         let r2 = r_mm * r_mm;
         self.integral(r2 / (r2 + 4.0 * self.thickness_mm * self.thickness_mm), |_| 1.0)
     }
 
-    /// The integral of `weight(r_mm)` times the light that returns at r, for a smooth weight.
+    /// Integral of `weight(r_mm)` times the light that returns at r, for a smooth weight.
     pub(super) fn returned_weighted(&self, weight: impl Fn(f64) -> f64) -> f64 {
         self.integral(1.0, weight)
     }
 
-    /// The integral up to sin^2(theta) = `end`. In u = sin^2(theta), light of constant radiance is even.
+    /// Integral up to sin^2(theta) = `end`. Light of constant radiance is uniform in u = sin^2(theta).
     fn integral(&self, end: f64, weight: impl Fn(f64) -> f64) -> f64 {
         let radius = |u: f64| 2.0 * self.thickness_mm * (u / (1.0 - u)).sqrt();
         let value = |u: f64| self.back(u) * weight(radius(u));
         let critical = 1.0 / (self.index * self.index);
-        // The reflectance meets 1 as a square root: u = critical - v^2 makes it smooth. Beyond, u = 1 - w^2 does
-        // so with the cosine.
+        // The reflectance reaches 1 as a square root: the substitution u = critical - v^2 makes it smooth.
+        // Above the critical angle, u = 1 - w^2 does the same for the cosine.
         let low = critical.min(end);
         let below = midpoint((critical - low).sqrt(), critical.sqrt(), |v| 2.0 * v * value(critical - v * v));
         let beyond = if end > critical {
@@ -117,15 +119,15 @@ impl HalationBase {
     }
 }
 
-/// Midpoint rule: within about 1e-8 of smooth integrands.
+/// Midpoint rule, accurate to about 1e-8 for smooth integrands.
 fn midpoint(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     const STEPS: usize = 20_000;
     let step = (to - from) / STEPS as f64;
     (0..STEPS).map(|i| f(from + (i as f64 + 0.5) * step)).sum::<f64>() * step
 }
 
-/// Reflectance of unpolarized light at the border from `index` to air, where sin^2 of the angle inside is `u`
-/// (A. Fresnel; M. Born and E. Wolf, "Principles of Optics", 1.5.2).
+/// Reflectance of unpolarized light at the surface between `index` and air, where sin^2 of the angle inside is `u` (A. Fresnel; M. Born and
+/// E. Wolf, "Principles of Optics", 1.5.2).
 pub(super) fn internal_reflectance(index: f64, u: f64) -> f64 {
     let outside = 1.0 - index * index * u;
     if outside <= 0.0 {
@@ -152,8 +154,8 @@ mod tests {
         assert!((want - 0.2291).abs() < 5e-5);
     }
 
-    /// Against Snell's and Fresnel's laws in angles: n = 1.5 to air, where outside 45 degrees gives Rs = .092013 and
-    /// Rp = .008466 (Born and Wolf), the same from inside at the angle of refraction.
+    /// Compares with Snell's and Fresnel's laws in angles: n = 1.5 to air. At 45 degrees outside, Rs = .092013 and Rp = .008466 (Born and
+    /// Wolf), equal to those from inside at the angle of refraction.
     #[test]
     fn reflectance_is_fresnels() {
         let u = |outside_deg: f64| {
@@ -169,8 +171,8 @@ mod tests {
         assert_eq!(internal_reflectance(1.5, 0.45), 1.0);
     }
 
-    /// Diffuse light inside of n = 1.5 that is reflected at its surface: 0.59605, by the closed form of S. Q. Duntley
-    /// (J. Optical Society of America 32, 1942, 61) for light from outside, .09178, and 1 - (1 - .09178) / n^2.
+    /// Diffuse light inside n = 1.5 that is reflected at its surface: 0.59605. This follows from the closed form of S. Q. Duntley (J.
+    /// Optical Society of America 32, 1942, 61) for light from outside, .09178, and 1 - (1 - .09178) / n^2.
     #[test]
     fn returned_light_is_the_internal_diffuse_reflectance() {
         let n: f64 = 1.5;
@@ -187,7 +189,7 @@ mod tests {
         assert!((got - want).abs() < 1e-7, "{got} {want}");
     }
 
-    /// The radial density, summed ring by ring, is what the integral over angles says.
+    /// The radial density, summed ring by ring, equals the integral over angles.
     #[test]
     fn density_sums_to_what_returns() {
         let base = HalationBase { transmittance: 0.8, entering: 0.3, ..ACETATE };

@@ -1,7 +1,7 @@
-//! The spread as a sum of kernels, each on a grid four times as coarse as the one before.
+//! The spread of halation as a sum of kernels, each on a grid four times as coarse as the one before.
 //!
-//! The returned light falls with the fourth power of the distance but never ends, and is smooth outside of the ring. So
-//! the ring is computed on the pixels, and each further part on cells of four times the size, up to the frame's diagonal.
+//! The returned light falls with the fourth power of the distance but never ends, and is smooth outside the ring. So the ring is computed
+//! on the pixels, and each further part on cells of four times the size, up to the frame's diagonal.
 
 use super::base::HalationBase;
 use super::table::Table;
@@ -10,39 +10,39 @@ use crate::cells::{BOTH_WAYS, MARGIN};
 use crate::raster::Raster;
 use spectra_numerics::convolve::Kernel;
 
-/// How much coarser each level is.
+/// Ratio of the cell sizes of consecutive levels.
 pub(super) const STEP: usize = 4;
 
-/// The first part ends at so many radii of the ring.
+/// Radius at which the first part ends, in radii of the ring.
 const RINGS: f64 = 2.2;
 
-/// Where a part begins to fade into the next, over where it ends.
+/// Radius at which a part begins to fade into the next, relative to the radius at which it ends.
 const FADE: f64 = 0.6;
 
-/// Cells that each part reaches, at least and at most.
+/// Smallest and largest radius of each part, in cells.
 const REACH: (f64, f64) = (24.0, 400.0);
 
-/// One part of the spread.
+/// One part of the spread, on cells of one size.
 pub(super) struct Level {
-    /// Side of its cells, in pixels: a power of [`STEP`].
+    /// Side of the cells, in pixels: a power of [`STEP`].
     pub(super) cell_px: usize,
-    /// Its kernel, in cells.
+    /// Kernel of this part, in cells.
     pub(super) kernel: Kernel,
 }
 
-/// 1 up to `FADE * end`, 0 from `end` on, smooth between.
+/// Smooth step: 1 up to `FADE * end`, 0 from `end` on.
 fn fading(r: f64, end: f64) -> f64 {
     let x = ((end - r) / (end * (1.0 - FADE))).clamp(0.0, 1.0);
     x * x * x * (10.0 + x * (6.0 * x - 15.0))
 }
 
 impl Level {
-    /// All parts, finest first. Together with the light that stays they sum to 1, but for what lies farther away
-    /// than the frame is long.
+    /// Builds all parts, finest first. Together with the light that stays they sum to 1, except for light that falls farther away than the
+    /// frame is long.
     pub(super) fn all(base: &HalationBase, trips: &Trips, raster: &Raster) -> Vec<Self> {
         let ring = base.ring_radius_mm();
         let even = 1.0 / (1.0 + trips.returned());
-        // Where pixels are far finer than the ring, it is computed on cells that still are.
+        // If pixels are far finer than the ring, it is computed on cells that are still fine enough.
         let mut cell_px = 1;
         while RINGS * ring / (raster.pitch_mm * cell_px as f64) > REACH.1 {
             cell_px *= STEP;
@@ -62,8 +62,8 @@ impl Level {
                 over_pixels(radius, cell, parts, &density)
             } else {
                 let value = |i: f64, j: f64| density((i * i + j * j).sqrt() * cell);
-                // Sharing light out to cells and interpolating between them spread it by s^2 / 6 each, in the mean and along
-                // each axis: half of the sum, times the Laplacian, is taken off beforehand.
+                // Sharing light out to cells and interpolating between them each spread it by s^2 / 6, on average and along each axis. Half
+                // of the sum, times the Laplacian, is subtracted beforehand.
                 Kernel::new(radius, |i, j| {
                     let (i, j) = (i as f64, j as f64);
                     let around = value(i - 1.0, j) + value(i + 1.0, j) + value(i, j - 1.0) + value(i, j + 1.0);
@@ -72,7 +72,7 @@ impl Level {
             };
             let mass = even * trips.returned_weighted(weight);
             let sum = kernel.sum();
-            // A kernel without weight (all absorbed) stays so.
+            // A kernel without weight (everything is absorbed) stays zero.
             let kernel = kernel.scaled(if sum > 0.0 { mass / sum } else { 0.0 });
             let longest = raster.width.max(raster.height).div_ceil(cell_px) + 2 * MARGIN;
             levels.push(Self { cell_px, kernel: kernel.cropped(longest) });
@@ -86,10 +86,10 @@ impl Level {
     }
 }
 
-/// The kernel of pixels: from a pixel that is evenly bright to the mean over another. The distance between points of two
-/// pixels has a tent of two pixels' width, which `parts` points a pixel sample.
+/// Builds the kernel on pixels: from an evenly bright pixel to the mean over another. The distance between points of two pixels has a tent
+/// distribution two pixels wide, sampled by `parts` points per pixel.
 fn over_pixels(radius: usize, pitch: f64, parts: usize, density: &(impl Fn(f64) -> f64 + Sync)) -> Kernel {
-    // Sampled by squared distance once: the integrand is called for many points.
+    // Sampled once over the radius, because the integrand is called for many points.
     let table = Table::new(pitch * (radius as f64 + 1.0) * 1.5, density);
     let offsets: Vec<(f64, f64)> = (0..2 * parts)
         .map(|k| {

@@ -1,22 +1,24 @@
-//! Halation: light that passes the emulsion, meets the back of the film and comes back.
+//! Halation: light that passes the emulsion, is reflected at the back of the film and returns.
 //!
-//! A point of the picture scatters light into the base (thickness t, index n) evenly in radiance, as turbid gelatin of
-//! about the base's index does (Lambert's law inside of the base). A ray at the angle theta to the normal meets the back,
-//! is reflected by Fresnel's law (wholly beyond the critical angle asin(1/n)), and returns to the emulsion at the
-//! distance r = 2 t tan(theta). Backing and base absorb on both ways, each longer by 1/cos(theta). So the ring that
-//! photographers see around a lamp begins at r = 2 t tan(asin(1/n)), as A. Cornu found ("Sur le halo
-//! photographique", Comptes rendus 110, 1890; C. E. K. Mees, "The Theory of the Photographic Process", 1942, chapter on halation).
+//! A point of the picture scatters light into the base (thickness t, index n) with constant radiance (Lambert's law inside the base), as
+//! turbid gelatin of about the base's index does.
+//! A ray at the angle theta to the normal meets the back and is reflected by Fresnel's law (totally beyond the critical angle asin(1/n)).
+//! It returns to the emulsion at the distance r = 2 t tan(theta). Backing and base absorb on both passes, each longer by 1/cos(theta).
+//! So the ring that photographers see around a lamp begins at r = 2 t tan(asin(1/n)), as A. Cornu found ("Sur le halo photographique",
+//! Comptes rendus 110, 1890; C. E. K. Mees, "The Theory of the Photographic Process", 1942, chapter on halation).
 //!
 //! With sin^2(theta) = r^2 / (r^2 + 4 t^2), the light that returns per area is
 //!
 //! f(r) = R(theta) T^(2/cos(theta)) 4 t^2 / (pi (r^2 + 4 t^2)^2),
 //!
-//! whose integral is the fraction that returns. Of that the emulsion throws a share down again, evenly as before, and so on:
-//! [`Trips`] sums all of them. The second adds a faint ring at twice the distance.
+//! whose integral is the fraction that returns. The emulsion reflects a share of it down again, evenly as before, and so on: [`Trips`] sums
+//! all trips. The second trip adds a faint ring at twice the distance.
 //!
-//! **Energy.** A stock's speed is measured with even light, halation and all. So what arrives is divided by one plus the
-//! returned part: an even, endless exposure stays as it is, and in general the plane's sum after is its sum before less
-//! what falls beside the frame. Beside the frame the film is taken as unexposed.
+//! **Layers.** A layer gets a smaller share of the returning light the farther it lies from the base (`halation.layers` of a stock).
+//!
+//! **Energy.** A stock's speed is measured with even light, halation included. So the arriving light is divided by one plus the returned
+//! fraction: an even, endless exposure does not change.
+//! In general, the sum of the plane falls by the light that lands outside the frame. The film outside the frame is taken as unexposed.
 
 mod base;
 mod kernel;
@@ -33,11 +35,11 @@ use kernel::Level;
 use spread::Spread;
 use std::sync::Arc;
 
-/// What returns of a point, by the base; and its kernels on a plane.
+/// Caches of the returned light of a point, by the base, and of its kernels on a plane.
 static TRIPS: Known<HalationBase, Trips> = Known::new();
 static SPREADS: Known<(HalationBase, Raster), Spread> = Known::new();
 
-/// Halation of one layer on planes of one size.
+/// The halation of one layer on planes of one size.
 ///
 /// ```
 /// use spectra_film::halation::{Halation, HalationBase};
@@ -75,19 +77,19 @@ impl Halation {
 
     /// Spreads the light of a plane of exposure (linear; any unit), in place.
     ///
-    /// The plane is a whole frame: light of a part of it that is not given is missing. Values that are no number
-    /// count as 0. Takes memory for about one more plane.
+    /// The plane must be a whole frame: light from parts that are not given is missing. NaN counts as 0. Needs memory for about one more
+    /// plane.
     ///
     /// # Panics
-    /// If the plane has another number of pixels than the raster.
+    /// If the number of pixels of the plane differs from that of the raster.
     pub fn apply(&self, exposure: &mut [f32]) {
         exposure.copy_from_slice(&self.applied(exposure));
     }
 
-    /// The plane that [`Halation::apply`] makes of `exposure`.
+    /// Returns the plane that [`Halation::apply`] makes of `exposure`.
     ///
     /// # Panics
-    /// If the plane has another number of pixels than the raster.
+    /// If the number of pixels of the plane differs from that of the raster.
     #[must_use]
     pub fn applied(&self, exposure: &[f32]) -> Vec<f32> {
         assert_eq!(exposure.len(), self.raster.pixels(), "the plane has the size that was prepared for");

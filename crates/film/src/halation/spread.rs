@@ -1,4 +1,4 @@
-//! Convolution over the levels: light is shared out to coarser cells on the way down, interpolated on the way up.
+//! Convolves over the levels: shares light out to coarser cells on the way down, and interpolates on the way up.
 
 use super::kernel::{Level, STEP};
 use crate::cells::{Cells, with_margin};
@@ -6,11 +6,11 @@ use crate::raster::Raster;
 use rayon::prelude::*;
 use spectra_numerics::convolve::Convolver;
 
-/// A sum of convolutions.
+/// A sum of convolutions, one per level.
 pub(super) struct Spread {
     width: usize,
     height: usize,
-    /// Light that stays in its pixel.
+    /// Fraction of the light that stays in its pixel.
     stays: f32,
     levels: Vec<(usize, Convolver<f32>)>,
 }
@@ -28,7 +28,7 @@ impl Spread {
         Self { width, height, stays, levels: levels.into_iter().map(prepare).collect() }
     }
 
-    /// Spreads the light of `source`, which `plane` gets.
+    /// Spreads the light of `source` and writes it to `plane`.
     pub(super) fn apply(&self, source: &[f32], plane: &mut [f32]) {
         // Finest first.
         let mut coarse: Vec<Cells> = Vec::new();
@@ -49,7 +49,7 @@ impl Spread {
                 above = Some(now);
             }
         }
-        // Where even the ring is on coarse cells, the pixels have what stays alone.
+        // If even the ring is on coarse cells, the pixels themselves get only the light that stays.
         if let Some((1, convolver)) = self.levels.first() {
             convolver.apply(source, plane, |to, v| *to = v);
         }

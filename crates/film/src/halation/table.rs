@@ -1,4 +1,4 @@
-//! Functions that are costly to ask often.
+//! Tables of functions that are too costly to evaluate often.
 
 /// A function of the radius, linear between samples.
 pub(super) struct Table {

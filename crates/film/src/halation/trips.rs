@@ -1,36 +1,35 @@
-//! Light that goes around more than once: thrown down again by the emulsion, it meets the back once more.
+//! Light that makes several trips: the emulsion reflects it down again, and it meets the back once more.
 
 use super::base::HalationBase;
 use super::table::Table;
 use spectra_numerics::convolve::{Grid, Kernel};
 use std::f64::consts::PI;
 
-/// Cells of the grid on which trips are chained, a radius of the ring; its side; and radii of the ring up to which
-/// it is read.
+/// Grid on which trips are chained: cells per radius of the ring, number of cells along a side, and number of cells up to which the result
+/// is read.
 const FINENESS: f64 = 8.0;
 const SIDE: usize = 512;
 const READ: usize = 128;
 
-/// Parts of a cell along a side that the first trip is averaged over.
+/// Subdivisions of a cell along a side over which the first trip is averaged.
 const PARTS: usize = 3;
 
-/// All that returns of a point.
+/// All light that returns from a point, over all trips.
 pub struct Trips {
     base: HalationBase,
-    /// Light that returns at once, over the light that exposes.
+    /// Light that returns after the first trip, relative to the light that exposes.
     once: f64,
-    /// Radius over which light is sampled that goes around again, mm, and its density there, per unit of light that
-    /// enters; nothing where none does.
+    /// Sampling step of the light of further trips, mm, and its density there, per unit of light that enters; `None` without further trips.
     again: Option<(f64, Vec<f64>)>,
-    /// From the last sample on: what goes around again over what returns at once.
+    /// Ratio of further trips to the first one, from the last sample on.
     beyond: f64,
 }
 
 impl Trips {
-    /// Those of `base`.
+    /// Computes all trips in `base`.
     ///
-    /// Each trip spreads light as the first does, and the share `reflected` of what arrives starts on the next: with b(r)
-    /// for a trip, b + reflected b * b + reflected^2 b * b * b and so on, summed as a geometric series of transforms.
+    /// Each trip spreads light as the first does, and the share `reflected` of the arriving light starts the next one. With b(r) for one
+    /// trip, the sum is b + reflected b * b + reflected^2 b * b * b and so on, computed as a geometric series of transforms.
     #[must_use]
     pub fn new(base: &HalationBase) -> Self {
         let mut trips = Self { base: *base, once: base.returned(), again: None, beyond: 0.0 };
@@ -54,7 +53,7 @@ impl Trips {
         });
         let mut grid = Grid::new(SIDE);
         let first = grid.transform(&first);
-        // What is beyond the grid and between its cells is left out: the whole is known.
+        // Light beyond the grid and between its cells is missing in the sum; the known total corrects the scale.
         let scale = once / first.weight(0, 0);
         let series = Kernel::new(SIDE / 2, |u, v| {
             let b = scale * first.weight(u, v);
@@ -65,7 +64,7 @@ impl Trips {
         let mut values: Vec<f64> = (0..=READ).map(|i| (again.weight(i, 0) / points / (cell * cell)).max(0.0)).collect();
         let end = unit.density_per_mm2(READ as f64 * cell);
         let beyond = if end > 0.0 { values[READ] / end } else { 0.0 };
-        // Its integral is that of the series.
+        // The integral must equal that of the series.
         trips.again = Some((cell, values.clone()));
         trips.beyond = beyond;
         let want = base.reflected * once * once / (1.0 - base.reflected * once);
@@ -76,7 +75,7 @@ impl Trips {
         trips
     }
 
-    /// Light that returns at the distance `r_mm` from a point, per mm^2, over the light that exposes the point.
+    /// Returns the light that comes back at the distance `r_mm` from a point, per mm^2, relative to the light that exposes the point.
     #[must_use]
     pub fn density_per_mm2(&self, r_mm: f64) -> f64 {
         self.base.density_per_mm2(r_mm) + self.again(r_mm)
@@ -92,7 +91,7 @@ impl Trips {
         self.base.entering * (values[k] + (values[k + 1] - values[k]) * (place - k as f64))
     }
 
-    /// Light that returns, over the light that exposes: the integral of [`Trips::density_per_mm2`].
+    /// Returns the light that comes back, relative to the light that exposes: the integral of [`Trips::density_per_mm2`].
     #[must_use]
     pub fn returned(&self) -> f64 {
         let once = self.once;
@@ -103,13 +102,13 @@ impl Trips {
         once / (1.0 - part)
     }
 
-    /// The integral of `weight(r_mm)` times the light that returns at r, for a smooth weight.
+    /// Integral of `weight(r_mm)` times the light that returns at r, for a smooth weight.
     pub(super) fn returned_weighted(&self, weight: impl Fn(f64) -> f64) -> f64 {
         let again = if self.again.is_some() { self.base.entering * self.again_weighted(&weight) } else { 0.0 };
         self.base.returned_weighted(weight) + again
     }
 
-    /// The integral of what goes around again, per unit of light that enters.
+    /// Integral of the light of further trips, per unit of light that enters.
     fn again_weighted(&self, weight: impl Fn(f64) -> f64) -> f64 {
         const STEPS: usize = 8;
         let Some((cell, _)) = &self.again else { return 0.0 };

@@ -1,4 +1,4 @@
-//! Tables by which whole frames go the way of one place.
+//! Tables that process whole frames as a single place is processed.
 
 use super::{Reach, Way};
 use crate::cube::Cube;
@@ -11,47 +11,48 @@ use spectra_core::math::log10;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Steps of the tables over the amounts of three dyes. Densities of sums over the band are nearly linear in the amounts: their
-/// second derivative is the variance of the dye's density over what the receiver sees, times ln 10, 0.2 or less. Over a
-/// range of 4 that is 0.2 / 8 * (4 / 64)^2 = 1e-4 in density.
+/// Steps of the tables over the amounts of three dyes. Densities of sums over the band are nearly linear in the amounts. Their second
+/// derivative is the variance of the dye's density over the receiver's light, times ln 10: 0.2 or less. Over a range of 4 the error is 0.2
+/// / 8 * (4 / 64)^2 = 1e-4 in density.
 const STEPS: usize = 64;
 
-/// Steps of the table over the amounts of a print: light follows them without a steep curve between, and what lies beyond the
-/// screen's gamut is brought back by differences of it. Within 0.6 of a code value of 8 bits, where 64 are within 1.6.
+/// Steps of the table over the amounts of a print. Light follows them without a steep curve between, and gamut mapping works on differences
+/// of the light. The error is within 0.6 of a code value of 8 bits; with 64 steps it is within 1.6.
 const PRINT_STEPS: usize = 96;
 
-/// Steps of the picture of one layer of silver, and the largest density there. The picture's second derivative over
-/// density is below 60, so linear interpolation is within 60 / 8 * (6 / 8192)^2 = 4e-6.
+/// Steps of the picture of one silver layer, and its largest density. The picture's second derivative over density is below 60, so linear
+/// interpolation is within 60 / 8 * (6 / 8192)^2 = 4e-6.
 const SILVER_STEPS: usize = 8192;
 const HIGHEST_DENSITY: f64 = 6.0;
 
-/// How far beyond the curves' amounts the tables go: grain does.
+/// Margin of the tables beyond the curves' amounts, because grain exceeds them.
 const MARGIN: f64 = 0.15;
 
-/// Log10 exposures between which the curves of a print are tabulated, and steps: they bend within hundredths of a decade.
+/// Range of log10 exposures over which the curves of a print are tabulated, and number of steps: the curves bend within hundredths of a
+/// decade.
 const EXPOSURES: f64 = 6.0;
 const CURVE_STEPS: usize = 24_000;
 
-/// Places that go each part of the way together.
+/// Number of places that are processed together.
 pub(super) const ROW: usize = 512;
 
 #[derive(Clone, Debug)]
 pub(super) enum Tables {
-    /// One layer: what each density is shown as.
+    /// One silver layer: the color shown for each density.
     Silver(Vec<[f32; 3]>),
-    /// Three layers.
+    /// Three dye layers.
     Dyes(Box<Dyes>),
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Dyes {
-    /// Amounts of the film to densities of XYZ, of the scanner's channels, or of what exposes the print's layers.
+    /// Table from amounts of the film to densities of XYZ, of the scanner's channels, or of the exposures of the print's layers.
     first: Arc<Cube>,
-    /// Log10 exposure to amounts of the print's layers; none where nothing is printed.
+    /// Amounts of the print's layers over log10 exposure; empty if nothing is printed.
     curves: Vec<Vec<f32>>,
-    /// Amounts of a print of three dyes to densities of XYZ.
+    /// Table from amounts of a print of three dyes to densities of XYZ.
     last: Option<Arc<Cube>>,
-    /// Densities of XYZ of the bare light.
+    /// XYZ densities of the bare light.
     bare: [f32; 3],
     isa: Isa,
 }
@@ -88,12 +89,12 @@ impl Tables {
         Self::Dyes(Box::new(Dyes { first, curves, last, bare, isa: Isa::detect() }))
     }
 
-    /// Those of one layer of silver.
+    /// Builds the table of one silver layer.
     pub(super) fn silver(film: &Deposit, way: &Way, reach: Reach) -> Self {
         Self::Silver(silver(film, way, reach))
     }
 
-    /// The picture; that of silver goes as far as its table was made for.
+    /// Computes the picture; for silver, the range of values was fixed when the table was built.
     pub(super) fn picture(&self, planes: &[&[f32]], way: &Way, reach: Reach) -> Vec<[f32; 3]> {
         match (self, planes) {
             (Self::Silver(table), [plane]) => {
@@ -116,13 +117,14 @@ impl Tables {
                 });
                 picture
             }
-            // Planes are as many as layers: the film that made the one made the other.
+            // There are as many planes as layers, because both belong to the same film.
             _ => Vec::new(),
         }
     }
 }
 
-/// Amounts in the `layers` of a print of places of a film: one plane a layer. `of_silver` are those of a print of silver of one density.
+/// Computes the amounts in the `layers` of a print from the places of a film, given as a plane per layer. `of_silver` returns the amounts
+/// for one density of silver.
 pub(super) fn printed(
     tables: &Tables,
     layers: usize,
@@ -152,13 +154,13 @@ pub(super) fn printed(
                 }
             }
         }
-        // Planes are as many as layers: the film that made the one made the other.
+        // There are as many planes as layers, because both belong to the same film.
         _ => {}
     }
     printed
 }
 
-/// The amount of a layer that an exposure leaves, given as minus its logarithm: linear between samples.
+/// Returns the amount of a layer for an exposure, given as minus its logarithm: linear between samples.
 #[inline(always)]
 fn along_curve(curve: &[f32], density: f32) -> f32 {
     const PER_STEP: f32 = CURVE_STEPS as f32 / (2.0 * EXPOSURES as f32);
@@ -167,7 +169,7 @@ fn along_curve(curve: &[f32], density: f32) -> f32 {
     curve[k] + (curve[k + 1] - curve[k]) * (place - k as f32)
 }
 
-/// Places on their way from amounts of dye to the screen.
+/// A run of places that is converted from amounts of dye to the screen.
 struct Shown<'a> {
     dyes: &'a Dyes,
     planes: [&'a [f32]; 3],
@@ -206,7 +208,7 @@ impl Vectorized for Shown<'_> {
     }
 }
 
-/// The densities of a row of places, each by itself.
+/// Transposes the densities of a row of places.
 #[inline(always)]
 fn turned(found: &[[f32; 4]; ROW], row: &mut [[f32; ROW]; 3]) {
     for (i, [a, b, c, _]) in found.iter().enumerate() {
@@ -215,14 +217,14 @@ fn turned(found: &[[f32; 4]; ROW], row: &mut [[f32; ROW]; 3]) {
 }
 
 impl Dyes {
-    /// From what exposes the layers of a print to densities of XYZ, of `count` places.
+    /// Converts the exposures of the layers of a print to XYZ densities, for `count` places.
     #[inline(always)]
     fn print(&self, row: &mut [[f32; ROW]; 3], found: &mut [[f32; 4]; ROW], count: usize) {
         for (line, curve) in row.iter_mut().zip(&self.curves) {
             line[..count].iter_mut().for_each(|d| *d = along_curve(curve, *d));
         }
         let Some(last) = &self.last else {
-            // Silver: the same in X, Y and Z.
+            // Silver has the same density in X, Y and Z.
             let silver = row[0];
             for (line, bare) in row.iter_mut().zip(self.bare) {
                 line.iter_mut().zip(&silver).for_each(|(to, d)| *to = d + bare);
@@ -249,7 +251,7 @@ fn silver(film: &Deposit, way: &Way, reach: Reach) -> Vec<[f32; 3]> {
     (0..SILVER_STEPS + 1).into_par_iter().with_min_len(256).map(one).collect()
 }
 
-/// Densities that three receivers see of each place of three dyes.
+/// Computes the densities that three receivers measure at each place of three dyes.
 pub(super) fn seen(film: &Deposit, ranges: &[(f64, f64)], weights: &[Vec<f64>], planes: [&[f32]; 3]) -> Vec<[f32; 3]> {
     let ranges = [0, 1, 2].map(|i| (ranges[i].0 - MARGIN, ranges[i].1 + MARGIN));
     let cube = densities(film, ranges, weights, STEPS);
@@ -258,19 +260,19 @@ pub(super) fn seen(film: &Deposit, ranges: &[(f64, f64)], weights: &[Vec<f64>], 
     pixels.map(|((a, b), c)| cube.at([*a, *b, *c])).map(|[a, b, c, _]| [a, b, c]).collect()
 }
 
-/// What densities rest on: the dyes, the amounts between which they are wanted, what the receivers see, and steps.
+/// Cache key: the dyes, the ranges of the amounts, the receivers' weights, and the number of steps.
 type Seen = (Deposit, [(f64, f64); 3], Vec<Vec<f64>>, usize);
 
-/// Those of two prints: of a negative to the print's layers, and of the print to the eye.
+/// Cache for two prints: from a negative to the print's layers, and from the print to the eye.
 static KNOWN: Known<Seen, Cube> = Known::keeping(4);
 
-/// Densities that up to three receivers see, over the amounts of three dyes.
+/// Returns the densities that up to three receivers measure, over the amounts of three dyes.
 fn densities(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], steps: usize) -> Arc<Cube> {
     let key = (deposit.clone(), ranges, weights.to_vec(), steps);
     KNOWN.of(key, || summed(deposit, ranges, weights, steps))
 }
 
-/// [`densities`], anew.
+/// Computes [`densities`] without the cache.
 fn summed(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], steps: usize) -> Cube {
     let place = |k: usize, i: usize| ranges[k].0 + (ranges[k].1 - ranges[k].0) * i as f64 / steps as f64;
     let passed =
@@ -278,7 +280,7 @@ fn summed(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], step
     let layers = [passed(0), passed(1)];
     let thirds: Vec<Columns> = passed(2).chunks(COLUMNS).map(columns).collect();
     let base = deposit.base_transmittance();
-    // Where a receiver sees nothing there is nothing to add.
+    // Wavelengths at which a receiver has no weight are skipped.
     let parts: Vec<Range<usize>> = weights
         .iter()
         .take(3)
@@ -304,13 +306,13 @@ fn summed(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], step
     })
 }
 
-/// So many amounts of the third dye are summed over the band together.
+/// Number of amounts of the third dye that are summed over the band together.
 const COLUMNS: usize = 24;
 
-/// At each wavelength, what that many amounts of a dye let pass.
+/// Transmittance of this many amounts of a dye, at each wavelength.
 type Columns = Vec<[f64; COLUMNS]>;
 
-/// A few spectra, side by side.
+/// Transposes a few spectra.
 fn columns(spectra: &[Vec<f64>]) -> Columns {
     let at = |w: usize| std::array::from_fn(|i| spectra.get(i).map_or(1.0, |spectrum| spectrum[w]));
     (0..spectra[0].len()).map(at).collect()

@@ -1,7 +1,10 @@
-//! From a developed film to a picture: printed on a print stock, scanned, projected, or on a light table.
+//! Converts a developed film to a picture: printed on a print stock, scanned, projected, or on a light table.
 //!
-//! Amounts of dye or silver become a spectral transmittance; light through it exposes the layers of the print stock, or meets
-//! a scanner's filters, or the eye. For whole frames the spectral sums are tabulated once, over the amounts.
+//! Amounts of dye or silver give a spectral transmittance. Light through the film exposes the layers of the print stock, or reaches a
+//! scanner's filters, or the eye. For whole frames, the spectral sums are tabulated once over the amounts, so a frame costs table look-ups.
+//!
+//! A color print is timed to the aim densities of its stock. A projection is seen in the dark, and shown in a lit room by an exponent of
+//! luminance ([`Surround::exponent`](crate::look::Surround::exponent)).
 
 mod frame;
 mod printing;
@@ -21,39 +24,39 @@ use scan::Scan;
 use spectra_spectrum::Emission;
 use std::sync::OnceLock;
 
-/// A film that cannot be shown as asked.
+/// A film that cannot be shown as requested.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PositiveError {
-    /// A light that no eye sees.
-    #[error("the light is dark to the eye")]
+    /// The light is invisible.
+    #[error("the light is invisible to the eye")]
     DarkLight,
-    /// A camera film where a print stock is wanted.
+    /// The stock is a camera film, but a print stock is needed.
     #[error("{stock} is not a print stock")]
     NoPrintStock {
-        /// Its name.
+        /// Name of the stock.
         stock: String,
     },
-    /// A print stock that cannot be balanced for this negative.
+    /// The print stock cannot be balanced for this negative.
     #[error("{stock}: {reason}")]
     Unbalanced {
-        /// The print stock.
+        /// Name of the print stock.
         stock: String,
-        /// Why.
+        /// Reason why it cannot be balanced.
         reason: &'static str,
     },
-    /// A film whose mid gray is no denser than unexposed film.
+    /// The film's mid gray is not denser than unexposed film.
     #[error("its mid gray is not denser than unexposed film")]
     NoGray,
 }
 
-/// How amounts become a picture.
+/// A process that converts amounts of dye or silver to a picture.
 #[derive(Clone, Debug)]
 pub struct Positive {
     film: Deposit,
     way: Way,
     /// Smallest and largest amount in each layer.
     ranges: Vec<(f64, f64)>,
-    /// Made for the first whole frame: they take longer than all else that is set up.
+    /// Tables for whole frames, built on first use: they take longer than all other preparation.
     tables: OnceLock<Tables>,
 }
 
@@ -65,10 +68,10 @@ enum Way {
 }
 
 impl Positive {
-    /// The film itself in transmitted light: a negative on a light table (the bare light is white), or a slide, projected.
+    /// Prepares the film itself in transmitted light: a negative on a light table (the bare light is white), or a slide, projected.
     ///
     /// # Errors
-    /// [`PositiveError::DarkLight`].
+    /// [`PositiveError::DarkLight`] if the light is invisible.
     pub fn transmitted(stock: &Stock, film: &Emulsion, light: &Emission, look: Look) -> Result<Self, PositiveError> {
         let mut viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
         if stock.process == Process::Reversal {
@@ -83,12 +86,13 @@ impl Positive {
         Ok(Self::of(film, Way::Look(viewing)))
     }
 
-    /// Printed on `print` (developed as `printed`) by a printer whose lamp has the spectrum `lamp`, balanced for a mid gray
-    /// subject that left `gray_lx_s` on the negative, and looked at in `light`. The gray is shown as 18 % of white; in a dark surround
-    /// it has the aim densities of the print stock, where it has such.
+    /// Prepares a print on `print` (developed as `printed`), made with a lamp of the spectrum `lamp` and viewed in `light`.
+    ///
+    /// The print is balanced for a mid gray subject that left `gray_lx_s` on the negative. The gray is shown as 18 % of white; in a dark
+    /// surround it has the aim densities of the print stock, if it has any.
     ///
     /// # Errors
-    /// [`PositiveError`].
+    /// [`PositiveError`]: the light is invisible, `print` is not a print stock, or it cannot be balanced.
     pub fn printed(
         film: &Emulsion,
         gray_lx_s: f64,
@@ -106,12 +110,14 @@ impl Positive {
         Ok(Self::of(film, Way::Print(Box::new(printing))))
     }
 
-    /// Printed by dye transfer: three separation negatives ([`Emulsion::separations`]), each onto the matrix of one dye of
-    /// `print`, whose layers are blue, green and red in this order; balanced for a mid gray subject that left `gray_lx_s` on
-    /// each, and looked at as [`Positive::printed`] is.
+    /// Prepares a dye transfer print: three separation negatives ([`Emulsion::separations`]), each printed onto the matrix of one dye of
+    /// `print`.
+    ///
+    /// The layers of `print` are blue, green and red in this order. The print is balanced for a mid gray subject that left `gray_lx_s` on
+    /// each negative, and viewed as in [`Positive::printed`].
     ///
     /// # Errors
-    /// [`PositiveError`].
+    /// [`PositiveError`]: the light is invisible, `print` is not a print stock of three layers, or it cannot be balanced.
     pub fn from_separations(
         film: &Emulsion,
         gray_lx_s: &[f64; 3],
@@ -131,13 +137,16 @@ impl Positive {
         Ok(Self::of(film, Way::Print(Box::new(printing))))
     }
 
-    /// Scanned: density through the filters of the stock's densitometry. [`ScanScale::Picture`] turns it around along the curves
-    /// of a neutral subject, mid gray (`gray_lx_s` on the film) shown as such and unexposed film as black; up to half of white in
-    /// proportion to the light of the scene, above under a shoulder that ends where the film does. Channels are shown as the
-    /// screen's, unmanaged, as a scanner does without a profile. The other scales are for a file: its values are the scale's.
+    /// Prepares a scan: density through the filters of the stock's densitometry.
+    ///
+    /// [`ScanScale::Picture`] inverts the density along the curves of a neutral subject. Mid gray (`gray_lx_s` on the film) is shown as
+    /// such, and unexposed film as black.
+    /// Up to half of white, the picture is proportional to the light of the scene; above, a shoulder ends where the film does. Channels are
+    /// shown as those of the screen, unmanaged, like a scanner without a profile.
+    /// The other scales are for files, whose values are those of the scale.
     ///
     /// # Errors
-    /// [`PositiveError::NoGray`].
+    /// [`PositiveError::NoGray`] if mid gray is not denser than unexposed film.
     pub fn scanned(stock: &Stock, film: &Emulsion, gray_lx_s: f64, scale: ScanScale) -> Result<Self, PositiveError> {
         let scan = Scan::new(stock, film, gray_lx_s, scale)?;
         Ok(Self::of(film, Way::Scan(scan)))
@@ -149,7 +158,7 @@ impl Positive {
         Self { film: deposit, way, ranges, tables: OnceLock::new() }
     }
 
-    /// What a place of the film with these amounts is shown as: linear light, sRGB primaries.
+    /// Returns the color of a place of the film with these amounts: linear light, sRGB primaries.
     #[must_use]
     pub fn shown(&self, amounts: &[f64]) -> [f64; 3] {
         match &self.way {
@@ -159,7 +168,7 @@ impl Positive {
         }
     }
 
-    /// XYZ of a place, relative to the bare light, where there is an eye in the way: not in a scan.
+    /// Returns XYZ of a place, relative to the bare light; `None` for a scan, which no eye views.
     #[must_use]
     pub fn xyz(&self, amounts: &[f64]) -> Option<[f64; 3]> {
         match &self.way {
@@ -169,7 +178,7 @@ impl Positive {
         }
     }
 
-    /// The eye that looks at it: none in a scan.
+    /// The viewing eye and its light; `None` for a scan.
     #[must_use]
     pub fn viewing(&self) -> Option<&Viewing> {
         match &self.way {
@@ -179,7 +188,7 @@ impl Positive {
         }
     }
 
-    /// Amounts in the print of a place of a negative; `None` where nothing is printed.
+    /// Returns the amounts in the print for a place of a negative; `None` if nothing is printed.
     #[must_use]
     pub fn print_amounts(&self, amounts: &[f64]) -> Option<Vec<f64>> {
         match &self.way {
@@ -188,14 +197,13 @@ impl Positive {
         }
     }
 
-    /// The picture of a whole film: one plane of amounts a layer, of equal length. Within a code value of 8 bits of
-    /// Made for the first whole picture: a place alone needs none.
+    /// Tables for whole pictures, built on first use: a single place needs none. They are accurate to a code value of 8 bits.
     fn tables(&self) -> &Tables {
         self.tables.get_or_init(|| Tables::new(&self.film, &self.ranges, &self.way))
     }
 
-    /// Densities of the print of a whole negative, layer by layer with their names, as a densitometer reads them ([`densities`]): of paper
-    /// and film base with what lies on them. `None` where nothing is printed.
+    /// Computes the densities of the print of a whole negative, layer by layer with their names, as a densitometer reads them
+    /// ([`densities`]), including paper or film base. `None` if nothing is printed.
     #[must_use]
     pub fn print_densities(&self, planes: &[&[f32]]) -> Option<Vec<(String, Vec<f32>)>> {
         let Way::Print(printing) = &self.way else { return None };
@@ -206,24 +214,25 @@ impl Positive {
         Some(printing.names.iter().cloned().zip(read).collect())
     }
 
-    /// [`Positive::shown`] for each place.
+    /// Computes the picture of a whole film, [`Positive::shown`] for each place. `planes` holds a plane of amounts per layer, of equal
+    /// length.
     #[must_use]
     pub fn picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
         self.tables().picture(planes, &self.way, Reach::Screen)
     }
 
-    /// The same in no gamut: below 0 what sRGB cannot have, above 1 what is brighter than the film's white. Of a scan on the
-    /// scale of a file, the values of that scale.
+    /// Computes the picture of a whole film without gamut limits: below 0 for colors outside sRGB, above 1 where it is brighter than the
+    /// film's white. For a scan on a file scale, returns the values of that scale.
     #[must_use]
     pub fn open_picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
         match self.film.layers() {
-            // Silver is tabulated as it is shown, dyes as densities.
+            // Silver is tabulated as shown, dyes as densities.
             1 => Tables::silver(&self.film, &self.way, Reach::Open).picture(planes, &self.way, Reach::Open),
             _ => self.tables().picture(planes, &self.way, Reach::Open),
         }
     }
 
-    /// What a place without any film is shown as: a perforation.
+    /// Returns the color of a place without any film, for example a perforation.
     #[must_use]
     pub fn hole(&self, reach: Reach) -> [f64; 3] {
         match &self.way {
@@ -234,19 +243,19 @@ impl Positive {
     }
 }
 
-/// What receivers see of the bare light.
+/// Sums that the receivers measure in the bare light.
 fn bare(weights: &[Vec<f64>]) -> [f64; 3] {
     [0, 1, 2].map(|i| weights[i].iter().sum())
 }
 
-/// Densities of a whole film, of one plane of amounts a layer, as a densitometer reads them through the filters of the stock's
-/// densitometry, each layer through that of its own color; of silver its own.
+/// Computes the densities of a whole film, from a plane of amounts per layer, as a densitometer reads them: each layer through the filter
+/// of its own color in the stock's densitometry. For silver, these are the amounts.
 #[must_use]
 pub fn densities(stock: &Stock, film: &Emulsion, planes: &[&[f32]]) -> Vec<Vec<f32>> {
     read_through(stock.filters().as_deref(), film, planes)
 }
 
-/// [`densities`] through these filters.
+/// Computes [`densities`] through these filters.
 fn read_through(filters: Option<&[Vec<f64>]>, film: &Emulsion, planes: &[&[f32]]) -> Vec<Vec<f32>> {
     match (planes, filters) {
         ([a, b, c], Some(filters)) => {
@@ -258,16 +267,16 @@ fn read_through(filters: Option<&[Vec<f64>]>, film: &Emulsion, planes: &[&[f32]]
     }
 }
 
-/// How far the values of a picture go.
+/// Range of the values of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// As a screen shows them, within sRGB.
+    /// Values within sRGB, as a screen shows them.
     Screen,
-    /// As they come.
+    /// Values without limits.
     Open,
 }
 
-/// How a print is looked at. Paper reflects light of the room besides, unless its ends are stretched.
+/// Viewing conditions of a print. Paper also reflects light of the room, unless its black is stretched.
 fn seen(print: &Stock, light: &Emission, look: Look) -> Result<Viewing, PositiveError> {
     let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
     Ok(match print.medium {

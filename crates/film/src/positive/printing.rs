@@ -1,4 +1,4 @@
-//! The printing light, and the exposure that a negative leaves of it on a print stock.
+//! The printing light, and the exposure of a print stock through a negative.
 
 use super::PositiveError;
 use super::viewing::{Viewing, on_band};
@@ -12,28 +12,29 @@ use spectra_core::spectral::BAND;
 use spectra_numerics::linear;
 use spectra_spectrum::Emission;
 
-/// A negative on its way through the printer.
+/// A negative in the printer.
 #[derive(Clone, Debug)]
 pub(super) struct Printing {
-    /// Of each print layer: sensitivity times printing light, over the band.
+    /// Sensitivity times printing light of each print layer, over the band.
     pub weights: Vec<Vec<f64>>,
-    /// The print stock, developed.
+    /// The developed print stock.
     pub emulsion: Emulsion,
-    /// The print, looked at.
+    /// Viewing conditions of the print.
     pub viewing: Viewing,
-    /// Names of the print's layers, and the filters through which a densitometer reads each; `None` where it reads silver.
+    /// Names of the print's layers, and the filters through which a densitometer reads each (`filters`); `None` for silver.
     pub names: Vec<String>,
     pub filters: Option<Vec<Vec<f64>>>,
 }
 
 impl Printing {
-    /// Sets the printing light so that a negative of the amounts `gray` prints as a gray of the color of white: shown as
-    /// [`MID_GRAY`], or in the dark as dense to the eye as the aim densities of the print stock are. White is the clear print or the
-    /// lamp; black, where it is stretched, the print of a negative of the amounts `unexposed`.
+    /// Sets the printing light so that a negative of the amounts `gray` prints as a gray of the color of white.
     ///
-    /// A print stock of three layers is printed by an additive lamp house: `lamp` parted at 500 and 590 nm, each part with a
-    /// strength of its own; one of a single layer by the whole of `lamp`. Without a lamp, each layer is printed alone, from a
-    /// separation negative of its own.
+    /// The gray is shown as [`MID_GRAY`], or in a dark surround with the visual density of the print stock's aim densities. White is the
+    /// clear print or the lamp; black, if it is stretched, is the print of a negative of the amounts `unexposed`.
+    ///
+    /// A print stock of three layers is printed by an additive lamp house: `lamp` is split at 500 and 590 nm, and each part has its own
+    /// strength. A stock of a single layer is printed by the whole `lamp`. Without a lamp, each layer is printed separately from its own
+    /// separation negative.
     pub(super) fn balanced(
         negative: &Deposit,
         unexposed: &[f64],
@@ -50,7 +51,7 @@ impl Printing {
         let layers = emulsion.layers();
         let power = lamp.map(on_band);
         let part = |w: f64| if layers == 1 { 0 } else { third(w) };
-        // Of a layer, to a part of the lamp.
+        // Sensitivity of a layer to one part of the lamp.
         let sensitivity = |layer: usize, of: usize| -> Vec<f64> {
             let at = |(i, w): (usize, f64)| match &power {
                 _ if part(w) != of => 0.0,
@@ -87,13 +88,14 @@ impl Printing {
                 1 => emulsion.deposit().amounts_for(&wanted[1..2], &viewing.weights()[1..2], &[0.7]),
                 _ => emulsion.deposit().amounts_for(&wanted, viewing.weights(), &vec![0.7; layers]),
             };
-            let amounts = amounts.ok_or_else(|| unbalanced("its dyes make no neutral gray"))?;
+            let amounts = amounts.ok_or_else(|| unbalanced("its dyes cannot make a neutral gray"))?;
             let needed = amounts.iter().enumerate().map(|(i, a)| Some(pow(10.0, emulsion.log10_exposure_at(i, *a)?)));
             let needed: Vec<f64> =
                 needed.collect::<Option<_>>().ok_or_else(|| unbalanced("its curves do not reach a mid gray"))?;
             let system: Vec<f64> = parts.iter().flat_map(|of_layer| negative.seen(gray, of_layer)).collect();
             let lights = linear::solve(&system, &needed).filter(|l| l.iter().all(|v| *v > 0.0 && v.is_finite()));
-            let lights = lights.ok_or_else(|| unbalanced("no light of its printer passes this negative as a gray"))?;
+            let lights =
+                lights.ok_or_else(|| unbalanced("no light of its printer prints this negative's gray as gray"))?;
             let weights = parts.iter().map(|of_layer| {
                 (0..BAND.count).map(|i| of_layer.iter().zip(&lights).map(|(p, l)| p[i] * l).sum()).collect()
             });
@@ -113,14 +115,14 @@ impl Printing {
                 break;
             }
         }
-        let printing = printing.ok_or_else(|| unbalanced("no light was found"))?;
+        let printing = printing.ok_or_else(|| unbalanced("no printing light was found"))?;
         if printing.gray_luminance(negative, gray) <= darkest + 0.02 * (clear[1] - darkest) {
             return Err(unbalanced("its mid gray is hardly denser than unexposed film"));
         }
         Ok(printing)
     }
 
-    /// What passes a mid gray printed to its aim, to the eye, relative to the bare light.
+    /// Luminance of a mid gray printed to its aim, relative to the bare light.
     pub(super) fn gray_luminance(&self, negative: &Deposit, gray: &[f64]) -> f64 {
         self.viewing.xyz(self.emulsion.deposit(), &self.printed(negative, gray))[1]
     }
@@ -138,7 +140,7 @@ impl Printing {
 }
 
 impl Printing {
-    /// XYZ of the print of a hole: the whole of the printing light.
+    /// XYZ of the print of a hole, exposed by the whole printing light.
     pub(super) fn hole(&self) -> [f64; 3] {
         let exposures = self.weights.iter().map(|w| w.iter().sum::<f64>());
         let amounts: Vec<f64> = exposures.enumerate().map(|(i, h)| self.emulsion.amount(i, log10(h))).collect();
@@ -146,7 +148,7 @@ impl Printing {
     }
 }
 
-/// Luminance, relative to the bare light, of a print stock developed to its aim densities.
+/// Luminance, relative to the bare light, of a print stock with its aim densities; `None` if it cannot have them.
 fn aimed(stock: &Stock, emulsion: &Emulsion, aim: AimDensity, viewing: &Viewing) -> Option<f64> {
     let names: Vec<&str> = stock.layers.iter().map(|l| l.name.as_str()).collect();
     let products = stock.densitometry.products(&names)?;

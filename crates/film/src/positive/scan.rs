@@ -1,4 +1,4 @@
-//! A negative, scanned: its densities, on a linear or a logarithmic scale, or turned around into a picture.
+//! Scans of negatives: densities on a linear or a logarithmic scale, or inverted into a picture.
 
 use super::{PositiveError, Reach};
 use crate::deposit::Deposit;
@@ -11,51 +11,51 @@ use spectra_core::math::{exp, log, log10};
 use spectra_core::spectral::BAND;
 use std::f64::consts::LN_10;
 
-/// What a scanner gives.
+/// Scale of the values that a scan returns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ScanScale {
-    /// A picture to look at: turned around along the film's own curves, the highlights under a soft shoulder.
+    /// A picture to view: inverted along the film's own curves, with highlights under a soft shoulder.
     #[default]
     Picture,
-    /// Density over unexposed film on the scale of Cineon files: value = (95 + density / 0.002) / 1023.
+    /// Density above unexposed film on the scale of Cineon files: value = (95 + density / 0.002) / 1023.
     Log,
-    /// Density over unexposed film on the scale of ADX16: value = (1520 + 8000 density) / 65535.
+    /// Density above unexposed film on the scale of ADX16: value = (1520 + 8000 density) / 65535.
     Adx,
-    /// Density itself, base included: value = density / 4.
+    /// Density including the base: value = density / 4.
     Density,
 }
 
-/// Code of unexposed film, density of a code, and the largest code of a Cineon file (G. Kennel, "Conversion of 10-bit Log Film
-/// Data to 8-bit Linear or Video Data for the Cineon Digital Film System", Eastman Kodak, 1995).
+/// Cineon files: code of unexposed film, density per code, and largest code (G. Kennel, "Conversion of 10-bit Log Film Data to 8-bit Linear
+/// or Video Data for the Cineon Digital Film System", Eastman Kodak, 1995).
 const CINEON: (f64, f64, f64) = (95.0, 0.002, 1023.0);
 
-/// Code of unexposed film, codes of a unit of density, and the largest code of ADX16 (SMPTE ST 2065-3). There it is the density of
-/// Academy printing; here that of the stock's own densitometry.
+/// ADX16: code of unexposed film, codes per unit of density, and largest code (SMPTE ST 2065-3). The standard means Academy printing
+/// density; here it is the density of the stock's own densitometry.
 const ADX16: (f64, f64, f64) = (1520.0, 8000.0, 65_535.0);
 
-/// The density that the value 1 stands for on the linear scale.
+/// Density that the value 1 means on the linear scale.
 pub const DENSITY_OF_ONE: f64 = 4.0;
 
-/// Log10 of exposure on either side of mid gray over which the slope is taken: the span of ISO 6 in all.
+/// Log10 of exposure on either side of mid gray over which the slope is measured; both sides together are the interval of ISO 6.
 const HALF_SPAN: f64 = 0.65;
 
-/// Below this share of the slope around mid gray a curve is not turned around any more but goes on straight: there is more grain
-/// than tone.
+/// Fraction of the slope around mid gray below which a curve is not inverted but continued in a straight line: there is more grain than
+/// tone.
 const LEAST_SLOPE: f64 = 0.25;
 
-/// Steps of the curves that are turned around.
+/// Steps of the inverted curves.
 const STEPS: usize = 2048;
 
-/// Up to here a picture is in proportion to the light of the scene; the shoulder takes what is brighter.
+/// Light up to which a picture is proportional to the light of the scene; the shoulder takes what is brighter.
 const KNEE: f64 = 0.5;
 
-/// A scanner, set for one film.
+/// A scanner, set up for one film.
 #[derive(Clone, Debug)]
 pub(super) struct Scan {
     /// Spectral products of the scanner's channels, in the order red, green, blue; one for silver.
     pub weights: Vec<Vec<f64>>,
     scale: ScanScale,
-    /// Density of unexposed film.
+    /// Density of unexposed film in each channel.
     clear: Vec<f64>,
     turned: Vec<Turned>,
     black: Vec<f64>,
@@ -64,7 +64,7 @@ pub(super) struct Scan {
 
 impl Scan {
     pub(super) fn new(stock: &Stock, film: &Emulsion, gray_lx_s: f64, scale: ScanScale) -> Result<Self, PositiveError> {
-        // Silver is neutral: any filter sees its density.
+        // Silver is neutral: any filter measures its density.
         let weights = match stock.densitometry.products(&["red", "green", "blue"]) {
             Some(products) => products,
             None => vec![vec![1.0 / BAND.count as f64; BAND.count]],
@@ -78,7 +78,7 @@ impl Scan {
         }
         let turned: Vec<Turned> =
             (0..weights.len()).map(|i| Turned::new(|x| densities(x)[i], gray, LEAST_SLOPE * slopes[i])).collect();
-        // What shows as black: no exposure.
+        // Unexposed film is shown as black.
         let clear = densities(f64::NEG_INFINITY);
         let black: Vec<f64> = clear.iter().zip(&turned).map(|(d, t)| t.light(*d)).collect();
         if black.iter().any(|b| *b >= 0.9 * MID_GRAY) {
@@ -93,12 +93,12 @@ impl Scan {
         read(film, amounts, &self.weights)
     }
 
-    /// What the screen shows of densities: linear light. A scale is written so that the file's values are the scale's.
+    /// Converts densities to linear light for the screen. A file scale is encoded so that the file's values are those of the scale.
     pub(super) fn shown(&self, densities: &[f64]) -> [f64; 3] {
         self.shown_in(densities, Reach::Screen)
     }
 
-    /// The same, or the values of the scale themselves.
+    /// Converts densities to linear light for the screen, or to the values of the scale themselves.
     pub(super) fn shown_in(&self, densities: &[f64], reach: Reach) -> [f64; 3] {
         let written = |value: f64| if reach == Reach::Open { value } else { written(value) };
         let of = |i: usize| i.min(densities.len() - 1);
@@ -108,7 +108,7 @@ impl Scan {
                     let channel = of(i);
                     let black = self.black[channel];
                     let light = self.turned[channel].light(densities[channel]);
-                    // Mid gray keeps its place, black goes to 0.
+                    // Mid gray keeps its value, black becomes 0.
                     self.shoulder.at((light - black) * MID_GRAY / (MID_GRAY - black))
                 });
                 if reach == Reach::Open { rgb } else { into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate) }
@@ -127,27 +127,27 @@ impl Scan {
     }
 }
 
-/// The linear light that a picture file holds as `value`.
+/// Linear light that a picture file stores as `value`.
 fn written(value: f64) -> f64 {
     Transfer::Srgb.decode(value.clamp(0.0, 1.0))
 }
 
-/// A neutral subject's density, turned around into light: exposure over density, straight on where the curve gets flat.
+/// Inverted curve of a neutral subject: exposure over density, continued in a straight line where the curve gets flat.
 #[derive(Clone, Debug)]
 struct Turned {
     low: f64,
     high: f64,
-    /// Log10 of light over density between them.
+    /// Log10 of light over density, between the ends.
     table: Lookup,
     ends: [f64; 2],
-    /// 1 over the slope beyond the ends.
+    /// Slope beyond the ends, density per unit of log10 of light.
     least_slope: f64,
     /// Light of the densest place of the curve.
     brightest: f64,
 }
 
 impl Turned {
-    /// `density` over log10 exposure, with `gray` shown as mid gray; flatter than `least_slope` it is not turned around.
+    /// Inverts `density` over log10 exposure, with `gray` shown as mid gray. Parts flatter than `least_slope` are not inverted.
     fn new(density: impl Fn(f64) -> f64, gray: f64, least_slope: f64) -> Self {
         let step = 0.01;
         let slope = |x: f64| (density(x + step) - density(x - step)) / (2.0 * step);
@@ -187,7 +187,7 @@ impl Turned {
     }
 }
 
-/// Straight up to the knee, logarithmic above, without a break of slope, and 1 at the brightest that the film holds.
+/// A tone curve: straight up to the knee, logarithmic above, with a continuous slope, and 1 at the brightest light that the film holds.
 #[derive(Clone, Copy, Debug)]
 struct Shoulder {
     scale: f64,

@@ -1,4 +1,4 @@
-//! Light through a film to an eye: XYZ, and what a screen shows of it.
+//! Viewing: light through a film to an eye, as XYZ and as a screen shows it.
 
 use super::Reach;
 use super::frame::ROW;
@@ -11,7 +11,7 @@ use spectra_core::spectral::BAND;
 use spectra_spectrum::{Emission, Observer};
 use std::f32::consts::LOG2_10;
 
-/// Power of a light on the points of the band; a line is split between its two neighbors.
+/// Returns the power of a light at the points of the band; a spectral line is split between its two neighbors.
 #[must_use]
 pub fn on_band(light: &Emission) -> Vec<f64> {
     let power = light.to_power(&BAND);
@@ -25,26 +25,26 @@ pub fn on_band(light: &Emission) -> Vec<f64> {
     all
 }
 
-/// A film or a print looked at, by an eye adapted to the whitest there is.
+/// Viewing conditions of a film or print, for an eye adapted to its white.
 #[derive(Clone, Debug)]
 pub struct Viewing {
     /// CIE 1931 functions times the light, so that Y of the bare light is 1.
     weights: Vec<Vec<f64>>,
-    /// XYZ of what is taken for white.
+    /// XYZ of white, relative to the bare light.
     white: [f64; 3],
     to_rgb: Matrix,
-    /// Luminance of what is taken for black, relative to the bare light.
+    /// Luminance of black, relative to the bare light.
     black: f64,
-    /// Light that the surface reflects besides, as a part of white.
+    /// Additional light reflected by the surface, as a fraction of white.
     flare: f64,
     surround: Surround,
 }
 
-/// Luminances between which the exponent of [`Surround`] is taken at its word; beyond, what it does to the nearer end.
+/// Range of luminances over which the exponent of [`Surround`] applies; outside it, the factor at the nearer end is used.
 const SURROUND: (f64, f64) = (1.0 / (1 << 24) as f64, 16.0);
 
 impl Viewing {
-    /// In this light; `None` where it is dark to the eye. The bare light is shown as white, no light as black.
+    /// Prepares viewing in this light; `None` if the light is invisible. The bare light is shown as white, no light as black.
     #[must_use]
     pub fn by(light: &Emission) -> Option<Self> {
         let power = on_band(light);
@@ -59,71 +59,71 @@ impl Viewing {
         Some(Self { weights, white, to_rgb: to_rgb(white), black: 0.0, flare: 0.0, surround: Surround::Average })
     }
 
-    /// The same with an eye that takes a film of the XYZ `white` for white, as one does of a slide in the dark and of a
-    /// print, and is adapted to it (CAT16); the luminance `black` and what is darker is shown as black.
+    /// Returns these viewing conditions with another black and white. The eye takes a film of the XYZ `white` for white and is adapted to
+    /// it (CAT16), as for a slide in the dark or a print. The luminance `black` and darker ones are shown as black.
     #[must_use]
     pub fn between(self, black: f64, white: [f64; 3]) -> Self {
         Self { black, white, to_rgb: to_rgb(white), ..self }
     }
 
-    /// The same in another surround.
+    /// Returns these viewing conditions with another surround.
     #[must_use]
     pub fn surrounded(self, surround: Surround) -> Self {
         Self { surround, ..self }
     }
 
-    /// The same, of a surface that reflects [`FLARE`] of the room's light besides.
+    /// Returns these viewing conditions for a surface that also reflects [`FLARE`] of the room's light.
     #[must_use]
     pub fn with_flare(self) -> Self {
         Self { flare: FLARE, ..self }
     }
 
-    /// The luminance, as a share of white over black, that is shown as `shown`, both in linear light.
+    /// Returns the luminance, as a share of white above black, that is shown as `shown`; both in linear light.
     #[must_use]
     pub fn share_shown_as(&self, shown: f64) -> f64 {
         pow(shown, 1.0 / self.surround.exponent()) * (1.0 + self.flare) - self.flare
     }
 
-    /// What XYZ are multiplied by, and the part of white that is added then: black is taken off as so much of white, since it is a veil
-    /// over the whole picture, and flare is added.
+    /// Factor for XYZ, and fraction of white that is then added. Black is a veil over the whole picture, so it is subtracted as a fraction
+    /// of white; flare is added.
     fn scale(&self) -> (f64, f64) {
         let veil = self.black / self.white[1];
         let times = 1.0 / ((1.0 - veil) * (1.0 + self.flare));
         (times, self.flare / (1.0 + self.flare) - veil * times)
     }
 
-    /// What weighs transmittances into XYZ.
+    /// Weights that turn transmittances into XYZ: one spectrum each for X, Y and Z.
     #[must_use]
     pub fn weights(&self) -> &[Vec<f64>] {
         &self.weights
     }
 
-    /// XYZ of what is taken for white, relative to the bare light.
+    /// XYZ of white, relative to the bare light.
     #[must_use]
     pub fn white(&self) -> [f64; 3] {
         self.white
     }
 
-    /// XYZ of a film with these amounts, relative to the bare light.
+    /// Computes XYZ of a film with these amounts, relative to the bare light.
     #[must_use]
     pub fn xyz(&self, deposit: &Deposit, amounts: &[f64]) -> [f64; 3] {
         let seen = deposit.seen(amounts, &self.weights);
         [seen[0], seen[1], seen[2]]
     }
 
-    /// Luminance of what is taken for black.
+    /// Luminance of black, relative to the bare light.
     #[must_use]
     pub fn black(&self) -> f64 {
         self.black
     }
 
-    /// What the screen shows of XYZ: linear light, sRGB primaries, within its gamut.
+    /// Converts XYZ to what the screen shows: linear light, sRGB primaries, within its gamut.
     #[must_use]
     pub fn shown(&self, xyz: [f64; 3]) -> [f64; 3] {
         self.shown_in(xyz, Reach::Screen)
     }
 
-    /// The same, within its gamut or not.
+    /// Converts XYZ to linear light in sRGB primaries, within the gamut of the screen or without limits.
     #[must_use]
     pub fn shown_in(&self, xyz: [f64; 3], reach: Reach) -> [f64; 3] {
         let rgb = apply(&self.to_rgb, self.seen(xyz));
@@ -133,8 +133,8 @@ impl Viewing {
         }
     }
 
-    /// XYZ as an eye in an average surround would have to meet them to see the same: black taken off, flare added, the surround
-    /// allowed for, white still [`Viewing::white`].
+    /// Converts XYZ to the values that would look the same in an average surround: subtracts black, adds flare, and corrects for the
+    /// surround. White stays [`Viewing::white`].
     #[must_use]
     #[inline]
     pub fn seen(&self, xyz: [f64; 3]) -> [f64; 3] {
@@ -154,7 +154,7 @@ impl Viewing {
 }
 
 impl Viewing {
-    /// [`Viewing::shown_in`] for a row of places whose densities of XYZ are `row`, which is work space from then on.
+    /// Computes [`Viewing::shown_in`] for a row of places whose XYZ densities are `row`, which is overwritten.
     #[inline(always)]
     pub(super) fn shown_row(&self, row: &mut [[f32; ROW]; 3], reach: Reach, to: &mut [[f32; 3]]) {
         let (times, added) = self.scale();
@@ -179,7 +179,8 @@ impl Viewing {
             let rgb = |m: [f32; 3]| m[0] * seen[0] + m[1] * seen[1] + m[2] * seen[2];
             (*x, *y, *z) = (rgb(matrix[0]), rgb(matrix[1]), rgb(matrix[2]));
             if reach == Reach::Screen {
-                // As `spectra_color::into_gamut` desaturates: toward the gray of its luminance, by the largest share of color that fits.
+                // Desaturates as `spectra_color::into_gamut` does: toward the gray of its luminance, by the largest share of color that
+                // fits.
                 let gray = luminance[0] * *x + luminance[1] * *y + luminance[2] * *z;
                 let gray = gray.clamp(0.0, 1.0);
                 let share = |v: f32| {
@@ -198,7 +199,7 @@ impl Viewing {
     }
 }
 
-/// From XYZ to linear sRGB for an eye adapted to `white`, which is shown as 1.
+/// Matrix from XYZ to linear sRGB for an eye adapted to `white`, which becomes 1.
 fn to_rgb(white: [f64; 3]) -> Matrix {
     let srgb = RgbSpace::srgb();
     let columns = [0, 1, 2].map(|i| srgb.from_xyz([0, 1, 2].map(|k| if k == i { 1.0 } else { 0.0 })));

@@ -1,11 +1,12 @@
-//! Scatter of light inside of the emulsion: what a film's modulation transfer function says.
+//! Scatter of light inside the emulsion, described by the modulation transfer function of a film.
 //!
-//! Turbid gelatin spreads the light of each point over some micrometers; a sine target of the frequency f keeps the part
-//! M(f) of its contrast. The spread is one function of the distance from the point, a sum of Gaussians: round, falling
-//! and positive whatever the curve, and the same for pixels of any size, which get its integral over each of them.
+//! Turbid gelatin spreads the light of each point over some micrometers; a sine target of the frequency f keeps the fraction M(f) of its
+//! contrast.
+//! The spread is a function of the distance from the point, a sum of Gaussians: round, falling and positive for any curve, and independent
+//! of the pixel size. A pixel gets its integral over the pixel.
 //!
-//! A sheet's curve is measured on the developed film, and exceeds 1 where development makes edges stand out. That is not
-//! the light's doing: [`Modulation`] takes the curve apart into the light's spread and [`crate::adjacency`].
+//! A sheet's curve is measured on the developed film, and exceeds 1 where development enhances edges. Light does not cause that:
+//! [`Modulation`] separates the curve into the spread of light and [`crate::adjacency`].
 
 mod modulation;
 mod mtf;
@@ -21,13 +22,13 @@ use crate::known::Known;
 use crate::raster::Raster;
 use std::sync::Arc;
 
-/// Kernels on a plane.
+/// Cache of kernels on a plane.
 static KERNELS: Known<(Mtf, Raster), Spreading> = Known::new();
 
-/// Part of the light that may be beyond the kernel.
+/// Fraction of the light that may lie outside the kernel.
 const BEYOND: f64 = 1e-9;
 
-/// Pixels that a kernel reaches at most.
+/// Largest radius of a kernel, pixels.
 const LONGEST: usize = 2000;
 
 /// The scatter of one layer on planes of one size.
@@ -52,12 +53,11 @@ pub struct Scatter {
 impl Scatter {
     /// Prepares scatter by `mtf` for planes of the size and pitch of `raster`.
     ///
-    /// The light of a pixel spreads from its middle, and each pixel gets the integral of the spread over it. So a sine
-    /// keeps M(f), and the pixels' own loss, sin(pi f p) / (pi f p), once more.
+    /// The light of a pixel spreads from its center, and each pixel gets the integral of the spread over its area. So a sine keeps M(f),
+    /// times the loss of the pixels themselves, sin(pi f p) / (pi f p).
     ///
     /// # Errors
-    /// [`MtfError::OutOfRange`] for a pitch that is not positive and finite, or so fine that the spread is over
-    /// 2000 pixels wide.
+    /// [`MtfError::OutOfRange`] for a pitch that is not positive and finite, or so fine that the spread reaches more than 2000 pixels.
     pub fn new(mtf: &Mtf, raster: &Raster) -> Result<Self, MtfError> {
         let pitch_mm = raster.pitch_mm;
         let out_of_range = |range| MtfError::OutOfRange { what: "pitch", value: pitch_mm, range };
@@ -73,19 +73,19 @@ impl Scatter {
 
     /// Scatters the light of a plane of exposure (linear; any unit), in place.
     ///
-    /// The kernel sums to 1: the plane's sum stays but for what falls beside it. The plane is a whole frame; around it
-    /// the film is unexposed. Values that are no number count as 0. Takes memory for one more plane.
+    /// The kernel sums to 1: the sum of the plane changes only by the light that falls outside. The plane is a whole frame; the film around
+    /// it is unexposed. NaN counts as 0. Needs memory for one more plane.
     ///
     /// # Panics
-    /// If the plane has another number of pixels than the raster.
+    /// If the number of pixels of the plane differs from that of the raster.
     pub fn apply(&self, exposure: &mut [f32]) {
         exposure.copy_from_slice(&self.applied(exposure));
     }
 
-    /// The plane that [`Scatter::apply`] makes of `exposure`.
+    /// Returns the plane that [`Scatter::apply`] makes of `exposure`.
     ///
     /// # Panics
-    /// If the plane has another number of pixels than the raster.
+    /// If the number of pixels of the plane differs from that of the raster.
     #[must_use]
     pub fn applied(&self, exposure: &[f32]) -> Vec<f32> {
         let mut spread = vec![0.0; exposure.len()];
@@ -93,10 +93,10 @@ impl Scatter {
         spread
     }
 
-    /// Writes the plane that [`Scatter::apply`] makes of `exposure`.
+    /// Writes the plane that [`Scatter::apply`] makes of `exposure` to `to`.
     ///
     /// # Panics
-    /// If a plane has another number of pixels than the raster.
+    /// If the number of pixels of a plane differs from that of the raster.
     pub fn apply_to(&self, exposure: &[f32], to: &mut [f32]) {
         assert_eq!(exposure.len(), self.raster.pixels(), "the plane has the size that was prepared for");
         self.spreading.apply(exposure, to, |to, v| *to = v.max(0.0) as f32);

@@ -1,38 +1,39 @@
-//! A sheet's modulation transfer, taken apart into what light does and what development does.
+//! Separates a sheet's modulation transfer function into the effects of light and of development.
+//!
+//! Light gets two Gaussians, the developer a gain and a length of diffusion. Both are functions of the distance on the film, of which each
+//! pixel gets the integral, so that no lattice shows around a lamp.
 
 use super::mtf::{Mtf, MtfError, check};
 use super::spread::PointSpread;
 use crate::adjacency::Adjacency;
 use spectra_core::math::{exp, log};
 
-/// What a sheet's curve is made of: the spread of light in the emulsion, times what adjacency in the developer makes of
-/// it.
+/// The two factors of a sheet's curve: the spread of light in the emulsion, and adjacency effects in the developer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modulation {
-    /// The light's part: 1 at most, falling.
+    /// Response of the light: at most 1, falling.
     pub mtf: Mtf,
-    /// The developer's part; `None` where the curve asks for none.
+    /// Adjacency effect of the developer; `None` if the curve needs none.
     pub adjacency: Option<Adjacency>,
 }
 
-/// How much of the curve's error a gain of 1 must save to be worth it: without that, a strong gain and a
-/// wide spread could undo each other.
+/// Cost of a gain of 1, in units of the curve's error. Without it, a strong gain and a wide spread could cancel each other.
 const DEARTH: f64 = 0.02;
 
-/// Below this gain there is no adjacency.
+/// Smallest gain; below it there is no adjacency effect.
 const LEAST_GAIN: f64 = 0.01;
 
-/// Deviations of the two Gaussians that stand for the light in the search, lengths of diffusion, mm, and the largest gain.
+/// Search ranges: standard deviations of the two Gaussians for light, mm; diffusion lengths, mm; and the largest gain.
 const DEVIATIONS: (f64, f64) = (0.0005, 0.04);
 const LENGTHS: (f64, f64) = (0.008, 0.12);
 const MOST_GAIN: f64 = 1.0;
 
 impl Modulation {
-    /// The parts of a measured curve: spatial frequency (cycles/mm, rising, from 0 on) and response (0 to 2; 1 is all
-    /// contrast).
+    /// Separates a measured curve into its factors. Each point has a spatial frequency (cycles/mm, rising, from 0 on) and a response (0 to
+    /// 2; 1 is full contrast).
     ///
-    /// Gain and length of adjacency, and the two Gaussians that light is spread by, are those with which the curve comes
-    /// out best. A curve that is best without adjacency is [`Mtf::measured`].
+    /// The search finds gain and length of adjacency, and the two Gaussians of light, that fit the curve best. If the best fit has no
+    /// adjacency, the light's part is [`Mtf::measured`].
     ///
     /// # Errors
     /// [`MtfError`].
@@ -50,14 +51,14 @@ impl Modulation {
         Ok(Self { mtf: Mtf::of(light), adjacency: Some(Adjacency { gain, length_mm: exp(length) }) })
     }
 
-    /// The whole curve at `frequency` cycles/mm.
+    /// Returns the response of both factors at `frequency` cycles/mm.
     #[must_use]
     pub fn response(&self, frequency: f64) -> f64 {
         self.mtf.response(frequency) * self.adjacency.map_or(1.0, |a| a.response(frequency))
     }
 }
 
-/// Logarithms of two deviations and of the length (mm), and the gain.
+/// A point of the search: logarithms of two deviations and of the length (mm), and the gain.
 type Place = [f64; 4];
 
 struct Search<'a> {
@@ -65,7 +66,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// What is to be least: the root of the mean square error, and the price of the gain.
+    /// Cost to minimize: the root mean square error plus the cost of the gain.
     fn cost(&self, place: Place) -> f64 {
         let within = |v: f64, (low, high): (f64, f64)| (log(low)..=log(high)).contains(&v);
         let [first, second, length, gain] = place;
@@ -73,11 +74,11 @@ impl Search<'_> {
         if good && (0.0..=MOST_GAIN).contains(&gain) { self.fitted(place).1 + DEARTH * gain } else { f64::INFINITY }
     }
 
-    /// The share of the first Gaussian with which the curve comes out best, and the root of the mean square error.
+    /// Returns the best share of the first Gaussian, and the root mean square error with it.
     fn fitted(&self, [first, second, length, gain]: Place) -> (f64, f64) {
         let adjacency = Adjacency { gain, length_mm: exp(length) };
         let [first, second] = [exp(first), exp(second)];
-        // Only the share is free: a straight line, least squares.
+        // Only the share is free: a linear least-squares fit.
         let parts = |[f, m]: &[f64; 2]| {
             let edges = adjacency.response(*f);
             let light = |sigma: f64| {
@@ -97,8 +98,8 @@ impl Search<'_> {
         (share, (errors.sum::<f64>() / self.points.len() as f64).sqrt())
     }
 
-    /// From the best of a coarse grid, by steps along the axes that are halved where none helps (R. Hooke and T. A. Jeeves,
-    /// "Direct search solution of numerical and statistical problems", J. ACM 8, 1961, 212).
+    /// Searches a coarse grid, then improves its best point by steps along the axes, which are halved when none helps (R. Hooke and T. A.
+    /// Jeeves, "Direct search solution of numerical and statistical problems", J. ACM 8, 1961, 212).
     fn run(&self) -> Place {
         const RUNGS: usize = 8;
         let rung = |(low, high): (f64, f64), i: usize, n: usize| {
@@ -144,7 +145,7 @@ impl Search<'_> {
 mod tests {
     use super::*;
 
-    /// A curve made of known parts is taken apart into them.
+    /// A curve made of known factors is separated into them.
     #[test]
     fn parts_that_made_a_curve_are_found() {
         let light = Mtf::measured(&[[10.0, 0.97], [20.0, 0.89], [40.0, 0.63], [80.0, 0.16]]).unwrap();
@@ -163,7 +164,7 @@ mod tests {
         }
     }
 
-    /// What never rises over 1 is light alone.
+    /// A curve that never exceeds 1 has no adjacency.
     #[test]
     fn a_falling_curve_has_no_adjacency() {
         let points = [[5.0, 0.99], [10.0, 0.965], [20.0, 0.87], [40.0, 0.62], [60.0, 0.43], [100.0, 0.22]];

@@ -1,32 +1,32 @@
-//! Modulation transfer functions.
+//! Modulation transfer functions of films.
 
 use super::spread::PointSpread;
 use std::f64::consts::{LN_10, PI, SQRT_2};
 
-/// How much contrast of a fine pattern a film keeps.
+/// A modulation transfer function: the fraction of contrast that a film keeps, over spatial frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mtf {
     spread: PointSpread,
 }
 
-/// A curve that is none.
+/// An error in the data of a modulation transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MtfError {
-    /// A value out of range.
+    /// A value is out of range.
     #[error("{what} {value} is out of range: {range}")]
     OutOfRange {
-        /// Which value.
+        /// Name of the value.
         what: &'static str,
-        /// The value.
+        /// Value that was given.
         value: f64,
-        /// What it may be.
+        /// Range of the value.
         range: &'static str,
     },
-    /// Fewer than two points.
-    #[error("a modulation transfer function has at least two points, not {0}")]
+    /// There are fewer than two points.
+    #[error("a modulation transfer function needs at least two points above 0 cycles/mm, not {0}")]
     TooFew(usize),
-    /// Frequencies that do not rise.
-    #[error("frequencies rise from point to point; {1} cycles/mm comes after {0}")]
+    /// Frequencies do not rise.
+    #[error("frequencies must rise from point to point; {1} cycles/mm comes after {0}")]
     NotRising(f64, f64),
 }
 
@@ -35,24 +35,25 @@ fn in_range(what: &'static str, value: f64, low: f64, high: f64, range: &'static
 }
 
 impl Mtf {
-    /// H. Frieser's one-constant model: a line of light is spread as 10^(-2 |x| / k), so that
-    /// M(f) = 1 / (1 + (pi k f / ln 10)^2) (H. Frieser, "Spread function and contrast transfer function of photographic
-    /// layers", Photographic Science and Engineering 4, 1960, 324). `k_mm` is the width in which the line falls to a tenth on
-    /// both sides together, 0.0001 to 1 mm; films have 0.005 to 0.04.
+    /// Builds H. Frieser's one-constant model: a line of light is spread as 10^(-2 |x| / k), so that M(f) = 1 / (1 + (pi k f / ln 10)^2).
+    ///
+    /// `k_mm` is the full width over which the line falls to a tenth, 0.0001 to 1 mm; films have 0.005 to 0.04.
+    /// Source: H. Frieser, "Spread function and contrast transfer function of photographic layers", Photographic Science and Engineering 4,
+    /// 1960, 324.
     ///
     /// # Errors
-    /// [`MtfError::OutOfRange`].
+    /// [`MtfError::OutOfRange`] if `k_mm` is out of range.
     pub fn frieser(k_mm: f64) -> Result<Self, MtfError> {
         in_range("Frieser's constant", k_mm, 1e-4, 1.0, "0.0001 to 1 mm")?;
         Ok(Self { spread: PointSpread::bessel(k_mm / (2.0 * LN_10)) })
     }
 
-    /// A measured curve: spatial frequency (cycles/mm, rising, from 0 on) and response (0 to 2; 1 is all contrast).
+    /// Fits a measured curve: spatial frequency (cycles/mm, rising, from 0 on) and response (0 to 2; 1 is full contrast).
     ///
-    /// The curve becomes the closest sum of Gaussians of weights from 0 on (least squares at the points): then the spread of a
-    /// point is smooth and positive, which straight lines between measured points are not. A response over 1 is the
-    /// developer's work (adjacency), not the light's, and is taken as 1: see [`super::Modulation`]. [`Mtf::deviation`]
-    /// tells how well it fits.
+    /// The result is the closest sum of Gaussians of non-negative weights (least squares at the points). Its point spread is smooth and
+    /// positive, unlike that of straight lines between measured points.
+    /// Responses above 1 are caused by the developer (adjacency), not by light, and are taken as 1: see [`super::Modulation`].
+    /// [`Mtf::deviation`] tells how well the fit matches.
     ///
     /// # Errors
     /// [`MtfError`].
@@ -63,24 +64,24 @@ impl Mtf {
         Ok(Self { spread: PointSpread::new(gaussians(points).into_iter().map(term).collect()) })
     }
 
-    /// That of a spread.
+    /// Builds the transfer function of a point spread.
     pub(super) fn of(spread: PointSpread) -> Self {
         Self { spread }
     }
 
-    /// The response at `frequency` cycles/mm: 1 at 0, falling.
+    /// Returns the response at `frequency` cycles/mm: 1 at 0, falling.
     #[must_use]
     pub fn response(&self, frequency: f64) -> f64 {
         self.spread.response(frequency)
     }
 
-    /// How it spreads the light of a point.
+    /// Point spread of the light.
     #[must_use]
     pub fn spread(&self) -> &PointSpread {
         &self.spread
     }
 
-    /// Largest difference from measured points, values over 1 taken as 1.
+    /// Returns the largest difference from measured points, with values above 1 taken as 1.
     #[must_use]
     pub fn deviation(&self, points: &[[f64; 2]]) -> f64 {
         points.iter().map(|p| (self.response(p[0]) - p[1].min(1.0)).abs()).fold(0.0, f64::max)
@@ -103,15 +104,15 @@ pub(super) fn check(points: &[[f64; 2]]) -> Result<(), MtfError> {
     if positive < 2 { Err(MtfError::TooFew(positive)) } else { Ok(()) }
 }
 
-/// The widest Gaussian that is sought, cycles/mm: one of the deviation 40 um. What goes farther is not the emulsion's.
+/// The widest Gaussian of a fit, cycles/mm: its deviation is 40 um. The emulsion does not scatter farther.
 const WIDEST: f64 = 5.6;
 
-/// The sum of Gaussians of a ladder of widths that is closest to the points, weights from 0 on that sum to 1: coordinate
-/// by coordinate (C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems", 1974, pose it).
+/// Fits the points by a sum of Gaussians of fixed widths, with non-negative weights that sum to 1. Minimizes coordinate by coordinate
+/// (problem: C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems", 1974).
 fn gaussians(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     const RUNGS: usize = 40;
     const ROUNDS: usize = 4000;
-    // How much dearer than a point's an error of the sum is.
+    // Weight of an error of the sum, relative to that of a point.
     const SUM: f64 = 30.0;
     let first = points.iter().map(|p| p[0]).find(|f| *f > 0.0).unwrap_or(1.0);
     let last = points.iter().map(|p| p[0]).fold(first, f64::max);
@@ -157,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Points of a sheet's shape, without overshoot: a positive spread goes through them.
+    /// Points with the shape of a sheet's curve, without overshoot: a positive spread passes through them.
     #[test]
     fn measured_curves_go_through_their_points() {
         let points = [[5.0, 0.99], [10.0, 0.965], [20.0, 0.87], [40.0, 0.62], [60.0, 0.43], [100.0, 0.22]];
@@ -165,7 +166,7 @@ mod tests {
         println!("deviation {:.5}", mtf.deviation(&points));
         assert!(mtf.deviation(&points) < 0.005, "{}", mtf.deviation(&points));
         assert!((mtf.response(0.0) - 1.0).abs() < 1e-12);
-        // Adjacency: what rises over 1 is followed as 1, as far as a positive spread can.
+        // Adjacency: values above 1 are followed as 1, as far as a positive spread can.
         let edge = [[3.0, 1.04], [10.0, 1.1], [20.0, 1.05], [40.0, 0.8], [80.0, 0.4], [160.0, 0.15]];
         let mtf = Mtf::measured(&edge).unwrap();
         println!("with adjacency: deviation {:.5}", mtf.deviation(&edge));

@@ -1,30 +1,30 @@
-//! The spread of a point: a sum of Gaussians, and what of it falls on each pixel.
+//! The spread of a point: a sum of Gaussians, and its integral over each pixel.
 
 use spectra_core::math::{exp, log};
 use spectra_numerics::convolve::Kernel;
 use spectra_numerics::normal;
 use std::f64::consts::PI;
 
-/// How the light of a point is spread: round, falling with the distance, positive; a sum of Gaussians.
+/// Point spread of light: round, falling with the distance, positive; a sum of Gaussians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointSpread {
-    /// Standard deviation along an axis, mm, and weight; the weights sum to 1.
+    /// Standard deviation along an axis, mm, and weight of each Gaussian; the weights sum to 1.
     terms: Vec<[f64; 2]>,
 }
 
 impl PointSpread {
-    /// The sum of Gaussians of standard deviations along an axis (mm) and weights, all above 0; weights are scaled so
-    /// that they sum to 1.
+    /// Builds a sum of Gaussians from standard deviations along an axis (mm) and weights, all above 0. Weights are scaled so that they sum
+    /// to 1.
     pub(crate) fn new(terms: Vec<[f64; 2]>) -> Self {
         let sum: f64 = terms.iter().map(|t| t[1]).sum();
         Self { terms: terms.into_iter().map(|[sigma, weight]| [sigma, weight / sum]).collect() }
     }
 
-    /// That of the response 1 / (1 + (2 pi l f)^2), which is K0(r / l) / (2 pi l^2): what diffuses and is lost on its way, and
-    /// Frieser's scatter.
+    /// Builds the spread with the response 1 / (1 + (2 pi l f)^2), which is K0(r / l) / (2 pi l^2): diffusion with loss, and Frieser's
+    /// scatter.
     ///
-    /// 1 / (1 + x^2) is the integral of exp(-t (1 + x^2)) over t from 0 on: one Gaussian for each t, taken at even steps of log t,
-    /// where the sum is within 1e-6 of the integral.
+    /// 1 / (1 + x^2) is the integral of exp(-t (1 + x^2)) over t from 0 on: one Gaussian for each t. Equal steps of log t give a sum within
+    /// 1e-6 of the integral.
     pub(crate) fn bessel(length_mm: f64) -> Self {
         const STEP: f64 = 0.5;
         let term = |k: i32| {
@@ -41,14 +41,14 @@ impl PointSpread {
         &self.terms
     }
 
-    /// Share of the light a mm^2 at the distance `r_mm` from the point.
+    /// Returns the fraction of the light per mm^2 at the distance `r_mm` from the point.
     #[must_use]
     pub fn per_mm2(&self, r_mm: f64) -> f64 {
         let term = |[s, w]: &[f64; 2]| w * exp(-r_mm * r_mm / (2.0 * s * s)) / (2.0 * PI * s * s);
         self.terms.iter().map(term).sum()
     }
 
-    /// What is left of the contrast of a sine of `frequency` cycles/mm.
+    /// Returns the fraction of contrast that a sine of `frequency` cycles/mm keeps.
     #[must_use]
     pub fn response(&self, frequency: f64) -> f64 {
         let term = |[s, w]: &[f64; 2]| {
@@ -58,9 +58,9 @@ impl PointSpread {
         self.terms.iter().map(term).sum()
     }
 
-    /// The distance, mm, beyond which less than `share` of the light lies.
+    /// Returns the distance, mm, beyond which less than `share` of the light lies.
     pub(crate) fn reach_mm(&self, share: f64) -> f64 {
-        // Beyond r lies exp(-r^2 / (2 s^2)) of a Gaussian.
+        // The part exp(-r^2 / (2 s^2)) of a Gaussian lies beyond r.
         let beyond = |r: f64| self.terms.iter().map(|[s, w]| w * exp(-r * r / (2.0 * s * s))).sum::<f64>();
         let widest = self.terms.iter().map(|t| t[0]).fold(0.0, f64::max);
         let (mut left, mut right) = (0.0, widest * (-2.0 * log(share)).sqrt());
@@ -71,8 +71,8 @@ impl PointSpread {
         right
     }
 
-    /// What falls on the pixels around one, `pitch_mm` wide, from a point in its middle; all but `share`, and no farther than
-    /// `most` pixels. It sums to 1.
+    /// Integrates the spread of a point in the center of a pixel over the pixels around it, each `pitch_mm` wide. Leaves out at most
+    /// `share` of the light, and reaches at most `most` pixels. The kernel sums to 1.
     pub(crate) fn over_pixels(&self, pitch_mm: f64, share: f64, most: usize) -> Kernel {
         let all = self.profiles(pitch_mm, share, most);
         let kernel = Kernel::new(all[0].1.len() - 1, |i, j| all.iter().map(|(w, a)| w * a[i] * a[j]).sum());
@@ -80,11 +80,11 @@ impl PointSpread {
         kernel.scaled(1.0 / sum)
     }
 
-    /// The same as a sum of products: of each Gaussian its weight, and what of it falls on the pixels along an axis, from the one
-    /// in its middle on. Together they sum to 1.
+    /// Integrates the spread over pixels as [`PointSpread::over_pixels`] does, as a sum of products. Returns for each Gaussian its weight,
+    /// and its integrals over the pixels along an axis, from the center on. Together they sum to 1.
     pub(crate) fn profiles(&self, pitch_mm: f64, share: f64, most: usize) -> Vec<(f64, Vec<f64>)> {
         let radius = ((self.reach_mm(share) / pitch_mm).ceil() as usize).max(1).min(most);
-        // On the falling side, where nothing cancels.
+        // Integrals are computed on the falling side, without cancellation.
         let along = |sigma: f64| -> Vec<f64> {
             let beyond = |i: usize| normal::below(-(i as f64 + 0.5) * pitch_mm / sigma);
             (0..=radius).map(|i| if i == 0 { 1.0 - 2.0 * beyond(0) } else { beyond(i - 1) - beyond(i) }).collect()
@@ -101,7 +101,7 @@ impl PointSpread {
 mod tests {
     use super::*;
 
-    /// Against the curve it stands for, and K0 by its integral (Abramowitz and Stegun 9.6.24).
+    /// Compares with the exact response, and with K0 by its integral (Abramowitz and Stegun 9.6.24).
     #[test]
     fn diffusion_with_loss_is_a_sum_of_gaussians() {
         let (l, spread) = (0.03, PointSpread::bessel(0.03));
@@ -117,7 +117,7 @@ mod tests {
         }
     }
 
-    /// Beyond the reach lies the share, by the integral over rings.
+    /// The fraction `share` lies beyond the reach, by integration over rings.
     #[test]
     fn reach_is_where_the_share_is_left() {
         let spread = PointSpread::new(vec![[0.003, 3.0], [0.011, 1.0]]);

@@ -1,21 +1,21 @@
-//! A spread on planes of one size, by what costs less: products of profiles, or transforms.
+//! Applies a point spread to planes of one size by the cheaper method: products of profiles, or Fourier transforms.
 
 use super::PointSpread;
 use crate::raster::Raster;
 use spectra_numerics::convolve::{Convolver, Products};
 
-/// Part of what may be beyond the kernel that may be beyond each Gaussian: where one ends others are a hundred times as
+/// Each Gaussian may lose this fraction of the light that the whole kernel may lose: where one Gaussian ends, others are a hundred times as
 /// bright.
 const OF_A_TERM: f64 = 0.01;
 
-/// A spread made ready.
+/// A point spread prepared for planes of one size.
 pub(crate) enum Spreading {
     Products(Products),
     Transforms(Convolver),
 }
 
 impl Spreading {
-    /// All of a spread but the part `beyond`, and no farther than `most` pixels.
+    /// Prepares a spread, except for the fraction `beyond` and light beyond `most` pixels.
     pub(crate) fn new(spread: &PointSpread, raster: &Raster, beyond: f64, most: usize) -> Self {
         let (width, height) = (raster.width, raster.height);
         let most = most.min(width.max(height)).max(1);
@@ -28,7 +28,7 @@ impl Spreading {
         Self::Transforms(Convolver::new(&spread.over_pixels(raster.pitch_mm, beyond, most), width, height))
     }
 
-    /// The plane `source` spread: each value is given to `write` with its target.
+    /// Spreads the plane `source`; calls `write` with each target pixel and its value.
     pub(crate) fn apply(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, f64) + Sync) {
         match self {
             Self::Products(products) => products.apply(source, target, |to, v| write(to, f64::from(v))),

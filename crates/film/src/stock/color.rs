@@ -1,48 +1,48 @@
-//! What the layers of a color film do to each other, and what a print is timed to.
+//! Interaction between the layers of a color film, and aim densities of print stocks.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Params};
 
-/// What a print stock is coated on, and so how it is looked at.
+/// Base of a print stock, which determines how the print is viewed.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum Medium {
     /// A transparent base: projected in the dark.
     #[default]
     Film,
-    /// Paper: looked at in a lit room. Densities are of reflection.
+    /// Paper: viewed in a lit room. Densities are reflection densities.
     Paper,
 }
 
-/// Inhibition of one layer's development by what develops in the others.
+/// Inhibition of one layer's development by the development of the others.
 ///
-/// With the densities of a neutral subject in all layers nothing changes: their effect on each other is in the sheet's curves
-/// already. A layer that has less beside it than a neutral of its own exposure would bring develops more, as if exposed more.
+/// Nothing changes if all layers have the densities of a neutral subject, because the sheet's curves already include their interaction. If
+/// the other layers have less dye than for a neutral subject of its exposure, a layer develops more, as if it were exposed more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interlayer {
-    /// Rows: the inhibited layer; columns: the layer that inhibits it, both in the order of the stock. Log10 of exposure per
-    /// unit of dye that develops in the other layer.
+    /// Rows: the inhibited layer; columns: the inhibiting layer, both in the order of the stock. Log10 of exposure per unit of dye that
+    /// develops in the inhibiting layer.
     pub inhibition: Vec<Vec<f64>>,
-    /// Whether it was chosen rather than measured.
+    /// Whether the values are assumed, not measured.
     pub assumed: bool,
-    /// What it rests on.
+    /// Reasons for the values.
     pub remark: Option<String>,
 }
 
-/// Densities that the print of a mid gray is timed to, base and fog included.
+/// Densities to which the print of a mid gray is timed, including base and fog.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AimDensity {
-    /// Through the red filter.
+    /// Density through the red filter.
     pub red: f64,
-    /// Through the green filter.
+    /// Density through the green filter.
     pub green: f64,
-    /// Through the blue filter.
+    /// Density through the blue filter.
     pub blue: f64,
 }
 
 impl AimDensity {
-    /// Through the filter called `name`: `red`, `green` or `blue`.
+    /// Returns the density through the filter with this name: `red`, `green` or `blue`.
     #[must_use]
     pub fn of(&self, name: &str) -> Option<f64> {
         match name {
@@ -61,10 +61,10 @@ pub(super) struct InterlayerFile {
     /// Whether it was chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
-    /// Doubts and choices, for people.
+    /// Remarks for people, for example doubts and choices.
     remark: Option<String>,
-    /// A row for each layer, in the order of the layers: by how much, in log10 of exposure, a unit of dye in each of the
-    /// others inhibits it, 0 to 2.
+    /// A row for each layer, in the order of the layers: by how much, in log10 of exposure, a unit of dye in each of the others inhibits
+    /// it, 0 to 2.
     inhibition: Vec<Vec<f64>>,
 }
 
@@ -76,9 +76,11 @@ impl InterlayerFile {
             faults.push(fault.hint("add a `remark` that says what it is based on"));
         }
         if self.inhibition.len() != layers || self.inhibition.iter().any(|row| row.len() != layers) {
-            let fault = params
-                .fault("interlayer.inhibition", format!("a film of {layers} layers needs {layers} rows of {layers}"));
-            faults.push(fault.hint("`[[0, 0.1, 0], [0.2, 0, 0.2], [0, 0.1, 0]]`: 0 where a layer meets itself"));
+            let fault = params.fault(
+                "interlayer.inhibition",
+                format!("a film of {layers} layers needs {layers} rows of {layers} numbers"),
+            );
+            faults.push(fault.hint("`[[0, 0.1, 0], [0.2, 0, 0.2], [0, 0.1, 0]]`: 0 for each layer on itself"));
         } else {
             for (i, row) in self.inhibition.iter().enumerate() {
                 for (j, value) in row.iter().enumerate() {
@@ -98,7 +100,7 @@ fn bad_inhibition(params: &Params, i: usize, j: usize, value: f64) -> Option<Fau
     let at = format!("interlayer.inhibition[{i}][{j}]");
     match value {
         _ if i == j && value != 0.0 => {
-            let fault = params.fault(&at, "what a layer does to itself is in its curve");
+            let fault = params.fault(&at, "the effect of a layer on itself is already in its curve");
             Some(fault.hint("write 0 here"))
         }
         v if !(0.0..=2.0).contains(&v) => {
@@ -108,7 +110,7 @@ fn bad_inhibition(params: &Params, i: usize, j: usize, value: f64) -> Option<Fau
     }
 }
 
-/// What a print of a mid gray is timed to.
+/// Densities to which a print of a mid gray is timed.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct AimDensityFile {

@@ -1,4 +1,4 @@
-//! A stock's YAML file: its keys, and the checks that need more than a type.
+//! A stock's YAML file: its keys, and the checks that go beyond types.
 
 use super::color::{AimDensityFile, InterlayerFile, Medium};
 use super::like::inherited;
@@ -21,15 +21,16 @@ use spectra_spectrum::table::{MAX_BYTES, Table, TableFault};
 use spectra_spectrum::{Emission, Kind, Scale, SpectrumError, find_emission_in};
 use std::borrow::Cow;
 
-/// A film stock: its layers, how they see, how they develop, and where the figures come from.
+/// A film stock: its layers, their sensitivity and development, and the source of the figures.
 ///
-/// What is not known is left out: a stock without grain, halation or modulation transfer in its file has none in the
-/// picture. A figure that somebody chose rather than measured says `assumed: true`, with a `remark` on what it rests
-/// on. Exposures are photometric lux-seconds of the `reference-illuminant`, densities are decadic.
+/// Leave out what is not known: a stock without grain, halation or modulation transfer in its file has none in the picture. A figure that
+/// was chosen rather than measured needs `assumed: true` and a `remark` that gives the reasons.
+/// Exposures are photometric lux-seconds of the `reference-illuminant`, densities are decadic.
 ///
-/// A black-and-white film has one layer, whose curve holds base and fog. A color film has a layer for each dye, from
-/// the one seen by blue light on, each with its `dye`; their curves are integral densities, and `minimum-density` is
-/// the spectrum of base, fog and mask. Layers are developed together: each has a curve for each development.
+/// A black-and-white film has one layer, whose curve includes base and fog. A color film has a layer for each dye, starting with the one
+/// that is sensitive to blue light, each with its `dye`.
+/// The curves of a color film are integral densities, and `minimum-density` is the spectrum of base, fog and mask. Layers are developed
+/// together: each has a curve for each development.
 ///
 /// # Example
 /// ```yaml
@@ -53,80 +54,79 @@ use std::borrow::Cow;
 ///   - {formats: "135", material: triacetate, thickness: 0.125 mm, index: 1.48}
 /// ```
 /// # References
-/// - ISO 6:1993: the exposure 0.8/S lx s gives the density 0.1 over base and fog.
-/// - ISO 7589: the illuminants that sensitivities are scaled by.
+/// - ISO 6:1993: the exposure 0.8/S lx s gives the density 0.1 above base and fog.
+/// - ISO 7589: the illuminants by which sensitivities are scaled.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct StockFile {
-    /// Format of the file: 1; 1 if absent.
+    /// Format version of the file: 1; 1 if absent.
     #[expect(dead_code, reason = "its schema allows one version")]
     spectra: Option<Whole<1, 1>>,
     /// Name for people.
     name: String,
-    /// Who makes or made it; not known if absent.
+    /// Maker of the film; not known if absent.
     maker: Option<String>,
-    /// Where the figures come from: sheet, edition, who digitized it.
+    /// Source of the figures: sheet, edition, who digitized it.
     source: String,
     /// License of the figures; required.
     license: Option<String>,
-    /// The same, as older files write it.
+    /// Older spelling of `license`.
     licence: Option<String>,
-    /// Doubts and choices, for people.
+    /// Remarks for people, for example doubts and choices.
     remark: Option<String>,
-    /// What it becomes: `negative` (the default), `reversal` (a positive, to be projected) or `print` (a positive from
-    /// a negative, which has no speed).
+    /// Kind of stock: `negative` (the default), `reversal` (a positive, to be projected) or `print` (a positive made from a negative, which
+    /// has no speed).
     #[serde(default)]
     process: ProcessFile,
-    /// What a print stock is coated on: `film` (the default; projected in the dark) or `paper` (looked at in a lit room).
+    /// Base of a print stock: `film` (the default; projected in the dark) or `paper` (viewed in a lit room).
     #[serde(default)]
     medium: Medium,
-    /// How its densities were measured: `visual` (the default; silver), `status-a` (positives with dyes) or `status-m`
-    /// (negatives with dyes).
+    /// Kind of densitometry: `visual` (the default; silver), `status-a` (positives with dyes) or `status-m` (negatives with dyes).
     #[serde(default)]
     density: DensityFile,
     /// Year in which it was first sold; not known if absent.
     year: Option<i32>,
-    /// Speed in daylight, which meters are set to; what is no `process: print` must state it.
+    /// Speed in daylight, to which meters are set. Required unless `process: print`.
     iso: Option<Positive<f64>>,
     /// Speed in tungsten light; for the record. Not known if absent.
     iso_tungsten: Option<Positive<f64>>,
-    /// What these speeds are: `iso` (the default; of a standard), `exposure-index` (what the maker says to set the meter
-    /// to) or `assumed`.
+    /// Kind of the stated speeds: `iso` (the default; by a standard), `exposure-index` (the maker's recommendation for the meter) or
+    /// `assumed`.
     #[serde(default)]
     speed: SpeedKind,
-    /// What the exposures of curves' `points` count from: `lux-seconds` (the default) or `relative`, as of sheets that print a relative log
-    /// exposure: all curves are then slid together until the first development has the speed `iso`, by ISO 6 of a silver negative, ISO 5800 of
-    /// a color negative, ISO 2240 of a reversal film.
+    /// Zero of the exposures in the curves' `points`: `lux-seconds` (the default) or `relative`, for sheets that print a relative log
+    /// exposure.
+    /// Relative curves are shifted together until the first development has the speed `iso`: by ISO 6 for a silver negative, ISO 5800 for a
+    /// color negative, ISO 2240 for a reversal film.
     #[serde(default)]
     exposure: ExposureFile,
-    /// What a meter for it weighs light by: `photopic` (the default; as the eye does) or `film` (the film's own
-    /// sensitivity, as the actinometers for plates did). A film of several layers has the first.
+    /// Spectral response of its meter: `photopic` (the default; the eye's) or `film` (the film's own sensitivity, like the actinometers for
+    /// plates). A film of several layers must use `photopic`.
     #[serde(default)]
     meter: MeterResponse,
-    /// The light whose exposure is counted in photometric lux-seconds, by name: mostly
-    /// `iso-7589-sensitometric-daylight`.
+    /// Name of the light whose exposure is counted in photometric lux-seconds: mostly `iso-7589-sensitometric-daylight`.
     reference_illuminant: String,
-    /// The print stock that it is printed on where a scene names none, by name; paper, or none, if absent.
+    /// Name of the print stock on which it is printed if a scene names none; paper, or none, if absent.
     print: Option<String>,
     /// Spectrum of base, fog and mask of a film with dyes; nothing if absent.
     minimum_density: Option<MinimumDensityFile>,
-    /// What the layers of a color film do to each other; nothing if absent.
+    /// Interaction between the layers of a color film; nothing if absent.
     interlayer: Option<InterlayerFile>,
-    /// Of a color print stock: the densities that the print of a mid gray is timed to, base included (the laboratory aim
-    /// density, LAD, of Kodak's print films). A mid gray of the picture if absent.
+    /// Densities to which the print of a mid gray is timed on a color print stock, including the base (the laboratory aim density, LAD, of
+    /// Kodak's print films). A mid gray of the picture if absent.
     aim_density: Option<AimDensityFile>,
-    /// What was chosen rather than measured in all layers, each with what it rests on; nothing if absent.
+    /// Figures that were chosen rather than measured for all layers, each with its reasons; nothing if absent.
     assumed: Option<AssumptionsFile>,
     /// Granularity of its silver; no grain if absent.
     granularity: Option<GranularityFile>,
-    /// What the base throws back, a halo around bright lights; nothing if absent.
+    /// Light that the base reflects back, a halo around bright lights; nothing if absent.
     halation: Option<HalationFile>,
-    /// Its layers, one or more; each a channel of the exposure.
+    /// Layers, one or more; each is a channel of the exposure.
     layers: Vec<LayerFile>,
-    /// What it is coated on, by format; the first is taken for halation. Not known if absent.
+    /// Bases on which it is coated, by format; the first is used for halation. Not known if absent.
     #[serde(default)]
     bases: Vec<BaseFile>,
-    /// What long exposures lose; nothing if absent.
+    /// Loss of speed at long exposures; nothing if absent.
     reciprocity: Option<ReciprocityFile>,
     /// Factors by which filters lengthen the exposure, as the maker states them; for the record. Not known if absent.
     #[serde(default)]
@@ -141,87 +141,85 @@ enum ProcessFile {
     Negative,
     /// A reversal film: a positive, to be projected.
     Reversal,
-    /// A print stock: a positive from a negative.
+    /// A print stock: a positive made from a negative.
     Print,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerFile {
-    /// Its name, and that of its channel; each layer has another.
+    /// Name of the layer and of its channel; different for each layer.
     name: String,
-    /// Its spectral sensitivity, of which only the form counts: the speed is in the curve.
+    /// Spectral sensitivity, of which only the shape counts: the speed is in the curve.
     sensitivity: SensitivityFile,
-    /// The dye that forms in it; silver if absent.
+    /// Dye that forms in the layer; silver if absent.
     dye: Option<DyeFile>,
-    /// Modulation transfer of the emulsion: pairs of spatial frequency, cycles/mm, increasing, and response, 0 to 2.
-    /// Light is not spread if absent.
+    /// Modulation transfer of the emulsion: pairs of spatial frequency, cycles/mm, increasing, and response, 0 to 2. Light is not spread if
+    /// absent.
     #[serde(default)]
     mtf: Vec<[f64; 2]>,
-    /// Of a layer with a dye, its granularity: pairs of density over the minimum, as read through the filter of its dye on
-    /// neutral film, increasing, and 1000 times the standard deviation through 48 um. No grain if absent.
+    /// Granularity of a layer with a dye: pairs of density above the minimum, measured through the filter of its dye on neutral film,
+    /// increasing, and 1000 times the standard deviation through 48 um. No grain if absent.
     #[serde(default)]
     granularity: Vec<[f64; 2]>,
-    /// Its characteristic curves, one for each development.
+    /// Characteristic curves, one for each development.
     curves: Vec<CurveFile>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SensitivityFile {
-    /// A CSV file beside this one with the sensitivity over wavelength; or else `table`.
+    /// CSV file next to this one with the sensitivity over wavelength; or else `table`.
     file: Option<String>,
-    /// Its column of that file; may be left out where there is only one.
+    /// Column of that file; may be left out if there is only one.
     column: Option<String>,
-    /// Pairs of wavelength, nm, increasing, and sensitivity; or else `file`. Outside of the table nothing is seen.
+    /// Pairs of wavelength, nm, increasing, and sensitivity; or else `file`. Zero outside the table.
     table: Option<Vec<[f64; 2]>>,
-    /// What the values are: `linear` (in proportion to one over the energy that gives a fixed density) or `log10` of
-    /// that.
+    /// Scale of the values: `linear` (proportional to one over the energy that gives a fixed density) or `log10` of that.
     reading: ReadingFile,
-    /// Of a logarithmic one: the value that stands for no sensitivity at all, at the foot of the figure. None if
-    /// absent.
+    /// Value of a logarithmic table that means no sensitivity at all, at the foot of the figure. None if absent.
     floor: Option<f64>,
-    /// The light that the figure was made with: `equal-energy`, or an illuminant by name, which is divided out.
+    /// Light with which the figure was made: `equal-energy`, or the name of an illuminant, by which the values are divided.
     measured_under: String,
     /// Whether it was chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
-    /// Doubts and choices, for people.
+    /// Remarks for people, for example doubts and choices.
     remark: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "kebab-case")]
 enum ReadingFile {
-    /// In proportion to one over the energy that gives a fixed density.
+    /// Proportional to one over the energy that gives a fixed density.
     Linear,
-    /// Logarithm to base 10 of that.
+    /// Logarithm to base 10 of the linear sensitivity.
     Log10,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct CurveFile {
-    /// Name of the development, by which a scene chooses it.
+    /// Name of the development, by which a scene selects it.
     development: String,
-    /// Time in the developer, min; not known if absent. Curves with a time are a series, in which a scene can `push`.
+    /// Development time, min; not known if absent. Curves with a time form a series, in which a scene can `push`.
     minutes: Option<Positive<f64>>,
     /// Whether it was chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
-    /// Developer, temperature, doubts; for people.
+    /// Remarks for people: developer, temperature, doubts.
     remark: Option<String>,
-    /// As printed: pairs of log10 exposure (lx s of the reference illuminant), increasing, and density. In place of the
-    /// four numbers below.
+    /// The printed curve: pairs of log10 exposure (lx s of the reference illuminant), increasing, and density. Replaces the four numbers
+    /// below.
     points: Option<Vec<[f64; 2]>>,
-    /// Of a curve that is assumed: slope of the chord from the speed point, 0.8/S lx s, over 1.5 in log10 exposure.
+    /// Slope of an assumed curve: that of the chord from the speed point, 0.8/S lx s, over 1.5 in log10 exposure.
     average_gradient: Option<f64>,
-    /// Of a curve that is assumed: maximum density over base and fog.
+    /// Maximum density of an assumed curve, above base and fog.
     maximum_density: Option<f64>,
-    /// Of a curve that is assumed: width of the toe, log10 of exposure, above 0 to 2.
+    /// Width of the toe of an assumed curve, log10 of exposure, above 0 to 2.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 2))]
     toe: Option<f64>,
-    /// Of a curve that is assumed: sharpness of the shoulder, 1 to 64.
+    /// Sharpness of the shoulder of an assumed curve, 1 to 64.
     #[schemars(range(min = 1, max = 64))]
     shoulder: Option<f64>,
 }
@@ -231,20 +229,20 @@ struct CurveFile {
 struct FilterFactorFile {
     /// Name of the filter.
     filter: String,
-    /// Factor in daylight: so many times longer.
+    /// Exposure factor in daylight.
     daylight: Positive<f64>,
-    /// Factor in tungsten light: so many times longer.
+    /// Exposure factor in tungsten light.
     tungsten: Positive<f64>,
 }
 
-/// The schema of a stock file.
+/// Returns the schema of a stock file.
 pub(super) fn schema(generator: &mut SchemaGenerator) -> Schema {
     let mut whole = StockFile::json_schema(generator);
     if let Some(Value::Object(keys)) = whole.get_mut("properties") {
-        let text = "The stock whose keys, but for `maker` and `year`, hold where this file states none: a bundled one, or a file beside this.";
+        let text = "Base stock, bundled or a file next to this one: its keys, except `maker` and `year`, apply where this file has none.";
         keys.insert("like".to_owned(), json!({ "type": "string", "description": text }));
     }
-    // A stock that is like another one states a part of this.
+    // A stock that is based on another one may leave out required keys.
     let required = whole.remove("required").unwrap_or_else(|| json!([]));
     whole.insert("if".to_owned(), json!({ "required": ["like"] }));
     whole.insert("then".to_owned(), json!({ "required": ["like", "name"] }));
@@ -252,7 +250,7 @@ pub(super) fn schema(generator: &mut SchemaGenerator) -> Schema {
     whole
 }
 
-/// Reads and checks the whole file; every fault of it in one go.
+/// Reads and checks the whole file, and reports all faults together.
 pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, Faults> {
     let params = &inherited(params, resources)?;
     let file: StockFile = params.parse()?;
@@ -268,15 +266,15 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         ProcessFile::Print => Process::Print,
     };
     if file.iso.is_none() && process != Process::Print {
-        let fault = params.fault("iso", "a camera film has a speed");
-        faults.push(fault.hint("`iso: 100`; what has none is a `process: print`"));
+        let fault = params.fault("iso", "a camera film needs a speed");
+        faults.push(fault.hint("write `iso: 100`; only a `process: print` has no speed"));
     }
     if file.meter == MeterResponse::Film && file.layers.len() > 1 {
         let fault = params.fault("meter", "a meter with the film's own sensitivity needs a film with one layer");
         faults.push(fault.hint("`meter: photopic`, or leave it out"));
     }
     if file.medium == Medium::Paper && process != Process::Print {
-        let fault = params.fault("medium", "paper is what negatives are printed on");
+        let fault = params.fault("medium", "only a print stock can be on paper");
         faults.push(fault.hint("`process: print`, or leave `medium` out"));
     }
     let layers = layers(params, &file, reference.as_ref(), resources, &mut faults);
@@ -296,19 +294,19 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         faults.push(fault.hint("leave it out"));
     }
     if file.interlayer.is_some() && dyes == 0 {
-        let fault = params.fault("interlayer", "one layer of silver has no other to act on");
+        let fault = params.fault("interlayer", "a film of one silver layer has no other layer to act on");
         faults.push(fault.hint("leave it out"));
     }
     let interlayer = file.interlayer.as_ref().filter(|_| dyes != 0);
     let interlayer = interlayer.and_then(|i| faults.take(i.read(params, file.layers.len())));
     if file.aim_density.is_some() && (process != Process::Print || dyes != 3) {
-        let fault = params.fault("aim-density", "what a print is timed to belongs to a print stock of three dyes");
+        let fault = params.fault("aim-density", "an aim density belongs to a print stock of three dyes");
         faults.push(fault.hint("leave it out"));
     }
     let aim_density = file.aim_density.and_then(|aim| faults.take(aim.read(params)));
     let granularity = file.granularity.as_ref().and_then(|g| faults.take(g.read(params)));
     if file.granularity.is_some() && dyes != 0 {
-        let fault = params.fault("granularity", "a film with dyes has a granularity in each layer");
+        let fault = params.fault("granularity", "a film with dyes needs a granularity in each layer");
         faults.push(fault.hint("`granularity: [[density over the minimum, RMS], ...]` of each layer"));
     }
     let assumed = file.assumed.map_or(Some(Assumptions::default()), |a| faults.take(a.read(params)));
@@ -360,13 +358,13 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
         filter_factors: file.filter_factors.into_iter().map(filter_factor).collect(),
     })?;
     if exposure == ExposureFile::Relative && stock.slide().is_none() {
-        let fault = params.fault("exposure", "relative exposures are slid to the speed, and these curves have none");
-        return Err(fault.hint("an `iso`, and curves that begin at the density of unexposed film").into());
+        let fault = params.fault("exposure", "relative exposures are shifted to the speed, and these curves give none");
+        return Err(fault.hint("state `iso`, and begin the curves at the density of unexposed film").into());
     }
     Ok(stock)
 }
 
-/// The layers that could be read.
+/// Reads the layers; those with faults are left out.
 fn layers(
     params: &Params,
     file: &StockFile,
@@ -378,7 +376,12 @@ fn layers(
     for (i, layer) in file.layers.iter().enumerate() {
         let at = format!("layers[{i}]");
         if layer.name.is_empty() || file.layers[..i].iter().any(|l| l.name == layer.name) {
-            faults.push(params.fault(&format!("{at}.name"), "each layer has a name of its own: it names the channel"));
+            faults.push(
+                params.fault(
+                    &format!("{at}.name"),
+                    "each layer needs a name of its own, which is also that of its channel",
+                ),
+            );
         }
         if layer.sensitivity.assumed && layer.sensitivity.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
             let fault = params.fault(&format!("{at}.sensitivity.assumed"), "an assumed sensitivity needs a remark");
@@ -429,7 +432,7 @@ fn reference(params: &Params, name: &str, resources: &dyn Resources) -> Result<E
     })
 }
 
-/// The light that a key of the stock's file names: a bundled one, or a file beside the stock's.
+/// Finds the light that a key of the stock's file names: a bundled one, or a file next to the stock's.
 fn light(params: &Params, key: &str, name: &str, resources: &dyn Resources) -> Result<Emission, SpectrumError> {
     match params.node().at_path(key) {
         Some(node) => find_emission_in(&beside_spectrum(node, name), resources),
@@ -492,7 +495,7 @@ fn points(
         (Some(_), Some(_)) => {
             return Err(params
                 .fault(&format!("{at}.table"), "the sensitivity is given twice")
-                .hint("either file or table")
+                .hint("give either `file` or `table`")
                 .into());
         }
     };
@@ -510,7 +513,7 @@ fn points(
         let placed = e.fault();
         match e.cause {
             TableFault::Negative { .. } | TableFault::AboveBound { .. } => {
-                placed.hint("logarithms are read by `reading: log10`")
+                placed.hint("for logarithms, write `reading: log10`")
             }
             _ => placed,
         }
@@ -538,8 +541,8 @@ fn columns(table: &Table) -> String {
     format!("`column`: {}", table.columns.join(", "))
 }
 
-/// The file `name` that a value of a stock's file names: beside that file, bundled where the stock is, else as the scene
-/// finds it.
+/// Reads the file `name` that a value of a stock's file names: next to that file, or bundled if the stock is, or else where the scene finds
+/// it.
 fn read_beside(written: &Node, name: &str, resources: &dyn Resources) -> Result<Resource, ResourceError> {
     let read = |path: &str| resources.read(path, &[super::FOLDER], &[], MAX_BYTES);
     if written.file.folder().is_none() {
@@ -550,7 +553,7 @@ fn read_beside(written: &Node, name: &str, resources: &dyn Resources) -> Result<
     read(&beside(written, name))
 }
 
-/// The name of a spectrum, of a file beside the one that names it if there is such a file; its column stays.
+/// Returns the name of a spectrum, resolved to a file next to the one that names it if there is such a file. The column is kept.
 fn beside_spectrum(written: &Node, name: &str) -> String {
     match name.rsplit_once('#') {
         Some((file, column)) => format!("{}#{column}", beside(written, file)),
@@ -591,7 +594,7 @@ fn curve(params: &Params, at: &str, file: &CurveFile, iso: Option<f64>) -> Resul
     ];
     if let Some(points) = &file.points {
         if let Some((key, _)) = shape.iter().find(|(_, v)| v.is_some()) {
-            return Err(params.fault(&format!("{at}.{key}"), "a curve given by `points` has no other shape"));
+            return Err(params.fault(&format!("{at}.{key}"), "a curve given by `points` can have no other shape"));
         }
         return TabulatedCurve::new(points).map(Into::into).map_err(|error| {
             let (key, hint) = match &error {
@@ -610,10 +613,10 @@ fn curve(params: &Params, at: &str, file: &CurveFile, iso: Option<f64>) -> Resul
         return Err(params.fault(at, text).hint("or `points`: pairs of log10 exposure (lx s) and density"));
     };
     let Some(iso) = iso else {
-        let text = "without a speed, a curve is given by `points`";
+        let text = "without a speed, a curve must be given by `points`";
         return Err(params.fault(at, text).hint("pairs of log10 exposure (lx s) and density"));
     };
-    // ISO 6:1993: the exposure 0.8/S lx s gives the density 0.1 over base and fog.
+    // ISO 6:1993: the exposure 0.8/S lx s gives the density 0.1 above base and fog.
     let low = [log10(0.8 / iso), SPEED_POINT_DENSITY];
     let high = [low[0] + AVERAGE_GRADIENT_SPAN, low[1] + AVERAGE_GRADIENT_SPAN * gradient];
     ToeShoulder::through(low, high, toe, maximum, shoulder).map(Into::into).map_err(|error| {
@@ -628,13 +631,13 @@ fn curve(params: &Params, at: &str, file: &CurveFile, iso: Option<f64>) -> Resul
     })
 }
 
-/// Layers are developed together, so each has a curve for each development.
+/// Returns faults for layers with other developments than the first: layers are developed together.
 fn unlike_developments(params: &Params, layers: &[LayerFile]) -> Vec<Fault> {
     let names = |layer: &LayerFile| layer.curves.iter().map(|c| c.development.clone()).collect::<Vec<_>>();
     let Some(first) = layers.first().map(names) else {
         return Vec::new();
     };
     let unlike = layers.iter().enumerate().filter(|(_, layer)| names(layer) != first);
-    let text = format!("the developments are those of the first layer: {}", first.join(", "));
+    let text = format!("each layer needs the developments of the first layer: {}", first.join(", "));
     unlike.map(|(i, _)| params.fault(&format!("layers[{i}].curves"), &text)).collect()
 }

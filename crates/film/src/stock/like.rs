@@ -1,15 +1,16 @@
-//! A stock that is like another one, but for what its file states: `like: kodak-tri-x-400`.
+//! Stocks that are based on another one, except for what their file states: `like: kodak-tri-x-400`.
 //!
-//! Keys of the file go before those of the other one. Of `layers`, a layer of the same name is changed key by key, and one of
-//! a new name is added. `name`, `maker` and `year` are its own; `source` tells from what it was made unless it says otherwise.
+//! Keys of the file take precedence over those of the other stock. In `layers`, a layer of the same name is changed key by key, and one of
+//! a new name is added.
+//! `name`, `maker` and `year` are not inherited. `source` says from what the stock was made, unless the file states it.
 
 use spectra_core::params::{Fault, Faults, Key, Node, Params, Value};
 use spectra_core::resources::{Resources, beside};
 
-/// Longest chain of stocks that are like one another.
+/// Longest chain of stocks that are based on each other.
 const DEEPEST: usize = 8;
 
-/// The whole stock of a file, with what it takes from the one it is like.
+/// Returns the complete stock of a file, including what it takes from the one that it is based on.
 pub(super) fn inherited(params: &Params, resources: &dyn Resources) -> Result<Params, Faults> {
     follow(params, resources, DEEPEST)
 }
@@ -24,12 +25,13 @@ fn follow(params: &Params, resources: &dyn Resources, left: usize) -> Result<Par
             .into());
     };
     if left == 0 {
-        let fault = like.fault(format!("more than {DEEPEST} stocks build on each other by `like`, or one on itself"));
+        let fault =
+            like.fault(format!("more than {DEEPEST} stocks build on each other by `like`, or one builds on itself"));
         return Err(fault.path("like").into());
     }
     let mut faults = Faults::new();
     if params.get("name").is_none() {
-        faults.push(params.fault_here("a stock has a name of its own").hint(format!("`name: {name}, my way`")));
+        faults.push(params.fault_here("the stock needs a name of its own").hint(format!("`name: {name}, my way`")));
     }
     let other = resources.document(&beside(like, name), &[super::FOLDER], &[".yaml", ".yml"]);
     let other = faults.take(other.map_err(|faults| params.place_at("like", faults)));
@@ -39,14 +41,14 @@ fn follow(params: &Params, resources: &dyn Resources, left: usize) -> Result<Par
     Params::section(merged(params.node(), other.node()), params.path())
 }
 
-/// The map `own` with what only `other` has.
+/// Merges two maps: `own`, and the keys that only `other` has.
 fn merged(own: &Node, other: &Node) -> Node {
     let (Value::Map(mine), Value::Map(theirs)) = (&own.value, &other.value) else { return own.clone() };
     let mut entries: Vec<(Key, Node)> = Vec::new();
     for (key, value) in theirs {
         let value = match (key.text.as_str(), own.get(&key.text)) {
             ("source", None) => made_from(own, value),
-            // Who made that one and when is not said of this one.
+            // Maker and year of the other stock do not apply to this one.
             ("maker" | "year", None) => continue,
             (_, None) => value.clone(),
             ("layers", Some(layers)) => layers_of(layers, value),
@@ -59,7 +61,7 @@ fn merged(own: &Node, other: &Node) -> Node {
     Node { value: Value::Map(entries), ..own.clone() }
 }
 
-/// Layers that the other stock does not have and that are not whole: a name that is another one there.
+/// Faults for incomplete layers that the other stock does not have: their names are probably misspelled.
 fn strange_layers(own: &Params, other: &Params, like: &str) -> Vec<Fault> {
     let layers = |of: &Params| match of.get("layers").map(|node| node.value.clone()) {
         Some(Value::Seq(layers)) => layers,
@@ -73,13 +75,13 @@ fn strange_layers(own: &Params, other: &Params, like: &str) -> Vec<Fault> {
         (!is_whole).then(|| {
             let fault = own.fault(&format!("layers[{i}].name"), format!("`{like}` has no layer `{name}`"));
             let s = if known.len() == 1 { "its layer is" } else { "its layers are" };
-            fault.hint(format!("{s} `{}`; a new one has `sensitivity` and `curves`", known.join("`, `")))
+            fault.hint(format!("{s} `{}`; a new layer needs `sensitivity` and `curves`", known.join("`, `")))
         })
     };
     layers(own).iter().enumerate().filter_map(strange).collect()
 }
 
-/// Where the figures come from, and which of them were changed.
+/// Source of the figures, with a list of the changed ones.
 fn made_from(own: &Node, source: &Node) -> Node {
     let Value::Map(mine) = &own.value else { return source.clone() };
     let changed = mine.iter().map(|(key, _)| key.text.as_str());
@@ -89,7 +91,7 @@ fn made_from(own: &Node, source: &Node) -> Node {
     Node { value: Value::String(text), ..source.clone() }
 }
 
-/// Layers of the other stock, changed by those of the same name, and the new ones behind them.
+/// Layers of the other stock, changed by those of the same name, followed by the new ones.
 fn layers_of(own: &Node, other: &Node) -> Node {
     let (Value::Seq(mine), Value::Seq(theirs)) = (&own.value, &other.value) else { return own.clone() };
     let name = |node: &Node| node.get("name").and_then(Node::as_str).map(str::to_owned);

@@ -1,4 +1,4 @@
-//! What a developed film holds back, wavelength by wavelength, and how that is measured.
+//! Spectral density of developed film, and how density is measured.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -8,23 +8,23 @@ use spectra_core::spectral::{BAND, Grid};
 use spectra_spectrum::Kind;
 use spectra_spectrum::table::Table;
 
-/// Optical density (transmission, diffuse) over wavelengths, straight between points, held beyond them.
+/// Optical density (transmission, diffuse) over wavelength: linear between points, constant beyond them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectralDensity {
     points: Vec<[f64; 2]>,
 }
 
 impl SpectralDensity {
-    /// Points (wavelength in nm, density), wavelengths increasing.
+    /// Builds a density from points (wavelength in nm, density), wavelengths increasing.
     ///
     /// # Errors
-    /// A text that says which point is no density: wavelengths that do not increase, or values beyond -1 to 10 (the
-    /// difference of two measurements may come out a little below 0).
+    /// A text that says which point is wrong: wavelengths that do not increase, or values outside -1 to 10 (the difference of two
+    /// measurements may be a little below 0). Also if there are no points.
     pub fn new(points: &[[f64; 2]]) -> Result<Self, String> {
         let mut before = 0.0;
         for [nm, density] in points {
             if !(*nm > before && nm.is_finite()) {
-                return Err(format!("wavelengths increase: {nm} nm comes after {before} nm"));
+                return Err(format!("wavelengths must increase: {nm} nm comes after {before} nm"));
             }
             if !(-1.0..=10.0).contains(density) {
                 return Err(format!("{density} at {nm} nm is not a density"));
@@ -37,13 +37,13 @@ impl SpectralDensity {
         Ok(Self { points: points.to_vec() })
     }
 
-    /// The points.
+    /// Points of the table: wavelength in nm, and density.
     #[must_use]
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points
     }
 
-    /// Density at a wavelength.
+    /// Returns the density at a wavelength.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         let i = self.points.partition_point(|p| p[0] <= wavelength_nm);
@@ -55,46 +55,46 @@ impl SpectralDensity {
         y0 + (y1 - y0) * (wavelength_nm - x0) / (x1 - x0)
     }
 
-    /// Densities on a grid.
+    /// Returns the densities at the wavelengths of a grid.
     #[must_use]
     pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
         grid.wavelengths_nm().map(|w| self.at(w)).collect()
     }
 }
 
-/// The dye of one layer.
+/// The dye of one layer: name and spectral density.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dye {
-    /// Its name: `cyan`, `magenta`, `yellow`.
+    /// Name of the dye: `cyan`, `magenta`, `yellow`.
     pub name: String,
-    /// Its density; the amount in the table is the unit in which amounts are counted.
+    /// Spectral density of the unit amount; amounts are counted in this unit.
     pub density: SpectralDensity,
 }
 
-/// What is left where nothing was exposed: base, fog, mask.
+/// Minimum density of unexposed film: base, fog, mask.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MinimumDensity {
-    /// It.
+    /// Spectral density of base, fog and mask.
     pub density: SpectralDensity,
-    /// Whether the sheet has no such figure.
+    /// Whether the density is assumed because the sheet has none.
     pub assumed: bool,
-    /// What it rests on.
+    /// Reasons for the values.
     pub remark: Option<String>,
 }
 
-/// How densities of a curve were measured.
+/// Densitometry with which the densities of a curve were measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Densitometry {
-    /// Of silver, by eye: the same at all wavelengths.
+    /// Visual density, for silver: the same at all wavelengths.
     Visual,
-    /// Status A of ISO 5-3: what is looked at.
+    /// Status A of ISO 5-3: for positives, which are viewed.
     StatusA,
-    /// Status M of ISO 5-3: what is printed.
+    /// Status M of ISO 5-3: for negatives, which are printed.
     StatusM,
 }
 
 impl Densitometry {
-    /// Its name.
+    /// Name of the densitometry in a stock file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -104,8 +104,8 @@ impl Densitometry {
         }
     }
 
-    /// The spectral products of its channels (of ISO 5-3:2009) on the band, each of integral 1, for layers called
-    /// `names`; `None` for a visual density, which all wavelengths share, and for a name other than red, green and blue.
+    /// Returns the spectral products of the channels (ISO 5-3:2009) on the band, each with integral 1, for layers with these names. `None`
+    /// for visual density, which is the same at all wavelengths, and if a name is not red, green or blue.
     #[must_use]
     pub fn products(self, names: &[&str]) -> Option<Vec<Vec<f64>>> {
         let path = match self {
@@ -119,7 +119,7 @@ impl Densitometry {
             .iter()
             .map(|name| {
                 let column = table.columns.iter().position(|c| c == name)?;
-                // 0 is nothing at all: the tables are logarithms with 5 at the peak.
+                // 0 means no response: the tables are logarithms with 5 at the peak.
                 let points = table.wavelengths_nm.iter().zip(table.values[column].iter());
                 let points: Vec<[f64; 2]> = points.map(|(w, v)| [*w, *v]).collect();
                 let logarithm = SpectralDensity::new(&points).ok()?;
@@ -136,7 +136,7 @@ impl Densitometry {
     }
 }
 
-/// How densities were measured.
+/// Densitometry with which densities were measured.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum DensityFile {
@@ -162,8 +162,8 @@ pub(super) fn densitometry(params: &Params, file: DensityFile, layers: usize) ->
             Err(fault.hint("`density: status-m` for negatives, `density: status-a` for positives"))
         }
         (Densitometry::StatusA | Densitometry::StatusM, layers) if layers != 3 => {
-            let text = format!("{} densities are of three layers, not {layers}", densitometry.name());
-            Err(params.fault("density", text).hint("layers called red, green and blue"))
+            let text = format!("{} densities need three layers, not {layers}", densitometry.name());
+            Err(params.fault("density", text).hint("name the layers red, green and blue"))
         }
         _ => Ok(densitometry),
     }
@@ -173,7 +173,7 @@ pub(super) fn densitometry(params: &Params, file: DensityFile, layers: usize) ->
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct DyeFile {
-    /// Its color or name.
+    /// Color or name of the dye.
     name: String,
     /// Pairs of wavelength, nm, increasing, and density of the amount 1 of the dye.
     table: Vec<[f64; 2]>,
@@ -190,16 +190,16 @@ impl DyeFile {
     }
 }
 
-/// Base, fog and mask of a film with dyes.
+/// Minimum density of a film with dyes: base, fog and mask.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct MinimumDensityFile {
     /// Whether it was chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
-    /// Doubts and choices, for people.
+    /// Remarks for people, for example doubts and choices.
     remark: Option<String>,
-    /// Pairs of wavelength, nm, increasing, and density where nothing is exposed.
+    /// Pairs of wavelength, nm, increasing, and density of unexposed film.
     table: Vec<[f64; 2]>,
 }
 

@@ -1,4 +1,4 @@
-//! Film stocks: what a maker's sheet says, each value with its source; what is unknown is absent.
+//! Film stocks: the data of a maker's sheet, each value with its source. Unknown values are absent.
 
 mod color;
 mod file;
@@ -26,115 +26,115 @@ use spectra_spectrum::Emission;
 /// Folder of the bundled stocks.
 pub const FOLDER: &str = "spectra/film";
 
-/// What becomes of light and shade on a stock.
+/// Kind of process for which a stock is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Process {
-    /// A camera negative: the more light, the denser; to be printed or scanned.
+    /// A camera negative: more light gives more density; to be printed or scanned.
     Negative,
-    /// A camera film developed to a positive: the more light, the clearer; to be projected.
+    /// A camera film developed to a positive: more light gives less density; to be projected.
     Reversal,
-    /// What negatives are printed on.
+    /// A print stock, onto which negatives are printed.
     Print,
 }
 
-/// A film stock.
+/// A film stock with all known data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stock {
-    /// Name that people know it by.
+    /// Name for people.
     pub name: String,
-    /// Who makes it.
+    /// Maker of the stock.
     pub maker: Option<String>,
-    /// Where the values come from.
+    /// Source of the values.
     pub source: String,
-    /// Terms under which they came.
+    /// License of the values.
     pub license: String,
-    /// What else is worth knowing.
+    /// Remarks for people.
     pub remark: Option<String>,
-    /// What it is for.
+    /// Process for which the stock is made.
     pub process: Process,
-    /// What a print stock is coated on.
+    /// Base of a print stock: film or paper.
     pub medium: Medium,
-    /// How the densities of its curves were measured.
+    /// Kind of densitometry with which its curves were measured.
     pub densitometry: Densitometry,
-    /// Year in which it was first sold, where known.
+    /// Year in which it was first sold, if known.
     pub year: Option<i32>,
-    /// Speed in daylight (arithmetic), what meters are set to; `None` for a print stock alone.
+    /// Speed in daylight (arithmetic), to which meters are set; `None` only for a print stock.
     pub iso: Option<f64>,
-    /// What that speed is.
+    /// Kind of the stated speed.
     pub speed_kind: SpeedKind,
-    /// By how much the curves of a file with relative exposures were slid to that speed, log10 of exposure; `None` of any other.
+    /// Shift of the curves to the stated speed, log10 of exposure, for a file with relative exposures; `None` for any other.
     pub slid: Option<f64>,
-    /// What a meter for it weighs light by.
+    /// Spectral response of a meter for this stock.
     pub meter: MeterResponse,
-    /// The same in tungsten light, where the sheet prints one.
+    /// Speed in tungsten light, if the sheet states one.
     pub iso_tungsten: Option<f64>,
-    /// Name of the illuminant under which the unit of the curves' axis is photometric lux-seconds.
+    /// Name of the illuminant under which the exposure axis of the curves is in photometric lux-seconds.
     pub reference_illuminant: String,
-    /// That illuminant.
+    /// Spectrum of the reference illuminant.
     pub reference: Emission,
     /// Layers, in the order in which light meets them.
     pub layers: Vec<Layer>,
-    /// The bases that it is coated on.
+    /// Bases on which the film is coated.
     pub bases: Vec<Base>,
-    /// What is left where nothing was exposed, over wavelengths; `None` where the curves alone tell it.
+    /// Spectral density of unexposed film; `None` if only the curves include it.
     pub minimum_density: Option<MinimumDensity>,
-    /// What its layers do to each other; `None` where nothing is known of it.
+    /// Interaction of the layers in development; `None` if unknown.
     pub interlayer: Option<Interlayer>,
-    /// Of a print stock of three dyes, what the print of a mid gray is timed to; `None` where its maker states none.
+    /// Aim densities of a print of mid gray, for a print stock of three dyes; `None` if its maker states none.
     pub aim_density: Option<AimDensity>,
-    /// What was chosen rather than measured in all of its layers.
+    /// Values that are assumed, not measured, for all layers.
     pub assumed: Assumptions,
-    /// How grainy its silver is; `None` where the sheet does not say, and of films with dyes.
+    /// Granularity of silver; `None` if the sheet states none, and for films with dyes.
     pub granularity: Option<Granularity>,
-    /// What its back sends back; `None` where nothing is known of it.
+    /// Halation; `None` if unknown.
     pub halation: Option<Halation>,
-    /// The stock that its maker wants its negatives printed on.
+    /// Print stock that the maker intends for its negatives.
     pub print: Option<String>,
-    /// How it fails to count long exposures in full; `None` where the sheet does not say.
+    /// Reciprocity failure at long exposures; `None` if the sheet states none.
     pub reciprocity: Option<Reciprocity>,
-    /// Filter factors that the sheet prints.
+    /// Filter factors of the sheet.
     pub filter_factors: Vec<FilterFactor>,
 }
 
-/// One light-sensitive layer.
+/// One light-sensitive layer of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// Name; that of its channel too.
+    /// Name of the layer and of its channel.
     pub name: String,
-    /// Which light it sees.
+    /// Spectral sensitivity of the layer.
     pub sensitivity: SpectralSensitivity,
-    /// Whether its sensitivity is assumed; the remark says on what grounds.
+    /// Whether its sensitivity is assumed; the remark gives the reasons.
     pub assumed: bool,
-    /// How its table came to be read as it is.
+    /// Remark on how the sensitivity table was read.
     pub remark: Option<String>,
-    /// The dye that forms in it; `None` for silver.
+    /// Dye that forms in the layer; `None` for silver.
     pub dye: Option<Dye>,
-    /// Modulation transfer: (spatial frequency in cycles/mm, response), frequencies increasing; empty where the sheet does
-    /// not say. Developing makes edges stand out, so it may exceed 1.
+    /// Modulation transfer: (spatial frequency in cycles/mm, response), frequencies increasing; empty if the sheet states none. Development
+    /// enhances edges, so it may exceed 1.
     pub mtf: Vec<[f64; 2]>,
-    /// Of a layer with a dye: density over the minimum, read through the filter of its dye on neutral film, increasing, and 1000
-    /// times the deviation through 48 um; empty where the sheet does not say.
+    /// Granularity of a layer with a dye: density above the minimum, measured through the filter of its dye on neutral film, increasing,
+    /// and 1000 times the standard deviation through 48 um. Empty if the sheet states none.
     pub granularity: Vec<[f64; 2]>,
-    /// Its curves by development, the usual one first; at least one.
+    /// Curves by development, the usual one first; at least one.
     pub developments: Vec<Development>,
 }
 
 /// A layer's curve after one kind of development.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Development {
-    /// Name, such as `pictorial`.
+    /// Name of the development, for example `pictorial`.
     pub name: String,
-    /// How long it takes, min; `None` where the sheet does not say.
+    /// Development time, min; `None` if the sheet states none.
     pub minutes: Option<f64>,
-    /// Whether the curve is assumed since none is printed.
+    /// Whether the curve is assumed because none is printed.
     pub assumed: bool,
-    /// What it rests on.
+    /// Reasons for an assumed curve, and other remarks.
     pub remark: Option<String>,
-    /// The curve.
+    /// Characteristic curve.
     pub curve: CharacteristicCurve,
 }
 
-/// How much longer to expose behind a filter.
+/// Exposure factor of a filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilterFactor {
     /// The filter, as the sheet names it.
@@ -146,18 +146,18 @@ pub struct FilterFactor {
 }
 
 impl Stock {
-    /// The spectral products through which a densitometer reads each layer ([`Densitometry::products`]); `None` where it reads silver.
+    /// Returns the spectral products through which a densitometer reads each layer ([`Densitometry::products`]); `None` for silver.
     #[must_use]
     pub fn filters(&self) -> Option<Vec<Vec<f64>>> {
         let names: Vec<&str> = self.layers.iter().map(|layer| layer.name.as_str()).collect();
         self.densitometry.products(&names)
     }
 
-    /// Reads the stock `name`: a YAML file beside the scene, or the name of a bundled one.
+    /// Reads the stock `name`: a YAML file next to the scene, or the name of a bundled one.
     ///
     /// # Errors
-    /// All that is wrong with the file, placed there. Where there is no such file, one fault without a place: put it
-    /// at the key that named it.
+    /// All faults of the file, with their places. If there is no such file, one fault without a place, which the caller puts at the key
+    /// that named it.
     pub fn load(name: &str, resources: &dyn Resources) -> Result<Self, Faults> {
         let params = resources.document(name, &[FOLDER], &[".yaml", ".yml"])?;
         Self::from_params(&params, resources)
@@ -166,12 +166,12 @@ impl Stock {
     /// Reads a stock that has been parsed as YAML; its tables come from `resources`.
     ///
     /// # Errors
-    /// All that is wrong with it.
+    /// All faults of the file, with their places.
     pub fn from_params(params: &Params, resources: &dyn Resources) -> Result<Self, Faults> {
         file::read(params, resources)
     }
 
-    /// The schema of a stock file, for editors.
+    /// Returns the schema of a stock file, for editors.
     #[must_use]
     pub fn schema(generator: &mut SchemaGenerator) -> Schema {
         file::schema(generator)
@@ -183,22 +183,22 @@ impl Stock {
         spectra_data::list(FOLDER).filter_map(stem)
     }
 
-    /// Names of its developments, the usual one first.
+    /// Names of the stock's developments, the usual one first.
     pub fn developments(&self) -> impl Iterator<Item = &str> {
         self.layers.first().into_iter().flat_map(|layer| layer.developments.iter().map(|d| d.name.as_str()))
     }
 
-    /// The channels that record the exposure of its layers on `grid`, in lx s.
+    /// Builds the channels that record the exposure of the layers on `grid`, in lx s.
     ///
     /// # Errors
-    /// [`SensitivityError::Blind`]; a stock that was read from a file has none such.
+    /// [`SensitivityError::Blind`]. It cannot occur for a stock that was read from a file.
     pub fn channels(&self, grid: &Grid) -> Result<Vec<Channel>, SensitivityError> {
         self.layers.iter().map(|l| l.sensitivity.channel(&l.name, &self.reference, grid)).collect()
     }
 }
 
 impl Layer {
-    /// The development called `name`.
+    /// Returns the development with this name.
     #[must_use]
     pub fn development(&self, name: &str) -> Option<&Development> {
         self.developments.iter().find(|d| d.name == name)

@@ -1,26 +1,26 @@
-//! How a film fails to count long exposures in full.
+//! Reciprocity failure: the loss of speed at long exposures.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::{exp, log, pow};
 use spectra_core::params::{Fault, Params, Positive, Time};
 
-/// Reciprocity failure: the time Ta to expose for when the meter says Tm. An exposure of Ta then does what Tm would
-/// without the effect.
+/// Reciprocity failure as the exposure time Ta that replaces the metered time Tm. An exposure of Ta then has the effect that Tm would have
+/// without the failure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reciprocity {
-    /// Ta = Tm^exponent, in units of the threshold (K. Schwarzschild, 1900).
+    /// A power law: Ta = Tm^exponent, in units of the threshold (K. Schwarzschild, 1900).
     PowerLaw {
         /// Exponent, at least 1.
         exponent: f64,
         /// Threshold, s: shorter times count in full.
         above_s: f64,
     },
-    /// As the sheet lists it; straight between rows in the logarithms of both, and on beyond the last row.
+    /// The table of the sheet. Linear between rows in the logarithms of both times, and beyond the last row.
     Table {
         /// Threshold, s: shorter times count in full.
         above_s: f64,
-        /// Rows (Tm, Ta), s, both increasing, Tm above the threshold and Ta at least Tm.
+        /// Rows (Tm, Ta), s, both increasing, with Tm above the threshold and Ta at least Tm.
         rows: Vec<[f64; 2]>,
     },
 }
@@ -34,8 +34,8 @@ impl Reciprocity {
         }
     }
 
-    /// How much an exposure of `time_s` counts, relative to a short one of the same lx s: Tm / Ta at Ta = `time_s`; 1
-    /// up to the threshold, less beyond.
+    /// Returns how much an exposure of `time_s` counts, relative to a short one of the same lx s: Tm / Ta at Ta = `time_s`. 1 up to the
+    /// threshold, less beyond.
     #[must_use]
     pub fn effect(&self, time_s: f64) -> f64 {
         if !(time_s > self.above_s()) {
@@ -48,7 +48,7 @@ impl Reciprocity {
                 let points: Vec<[f64; 2]> =
                     std::iter::once(start).chain(rows.iter().map(|r| [log(r[0]), log(r[1])])).collect();
                 let ta = log(time_s);
-                // The segment that holds it, or the last one.
+                // The segment that contains the time, or the last one.
                 let i = points.partition_point(|p| p[1] <= ta).clamp(1, points.len() - 1);
                 let (a, b) = (points[i - 1], points[i]);
                 let tm = a[0] + (b[0] - a[0]) * (ta - a[1]) / (b[1] - a[1]);
@@ -58,10 +58,10 @@ impl Reciprocity {
     }
 }
 
-/// Longest exposure, s, that counts in full where a film's sheet says nothing: makers give their films this much and more.
+/// Longest exposure, s, that needs no warning if a film's sheet states no reciprocity: makers allow at least this much.
 const UNDOUBTED_S: f64 = 1.0;
 
-/// What is to be said of an exposure of `time_s` on a stock called `name` whose file has no reciprocity.
+/// Returns a warning for an exposure of `time_s` if the file of the stock `name` has no reciprocity and the time is longer than 1 s.
 #[must_use]
 pub fn unknown(reciprocity: Option<&Reciprocity>, name: &str, time_s: f64) -> Option<String> {
     (reciprocity.is_none() && time_s > UNDOUBTED_S).then(|| {
@@ -72,16 +72,16 @@ pub fn unknown(reciprocity: Option<&Reciprocity>, name: &str, time_s: f64) -> Op
     })
 }
 
-/// What long exposures lose: a power law, or a table.
+/// Loss of speed at long exposures: a power law, or a table.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct ReciprocityFile {
-    /// p of the law, adjusted time = above x (metered time / above)^p, 1 to 10. Or else `table`.
+    /// Exponent p of the law, adjusted time = above x (metered time / above)^p, 1 to 10. Or else `table`.
     #[schemars(range(min = 1, max = 10))]
     exponent: Option<f64>,
     /// Rows of metered and adjusted time, s, increasing. Or else `exponent`.
     table: Option<Vec<[f64; 2]>>,
-    /// Metered time above which it holds, s if bare.
+    /// Metered time above which speed is lost, s if bare.
     above: Positive<Time>,
 }
 
@@ -95,7 +95,7 @@ impl ReciprocityFile {
                 for (i, row) in rows.iter().enumerate() {
                     let sound = row.iter().all(|t| t.is_finite()) && row[0] > before[0] && row[1] > before[1];
                     if !sound || row[1] < row[0] {
-                        let text = "metered and adjusted times increase, the adjusted one at least the metered one";
+                        let text = "metered and adjusted times must increase, and the adjusted time must be at least the metered one";
                         let fault = params.fault(&format!("reciprocity.table[{i}]"), text);
                         return Err(fault.hint(format!("[metered, adjusted] in seconds, above {above_s} s")));
                     }
@@ -107,7 +107,7 @@ impl ReciprocityFile {
                 Ok(Reciprocity::Table { above_s, rows: rows.clone() })
             }
             _ => {
-                let fault = params.fault("reciprocity", "either an `exponent` or a `table`");
+                let fault = params.fault("reciprocity", "give either an `exponent` or a `table`");
                 Err(fault.hint("`{exponent: 1.25, above: 1 s}` or `{table: [[1, 2], [10, 50]], above: 0.1 s}`"))
             }
         }

@@ -1,54 +1,53 @@
-//! Which light a layer sees, and how much exposure it makes of it.
+//! Spectral sensitivity of a layer, and the exposure channel that follows from it.
 
 use spectra_core::math::pow;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Emission, v_lambda};
 
-/// How the values of a sensitivity table are to be read.
+/// Scale of the values in a sensitivity table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reading {
-    /// As they are.
+    /// Values are linear.
     Linear,
-    /// As logarithms to base 10. A value at or below the floor (where the sheet's plot ends) is no sensitivity
-    /// at all, not ten to its power.
+    /// Values are logarithms to base 10. A value at or below the floor (where the sheet's plot ends) means no sensitivity at all.
     Log10 {
-        /// The floor; `None` where every value counts.
+        /// Floor of the plot; `None` if every value counts.
         floor: Option<f64>,
     },
 }
 
-/// A sensitivity that cannot be.
+/// Errors of spectral sensitivities.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SensitivityError {
-    /// Fewer than two points, or wavelengths that do not increase.
+    /// There are fewer than two points, or wavelengths do not increase.
     #[error("a sensitivity needs two points or more, of increasing wavelength")]
     Points,
-    /// A value that is negative, or no finite number when read as stated.
+    /// A value is negative, or not finite when read as stated.
     #[error("{value} at {wavelength_nm} nm is not a sensitivity")]
     Value {
-        /// Where, nm.
+        /// Wavelength of the value, nm.
         wavelength_nm: f64,
-        /// The value of the table.
+        /// Value in the table.
         value: f64,
     },
-    /// The light of the measurement is dark where the table has a sensitivity.
+    /// The light of the measurement has no power where the table has a sensitivity.
     #[error(
         "the light that it was measured under has no power at {wavelength_nm} nm, where the table has a sensitivity"
     )]
     DarkLight {
-        /// Where, nm.
+        /// Wavelength without power, nm.
         wavelength_nm: f64,
     },
-    /// The layer does not see the reference light at all.
+    /// The layer is not sensitive to the reference light at all.
     #[error("the layer is not sensitive to the reference illuminant")]
     Blind,
 }
 
-/// Spectral sensitivity of a layer: one over the energy (J m^-2 nm^-1) that a given density takes, in any scale.
+/// Spectral sensitivity of a layer: one over the energy (J m^-2 nm^-1) that gives a fixed density, in any scale.
 ///
-/// 0 outside of the table. Between two points that are both seen it is interpolated as the table is given
-/// (logarithms as such); next to a point that is not seen, in a straight line from 0.
+/// The sensitivity is 0 outside the table. Between two points with sensitivity, it is interpolated on the scale of the table (logarithms as
+/// such). Next to a point without sensitivity, it rises linearly from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectralSensitivity {
     wavelengths_nm: Vec<f64>,
@@ -58,11 +57,11 @@ pub struct SpectralSensitivity {
 }
 
 impl SpectralSensitivity {
-    /// Reads points (wavelength in nm, value) of a plot that was measured with equal energy at each wavelength,
-    /// or with `light`, by which it is divided.
+    /// Reads points (wavelength in nm, value) of a plot that was measured with equal energy at each wavelength, or with `light`, by which
+    /// the values are divided.
     ///
     /// # Errors
-    /// [`SensitivityError`].
+    /// [`SensitivityError`]: too few or unsorted points, invalid values, or a `light` without power where the table has a sensitivity.
     pub fn new(points: &[[f64; 2]], reading: Reading, light: Option<Emission>) -> Result<Self, SensitivityError> {
         let increasing = points.windows(2).all(|w| w[0][0] < w[1][0]);
         if points.len() < 2 || !increasing || points.iter().any(|p| !(p[0] > 0.0 && p[0].is_finite())) {
@@ -87,7 +86,7 @@ impl SpectralSensitivity {
         Ok(Self { wavelengths_nm, linear, logarithmic: matches!(reading, Reading::Log10 { .. }), light })
     }
 
-    /// Relative sensitivity to energy at a wavelength.
+    /// Returns the relative sensitivity to energy at a wavelength.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         let w = &self.wavelengths_nm;
@@ -114,8 +113,8 @@ impl SpectralSensitivity {
         (self.wavelengths_nm[0], self.wavelengths_nm[self.wavelengths_nm.len() - 1])
     }
 
-    /// How fast the layer is in `light`: its response to one lux of it, in the scale of
-    /// [`SpectralSensitivity::at`]. The ratio of two lights' values is that of the film's speeds in them.
+    /// Returns the layer's response to one lux of `light`, in the scale of [`SpectralSensitivity::at`]. The ratio of the values for two
+    /// lights is that of the film's speeds in them.
     #[must_use]
     pub fn per_lux(&self, light: &Emission) -> f64 {
         let power = light.to_power(&BAND);
@@ -125,13 +124,14 @@ impl SpectralSensitivity {
         seen / (LUMINOUS_EFFICACY_LM_PER_W * power.seen_by(&on_band(&|w| v.at(w))))
     }
 
-    /// The channel that records the layer's exposure in lx s on `grid`, scaled so that light of the spectrum of
-    /// `reference` gives as many lx s as it has to the eye: with its power I, K = 683 int(I V) / int(I S), and
-    /// the exposure of any light E is K int(E S) times the time. K is taken over the whole band of 350-830 nm,
-    /// whatever the grid.
+    /// Builds the channel that records the layer's exposure in lx s on `grid`.
+    ///
+    /// It is scaled so that light of the spectrum of `reference` gives its photometric lx s. With the power I of the reference, K = 683
+    /// int(I V) / int(I S), and the exposure of any light E is K int(E S) times the time.
+    /// K is computed over the whole band of 350-830 nm, whatever the grid.
     ///
     /// # Errors
-    /// [`SensitivityError::Blind`] where the layer does not see the reference.
+    /// [`SensitivityError::Blind`] if the layer is not sensitive to the reference.
     pub fn channel(&self, name: &str, reference: &Emission, grid: &Grid) -> Result<Channel, SensitivityError> {
         let per_lux = self.per_lux(reference);
         if !(per_lux > 0.0 && per_lux.is_finite()) {
@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(fault, Err(SensitivityError::DarkLight { wavelength_nm: 550.0 }));
     }
 
-    /// A layer that sees as the eye does records photometric lux-seconds in any light.
+    /// A layer with the sensitivity of the eye records photometric lux-seconds in any light.
     #[test]
     fn a_layer_like_the_eye_is_a_light_meter() {
         let v = v_lambda();

@@ -1,4 +1,4 @@
-//! What the speed of a stock is: by a standard, by its maker's advice, or a guess; and what its curves say of it.
+//! The speed of a stock: by a standard, by its maker's advice, or assumed; and the speed that its curves give.
 
 use super::{Development, Process, Stock};
 use schemars::JsonSchema;
@@ -7,44 +7,44 @@ use spectra_core::math::{log10, pow};
 
 /// Exposure of the speed point of a film of ISO 1, lx s (ISO 6:1993).
 const SPEED_POINT_LX_S: f64 = 0.8;
-/// How far right of the speed point ISO 6:1993 sets the contrast of the development, log10 of exposure.
+/// Distance from the speed point at which ISO 6:1993 sets the contrast of the development, log10 of exposure.
 pub const ISO_6_SPAN: f64 = 1.3;
-/// The density that lies over that of the speed point there, by the span.
+/// Average gradient of the development that ISO 6 requires: a density 0.8 above that of the speed point at this distance.
 const ISO_6_GRADIENT: f64 = 0.8 / ISO_6_SPAN;
 
-/// Density over the minimum at which the speed of a color negative is measured (ISO 5800:1987).
+/// Density above the minimum at which the speed of a color negative is measured (ISO 5800:1987).
 const COLOR_NEGATIVE_DENSITY: f64 = 0.15;
-/// Densities over the minimum between which the exposures of a reversal film are averaged (ISO 2240:2003).
+/// Densities above the minimum whose exposures are averaged for a reversal film (ISO 2240:2003).
 const REVERSAL_DENSITIES: [f64; 2] = [0.2, 2.0];
-/// Stops between the speed of the curves and the stated one beyond which a slip is likely.
+/// Stops between the speed of the curves and the stated one above which a mistake is likely.
 const DOUBTED_STOPS: f64 = 1.0;
 
-/// What the exposures of a stock's printed points count from.
+/// Zero of the exposure axis of a stock's printed curves.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum ExposureFile {
-    /// Lux-seconds of the reference illuminant.
+    /// Exposures are in lux-seconds of the reference illuminant.
     #[default]
     LuxSeconds,
-    /// Nothing that is stated.
+    /// Exposures are relative, without a stated zero.
     Relative,
 }
 
-/// What a stock's speed is.
+/// Kind of a stock's stated speed.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpeedKind {
-    /// An ISO speed.
+    /// An ISO speed (measured by a standard).
     #[default]
     Iso,
-    /// An exposure index: what its maker says to set the meter to.
+    /// An exposure index: the maker's recommendation for the meter.
     ExposureIndex,
-    /// Nobody measured it.
+    /// An assumed speed that nobody measured.
     Assumed,
 }
 
 impl SpeedKind {
-    /// Its name in a stock file.
+    /// Name of this kind in a stock file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -55,11 +55,11 @@ impl SpeedKind {
     }
 }
 
-/// What a meter for a stock weighs light by.
+/// Spectral response of an exposure meter for a stock.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum MeterResponse {
-    /// The eye: V(lambda).
+    /// The eye's response, V(lambda).
     #[default]
     Photopic,
     /// The film's own sensitivity, in lux-seconds of its reference illuminant.
@@ -67,7 +67,7 @@ pub enum MeterResponse {
 }
 
 impl MeterResponse {
-    /// Its name in a stock file.
+    /// Name of this response in a stock file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -77,17 +77,17 @@ impl MeterResponse {
     }
 }
 
-/// The speed that the curves of a negative give when it is developed as ISO 6 asks.
+/// Speed that the curves of a negative give with the development of ISO 6.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iso6 {
     /// Arithmetic speed.
     pub speed: f64,
-    /// Time in the developer, min.
+    /// Development time, min.
     pub minutes: f64,
 }
 
 impl Stock {
-    /// Its speed with what kind it is, such as `ISO 400`, `EI 250` or `ISO 25 (assumed)`; `None` where it has none.
+    /// Returns the speed with its kind, for example `ISO 400`, `EI 250` or `ISO 25 (assumed)`; `None` if the stock has none.
     #[must_use]
     pub fn speed_text(&self) -> Option<String> {
         self.iso.map(|iso| match self.speed_kind {
@@ -97,8 +97,8 @@ impl Stock {
         })
     }
 
-    /// The speed of the curves at the contrast that ISO 6 asks for (0.80 over the speed point, 1.30 to its right), between
-    /// the two developments whose contrasts lie around it. `None` for what is no silver negative, and where no two do.
+    /// Computes the speed of the curves at the contrast of ISO 6 (0.80 above the speed point, 1.30 to its right), between the two
+    /// developments with contrasts around it. `None` for a stock that is not a silver negative, and if there are no two such developments.
     #[must_use]
     pub fn iso_6(&self) -> Option<Iso6> {
         let [layer] = &self.layers[..] else { return None };
@@ -119,9 +119,10 @@ impl Stock {
 }
 
 impl Stock {
-    /// Returns the speed that the curves of the usual development give, whatever their contrast: by ISO 6 of a silver negative, ISO 5800 of a
-    /// color negative (the green layer and the slowest) and ISO 2240 of a reversal film (the mean of its layers). `None` of a print stock, and where a
-    /// curve does not reach these densities.
+    /// Computes the speed that the curves of the usual development give, whatever their contrast.
+    /// The standard is ISO 6 for a silver negative, ISO 5800 for a color negative (the green layer and the slowest), and ISO 2240 for a
+    /// reversal film (the mean of its layers).
+    /// `None` for a print stock, and if a curve does not reach these densities.
     #[must_use]
     pub fn curve_speed(&self) -> Option<f64> {
         let curves: Vec<_> =
@@ -146,7 +147,7 @@ impl Stock {
         }
     }
 
-    /// Returns what looks like a slip in the stock's file: curves that are over a stop faster or slower than the speed that it states.
+    /// Returns warnings about a likely mistake in the stock's file: curves more than a stop faster or slower than the stated speed.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         let Some((stated, found)) = self.iso.zip(self.curve_speed()) else { return Vec::new() };
@@ -163,7 +164,7 @@ impl Stock {
         )]
     }
 
-    /// Slides all printed curves together until they have the stated speed; `None` where they have none.
+    /// Shifts all curves together until they have the stated speed; `None` if they give no speed or none is stated.
     pub(super) fn slide(&mut self) -> Option<()> {
         let by = log10(self.curve_speed()? / self.iso?);
         for development in self.layers.iter_mut().flat_map(|layer| &mut layer.developments) {
@@ -175,7 +176,7 @@ impl Stock {
 }
 
 impl Development {
-    /// The speed that its curve gives by the speed point of ISO 6, whatever its contrast.
+    /// Returns the speed that this curve gives by the speed point of ISO 6, whatever its contrast.
     #[must_use]
     pub fn speed(&self) -> Option<f64> {
         Some(SPEED_POINT_LX_S / pow(10.0, self.curve.speed_point()?))

@@ -1,19 +1,19 @@
-//! What a film is made of beside its sensitive layers, and how fine it is.
+//! Structure of a film besides its sensitive layers: base, backing, granularity and modulation transfer.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Length, Params, Positive};
 
-/// What the emulsion is coated on.
+/// The base on which an emulsion is coated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Base {
-    /// The formats that come on it, as the sheet names them.
+    /// Film formats with this base, as the sheet names them.
     pub formats: String,
-    /// Material, such as `acetate`.
+    /// Material of the base, for example `acetate`.
     pub material: Option<String>,
     /// Thickness, mm.
     pub thickness_mm: f64,
-    /// Refractive index; `None` where the sheet does not say.
+    /// Refractive index; `None` if the sheet states none.
     pub index: Option<f64>,
     /// Whether thickness and index are assumed.
     pub assumed: bool,
@@ -22,33 +22,33 @@ pub struct Base {
 /// RMS granularity: 1000 times the standard deviation of density through a round aperture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Granularity {
-    /// The figure of the sheet.
+    /// RMS granularity of the sheet.
     pub rms: f64,
-    /// Diameter of the aperture, mm; 0.048 by custom.
+    /// Diameter of the aperture, mm; usually 0.048.
     pub aperture_mm: f64,
-    /// The density at which it was measured; 1 by custom.
+    /// Density at which it was measured; usually 1.
     pub density: f64,
-    /// Whether it is assumed.
+    /// Whether the value is assumed.
     pub assumed: bool,
 }
 
-/// What keeps light from coming back from the film's back. Makers name the kind and no figure: the figures are assumed.
+/// Anti-halation backing, which absorbs light at the film's back. Makers name the kind and no figure: the figures are assumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub enum Backing {
-    /// Soot in a binder on the back, washed off before development: it takes nearly all.
+    /// Soot in a binder on the back, washed off before development: absorbs nearly all light.
     RemJet,
-    /// Fine silver under the emulsion, bleached in processing: it takes most.
+    /// Fine silver under the emulsion, bleached in processing: absorbs most light.
     Silver,
-    /// A dye under the emulsion or in the base: it takes some.
+    /// A dye under the emulsion or in the base: absorbs some light.
     Dye,
-    /// None, or one that was removed before exposure: clear base.
+    /// No backing, or one that was removed before exposure: clear base.
     Removed,
 }
 
 impl Backing {
-    /// Transmittance of base and backing, passed once.
+    /// Returns the assumed transmittance of base and backing, for one pass.
     #[must_use]
     pub fn transmittance(self) -> f64 {
         match self {
@@ -59,7 +59,7 @@ impl Backing {
         }
     }
 
-    /// Its name in a file.
+    /// Name of this kind in a file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -71,53 +71,53 @@ impl Backing {
     }
 }
 
-/// Light that comes back from the film's back.
+/// Halation: light that returns from the film's back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Halation {
-    /// Share of the exposing light that is scattered on into the base, 0 to 1; of the layer next to the base.
+    /// Light that enters the base, relative to the light that exposes the layer next to the base, 0 to 1.
     pub scattered: f64,
-    /// Transmittance of the anti-halation backing, passed on the way out and on the way back, 0 to 1.
+    /// Transmittance of base and backing for one pass, 0 to 1. Light passes them twice.
     pub backing: f64,
-    /// The kind of backing, where the file names it.
+    /// Kind of backing, if the file names it.
     pub kind: Option<Backing>,
-    /// Share of what comes back that the emulsion throws down again, 0 to 0.95.
+    /// Share of the returning light that the emulsion reflects down again, 0 to 0.95.
     pub reflected: f64,
-    /// What comes back to each layer, in the order of the stock, over what would come back to the layer next to the base.
+    /// Light that returns to each layer, in the order of the stock, relative to the light that returns to the layer next to the base.
     pub layers: Vec<f64>,
-    /// Whether this is assumed: sheets hardly ever say.
+    /// Whether the figures are assumed: sheets hardly ever state them.
     pub assumed: bool,
-    /// What it rests on.
+    /// Reasons for the figures.
     pub remark: Option<String>,
 }
 
-/// What was chosen rather than measured in all layers of a stock, each with what it rests on.
+/// Figures that are assumed for all layers of a stock, each with its reasons.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Assumptions {
-    /// Of the spectra of its dyes.
+    /// Reasons for assumed spectra of the dyes.
     pub dyes: Option<String>,
-    /// Of the granularity of its layers.
+    /// Reasons for an assumed granularity of the layers.
     pub granularity: Option<String>,
-    /// Of their modulation transfer.
+    /// Reasons for an assumed modulation transfer of the layers.
     pub mtf: Option<String>,
 }
 
 impl Assumptions {
-    /// Each with the key that a stock file has for it, those that there are.
+    /// Returns the assumptions that are present, each with its key in a stock file.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let all = [("dyes", &self.dyes), ("granularity", &self.granularity), ("mtf", &self.mtf)];
         all.into_iter().filter_map(|(key, text)| Some((key, text.as_deref()?)))
     }
 }
 
-/// What was chosen rather than measured in all layers, each with what it rests on.
+/// Figures that were chosen rather than measured for all layers, each with its reasons.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct AssumptionsFile {
-    /// Of the spectra of the dyes: what they rest on. The sheet has them if absent.
+    /// Reasons for the assumed spectra of the dyes. Taken from the sheet if absent.
     dyes: Option<String>,
-    /// Of the granularity of the layers: what it rests on. The sheet has it if absent.
+    /// Reasons for the assumed granularity of the layers. Taken from the sheet if absent.
     granularity: Option<String>,
-    /// Of the modulation transfer of the layers: what it rests on. The sheet has it if absent.
+    /// Reasons for the assumed modulation transfer of the layers. Taken from the sheet if absent.
     mtf: Option<String>,
 }
 
@@ -128,25 +128,25 @@ impl AssumptionsFile {
         let mut faults = Faults::new();
         for (key, text) in assumptions.iter() {
             if text.trim().is_empty() {
-                let fault = params.fault(&format!("assumed.{key}"), "what is assumed needs a reason");
-                faults.push(fault.hint("a text that says what it rests on"));
+                let fault = params.fault(&format!("assumed.{key}"), "an assumption needs a reason");
+                faults.push(fault.hint("write a text that says what it is based on"));
             }
         }
         faults.into_result(assumptions)
     }
 }
 
-/// What a film is coated on.
+/// A base on which a film is coated.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct BaseFile {
-    /// The formats that have this base, for people.
+    /// Formats that have this base, for people.
     formats: String,
-    /// What it is made of; not known if absent.
+    /// Material of the base; not known if absent.
     material: Option<String>,
-    /// Its thickness, mm if bare.
+    /// Thickness, mm if bare.
     thickness: Positive<Length>,
-    /// Its refractive index, 1 to 3; not known if absent. Halation needs it.
+    /// Refractive index, 1 to 3; not known if absent. Halation needs it.
     #[schemars(range(min = 1, max = 3))]
     index: Option<f64>,
     /// Whether the figures were chosen rather than measured.
@@ -166,20 +166,20 @@ impl BaseFile {
     }
 }
 
-/// How grainy silver is; the layers of a film with dyes say it each for itself.
+/// Granularity of silver; in a film with dyes, each layer states its own.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct GranularityFile {
     /// RMS granularity as sheets state it: 1000 times the standard deviation of density.
     rms: Positive<f64>,
-    /// Diameter of the aperture that it was measured through, mm if bare; 0.048 mm if absent.
+    /// Diameter of the aperture with which it was measured, mm if bare; 0.048 mm if absent.
     aperture: Option<Positive<Length>>,
-    /// Density that it was measured at; 1 if absent.
+    /// Density at which it was measured; 1 if absent.
     density: Option<Positive<f64>>,
     /// Whether it was chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
-    /// Doubts and choices, for people.
+    /// Remarks for people, for example doubts and choices.
     remark: Option<String>,
 }
 
@@ -198,7 +198,7 @@ impl GranularityFile {
     }
 }
 
-/// A backing by its kind, or by its transmittance.
+/// A backing, given by its kind or by its transmittance.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(inline)]
@@ -207,38 +207,38 @@ enum BackingForm {
     Transmittance(#[schemars(range(min = 0, max = 1))] f64),
 }
 
-/// Light that the base of a film throws back.
+/// Light that the base of a film reflects back.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct HalationFile {
-    /// Light that enters the base, over the light that exposes the layer next to it, 0 to 1.
+    /// Light that enters the base, relative to the light that exposes the layer next to it, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     scattered: f64,
-    /// What keeps light from coming back: `rem-jet`, `silver`, `dye` or `removed`, with transmittances of 0.12, 0.2, 0.35 and 0.95, which
-    /// are assumed; or the transmittance of base and backing, passed once, 0 to 1.
+    /// Anti-halation backing: `rem-jet`, `silver`, `dye` or `removed`, with assumed transmittances of 0.12, 0.2, 0.35 and 0.95; or the
+    /// transmittance of base and backing for one pass, 0 to 1.
     backing: BackingForm,
-    /// Share of what comes back that the emulsion throws down again, for another trip, 0 to 0.95.
+    /// Share of the returning light that the emulsion reflects down again, for another trip, 0 to 0.95.
     #[serde(default)]
     #[schemars(range(min = 0, max = 0.95))]
     reflected: f64,
-    /// What comes back to each layer, in their order, over what comes back to the layer next to the base: layers between, and
-    /// a yellow filter, hold it back on both ways. 1 for each if absent.
+    /// Light that returns to each layer, in their order, relative to the light that returns to the layer next to the base. Layers between,
+    /// and a yellow filter, absorb light on both passes. 1 for each if absent.
     #[schemars(inner(range(min = 0, max = 1)))]
     layers: Option<Vec<f64>>,
     /// Whether the figures were chosen rather than measured; then `remark` says why.
     #[serde(default)]
     assumed: bool,
-    /// Doubts and choices, for people.
+    /// Remarks for people, for example doubts and choices.
     remark: Option<String>,
 }
 
 impl HalationFile {
-    /// For a film of `layers` layers.
+    /// Checks the halation of a film with `layers` layers.
     pub(super) fn read(&self, params: &Params, layers: usize) -> Result<Halation, Fault> {
         let Self { scattered, backing, reflected, assumed, .. } = *self;
         let shares = self.layers.clone().unwrap_or_else(|| vec![1.0; layers]);
         if shares.len() != layers {
-            let text = format!("{} numbers for a film of {layers}", shares.len());
+            let text = format!("{} numbers for {layers} layers", shares.len());
             return Err(params.fault("halation.layers", text).hint("one for each layer, in their order"));
         }
         if assumed && self.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {

@@ -1,8 +1,9 @@
-//! Color of the processes, without rays: spectra to exposures, development, print or projection, and CIELAB of what is seen.
+//! Tests of the color of film processes without rays: from spectra to exposures, development, print or projection, and CIELAB of the
+//! result.
 //!
-//! What is asked: films are as saturated as those of their class, and sky, leaf and skin keep their hue; a gray scale from 2 stops under
-//! mid gray to 3 over it stays within 2 of neutral in a* and b*, relative to the film's white. The spectra of `data/unseen.csv` and the
-//! two skies are not among those of the fit (`xtask/fit_film_families.py`).
+//! Films must be as saturated as others of their class, and sky, leaf and skin must keep their hue. A gray scale from 2 stops below mid
+//! gray to 3 above must stay within 2 of neutral in a* and b*, relative to the film's white.
+//! The spectra of `data/unseen.csv` and the two skies are not among those of the fit (`xtask/fit_film_families.py`).
 
 use spectra_color::lab;
 use spectra_core::math::log10;
@@ -33,10 +34,10 @@ fn on_band(f: impl Fn(f64) -> f64) -> Vec<f64> {
     BAND.wavelengths_nm().map(f).collect()
 }
 
-/// A color film and the way it is looked at.
+/// A color film and the way in which it is viewed.
 struct Chain {
     iso: f64,
-    /// The light of the scene, as it reaches the film: that which the film is made for, or D55.
+    /// Light of the scene at the film: the light for which the film is made, or D55.
     light: Emission,
     film: Emulsion,
     channels: Vec<Channel>,
@@ -52,7 +53,7 @@ impl Chain {
         Self { iso: 250.0, light: d55(), film, channels: s.channels(&BAND).expect("seen"), positive }
     }
 
-    /// A bundled color film on the print stock of its maker, or projected, in the light that it is made for.
+    /// Sets up a bundled color film on its maker's print stock, or projected, in the light for which it is made.
     fn of(name: &str) -> Self {
         let (s, film) = usual(name);
         let iso = s.iso.expect("a camera film");
@@ -74,7 +75,7 @@ impl Chain {
         Self { iso: 100.0, light: d55(), film, channels: s.channels(&BAND).expect("seen"), positive }
     }
 
-    /// CIELAB of what is seen of amounts, relative to what is taken for white.
+    /// CIELAB of amounts as viewed, relative to white.
     fn lab(&self, amounts: &[f64]) -> [f64; 3] {
         let viewing = self.positive.viewing().expect("looked at");
         lab(viewing.seen(self.positive.xyz(amounts).expect("looked at")), viewing.white())
@@ -84,7 +85,7 @@ impl Chain {
         self.lab(&self.film.neutral(log10(10.0 / self.iso) + stops * log10(2.0)))
     }
 
-    /// Of a surface of this spectral radiance factor in the light of the scene, metered on an 18 % card.
+    /// CIELAB of a surface with this spectral radiance factor in the light of the scene, metered on an 18 % card.
     fn surface(&self, factor: &[f64]) -> [f64; 3] {
         let light = self.light.to_power(&BAND);
         let v = v_lambda();
@@ -102,7 +103,7 @@ fn d55() -> Emission {
     illuminant("D55").expect("bundled")
 }
 
-/// CIELAB of a radiance factor to an eye in D55.
+/// CIELAB of a radiance factor for an eye in D55.
 fn eye(factor: &[f64]) -> [f64; 3] {
     let light = d55().to_power(&BAND);
     let functions = Observer::cie_1931_2deg().on_grid(&BAND);
@@ -138,7 +139,7 @@ fn unseen() -> Vec<(String, Vec<f64>)> {
     all
 }
 
-/// Chroma over the eye's, and how far the hue turns, degrees.
+/// Chroma relative to the eye's, and hue shift in degrees.
 fn against(film: [f64; 3], eye: [f64; 3]) -> (f64, f64) {
     let chroma = |c: [f64; 3]| c[1].hypot(c[2]);
     let turn = (film[2].atan2(film[1]) - eye[2].atan2(eye[1])).to_degrees();
@@ -156,7 +157,7 @@ fn turns(chain: &Chain) -> Vec<(String, f64)> {
     .collect()
 }
 
-/// CIE 1976 saturation of the 18 chromatic patches of the ColorChecker over the eye's, in the mean; prints every patch.
+/// Mean CIE 1976 saturation of the 18 chromatic patches of the ColorChecker, relative to the eye's. Prints every patch.
 fn mean_saturation(chain: &Chain) -> f64 {
     let light = d55().to_power(&BAND);
     let functions = Observer::cie_1931_2deg().on_grid(&BAND);
@@ -165,7 +166,7 @@ fn mean_saturation(chain: &Chain) -> f64 {
         let sum = xyz[0] + 15.0 * xyz[1] + 3.0 * xyz[2];
         [4.0 * xyz[0] / sum, 9.0 * xyz[1] / sum]
     };
-    // What is seen relative to its own white, in D55.
+    // Colors relative to their own white, in D55.
     let saturation = |lab: [f64; 3]| {
         let fy = (lab[0] + 16.0) / 116.0;
         let back = |f: f64| if f > 6.0 / 29.0 { f * f * f } else { 3.0 * (6.0_f64 / 29.0).powi(2) * (f - 4.0 / 29.0) };
@@ -182,7 +183,7 @@ fn mean_saturation(chain: &Chain) -> f64 {
     ratios.sum::<f64>() / 18.0
 }
 
-/// The order that people know, ties within 3 %: saturated films, slides and consumer films, portraits, cinema and Kodachrome.
+/// The well-known order of saturation, with ties within 3 %: saturated films, slides and consumer films, portraits, cinema and Kodachrome.
 #[test]
 fn films_are_as_saturated_as_those_of_their_class() {
     let known = |names: &[&str]| -> Vec<(String, f64)> {
@@ -201,8 +202,8 @@ fn films_are_as_saturated_as_those_of_their_class() {
     assert!(of(&high, f64::max) / of(&low, f64::min) >= 1.25);
 }
 
-/// Sky, leaf and skins of the ColorChecker within 12 degrees on the films that people compare most, and Vision3 250D's within 10,
-/// to a tenth of a degree.
+/// Sky, leaf and skins of the ColorChecker shift by less than 12 degrees in hue on the most compared films, and by less than 10 degrees on
+/// Vision3 250D, to a tenth of a degree.
 #[test]
 fn skies_leaves_and_skins_keep_their_hue() {
     for name in [
@@ -225,8 +226,8 @@ fn skies_leaves_and_skins_keep_their_hue() {
     }
 }
 
-/// Skins, leaves and skies that no fit has seen, within 8 degrees but for those named: what the sheets and one matrix for the family of a
-/// film make of them.
+/// Skins, leaves and skies that were not used in any fit stay within 8 degrees, with named exceptions. They follow from the sheets and one
+/// matrix for each family of films.
 #[test]
 fn what_the_fit_has_not_seen_keeps_its_hue() {
     let print = [("skin-17", 11.0)];
@@ -247,8 +248,8 @@ fn what_the_fit_has_not_seen_keeps_its_hue() {
     }
 }
 
-/// L* of grays as the sheets have them, before and after the flare of paper: slopes of log10 of what is shown over log10 of exposure
-/// within 0.12 of the product of the sheets' slopes, and the span from -2 to +1 stop.
+/// Checks L* of grays against the sheets, before and after the flare of paper. The slope of log10 of the shown light over log10 of exposure
+/// agrees within 0.12 with the product of the sheets' slopes. Also checks the range of L* from -2 to +1 stop.
 #[test]
 fn tones_follow_from_the_sheets() {
     for (name, slope, span) in [
@@ -268,13 +269,13 @@ fn tones_follow_from_the_sheets() {
         println!("{name}: slope {found:.2}, {tones:.1?}");
         assert!((found - slope).abs() < 0.12, "{name}: {found}");
         assert!((span[0]..=span[1]).contains(&(tones[4] - tones[1])), "{name}: {tones:?}");
-        // A print shows mid gray as 18 %, a slide as its sheet has it.
+        // A print shows mid gray as 18 %, a slide according to its sheet.
         let gray = if name.contains("portra") || name.contains("5207") { [49.3, 49.7] } else { [45.0, 46.0] };
         assert!((gray[0]..=gray[1]).contains(&tones[3]), "{name}: {tones:?}");
     }
 }
 
-/// On portrait film dark skin is not black, and dark grays stand off the paper's black: N2 by 3.8 L* on Portra, as its sheets have it.
+/// On portrait film, dark skin is not black, and dark grays differ from the paper's black: N2 by 3.8 L* on Portra, according to the sheets.
 #[test]
 fn dark_things_are_not_black() {
     let portra = Chain::of("kodak-portra-400");
@@ -304,9 +305,10 @@ fn a_gray_scale_is_gray_on_print_and_slide() {
     }
 }
 
-/// Status A densities of the print of a mid gray against Kodak's aim of 1.09, 1.06 and 1.03 (red, green, blue). The aim is
-/// neutral in the projector's bare light: with `white: lamp` all three are met within 0.04. Relative to the yellowish clear print
-/// it is blue by 5 in b*: with `white: film` the gray is as dense to the eye and of the color of that white.
+/// Status A densities of the print of a mid gray against Kodak's aim of 1.09, 1.06 and 1.03 (red, green, blue). The aim is neutral in the
+/// projector's bare light: with `white: lamp` all three agree within 0.04.
+/// Relative to the yellowish clear print, the aim is blue by 5 in b*: with `white: film` the gray has the visual density of the aim and the
+/// color of that white.
 #[test]
 fn a_mid_gray_is_timed_to_the_aim_densities_of_the_print_stock() {
     let (print, printed) = usual("kodak-vision-2383");
@@ -323,7 +325,7 @@ fn a_mid_gray_is_timed_to_the_aim_densities_of_the_print_stock() {
             assert!((got - want).abs() <= most, "{white:?}: {read:?}");
         }
         assert!((read[1] - aim.green).abs() <= 0.02, "{white:?}: {read:?}");
-        // The layers of a whole picture hold the same.
+        // The layers of a whole picture hold the same densities.
         let gray = chain.film.neutral(log10(10.0 / 250.0)).iter().map(|v| vec![*v as f32; 3]).collect::<Vec<_>>();
         let planes: Vec<&[f32]> = gray.iter().map(Vec::as_slice).collect();
         for (name, layer) in chain.positive.print_densities(&planes).expect("printed") {
@@ -341,8 +343,9 @@ fn color_films() -> impl Iterator<Item = &'static str> {
     })
 }
 
-/// Each on the print stock that it is made for: still negatives on RA-4 paper, motion-picture ones on print film. `CineStill` 800T is
-/// 5219 rated at 800 instead of 500, so its shadows lie 0.68 stops lower on the same curves and its grays are judged from there.
+/// Each film on the print stock for which it is made: still negatives on RA-4 paper, motion-picture negatives on print film.
+/// `CineStill` 800T is 5219 rated at 800 instead of 500. Its shadows lie 0.68 stops lower on the same curves, so its grays are judged from
+/// there.
 #[test]
 fn every_color_film_keeps_grays_gray_and_colors_colorful() {
     let mut count = 0;
@@ -358,7 +361,7 @@ fn every_color_film_keeps_grays_gray_and_colors_colorful() {
         }
         let mean = mean_saturation(&chain);
         println!("{name}: gray within {worst:.2}, mean saturation {mean:.3}");
-        // Printed to its own gray, which lies lower on the curves.
+        // Printed to its own gray, which is lower on the curves.
         let most = if name == "cinestill-800t" { 2.2 } else { 2.0 };
         assert!(worst <= most && (0.9..=1.3).contains(&mean), "{name}: {worst:.2}, {mean:.3}");
         count += 1;
@@ -366,8 +369,8 @@ fn every_color_film_keeps_grays_gray_and_colors_colorful() {
     assert!(count >= 20, "{count}");
 }
 
-/// Kodak's technical data E-7023 of UltraMax 400: a gray card properly exposed reads 0.80 to 1.00 through the red filter of
-/// Status M. A check of the curves' axis that no importer used.
+/// Kodak's technical data E-7023 of UltraMax 400: a correctly exposed gray card reads 0.80 to 1.00 through the red filter of Status M. No
+/// importer used this check of the curves' axis.
 #[test]
 fn a_gray_card_has_the_red_density_that_its_sheet_says() {
     let (s, film) = usual("kodak-ultramax-400");
@@ -376,8 +379,8 @@ fn a_gray_card_has_the_red_density_that_its_sheet_says() {
     assert!((0.80..=1.00).contains(&red), "{red}");
 }
 
-/// A motion-picture negative on the paper of still ones: mid gray as the meter has it, whites white, colors that lead. The paper
-/// is made for other negatives, which are gray on it: this one strays by up to 6 from 2 stops under mid gray to 2 over it
+/// Prints a motion-picture negative on paper for still negatives: mid gray as metered, white whites, dominant colors.
+/// The paper is made for other negatives, which are gray on it. This one deviates by up to 6 from 2 stops below mid gray to 2 above it
 /// (reddish shadows).
 #[test]
 fn a_color_negative_prints_on_color_paper() {
@@ -398,7 +401,7 @@ fn a_color_negative_prints_on_color_paper() {
     assert!((0.9..=1.4).contains(&mean), "{mean}");
 }
 
-/// Inhibition leaves a neutral subject alone and takes pure colors apart; whole frames get what single places get.
+/// Inhibition does not change a neutral subject and separates pure colors; whole frames agree with single places.
 #[test]
 fn layers_that_inhibit_each_other_leave_a_gray_scale_alone() {
     for name in ["kodak-vision3-250d-5207", "kodak-ektachrome-100d"] {
@@ -425,7 +428,7 @@ fn layers_that_inhibit_each_other_leave_a_gray_scale_alone() {
         for k in 0..3 {
             assert!(planes[k][400..].iter().all(|v| (f64::from(*v) - clear[k]).abs() < 1e-6), "{name}");
         }
-        // Green light alone: more of its dye than a neutral of its exposure has.
+        // Green light alone: there is more of its dye than for a neutral subject of its exposure.
         let alone = film.developed(&[-3.0, -1.0, -3.0]);
         let gray = film.neutral(-1.0);
         let more = if name.contains("ektachrome") { gray[1] - alone[1] } else { alone[1] - gray[1] };
@@ -433,7 +436,7 @@ fn layers_that_inhibit_each_other_leave_a_gray_scale_alone() {
     }
 }
 
-/// What is shown is what the eye sees, in linear sRGB, where the screen can show it.
+/// The shown color is what the eye sees, in linear sRGB, if the screen can show it.
 #[test]
 fn a_print_is_shown_as_it_is_seen() {
     let chain = Chain::negative(Look::default());

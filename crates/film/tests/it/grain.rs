@@ -1,17 +1,17 @@
-//! Grain in rendered planes: RMS granularity, Selwyn's law, the same film at every zoom, no lattice.
+//! Tests of grain in rendered planes: RMS granularity, Selwyn's law, the same film at every zoom, no lattice.
 
 use spectra_film::grain::{Grain, usual_half_power};
 use spectra_film::raster::Raster;
 
-/// A plane of the even density `density`.
+/// Returns a plane of even density.
 fn patch(grain: &Grain, raster: &Raster, density: f32) -> Vec<f32> {
     let mut plane = vec![density; raster.pixels()];
     grain.apply(&mut plane, raster);
     plane
 }
 
-/// Means over round apertures of `diameter_mm` in a square grid of that spacing; pixels on the rim count by their area
-/// inside (8 by 8 points).
+/// Means over round apertures of `diameter_mm` in a square grid of that spacing; pixels at the edge count by their area inside (8 by 8
+/// points).
 fn apertures(plane: &[f32], raster: &Raster, diameter_mm: f64) -> Vec<f64> {
     let pitch = raster.pitch_mm;
     let many = (raster.width as f64 * pitch / diameter_mm + 1e-9).floor() as usize;
@@ -47,7 +47,7 @@ fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
     (mean, (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)).sqrt())
 }
 
-/// Kodak Tri-X 400: 17 (F-4017); Eastman Double-X 5222: 14 (H-1-5222). 3600 apertures: a standard error of 1.2 %.
+/// Kodak Tri-X 400: 17 (F-4017); Eastman Double-X 5222: 14 (H-1-5222). 3600 apertures give a standard error of 1.2 %.
 #[test]
 fn rms_granularity_is_the_sheets() {
     for (rms, seed) in [(17.0, 1), (14.0, 2), (5.0, 3)] {
@@ -63,16 +63,16 @@ fn rms_granularity_is_the_sheets() {
     }
 }
 
-/// Bessel's function of the order 1, by its integral (Abramowitz and Stegun 9.1.21).
+/// Bessel function of order 1, by its integral (Abramowitz and Stegun 9.1.21).
 fn j1(x: f64) -> f64 {
     let steps = 400;
     let at = |k: i32| (f64::from(k) + 0.5) / f64::from(steps) * std::f64::consts::PI;
     (0..steps).map(at).map(|t| (t - x * t.sin()).cos()).sum::<f64>() / f64::from(steps)
 }
 
-/// Through an aperture of any size the deviation is what the Wiener spectrum says: the integral of the spectrum times the
-/// aperture's own, 2 J1(pi d f) / (pi d f) squared. Selwyn's law, the deviation times the diameter constant, holds for large
-/// ones; at 24 um clumps have taken a sixth off it.
+/// Through an aperture of any size, the deviation follows from the Wiener spectrum: the integral of the spectrum times that of the
+/// aperture, 2 J1(pi d f) / (pi d f) squared.
+/// Selwyn's law, a constant deviation times diameter, holds for large apertures; at 24 um, clumps reduce it by a sixth.
 #[test]
 fn apertures_read_what_the_wiener_spectrum_says() {
     let grain = Grain::calibrated(17.0, 35.0, 11, 0).expect("a granularity");
@@ -97,9 +97,8 @@ fn apertures_read_what_the_wiener_spectrum_says() {
     }
 }
 
-/// The Wiener spectrum of an even negative at the density 1, 1 um a pixel, by means over 256 blocks of 256 x 256 pixels: at
-/// half of its value at low frequencies between 20 and 60 cycles/mm, along rows, columns and aslant; and with a foot of
-/// crystals.
+/// Wiener spectrum of an even negative at the density 1, with 1 um pixels, averaged over 256 blocks of 256 x 256 pixels. It falls to half
+/// of its value at low frequencies between 20 and 60 cycles/mm, along rows, columns and diagonals, and has a foot of crystals.
 #[test]
 fn wiener_spectrum_falls_to_half_where_clumps_end() {
     let grain = |seed: u64| Grain::calibrated(17.0, usual_half_power(17.0), seed, 0).expect("a granularity");
@@ -108,7 +107,7 @@ fn wiener_spectrum_falls_to_half_where_clumps_end() {
     let grain = grain(0);
     let turns = |k: usize| std::f64::consts::TAU * k as f64 / block as f64;
     let (cosines, sines): (Vec<f64>, Vec<f64>) = (0..block).map(|k| (turns(k).cos(), turns(k).sin())).unzip();
-    // Power at whole cycles a block.
+    // Power at whole cycles per block.
     let power = |u: i32, v: i32| {
         let mut sum = 0.0;
         for (plane, by) in planes.iter().flat_map(|plane| (0..side / block).map(move |by| (plane, by))) {
@@ -127,7 +126,7 @@ fn wiener_spectrum_falls_to_half_where_clumps_end() {
         }
         sum
     };
-    // Each is known to 1 / 16; frequencies of a band are averaged. One cycle a block is 3.9 cycles/mm.
+    // Each is known to 1 / 16; frequencies of a band are averaged. One cycle per block is 3.9 cycles/mm.
     let mean = |places: &[(i32, i32)]| places.iter().map(|(u, v)| power(*u, *v)).sum::<f64>() / places.len() as f64;
     let low = mean(&[(1, 0), (0, 1), (1, 1), (1, -1), (2, 0), (0, 2)]);
     let around = |n: i32, m: i32| mean(&[(n, 0), (0, n), (m, m), (m, -m)]) / low;
@@ -139,12 +138,12 @@ fn wiener_spectrum_falls_to_half_where_clumps_end() {
         let (straight, aslant) = (mean(&[(n, 0), (0, n)]) / low, mean(&[(m, m), (m, -m)]) / low);
         let want = grain.wiener(f64::from(n) / 0.256);
         println!("{:.0} cycles/mm: {straight:.3}, aslant {aslant:.3}, stated {want:.3}", f64::from(n) / 0.256);
-        // 512 blocks each: a standard error of 4.4 %, and of low, 2.5 %; aslant frequencies are whole, so up to 6 % off.
+        // 512 blocks each: a standard error of 4.4 %, and of `low` 2.5 %; diagonal frequencies are whole numbers, so up to 6 % off.
         assert!((straight / want - 1.0).abs() < 0.2 && (aslant / want - 1.0).abs() < 0.3, "{straight} {aslant} {want}");
     }
 }
 
-/// The deviation grows with the root of the density, the mean stays, and no density is negative.
+/// The deviation grows with the square root of the density, the mean stays, and no density is negative.
 #[test]
 fn deviation_grows_with_the_root_of_the_density() {
     let grain = Grain::calibrated(17.0, 35.0, 4, 0).expect("a granularity");
@@ -164,8 +163,8 @@ fn deviation_grows_with_the_root_of_the_density() {
     }
 }
 
-/// Means over the same squares of 48 um of the same film, from pixels of different sizes (each a whole part of the
-/// square), agree; those of a different seed do not.
+/// Means over the same 48 um squares of the same film, from pixels of different sizes (each a whole fraction of the square), agree; those
+/// of a different seed do not.
 #[test]
 fn same_film_at_every_zoom() {
     let grain = Grain::calibrated(17.0, 35.0, 5, 0).expect("a granularity");
@@ -226,8 +225,8 @@ fn same_bits_for_any_tile_and_threads() {
     }
 }
 
-/// Neighboring pixels are tied by the width of a clump alone; farther ones not at all, along the axes, diagonally, and
-/// over any distance (a lattice or tiles would show as ridges).
+/// Neighboring pixels are correlated only over the width of a clump. Farther ones are not, along the axes, diagonally, and over any
+/// distance (a lattice or tiles would show as ridges).
 #[test]
 fn far_pixels_are_independent() {
     let grain = Grain::calibrated(17.0, 35.0, 8, 0).expect("a granularity");
@@ -250,7 +249,7 @@ fn far_pixels_are_independent() {
         let (below, _) = at(0, 1);
         println!("{pitch} mm: neighbors {next:.4} {below:.4}");
         assert!((next - below).abs() < 0.01 && (0.0..0.5).contains(&next), "{next} {below}");
-        // A clump is 8 um wide, and ends within three.
+        // A clump is 8 um wide, and ends within three pixels.
         let clear = |(dx, dy): &(usize, usize)| *dx.max(dy) as f64 * pitch > 0.033;
         for (dx, dy) in
             [(2, 0), (3, 0), (0, 2), (4, 4), (5, 0), (8, 0), (16, 0), (32, 0), (64, 0), (0, 64), (63, 1), (128, 128)]

@@ -1,4 +1,4 @@
-//! Halation in rendered planes: the ring, the light that is kept, and what falls beside the frame.
+//! Tests of halation in rendered planes: the ring, conservation of light, and light that falls outside the frame.
 
 use spectra_film::halation::{Halation, HalationBase};
 use spectra_film::raster::Raster;
@@ -7,7 +7,7 @@ use spectra_film::stock::Backing;
 const ACETATE: HalationBase =
     HalationBase { thickness_mm: 0.125, index: 1.48, entering: 0.4, transmittance: 0.9, reflected: 0.0 };
 
-/// A point of `light` in the pixel (`x`, `y`).
+/// Returns a plane with a point of `light` in the pixel (`x`, `y`).
 fn point(base: &HalationBase, raster: &Raster, x: usize, y: usize, light: f32) -> Vec<f32> {
     let mut plane = vec![0.0; raster.pixels()];
     plane[y * raster.width + x] = light;
@@ -34,7 +34,7 @@ fn ring_begins_where_total_reflection_does() {
             *ring = (ring.0 + f64::from(*v), ring.1 + 1);
         }
         let profile: Vec<f64> = rings[..side / 2].iter().map(|(s, n)| s / f64::from(*n)).collect();
-        // From well inside on; the point itself is far brighter.
+        // Starts well inside the ring; the point itself is far brighter.
         let inside = (0.1 / pitch) as usize;
         let peak = (inside..profile.len()).max_by(|a, b| profile[*a].total_cmp(&profile[*b])).expect("a profile");
         let half = profile[peak] / 2.0;
@@ -46,7 +46,7 @@ fn ring_begins_where_total_reflection_does() {
     }
 }
 
-/// What the rendered plane has at some distance is the closed form there.
+/// The rendered plane agrees with the closed form at some distances.
 #[test]
 fn profile_is_the_closed_form() {
     let pitch = 0.006;
@@ -70,7 +70,8 @@ fn profile_is_the_closed_form() {
     }
 }
 
-/// On pixels much finer than the ring the light round a point is the closed form, off the ring's steep inner side, and never negative.
+/// On pixels much finer than the ring, the light around a point follows the closed form, except on the steep inner side of the ring. It is
+/// never negative.
 #[test]
 fn fine_pixels_have_the_same_halo() {
     for pitch in [0.006, 0.003, 0.0017] {
@@ -96,7 +97,7 @@ fn fine_pixels_have_the_same_halo() {
     }
 }
 
-/// What leaves the frame is what the closed form puts beside it; all else is kept, to 1e-6 of the light.
+/// The light that leaves the frame is what the closed form puts outside it; all other light is kept, to 1e-6.
 #[test]
 fn light_is_kept() {
     for (width, height, pitch, at, transmittance) in [
@@ -109,7 +110,7 @@ fn light_is_kept() {
         let base = HalationBase { transmittance, ..ACETATE };
         let raster = Raster::new(width, height, pitch);
         let plane = point(&base, &raster, at.0, at.1, 1e6);
-        // Beside the frame, by angles around the point: outside of the distance to the border.
+        // Outside the frame, by angles around the point: beyond the distance to the border.
         let border = |angle: f64| {
             let (s, c) = (spectra_core::math::sin(angle), spectra_core::math::cos(angle));
             let x = if c > 0.0 { width as f64 - at.0 as f64 - 0.5 } else { at.0 as f64 + 0.5 } * pitch / c.abs();
@@ -129,7 +130,7 @@ fn light_is_kept() {
     }
 }
 
-/// Far from every border nothing leaves: the sum is kept to 1e-6.
+/// Far from every border no light leaves: the sum is kept to 1e-6.
 #[test]
 fn absorbing_base_keeps_all_light_in_the_frame() {
     // Grazing light is absorbed, so nothing reaches 2 mm.
@@ -146,16 +147,16 @@ fn even_light_stays_even() {
     let mut plane = vec![2.0; raster.pixels()];
     Halation::new(&ACETATE, &raster).expect("a base").apply(&mut plane);
     let center = f64::from(plane[500 * 1500 + 750]);
-    // From 6 mm on, the returned light is missing: at most what comes from beyond.
+    // At 6 mm from the border, at most the returned light from farther away is missing.
     let missing = (ACETATE.returned() - ACETATE.returned_within(6.0)) / (1.0 + ACETATE.returned());
     assert!(center <= 2.0 + 1e-6 && center >= 2.0 * (1.0 - missing) - 1e-6, "{center}, missing {missing}");
-    // On the border's middle half of the returned light is missing (the pixel is half a pixel inside).
+    // In the middle of the border, half of the returned light is missing (the pixel is half a pixel inside).
     let edge = f64::from(plane[750]);
     let want = 2.0 * (1.0 - ACETATE.returned() / 2.0 / (1.0 + ACETATE.returned()));
     assert!((edge / want - 1.0).abs() < 0.005, "{edge} {want}");
 }
 
-/// Nothing comes around from the other side of the frame.
+/// No light wraps around from the other side of the frame.
 #[test]
 fn nothing_wraps_around() {
     let raster = Raster::new(300, 200, 0.006);
@@ -173,16 +174,16 @@ fn backing_weakens_the_ring() {
     let ring =
         |transmittance| point(&HalationBase { transmittance, ..ACETATE }, &raster, 100, 100, 1e6)[100 * 201 + 60];
     let (none, some) = (ring(1.0), ring(0.5));
-    // Passed twice at the critical angle, cos = sqrt(1 - 1/n^2): both also differ in what even light returns.
+    // Two passes at the critical angle, cos = sqrt(1 - 1/n^2). The two also differ in the light that returns from an even exposure.
     let cosine = (1.0 - 1.0 / (1.48_f64 * 1.48)).sqrt();
     let even = |t| 1.0 + HalationBase { transmittance: t, ..ACETATE }.returned();
     let want = spectra_core::math::pow(0.5, 2.0 / cosine) * even(1.0) / even(0.5);
     assert!((f64::from(some / none) / want - 1.0).abs() < 0.05, "{} {want}", some / none);
 }
 
-/// The ring of a lamp for each kind of backing, against an integral over angles worked out here: light leaves the emulsion by Lambert's
-/// law, is reflected at the back by Fresnel's formulas for air, and passes base and backing twice at its angle. From rem-jet to a removed
-/// backing it rises; rem-jet leaves 0.03 to 0.1 of what a dye leaves.
+/// Compares the ring of a lamp for each kind of backing with an integral over angles computed here.
+/// Light leaves the emulsion by Lambert's law, is reflected at the back by Fresnel's formulas for air, and passes base and backing twice at
+/// its angle. The ring rises from rem-jet to a removed backing; rem-jet leaves 0.03 to 0.1 of what a dye leaves.
 #[test]
 fn backings_have_the_rings_of_their_kind() {
     const PITCH_MM: f64 = 0.006;

@@ -1,9 +1,9 @@
-//! The lens between film and picture: contrast over frequency, light that is kept, even areas.
+//! Tests of the lens between film and picture: contrast over frequency, conservation of light, even areas.
 
 use spectra_film::optics::Optics;
 use std::f64::consts::TAU;
 
-/// Faint sines across, down: what is left of them is the stated Gaussian, a half at the stated frequency.
+/// Faint sines across and down keep the stated Gaussian response: one half at the stated frequency.
 #[test]
 fn half_of_the_contrast_is_left_where_stated() {
     let (side, pitch) = (300_usize, 0.003);
@@ -32,7 +32,8 @@ fn half_of_the_contrast_is_left_where_stated() {
     }
 }
 
-/// Light is kept: a dense grain on clear film passes as much light after as before; even film stays, to its border.
+/// Light is conserved: a dense grain on clear film passes as much light after the lens as before. Even film does not change, up to its
+/// border.
 #[test]
 fn light_is_kept_and_even_film_stays() {
     let lens = Optics::new(50.0, [0.002, 0.003]);

@@ -1,4 +1,4 @@
-//! Ilford Ortho Plus as bundled, against its sheet.
+//! Tests of the bundled Ilford Ortho Plus against its sheet.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::math::{log10, pow};
@@ -27,8 +27,8 @@ fn says_what_the_sheet_says() {
     assert_eq!(Stock::bundled().filter(|name| *name == "ilford-ortho-plus").count(), 1);
 }
 
-/// The sheet's ISO 80 in daylight and 40 in tungsten are steps of a third of a stop: 1.58 to 2.5. Computed
-/// independently from the table: 1.73 read as equal-energy.
+/// The sheet's ISO 80 in daylight and 40 in tungsten light are steps of a third of a stop: 1.58 to 2.5. An independent computation from the
+/// table, read as equal-energy, gives 1.73.
 #[test]
 fn daylight_to_tungsten_speed_ratio() {
     let (daylight, tungsten) = sensitometric();
@@ -38,7 +38,7 @@ fn daylight_to_tungsten_speed_ratio() {
     assert!((ratio - 1.73).abs() <= 0.005, "{ratio}");
 }
 
-/// The other reading of the same plot, divided by a lamp of 2850 K, independently computed: 2.15.
+/// The other reading of the same plot, divided by a lamp of 2850 K: an independent computation gives 2.15.
 #[test]
 fn speed_ratio_where_the_lamp_is_divided_out() {
     let (daylight, tungsten) = sensitometric();
@@ -59,11 +59,11 @@ fn sees_blue_and_green_but_no_red() {
     for w in [350.0, 355.0, 565.0, 570.0, 589.3, 643.85, 656.27, 830.0] {
         assert_eq!(s(w), 0.0, "{w}");
     }
-    // Peaks of the digitized plot: 10^0.976 at 425 nm, 10^0.978 at 540 nm, a saddle of 10^0.806 at 510 nm between.
+    // Peaks of the digitized plot: 10^0.976 at 425 nm and 10^0.978 at 540 nm, with a saddle of 10^0.806 at 510 nm.
     for (w, want) in [(425.0, 9.4624), (540.0, 9.5060), (510.0, 6.3973)] {
         assert!((s(w) / want - 1.0).abs() < 1e-4, "{w}: {}", s(w));
     }
-    // Of a daylight exposure, 2 to 8 % comes from below 380 nm: the band has to begin at 350.
+    // 2 to 8 % of a daylight exposure comes from below 380 nm: the band must begin at 350.
     let light = illuminant("D65").expect("bundled");
     let below = Grid { start_nm: 350.0, step_nm: 1.0, count: 31 };
     let seen = |grid: Grid| {
@@ -74,8 +74,7 @@ fn sees_blue_and_green_but_no_red() {
     assert!((0.02..0.08).contains(&share), "{share}");
 }
 
-/// Decision of the unit: the reference light gives as many lux-seconds on film as it has to the eye, whatever the grid
-/// that a scene computes on.
+/// Definition of the unit: the reference light gives as many lux-seconds on film as for the eye, whatever the grid of a scene.
 #[test]
 fn reference_daylight_gives_its_photometric_exposure() {
     let stock = ortho_plus();
@@ -97,8 +96,8 @@ fn reference_daylight_gives_its_photometric_exposure() {
     assert_eq!(same.response[0], channel.response[50]);
 }
 
-/// ISO 6:1993: 0.8/S lx s gives 0.1 over base and fog; the sheet's pictorial average gradient is .62 to .70, over 1.5
-/// of log10 exposure from there (Ilford), and it must not depend much on the length that is measured (ISO 6: 1.3).
+/// ISO 6:1993: 0.8/S lx s gives 0.1 above base and fog. The sheet's pictorial average gradient is .62 to .70, over 1.5 of log10 exposure
+/// from there (Ilford). It must not depend much on the measured length (ISO 6: 1.3).
 #[test]
 fn curve_passes_the_speed_point_with_the_gradient_of_the_sheet() {
     let stock = ortho_plus();
@@ -112,7 +111,7 @@ fn curve_passes_the_speed_point_with_the_gradient_of_the_sheet() {
     assert_eq!(curve.unexposed_density(), 0.0);
 }
 
-/// A step wedge of 21 half-stop steps through the whole of development comes out on the stock's own curve.
+/// A step wedge of 21 half-stop steps through the whole development gives the stock's own curve.
 #[test]
 fn a_step_wedge_recovers_the_curve() {
     let stock = ortho_plus();
@@ -123,10 +122,10 @@ fn a_step_wedge_recovers_the_curve() {
     let developed = develop(&stock, "pictorial", &frame, 1.0 / 60.0).expect("complete");
     for (step, density) in steps.iter().zip(&developed.layers[0].density) {
         let want = stock.layers[0].developments[0].curve.density(log10(f64::from(*step)));
-        // Interpolation 5e-7 and the rounding to 24 bits.
+        // Interpolation 5e-7, and rounding to 24 bits.
         assert!((f64::from(*density) - want).abs() < 1e-6, "{step}");
     }
-    // No light, less than none and no number leave it clear.
+    // No light, negative light and NaN leave it clear.
     let odd = ExposureChannel { name: "ortho".into(), unit: "lx s".into(), values: vec![0.0, -1.0, f32::NAN] };
     let size = FrameSize { width_px: 3, ..size };
     let clear = develop(&stock, "pictorial", &ExposureFrame { size, channels: vec![odd] }, 1.0).expect("complete");
@@ -134,7 +133,7 @@ fn a_step_wedge_recovers_the_curve() {
     assert!(develop(&stock, "lith", &frame, 1.0).is_err());
 }
 
-/// The sheet: a metered 10 s becomes 17.8 s, so that 17.8 s do what 10 s would; up to 1 s nothing is lost.
+/// From the sheet: a metered 10 s becomes 17.8 s, so 17.8 s have the effect of 10 s; up to 1 s nothing is lost.
 #[test]
 fn long_exposures_lose_what_the_sheet_says() {
     let reciprocity = ortho_plus().reciprocity.expect("printed");

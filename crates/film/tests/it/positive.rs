@@ -1,4 +1,4 @@
-//! Film in color: dyes from densities, and prints, scans and slides from dyes.
+//! Tests of color film: dyes from densities, and prints, scans and slides from dyes.
 
 use spectra_core::math::{log10, pow};
 use spectra_film::emulsion::Emulsion;
@@ -39,7 +39,7 @@ fn looked_at(look: Look) -> (Emulsion, Positive) {
     (negative, positive)
 }
 
-/// A neutral step wedge, read by the densitometer that the sheet used, comes out on the sheet's curves.
+/// A neutral step wedge, read by the densitometer of the sheet, gives the sheet's curves.
 #[test]
 fn a_step_wedge_recovers_the_curves_of_the_sheet() {
     for name in ["kodak-vision3-250d-5207", "kodak-vision-2383", "kodak-ektachrome-100d"] {
@@ -53,7 +53,7 @@ fn a_step_wedge_recovers_the_curves_of_the_sheet() {
         let mut worst = 0.0_f64;
         for step in 0..60 {
             let x = -3.5 + f64::from(step) * 0.1;
-            // Through the planes of a frame, not by the exact curve alone.
+            // Uses planes of a frame, not only the exact curve.
             let amounts: Vec<f64> = (0..3)
                 .map(|i| {
                     let mut plane = vec![pow(10.0, x) as f32; 3];
@@ -71,8 +71,8 @@ fn a_step_wedge_recovers_the_curves_of_the_sheet() {
     }
 }
 
-/// Mid gray of the meter's exposure is printed neutral and shown as 18 % of white; in a dark surround it has the aim densities of the
-/// print stock, which an eye there sees as 18.7 % of white. Unexposed film prints black, and the clear print is white.
+/// Mid gray of the meter's exposure is printed neutral and shown as 18 % of white. In a dark surround it has the aim densities of the print
+/// stock, which look like 18.7 % of white there. Unexposed film prints black, and the clear print is white.
 #[test]
 fn a_mid_gray_prints_neutral() {
     let dark = looked_at(Look { surround: Surround::Dark, ..Look::default() });
@@ -92,8 +92,8 @@ fn a_mid_gray_prints_neutral() {
     assert!(before > 0.9, "{before}");
 }
 
-/// Neutral subjects stay nearly neutral over the tones that pictures are made of (three stops below mid gray to two above):
-/// encoded channels within 7 of 255 of each other in the print, 6 in the scan.
+/// Neutral subjects stay nearly neutral over the usual tones of pictures (three stops below mid gray to two above): encoded channels agree
+/// within 7 of 255 in the print, 6 in the scan.
 #[test]
 fn a_gray_scale_stays_gray() {
     let (negative, print) = printed();
@@ -109,7 +109,7 @@ fn a_gray_scale_stays_gray() {
     }
 }
 
-/// ColorChecker patches by their names: the hue that is meant leads, on print, slide and scan.
+/// ColorChecker patches by name: the named hue dominates on print, slide and scan.
 #[test]
 fn colors_keep_their_names() {
     let light = illuminant("iso-7589-photographic-daylight").expect("bundled");
@@ -167,14 +167,14 @@ fn metered(s: &Stock) -> f64 {
     10.0 / s.iso.expect("rated")
 }
 
-/// Whole frames go through tables; each place of them is what the sum over the band gives, to half a code value of 8 bits.
+/// Whole frames use tables; each place agrees with the sum over the band to half a code value of 8 bits.
 #[test]
 fn frames_are_shown_as_their_places_are() {
     let (negative, print) = printed();
     let negative_stock = stock("kodak-vision3-250d-5207");
     let scan = Positive::scanned(&negative_stock, &negative, GRAY_LX_S, ScanScale::Picture).expect("scans");
     let table = Positive::transmitted(&negative_stock, &negative, &d55(), LAMP).expect("shows");
-    // A lattice of amounts that falls between the steps of the tables.
+    // A lattice of amounts between the steps of the tables.
     let mut planes = [const { Vec::new() }; 3];
     for i in 0..1000_u32 {
         for (k, plane) in planes.iter_mut().enumerate() {
@@ -195,7 +195,7 @@ fn frames_are_shown_as_their_places_are() {
     }
 }
 
-/// Silver is neutral on any print stock, and a black-and-white negative prints on color stock as gray.
+/// Silver is neutral on any print stock, and a black-and-white negative prints as gray on color stock.
 #[test]
 fn black_and_white_prints_on_either_print_stock() {
     let (_, negative) = usual("kodak-double-x-5222");
@@ -218,15 +218,15 @@ fn black_and_white_prints_on_either_print_stock() {
     assert!(matches!(fault, PositiveError::NoPrintStock { .. }));
 }
 
-/// One-stop steps from 4 under mid gray to 7 over it: on the logarithmic scale each rises by 1 % of the scale or more, and by
-/// more than the grain of a 48 um aperture; the picture rises as well, and ends at white.
+/// One-stop steps from 4 below mid gray to 7 above it. On the logarithmic scale each rises by at least 1 % of the scale, and by more than
+/// the grain of a 48 um aperture. The picture rises as well, and ends at white.
 #[test]
 fn a_scan_holds_what_the_negative_holds() {
     let (stock, negative) = usual("kodak-vision3-250d-5207");
     let scan = |scale| Positive::scanned(&stock, &negative, GRAY_LX_S, scale).expect("scans");
     let (picture, logarithm) = (scan(ScanScale::Picture), scan(ScanScale::Log));
     let code = |v: f64| spectra_color::Transfer::Srgb.encode(v);
-    // Density over the base that a step of the scale stands for.
+    // Density above the base that a step of the scale means.
     let rms = stock.granularity.map_or(0.01, |g| g.rms / 1000.0);
     let mut before: Option<([f64; 3], [f64; 3])> = None;
     for stops in -4..=7 {
@@ -261,7 +261,7 @@ fn scales_of_a_scan_give_back_density() {
         let clear = read(&negative.neutral(f64::NEG_INFINITY));
         for step in -8..=14 {
             let x = log10(gray) + f64::from(step) * 0.5 * log10(2.0);
-            // A color, and through the tables of a whole frame.
+            // A color, through the tables of a whole frame.
             let offsets: Vec<f64> = (0..negative.layers()).map(|i| x + i as f64 * 0.1).collect();
             let amounts = negative.developed(&offsets);
             let planes: Vec<Vec<f32>> = amounts.iter().map(|a| vec![*a as f32]).collect();
@@ -285,8 +285,8 @@ fn scales_of_a_scan_give_back_density() {
     }
 }
 
-/// 24 megapixels of color negative, from exposures to the picture of the print: curves, dyes, printing and viewing. Run with
-/// `--ignored --nocapture`; it needs 1.2 GB.
+/// 24 megapixels of color negative, from exposures to the picture of the print: curves, dyes, printing and viewing. Run with `--ignored
+/// --nocapture`; it needs 1.2 GB.
 #[test]
 #[ignore = "a measurement: prints its time"]
 fn time_of_24_megapixels() {

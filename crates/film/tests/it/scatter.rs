@@ -1,4 +1,4 @@
-//! Scatter in rendered planes: sine targets, points, and the light that is kept.
+//! Tests of scatter in rendered planes: sine targets, points, and conservation of light.
 
 use spectra_film::raster::Raster;
 use spectra_film::scatter::{Modulation, Mtf, Scatter};
@@ -6,8 +6,8 @@ use spectra_film::stock::Stock;
 use spectra_scene::FileResources;
 use std::f64::consts::PI;
 
-/// Contrast of a sine target of about `frequency` cycles/mm, rendered by the means over the pixels and scattered, over
-/// its contrast before; measured by its Fourier component over whole periods in the middle. Also its frequency.
+/// Contrast of a scattered sine target of about `frequency` cycles/mm, relative to its contrast before. The target is rendered by means
+/// over the pixels, and measured by its Fourier component over whole periods in the middle. Also returns its frequency.
 fn contrast(mtf: &Mtf, pitch: f64, frequency: f64, slanted: bool) -> (f64, f64) {
     let side = 512;
     let raster = Raster::new(side, side, pitch);
@@ -31,8 +31,8 @@ fn contrast(mtf: &Mtf, pitch: f64, frequency: f64, slanted: bool) -> (f64, f64) 
     (2.0 * c / mean / 0.6, per_pixel / pitch * slant)
 }
 
-/// What a kernel of pixel integrals does to samples of a sine of `across` and `down` cycles a pixel: the curve times the pixel's
-/// own loss at that frequency and at all that pixels cannot tell from it.
+/// Response of a kernel of pixel integrals to samples of a sine of `across` and `down` cycles per pixel: the curve times the pixel's own
+/// loss, at that frequency and at all its aliases.
 fn of_pixels(mtf: &Mtf, pitch: f64, across: f64, down: f64) -> f64 {
     let loss = |x: f64| if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) };
     let mut sum = 0.0;
@@ -72,11 +72,11 @@ fn sine_targets_recover_friesers_curve() {
 
 #[test]
 fn sine_targets_recover_a_measured_curve() {
-    // A curve of the shape that makers print, no overshoot.
+    // A curve of the shape that makers print, without overshoot.
     let points = [[5.0, 0.99], [10.0, 0.965], [20.0, 0.87], [40.0, 0.62], [60.0, 0.43], [100.0, 0.22]];
     let mtf = Mtf::measured(&points).expect("a curve");
-    // At the points themselves: 256 pixels hold a whole number of periods of a frequency that is close; what is left
-    // is the slope of the curve.
+    // At the points themselves: 256 pixels hold a whole number of periods of a close frequency; the remaining difference comes from the
+    // slope of the curve.
     for [frequency, response] in points {
         let (got, at) = contrast(&mtf, 0.002, frequency, false);
         let lost = (PI * at * 0.002).sin() / (PI * at * 0.002);
@@ -86,8 +86,8 @@ fn sine_targets_recover_a_measured_curve() {
     }
 }
 
-/// What falls on the pixel `i` across and `j` down from a point, by 16 x 16 Gauss-Legendre points of the radial function
-/// in each part of the pixel: nothing of how the kernel is made is used.
+/// Light on the pixel `i` across and `j` down from a point, by 16 x 16 Gauss-Legendre points of the radial function in each part of the
+/// pixel. Does not use the method that builds the kernel.
 fn on_pixel(per_mm2: impl Fn(f64) -> f64, pitch: f64, i: usize, j: usize, finest: f64) -> f64 {
     // Abscissas and weights of eight points (Abramowitz and Stegun, table 25.4), both signs.
     const X: [f64; 4] = [0.183434642495650, 0.525532409916329, 0.796666477413627, 0.960289856497536];
@@ -112,8 +112,8 @@ fn on_pixel(per_mm2: impl Fn(f64) -> f64, pitch: f64, i: usize, j: usize, finest
     down.iter().map(row).sum()
 }
 
-/// A point on every layer that has a curve, and by Frieser, on pixels of any size: each pixel has the integral of one function
-/// of the distance, which falls, within 3 % down to 1e-6 of the peak; nothing is negative, and no light is lost.
+/// A point on every layer that has a curve, and by Frieser's model, on pixels of any size. Each pixel has the integral of one falling
+/// function of the distance, within 3 % down to 1e-6 of the peak. Nothing is negative, and no light is lost.
 #[test]
 fn a_point_is_one_round_falling_function_on_pixels_of_any_size() {
     let resources = FileResources::beside("/nowhere".as_ref());
@@ -135,7 +135,7 @@ fn a_point_is_one_round_falling_function_on_pixels_of_any_size() {
             before = now;
         }
         let narrowest = spread.terms().iter().map(|t| t[0]).fold(f64::INFINITY, f64::min);
-        // Sampled once: it is asked for at many points.
+        // Sampled once, because it is evaluated at many points.
         let samples: Vec<f64> = (0..60_002).map(|k| spread.per_mm2(f64::from(k) * 2e-5)).collect();
         let sampled = |r: f64| {
             let place = (r * 5e4).min(60_000.0);
@@ -153,7 +153,7 @@ fn a_point_is_one_round_falling_function_on_pixels_of_any_size() {
             let got = |i: usize, j: usize| f64::from(plane[(150 + j) * side + 150 + i]) / 1e5;
             let peak = got(0, 0);
             let (mut worst, mut farthest) = (0.0_f64, 0);
-            // Along a row, along the diagonal, and between; near the point the finest Gaussian asks for many parts.
+            // Along a row, along the diagonal, and between. Near the point, the finest Gaussian needs many parts.
             for (a, b) in [(1, 0), (1, 1), (2, 1)] {
                 for n in (0..75).filter(|n| n % 3 == 0 || *n < 9) {
                     let (i, j) = (a * n, b * n);
@@ -172,7 +172,7 @@ fn a_point_is_one_round_falling_function_on_pixels_of_any_size() {
     }
 }
 
-/// Against `reference/spread.py`, which integrates in polar coordinates: every pixel down to 1e-6 of the peak, within 3 %.
+/// Compares with `reference/spread.py`, which integrates in polar coordinates: every pixel down to 1e-6 of the peak, within 3 %.
 #[test]
 fn points_are_those_of_an_independent_program() {
     let resources = FileResources::beside("/nowhere".as_ref());
@@ -197,7 +197,7 @@ fn points_are_those_of_an_independent_program() {
     }
 }
 
-/// On fine pixels equal distances along rows and aslant have equal light: (3, 4) and 5, (5, 12) and 13, (8, 15) and 17.
+/// On fine pixels, equal distances along rows and obliquely have equal light: (3, 4) and 5, (5, 12) and 13, (8, 15) and 17.
 #[test]
 fn a_point_is_round() {
     let resources = FileResources::beside("/nowhere".as_ref());

@@ -1,4 +1,4 @@
-//! Stock files of one's own: what they may hold, and what is said when they are wrong.
+//! Tests of user-written stock files: allowed contents, and messages about faults.
 
 use spectra_film::curve::CharacteristicCurve;
 use spectra_film::stock::Stock;
@@ -26,7 +26,7 @@ fn load(yaml: &str, csv: &str) -> Result<Stock, String> {
     fs::create_dir_all(folder.path().join("film/tables")).expect("a folder");
     fs::write(folder.path().join("film/mine.yaml"), yaml).expect("written");
     fs::write(folder.path().join("film/tables/pan.csv"), csv).expect("written");
-    // The scene lies above the stock's folder: the table is found beside the stock.
+    // The scene is above the stock's folder: the table is found next to the stock.
     Stock::load("film/mine.yaml", &FileResources::beside(folder.path())).map_err(|faults| {
         let prefix = format!("{}/", folder.path().display());
         faults.to_string().replace(&prefix, "")
@@ -42,7 +42,7 @@ fn a_stock_of_ones_own_is_read_with_the_table_beside_it() {
     assert_eq!(layer.sensitivity.range_nm(), (400.0, 680.0));
     assert_eq!(layer.sensitivity.at(450.0), 0.9);
     let CharacteristicCurve::Tabulated(_) = &layer.development("push").expect("there").curve else { panic!("printed") };
-    // 0.1 over the 0.25 of the unexposed film lies on a printed point.
+    // 0.1 above the 0.25 of the unexposed film is a printed point.
     assert!((layer.developments[0].curve.speed_point().expect("there") + 2.1).abs() < 1e-9);
     assert!(stock.reciprocity.is_none() && stock.bases.is_empty() && stock.maker.is_none());
 }
@@ -102,7 +102,7 @@ fn faulty_tables_are_told_with_line_and_column() {
     assert!(text.contains("not sensitive to the reference"), "{text}");
 }
 
-/// A curve that is assumed says what it rests on, and cannot be built from impossible numbers.
+/// An assumed curve needs a remark, and cannot be built from impossible numbers.
 #[test]
 fn assumed_curves_are_checked() {
     let assumed = |numbers: &str| {
@@ -128,7 +128,7 @@ fn assumed_curves_are_checked() {
     }
 }
 
-/// Faults of color stocks: dyes, densities and curves that do not fit each other, each with its place.
+/// Faults of color stocks: dyes, densities and curves that do not match each other, each with its place.
 #[test]
 fn layers_that_do_not_fit_are_told() {
     let layer = |name: &str, dye: &str, curves: &str| {
@@ -163,7 +163,7 @@ fn layers_that_do_not_fit_are_told() {
                 .replace("[[400, 1], [650, 1]]", "[[900, 1], [950, 1]]"),
             "900 to 950 nm",
         ),
-        (format!("{head}layers:\n{}", layer("red", "", curve)).replace("iso: 100\n", ""), "has a speed"),
+        (format!("{head}layers:\n{}", layer("red", "", curve)).replace("iso: 100\n", ""), "needs a speed"),
     ];
     for (yaml, word) in cases {
         let text = load(&yaml, "").expect_err(word);

@@ -1,4 +1,4 @@
-//! Every bundled stock: what its file says, and what film of it does.
+//! Tests of every bundled stock: the contents of its file, and the behavior of its film.
 
 use spectra_core::math::{log2, log10};
 use spectra_film::curve::SPEED_POINT_DENSITY;
@@ -27,7 +27,7 @@ fn seen(light: &Emission, matter: impl Fn(f64) -> f64, by: &SpectralSensitivity)
     light.to_power(&BAND).seen_by(&response)
 }
 
-/// The schema of all stock files in one go: origin, terms, units, ranges, and that what is assumed says why.
+/// Checks the data of all stock files: origin, license, units, ranges, and reasons for assumptions.
 #[test]
 fn every_stock_is_whole_and_says_where_it_comes_from() {
     let names: Vec<&str> = Stock::bundled().collect();
@@ -86,7 +86,7 @@ fn every_stock_is_whole_and_says_where_it_comes_from() {
             for d in &layer.developments {
                 assert!(!d.assumed || d.remark.is_some(), "{name}");
                 let (low, high) = d.curve.density_range();
-                // The sheets of these two print films alone go beyond: to 5.0 and 5.5.
+                // Only the sheets of these two print films go beyond: to 5.0 and 5.5.
                 let dense = ["fuji-eterna-cp-3513di", "kodak-vision-premier-2393"];
                 let most = if dense.contains(&name) { 6.0 } else { 4.5 };
                 assert!((0.0..1.3).contains(&low) && (1.2..most).contains(&high), "{name}: {low} {high}");
@@ -110,8 +110,8 @@ fn every_stock_is_whole_and_says_where_it_comes_from() {
     }
 }
 
-/// RMS granularity as the maker's sheet states it, 17 for Tri-X 400, 14 for Double-X, 8 and 10 for T-Max 100 and 400; of other camera films of silver it is
-/// assumed, and said so; the layers of color film have it over density, as their sheets plot it.
+/// RMS granularity as the maker's sheet states it: 17 for Tri-X 400, 14 for Double-X, 8 and 10 for T-Max 100 and 400.
+/// For other silver camera films it is marked as assumed; the layers of color film have it over density, as their sheets plot it.
 #[test]
 fn granularity_is_stated_or_assumed() {
     for name in Stock::bundled() {
@@ -129,9 +129,9 @@ fn granularity_is_stated_or_assumed() {
     }
 }
 
-/// ISO 6:1993 for black-and-white negatives: 0.8/S lx s gives 0.1 over base and fog. The sheet's curve of Tri-X meets that
-/// to 0.03 of log10 exposure; Double-X is rated by an exposure index, within a third of a stop; where the curve is
-/// assumed, it is so by construction. A mid gray at the meter's 10/S lx s lies on the straight part.
+/// ISO 6:1993 for black-and-white negatives: 0.8/S lx s gives 0.1 above base and fog. The sheet's curve of Tri-X agrees to 0.03 of log10
+/// exposure; Double-X, rated by an exposure index, agrees within a third of a stop.
+/// An assumed curve agrees by construction. A mid gray at the meter's 10/S lx s lies on the straight part.
 #[test]
 fn speed_points_lie_where_the_speed_says() {
     for (name, tolerance) in [
@@ -160,9 +160,9 @@ fn speed_points_lie_where_the_speed_says() {
     }
 }
 
-/// What the speeds are, and what the curves say of them at the contrast of ISO 6 (by a separate computation with straight
-/// lines between the points of the sheets, 505 for Tri-X and 300 for Double-X): the stated one of Tri-X is a third of a stop
-/// below, the exposure index of Double-X a quarter.
+/// Compares the stated speeds with those of the curves at the contrast of ISO 6. A separate computation with straight lines between the
+/// points of the sheets gives 505 for Tri-X and 300 for Double-X.
+/// The stated speed of Tri-X is a third of a stop lower, the exposure index of Double-X a quarter.
 #[test]
 fn iso_speeds_are_told_from_exposure_indices() {
     for (name, text, wanted) in [
@@ -183,8 +183,8 @@ fn iso_speeds_are_told_from_exposure_indices() {
     assert_eq!(stock("kodak-2302").speed_text(), None);
 }
 
-/// Filter factors of Ortho Plus with Wratten 8, 15, 47 and 58 in place of Ilford's 104, 109, 304 and 404: within a stop of
-/// the sheet's, and what an independent computation from the same tables gave (2.56/1.91, 4.67/3.12, 4.97/6.78, 5.32/3.95).
+/// Filter factors of Ortho Plus, with Wratten 8, 15, 47 and 58 replacing Ilford's 104, 109, 304 and 404, agree within a stop with the
+/// sheet's. An independent computation from the same tables gave 2.56/1.91, 4.67/3.12, 4.97/6.78, 5.32/3.95.
 #[test]
 fn filter_factors_are_within_a_stop_of_the_sheet() {
     let film = stock("ilford-ortho-plus");
@@ -209,8 +209,8 @@ fn filter_factors_are_within_a_stop_of_the_sheet() {
     }
 }
 
-/// ColorChecker red and blue relative to white, orthochromatic against panchromatic, in stops: -1.25 and +.27 in daylight,
-/// -1.83 and +.56 in tungsten light, from an independent computation; within .15.
+/// ColorChecker red and blue relative to white, orthochromatic against panchromatic, in stops: -1.25 and +.27 in daylight, -1.83 and +.56
+/// in tungsten light, from an independent computation; within .15.
 #[test]
 fn orthochromatic_film_darkens_red_and_lightens_blue() {
     let films = ["ilford-ortho-plus", "kodak-tri-x-400"].map(stock);
@@ -229,7 +229,7 @@ fn orthochromatic_film_darkens_red_and_lightens_blue() {
     }
 }
 
-/// An unsensitized emulsion sees no green or red; the plate with sensitizers sees red, less than blue.
+/// An unsensitized emulsion sees no green or red; the sensitized plate sees red, but less than blue.
 #[test]
 fn plates_see_what_plates_saw() {
     let (blue, pan) = (stock("blue-sensitive-plate"), stock("panchromatic-plate"));
@@ -239,8 +239,8 @@ fn plates_see_what_plates_saw() {
     assert!((0.1..0.5).contains(&ratio), "{ratio}");
 }
 
-/// Pushing by longer development: a mid gray rated at twice the speed has the density that it had, and not beyond the
-/// longest time of the sheet.
+/// Pushes by longer development: a mid gray rated at twice the speed keeps its density. Pushes beyond the longest time of the sheet are
+/// refused.
 #[test]
 fn pushed_film_keeps_the_density_of_a_mid_gray() {
     let film = stock("kodak-tri-x-400");
@@ -249,13 +249,13 @@ fn pushed_film_keeps_the_density_of_a_mid_gray() {
     let over = |c: &spectra_film::curve::CharacteristicCurve, x: f64| c.density(x) - c.unexposed_density();
     let one = pushed(&film, "6-min", 1.0).expect("within the sheet");
     assert!(one.minutes.is_some_and(|m| (7.0..11.0).contains(&m)), "{:?}", one.minutes);
-    // Points of the mixed curve lie 0.015 of log10 exposure apart.
+    // Points of the mixed curve are 0.015 of log10 exposure apart.
     assert!((over(&one.curves[0], gray(800.0)) - over(usual, gray(400.0))).abs() < 1e-3);
     let none = pushed(&film, "6-min", 0.0).expect("as it is");
     assert!(none.minutes.is_some_and(|m| (m - 6.0).abs() < 1e-6));
     let Err(PushError::Beyond { most, .. }) = pushed(&film, "6-min", 3.0) else { panic!("beyond the sheet") };
     assert!((1.0..3.0).contains(&most), "{most}");
-    // How far it can be pushed is told to a tenth, and that far it can be.
+    // The largest push is reported to a tenth, and a push of this size works.
     let farthest = pushed(&film, "6-min", most).expect("as told").minutes;
     let longest = film.layers[0].developments.iter().filter_map(|d| d.minutes).fold(0.0, f64::max);
     assert!(farthest.is_some_and(|m| (m - longest).abs() < 1e-6), "{farthest:?} {longest}");
@@ -263,7 +263,7 @@ fn pushed_film_keeps_the_density_of_a_mid_gray() {
     assert!(said.contains(&format!("from +0 to {most:+} stops, not {:+}", most + 0.05)), "{said}");
 }
 
-/// What a stop does to contrast and fog, by the series of Tri-X and Double-X: the medians that other stocks are pushed by.
+/// Effects of one stop on contrast and fog in the series of Tri-X and Double-X: the medians by which other stocks are pushed.
 #[test]
 fn assumed_pushes_are_the_median_of_the_series() {
     let (mut contrasts, mut fogs) = (Vec::new(), Vec::new());
@@ -293,8 +293,8 @@ fn assumed_pushes_are_the_median_of_the_series() {
     assert!((contrast - CONTRAST_PER_STOP).abs() < 0.015 && (fog - FOG_PER_STOP).abs() < 0.004, "{contrast} {fog}");
 }
 
-/// Every camera stock is pushed and pulled: by its series, or by what other films do, two stops at most. A mid gray rated at twice the speed keeps its
-/// density over the fog (a slide's, its density), layer by layer, and contrast grows.
+/// Every camera stock can be pushed and pulled by at most two stops: by its series, or by the behavior of other films.
+/// A mid gray rated at twice the speed keeps its density above fog (a slide's, its density), layer by layer, and contrast grows.
 #[test]
 fn every_camera_stock_is_pushed() {
     for name in Stock::bundled() {
@@ -332,11 +332,11 @@ fn every_camera_stock_is_pushed() {
     }
 }
 
-/// Stocks whose own sheets have curves over a stop faster than the speed: consumer films with a margin, and an exposure index.
+/// Stocks whose own sheets have curves more than a stop faster than the speed: consumer films with a margin, and an exposure index.
 const FASTER: [&str; 3] = ["fuji-c200", "fuji-superia-reala-100", "kodak-vision3-250d-5207"];
 
-/// Curves of bundled stocks have their speed within a stop, but for those by name; exposures in millilux-seconds are doubted, and relative ones are
-/// slid to the speed.
+/// Curves of bundled stocks have their speed within a stop, except the ones above. Exposures in millilux-seconds give a warning, and
+/// relative ones are shifted to the speed.
 #[test]
 fn curves_have_the_speed_that_is_stated() {
     for name in Stock::bundled() {

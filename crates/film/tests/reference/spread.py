@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Writes spread.json beside it: what falls on the pixels around a point, for tests/it/scatter.rs.
+"""Writes spread.json next to this file: light on the pixels around a point, for tests/it/scatter.rs.
 
     python3 crates/film/tests/reference/spread.py target/debug/spectra
 
-Reads of each stock what `spectra film info --json` says its emulsion spreads light by (standard deviations and weights of Gaussians) and
-integrates that function of the distance over pixels in polar coordinates about the point: over the angle in closed form
-(the arc of each circle that lies in the pixel), over the radius by the trapezoidal rule on the share of light within it. Nothing of the
-program's way (products of error functions, a Fourier transform) is used. Needs numpy.
+Reads the light spread of each stock's emulsion from `spectra film info --json` (standard deviations and weights of Gaussians) and
+integrates this function of the distance over pixels in polar coordinates around the point: over the angle in closed form
+(the arc of each circle that lies in the pixel), over the radius by the trapezoidal rule on the share of light within it. The
+method of the program (products of error functions, a Fourier transform) is not used. Needs numpy.
 """
 
 import json
@@ -29,7 +29,7 @@ def arc_in_first_quadrant(r, x, y):
 
 
 def arc(r, x0, x1, y0, y1):
-    """That in a rectangle of corners from 0 on."""
+    """Angle of the circle that lies in a rectangle with non-negative coordinates."""
     a = arc_in_first_quadrant
     return a(r, x1, y1) - a(r, x0, y1) - a(r, x1, y0) + a(r, x0, y0)
 
@@ -45,7 +45,7 @@ def on_pixel(gaussians, pitch, i, j):
             near, far = np.hypot(x0, y0), np.hypot(x1, y1)
             r = np.linspace(near, far, 200001)
             angle = arc(np.maximum(r, 1e-12), x0, x1, y0, y1)
-            # The share of light within r, whose steps are weighed by the angle over a full turn.
+            # The share of light within r, whose steps are weighted by the angle over a full turn.
             beyond = sum(w * np.exp(-r * r / (2 * s * s)) for s, w in gaussians)
             steps = beyond[:-1] - beyond[1:]
             total += nx * ny * np.sum(steps * (angle[1:] + angle[:-1]) / 2) / (2 * np.pi)

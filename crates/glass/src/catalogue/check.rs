@@ -1,4 +1,4 @@
-//! The catalogue against itself: nd and Vd as computed, and as the makers list them.
+//! Check of the catalogue against itself: nd and Vd as computed, and as the makers list them.
 
 use super::Catalogue;
 use crate::formula::Formula;
@@ -19,18 +19,18 @@ pub struct Deviation {
     pub vd: f64,
 }
 
-/// What a look at all listed values found.
+/// The result of checking all listed values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ListedCheck {
     /// Media with listed nd and Vd and coefficients of their own.
     pub listed: usize,
-    /// Those that deviate, by full name.
+    /// Media that deviate, by full name.
     pub deviating: Vec<Deviation>,
 }
 
-/// How far computed values may be from listed ones: nd.
+/// Largest difference of computed values from listed ones: nd.
 pub const LISTED_TOLERANCE_ND: f64 = 1e-4;
-/// How far computed values may be from listed ones: Vd.
+/// Largest difference of computed values from listed ones: Vd.
 pub const LISTED_TOLERANCE_VD: f64 = 0.1;
 
 impl Catalogue {

@@ -1,15 +1,15 @@
-//! Which glasses a designer of some time could have had.
+//! The glasses that a designer of some time could have had.
 
 use std::str::FromStr;
 
 use crate::glass::{Glass, Status};
 use crate::lines::LineTriple;
 
-/// A time, as far as the bundled catalogues tell.
+/// A time, as far as the bundled catalogues can tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Era {
-    /// Glasses that were listed by that year. The oldest bundled list is of 1983: before that, all it holds; before 1940,
-    /// of these the ones without rare earths and without fluor phosphates (see [`Era::admits`]).
+    /// Glasses that were listed by that year. The oldest bundled list is of 1983; for earlier years, all glasses in it. For
+    /// years before 1940, only those without rare earths and without fluor phosphates (see [`Era::admits`]).
     Year(u16),
     /// Glasses listed by 1983.
     Historical,
@@ -19,12 +19,12 @@ pub enum Era {
 
 /// Year of the oldest bundled list.
 pub(super) const OLDEST: u16 = 1983;
-/// Year from which a catalogue counts as of today.
+/// Year from which a catalogue counts as current.
 pub(super) const TODAY: u16 = 2017;
 /// Rare-earth glasses came into lenses after the patent of G. W. Morey (US 2150694, filed 1936, granted 1939).
 const RARE_EARTH: u16 = 1940;
 
-/// Not an era.
+/// A text that is not an era.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is not an era: use historical, modern, or a year from 1880 to 2100")]
 pub struct EraError(String);
@@ -45,12 +45,12 @@ impl FromStr for Era {
 }
 
 impl Era {
-    /// Whether a glass fits the era by what it is, its years apart.
+    /// Returns whether a glass fits the era by its type, apart from its years.
     ///
-    /// Before 1940 that is a rule of thumb, drawn through Schott's list of 1983: the old glasses (fluor, phosphate and
-    /// boron crowns, crowns and flints, barium crowns and flints) keep below nd + 0.0066 Vd = 2.02 and Vd = 71, most
-    /// lanthanum glasses lie above; those that do not are told by their names. The list has no years of first
-    /// melting, so some younger glass of an old kind passes.
+    /// Before 1940 this is a rule of thumb, drawn through Schott's list of 1983. The old glasses (fluor, phosphate and boron
+    /// crowns, crowns and flints, barium crowns and flints) stay below nd + 0.0066 Vd = 2.02 and Vd = 71. Most lanthanum
+    /// glasses lie above; the others are recognized by their names. The list has no years of first melting, so some younger
+    /// glasses of an old kind pass.
     #[must_use]
     pub fn admits(self, glass: &Glass) -> bool {
         match self {
@@ -64,7 +64,7 @@ impl Era {
     }
 }
 
-/// Lanthanum, tantalum and niobium types of the makers: LaK, LaF, N-LaSF, TaC, TaFD, NbF, S-LAL, J-LASF ...
+/// Returns whether a name is that of a lanthanum, tantalum or niobium type: LaK, LaF, N-LaSF, TaC, TaFD, NbF, S-LAL, J-LASF ...
 fn has_name_of_rare_earths(name: &str) -> bool {
     let upper = name.to_uppercase();
     // A letter and a hyphen before the type tell how it is made.

@@ -1,4 +1,4 @@
-//! Finding a medium by name.
+//! Search for a medium by its name.
 
 use spectra_core::names;
 use std::collections::{BTreeSet, HashMap};
@@ -12,14 +12,14 @@ use crate::glass::{Category, Glass};
 use crate::lines::LineTriple;
 use crate::medium::Medium;
 
-/// A medium that was meant, perhaps.
+/// A medium that may have been meant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// `MAKER/NAME`.
+    /// Full name: `MAKER/NAME`.
     pub full_name: String,
-    /// Its index at the d line.
+    /// Index at the d line.
     pub nd: f64,
-    /// Its Abbe number at d, F and C.
+    /// Abbe number at d, F and C.
     pub vd: f64,
 }
 
@@ -33,10 +33,10 @@ impl fmt::Display for Candidate {
     }
 }
 
-/// Why a name is not one medium.
+/// Reason why a name does not mean exactly one medium.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum FindError {
-    /// Nothing has this name.
+    /// No medium has this name.
     #[error("no glass `{name}`{}", if nearest.is_empty() { String::new() } else { format!("; nearest names: {}", list(nearest)) })]
     Unknown {
         /// The name asked for.
@@ -44,18 +44,18 @@ pub enum FindError {
         /// The nearest names, best first.
         nearest: Vec<Candidate>,
     },
-    /// Several media have it.
+    /// Several media have this name.
     #[error("`{name}` is the name of {} glasses; write one of: {}", candidates.len(), list(candidates))]
     Ambiguous {
         /// The name asked for.
         name: String,
-        /// All that have it.
+        /// All media that have the name.
         candidates: Vec<Candidate>,
     },
 }
 
 impl FindError {
-    /// What is wrong, without the names.
+    /// Returns the message that says what is wrong, without the names.
     #[must_use]
     pub fn message(&self) -> String {
         match self {
@@ -64,21 +64,23 @@ impl FindError {
         }
     }
 
-    /// What to write instead.
+    /// Returns the hint that says what to write instead.
     #[must_use]
     pub fn hint(&self) -> String {
         match self {
             Self::Unknown { name, .. } if name.parse::<f64>().is_ok_and(|nd| (1.0..=4.0).contains(&nd)) => {
-                format!("an index alone is `nd: {name}`; with its Abbe number, `glass: {{nd: {name}, vd: ...}}`")
+                format!("write `nd: {name}`, or with its Abbe number `glass: {{nd: {name}, vd: ...}}`")
             }
             Self::Unknown { name, nearest }
                 if PLASTICS_NOT_HELD.iter().any(|p| p.eq_ignore_ascii_case(name.trim())) =>
             {
-                format!("the catalogue has no data of this plastic; plastics it has: {}", list(nearest))
+                format!("the catalogue has no data of this plastic; it has these plastics: {}", list(nearest))
             }
             Self::Unknown { nearest, .. } => match nearest.as_slice() {
-                [] => "a glass of a catalogue, such as SCHOTT/N-BK7, or a file of your own, such as `my-glass.yaml`"
-                    .to_owned(),
+                [] => {
+                    "write a glass of a catalogue, such as SCHOTT/N-BK7, or a file of your own, such as `my-glass.yaml`"
+                        .to_owned()
+                }
                 [one] => format!("did you mean `{}`?", one.full_name),
                 [first, others @ ..] => format!("did you mean `{}`? Similar: {}", first.full_name, list(others)),
             },
@@ -94,7 +96,7 @@ fn list(candidates: &[Candidate]) -> String {
     candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// How many names an error lists.
+/// Number of names that an error lists.
 const LISTED: usize = 6;
 
 /// Other spellings of makers in old and foreign catalogues, and in the files of optical design programs.
@@ -108,43 +110,43 @@ const MAKERS: [(&str, &str); 7] = [
     ("SCHOTT-GLAS", "SCHOTT"),
 ];
 
-/// Usual plastics of which the catalogue has no data: what looks like their names is something else.
+/// Usual plastics for which the catalogue has no data; similar names are something else.
 const PLASTICS_NOT_HELD: [&str; 6] = ["PES", "PP", "PE", "ABS", "PTFE", "PSU"];
 
-/// Makers in the order in which they are meant where a name has several and nothing else tells.
+/// Makers in the order in which they are preferred, if several have the name and nothing else decides.
 const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA", "NHG", "LZOS", "CORNING"];
-/// Year of the oldest list of the catalogue; what stands in it was there before, too.
+/// Year of the oldest list of the catalogue; the glasses in it existed before, too.
 const OLDEST_LIST: u16 = 1983;
 
-/// What is known beside the name of a glass.
+/// Facts known beside the name of a glass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Beside<'a> {
-    /// Index and perhaps Abbe number, for the lines that belong to them.
+    /// Index and perhaps Abbe number, with the lines that belong to them.
     pub figures: Option<(f64, Option<f64>, LineTriple)>,
-    /// Who made the lens, or the glass.
+    /// Maker of the lens, or of the glass.
     pub maker: Option<&'a str>,
     /// Year of the lens.
     pub year: Option<i32>,
 }
 
-/// A glass that was chosen by its name and what is known beside it.
+/// A glass that was chosen by its name and the facts beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
     /// The glass.
     pub glass: Glass,
-    /// What a person should know, where several were as likely.
+    /// Note for the user, if several glasses were equally likely.
     pub note: Option<String>,
 }
 
 impl Catalogue {
-    /// The medium of that name: `SCHOTT/N-BK7`, or `N-BK7` where one maker only has it; an everyday name such as
-    /// `water` or `PC`; or the substance alone where there is one measurement. Upper and lower case are the same unless
-    /// they tell two apart (`BaF2` is the crystal, `BAF2` a flint; `LaF3` may be either). The name of a crystal means the formula that its everyday name
-    /// stands for, and not a maker's rounded table (`CRYSTRAN/CaF2`). Where nothing else fits hyphens, underscores,
-    /// blanks and dots do not count. `LZ_LF5` is `LZOS/LF5`.
+    /// Finds the medium of this name: `SCHOTT/N-BK7`, or `N-BK7` if only one maker has it; an everyday name such as `water` or
+    /// `PC`; or the substance alone if there is one measurement. Case does not count unless it tells two media apart (`BaF2` is
+    /// the crystal, `BAF2` a flint; `LaF3` may be either). The name of a crystal means the formula that its everyday name
+    /// stands for, and not a maker's rounded table (`CRYSTRAN/CaF2`). If nothing else fits, hyphens, underscores, blanks and
+    /// dots do not count. `LZ_LF5` is `LZOS/LF5`.
     ///
     /// # Errors
-    /// A name that nothing or more than one medium has, with the candidates.
+    /// A name that no medium, or more than one, has; with the candidates.
     pub fn find(&self, name: &str) -> Result<Glass, FindError> {
         let places = self.places(name);
         match places[..] {
@@ -154,13 +156,13 @@ impl Catalogue {
         }
     }
 
-    /// Whether one medium or more has the name; finds no near ones, so that it is quick.
+    /// Returns whether at least one medium has the name. It is quick, because it looks for no similar names.
     #[must_use]
     pub fn knows(&self, name: &str) -> bool {
         !self.places(name).is_empty()
     }
 
-    /// As [`Catalogue::find`], with `air` and `vacuum` as the media that they are in a lens (air is 1).
+    /// Finds a medium like [`Catalogue::find`], and also `air` and `vacuum` as the media that they are in a lens (air is 1).
     ///
     /// # Errors
     /// As [`Catalogue::find`].
@@ -172,12 +174,12 @@ impl Catalogue {
         }
     }
 
-    /// As [`Catalogue::find`], where an index and perhaps an Abbe number are known beside the name (of a patent or
-    /// a lens file): of several media of the name the nearest one, if it is within 0.002 in nd and, where `vd` is given,
-    /// within 2 % in Vd.
+    /// Finds a medium by its name if an index, and perhaps an Abbe number, are known beside it (from a patent or a lens file).
+    /// Of several media of the name it takes the nearest one, if that is within 0.002 in nd and, if `vd` is given, within 2 %
+    /// in Vd.
     ///
     /// # Errors
-    /// As [`Catalogue::find`]; ambiguous too if none of several is that near.
+    /// As [`Catalogue::find`]; also ambiguous if none of several media is that near.
     pub fn find_with(&self, name: &str, nd: f64, vd: Option<f64>) -> Result<Glass, FindError> {
         let places = self.places(name);
         match places[..] {
@@ -187,12 +189,12 @@ impl Catalogue {
         }
     }
 
-    /// The one rule for a name that several glasses have: what has the stated figures, as in [`Catalogue::find_with`];
-    /// else that of the lens's maker, if it made glass; else the only one of the lens's time; else that of the usual
-    /// maker, with a note.
+    /// Chooses one of several glasses with the same name: the glass with the stated figures, as in [`Catalogue::find_with`];
+    /// else that of the lens's maker, if it made glass; else the only one of the lens's time; else that of the usual maker,
+    /// with a note.
     ///
     /// # Errors
-    /// A name that nothing has; one of several of which none has the stated figures; several measurements of a substance.
+    /// An unknown name; a name of several glasses of which none has the stated figures; several measurements of a substance.
     pub fn choose(&self, name: &str, beside: Beside<'_>) -> Result<Chosen, FindError> {
         let places = self.places(name);
         let quiet = |glass: Glass| Ok(Chosen { glass, note: None });
@@ -236,7 +238,7 @@ impl Catalogue {
         let others: Vec<String> =
             glasses.iter().filter(|other| *other != glass).map(|other| candidate(other).to_string()).collect();
         let note = format!(
-            "`{name}` is the name of {} glasses: {} is taken; write the maker if another is meant: {}",
+            "`{name}` is the name of {} glasses; {} is used. If another is meant, write its maker: {}",
             glasses.len(),
             candidate(glass),
             names::listed(&others, &format!("spectra list glass {}", name.trim()))
@@ -244,7 +246,7 @@ impl Catalogue {
         Ok(Chosen { glass: glass.clone(), note: Some(note) })
     }
 
-    /// All media whose name, maker or everyday name has this fragment, by name. Case, hyphens and blanks do not count.
+    /// Lists all media whose name, maker or everyday name has this fragment, by name. Case, hyphens and blanks do not count.
     #[must_use]
     pub fn search(&self, fragment: &str) -> Vec<Glass> {
         let (maker, fragment) = fragment.split_once('/').map_or((None, fragment), |(maker, rest)| (Some(maker), rest));
@@ -282,8 +284,8 @@ impl Catalogue {
         (best.0 <= 1.0).then_some(best.1)
     }
 
-    /// The data set that the bare name of a substance means beside stated figures: the usual one where it has that index, else
-    /// the nearest of all.
+    /// Returns the data set that the bare name of a substance means beside stated figures: the usual one if it has that index,
+    /// else the nearest of all.
     fn measured(&self, name: &str, usual: Place, (n, v, lines): (f64, Option<f64>, LineTriple)) -> Chosen {
         let own = |glass: &Glass| glass.index(lines.mid.wavelength_nm);
         let glass = self.glass(usual);
@@ -291,7 +293,7 @@ impl Catalogue {
         if all.len() < 2 || has_index(n, own(&glass)) {
             return Chosen { glass, note: None };
         }
-        // Where none is near, a lens warns of that for any glass.
+        // If none is near, the lens warns of that as for any glass.
         let Some(nearest) = self.nearest_of(&all, n, v, lines) else { return Chosen { glass, note: None } };
         let called = lines.mid.indexed("n");
         let but = match own(&nearest) {
@@ -299,14 +301,14 @@ impl Catalogue {
             own => format!("; it has {own:.5}"),
         };
         let note = format!(
-            "`{name}` has {} data sets: {} is taken, the nearest to the stated {called} {n}{but}",
+            "`{name}` has {} data sets: {} is used, the nearest to the stated {called} {n}{but}",
             all.len(),
             nearest.full_name()
         );
         Chosen { glass: nearest, note: Some(note) }
     }
 
-    /// All data of the substance of that bare name that were measured near room temperature.
+    /// Returns all data of the substance of that bare name that were measured near room temperature.
     fn data_sets(&self, name: &str) -> Vec<Place> {
         let asked = name.trim();
         let is_one = |place: Place| {
@@ -317,8 +319,8 @@ impl Catalogue {
         all.filter(|place| self.glass(*place).temperature_c.is_none_or(|t| (0.0..=40.0).contains(&t))).collect()
     }
 
-    /// The usual data of a substance where its name is also that of a maker's short table, which is rounded: what its everyday
-    /// name stands for.
+    /// Returns the usual data of a substance, which its everyday name stands for, if its name is also that of a maker's short,
+    /// rounded table.
     fn usual_data(&self, asked: &str, named: &[Place]) -> Option<Vec<Place>> {
         let is_table = |place: &Place| {
             self.category_of(*place) == Category::Crystal && matches!(self.glass(*place).formula, Formula::Table(_))
@@ -334,9 +336,9 @@ impl Catalogue {
         (!usual.is_empty() && usual.iter().all(is_formula)).then_some(usual)
     }
 
-    /// The glasses of a name, which are written otherwise, and the data of the substance whose formula is written just so: `LaF3` is lanthanum
-    /// fluoride, and many write the flint LAF3 so. `named` where there is no such substance, or the name is not in upper and lower case, as
-    /// formulas are.
+    /// Returns the glasses of a name together with the data of the substance whose formula is written exactly so: `LaF3` is
+    /// lanthanum fluoride, but many write the flint LAF3 that way. Returns `named` if there is no such substance, or if the
+    /// name is not in upper and lower case, as formulas are.
     fn or_substance(&self, asked: &str, named: Vec<Place>) -> Vec<Place> {
         let is_formula = asked.bytes().any(|b| b.is_ascii_lowercase()) && asked.bytes().any(|b| b.is_ascii_uppercase());
         if named.is_empty() || !is_formula {
@@ -347,7 +349,8 @@ impl Catalogue {
         if all.is_empty() {
             return named;
         }
-        // Makers write names in capitals; what else has the name by chance, as an author of measurements, is not meant.
+        // Makers write names in capitals. Other media that have the name by chance, such as measurements named after their
+        // author, are not meant.
         let of_maker = |place: &Place| {
             self.category_of(*place).is_glass() && !self.name_of(*place).bytes().any(|b| b.is_ascii_lowercase())
         };
@@ -364,7 +367,7 @@ impl Catalogue {
         let start = self.index.partition_point(|(n, _)| n.as_ref() < upper.as_str());
         let same = self.index[start..].iter().take_while(|(n, _)| n.as_ref() == upper).map(|(_, place)| *place);
         let exact: Vec<Place> = same.filter(of_maker).collect();
-        // Where case tells some of them apart it counts.
+        // Case counts if it tells some of them apart.
         let to_the_letter: Vec<Place> = exact.iter().copied().filter(|place| self.name_of(*place) == name).collect();
         let named = if to_the_letter.is_empty() { self.or_substance(asked, exact) } else { to_the_letter };
         if !named.is_empty() {
@@ -399,8 +402,8 @@ impl Catalogue {
         places.iter().map(|&place| candidate(&self.glass(place))).collect()
     }
 
-    /// The names with the smallest edit distance, of what could have been meant: glasses for what looks like a glass,
-    /// substances and everyday names for a word. Those of the maker that was named come first.
+    /// Returns the names with the smallest edit distance among those that could have been meant: glasses for what looks like a
+    /// glass, substances and everyday names for a word. Names of the stated maker come first.
     fn nearest_names(&self, name: &str) -> Vec<Candidate> {
         let asked = name.trim();
         let (maker, bare) = split_maker(asked);
@@ -420,7 +423,7 @@ impl Catalogue {
         let is_code = bare.iter().any(char::is_ascii_digit);
         let mut scored: Vec<(usize, bool, bool, usize)> = Vec::new();
         for (i, (candidate, place)) in self.index.iter().enumerate() {
-            // The name of a measurement is its author's: nobody means it who does not name the substance.
+            // A measurement is named after its author; nobody means it without naming the substance.
             let category = self.category_of(*place);
             if maker.is_none() && (!category.is_glass() || candidate.bytes().any(|b| b.is_ascii_digit()) != is_code) {
                 continue;
@@ -429,7 +432,7 @@ impl Catalogue {
             if other_maker && !category.is_glass() {
                 continue;
             }
-            // An heir is as near as the name itself, and comes after it.
+            // An heir (a successor with one more letter in front) is as near as the name itself, and comes after it.
             let is_heir = is_heir(&bare, candidate);
             let distance = if is_heir { 0 } else { edit_distance(&bare, candidate) };
             if distance <= farthest {
@@ -448,7 +451,8 @@ impl Catalogue {
         near.into_iter().map(|(_, candidate)| candidate).collect()
     }
 
-    /// The one maker of glass whose name is a letter or two away; as typed where there is none, or several.
+    /// Returns the only maker of glass whose name is a letter or two away; the name as typed if there is none, or if there are
+    /// several.
     fn maker_like(&self, typed: String) -> String {
         let glasses = self.index.iter().filter(|(_, place)| self.category_of(*place).is_glass());
         let makers: BTreeSet<&str> = glasses.map(|(_, place)| self.maker_of(*place)).collect();
@@ -464,7 +468,7 @@ impl Catalogue {
         }
     }
 
-    /// Everyday names and substances near a word.
+    /// Returns everyday names and substances near a word.
     fn near_words(&self, word: &[char], farthest: usize) -> Vec<(usize, Candidate)> {
         let mut near: Vec<(usize, Candidate)> = Vec::new();
         for (alias, target) in self.bundle.aliases() {
@@ -490,19 +494,19 @@ impl Catalogue {
     }
 }
 
-/// Whether a stated index is `own`, as far as its digits go.
+/// Returns whether a stated index is `own`, as far as its digits go.
 fn has_index(stated: f64, own: f64) -> bool {
     let digits = stated.to_string().split_once('.').map_or(0, |(_, digits)| digits.len());
     (stated - own).abs() <= 1.000_001 * 0.1_f64.powi(digits.min(8) as i32)
 }
 
-/// A maker as this catalogue calls it, upper case.
+/// Returns the name of a maker in this catalogue, in upper case.
 fn our_maker(name: &str) -> String {
     let upper = name.to_uppercase();
     MAKERS.iter().find(|(alias, _)| *alias == upper).map_or(upper, |(_, maker)| (*maker).to_owned())
 }
 
-/// The same but for upper and lower case.
+/// Returns whether two names are the same except for case.
 fn same_name(a: &str, b: &str) -> bool {
     if a.is_ascii() && b.is_ascii() { a.eq_ignore_ascii_case(b) } else { a.to_uppercase() == b.to_uppercase() }
 }
@@ -511,7 +515,7 @@ fn candidate(glass: &Glass) -> Candidate {
     Candidate { full_name: glass.full_name(), nd: glass.nd(), vd: glass.vd() }
 }
 
-/// `SCHOTT/N-BK7` and the `LZ_` of LZOS glasses in design programs.
+/// Splits the maker from a name: `SCHOTT/N-BK7`, or the `LZ_` of LZOS glasses in design programs.
 fn split_maker(name: &str) -> (Option<&str>, &str) {
     if let Some((maker, name)) = name.split_once('/') {
         let name = name.trim();
@@ -532,13 +536,13 @@ fn squeeze(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, '-' | '_' | ' ' | '.')).flat_map(char::to_uppercase).collect()
 }
 
-/// Whether a glass is the named one but for the letter that its maker puts before it today: `K-LASFN1` of `LASFN1`.
+/// Returns whether a glass is the named one with the letter that its maker puts before it today: `K-LASFN1` for `LASFN1`.
 fn is_heir(name: &[char], candidate: &str) -> bool {
     let Some((mark, rest)) = candidate.split_once('-') else { return false };
     mark.len() == 1 && rest.chars().eq(name.iter().copied())
 }
 
-/// Levenshtein's distance: insertions, deletions and replacements of characters.
+/// Computes Levenshtein's distance: insertions, deletions and replacements of characters.
 fn edit_distance(a: &[char], b: &str) -> usize {
     let mut row: Vec<usize> = (0..=a.len()).collect();
     for (j, cb) in b.chars().enumerate() {

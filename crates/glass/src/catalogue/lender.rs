@@ -1,8 +1,8 @@
-//! Absorption for glasses of which none is published: that of the nearest glass that has it.
+//! Absorption of glasses without published data: that of the nearest glass that has data.
 //!
-//! Makers print internal transmittance for what they sell today; of most older glasses, and of a glass known by its nd
-//! and Vd, nothing is published. Blue and violet absorption follows the ultraviolet edge, and that follows index and
-//! dispersion, so that the neighbor in the Abbe diagram is a better guess than perfect clarity.
+//! Makers print internal transmittance for what they sell today. Nothing is published for most older glasses, and for a glass
+//! known by its nd and Vd. Blue and violet absorption follows the ultraviolet edge, and that follows index and dispersion. The
+//! neighbor in the Abbe diagram is therefore a better guess than perfect clarity.
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -17,28 +17,29 @@ use crate::medium::Medium;
 const UNIT_ND: f64 = 0.01;
 /// One unit of distance in the Abbe number.
 const UNIT_VD: f64 = 1.0;
-/// What another maker's glass, and one of another time, count in addition.
+/// Distance added for a glass of another maker, and for one of another time.
 const ANOTHER: f64 = 1.0;
-/// Farther away there is no likeness: 0.1 in nd, or 10 in Vd.
+/// Largest distance of glasses that are alike: 0.1 in nd, or 10 in Vd.
 const FARTHEST: f64 = 10.0;
-/// A lender is fit for optics: a plate of 3 mm passes this much at every wavelength from 420 to 700 nm. Ellipsometers, which much research
-/// data of plastics come from, do not see small absorption, and what they leave would make any lens opaque.
+/// Least transmittance of a lender's plate of 3 mm at every wavelength from 420 to 700 nm, so that it is fit for optics. Much
+/// research data of plastics come from ellipsometers, which do not see small absorption; what they leave would make any lens
+/// opaque.
 const LEAST_PASSED: f64 = 0.8;
 /// Last year of the list of lead and arsenic glasses, the oldest one of the catalogue.
 const OLD_LIST: u16 = 1983;
-/// Until about then lenses were made of these.
+/// Year until which, roughly, lenses were made of these glasses.
 const OLD_UNTIL: i32 = 1990;
 
 /// A glass whose absorption stands in for that of another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lender {
-    /// `MAKER/NAME`.
+    /// Full name of the lender: `MAKER/NAME`.
     pub full_name: String,
-    /// Its index less that of the borrower, d line.
+    /// Index of the lender less that of the borrower, d line.
     pub delta_nd: f64,
-    /// Its Abbe number less that of the borrower, lines d, F and C.
+    /// Abbe number of the lender less that of the borrower, lines d, F and C.
     pub delta_vd: f64,
-    /// Both in one number, see [`Medium::absorption`].
+    /// Both differences in one number; see [`Medium::absorption`].
     pub distance: f64,
 }
 
@@ -48,22 +49,22 @@ impl fmt::Display for Lender {
     }
 }
 
-/// How a medium absorbs.
+/// The absorption of a medium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Absorption {
     /// The extinction coefficient.
     pub extinction: Extinction,
-    /// Whose it is; `None`: its own.
+    /// Glass that the data are borrowed from; `None` if they are the medium's own.
     pub lender: Option<Lender>,
 }
 
-/// What is asked for.
+/// A glass that needs absorption data.
 struct Borrower<'a> {
     nd: f64,
     vd: f64,
     category: Category,
     maker: Option<&'a str>,
-    /// Whether it is of the time of the oldest list; `None` where that is not known.
+    /// Whether the glass is of the time of the oldest list; `None` if that is not known.
     old: Option<bool>,
 }
 
@@ -76,14 +77,15 @@ struct Candidate {
 }
 
 impl Medium {
-    /// How it absorbs: by its own data, or by those of the nearest medium of the bundled catalogue that has any.
-    /// `year` is that of the lens, where known; it counts for media of no catalogue.
+    /// Returns the absorption of the medium, by its own data or by those of the nearest medium of the bundled catalogue that
+    /// has any. `year` is that of the lens, if known; it counts for media of no catalogue.
     ///
-    /// Nearest is the smallest hypot(dnd / 0.01, dVd / 1), to which another maker adds 1 and another time 1: one of the
-    /// two was listed by 1983 (or is of a lens built by 1990), when flints held lead, the other was not. Glasses borrow
-    /// from optical and technical glasses, plastics from plastics, of which a plate of 3 mm passes over 80 % from 420 to 700 nm.
+    /// The nearest medium has the smallest hypot(dnd / 0.01, dVd / 1), to which another maker adds 1 and another time adds 1.
+    /// Two glasses are of different times if only one was listed by 1983 (or is of a lens built by 1990), when flints held
+    /// lead. Glasses borrow from optical and technical glasses, plastics from plastics. A plate of 3 mm of the lender passes at
+    /// least 80 % from 420 to 700 nm.
     ///
-    /// `None`, so clear: air, vacuum, media known by an index alone, and where nothing lies within a distance of 10.
+    /// `None`, which means clear, for air, vacuum, media known by an index alone, and if nothing lies within a distance of 10.
     /// Crystals, liquids and filter glasses borrow nothing either: a neighbor in index says nothing of their absorption.
     #[must_use]
     pub fn absorption(&self, year: Option<i32>) -> Option<Absorption> {
@@ -114,12 +116,12 @@ fn borrower_of(model: &ModelGlass, old: Option<bool>) -> Borrower<'static> {
     Borrower { nd: model.index(D.wavelength_nm), vd, category: Category::OpticalGlass, maker: None, old }
 }
 
-/// Whether a glass stands in the oldest list; not known where it has no years.
+/// Returns whether a glass stands in the oldest list; `None` if it has no years.
 fn old(glass: &Glass) -> Option<bool> {
     glass.years.map(|(first, _)| first <= OLD_LIST)
 }
 
-/// Whether a thin plate of it passes light.
+/// Returns whether a thin plate of the glass passes light.
 fn is_clear(extinction: &Extinction) -> bool {
     const PLATE_NM: f64 = 3e6;
     let passed =
@@ -162,7 +164,7 @@ impl Catalogue {
         Some(Absorption { extinction: at.glass.extinction.clone()?, lender: Some(lender) })
     }
 
-    /// The glasses with absorption, by name; looked for once.
+    /// Returns the glasses with absorption, by name; they are looked for once.
     fn lenders(&self) -> &'static [Candidate] {
         static LENDERS: OnceLock<Vec<Candidate>> = OnceLock::new();
         LENDERS.get_or_init(|| {
@@ -180,7 +182,7 @@ impl Catalogue {
         })
     }
 
-    /// The glass there, if its record has a column of absorption.
+    /// Returns the glass at a place, if its record has a column of absorption.
     fn with_absorption(&self, place: Place) -> Option<Glass> {
         match place {
             Place::Text(i) if !self.bundle.has_extinction(i as usize) => None,

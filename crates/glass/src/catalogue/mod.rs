@@ -30,11 +30,11 @@ use text::Bundle;
 pub struct CatalogueError {
     /// Line, from 1.
     pub line: usize,
-    /// What is wrong.
+    /// Message that says what is wrong.
     pub message: String,
 }
 
-/// Where the record of an indexed name is.
+/// The place of the record of an indexed name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Place {
     /// Record of the text.
@@ -43,20 +43,20 @@ enum Place {
     Own(u32),
 }
 
-/// Glasses and other media by name.
+/// A catalogue of glasses and other media by name.
 #[derive(Clone, Debug)]
 pub struct Catalogue {
     bundle: Arc<Bundle>,
     own: Vec<Glass>,
     /// Upper-case names, sorted, with their places.
     index: Vec<(Cow<'static, str>, Place)>,
-    /// The same without hyphens and blanks; made when first asked for.
+    /// The names without hyphens and blanks; made when first asked for.
     squeezed: OnceLock<HashMap<String, Vec<Place>>>,
 }
 
 impl Catalogue {
-    /// The catalogue that is compiled in: makers' optical glasses, historical ones, filters, crystals, plastics, liquids,
-    /// gases; about 4 000 media. Built once, within a millisecond or two.
+    /// Returns the catalogue that is compiled in: makers' optical glasses, historical ones, filters, crystals, plastics,
+    /// liquids, gases; about 4 000 media. It is built once, within a millisecond or two.
     #[must_use]
     pub fn bundled() -> &'static Catalogue {
         static BUNDLED: OnceLock<Catalogue> = OnceLock::new();
@@ -66,10 +66,10 @@ impl Catalogue {
         })
     }
 
-    /// A catalogue in the format of `spectra/glass/README.md`.
+    /// Reads a catalogue in the format of `spectra/glass/README.md`.
     ///
     /// # Errors
-    /// The first line whose head cannot be read. Records are looked at when they are asked for, and one that cannot be read
+    /// The first line whose head cannot be read. Records are parsed when they are asked for, and a record that cannot be read
     /// panics then: the text is compiled in, and a test calls [`Catalogue::verify`].
     pub fn from_text(text: &'static str) -> Result<Catalogue, CatalogueError> {
         let bundle = Bundle::new(text)?;
@@ -78,13 +78,13 @@ impl Catalogue {
         Ok(Catalogue { bundle: Arc::new(bundle), own: Vec::new(), index, squeezed: OnceLock::new() })
     }
 
-    /// An empty catalogue, for a user's own glasses alone.
+    /// Creates an empty catalogue, for a user's own glasses alone.
     #[must_use]
     pub fn empty() -> Catalogue {
         Catalogue { bundle: Arc::default(), own: Vec::new(), index: Vec::new(), squeezed: OnceLock::new() }
     }
 
-    /// Adds glasses (of a user's AGF file, say). One with the same maker and name as an earlier one replaces it.
+    /// Adds glasses (of a user's AGF file, say). A glass with the same maker and name as an earlier one replaces it.
     pub fn add(&mut self, glasses: impl IntoIterator<Item = Glass>) {
         self.squeezed = OnceLock::new();
         for glass in glasses {
@@ -102,29 +102,29 @@ impl Catalogue {
         }
     }
 
-    /// Number of media.
+    /// Number of media in the catalogue.
     #[must_use]
     pub fn len(&self) -> usize {
         self.index.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether the catalogue holds no media.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.index.is_empty()
     }
 
-    /// All media, by name.
+    /// Iterates over all media, by name.
     pub fn glasses(&self) -> impl Iterator<Item = Glass> + '_ {
         self.index.iter().map(|(_, place)| self.glass(*place))
     }
 
-    /// All names as `MAKER/NAME`, without reading the data.
+    /// Iterates over all names as `MAKER/NAME`, without reading the data.
     pub fn full_names(&self) -> impl Iterator<Item = String> + '_ {
         self.index.iter().map(|(_, place)| format!("{}/{}", self.maker_of(*place), self.name_of(*place)))
     }
 
-    /// The makers (and substances) in order of the alphabet.
+    /// Lists the makers (and substances) in alphabetical order.
     #[must_use]
     pub fn makers(&self) -> Vec<String> {
         let mut makers: Vec<_> = self.index.iter().map(|(_, place)| self.maker_of(*place).to_owned()).collect();
@@ -173,7 +173,7 @@ impl Catalogue {
     }
 }
 
-/// Upper case, borrowed where it is that already.
+/// Converts a name to upper case; borrows it if it is that already.
 fn upper(name: &'static str) -> Cow<'static, str> {
     if name.bytes().any(|b| b.is_ascii_lowercase() || !b.is_ascii()) {
         Cow::Owned(name.to_uppercase())

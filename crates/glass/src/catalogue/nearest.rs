@@ -1,11 +1,11 @@
-//! The real glass behind a patent's index and Abbe number.
+//! Search for the real glass behind a patent's index and Abbe number.
 
 use super::Catalogue;
 use super::era::{Era, OLDEST, TODAY};
 use crate::glass::{Category, Glass, Status};
 use crate::lines::LineTriple;
 
-/// What to look for. [`Query::new`] asks for the ten nearest optical glasses of all makers and eras.
+/// A search for glasses. [`Query::new`] asks for the ten nearest optical glasses of all makers and eras.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Query {
     /// Index at the middle line.
@@ -26,12 +26,12 @@ pub struct Query {
     pub era: Option<Era>,
     /// Whether obsolete glasses count.
     pub obsolete: bool,
-    /// How many to list.
+    /// Number of glasses to list.
     pub count: usize,
 }
 
 impl Query {
-    /// The ten optical glasses nearest to index `n` and Abbe number `v` at `lines`.
+    /// Creates a search for the ten optical glasses nearest to index `n` and Abbe number `v` at `lines`.
     #[must_use]
     pub fn new(n: f64, v: Option<f64>, lines: LineTriple) -> Query {
         Query {
@@ -75,30 +75,30 @@ impl Era {
     }
 }
 
-/// A glass and how far it is from what was asked for.
+/// A glass, and how far it is from the query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Match {
     /// The glass.
     pub glass: Glass,
-    /// Its index at the middle line.
+    /// Index of the glass at the middle line.
     pub n: f64,
-    /// Its Abbe number for the lines asked for.
+    /// Abbe number of the glass for the lines asked for.
     pub v: f64,
-    /// Its index less the one asked for.
+    /// Index of the glass less the one asked for.
     pub delta_n: f64,
-    /// Its Abbe number less the one asked for; 0 if none was.
+    /// Abbe number of the glass less the one asked for; 0 if none was asked for.
     pub delta_v: f64,
-    /// Both in one number: 1 is a catalogue's usual tolerance (0.0005 in n, or 0.5 % in V; ISO 12123, NP050 and AN5).
+    /// Both differences in one number: 1 is a catalogue's usual tolerance (0.0005 in n, or 0.5 % in V; ISO 12123, NP050 and AN5).
     pub distance: f64,
 }
 
-/// How far a melt's index, and the Abbe number of an older list, may be from the catalogue's for the glass to be the same.
+/// Largest difference of a melt's index, and of the Abbe number of an older list, from the catalogue's for the glass to be the same.
 const NEAR: (f64, f64) = (5e-4, 0.5);
 /// Tolerance of the index in the ranking.
 const TOLERANCE_N: f64 = 5e-4;
 /// Relative tolerance of the Abbe number in the ranking.
 const TOLERANCE_V: f64 = 5e-3;
-/// Distance within which two glasses are the same to what printed figures tell.
+/// Distance within which printed figures cannot tell two glasses apart.
 const SAME: f64 = 0.02;
 
 impl Catalogue {
@@ -115,7 +115,7 @@ impl Catalogue {
             .any(|glass| (glass.nd() - nd).abs() <= of_n && (glass.vd() - vd).abs() <= of_v)
     }
 
-    /// The glasses nearest to an index and an Abbe number, nearest first; equals by name.
+    /// Lists the glasses nearest to an index and an Abbe number, nearest first; equals by name.
     #[must_use]
     pub fn nearest(&self, query: &Query) -> Vec<Match> {
         let mut matches: Vec<Match> = (self.glasses())
@@ -130,7 +130,7 @@ impl Catalogue {
                 distance.is_finite().then_some(Match { glass, n, v, delta_n, delta_v, distance })
             })
             .collect();
-        // Of glasses that are the same to what figures tell, those that can be bought come first.
+        // Of glasses that figures cannot tell apart, those that can be bought come first.
         let rank = |m: &Match| ((m.distance / SAME).floor(), m.distance < SAME && m.glass.status == Status::Obsolete);
         matches.sort_by(|a, b| {
             let ((near, gone), (other_near, other_gone)) = (rank(a), rank(b));

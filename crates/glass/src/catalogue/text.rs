@@ -8,7 +8,7 @@ use crate::formula::{Formula, ModelGlass, NumberedFormula, Table};
 use crate::glass::{Category, Extinction, Glass, Status, Thermal};
 use crate::lines::LineTriple;
 
-/// The text with the places of its records.
+/// The catalogue's text with the places of its records.
 #[derive(Debug, Default)]
 pub(super) struct Bundle {
     records: Vec<Record>,
@@ -33,7 +33,7 @@ struct Block {
 }
 
 impl Bundle {
-    /// Finds the records; reads nothing of them but the names.
+    /// Finds the records, and reads only their names.
     pub(super) fn new(text: &'static str) -> Result<Bundle, CatalogueError> {
         let mut bundle = Bundle::default();
         let mut sources: Vec<(&str, Arc<str>)> = Vec::new();
@@ -90,7 +90,7 @@ impl Bundle {
         &self.blocks[self.records[i].block as usize].maker
     }
 
-    /// Whether record `i` has a column of extinction.
+    /// Returns whether record `i` has a column of extinction.
     pub(super) fn has_extinction(&self, i: usize) -> bool {
         self.records[i].rest.split('|').nth(6).is_some_and(|column| !column.is_empty())
     }
@@ -99,17 +99,17 @@ impl Bundle {
         self.blocks[self.records[i].block as usize].category
     }
 
-    /// Everyday names with what they stand for.
+    /// Iterates over everyday names and the media that they stand for.
     pub(super) fn aliases(&self) -> impl Iterator<Item = (&'static str, &'static str)> + '_ {
         self.aliases.iter().copied()
     }
 
-    /// What an everyday name stands for.
+    /// Returns the medium that an everyday name stands for.
     pub(super) fn alias(&self, name: &str) -> Option<&'static str> {
         self.aliases.iter().find(|(alias, _)| alias.eq_ignore_ascii_case(name)).map(|(_, target)| *target)
     }
 
-    /// Reads record `i`.
+    /// Returns the glass of record `i`.
     pub(super) fn glass(&self, i: usize) -> Result<Glass, CatalogueError> {
         let record = &self.records[i];
         let block = &self.blocks[record.block as usize];
@@ -173,7 +173,7 @@ fn formula(kind: &str, data: &str) -> Result<Formula, &'static str> {
         },
         "T" => {
             if c.len() % 2 != 0 {
-                return Err("a table is pairs");
+                return Err("a table consists of pairs");
             }
             let points: Vec<_> = c.chunks_exact(2).map(|p| (p[0], p[1])).collect();
             Table::new(&points).map(|t| Formula::Table(t.into())).map_err(|_| "wavelengths of a table must rise")
@@ -185,7 +185,7 @@ fn formula(kind: &str, data: &str) -> Result<Formula, &'static str> {
     }
 }
 
-/// First and last year, where known.
+/// First and last year, if known.
 type Years = Option<(u16, u16)>;
 
 fn status_and_years(text: &str) -> Result<(Status, Years), &'static str> {
@@ -213,7 +213,7 @@ fn numbers(text: &str) -> Result<Vec<f64>, &'static str> {
     text.split(' ').filter(|t| !t.is_empty()).map(|t| t.parse().map_err(|_| "not a number")).collect()
 }
 
-/// `286-8` is 286e-8; a plain number is itself.
+/// Reads a number in short form: `286-8` is 286e-8; a plain number is itself.
 fn short(text: &str) -> Result<f64, &'static str> {
     let fail = "not an extinction coefficient";
     match text.split_once('-') {

@@ -14,22 +14,22 @@ use thiserror::Error;
 
 use crate::medium::Medium;
 
-/// Error of a rational fit that is small enough to look no further, in n.
+/// Error of a rational fit, in n, that is small enough to look no further.
 const RATIONAL_TOLERANCE: f64 = 2e-10;
 /// Largest error of any fit, in n.
 const LAST_TOLERANCE: f64 = 1e-9;
-/// Variables and nodes that are tried, in this order, at each degree. Glass formulas are functions of the square.
+/// Variables and nodes that are tried, in this order, at each degree. Glass formulas are functions of the squared wavelength.
 const TRIALS: [(Variable, Variable); 3] = [
     (Variable::Square, Variable::InverseSquare),
     (Variable::Square, Variable::Wavelength),
     (Variable::Wavelength, Variable::Wavelength),
 ];
-/// An interpolation this much worse than asked for may still be levelled into the tolerance.
+/// An interpolation this many times worse than required may still be leveled into the tolerance.
 const HOPE: f64 = 50.0;
-/// Wavelengths at which a fit is checked.
+/// Number of wavelengths at which a fit is checked.
 const CHECKS: usize = 4000;
 
-/// Why a medium has no fit.
+/// Reason why a medium has no fit.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum DispersionError {
     /// The band is empty, reversed or not positive.
@@ -43,7 +43,7 @@ pub enum DispersionError {
     /// The formula has no positive real index somewhere in the band.
     #[error("no refractive index at {wavelength_nm} nm")]
     NoIndex {
-        /// Where, nm.
+        /// Wavelength without an index, nm.
         wavelength_nm: f64,
     },
 }
@@ -52,7 +52,7 @@ pub enum DispersionError {
 enum Form {
     Rational(Rational),
     Sampled(Sampled),
-    /// Data too rough for either.
+    /// The medium itself, if its data are too rough for either.
     Exact(Medium),
 }
 
@@ -72,12 +72,12 @@ impl Dispersion {
     /// Where the band reaches beyond the medium's data ([`Medium::covers`]) its formula is extrapolated.
     ///
     /// # Errors
-    /// A band that is none, and a formula without a positive index somewhere in it.
+    /// An invalid band, or a formula without a positive index somewhere in it.
     pub fn fit(medium: &Medium, min_nm: f64, max_nm: f64) -> Result<Dispersion, DispersionError> {
         if !(min_nm > 0.0 && min_nm < max_nm && max_nm.is_finite()) {
             return Err(DispersionError::Band { min_nm, max_nm });
         }
-        // Of what does not disperse one wavelength says all.
+        // One wavelength is enough for a medium without dispersion.
         let count = if matches!(medium, Medium::Constant(_) | Medium::Air) { 1 } else { CHECKS };
         let checks: Vec<(f64, f64)> = (0..count)
             .map(|i| min_nm + (max_nm - min_nm) * i as f64 / (CHECKS - 1) as f64)
@@ -120,13 +120,13 @@ impl Dispersion {
         self.max_error
     }
 
-    /// The band of the fit, nm.
+    /// Band of the fit: shortest and longest wavelength, nm.
     #[must_use]
     pub fn band_nm(&self) -> (f64, f64) {
         self.band_nm
     }
 
-    /// The rational function, where that is the form: for kernels that evaluate it themselves.
+    /// Returns the rational function, if that is the form of the fit, for kernels that evaluate it themselves.
     #[must_use]
     pub fn rational(&self) -> Option<&Rational> {
         match &self.form {
@@ -135,7 +135,7 @@ impl Dispersion {
         }
     }
 
-    /// The index if it is the same at all wavelengths.
+    /// Returns the index if it is the same at all wavelengths.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
         self.rational().filter(|r| r.degree() == 0).map(|r| r.evaluate(self.band_nm.0))
@@ -152,8 +152,8 @@ impl Dispersion {
         }
     }
 
-    /// n and 1/n of a batch of wavelengths in nm. The same bits as [`Dispersion::evaluate`] for n, whatever the length
-    /// of the slices; with all forms but the rational one a table is read per wavelength.
+    /// Computes n and 1/n of a batch of wavelengths in nm. n has the same bits as from [`Dispersion::evaluate`], whatever the
+    /// length of the slices. All forms but the rational one are evaluated wavelength by wavelength.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -179,7 +179,7 @@ impl Dispersion {
 }
 
 fn largest_error(checks: &[(f64, f64)], n: impl Fn(f64) -> f64) -> f64 {
-    // An error that is no number must not pass as small.
+    // An error that is not a number must not pass as small.
     checks.iter().map(|&(w, exact)| (n(w) - exact).abs()).fold(0.0, |m, e| if e > m || e.is_nan() { e } else { m })
 }
 

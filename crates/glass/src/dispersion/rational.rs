@@ -1,13 +1,13 @@
-//! n as a quotient of two polynomials in the wavelength or its square.
+//! The index as a quotient of two polynomials in the wavelength or its square.
 
 use crate::medium::Medium;
 use spectra_numerics::linear;
 
 /// n = P(x) / Q(x), where x = s0 + s1 lambda + s2 lambda^2 runs from -1 to 1 over a band of light.
 ///
-/// x is the square of the wavelength, scaled (s1 = 0), in which the formulas of glasses are written; or the wavelength
-/// itself (s2 = 0), in which Buchdahl's model is exactly a quotient of degree 2. P and Q have the same degree, and
-/// neither has a zero in the band.
+/// x is the scaled square of the wavelength (s1 = 0), in which the formulas of glasses are written; or the wavelength itself
+/// (s2 = 0), in which Buchdahl's model is exactly a quotient of degree 2. P and Q have the same degree, and neither has a zero
+/// in the band.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rational {
     /// s0, s1 (nm^-1), s2 (nm^-2).
@@ -22,14 +22,14 @@ pub struct Rational {
 pub(super) enum Variable {
     /// The wavelength.
     Wavelength,
-    /// Its square.
+    /// The square of the wavelength.
     Square,
-    /// The reciprocal of its square: most nodes lie at the blue end, where glass disperses most.
+    /// The reciprocal of the squared wavelength: most nodes lie at the blue end, where glass disperses most.
     InverseSquare,
 }
 
 impl Variable {
-    /// s0, s1, s2 with s0 + s1 lambda + s2 lambda^2 from -1 to 1 over the band.
+    /// Returns s0, s1, s2 such that s0 + s1 lambda + s2 lambda^2 runs from -1 to 1 over the band.
     fn scale(self, min_nm: f64, max_nm: f64) -> [f64; 3] {
         match self {
             Variable::Wavelength => {
@@ -44,7 +44,7 @@ impl Variable {
         }
     }
 
-    /// The wavelength at which this variable is at `x` of its way from -1 to 1.
+    /// Returns the wavelength at which this variable is at `x` of its way from -1 to 1.
     fn wavelength_nm(self, min_nm: f64, max_nm: f64, x: f64) -> f64 {
         let between = |low: f64, high: f64| 0.5 * (low + high) + 0.5 * (high - low) * x;
         match self {
@@ -59,8 +59,8 @@ impl Rational {
     /// Largest degree of P and Q.
     pub const MAX_DEGREE: usize = 6;
 
-    /// The quotient of degree (`degree`, `degree`) in `variable` that meets the medium at 2 `degree` + 1 nodes: those of
-    /// Chebyshev in `nodes`, a function of the wavelength.
+    /// Finds the quotient of degree (`degree`, `degree`) in `variable` that meets the medium at 2 `degree` + 1 nodes. These are
+    /// Chebyshev's nodes in `nodes`, a function of the wavelength.
     ///
     /// The conditions P(x_j) - n_j Q(x_j) = 0 are linear; the constant term of Q is 1. `None` if they have no solution, or one with
     /// a zero of P or Q in the band.
@@ -87,8 +87,8 @@ impl Rational {
         start.solve(&nodes, None)
     }
 
-    /// The fit with its largest error on `checks` (wavelength and index) made smaller by steps of Remez's exchange: the
-    /// error is levelled at its extrema, where P - (n + e) Q = 0 is made linear by the Q of the step before.
+    /// Reduces the largest error of the fit on `checks` (wavelength and index) by steps of Remez's exchange. The error is
+    /// leveled at its extrema, where P - (n + e) Q = 0 is made linear by the Q of the step before.
     pub(super) fn level(self, checks: &[(f64, f64)]) -> (Rational, f64) {
         let error_of = |r: &Rational| super::largest_error(checks, |w| r.evaluate(w));
         let mut best = (self.clone(), error_of(&self));
@@ -109,7 +109,8 @@ impl Rational {
         best
     }
 
-    /// The largest error of each sign run, 2 `degree` + 2 of them; `None` if the error does not alternate that often.
+    /// Finds the point of largest error in each run of one sign, 2 `degree` + 2 of them; `None` if the error does not alternate
+    /// exactly that often.
     fn extrema(&self, checks: &[(f64, f64)]) -> Option<Vec<(f64, f64)>> {
         let mut runs: Vec<(f64, (f64, f64))> = Vec::new();
         for &(w, n) in checks {
@@ -124,11 +125,11 @@ impl Rational {
                 _ => runs.push((error, (w, n))),
             }
         }
-        // More runs than unknowns is rounding, or a fit better than it need be.
+        // More runs than unknowns mean rounding, or a fit that is better than it need be.
         (runs.len() == 2 * self.degree + 2).then(|| runs.into_iter().map(|run| run.1).collect())
     }
 
-    /// Solves for P and Q at wavelengths and indices; with `levelled` for an alternating error too.
+    /// Solves for P and Q at wavelengths and indices; with `levelled`, for an alternating error, too.
     fn solve(&self, points: &[(f64, f64)], levelled: Option<&Rational>) -> Option<Rational> {
         let (count, degree) = (points.len(), self.degree);
         let mut matrix = vec![0.0; count * count];
@@ -170,7 +171,7 @@ impl Rational {
         self.degree
     }
 
-    /// s0, s1 (nm^-1) and s2 (nm^-2) of x = s0 + lambda (s1 + lambda s2).
+    /// Coefficients s0, s1 (nm^-1) and s2 (nm^-2) of x = s0 + lambda (s1 + lambda s2).
     #[must_use]
     pub fn scale(&self) -> [f64; 3] {
         self.scale
@@ -191,7 +192,7 @@ impl Rational {
         }
     }
 
-    /// n and 1/n of a batch; the degree is looked at once, and each loop is free of branches.
+    /// Computes n and 1/n of a batch. The degree is tested once, and each loop is free of branches.
     #[inline(always)]
     pub fn index_and_inverse(&self, wavelength_nm: &[f64], n: &mut [f64], inverse_n: &mut [f64]) {
         match self.degree {
@@ -212,7 +213,7 @@ impl Rational {
         }
     }
 
-    /// n = P P d and 1/n = Q Q d with d = 1 / (P Q): one division for both.
+    /// Computes n = P P d and 1/n = Q Q d with d = 1 / (P Q): one division for both.
     #[inline(always)]
     fn pair<const DEGREE: usize>(&self, wavelength_nm: f64) -> (f64, f64) {
         let x = self.variable(wavelength_nm);
@@ -231,8 +232,8 @@ fn horner(c: &[f64], x: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// Whether a polynomial (rising powers) has no zero in [-1, 1]: its Bernstein coefficients, over ever smaller parts of
-/// the interval, all have one sign. Says no where it cannot tell.
+/// Returns whether a polynomial (rising powers) has no zero in [-1, 1]: its Bernstein coefficients, over ever smaller parts of
+/// the interval, all have one sign. Returns false if it cannot tell.
 fn has_no_zero(c: &[f64]) -> bool {
     // Coefficients of c(2 t - 1) by powers of t, by Horner's rule on polynomials; then of Bernstein's basis on [0, 1].
     let degree = c.len() - 1;

@@ -1,9 +1,9 @@
-//! n as cubics on a uniform grid of wavelengths, for tabulated data.
+//! The index as cubics on a uniform grid of wavelengths, for tabulated data.
 
 use super::largest_error;
 use crate::medium::Medium;
 
-/// Most intervals of a table: 1 MiB.
+/// Largest number of intervals of a table: 1 MiB.
 const MOST_INTERVALS: usize = 32_768;
 
 /// Cubics between uniform wavelengths, each through four neighboring samples.
@@ -17,8 +17,8 @@ pub(super) struct Sampled {
 }
 
 impl Sampled {
-    /// The coarsest table, by doubling, that is within `tolerance` of the medium at `checks` and in the middle of
-    /// every interval, with its largest error; `None` if the finest is not.
+    /// Finds the coarsest table, by doubling, that is within `tolerance` of the medium at `checks` and in the middle of every
+    /// interval, and its largest error. `None` if the finest table is not that good.
     pub(super) fn fit(
         medium: &Medium,
         min_nm: f64,
@@ -71,7 +71,7 @@ impl Sampled {
     }
 }
 
-/// Coefficients of the cubic through four points: Newton's divided differences, expanded.
+/// Returns the coefficients of the cubic through four points: Newton's divided differences, expanded.
 fn interpolate(t: [f64; 4], y: [f64; 4]) -> [f64; 4] {
     let d01 = (y[1] - y[0]) / (t[1] - t[0]);
     let d12 = (y[2] - y[1]) / (t[2] - t[1]);

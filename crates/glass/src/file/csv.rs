@@ -1,4 +1,4 @@
-//! A table of n, and k where it is known, as CSV; of one material or of several.
+//! Tables of n, and of k where it is known, as CSV; of one material or of several.
 
 use super::{OWN_MAKER, sensible};
 use crate::fit::samples::{Material, Place, Row, read_rows};
@@ -7,10 +7,10 @@ use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Faults, SourceFile, Span};
 use std::sync::Arc;
 
-/// Most rows that are read.
+/// Largest number of rows that are read.
 const MAX_ROWS: usize = 100_000;
 
-/// Reads the table of a material, or the only one; its name is that of the file.
+/// Reads the table of a material, or the only table of a file. The glass is named after the material or else the file.
 pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<Glass, Faults> {
     let text = std::str::from_utf8(bytes).map_err(|_| Fault::new(format!("{name}: is not UTF-8 text")))?;
     if text.lines().count() > MAX_ROWS + 1000 {
@@ -29,7 +29,7 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
     let rows = rows_of(&found, material, stem)?;
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
     if let Some(pair) = rows.windows(2).find(|pair| pair[1].wavelength_nm <= pair[0].wavelength_nm) {
-        let text = format!("{} nm does not come after the row before", pair[1].wavelength_nm);
+        let text = format!("{} nm is not above the wavelength of the row before", pair[1].wavelength_nm);
         let fault = at(pair[1].place, text);
         return Err(fault.hint("wavelengths must rise; a column `material` separates several tables").into());
     }
@@ -44,7 +44,7 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
     Ok(glass)
 }
 
-/// The rows of the material asked for, or of the only one.
+/// Returns the rows of the requested material, or of the only one.
 fn rows_of<'a>(found: &'a [Material], material: Option<&str>, shown: &str) -> Result<&'a [Row], Fault> {
     let names = || found.iter().filter_map(|(name, _)| name.as_deref());
     match (material, found) {
@@ -102,7 +102,7 @@ mod tests {
         assert!(read("f.csv", b"wavelength_nm,n\n400,1.5\n", None).is_err() && read("f.csv", b"\xff", None).is_err());
     }
 
-    /// As `glass fit` reads them: several materials in one file, each with its rows where it likes.
+    /// Several materials in one file, each with its rows anywhere, as `glass fit` reads them.
     #[test]
     fn a_material_of_several() {
         let text = "material;nm;n\nA;400;1.5\nB;500;1.6\nA;600;1.4\nB;700;1.55\n";

@@ -1,4 +1,4 @@
-//! Pages of the refractiveindex.info database, in its own YAML: a user may put one beside a scene as it was downloaded.
+//! Pages of the refractiveindex.info database, in its own YAML; a user may put a page beside a scene as it was downloaded.
 //!
 //! Format: M. N. Polyanskiy, "Refractiveindex.info database of optical constants", Sci. Data 11, 94 (2024). Wavelengths
 //! are in micrometers.
@@ -7,12 +7,12 @@ use super::{OWN_MAKER, sensible};
 use crate::{Category, Extinction, Formula, Glass, NumberedFormula, Table};
 use spectra_core::params::{Fault, Faults, Node, Params, Value};
 
-/// Whether a document is such a page.
+/// Returns whether a document is a page of the database.
 pub(super) fn is_one(params: &Params) -> bool {
     params.get("DATA").is_some()
 }
 
-/// The glass of a page.
+/// Reads the glass of a page.
 pub(super) fn from_params(params: &Params) -> Result<Glass, Faults> {
     let Some(Value::Seq(blocks)) = params.get("DATA").map(|node| &node.value) else {
         return Err(params.fault("DATA", "a list of data is expected here").into());
@@ -24,7 +24,7 @@ pub(super) fn from_params(params: &Params) -> Result<Glass, Faults> {
     for block in blocks {
         let fault = |key: &str, text: String| {
             let node = block.get(key).unwrap_or(block);
-            node.fault(text).hint("as refractiveindex.info writes it")
+            node.fault(text).hint("write it as refractiveindex.info does")
         };
         let kind = block.get("type").and_then(Node::as_str).unwrap_or_default();
         let numbers = |key: &str| -> Result<Vec<f64>, Fault> {
@@ -41,10 +41,10 @@ pub(super) fn from_params(params: &Params) -> Result<Glass, Faults> {
                 let formula = formula.ok_or_else(|| fault("coefficients", format!("do not fit `{kind}`")))?;
                 let range = if block.get("wavelength_range").is_some() { "wavelength_range" } else { "range" };
                 let &[from, to] = &numbers(range)?[..] else {
-                    return Err(fault(range, "two wavelengths in micrometers are wanted here".to_owned()).into());
+                    return Err(fault(range, "two wavelengths in micrometers are expected here".to_owned()).into());
                 };
                 if !(from > 0.0 && from < to) {
-                    return Err(fault(range, format!("no range: {from} to {to} um")).into());
+                    return Err(fault(range, format!("not a range: {from} to {to} um")).into());
                 }
                 index = Some((Formula::Numbered(formula), (from * 1e3, to * 1e3)));
             }

@@ -1,4 +1,4 @@
-//! A glass by its figures, as patents state them.
+//! Glasses that are given by their figures, as patents state them.
 
 use super::stated_lines::{self, ThreeLines};
 use crate::formula::{ModelGlass, resonance};
@@ -9,18 +9,18 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Fault, Params};
 
-/// Where a stated index is farther from that of all figures together, one of them is a slip.
+/// Largest difference of a stated index from the one that all figures together give; beyond it one of them is wrong.
 const TOLERANCE_N: f64 = 1e-4;
-/// The same for an Abbe number, as part of it.
+/// Largest relative difference of a stated Abbe number.
 const TOLERANCE_V: f64 = 0.01;
 /// Keys of an index and an Abbe number for any lines.
 const ANY_N: &str = "abbe.n";
 const ANY_V: &str = "abbe.v";
-/// Lines between which ordinary glasses keep to the normal lines of partial dispersion, nm.
+/// Range of the lines, nm, within which ordinary glasses keep to the normal lines of partial dispersion.
 const MODEL_NM: std::ops::RangeInclusive<f64> = 300.0..=1100.0;
 
-/// A glass by its figures: one index alone has no dispersion; with an Abbe number, or with more indices, it has that of
-/// ordinary glasses with these figures.
+/// A glass given by its figures. One index alone has no dispersion; with an Abbe number, or with more indices, the dispersion
+/// is that of ordinary glasses with these figures.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Figures {
@@ -92,8 +92,8 @@ pub struct AbbeNumber {
     /// Abbe number, 5 to 200.
     #[schemars(range(min = 5, max = 200))]
     pub v: f64,
-    /// How the index runs between the lines and beyond: `normal` (the default) as that of real glasses does on average, `resonance` as
-    /// n = A + B / (L^2 - 0.014 um^2), which some renderers use. That needs `n`, and no other figure.
+    /// Curve of the index between the lines and beyond: `normal` (the default) is that of real glasses on average, `resonance`
+    /// is n = A + B / (L^2 - 0.014 um^2), which some renderers use. `resonance` needs `n`, and no other figure.
     #[serde(default)]
     pub curve: AbbeCurve,
 }
@@ -103,7 +103,7 @@ pub struct AbbeNumber {
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub enum AbbeCurve {
-    /// That of glasses on the normal lines of partial dispersion.
+    /// The curve of glasses on the normal lines of partial dispersion.
     #[default]
     Normal,
     /// One resonance in the ultraviolet: n = A + B / (L^2 - 0.014 um^2).
@@ -111,7 +111,7 @@ pub enum AbbeCurve {
 }
 
 impl Figures {
-    /// The indices with their keys, that at the reference line of a patent first: d, else e, else D.
+    /// Returns the indices with their keys. The index at the reference line of a patent comes first: d, else e, else D.
     fn indices(&self) -> Vec<(&'static str, Line, f64)> {
         let any = self.abbe_lines().zip(self.abbe.as_ref().and_then(|abbe| abbe.n));
         let all = [
@@ -132,7 +132,7 @@ impl Figures {
         all.into_iter().filter_map(|(key, line, n)| Some((key, line, n?))).collect()
     }
 
-    /// The Abbe numbers with their keys.
+    /// Returns the Abbe numbers with their keys.
     fn abbe_numbers(&self) -> Vec<(&'static str, LineTriple, f64)> {
         let all = [
             ("vd", LineTriple::FDC, self.vd),
@@ -143,12 +143,12 @@ impl Figures {
         all.into_iter().filter_map(|(key, lines, v)| Some((key, lines, v?))).chain(any).collect()
     }
 
-    /// The lines of `abbe`, if they are three.
+    /// Returns the lines of `abbe`, if they are three.
     fn abbe_lines(&self) -> Option<LineTriple> {
         self.abbe.as_ref().and_then(|abbe| stated_lines::rising(&abbe.lines))
     }
 
-    /// How a report calls a figure of that key.
+    /// Returns the name that reports use for the figure of this key.
     fn called(&self, key: &str) -> String {
         match self.abbe_lines() {
             Some(lines) if key == ANY_N => lines.mid.indexed("n"),
@@ -157,7 +157,7 @@ impl Figures {
         }
     }
 
-    /// Whether `abbe` names three lines, and an index that nothing else states. `params` places faults.
+    /// Checks that `abbe` names three lines, and an index that no other key states. `params` places faults.
     ///
     /// # Errors
     /// Lines that are unknown or do not rise; the same line twice.
@@ -169,34 +169,34 @@ impl Figures {
         };
         match self.indices().into_iter().find(twice) {
             Some((key, ..)) => {
-                let text = format!("the index at {} is stated by `{key}`, too", lines.mid.label());
+                let text = format!("the index at {} is also stated by `{key}`", lines.mid.label());
                 Err(params.fault(ANY_N, text).hint("leave one of them out"))
             }
             None => Ok(()),
         }
     }
 
-    /// The index stated at a line.
+    /// Returns the index stated at a line, if there is one.
     #[must_use]
     pub fn index_at(&self, wavelength_nm: f64) -> Option<f64> {
         self.indices().into_iter().find(|(_, line, _)| line.wavelength_nm == wavelength_nm).map(|(_, _, n)| n)
     }
 
-    /// Whether nothing is stated.
+    /// Returns whether no figure is stated.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.indices().is_empty() && self.abbe_numbers().is_empty()
     }
 
-    /// Every figure with its key and what an index function makes of it, and by how much the two may differ: 5e-4 in
-    /// an index, 0.5 in an Abbe number.
+    /// Returns every figure as its key, its stated value, its value by an index function, and the largest allowed difference:
+    /// 5e-4 for an index, 0.5 for an Abbe number.
     pub(super) fn against(&self, n: impl Fn(f64) -> f64) -> Vec<(&'static str, f64, f64, f64)> {
         let indices = self.indices().into_iter().map(|(key, line, stated)| (key, stated, n(line.wavelength_nm), 5e-4));
         let abbe = self.abbe_numbers().into_iter().map(|(key, lines, v)| (key, v, lines.abbe_number(&n), 0.5));
         indices.chain(abbe).collect()
     }
 
-    /// The medium of these figures, and how a report calls it. `params` places faults.
+    /// Makes the medium of these figures, and the name that reports use for it. `params` places faults.
     ///
     /// # Errors
     /// No index; a figure that no glass has; figures that contradict each other.
@@ -207,8 +207,8 @@ impl Figures {
             && !(MODEL_NM.contains(&lines.short.wavelength_nm) && MODEL_NM.contains(&lines.long.wavelength_nm))
         {
             let fault =
-                params.fault("abbe.lines", "by these lines alone the dispersion of light that is seen is not known");
-            return Err(fault.hint("lines from 300 to 1100 nm, or a `formula` or `table`"));
+                params.fault("abbe.lines", "these lines alone do not determine the dispersion of visible light");
+            return Err(fault.hint("use lines from 300 to 1100 nm, or a `formula` or `table`"));
         }
         let figure = |(key, value): (&str, f64)| format!("{} = {value}", self.called(key));
         let named = indices.iter().map(|(key, _, n)| (*key, *n)).chain(abbe.iter().map(|(key, _, v)| (*key, *v)));
@@ -218,18 +218,17 @@ impl Figures {
         };
         if let (Some(AbbeNumber { curve: AbbeCurve::Resonance, .. }), Some(lines)) = (&self.abbe, self.abbe_lines()) {
             let [(ANY_N, _, n)] = indices[..] else {
-                let fault = params
-                    .fault("abbe.curve", "this curve follows from an index and an Abbe number at three lines alone");
-                return Err(
-                    fault.hint("`abbe: {curve: resonance, lines: [F, d, C], n: 1.62, v: 36.4}`, and no other figure")
-                );
+                let fault =
+                    params.fault("abbe.curve", "this curve takes one index and one Abbe number, both at three lines");
+                return Err(fault
+                    .hint("write `abbe: {curve: resonance, lines: [F, d, C], n: 1.62, v: 36.4}` and no other figure"));
             };
             let [(ANY_V, _, v)] = abbe[..] else {
-                let fault = params.fault("abbe.curve", "this curve follows from one Abbe number alone");
+                let fault = params.fault("abbe.curve", "this curve takes only one Abbe number");
                 return Err(fault.hint("leave the other one out"));
             };
             let formula = resonance::through(n, v, lines);
-            // Nothing was measured, so nothing is beyond what was.
+            // Nothing was measured, so no wavelength lies beyond the data.
             let range = (100.0, 1e6);
             let glass =
                 Glass::new(super::OWN_MAKER, &format!("{label}, one resonance"), Category::User, formula, range);
@@ -239,7 +238,7 @@ impl Figures {
             ([], []) => {
                 let fault = params.fault_here("the glass has no index");
                 return Err(
-                    fault.hint("`nd` and `vd`, `ne` and `ve`, `abbe: {lines: [F, e, C], n: ..., v: ...}`, or indices at several lines: `nd`, `ng`, `nF`, `nC`")
+                    fault.hint("write `nd` and `vd`, `ne` and `ve`, `abbe: {lines: [F, e, C], n: ..., v: ...}`, or indices at several lines: `nd`, `ng`, `nF`, `nC`")
                 );
             }
             ([], [(key, ..), ..]) => {

@@ -24,14 +24,14 @@ use spectra_core::resources::{ResourceError, Resources, beside};
 /// Largest table or catalogue file that is read, bytes.
 const MAX_BYTES: u64 = 16 << 20;
 
-/// Whether a name is that of a file, and not one of the catalogue.
+/// Returns whether a name is that of a file, not of a catalogue glass.
 #[must_use]
 pub fn is_file(name: &str) -> bool {
     let (file, _) = parts(name);
     ["yaml", "yml", "csv", "agf"].iter().any(|ending| has_ending(file, ending))
 }
 
-/// The file, and the glass in it.
+/// Splits a name into the file and the glass in it.
 fn parts(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('#') {
         Some((file, glass)) => (file.trim(), Some(glass.trim())),
@@ -43,11 +43,11 @@ fn has_ending(file: &str, ending: &str) -> bool {
     file.rsplit_once('.').is_some_and(|(_, e)| e.eq_ignore_ascii_case(ending))
 }
 
-/// The medium that the value of a key names: a file of the user's (beside the file in which the key is written first), or
-/// a medium of the bundled catalogue.
+/// Finds the medium that the value of a key names: a file of the user (first beside the file in which the key is written), or a
+/// medium of the bundled catalogue.
 ///
 /// # Errors
-/// What is wrong with the glass's file, placed there; a name that nothing or too much has, placed at the key.
+/// The faults of the glass's file, placed there; an unknown or ambiguous name, placed at the key.
 pub fn medium(name: &str, params: &Params, key: &str, resources: &dyn Resources) -> Result<Medium, Faults> {
     if is_file(name) {
         let (file, glass) = parts(name);
@@ -58,10 +58,10 @@ pub fn medium(name: &str, params: &Params, key: &str, resources: &dyn Resources)
     Catalogue::bundled().medium(name).map_err(|e| params.fault(key, e.message()).hint(e.hint()).into())
 }
 
-/// The glass of a file; see [`is_file`].
+/// Reads the glass of a file; see [`is_file`].
 ///
 /// # Errors
-/// All that is wrong with the file, with places; without one where the file itself is not found.
+/// All faults of the file, with places; a fault without a place if the file itself is not found.
 pub fn load(name: &str, resources: &dyn Resources) -> Result<Glass, Faults> {
     let (file, glass) = parts(name);
     read(file, file, glass, resources)
@@ -121,10 +121,10 @@ fn from_agf(path: &str, shown: &str, glass: Option<&str>, resources: &dyn Resour
     .into())
 }
 
-/// A glass without a maker is called by its name alone in reports.
+/// Maker of glasses that state none; reports call them by their name alone.
 const OWN_MAKER: &str = "own";
 
-/// Refuses an index that is none somewhere in the range; says where.
+/// Refuses a glass whose index is not from 1 to 10 somewhere in its range; says where.
 fn sensible(glass: &Glass) -> Result<(), String> {
     let (from, to) = glass.range_nm;
     const STEPS: u32 = 64;
@@ -132,7 +132,7 @@ fn sensible(glass: &Glass) -> Result<(), String> {
         let nm = from + (to - from) * f64::from(i) / f64::from(STEPS);
         let n = glass.index(nm);
         if !(1.0..=10.0).contains(&n) {
-            return Err(format!("an index of {n:.4} at {nm:.1} nm"));
+            return Err(format!("the index at {nm:.1} nm is {n:.4}, which is not from 1 to 10"));
         }
     }
     Ok(())

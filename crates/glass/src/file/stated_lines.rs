@@ -1,4 +1,4 @@
-//! Lines as a file writes them.
+//! Spectral lines as a file writes them.
 
 use crate::lines::{Line, LineTriple};
 use schemars::JsonSchema;
@@ -10,9 +10,9 @@ use spectra_core::params::{Fault, Params};
 #[serde(untagged)]
 #[schemars(inline)]
 pub enum StatedLine {
-    /// Its wavelength, nm.
+    /// Wavelength of the line, nm.
     Wavelength(f64),
-    /// Its name, or a wavelength with its unit.
+    /// Name of the line, or a wavelength with its unit.
     Name(String),
 }
 
@@ -32,8 +32,9 @@ impl StatedLine {
     }
 }
 
-/// The lines for which an index and an Abbe number hold: the line of the index, with which the usual two go (`d` and `D` with F and C, `e` with
-/// F' and C'), or three lines from blue to red, the index at the middle one: `[F', e, C']`, `[450 nm, 580 nm, 680 nm]`.
+/// The lines at which an index and an Abbe number are stated. A single line is that of the index; the usual two go with it (`d`
+/// and `D` with F and C, `e` with F' and C'). Three lines go from blue to red, with the index at the middle one: `[F', e, C']`,
+/// `[450 nm, 580 nm, 680 nm]`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(inline)]
@@ -48,10 +49,11 @@ pub enum StatedLines {
 pub type ThreeLines = [StatedLine; 3];
 
 impl StatedLines {
-    /// The lines, under the key `key` of `params`. A line that defines no Abbe number by itself goes with F and C.
+    /// Returns the three lines, with faults placed at the key `key` of `params`. A line that defines no Abbe number by itself
+    /// goes with F and C.
     ///
     /// # Errors
-    /// No line of that name; three lines that do not rise.
+    /// An unknown line; three lines that do not rise.
     pub fn triple(&self, params: &Params, key: &str) -> Result<LineTriple, Fault> {
         match self {
             Self::Reference(line) => {
@@ -63,21 +65,21 @@ impl StatedLines {
     }
 }
 
-/// Three lines under the key `key` of `params`.
+/// Reads three lines, with faults placed at the key `key` of `params`.
 ///
 /// # Errors
-/// No line of that name; lines that do not rise.
+/// An unknown line; lines that do not rise.
 pub fn triple(three: &ThreeLines, params: &Params, key: &str) -> Result<LineTriple, Fault> {
     let at = |i: usize| known(&three[i], params, &format!("{key}[{i}]"));
     let (short, mid, long) = (at(0)?, at(1)?, at(2)?);
     LineTriple::rising(short, mid, long).ok_or_else(|| {
         params
             .fault(key, "the lines must go from blue to red")
-            .hint("three lines, such as [F', e, C'] or [450, 580, 680]")
+            .hint("write three lines such as [F', e, C'] or [450, 580, 680]")
     })
 }
 
-/// Three lines that rise.
+/// Returns the three lines, if they rise.
 pub(super) fn rising(three: &ThreeLines) -> Option<LineTriple> {
     LineTriple::rising(three[0].line()?, three[1].line()?, three[2].line()?)
 }

@@ -1,4 +1,4 @@
-//! A glass in YAML.
+//! Glass files in YAML.
 
 use super::{Figures, MAX_BYTES, OWN_MAKER, csv, sensible};
 use crate::{Category, Extinction, Formula, Glass, Medium, Table};
@@ -19,37 +19,37 @@ pub struct GlassFile {
     spectra: Option<Whole<1, 1>>,
     /// Name for people.
     name: Option<String>,
-    /// Who makes it.
+    /// Maker of the glass.
     maker: Option<String>,
-    /// Where the figures come from.
+    /// Source of the figures.
     source: Option<String>,
-    /// Terms under which they came.
+    /// License of the figures.
     #[expect(dead_code, reason = "for the reader of the file")]
     license: Option<String>,
-    /// The same, as older files write it.
+    /// License of the figures, as older files spell it.
     #[expect(dead_code, reason = "for the reader of the file")]
     licence: Option<String>,
-    /// What else is worth knowing.
+    /// Anything else worth knowing.
     #[expect(dead_code, reason = "for the reader of the file")]
     remark: Option<String>,
     /// Name of a dispersion formula; see `spectra list formula`.
     formula: Option<NameOf<Formula>>,
-    /// Its coefficients, of the formula in micrometers, unless `unit` says otherwise.
+    /// Coefficients of the formula, for micrometers unless `unit` says otherwise.
     coefficients: Option<Vec<f64>>,
     /// The unit of wavelengths in the formula: `um` (the default), or `nm` where the formula is `cauchy` (B in nm^2), `conrady`, `schott`
     /// or `sellmeier-1`.
     unit: Option<LengthUnit>,
-    /// Of `formula: function`, the index as a formula of the wavelength `w` in nm.
+    /// Index as a formula of the wavelength `w` in nm, for `formula: function`.
     #[expect(dead_code, reason = "the formula reads it")]
     n: Option<String>,
     /// Measured indices: wavelength, nm if bare, and n.
     table: Option<Vec<(Wavelength, f64)>>,
-    /// The same as a CSV file beside this one, with k where it is known.
+    /// CSV file beside this one with measured indices, and k where it is known.
     file: Option<String>,
-    /// First and last wavelength of the data, nm if bare; 350 to 830 nm if absent.
+    /// First and last wavelength of the data, nm if bare. If absent, that of the table, else 350 to 830 nm.
     range: Option<[Wavelength; 2]>,
-    /// Its figures: with an Abbe number, or at several lines, they are the whole glass; beside a formula or a table they are held against
-    /// that.
+    /// Figures of the glass. With an Abbe number, or at several lines, they are the whole glass; beside a formula or a table
+    /// they are checked against it.
     #[serde(flatten)]
     figures: Figures,
     /// Temperature of the data, degrees Celsius.
@@ -72,17 +72,17 @@ enum LengthUnit {
     Nanometer,
 }
 
-/// Transmittance inside of the glass, without reflections.
+/// Transmittance inside the glass, without reflections.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct InternalTransmittance {
-    /// Thickness for which it is stated, mm if bare.
+    /// Thickness for which the transmittance is stated, mm if bare.
     thickness: Positive<Length>,
     /// Wavelength, nm if bare, and transmittance, above 0 and at most 1.
     table: Vec<(Wavelength, f64)>,
 }
 
-/// The glass of a parsed file: named after it, unless it says so itself.
+/// Reads the glass of a parsed file. It is named after the file, unless it states a name.
 pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Glass, Faults> {
     let file = &params.node().file.name;
     let stem = file.rsplit(['/', '\\']).next().unwrap_or(file);
@@ -90,10 +90,10 @@ pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Gl
     from_params(params, &stem, resources)
 }
 
-/// The glass of a map with the keys of a glass file; `called` where it states no name.
+/// Reads the glass of a map with the keys of a glass file. It is called `called` if it states no name.
 ///
 /// # Errors
-/// All that is wrong with it, with places.
+/// All faults of the map, with places.
 pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> Result<Glass, Faults> {
     let p: GlassFile = params.parse()?;
     let mut faults = Faults::new();
@@ -120,7 +120,7 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
     }
     if let Err(text) = sensible(&glass) {
         let key = ["coefficients", "table", "nd"].into_iter().find(|key| params.get(key).is_some()).unwrap_or("file");
-        let hint = "coefficients are those of the formula in micrometers; `range` is where they hold";
+        let hint = "state coefficients for micrometers, and in `range` the wavelengths for which they hold";
         return Err(params.fault(key, text).hint(hint).into());
     }
     faults.take(p.figures.checked(params));
@@ -134,7 +134,7 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
     faults.into_result(glass)
 }
 
-/// The glass as far as its index goes.
+/// Reads the index of the glass; all other data are left out.
 fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Glass, Faults> {
     const BAND_NM: (f64, f64) = (350.0, 830.0);
     let plain = |formula, range| Glass::new("", "", Category::User, formula, range);
@@ -146,11 +146,11 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
     }
     if p.coefficients.is_some() && p.formula.is_none() {
         let fault = params.fault("coefficients", "coefficients of which formula?");
-        return Err(fault.hint("`formula: sellmeier-1`, or another").into());
+        return Err(fault.hint("add `formula: sellmeier-1`, or another formula").into());
     }
     if p.unit.is_some() && p.formula.is_none() {
         let fault = params.fault("unit", "the unit of which formula?");
-        return Err(fault.hint("`formula: cauchy`, or another, with its `coefficients`").into());
+        return Err(fault.hint("add `formula: cauchy`, or another formula, with its `coefficients`").into());
     }
     if p.formula.is_some() {
         let formula = formula(params, resources)?;
@@ -177,7 +177,7 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
     }
     if p.figures.is_empty() {
         let fault = params.fault_here("the glass has no index");
-        return Err(fault.hint("`formula` and `coefficients`, a `table`, a CSV `file`, or `nd` and `vd`").into());
+        return Err(fault.hint("write `formula` and `coefficients`, a `table`, a CSV `file`, or `nd` and `vd`").into());
     }
     let formula = match p.figures.medium(params)?.0 {
         Medium::Model(model) => Formula::Model(model),
@@ -187,7 +187,7 @@ fn base(params: &Params, p: &GlassFile, resources: &dyn Resources) -> Result<Gla
     Ok(plain(formula, BAND_NM))
 }
 
-/// The formula that the registry knows by its name.
+/// Builds the formula that the registry knows by its name.
 fn formula(params: &Params, resources: &dyn Resources) -> Result<Formula, Faults> {
     let (own, _) = params.split(&[Formula::KEY, "coefficients", "n"]);
     let own = Params::kinded(own.node().clone(), params.path(), Formula::KEY)?;
@@ -208,7 +208,9 @@ fn extinction(params: &Params, p: &GlassFile) -> Result<Option<Extinction>, Faul
             for (i, (w, tau)) in given.table.iter().enumerate() {
                 if !(*tau > 0.0 && *tau <= 1.0) {
                     let at = format!("internal-transmittance.table[{i}]");
-                    return Err(params.fault(&at, format!("a transmittance of {tau}")).hint("above 0, at most 1"));
+                    return Err(params
+                        .fault(&at, format!("a transmittance of {tau} is out of range"))
+                        .hint("above 0, at most 1"));
                 }
                 // tau = exp(-4 pi k d / lambda); + 0 makes the -0 of a clear row 0.
                 let k = -libm::log(*tau) * w.nm() * 1e-6 / (4.0 * std::f64::consts::PI * mm) + 0.0;
@@ -218,6 +220,6 @@ fn extinction(params: &Params, p: &GlassFile) -> Result<Option<Extinction>, Faul
         }
     };
     let (wavelengths, k): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
-    let fault = || params.fault(key, "wavelengths must rise, and there is at least one");
+    let fault = || params.fault(key, "wavelengths must rise, and at least one is needed");
     Extinction::new(wavelengths.into(), k).map(Some).ok_or_else(fault)
 }

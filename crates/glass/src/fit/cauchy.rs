@@ -19,7 +19,7 @@ pub struct CauchyRows {
     pub fit: Fit,
 }
 
-/// Cauchy's n = A + B / lambda^2 by neighboring rows and means, the method of laboratory courses.
+/// Fits Cauchy's n = A + B / lambda^2 by neighboring rows and means, the method of laboratory courses.
 ///
 /// # Errors
 /// Fewer than two rows, a row that is no measurement, two neighbors at one wavelength.
@@ -44,7 +44,7 @@ pub fn cauchy_by_rows(samples: &[Sample]) -> Result<CauchyRows, FitError> {
     Ok(CauchyRows { a, b_nm2, a_rows, b_rows_nm2, fit })
 }
 
-/// Cauchy's formula with `terms` coefficients (1 to 6) by least squares: n = A + B L^-2 + C L^-4 + ...
+/// Fits Cauchy's formula with `terms` coefficients (1 to 6) by least squares: n = A + B L^-2 + C L^-4 + ...
 ///
 /// # Errors
 /// Fewer samples than terms, a sample that is no measurement, terms out of range or not determined.
@@ -53,7 +53,7 @@ pub fn cauchy_least_squares(samples: &[Sample], terms: usize) -> Result<Fit, Fit
     if !(1..=6).contains(&terms) {
         return Err(FitError::Undetermined);
     }
-    // Powers of the largest 1 / lambda^2, so that columns are alike in size.
+    // Powers are relative to the largest 1 / lambda^2, so that columns are alike in size.
     let inverse = |s: &Sample| 1e6 / (s.wavelength_nm * s.wavelength_nm);
     let largest = samples.iter().map(inverse).fold(0.0, f64::max);
     let mut matrix = Vec::with_capacity(samples.len() * terms);

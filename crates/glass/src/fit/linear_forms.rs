@@ -4,7 +4,7 @@ use super::{Fit, FitError, Sample, check};
 use crate::formula::{CONRADY, HERZBERGER, SCHOTT};
 use spectra_numerics::linear;
 
-/// Conrady's n = c0 + c1 / L + c2 / L^3.5 by least squares; three samples or more.
+/// Fits Conrady's n = c0 + c1 / L + c2 / L^3.5 by least squares; needs three samples or more.
 ///
 /// # Errors
 /// Too few samples, a sample that is no measurement, coefficients that are not determined.
@@ -14,8 +14,8 @@ pub fn conrady_least_squares(samples: &[Sample]) -> Result<Fit, FitError> {
     Ok(Fit::of(CONRADY.with(&c), samples))
 }
 
-/// Schott's n^2 = c0 + c1 L^2 + c2 L^-2 + c3 L^-4 + c4 L^-6 + c5 L^-8; six samples or more. The squared index is
-/// fitted with the weight 1 / (2 n), so that deviations of n count alike.
+/// Fits Schott's n^2 = c0 + c1 L^2 + c2 L^-2 + c3 L^-4 + c4 L^-6 + c5 L^-8 by least squares; needs six samples or more. The
+/// squared index is fitted with the weight 1 / (2 n), so that deviations of n count alike.
 ///
 /// # Errors
 /// As [`conrady_least_squares`].
@@ -28,8 +28,8 @@ pub fn schott_least_squares(samples: &[Sample]) -> Result<Fit, FitError> {
     Ok(Fit::of(SCHOTT.with(&c), samples))
 }
 
-/// Herzberger's n = A + B l + C l^2 + D L^2 + E L^4 + F L^6 with l = 1 / (L^2 - 0.028) by least squares; six samples or
-/// more, none near the pole at 167 nm.
+/// Fits Herzberger's n = A + B l + C l^2 + D L^2 + E L^4 + F L^6 with l = 1 / (L^2 - 0.028) by least squares; needs six samples
+/// or more, none near the pole at 167 nm.
 ///
 /// # Errors
 /// As [`conrady_least_squares`].
@@ -43,7 +43,7 @@ pub fn herzberger_least_squares(samples: &[Sample]) -> Result<Fit, FitError> {
     Ok(Fit::of(HERZBERGER.with(&c), samples))
 }
 
-/// Coefficients of a basis (of the wavelength, um) for what `value` makes of an index, with its weight.
+/// Fits the coefficients of a basis (of the wavelength, um). `value` turns an index into the fitted quantity and its weight.
 fn solve<const N: usize>(
     samples: &[Sample],
     basis: impl Fn(f64) -> [f64; N],
@@ -51,7 +51,7 @@ fn solve<const N: usize>(
 ) -> Result<[f64; N], FitError> {
     check(samples, N)?;
     let rows: Vec<[f64; N]> = samples.iter().map(|s| basis(s.wavelength_nm * 1e-3)).collect();
-    // Columns of one size: powers of the wavelength differ by orders of magnitude.
+    // Scales columns to one size: powers of the wavelength differ by orders of magnitude.
     let scale: [f64; N] = std::array::from_fn(|k| rows.iter().map(|r| r[k].abs()).fold(0.0, f64::max));
     if !scale.iter().all(|s| s.is_finite() && *s > 0.0) {
         return Err(FitError::Undetermined);

@@ -5,9 +5,9 @@ use super::Sample;
 /// The samples of one material of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedSamples {
-    /// Name of the material, where the file has a column for it.
+    /// Name of the material, if the file has a column for it.
     pub name: Option<String>,
-    /// Its rows, in the order of the file.
+    /// Rows of the material, in the order of the file.
     pub samples: Vec<Sample>,
 }
 
@@ -17,11 +17,11 @@ pub struct NamedSamples {
 pub struct SamplesError {
     /// Line, from 1.
     pub line: usize,
-    /// What is wrong.
+    /// Message that says what is wrong.
     pub message: String,
 }
 
-/// Names of the columns, and the unit of wavelengths in nm.
+/// Names of the wavelength column, and its unit in nm.
 const WAVELENGTH: [(&str, f64); 8] = [
     ("wavelength_nm", 1.0),
     ("wavelength", 1.0),
@@ -35,7 +35,7 @@ const WAVELENGTH: [(&str, f64); 8] = [
 const INDEX: [&str; 4] = ["n", "index", "refractive_index", "nd"];
 const MATERIAL: [&str; 4] = ["material", "name", "glass", "medium"];
 
-/// Wavelengths from 10 nm to 1 mm: what lies outside is a slip of the unit.
+/// Wavelengths from 10 nm to 1 mm; a value outside has the wrong unit.
 const SENSIBLE_NM: std::ops::RangeInclusive<f64> = 10.0..=1e6;
 
 struct Columns {
@@ -52,11 +52,11 @@ pub(crate) struct Row {
     pub(crate) wavelength_nm: f64,
     pub(crate) n: f64,
     pub(crate) k: Option<f64>,
-    /// Where its wavelength stands.
+    /// Place of the wavelength in the text.
     pub(crate) place: Place,
 }
 
-/// Where a value stands in the text.
+/// The place of a value in the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     /// Line, from 1.
@@ -65,11 +65,11 @@ pub(crate) struct Place {
     pub(crate) offset: usize,
     /// Characters from the start of the line, from 1.
     pub(crate) column: usize,
-    /// Bytes.
+    /// Length, bytes.
     pub(crate) len: usize,
 }
 
-/// A table that cannot be read.
+/// An error in a table, with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RowError {
     pub(crate) place: Place,
@@ -77,13 +77,13 @@ pub(crate) struct RowError {
     pub(crate) hint: Option<&'static str>,
 }
 
-/// The rows of one material: its name where the file has a column for it, and the rows in the order of the file.
+/// The rows of one material: its name if the file has a column for it, and the rows in the order of the file.
 pub(crate) type Material = (Option<String>, Vec<Row>);
 
-/// What stands in a head.
+/// The contents of a header, for messages.
 const HEAD: &str = "columns `wavelength_nm` (or `wavelength_um`), `n` and, where they are known, `k` and `material`";
 
-/// The one reader of tables of indices; see [`read_csv`] for what it takes.
+/// Reads a table of indices; all readers use this function. See [`read_csv`] for the format.
 pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
     let mut columns: Option<Columns> = None;
     let mut found: Vec<Material> = Vec::new();
@@ -131,9 +131,9 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
     Ok(found)
 }
 
-/// Reads a table of wavelengths and indices: columns `wavelength_nm` (or `wavelength_um`) and `n`, found by name, and
-/// `material` where a file holds several; a file without a head has wavelengths in nm and indices. Lines that begin
-/// with `#` are remarks; values are parted by commas, semicolons, tabs or blanks.
+/// Reads a table of wavelengths and indices. Columns are found by name: `wavelength_nm` (or `wavelength_um`), `n`, and
+/// `material` if a file holds several. A file without a header has wavelengths in nm and indices. Lines that begin with `#` are
+/// comments; values are separated by commas, semicolons, tabs or blanks.
 ///
 /// # Errors
 /// The first line that cannot be read; a file without samples.
@@ -163,7 +163,7 @@ fn head(names: &[&str]) -> Result<Columns, String> {
     Ok(Columns { wavelength, unit_nm, index, extinction: place(&["k"]), material: place(&MATERIAL) })
 }
 
-/// Column, what is wrong with it, and what to do.
+/// An error: its column, its message and its hint.
 type Wrong = (usize, String, Option<&'static str>);
 
 fn row(columns: &Columns, values: &[&str]) -> Result<(f64, f64, Option<f64>), Wrong> {
@@ -174,17 +174,17 @@ fn row(columns: &Columns, values: &[&str]) -> Result<(f64, f64, Option<f64>), Wr
     };
     let wavelength_nm = number(columns.wavelength, "wavelength")? * columns.unit_nm;
     if !SENSIBLE_NM.contains(&wavelength_nm) {
-        let hint = "name the column `wavelength_um` where it is in micrometers";
+        let hint = "name the column `wavelength_um` if it is in micrometers";
         let message = format!("a wavelength of {wavelength_nm} nm; {hint}");
         return Err((columns.wavelength, message, None));
     }
     let n = number(columns.index, "index")?;
     if !(1.0..=10.0).contains(&n) {
-        return Err((columns.index, format!("an index of {n}: it lies between 1 and 10"), None));
+        return Err((columns.index, format!("an index of {n} is out of range: it must lie between 1 and 10"), None));
     }
     let k = columns.extinction.map(|at| number(at, "extinction coefficient")).transpose()?;
     if let (Some(at), Some(k)) = (columns.extinction, k.filter(|k| *k < 0.0)) {
-        return Err((at, format!("k is {k}"), Some("k is 0 or more")));
+        return Err((at, format!("k is {k}"), Some("k must be 0 or more")));
     }
     Ok((wavelength_nm, n, k))
 }

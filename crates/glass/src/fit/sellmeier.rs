@@ -7,11 +7,11 @@ use spectra_numerics::linear;
 
 /// Poles that fits start from, um^2: two in the ultraviolet, one in the infrared (those of a crown glass).
 const START_POLES: [[f64; 3]; 3] = [[0.012, 0.0, 0.0], [0.010, 100.0, 0.0], [0.006, 0.02, 100.0]];
-/// Most steps of the search.
+/// Largest number of steps of the search.
 const STEPS: usize = 400;
 
-/// Sellmeier's formula with one to three resonances, n^2 = 1 + sum of K L^2 / (L^2 - M), by least squares in n
-/// (Levenberg and Marquardt). Strengths and poles are positive, and poles stay outside of the samples' wavelengths.
+/// Fits Sellmeier's formula with one to three resonances, n^2 = 1 + sum of K L^2 / (L^2 - M), by least squares in n (Levenberg
+/// and Marquardt). Strengths and poles are positive, and poles stay outside the range of the samples' wavelengths.
 ///
 /// # Errors
 /// Fewer samples than coefficients (two a resonance), a sample that is no measurement, terms out of range.
@@ -71,11 +71,11 @@ pub fn sellmeier_least_squares(samples: &[Sample], terms: usize) -> Result<Fit, 
     Ok(Fit::of(formula, samples))
 }
 
-/// How free numbers become poles that stay on their side of the samples.
+/// Maps unbounded numbers to poles that stay on their side of the samples.
 struct Parameters {
-    /// Ultraviolet poles stay below, um^2.
+    /// Upper bound of ultraviolet poles, um^2.
     ultraviolet: f64,
-    /// Infrared poles stay above, um^2.
+    /// Lower bound of infrared poles, um^2.
     infrared: f64,
 }
 
@@ -96,7 +96,7 @@ fn square(c: &[f64], x: f64) -> f64 {
     c.chunks_exact(2).fold(1.0, |sum, term| sum + term[0] * x / (x - term[1]))
 }
 
-/// Strengths by linear least squares at the poles of the start, kept positive.
+/// Computes strengths by linear least squares at the start poles; they are kept positive.
 fn start_strengths(um2: &[f64], samples: &[Sample], poles: &[f64]) -> Vec<f64> {
     let matrix: Vec<f64> = um2.iter().flat_map(|&x| poles.iter().map(move |&m| x / (x - m))).collect();
     let right: Vec<f64> = samples.iter().map(|s| s.n * s.n - 1.0).collect();
@@ -109,7 +109,7 @@ fn start_strengths(um2: &[f64], samples: &[Sample], poles: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Central differences, a column a parameter.
+/// Computes the Jacobian by central differences, one column per parameter.
 fn jacobian(u: &[f64], residuals: &impl Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
     let step = 1e-5;
     (0..u.len())
@@ -124,7 +124,7 @@ fn jacobian(u: &[f64], residuals: &impl Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>>
         .collect()
 }
 
-/// The step that minimises |J s + r|^2 + damping |D s|^2, as a least-squares system (no normal equations).
+/// Returns the step that minimizes |J s + r|^2 + damping |D s|^2, as a least-squares system (no normal equations).
 fn damped_step(jacobian: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
     let (rows, columns) = (residuals.len(), jacobian.len());
     let mut matrix = vec![0.0; (rows + columns) * columns];

@@ -4,9 +4,9 @@ use super::{Formula, FormulaEntry};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The same index at every wavelength.
+/// A constant index, the same at every wavelength.
 ///
-/// No glass is so; for lenses of textbooks, and to see what dispersion alone does to a picture.
+/// No real glass is like this. Use it for lenses of textbooks, or to see what dispersion alone does to a picture.
 ///
 /// # Example
 /// ```yaml

@@ -1,21 +1,21 @@
-//! Closed forms: the index from coefficients, by a function.
+//! Closed forms, in which a function of the coefficients gives the index.
 
 use super::Formula;
 use std::fmt;
 
-/// A closed form of an index.
+/// A closed form of the refractive index.
 #[derive(Clone, Copy)]
 pub struct Form {
-    /// Its name as a person would look it up.
+    /// Name of the form, as a person would look it up.
     pub name: &'static str,
-    /// Coefficients that it has; those left out at the end are 0.
+    /// Number of coefficients; those left out at the end are 0.
     pub count: usize,
-    /// The index by the coefficients, at least as many, and the wavelength in micrometers.
+    /// Function that returns the index from the coefficients, at least `count` of them, and the wavelength in micrometers.
     pub index: fn(&[f64], f64) -> f64,
 }
 
 impl Form {
-    /// The formula of these coefficients, in micrometers.
+    /// Creates the formula with these coefficients, in micrometers.
     #[must_use]
     pub fn with(self, coefficients: &[f64]) -> Formula {
         let mut coefficients = coefficients.to_vec();
@@ -32,19 +32,19 @@ pub struct Closed {
 }
 
 impl Closed {
-    /// The name of its form.
+    /// Name of the closed form.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.form.name
     }
 
-    /// The coefficients in the order of the form, in micrometers.
+    /// Coefficients in the order of the form, in micrometers.
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
     }
 
-    /// The same form with other coefficients.
+    /// Returns the same form with other coefficients.
     pub(super) fn again(&self, coefficients: &[f64]) -> Self {
         Self { form: self.form, coefficients: coefficients.into() }
     }
@@ -67,8 +67,9 @@ impl fmt::Debug for Closed {
     }
 }
 
-/// Declares and registers a form of our own: its name in files, its name, how many coefficients may be written (and how many there are,
-/// with zeros behind them), and its index by the coefficients and the wavelength in micrometers.
+/// Declares and registers one of our own forms. Its arguments are the name in files, the name for people, how many coefficients
+/// may be written, and how many there are, with zeros behind those written. The last argument is the index as a function of the
+/// coefficients and the wavelength in micrometers.
 macro_rules! form {
     (
         $(#[doc = $doc:literal])*
@@ -81,7 +82,7 @@ macro_rules! form {
             #[derive(Debug, serde::Deserialize, schemars::JsonSchema)]
             #[serde(deny_unknown_fields)]
             struct Params {
-                /// In the order of the formula, with lengths in micrometers; those left out at the end are 0.
+                /// Coefficients in the order of the formula, with lengths in micrometers; those left out at the end are 0.
                 #[schemars(length(min = $least, max = $most))]
                 coefficients: Vec<f64>,
             }

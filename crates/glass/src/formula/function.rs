@@ -1,4 +1,4 @@
-//! An index as a formula that is written out.
+//! An index that is written out as a formula.
 
 use super::{Formula, FormulaEntry};
 use schemars::JsonSchema;
@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 /// The index as a formula of the wavelength, for a form that is not in the list.
 ///
-/// `w` is the wavelength in nm. Known are `+ - * / ^`, parentheses, `pi`, and abs, cos, erf, exp, ln, log10, max, min, sin, sqrt, step, tan, tanh.
+/// `w` is the wavelength in nm. A formula may contain `+ - * / ^`, parentheses, `pi`, and abs, cos, erf, exp, ln, log10, max,
+/// min, sin, sqrt, step, tan, tanh.
 ///
 /// # Example
 /// ```yaml
@@ -34,7 +35,7 @@ spectra_core::register!(FormulaEntry, "function": Params, |params, _| {
 mod tests {
     use super::*;
 
-    /// The same as Cauchy's formula with its coefficients in micrometers.
+    /// Equals Cauchy's formula with its coefficients in micrometers.
     #[test]
     fn a_formula_is_a_dispersion() {
         let text = formula::Formula::parse("1.5046 + 4200 / w^2", "w").expect("a formula");

@@ -6,7 +6,7 @@ form! {
     /// Hartmann: n = c0 + c1 / (L - c2)^c3, where c3 is 1 if it is left out.
     ///
     /// Three measured indices determine the three coefficients without any fitting, and others come out to 1e-5 over the
-    /// visible; old tables of prisms and liquids are printed so, often with an exponent of 1.2.
+    /// visible. Old tables of prisms and liquids use this form, often with an exponent of 1.2.
     ///
     /// # Example
     /// ```yaml

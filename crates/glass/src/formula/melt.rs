@@ -1,10 +1,10 @@
-//! A catalogue glass as one melt of it was measured.
+//! A catalogue glass as it was measured on one melt.
 
 use super::Formula;
 use crate::lines::{D, LineTriple};
 
-/// A glass whose dispersion is that of a catalogue, shifted and scaled to the nd and Vd of a melt sheet:
-/// n(lambda) = nd' + (n(lambda) - nd) (nF' - nC') / (nF - nC).
+/// A glass with the dispersion of a catalogue glass, shifted and scaled to the nd and Vd of a melt sheet: n(lambda) = nd' +
+/// (n(lambda) - nd) (nF' - nC') / (nF - nC).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Melt {
     base: Formula,
@@ -13,7 +13,7 @@ pub struct Melt {
 }
 
 impl Melt {
-    /// The melt of `base` with the measured `nd` and `vd`; `None` unless nd > 1, Vd > 0 and the glass disperses.
+    /// Creates the melt of `base` with the measured `nd` and `vd`; `None` unless nd > 1, Vd > 0 and the glass disperses.
     #[must_use]
     pub fn new(base: Formula, nd: f64, vd: f64) -> Option<Melt> {
         let n = |w| base.index(w);
@@ -28,7 +28,7 @@ impl Melt {
         self.offset + self.factor * self.base.index(wavelength_nm)
     }
 
-    /// Formula of the catalogue.
+    /// Formula of the catalogue glass.
     #[must_use]
     pub fn base(&self) -> &Formula {
         &self.base

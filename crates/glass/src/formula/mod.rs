@@ -1,7 +1,7 @@
 //! Dispersion formulas: n(lambda) as makers, papers and programs write it.
 //!
-//! Coefficients are those of formulas in micrometres. One file a family; every form is tested against a published
-//! medium. A form that others bring is registered as ours are:
+//! Coefficients are those of formulas in micrometers. Each family has a file; every form is tested against a published medium.
+//! A plugin registers a form of its own in the same way as the forms here:
 //!
 //! ```
 //! use schemars::JsonSchema;
@@ -60,20 +60,20 @@ use std::sync::Arc;
 
 spectra_core::declare!(FormulaEntry, Formula, "formula", "A registered dispersion formula.", "formula");
 
-/// A dispersion formula with its coefficients; L is the wavelength in micrometres.
+/// A dispersion formula with its coefficients; L is the wavelength in micrometers.
 ///
 /// Names and order of coefficients are those of the glass catalogue files of optical design programs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
     /// n = c0, whatever the wavelength.
     Constant(f64),
-    /// One of the forms that are registered: Sellmeier, Schott, Cauchy and the others.
+    /// One of the registered closed forms: Sellmeier, Schott, Cauchy and the others.
     Closed(Closed),
     /// One of the nine forms of the refractiveindex.info database.
     Numbered(NumberedFormula),
-    /// On the normal lines of partial dispersion, from an index and an Abbe number.
+    /// A model glass on the normal lines of partial dispersion, from an index and an Abbe number.
     Model(ModelGlass),
-    /// A catalogue glass as one melt of it was measured.
+    /// A catalogue glass as it was measured on one melt.
     Melt(Box<Melt>),
     /// Measured points and a monotone cubic between them.
     Table(Arc<Table>),
@@ -88,8 +88,8 @@ impl Formula {
         CAUCHY.with(coefficients)
     }
 
-    /// Refractive index at `wavelength_nm`. Outside of the range for which the coefficients were fitted this
-    /// extrapolates; not a number where the formula has no real index (at a pole, say). A table ends with a tangent.
+    /// Refractive index at `wavelength_nm`. Outside the range for which the coefficients were fitted this extrapolates; a table
+    /// continues along its tangent. Not a number where the formula has no real index (at a pole, say).
     #[must_use]
     pub fn index(&self, wavelength_nm: f64) -> f64 {
         let um = wavelength_nm * 1e-3;
@@ -104,7 +104,7 @@ impl Formula {
         }
     }
 
-    /// The formula's name as a person would look it up.
+    /// Name of the formula, as a person would look it up.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -118,8 +118,8 @@ impl Formula {
         }
     }
 
-    /// The coefficients in the order of the form; for a melt those of its catalogue glass; for a table, pairs of wavelength (nm) and index;
-    /// none for a formula that is written out.
+    /// Returns the coefficients in the order of the form: for a model index and Abbe number; for a melt those of its catalogue
+    /// glass; for a table pairs of wavelength (nm) and index; none for a formula that is written out.
     #[must_use]
     pub fn coefficients(&self) -> Vec<f64> {
         match self {

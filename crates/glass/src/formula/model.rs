@@ -1,11 +1,11 @@
-//! A glass of which only an index and an Abbe number are known, or the indices at a few lines.
+//! Glasses that are known by an index and an Abbe number only, or by the indices at a few lines.
 //!
-//! Two figures leave the curve between and beyond the lines open. Ordinary glasses settle it: their partial dispersions
-//! lie on straight lines over the Abbe number, the normal lines of Schott's technical information TIE-29. The model is
-//! the polynomial in 1, L^2, L^-2, L^-4 and L^-6 (Schott's old series, for n instead of n^2) that has nd, n_F - n_C and
-//! the normal P_g,F, P_C,s and P_i,g. Nine of ten optical glasses of the catalogue lie within 4e-4 of it at g, 9e-4 at
-//! h, 2e-4 at r; what departs from the normal lines by design (fluor and phosphate crowns, short flints, dense flints)
-//! is farther off. Indices at more lines, where stated, take the place of the normal lines.
+//! Two figures leave the curve between and beyond the lines open. Ordinary glasses settle it: their partial dispersions lie on
+//! straight lines over the Abbe number, the normal lines of Schott's technical information TIE-29. The model is the polynomial
+//! in 1, L^2, L^-2, L^-4 and L^-6 (Schott's old series, for n instead of n^2) that has nd, n_F - n_C and the normal P_g,F,
+//! P_C,s and P_i,g. Nine of ten optical glasses of the catalogue lie within 4e-4 of it at g, 9e-4 at h, 2e-4 at r. Glasses that
+//! depart from the normal lines by design (fluor and phosphate crowns, short flints, dense flints) are farther off. Indices at
+//! more lines, if stated, take the place of the normal lines.
 
 use crate::lines::{C, D, F, G, I, Line, LineTriple, S};
 use spectra_numerics::linear;
@@ -13,22 +13,22 @@ use spectra_numerics::linear;
 /// Partial dispersions of the normal lines over F - C, g - F, C - s, i - g: P = intercept + slope Vd.
 const INTERCEPT: [f64; 4] = [1.0, 0.6438, 0.4029, 1.7241];
 const SLOPE: [f64; 4] = [0.0, -0.001_682, 0.002_331, -0.008_382];
-/// Between these lines.
+/// Pairs of lines that these partial dispersions lie between.
 const SPANS: [(Line, Line); 4] = [(F, C), (G, F), (C, S), (I, G)];
-/// Beyond this Abbe number the lines are not extended: the index would rise again in the red.
+/// Largest Abbe number to which the lines are extended: beyond it the index would rise again in the red.
 const LARGEST_VD: f64 = 140.0;
 
-/// How far P_g,F of the catalogue's glasses departs from its normal line, root mean square.
+/// Departure of P_g,F from its normal line in the catalogue's glasses, root mean square.
 const SPREAD_G_F: f64 = 0.006;
-/// How much P_C,s and P_i,g depart with it, and the rest of their departure, in the same glasses.
+/// Departure of P_C,s and P_i,g per departure of P_g,F in the same glasses, and the spread of the rest.
 const C_S_WITH_G_F: (f64, f64) = (-0.7, 0.006);
 const I_G_WITH_G_F: (f64, f64) = (6.3, 0.012);
-/// To what stated indices are met; patents have five or six decimals.
+/// Tolerance within which stated indices are met; patents have five or six decimals.
 const INDEX: f64 = 1e-6;
-/// To what part a stated Abbe number is met where indices at other lines are stated, too.
+/// Relative tolerance within which a stated Abbe number is met if indices at other lines are stated, too.
 const ABBE: f64 = 1e-4;
 
-/// L^2, L^-2, L^-4, L^-6 at a wavelength, L in micrometers.
+/// Returns L^2, L^-2, L^-4, L^-6 at a wavelength, L in micrometers.
 fn powers(wavelength_nm: f64) -> [f64; 4] {
     let square = wavelength_nm * wavelength_nm * 1e-6;
     let inverse = 1.0 / square;
@@ -45,7 +45,7 @@ fn difference(coefficients: &[f64; 4], from: Line, to: Line) -> f64 {
     sum(coefficients, from.wavelength_nm) - sum(coefficients, to.wavelength_nm)
 }
 
-/// The coefficients of L^2, L^-2, L^-4, L^-6 with these differences over [`SPANS`].
+/// Returns the coefficients of L^2, L^-2, L^-4, L^-6 that have these differences over [`SPANS`].
 fn series(differences: [f64; 4]) -> [f64; 4] {
     let row = |(from, to): (Line, Line)| {
         let (a, b) = (powers(from.wavelength_nm), powers(to.wavelength_nm));
@@ -73,9 +73,9 @@ pub struct ModelGlass {
 }
 
 impl ModelGlass {
-    /// The model with index `n` at the middle line of `lines` and Abbe number `v` for these lines; an infinite or
-    /// zero `v` means no dispersion. `None` unless `n` is finite and at least 1, `v` is not negative, and the three
-    /// lines are in order (short, then long, beyond 200 nm).
+    /// Creates the model with index `n` at the middle line of `lines` and Abbe number `v` for these lines; an infinite or zero
+    /// `v` means no dispersion. `None` unless `n` is finite and at least 1, `v` is not negative, and the three lines are in
+    /// order (short, then long, beyond 200 nm).
     #[must_use]
     pub fn new(n: f64, v: f64, lines: LineTriple) -> Option<ModelGlass> {
         let (short, mid, long) = (lines.short.wavelength_nm, lines.mid.wavelength_nm, lines.long.wavelength_nm);
@@ -89,13 +89,13 @@ impl ModelGlass {
         Some(ModelGlass { index_mid: n, abbe_number: v, lines, stated_lines: 1, constant, coefficients })
     }
 
-    /// The model through the indices stated at several lines, and the Abbe numbers that are stated. What they leave
-    /// open follows the normal lines, as near as real glasses keep to them: departures from the lines are weighed by
-    /// their spread in the catalogue.
+    /// Creates the model through the indices stated at several lines, and the stated Abbe numbers. What they leave open follows
+    /// the normal lines, as closely as real glasses keep to them: departures from the lines are weighted by their spread in the
+    /// catalogue.
     ///
-    /// The first index is met to the last bit, the others within 1e-6 where they do not contradict each other; a caller
-    /// compares. `None` with fewer than two figures, an index below 1 or above 4, the same line twice, an Abbe number
-    /// that is not positive and finite, or figures without dispersion.
+    /// The first index is met to the last bit, the others within 1e-6 unless they contradict each other; the caller has to
+    /// compare. `None` with fewer than two figures, an index below 1 or above 4, the same line twice, an Abbe number that is
+    /// not positive and finite, or figures without dispersion.
     #[must_use]
     pub fn through(indices: &[(Line, f64)], abbe: &[(f64, LineTriple)]) -> Option<ModelGlass> {
         if let (&[(line, n)], &[(v, lines)]) = (indices, abbe)
@@ -171,38 +171,38 @@ impl ModelGlass {
         self.constant + sum(&self.coefficients, wavelength_nm)
     }
 
-    /// Whether the index falls all the way from 350 to 830 nm, as that of every glass does.
+    /// Returns whether the index falls all the way from 350 to 830 nm, as that of every glass does.
     #[must_use]
     pub fn falls(&self) -> bool {
         (350..830).all(|nm| self.index(f64::from(nm)) > self.index(f64::from(nm + 1)))
     }
 
-    /// The stated index; of a model through several lines that at d.
+    /// Stated index; for a model through several lines, the index at d.
     #[must_use]
     pub fn index_mid(&self) -> f64 {
         self.index_mid
     }
 
-    /// The stated Abbe number; of a model through several lines that for d, F and C.
+    /// Stated Abbe number; for a model through several lines, the one for d, F and C.
     #[must_use]
     pub fn abbe_number(&self) -> f64 {
         self.abbe_number
     }
 
-    /// The lines for which both hold.
+    /// Lines of the stated index and Abbe number.
     #[must_use]
     pub fn lines(&self) -> LineTriple {
         self.lines
     }
 
-    /// At how many lines an index was stated.
+    /// Number of lines at which an index was stated.
     #[must_use]
     pub fn stated_lines(&self) -> usize {
         self.stated_lines
     }
 }
 
-/// The coefficients of the normal glass with index `n` at the middle line and `stated` = n_short - n_long.
+/// Returns the coefficients of the normal glass with index `n` at the middle line and `stated` = n_short - n_long.
 fn normal(n: f64, stated: f64, lines: LineTriple) -> Option<[f64; 4]> {
     let (intercept, slope) = (series(INTERCEPT), series(SLOPE));
     let over = |shape: &[f64; 4]| difference(shape, lines.short, lines.long);
@@ -246,7 +246,7 @@ mod tests {
         }
     }
 
-    /// TIE-29's normal lines, P_F,e among them, of which the model does not know.
+    /// TIE-29's normal lines, including P_F,e, which the model does not use.
     #[test]
     fn partial_dispersions_lie_on_the_normal_lines_and_the_index_falls() {
         for tenths in 200..=950 {
@@ -263,7 +263,7 @@ mod tests {
                 }
             }
         }
-        // What a lens file may state, too: from 5 to 200.
+        // Abbe numbers that a lens file may state, too: from 5 to 200.
         for vd in [5.0, 10.0, 15.0, 110.0, 139.0, 141.0, 170.0, 200.0] {
             let model = ModelGlass::new(1.5, vd, LineTriple::FDC).expect("a glass");
             assert!((350..830).all(|nm| model.index(f64::from(nm)) > model.index(f64::from(nm + 1))), "{vd}");

@@ -10,7 +10,7 @@ macro_rules! numbered {
             #[derive(Debug, serde::Deserialize, schemars::JsonSchema)]
             #[serde(deny_unknown_fields)]
             struct Params {
-                /// C1, C2, ... of the form, with lengths in micrometers.
+                /// Coefficients C1, C2, ... of the form, with lengths in micrometers.
                 #[schemars(length(min = 1, max = 41))]
                 coefficients: Vec<f64>,
             }
@@ -19,7 +19,7 @@ macro_rules! numbered {
                 let p: Params = params.parse()?;
                 let formula = NumberedFormula::new($number, &p.coefficients).map(|formula| Box::new(Formula::Numbered(formula)));
                 let text = || format!("{} coefficients do not fit the form", p.coefficients.len());
-                formula.ok_or_else(|| params.fault("coefficients", text()).hint("as refractiveindex.info writes it").into())
+                formula.ok_or_else(|| params.fault("coefficients", text()).hint("write them as refractiveindex.info does").into())
             });
         };
     };
@@ -70,7 +70,7 @@ numbered! {
 numbered! {
     /// refractiveindex.info 4: n^2 = C1 + two resonances of four coefficients + C10 L^C11 + ....
     ///
-    /// A resonance is C2 L^C3 / (L^2 - C4^C5). Crystals with unusual powers are given so.
+    /// A resonance is C2 L^C3 / (L^2 - C4^C5). It is used for crystals with unusual powers.
     ///
     /// # Example
     /// ```yaml
@@ -84,7 +84,7 @@ numbered! {
 numbered! {
     /// refractiveindex.info 5: n = C1 + C2 L^C3 + C4 L^C5 + ....
     ///
-    /// Cauchy with stated powers; C1 and up to twenty pairs. Liquids and plastics mostly.
+    /// Cauchy's form with stated powers; C1 and up to twenty pairs. It is used mostly for liquids and plastics.
     ///
     /// # Example
     /// ```yaml
@@ -98,7 +98,7 @@ numbered! {
 numbered! {
     /// refractiveindex.info 6: n - 1 = C1 + C2 / (C3 - L^-2) + ....
     ///
-    /// For gases; C1 and up to twenty pairs. As the database refractiveindex.info has it.
+    /// It is used for gases; C1 and up to twenty pairs, as in the database refractiveindex.info.
     ///
     /// # Example
     /// ```yaml
@@ -112,7 +112,7 @@ numbered! {
 numbered! {
     /// refractiveindex.info 7: n = C1 + C2 l + C3 l^2 + C4 L^2 + C5 L^4 + C6 L^6, l = 1 / (L^2 - 0.028).
     ///
-    /// Herzberger, for media that are clear far into the infrared. As the database refractiveindex.info has it.
+    /// Herzberger's form, for media that are clear far into the infrared, as in the database refractiveindex.info.
     ///
     /// # Example
     /// ```yaml
@@ -126,7 +126,7 @@ numbered! {
 numbered! {
     /// refractiveindex.info 8: (n^2 - 1) / (n^2 + 2) = C1 + C2 L^2 / (L^2 - C3) + C4 L^2.
     ///
-    /// Lorentz and Lorenz; four coefficients, for a few salts of silver.
+    /// The form of Lorentz and Lorenz, with four coefficients, for a few salts of silver.
     ///
     /// # Example
     /// ```yaml
@@ -140,7 +140,7 @@ numbered! {
 numbered! {
     /// refractiveindex.info 9: n^2 = C1 + C2 / (L^2 - C3) + C4 (L - C5) / ((L - C5)^2 + C6).
     ///
-    /// Six coefficients, for urea and its like. As the database refractiveindex.info has it.
+    /// It has six coefficients and is used for urea and the like, as in the database refractiveindex.info.
     ///
     /// # Example
     /// ```yaml
@@ -152,9 +152,9 @@ numbered! {
     "refractiveindex-9", 9
 }
 
-/// A form of refractiveindex.info, 1 to 9, with its coefficients C1, C2, ... in the database's order.
+/// A form of refractiveindex.info, 1 to 9, with its coefficients C1, C2, ... in the order of the database.
 ///
-/// Source: M. N. Polyanskiy, "Dispersion formulas", refractiveindex.info; L is the wavelength in micrometres.
+/// Source: M. N. Polyanskiy, "Dispersion formulas", refractiveindex.info; L is the wavelength in micrometers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberedFormula {
     number: u8,
@@ -162,8 +162,8 @@ pub struct NumberedFormula {
 }
 
 impl NumberedFormula {
-    /// Form `number` with `coefficients`; missing ones at the end are 0. `None` unless `number` is 1 to 9 and the
-    /// count of coefficients is one that the form can have.
+    /// Creates form `number` with `coefficients`; missing ones at the end are 0. `None` unless `number` is 1 to 9 and the form
+    /// can have that many coefficients.
     #[must_use]
     pub fn new(number: u8, coefficients: &[f64]) -> Option<NumberedFormula> {
         let (at_least, at_most) = match number {
@@ -176,7 +176,7 @@ impl NumberedFormula {
         };
         let mut c = coefficients.to_vec();
         let length = c.len().max(at_least);
-        // A pair that is cut short has a coefficient without its power.
+        // A pair that is cut short has a coefficient without a power.
         let odd = matches!(number, 1..=6) && length % 2 == 0;
         if c.is_empty() || length > at_most || odd || c.iter().any(|c| !c.is_finite()) {
             return None;
@@ -191,13 +191,13 @@ impl NumberedFormula {
         self.number
     }
 
-    /// C1, C2, ...
+    /// Coefficients C1, C2, ... of the form.
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
     }
 
-    /// The database's name of the form.
+    /// Name of the form in the database.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self.number {
@@ -213,7 +213,7 @@ impl NumberedFormula {
         }
     }
 
-    /// Index at a wavelength in micrometres.
+    /// Index at a wavelength in micrometers.
     pub(super) fn index(&self, um: f64) -> f64 {
         let c = &self.coefficients;
         let square = um * um;
@@ -246,7 +246,7 @@ impl NumberedFormula {
     }
 }
 
-/// x to the power p: whole powers by multiplication, others through libm; 0^0 is 1, as the database has it.
+/// Raises x to the power p: whole powers by multiplication, others through libm. 0^0 is 1, as in the database.
 fn power(x: f64, p: f64) -> f64 {
     if p == libm::trunc(p) && p.abs() <= 32.0 {
         let mut result = 1.0;

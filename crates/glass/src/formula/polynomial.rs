@@ -42,9 +42,9 @@ form! {
 }
 
 form! {
-    /// Extended: the form of Schott with c6 L^-10 + c7 L^-12 behind it.
+    /// Extended: Schott's form with c6 L^-10 + c7 L^-12 added.
     ///
-    /// In n^2; for glasses that were measured far into the ultraviolet.
+    /// The additional terms belong to n^2; for glasses that were measured far into the ultraviolet.
     ///
     /// # Example
     /// ```yaml
@@ -54,9 +54,9 @@ form! {
 }
 
 form! {
-    /// Extended 2: the form of Schott with c6 L^4 + c7 L^6 behind it.
+    /// Extended 2: Schott's form with c6 L^4 + c7 L^6 added.
     ///
-    /// In n^2; for glasses that were measured far into the infrared.
+    /// The additional terms belong to n^2; for glasses that were measured far into the infrared.
     ///
     /// # Example
     /// ```yaml

@@ -10,9 +10,10 @@ const RESONANCE_UM2: f64 = 0.014;
 form! {
     /// One resonance: n = c0 + c1 / (L^2 - c2).
     ///
-    /// With c2 of 0.014 um^2, the curve that some renderers lay through an index and an Abbe number; `glass: {abbe: {curve: resonance,
-    /// lines: [F, d, C], n: 1.62004, v: 36.37}}` finds the other two. Real glasses rise more steeply toward violet: F2 is off by 9e-4 at
-    /// 405 nm, where the usual curve of an Abbe number is off by 8e-5.
+    /// Some renderers lay this curve, with c2 of 0.014 um^2, through an index and an Abbe number;
+    /// `glass: {abbe: {curve: resonance, lines: [F, d, C], n: 1.62004, v: 36.37}}` finds the other two coefficients. Real
+    /// glasses rise more steeply toward violet: F2 is off by 9e-4 at 405 nm, where the usual curve of an Abbe number is off by
+    /// 8e-5.
     ///
     /// # Example
     /// ```yaml
@@ -21,7 +22,7 @@ form! {
     RESONANCE: "resonance", "One resonance", 3..=3 of 3, |c, um| c[0] + c[1] / (um * um - c[2])
 }
 
-/// The curve of one resonance at 0.014 um^2 through the index `n` at the middle of three lines with this Abbe number.
+/// Returns the curve of one resonance at 0.014 um^2 through the index `n` at the middle of three lines with the Abbe number `v`.
 pub(crate) fn through(n: f64, v: f64, lines: LineTriple) -> Formula {
     let shape = |nm: f64| 1.0 / (nm * nm * 1e-6 - RESONANCE_UM2);
     let [short, mid, long] = [lines.short, lines.mid, lines.long].map(|line| shape(line.wavelength_nm));

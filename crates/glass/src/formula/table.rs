@@ -2,19 +2,19 @@
 
 use thiserror::Error;
 
-/// Why points make no table.
+/// Reason why points make no table.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum TableError {
     /// Fewer than two points.
     #[error("a table needs at least two points")]
     TooFewPoints,
-    /// Point `row` (from 1) is not after its forerunner.
+    /// Point `row` (from 1) is not after the point before it.
     #[error("row {row}: wavelengths must rise")]
     NotRising {
         /// Row, from 1.
         row: usize,
     },
-    /// A wavelength that is not positive or a value that is no number.
+    /// A wavelength that is not positive, or a value that is not a number.
     #[error("row {row}: wavelength and value must be finite and the wavelength positive")]
     NotANumber {
         /// Row, from 1.
@@ -24,10 +24,11 @@ pub enum TableError {
 
 /// A quantity measured at some wavelengths.
 ///
-/// Between the points runs a monotone cubic (F. N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17, 238, 1980) with the
-/// slopes of parabolas through three points, limited as J. M. Hyman has it (SIAM J. Sci. Stat. Comput. 4, 645, 1983), in
-/// the variable 1 / lambda^2, in which the index of a glass is nearly a straight line: no overshoot, and an error of a few
-/// 1e-6 between the lines of a maker's table. Outside the points it goes on along the tangent of the last one.
+/// A monotone cubic interpolates between the points (F. N. Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17, 238, 1980). Its
+/// slopes are those of parabolas through three points, limited as J. M. Hyman has it (SIAM J. Sci. Stat. Comput. 4, 645, 1983).
+/// Its variable is 1 / lambda^2, in which the index of a glass is nearly a straight line: there is no overshoot, and the error
+/// between the lines of a maker's table is a few 1e-6. Outside the points the table continues along the tangent of the last
+/// one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     wavelength_nm: Box<[f64]>,
@@ -37,7 +38,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table from pairs of wavelength (nm, rising) and value.
+    /// Creates a table from pairs of wavelength (nm, rising) and value.
     ///
     /// # Errors
     /// Fewer than two points, wavelengths that do not rise, numbers that are not finite.
@@ -57,7 +58,7 @@ impl Table {
         Ok(Table { wavelength_nm: points.iter().map(|p| p.0).collect(), slope: slopes(&x, &y).into(), value: y.into() })
     }
 
-    /// Value at `wavelength_nm`.
+    /// Value at `wavelength_nm`, on the tangent outside the points.
     #[must_use]
     pub fn value(&self, wavelength_nm: f64) -> f64 {
         let last = self.wavelength_nm.len() - 1;
@@ -84,7 +85,7 @@ impl Table {
         (self.wavelength_nm[0], self.wavelength_nm[self.wavelength_nm.len() - 1])
     }
 
-    /// The points, wavelength (nm) and value.
+    /// Iterates over the points: wavelength (nm) and value.
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.wavelength_nm.iter().copied().zip(self.value.iter().copied())
     }
@@ -95,8 +96,8 @@ fn abscissa(wavelength_nm: f64) -> f64 {
     1e6 / (wavelength_nm * wavelength_nm)
 }
 
-/// Slopes of a monotone cubic: those of parabolas through three points, kept between 0 and three times the smaller of the
-/// neighboring secants.
+/// Computes the slopes of a monotone cubic: those of parabolas through three points, kept between 0 and three times the smaller
+/// of the neighboring secants.
 fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
     let n = x.len();
     let h: Vec<f64> = x.windows(2).map(|x| x[1] - x[0]).collect();

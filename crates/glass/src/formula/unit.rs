@@ -1,23 +1,24 @@
-//! Coefficients of formulas whose wavelengths are in nanometers.
+//! Conversion of the coefficients of formulas whose wavelengths are in nanometers.
 
 use super::{CAUCHY, CONRADY, Closed, Form, Formula, SCHOTT, SELLMEIER_1};
 
-/// Powers of the wavelength that Schott's terms have.
+/// Powers of the wavelength in Schott's terms.
 const SCHOTT_POWERS: [f64; 6] = [0.0, 2.0, -2.0, -4.0, -6.0, -8.0];
-/// And Conrady's.
+/// Powers of the wavelength in Conrady's terms.
 const CONRADY_POWERS: [f64; 3] = [0.0, -1.0, -3.5];
 
 impl Formula {
-    /// The same formula, whose coefficients were given for wavelengths in nanometers, in micrometers. `None` of forms of which it is not
-    /// known how.
+    /// Converts a formula whose coefficients were given for wavelengths in nanometers to micrometers. `None` for forms whose
+    /// conversion is not known.
     #[must_use]
     pub fn in_micrometers(self) -> Option<Self> {
         let Self::Closed(closed) = &self else {
-            // What has no wavelength has no unit of it.
+            // A formula without a wavelength has no unit to convert.
             return matches!(self, Self::Constant(_)).then_some(self);
         };
         let is = |form: &Form| closed.name() == form.name;
-        // The power of the wavelength that a coefficient stands before; of Sellmeier's second ones, which stand beside L^2, its negative.
+        // Power of the wavelength that each coefficient multiplies. Sellmeier's poles are subtracted from L^2, so they count as
+        // its negative.
         let power: fn(usize) -> Option<f64> = match () {
             () if is(&CAUCHY) => |k| Some(-2.0 * k as f64),
             () if is(&CONRADY) => |k| CONRADY_POWERS.get(k).copied(),

@@ -1,4 +1,4 @@
-//! Absorption of glasses of which none is published: borrowed, and said so.
+//! Absorption of glasses without published data: it is borrowed, and the lender is named.
 
 use spectra_glass::{Catalogue, Category, Medium};
 
@@ -30,7 +30,7 @@ fn old_glasses_borrow_from_near_ones() {
     }
 }
 
-/// Without lead SF6 absorbs more in the violet: a lens of 1960 does not borrow from N-SF6.
+/// SF6 absorbs more in the violet without lead: a lens of 1960 does not borrow from N-SF6.
 #[test]
 fn time_counts_for_figures_alone() {
     let figures = Medium::from_nd_vd(1.8052, 25.4).expect("a glass");
@@ -55,7 +55,7 @@ fn what_is_no_glass_borrows_nothing() {
     assert!(clear.absorption(None).is_none_or(|a| a.lender.is_none()));
 }
 
-/// A plate of 3 mm of each plastic: what its own data say, or a lender's absorption by which it passes over 80 % from 420 to 700 nm.
+/// A plate of 3 mm of each plastic: either its own data, or a lender's absorption by which it passes over 80 % from 420 to 700 nm.
 #[test]
 fn plastics_are_clear_where_nobody_measured_otherwise() {
     let catalogue = Catalogue::bundled();

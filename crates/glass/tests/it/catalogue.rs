@@ -133,7 +133,7 @@ fn a_crystal_is_its_formula_and_no_rounded_table() {
     assert_eq!(find("diamond").full_name(), "CRYSTRAN/diamond");
 }
 
-/// Of several data sets of a crystal the stated figures choose, and what they contradict is said.
+/// Stated figures choose one of several data sets of a crystal, and what they contradict is noted.
 #[test]
 fn stated_figures_choose_among_data_sets() {
     let choose = |nd: f64, vd: f64| {
@@ -145,14 +145,15 @@ fn stated_figures_choose_among_data_sets() {
     let (name, note) = choose(1.43391, 96.4);
     assert_eq!(name, "CRYSTRAN/CaF2");
     let note = note.expect("another than the usual one");
-    assert!(note.ends_with("CRYSTRAN/CaF2 is taken, the nearest to the stated nd 1.43391"), "{note}");
+    assert!(note.ends_with("CRYSTRAN/CaF2 is used, the nearest to the stated nd 1.43391"), "{note}");
     let (_, note) = choose(1.4345, 95.0);
     assert!(note.is_some_and(|note| note.contains("the nearest to the stated nd 1.4345; it has 1.43")));
     // Far from all of them the usual one stays; a lens warns of that.
     assert_eq!(choose(1.45, 95.0), ("CaF2/Malitson".to_owned(), None));
 }
 
-/// A formula as chemists write it is not taken for a glass, nor for an author's name, without a word; as glasses are written it is the glass.
+/// A formula as chemists write it is not silently taken for a glass, nor for an author's name. Written as glasses are, it is
+/// the glass.
 #[test]
 fn formulas_are_not_taken_for_glasses() {
     let candidates = |name: &str| match Catalogue::bundled().choose(name, Beside::default()) {
@@ -265,7 +266,7 @@ fn a_users_glass_joins_and_replaces() {
     assert!(Catalogue::empty().find("N-BK7").is_err());
 }
 
-/// Usual abbreviations, and one default each of what has several measurements.
+/// Usual abbreviations, and one default for each substance with several measurements.
 #[test]
 fn everyday_names() {
     for (name, full_name) in [
@@ -296,7 +297,7 @@ fn everyday_names() {
     assert_eq!(find("dispersion-study/heavy-flint").index(589.0), 1.65);
 }
 
-/// What is published of them: the data sheet's 1.53 and 56 of COC, and of CR-39 1.510, 1.504 and 1.501 at F, d and C
+/// Published values of these plastics: the data sheet's 1.53 and 56 of COC, and of CR-39 1.510, 1.504 and 1.501 at F, d and C
 /// (Handbook of Optics, volume II, chapter 34).
 #[test]
 fn cyclic_olefin_copolymer_and_cr_39() {
@@ -353,7 +354,7 @@ fn fragments_find_names() {
     assert!(names("no such thing").is_empty());
 }
 
-/// Names that nobody has cost little: a file of 400 of them is read at once.
+/// Unknown names cost little: a file of 400 of them is read at once.
 #[test]
 fn unknown_names_are_cheap() {
     let catalogue = Catalogue::bundled();
@@ -471,7 +472,8 @@ fn old_glasses_disperse_as_their_namesakes() {
     }
 }
 
-/// Those that had lead have an Abbe number of their own, by the makers' codes, and partial dispersions near those of their successors.
+/// Glasses that had lead have an Abbe number of their own, by the makers' codes, and partial dispersions near those of their
+/// successors.
 #[test]
 fn old_glasses_with_lead_keep_their_abbe_numbers() {
     for (name, vd) in [

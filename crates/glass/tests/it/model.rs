@@ -3,7 +3,7 @@
 use spectra_glass::lines::{F, G, H, R};
 use spectra_glass::{Catalogue, Category, LineTriple, ModelGlass};
 
-/// nd and Vd of the real glass, and what the model makes of them at g and h.
+/// The model from nd and Vd of the real glass, compared with that glass at g and h.
 #[test]
 fn old_glasses_by_their_figures() {
     for (name, at_g, at_h) in [
@@ -21,8 +21,7 @@ fn old_glasses_by_their_figures() {
     }
 }
 
-/// What `lens info` and the guide say of the model: of ten optical glasses nine lie within 2e-4 at r, 4e-4 at g, 9e-4 at
-/// h.
+/// The claim of `lens info` and the guide about the model: of ten optical glasses nine lie within 2e-4 at r, 4e-4 at g, 9e-4 at h.
 #[test]
 fn nine_of_ten_glasses_are_near() {
     let mut errors: [Vec<f64>; 3] = Default::default();

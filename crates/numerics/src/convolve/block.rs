@@ -1,7 +1,7 @@
 //! Two-dimensional transforms of one block.
 //!
-//! A block lies in panels of [`LANES`] columns, row after row of a panel together: down the columns it is transformed where it lies,
-//! and across by [`LANES`] rows at a time, whose squares of the panels are turned on the way to and from a line.
+//! A block is stored in panels of [`LANES`] columns; within a panel, row follows row. Columns are transformed in place. Rows
+//! are transformed [`LANES`] at a time: their squares of the panels are transposed on the way to and from a line.
 
 use super::fft::{Fft, LANES, Lane};
 use super::real::Real;
@@ -13,10 +13,10 @@ pub(super) struct Transform<T> {
     down: Fft<T>,
 }
 
-/// Blocks under work: a real and an imaginary part.
+/// Work buffers for a block: a real and an imaginary part.
 pub(super) struct Scratch<T> {
     block: [Vec<Lane<T>>; 2],
-    /// Some rows, turned.
+    /// Some rows, transposed.
     line: [Vec<Lane<T>>; 2],
     width: usize,
     height: usize,
@@ -30,8 +30,8 @@ impl<T: Real> Scratch<T> {
         Self { block: [block(), block()], line: [lanes(width), lanes(width)], width, height }
     }
 
-    /// Fills the block's two parts with what lies around the tiles that start at the columns `x0` and the row `y0`
-    /// of a plane of size `size`; what is beside the plane, or no number, is 0.
+    /// Fills the two parts of the block with the surroundings of the tiles that start at the columns `x0` and the row `y0` of a
+    /// plane of size `size`. Values outside the plane, and values that are not finite, become 0.
     #[inline(always)]
     pub(super) fn load(&mut self, plane: &[f32], size: [usize; 2], x0: [usize; 2], y0: usize, radius: usize) {
         for (block, x0) in self.block.iter_mut().zip(x0) {
@@ -59,7 +59,7 @@ impl<T: Real> Scratch<T> {
         }
     }
 
-    /// Copies `line.len()` values of the block's part 0 or 1, of the row `row` from the column `from` on.
+    /// Copies `line.len()` values of part 0 or 1 of the block, from the row `row` and the column `from` on.
     #[inline(always)]
     pub(super) fn read(&self, part: usize, row: usize, from: usize, line: &mut [T]) {
         let mut done = 0;
@@ -74,7 +74,7 @@ impl<T: Real> Scratch<T> {
 }
 
 impl<T: Real> Transform<T> {
-    /// Blocks of `width` by `height`, powers of two of at least [`LANES`].
+    /// Creates transforms for blocks of `width` by `height`, powers of two of at least [`LANES`].
     pub(super) fn new(width: usize, height: usize) -> Self {
         assert!(width >= LANES && height >= LANES, "{width} x {height} is less than {LANES} lanes");
         Self { across: Fft::new(width), down: Fft::new(height) }
@@ -88,13 +88,13 @@ impl<T: Real> Transform<T> {
         self.down.length()
     }
 
-    /// The spectrum, over the number of points, of weights that are the same at opposite places: column chunk by column chunk.
+    /// Returns the spectrum of point-symmetric weights, divided by the number of points, in groups of [`LANES`] rows.
     pub(super) fn spectrum(&self, radius: usize, weight: impl Fn(isize, isize) -> f64, isa: Isa) -> Vec<Lane<T>> {
         let scale = 1.0 / (self.width() * self.height()) as f64;
         self.spectrum_with(radius, weight, &mut Scratch::new(self), scale, isa)
     }
 
-    /// The spectrum of weights times `scale`; weights as wide as the block wrap around once.
+    /// Returns the spectrum of point-symmetric weights times `scale`. Weights as wide as the block wrap around once.
     pub(super) fn spectrum_with(
         &self,
         radius: usize,
@@ -105,7 +105,7 @@ impl<T: Real> Transform<T> {
     ) -> Vec<Lane<T>> {
         let (width, height) = (self.width(), self.height());
         scratch.block.iter_mut().for_each(|part| part.fill([T::default(); LANES]));
-        // The way from the origin, around the block.
+        // The signed offset from the origin, around the block.
         let way = |k: usize, length: usize| if 2 * k <= length { k as isize } else { k as isize - length as isize };
         for j in 0..height {
             for i in 0..width {
@@ -126,12 +126,12 @@ impl<T: Real> Transform<T> {
         self.across.order()
     }
 
-    /// Where a spectrum holds the place `u` across and `v` down: its lanes, and which of them.
+    /// Returns where a spectrum holds the place `u` across and `v` down: the index of the lanes, and the lane.
     pub(super) fn at(&self, u: usize, v: usize) -> (usize, usize) {
         (v / LANES * self.width() + u, v % LANES)
     }
 
-    /// Convolves the block. Of the result only the columns of `wanted` are whole.
+    /// Convolves the block. Only the columns of `wanted` are complete in the result.
     #[inline(always)]
     pub(super) fn convolve(&self, scratch: &mut Scratch<T>, spectrum: &[Lane<T>], wanted: std::ops::Range<usize>) {
         Down { transform: self, scratch }.run();
@@ -146,7 +146,7 @@ impl<T: Real> Transform<T> {
     }
 }
 
-/// Turns a square: its rows become columns.
+/// Transposes a square: its rows become columns.
 #[inline(always)]
 fn turn<T: Real>(from: &[Lane<T>], to: &mut [Lane<T>]) {
     let (from, to) = (&from[..LANES], &mut to[..LANES]);
@@ -157,7 +157,7 @@ fn turn<T: Real>(from: &[Lane<T>], to: &mut [Lane<T>]) {
     }
 }
 
-/// [`LANES`] rows of the block from the row `row` on, as columns of the line.
+/// Copies [`LANES`] rows of the block, from the row `row` on, to the line as columns.
 #[inline(always)]
 fn gather<T: Real>(block: &[Lane<T>], height: usize, row: usize, line: &mut [Lane<T>]) {
     for (panel, line) in block.chunks_exact(height).zip(line.chunks_exact_mut(LANES)) {
@@ -165,7 +165,7 @@ fn gather<T: Real>(block: &[Lane<T>], height: usize, row: usize, line: &mut [Lan
     }
 }
 
-/// Down the columns of the block.
+/// Transforms down the columns of the block.
 struct Down<'a, T> {
     transform: &'a Transform<T>,
     scratch: &'a mut Scratch<T>,
@@ -183,7 +183,7 @@ impl<T: Real> Vectorized for Down<'_, T> {
     }
 }
 
-/// Across, times the spectrum, and back.
+/// Transforms across the rows, multiplies by the spectrum, and transforms back.
 struct Across<'a, T> {
     transform: &'a Transform<T>,
     scratch: &'a mut Scratch<T>,
@@ -214,7 +214,7 @@ impl<T: Real> Across<'_, T> {
     }
 }
 
-/// The real part of the spectrum, where the block is a kernel: the imaginary one of what is the same at opposite places is 0.
+/// Takes the real part of the spectrum if the block is a kernel; the imaginary part of a point-symmetric kernel is 0.
 struct Spectrum<'a, T> {
     transform: &'a Transform<T>,
     scratch: &'a mut Scratch<T>,

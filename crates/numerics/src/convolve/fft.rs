@@ -1,23 +1,23 @@
 //! The discrete Fourier transform of a power of two of complex numbers, sixteen columns at once.
 //!
-//! Own code rather than a crate's, so that a picture has the same bits on every machine: twiddle factors come from
-//! [`crate::math`], the order of operations is fixed, and the columns are what the compiler turns into vectors
-//! of any width without changing a bit.
+//! This is our own code rather than a crate's, so that a picture has the same bits on every machine. Twiddle factors come from
+//! [`crate::math`], the order of operations is fixed, and the compiler turns the columns into vectors of any width without
+//! changing a bit.
 //!
-//! The forward transform decimates in frequency and leaves its result in digit-reversed order, the inverse decimates in
-//! time and takes it so (W. M. Gentleman and G. Sande, "Fast Fourier transforms for fun and profit", AFIPS 1966): a
-//! convolution, which multiplies two spectra in the same order, needs no reordering.
+//! The forward transform decimates in frequency and leaves its result in digit-reversed order. The inverse decimates in time
+//! and takes that order (W. M. Gentleman and G. Sande, "Fast Fourier transforms for fun and profit", AFIPS 1966). A convolution
+//! multiplies two spectra in the same order, so it needs no reordering.
 
 use super::real::Real;
 use crate::math::{cos, sin};
 
-/// Columns that are transformed together.
+/// Number of columns that are transformed together.
 pub(super) const LANES: usize = 16;
 
 /// One number of each column.
 pub(super) type Lane<T> = [T; LANES];
 
-/// Bytes of numbers that a part of a transform is done on from its beginning to its end: half of what the nearest cache holds.
+/// Size, bytes, of a part of a transform that is worked on from its beginning to its end: half of the nearest cache.
 const NEAR_BYTES: usize = 1 << 14;
 
 /// Transforms of one length.
@@ -29,9 +29,9 @@ pub(super) struct Fft<T> {
 }
 
 impl<T: Real> Fft<T> {
-    /// A plan for `length`, a power of two of at least 4.
+    /// Creates a plan for `length`, a power of two of at least 4.
     pub(super) fn new(length: usize) -> Self {
-        assert!(length.is_power_of_two() && length >= 4, "{length} is no power of two from 4 on");
+        assert!(length.is_power_of_two() && length >= 4, "{length} is not a power of two of at least 4");
         let turn = |k: usize| -std::f64::consts::TAU * k as f64 / length as f64;
         let twiddles = (0..length).map(|k| [cos(turn(k)), sin(turn(k))].map(T::of)).collect();
         Self { length, twiddles }
@@ -41,7 +41,7 @@ impl<T: Real> Fft<T> {
         self.length
     }
 
-    /// The longest part of a transform that is near.
+    /// Returns the length of the longest part of a transform that fits into [`NEAR_BYTES`].
     fn near(&self) -> usize {
         let most = (NEAR_BYTES / size_of::<Lane<T>>()).max(8);
         let mut span = self.length;
@@ -51,12 +51,12 @@ impl<T: Real> Fft<T> {
         span
     }
 
-    /// Whether the length is no power of four: the last step is on spans of 8.
+    /// Returns whether the length is not a power of four: the last step is then on spans of 8.
     fn has_eights(&self) -> bool {
         self.length.trailing_zeros() % 2 == 1
     }
 
-    /// Forward, not scaled; the result is in digit-reversed order.
+    /// Transforms forward, without scaling; the result is in digit-reversed order.
     #[inline(always)]
     pub(super) fn forward(&self, re: &mut [Lane<T>], im: &mut [Lane<T>]) {
         let (re, im) = (&mut re[..self.length], &mut im[..self.length]);
@@ -72,8 +72,8 @@ impl<T: Real> Fft<T> {
         }
     }
 
-    /// The last steps, on spans of 8: one of a quarter of 2, and one of pairs. Together, so that a compiler finds enough to do for a
-    /// lane and leaves lanes side by side.
+    /// Does the last steps, on spans of 8: one with quarters of 2, and one of pairs. Doing both together gives the compiler
+    /// enough work per lane, so that it leaves lanes side by side.
     #[inline(always)]
     fn eights_forward(&self, re: &mut [Lane<T>], im: &mut [Lane<T>]) {
         let stride = self.length / 8;
@@ -100,7 +100,7 @@ impl<T: Real> Fft<T> {
         }
     }
 
-    /// The first steps of the inverse: pairs, and spans of 8 of them.
+    /// Does the first steps of the inverse: pairs, then spans of 8.
     #[inline(always)]
     fn eights_inverse(&self, re: &mut [Lane<T>], im: &mut [Lane<T>]) {
         let stride = self.length / 8;
@@ -130,7 +130,7 @@ impl<T: Real> Fft<T> {
         }
     }
 
-    /// The steps on spans from `from` to before `to`.
+    /// Does the steps on spans from `from` down to, but without, `to`.
     #[inline(always)]
     fn steps_forward(&self, re: &mut [Lane<T>], im: &mut [Lane<T>], from: usize, to: usize) {
         let mut span = from;
@@ -161,7 +161,7 @@ impl<T: Real> Fft<T> {
         }
     }
 
-    /// Inverse of [`Fft::forward`] but for the factor `length`.
+    /// Inverts [`Fft::forward`], except for the factor `length`.
     #[inline(always)]
     pub(super) fn inverse(&self, re: &mut [Lane<T>], im: &mut [Lane<T>]) {
         let (re, im) = (&mut re[..self.length], &mut im[..self.length]);
@@ -177,7 +177,7 @@ impl<T: Real> Fft<T> {
         self.steps_inverse(re, im, near, self.length);
     }
 
-    /// The steps that join spans of `from` into spans of `to`.
+    /// Does the steps that join spans of `from` into spans of `to`.
     #[inline(always)]
     fn steps_inverse(&self, re: &mut [Lane<T>], im: &mut [Lane<T>], from: usize, to: usize) {
         let mut span = from;
@@ -215,7 +215,7 @@ impl<T: Real> Fft<T> {
         }
     }
 
-    /// Which frequency, in cycles per `length`, each place of [`Fft::forward`]'s result holds.
+    /// Returns the frequency, in cycles per `length`, at each place of the result of [`Fft::forward`].
     pub(super) fn order(&self) -> Vec<usize> {
         let mut order = vec![0];
         let mut stride = 1;

@@ -14,7 +14,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid of `side` by `side` points, a power of two of at least 16.
+    /// Creates a grid of `side` by `side` points, a power of two of at least 16.
     pub fn new(side: usize) -> Self {
         let transform = Transform::new(side, side);
         let scratch = Scratch::new(&transform);
@@ -23,8 +23,8 @@ impl Grid {
         Self { transform, scratch, place, isa: Isa::detect() }
     }
 
-    /// The sum over the grid of the weights times exp(-2 pi i (u x + v y) / side), for u and v up to half a side.
-    /// The weights are symmetric, so this is real and its own inverse but for the number of points.
+    /// Computes the sum over the grid of the weights times exp(-2 pi i (u x + v y) / side), for u and v up to half a side. The
+    /// weights are symmetric, so this is real, and its own inverse except for a factor, the number of points.
     pub fn transform(&mut self, weights: &Kernel) -> Kernel {
         let side = self.transform.width();
         let spectrum =

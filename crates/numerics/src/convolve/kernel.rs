@@ -1,15 +1,16 @@
 //! Kernels: how a unit of light in one pixel is spread over its neighbors.
 
-/// Weights of the pixels around one, the same under a turn by a right angle and in a mirror.
+/// Weights of the pixels around one pixel, unchanged by a rotation of 90 degrees and by reflection.
 #[derive(Clone, Debug)]
 pub struct Kernel {
     radius: usize,
-    /// The quarter from the center on: weight of the pixel `i` to the right and `j` down at `j * (radius + 1) + i`.
+    /// Quarter of the weights, from the center on: the weight of the pixel `i` to the right and `j` down is at
+    /// `j * (radius + 1) + i`.
     quarter: Vec<f64>,
 }
 
 impl Kernel {
-    /// The kernel whose pixel `i` across and `j` down (at least `i`) weighs `weight(i, j)`.
+    /// Creates the kernel whose pixel `i` across and `j` down (at least `i`) has the weight `weight(i, j)`.
     pub fn new(radius: usize, weight: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         use rayon::prelude::*;
         let side = radius + 1;
@@ -22,7 +23,7 @@ impl Kernel {
         Self { radius, quarter: quarter.collect() }
     }
 
-    /// Pixels that it reaches.
+    /// Radius of the kernel, pixels.
     pub fn radius(&self) -> usize {
         self.radius
     }
@@ -32,7 +33,7 @@ impl Kernel {
         self.quarter[j * (self.radius + 1) + i]
     }
 
-    /// The weight of the pixel so far to the right and down.
+    /// Returns the weights by how far a pixel lies to the right and down.
     pub(super) fn signed(&self) -> impl Fn(isize, isize) -> f64 + '_ {
         |i, j| self.weight(i.unsigned_abs(), j.unsigned_abs())
     }
@@ -44,14 +45,15 @@ impl Kernel {
         self.quarter.iter().enumerate().map(|(k, w)| w * times(k % side) * times(k / side)).sum()
     }
 
-    /// All weights times `factor`.
+    /// Multiplies all weights by `factor`.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.quarter.iter_mut().for_each(|w| *w *= factor);
         self
     }
 
-    /// Less its Laplacian times `by`: narrower by the variance `2 by` along each axis, in squared pixels, with the same sum.
+    /// Subtracts the Laplacian of the kernel times `by`. The result is narrower by the variance `2 by` along each axis, in
+    /// squared pixels, and has the same sum.
     #[must_use]
     pub fn sharpened(&self, by: f64) -> Self {
         let at = |i: usize, j: usize| if i.max(j) > self.radius { 0.0 } else { self.weight(i, j) };
@@ -61,7 +63,7 @@ impl Kernel {
         })
     }
 
-    /// The part within `radius`.
+    /// Crops the kernel to `radius`.
     #[must_use]
     pub fn cropped(self, radius: usize) -> Self {
         if radius >= self.radius { self } else { Self::new(radius, |i, j| self.weight(i, j)) }

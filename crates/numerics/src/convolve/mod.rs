@@ -1,12 +1,12 @@
-//! Convolution of a plane with a small kernel that is the same at opposite places, block by block.
+//! Convolution of a plane with a small point-symmetric kernel (the same weight at opposite places), block by block.
 //!
-//! Each block of the picture is transformed with the kernel's reach around it (overlap and save; T. G. Stockham,
-//! "High-speed convolution and correlation", AFIPS 1966), so memory stays that of a few blocks and the result is a
-//! function of the plane alone, whatever the threads. Beside the plane there is no light, and nothing wraps around.
+//! Each block of the picture is transformed together with a margin as wide as the kernel's radius (overlap-save; T. G.
+//! Stockham, "High-speed convolution and correlation", AFIPS 1966). Memory is therefore that of a few blocks, and the result
+//! depends on the plane alone, not on the threads. Outside the plane there is no light, and nothing wraps around.
 //!
-//! Sums in double precision leave the shadows of a bright point's block as they were. Single precision takes a third of the time. Its
-//! rounding is some 1e-7 of the root of the mean square of a block's result, all over the block: enough where no pixel keeps most of its
-//! own light, as in a wide kernel without what stays.
+//! Sums in double precision leave the shadows in the block of a bright point as they were. Single precision takes a third of
+//! the time. Its rounding is some 1e-7 of the root mean square of a block's result, all over the block. That is enough if no
+//! pixel keeps most of its own light, as in a wide kernel without its unscattered part.
 
 mod block;
 mod fft;
@@ -28,13 +28,13 @@ use rayon::prelude::*;
 /// Longest side of a block, unless the kernel asks for more.
 const LONGEST_SIDE: usize = 512;
 
-/// A kernel made ready for planes of one size.
+/// A kernel that is prepared for planes of one size.
 pub struct Convolver<T: Real = f64> {
     width: usize,
     height: usize,
     radius: usize,
     transform: Transform<T>,
-    /// The kernel's spectrum over the number of points, in the order of the transform.
+    /// Spectrum of the kernel divided by the number of points, in the order of the transform.
     spectrum: Vec<Lane<T>>,
     isa: Isa,
 }
@@ -45,7 +45,8 @@ impl<T: Real> Convolver<T> {
         Self::of(kernel.radius(), kernel.signed(), width, height)
     }
 
-    /// The same of weights by how far a pixel lies to the right and down, up to `radius`; they are the same at opposite places.
+    /// Prepares weights that depend on how far a pixel lies to the right and down, up to `radius`. They must be the same at
+    /// opposite places.
     pub fn of(radius: usize, weight: impl Fn(isize, isize) -> f64, width: usize, height: usize) -> Self {
         let isa = Isa::detect();
         let transform = Transform::new(side(width, radius), side(height, radius));
@@ -53,7 +54,7 @@ impl<T: Real> Convolver<T> {
         Self { width, height, radius, transform, spectrum, isa }
     }
 
-    /// The plane `source` convolved: each value is given to `write` with its target.
+    /// Convolves the plane `source`: each value is given to `write` with its target.
     ///
     /// # Panics
     /// If a plane has another size than was prepared for.
@@ -61,7 +62,7 @@ impl<T: Real> Convolver<T> {
         self.apply_at(source, target, |to, v, _| write(to, v));
     }
 
-    /// The same; `write` is given the column and the row of the target as well.
+    /// Convolves the plane `source`: each value is given to `write` with its target, and with the column and the row of the target.
     ///
     /// # Panics
     /// If a plane has another size than was prepared for.
@@ -83,13 +84,13 @@ impl<T: Real> Convolver<T> {
 }
 
 impl Convolver {
-    /// Operations that a pixel costs, about: those of the transforms of two tiles over the pixels that they give, for a kernel of
-    /// `radius` on planes of `width` by `height`.
+    /// Estimates the operations per pixel for a kernel of `radius` on planes of `width` by `height`: those of the transforms of
+    /// two tiles, divided by the pixels that they give.
     #[must_use]
     pub fn operations(radius: usize, width: usize, height: usize) -> usize {
         let sides = [side(width, radius), side(height, radius)];
         let points = sides[0] * sides[1];
-        // There and back, five operations a point and step.
+        // Forward and inverse, five operations per point and step.
         5 * points * points.trailing_zeros() as usize / ((sides[0] - 2 * radius) * (sides[1] - 2 * radius))
     }
 }
@@ -109,8 +110,8 @@ struct Strip<'a, T: Real, F> {
 impl<T: Real, F: Fn(&mut f32, T, [usize; 2])> Vectorized for Strip<'_, T, F> {
     type Output = ();
 
-    /// Two tiles at a time: one is the real, one the imaginary part. The kernel is the same at opposite places, so its spectrum is
-    /// real and the two do not mix.
+    /// Convolves two tiles at a time: one is the real part, one the imaginary part. The kernel is the same at opposite places,
+    /// so its spectrum is real and the two do not mix.
     #[inline(always)]
     fn run(self) {
         let Self { convolver, source, y0, tile, target, scratch, line, write } = self;
@@ -136,7 +137,7 @@ impl<T: Real, F: Fn(&mut f32, T, [usize; 2])> Vectorized for Strip<'_, T, F> {
     }
 }
 
-/// The side of a block along an axis of `length` pixels: the one that costs least work.
+/// Returns the side of a block along an axis of `length` pixels that costs the least work.
 fn side(length: usize, radius: usize) -> usize {
     let least = (2 * radius + 2).next_power_of_two().max(fft::LANES);
     let most = LONGEST_SIDE.max(2 * least);

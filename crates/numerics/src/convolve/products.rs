@@ -1,19 +1,19 @@
-//! Convolution with a sum of kernels of which each is one profile across times the same down, as Gaussians are.
+//! Convolution with a sum of separable kernels, each with the same profile across and down, as Gaussians have.
 //!
-//! Sums of light that is nowhere negative lose nothing to rounding, so single precision is enough, and a bright point leaves
-//! the shadows around it as they are. Work grows with the profiles' reach, where that of a transform does not.
+//! Sums of light that is nowhere negative lose nothing to rounding. Single precision is therefore enough, and a bright point
+//! leaves the shadows around it as they are. Work grows with the reach of the profiles; that of a transform does not.
 
 use crate::isa::{Isa, Vectorized};
 use rayon::prelude::*;
 
-/// Rows and columns of the tiles that are worked on at once, with the reach around them.
+/// Rows and columns of the tiles that are worked on at once, together with the reach around them.
 const ROWS: usize = 64;
 const COLUMNS: usize = 512;
 
-/// Columns that are summed at once.
+/// Number of columns that are summed at once.
 const LANES: usize = 32;
 
-/// A sum of products of profiles, made ready for planes of one size.
+/// A sum of products of profiles, prepared for planes of one size.
 pub struct Products {
     width: usize,
     height: usize,
@@ -22,16 +22,16 @@ pub struct Products {
     isa: Isa,
 }
 
-/// Weights from the middle on.
+/// One separable kernel, as weights from the middle on.
 struct Term {
     down: Vec<f32>,
-    /// Times the term's weight.
+    /// Profile across, times the term's weight.
     across: Vec<f32>,
 }
 
 impl Products {
-    /// Prepares terms for planes of `width` by `height` pixels: of each its weight and its profile from the middle on, of at least one
-    /// pixel. A profile ends where less than `beyond` of it, times its weight, is left.
+    /// Prepares terms for planes of `width` by `height` pixels. Each term is a weight and a profile from the middle on, of at
+    /// least one pixel. A profile is cut off where less than `beyond` of it, times its weight, is left.
     ///
     /// # Panics
     /// If a profile is empty.
@@ -47,7 +47,7 @@ impl Products {
             Term { down, across: profile.iter().map(|v| (v * weight) as f32).collect() }
         };
         let terms: Vec<Term> = terms.iter().map(term).collect();
-        // Those that stay in their pixel are one.
+        // The terms that stay in their pixel are merged into one.
         let (points, mut terms): (Vec<Term>, Vec<Term>) = terms.into_iter().partition(|t| t.down.len() == 1);
         if !points.is_empty() {
             let all = points.iter().map(|t| t.down[0] * t.across[0]).sum();
@@ -57,13 +57,13 @@ impl Products {
         Self { width, height, radius, terms, isa: Isa::detect() }
     }
 
-    /// Pairs of weights that a pixel costs.
+    /// Number of pairs of weights that a pixel costs.
     pub fn pairs(&self) -> usize {
         self.terms.iter().map(|t| 2 * t.down.len()).sum()
     }
 
-    /// The plane `source` convolved: each value is given to `write` with its target. What is beside the plane, or no number,
-    /// is 0.
+    /// Convolves the plane `source`: each value is given to `write` with its target. Values outside the plane, and values that
+    /// are not finite, count as 0.
     ///
     /// # Panics
     /// If a plane has another size than was prepared for.
@@ -102,7 +102,7 @@ impl Scratch {
         }
     }
 
-    /// Fills the tile with what lies around the pixel `x` of the row `y` of a plane.
+    /// Fills the tile with the surroundings of the pixel `x` in the row `y` of a plane.
     #[inline(always)]
     fn load(&mut self, plane: &[f32], [width, height]: [usize; 2], [x, y]: [usize; 2], rows: usize, radius: usize) {
         for (row, line) in self.tile.chunks_exact_mut(self.stride).take(rows + 2 * radius).enumerate() {
@@ -133,8 +133,8 @@ struct Strip<'a, F> {
     write: &'a F,
 }
 
-/// The weighted sum of [`LANES`] columns around a place: `far(k)` is where those begin that lie `k` before and after it. The
-/// smallest weights come first.
+/// Returns the weighted sum of [`LANES`] columns around a place. `far(k)` gives where the columns `k` before and `k` after it
+/// begin. The smallest weights are added first.
 #[inline(always)]
 fn sum(weights: &[f32], values: &[f32], far: impl Fn(usize) -> (usize, usize)) -> [f32; LANES] {
     let mut sum = [0.0; LANES];
@@ -236,7 +236,7 @@ mod tests {
         }
     }
 
-    /// What is cut off a profile is less than was said.
+    /// The part that is cut off a profile is less than the stated limit.
     #[test]
     fn profiles_end_where_nothing_is_left() {
         let profile = vec![0.5, 0.2, 0.04, 0.009, 0.001];

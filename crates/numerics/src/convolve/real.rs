@@ -1,8 +1,8 @@
-//! The precision that a convolution is computed in.
+//! Precision in which a convolution is computed.
 
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub};
 
-/// `f32`, or `f64`.
+/// A floating-point number: `f32` or `f64`.
 pub trait Real:
     Copy
     + Default
@@ -15,11 +15,11 @@ pub trait Real:
     + MulAssign
     + Neg<Output = Self>
 {
-    /// The nearest number of this precision.
+    /// Returns the nearest number of this precision.
     fn of(value: f64) -> Self;
-    /// A number of a picture.
+    /// Converts a number of a picture.
     fn of_single(value: f32) -> Self;
-    /// The same number.
+    /// Returns the number as an `f64`.
     fn value(self) -> f64;
 }
 

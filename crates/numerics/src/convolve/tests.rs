@@ -8,7 +8,7 @@ fn kernel(radius: usize) -> Kernel {
     Kernel::new(radius, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64) + if i + j == 0 { 2.0 } else { 0.0 })
 }
 
-/// Against the double sum that defines it, on planes smaller and larger than a block, and thin ones.
+/// Results against the double sum that defines a convolution, on planes smaller and larger than a block, and thin ones.
 #[test]
 fn blocks_give_the_sum_that_defines_a_convolution() {
     for (width, height, radius) in [(1, 1, 0), (5, 3, 4), (40, 90, 9), (700, 70, 20), (3, 1100, 3)] {
@@ -53,7 +53,7 @@ fn same_bits_on_any_threads_and_tier() {
     }
 }
 
-/// Single precision rounds by some 1e-7 of the root of the mean square of a block, and has the same bits everywhere, too.
+/// Single precision rounds by some 1e-7 of the root mean square of a block, and has the same bits everywhere, too.
 #[test]
 fn single_precision_is_as_good_as_it_says() {
     let (width, height) = (900, 700);

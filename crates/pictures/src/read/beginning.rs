@@ -1,4 +1,4 @@
-//! What the beginning of a picture file says: enough to place it, without its pixels.
+//! Reads the header of a picture file: its size and shape, without its pixels.
 
 use super::decode::{self, Kind};
 use super::header::Header;
@@ -6,14 +6,14 @@ use super::linear::{Choice, Trouble};
 use super::{exr, jpeg, tiff};
 use spectra_core::resources::{Found, ResourceError};
 
-/// The beginning of a JPEG that its decoder is shown: it reads all that it is given, and the size stands before the pixels.
+/// Number of bytes at the start of a JPEG that its decoder receives: it reads all that it is given, and the size comes before the pixels.
 const BEGINNING_BYTES: u64 = 4 << 20;
 
-/// Reads the header of a file, and no pixels: those formats apart that a library unpacks as it opens them. A JPEG is looked
-/// through to its end, since its decoder does not tell when the end is missing.
+/// Reads the header of a file without its pixels. Some formats of the linked library are still unpacked when they are opened.
+/// A JPEG is scanned to its end, because its decoder does not report a missing end.
 ///
 /// # Errors
-/// What is wrong with it.
+/// What is wrong with the file.
 pub fn header(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble> {
     let io = |error: ResourceError| Trouble::file(error.to_string());
     let bytes = found.size_bytes().map_err(io)?;

@@ -1,4 +1,4 @@
-//! All channels of a picture file.
+//! Reads all channels of a picture file.
 
 use super::decode::{self, Kind};
 use super::exr;
@@ -6,7 +6,7 @@ use super::linear::{Choice, Trouble};
 use super::planes::{Plane, Planes};
 use spectra_core::resources::{Found, ResourceError};
 
-/// Reads all channels of an OpenEXR file; of any other format that [`decode()`](super::decode()) reads, its linear light.
+/// Reads all channels of an OpenEXR file. From any other format that [`decode()`](super::decode()) supports, reads the linear light.
 ///
 /// # Errors
 /// What is wrong with the file.

@@ -1,5 +1,5 @@
-//! JPEG and TIFF files of printing inks (CMYK) with a profile of them. They are handed on as integers of 16 bits in [`space`], whose
-//! primaries hold what inks print, with the curve of sRGB.
+//! Reads JPEG and TIFF files of printing inks (CMYK) that have a color profile. Passes them on as 16-bit integers in [`space`], whose
+//! primaries enclose what inks print, with the curve of sRGB.
 
 use super::inks::Inks;
 use super::linear::Trouble;
@@ -16,20 +16,20 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-/// Inks of a pixel.
+/// Number of inks per pixel.
 const INKS: usize = 4;
-/// Pixels that a thread takes at a time.
+/// Number of pixels that a thread converts at a time.
 const PIXELS_A_TASK: usize = 1 << 14;
 
-/// The kind of pixels that the decoder of such a file states, which no other has.
+/// Original color type that marks the decoder of a CMYK file; no other decoder has it.
 pub(super) const KIND: ExtendedColorType = ExtendedColorType::Unknown(48);
 
-/// The primaries that such files are handed on in.
+/// The color space in which CMYK files are passed on.
 pub(super) fn space() -> &'static RgbSpace {
     RgbSpace::rec2020()
 }
 
-/// A decoder of such a file.
+/// A decoder of a CMYK file with a color profile.
 pub(super) struct Cmyk<R: BufRead + Seek> {
     codes: Codes<R>,
     inks: Inks,
@@ -37,14 +37,14 @@ pub(super) struct Cmyk<R: BufRead + Seek> {
     orientation: Orientation,
 }
 
-/// Where amounts of ink come from.
+/// The source of amounts of ink.
 enum Codes<R: BufRead + Seek> {
-    /// The bytes of the file, and whether it holds YCCK.
+    /// Bytes of the file, and whether it holds CMYK or YCCK.
     Jpeg(Vec<u8>, ColorSpace),
     Tiff(Box<::tiff::decoder::Decoder<R>>),
 }
 
-/// Whether a file holds four inks.
+/// Returns whether a file holds four inks.
 pub(super) fn is_one(found: &Found, format: ImageFormat) -> bool {
     match format {
         ImageFormat::Jpeg => found.open().ok().and_then(jpeg::components) == Some(INKS as u8),
@@ -53,16 +53,16 @@ pub(super) fn is_one(found: &Found, format: ImageFormat) -> bool {
     }
 }
 
-/// What is wrong with the colors of such a file that has no profile.
+/// Returns the warning about a CMYK file without a profile.
 pub(super) fn without_profile() -> Trouble {
-    let text = "it holds printing inks (CMYK) and no color profile that says what they look like: its colors come by plain arithmetic, \
-                purer and brighter than a print's";
+    let text = "it holds printing inks (CMYK) without a color profile that says what they look like: its colors are computed by plain \
+                arithmetic, and are purer and brighter than in print";
     Trouble::file(text).hint("save it with its profile, or as sRGB")
 }
 
 impl<R: BufRead + Seek> Cmyk<R> {
-    /// `None` where the file is of another kind, has no profile of inks, or is not sound: what is wrong with it is told by its own
-    /// decoder.
+    /// Opens a CMYK decoder; `None` if the file is of another kind, has no profile of inks, or is not sound. In the last case its usual
+    /// decoder reports what is wrong.
     pub(super) fn new(mut reader: R, found: &Found, format: ImageFormat) -> Option<Self> {
         if !is_one(found, format) {
             return None;
@@ -117,8 +117,8 @@ fn options() -> DecoderOptions {
     DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX)
 }
 
-/// Amounts of ink from the bytes of a pixel of a JPEG, which Adobe's programs, and those after them, store the other way round: 255 is
-/// none. Of YCCK the first three are R, G and B of inks as if they were light (JFIF).
+/// Converts the bytes of a JPEG pixel to amounts of ink. Adobe's programs, and others after them, store them inverted: 255 is no ink.
+/// The first three bytes of YCCK encode R, G and B of the inks as if they were light (JFIF).
 fn inks_of_jpeg([a, b, c, k]: [u8; INKS], space: ColorSpace) -> [f64; INKS] {
     let [a, b, c, k] = [a, b, c, k].map(f64::from);
     let stored = if space == ColorSpace::YCCK {
@@ -165,7 +165,7 @@ impl<R: BufRead + Seek> ImageDecoder for Cmyk<R> {
                 let codes = decoder.decode().map_err(|error| wrong(error.to_string()))?;
                 let codes = codes.as_chunks::<INKS>().0;
                 if codes.len() != pixels {
-                    return Err(wrong("it holds another number of pixels than it says".to_owned()));
+                    return Err(wrong("the number of pixels differs from that in the header".to_owned()));
                 }
                 print(&self.inks, to, |i| inks_of_jpeg(codes[i], space));
             }
@@ -187,7 +187,11 @@ impl<R: BufRead + Seek> ImageDecoder for Cmyk<R> {
                         let all = all.as_chunks::<INKS>().0;
                         print(&self.inks, to, |i| all[i].map(|v| f64::from(v) / 65_535.0));
                     }
-                    _ => return Err(unsupported("inks (CMYK) in planes, or of other than 8 or 16 bits")),
+                    _ => {
+                        return Err(unsupported(
+                            "printing inks (CMYK) stored in planes, or with other than 8 or 16 bits",
+                        ));
+                    }
                 }
             }
         }
@@ -206,8 +210,9 @@ mod tests {
     use spectra_color::Transfer;
     use spectra_core::resources::Found;
 
-    /// Twelve patches of ink with a profile of each kind of table, and as JPEG in CMYK and YCCK, against LittleCMS 2 on the same files
-    /// (`xtask/picture_samples.py`): within a code value, 2 in the JPEG whose inks are rounded twice.
+    /// Compares twelve patches of ink, with a profile of each kind of table, and as JPEG in CMYK and YCCK, with LittleCMS 2 on the same
+    /// files (`xtask/picture_samples.py`).
+    /// They agree within one code value, or 2 in the JPEG whose inks are rounded twice.
     #[test]
     fn inks_look_as_their_profile_says() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/inks/");
@@ -241,14 +246,14 @@ mod tests {
     fn inks_without_a_profile_are_told() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/inks/");
         let bytes = std::fs::read(format!("{folder}cmyk.jpg")).expect("a sample");
-        // The profile gets another marker, which nobody reads.
+        // The profile gets another marker, which no reader knows.
         let at = bytes.windows(12).position(|w| w == b"ICC_PROFILE\0").expect("a profile");
         let mut without = bytes.clone();
         without[at - 3] = 0xec;
         let found = Found::bytes("print.jpg".to_owned(), without.into());
         let read = crate::read::header(&found, Choice::default()).expect("a picture");
         assert!(read.doubts.iter().any(|doubt| doubt.text.contains("CMYK")), "{:?}", read.doubts);
-        // A profile that is broken anywhere ends nothing.
+        // A profile with a broken byte anywhere does not crash the reader.
         for at in (at..at + 4000).step_by(7) {
             let mut bad = bytes.clone();
             bad[at] ^= 0xff;

@@ -1,4 +1,4 @@
-//! From the bytes of a picture file to linear light, hostile files included.
+//! Decodes picture files to linear light, and withstands hostile files.
 
 use super::cmyk::Cmyk;
 use super::encoding::Encoding;
@@ -15,13 +15,15 @@ use spectra_core::resources::{Found, ResourceError};
 use std::io::{BufRead, Seek};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// No picture format but WebP packs more pixels into a byte: deflate ends near 1 032 to 1, at one byte a pixel or less.
+/// Upper limit of pixels per byte, except for WebP: deflate reaches about 1 032 to 1, at one byte per pixel or less.
 const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 
-/// Decodes an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file, told by its content, or whatever else OpenImageIO reads,
-/// told by the ending of its name. Where neither the file nor the choice says otherwise, integers are taken as
-/// sRGB-encoded (8 bits: 255 is 1), floating point as linear. Alpha of integers is taken as straight, of
-/// floating point as multiplied in (as OpenEXR has it), unless the file says which.
+/// Decodes an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file, recognized by its content, or any other file that OpenImageIO
+/// reads, recognized by the extension of its name.
+///
+/// Unless the file or `choice` says otherwise, integers are taken as sRGB-encoded (8 bits: 255 is 1) and floating point as linear.
+/// Unless the file says otherwise, colors of integer files are not multiplied by alpha, and those of floating point files are, as in
+/// OpenEXR.
 ///
 /// # Errors
 /// What is wrong with the file.
@@ -44,10 +46,10 @@ pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     }
 }
 
-/// The header of a file that [`decode`] reads by OpenImageIO.
+/// Reads the header of a file that [`decode`] reads with OpenImageIO. `why` is the reason why this crate did not read it.
 ///
 /// # Errors
-/// What is wrong with it.
+/// What is wrong with the file.
 pub(super) fn foreign_header(found: &Found, choice: Choice<'_>, why: Option<&str>) -> Result<Header, Trouble> {
     let said = choice.transfer.map(Encoding::named).transpose()?;
     let header = foreign::header(found, choice, said);
@@ -58,7 +60,7 @@ fn io(error: ResourceError) -> Trouble {
     Trouble::file(error.to_string())
 }
 
-/// Who reads a file.
+/// The reader of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
     Exr,
@@ -66,13 +68,13 @@ pub(super) enum Kind {
     Foreign,
 }
 
-/// A file that may hold several pictures.
+/// The kind of file that may hold several pictures.
 pub(super) const TIFF: Kind = Kind::Native(ImageFormat::Tiff);
 
-/// Tells it by the first bytes, and whether the choice suits it.
+/// Determines the reader from the first bytes, and checks that the choice suits it.
 ///
 /// # Errors
-/// An empty file; a layer, a depth or a transfer that a file of its kind cannot have.
+/// An empty file; a layer, a depth or a transfer that this kind of file cannot have.
 pub(super) fn kind(beginning: &[u8], choice: Choice<'_>) -> Result<Kind, Trouble> {
     if beginning.is_empty() {
         return Err(Trouble::file("the file is empty")
@@ -92,17 +94,17 @@ pub(super) fn kind(beginning: &[u8], choice: Choice<'_>) -> Result<Kind, Trouble
         return Err(Trouble::at("depth", "only an OpenEXR file has a depth channel")
             .hint("name a file that has it: `depth: {file: ..., channel: Z}`"));
     }
-    // A TIFF of more than 4 GB has another number than 42 behind the order of its bytes.
+    // BigTIFF, for files of more than 4 GB, has 43 instead of 42 after the byte order.
     let is_big_tiff = beginning.starts_with(b"II\x2b\0") || beginning.starts_with(b"MM\0\x2b");
     let guessed = if is_big_tiff { Some(ImageFormat::Tiff) } else { image::guess_format(beginning).ok() };
     let format = guessed.filter(ImageFormat::reading_enabled);
     Ok(format.map_or(Kind::Foreign, Kind::Native))
 }
 
-/// Why a file of a known kind is not read.
+/// Reasons why a file of a known kind is not read.
 enum NotRead {
     Trouble(Trouble),
-    /// A variant of the kind that is sound but not known here.
+    /// A sound variant of the kind that this crate does not support.
     Unsupported(String),
 }
 
@@ -121,7 +123,7 @@ impl From<ImageError> for NotRead {
     }
 }
 
-/// A decoder that has read the header of a file, by its beginning at least.
+/// Opens a decoder and reads the header, from at least the beginning of the file.
 fn decoder<'a>(
     reader: impl BufRead + Seek + 'a,
     format: ImageFormat,
@@ -138,16 +140,16 @@ fn decoder<'a>(
     let bytes = found.size_bytes().map_err(io)?;
     let (width, height) = decoder.dimensions();
     check_size(u64::from(width), u64::from(height))?;
-    // WebP codes an even area by nothing at all; its sides are 16 384 pixels at most.
+    // WebP codes a uniform area in almost no bytes; its sides are limited to 16 384 pixels.
     let is_packed = format == ImageFormat::WebP;
     if !is_packed && u64::from(width) * u64::from(height) > bytes * MAX_PIXELS_PER_BYTE {
-        let text = format!("the header says {width} x {height} pixels, which {bytes} bytes cannot hold");
+        let text = format!("the header states {width} x {height} pixels, but a file of {bytes} bytes cannot hold them");
         return Err(Trouble::file(text).into());
     }
     Ok(decoder)
 }
 
-/// The header of a file, from its beginning; `Err` within of a variant that is not known here.
+/// Reads the header of a file from its beginning. The inner `Err` says why this variant is not supported here.
 pub(super) fn native_header<'a>(
     reader: impl BufRead + Seek + 'a,
     format: ImageFormat,
@@ -167,7 +169,7 @@ pub(super) fn native_header<'a>(
     let pixel_aspect = seen(tags.pixel_aspect, turned);
     let said = choice.transfer.map(Encoding::named).transpose()?;
     let encoding = said.or_else(|| tags.encoding.clone()).unwrap_or(Encoding::Curve(Transfer::Srgb));
-    // Somebody who states the curve has seen to it.
+    // A user who states the curve has already dealt with the warning.
     let doubts = tags.doubt.filter(|_| choice.transfer.is_none()).into_iter().collect();
     Ok(Ok(Header {
         width,
@@ -186,7 +188,7 @@ fn seen(stored: Option<f64>, turned: bool) -> f64 {
     stored.map_or(1.0, |aspect| if turned { 1.0 / aspect } else { aspect })
 }
 
-/// As TIFF 6.0 numbers it. A file that says nothing sound of it lies as it is.
+/// Orientation as TIFF 6.0 numbers it; upright if the file does not state a sound one.
 fn orientation(decoder: &mut impl ImageDecoder) -> u8 {
     decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif()
 }
@@ -199,7 +201,7 @@ fn native(found: &Found, format: ImageFormat, choice: Choice<'_>, said: Option<E
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
-    // As much as the picture needs, twice over, and something for the decoder.
+    // As much memory as the picture needs, and as much again plus 64 MiB for the decoder.
     let spare_bytes = decoder.total_bytes().saturating_add(64 << 20);
     limits.max_alloc = Some(decoder.total_bytes().saturating_add(spare_bytes));
     decoder.set_limits(limits)?;
@@ -210,15 +212,15 @@ fn native(found: &Found, format: ImageFormat, choice: Choice<'_>, said: Option<E
     linear(decoder, plain, orientation, choice, &tags)
 }
 
-/// Whether a file is an OpenEXR.
+/// Returns whether a file is an OpenEXR file.
 ///
 /// # Errors
-/// It cannot be read.
+/// The file cannot be read.
 pub fn is_exr(found: &Found) -> Result<bool, Trouble> {
     Ok(found.read(64).map_err(io)?.starts_with(&exr::MAGIC))
 }
 
-/// The depth channel alone of an OpenEXR file, which need not hold light.
+/// Reads only the depth channel of an OpenEXR file, which need not hold light.
 ///
 /// # Errors
 /// What is wrong with the file.
@@ -229,8 +231,8 @@ pub fn depth(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
     exr::decode(found.open().map_err(io)?, found.size_bytes().map_err(io)?, choice, false)
 }
 
-/// How many pixels the chosen depth of a file has beyond its picture on the left and the right, and above and below; none where the
-/// file cannot be read.
+/// Returns how many pixels the chosen depth channel has beyond the picture on each side, horizontally and vertically; 0 if the file cannot
+/// be read.
 pub fn depth_overscan(found: &Found, choice: Choice<'_>) -> [u32; 2] {
     let read = || -> Result<[u32; 2], Trouble> {
         if !is_exr(found)? {
@@ -241,23 +243,24 @@ pub fn depth_overscan(found: &Found, choice: Choice<'_>) -> [u32; 2] {
     read().unwrap_or_default()
 }
 
-/// Pixels that a thread takes at a time.
+/// Number of pixels that a thread converts at a time.
 const PIXELS_A_TASK: usize = 1 << 14;
 
-/// How a decoder lays out a pixel.
+/// Sample types of a decoded pixel.
 #[derive(Clone, Copy)]
 enum Samples {
     Bytes,
     Shorts,
-    /// Integers of 32 bits, which a TIFF may have.
+    /// 32-bit integers, which a TIFF may have.
     Longs,
     Floats,
 }
 
-/// The picture of a decoder in linear light. Its code values are read into the end of the memory that the light will take
-/// and spread out from there, so that a picture takes 12 bytes a pixel and no more (and 4 for cover, where that is wanted).
-/// What is stored on its side is brought upright there too: code values in the room before them, if they have it, or else
-/// the light.
+/// Converts the picture of a decoder to linear light, upright.
+///
+/// Code values are read into the end of the buffer that the light will fill, and expanded from there. A picture thus takes 12 bytes per
+/// pixel and no more (and 4 for alpha, if wanted).
+/// A picture stored on its side is turned in the same buffer: its code values if there is room in front of them, otherwise its light.
 fn linear<R: BufRead + Seek>(
     decoder: impl ImageDecoder,
     plain: Option<tiff::Plain<R>>,
@@ -273,7 +276,7 @@ fn linear<R: BufRead + Seek>(
         ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => Samples::Shorts,
         ColorType::Rgb32F | ColorType::Rgba32F if tags.is_long => Samples::Longs,
         ColorType::Rgb32F | ColorType::Rgba32F => Samples::Floats,
-        other => return Err(NotRead::Unsupported(format!("pixels of the kind {other:?} are not read"))),
+        other => return Err(NotRead::Unsupported(format!("pixels of type {other:?} cannot be read"))),
     };
     let (size, count) = (usize::from(color.bytes_per_pixel()), usize::from(color.channel_count()));
     let (width, height) = decoder.dimensions();
@@ -287,10 +290,10 @@ fn linear<R: BufRead + Seek>(
         Samples::Longs | Samples::Floats => Vec::new(),
     };
     let is_float = matches!(samples, Samples::Floats);
-    // Integers are straight, and floating point is multiplied, unless the file says which.
+    // Integers are not multiplied by alpha, and floating point is, unless the file says otherwise.
     let is_multiplied = tags.is_multiplied.unwrap_or(false) && !is_plain;
     let is_light_multiplied = is_plain || (is_float && tags.is_multiplied.unwrap_or(true));
-    // The light of a pixel, and its cover.
+    // Returns the light of a pixel and its alpha.
     let light = |pixel: &[u8]| -> ([f32; 3], f32) {
         let short = |c: usize| u16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]);
         let four = |c: usize| [pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]];
@@ -306,7 +309,7 @@ fn linear<R: BufRead + Seek>(
         };
         let rgb = [0, 1, 2].map(|c| {
             let c = if gray { 0 } else { c };
-            // A code that cover is multiplied into is that of what covers, times cover.
+            // A multiplied code is the code of the covering color times alpha.
             let uncovered = |code: f64| of_integers.light((code / f64::from(cover)).min(1.0));
             match samples {
                 Samples::Bytes if is_multiplied && cover > 0.0 => uncovered(f64::from(pixel[c]) / 255.0),
@@ -330,7 +333,7 @@ fn linear<R: BufRead + Seek>(
     let mut rgb: Vec<[f32; 3]> = vec![[0.0; 3]; pixels];
     let mut alpha = if count % 2 == 0 && cover { vec![0.0_f32; pixels] } else { Vec::new() };
     let memory: &mut [u8] = bytemuck::cast_slice_mut(&mut rgb);
-    // How many pixels are not opaque.
+    // Number of pixels that are not opaque.
     let thin = AtomicUsize::new(0);
     let stored_size = [width as usize, height as usize];
     let keep = |memory: &mut [u8], alpha: &mut [f32], i: usize, pixel: &[u8]| {
@@ -360,7 +363,8 @@ fn linear<R: BufRead + Seek>(
             is_upright = true;
         }
         let mut done = 0;
-        // Light that lies before the codes still to come does not get in their way: three quarters of all, of the rest, and so on.
+        // Light in front of the codes that are still to come does not overwrite them. Each pass converts as many pixels as fit there: three
+        // quarters, then three quarters of the rest, and so on.
         while alpha.is_empty() && size < LIGHT {
             let (free, codes) = memory.split_at_mut(start + done * size);
             let clear = (free.len() / LIGHT - done).min(pixels - done);
@@ -386,7 +390,7 @@ fn linear<R: BufRead + Seek>(
         }
     } else if let Some(mut plain) = plain {
         if plain.is_planar() {
-            // Colors first, to where the light will be; each pixel is whole as its cover arrives.
+            // Colors go first to where the light will be; a pixel is complete when its alpha arrives.
             plain.read(memory, LIGHT, size / count)?;
             let mut pixel = vec![0_u8; size];
             plain.runs(count - 1, size - LIGHT, |first, codes| {
@@ -430,14 +434,14 @@ fn linear<R: BufRead + Seek>(
         rgb,
         alpha: (!alpha.is_empty()).then_some(alpha),
         depth: None,
-        // Primaries of another space bring white to where it was but for its last digits.
+        // Primaries of another space map white to white except for the last digits.
         clipped_at: (!matches!(samples, Samples::Floats))
             .then(|| of_integers.clipped_at() * if to_srgb.is_some() { 1.0 - 1e-5 } else { 1.0 }),
         doubts,
     })
 }
 
-/// [`decode`] of bytes.
+/// Runs [`decode`] on bytes in memory.
 #[cfg(test)]
 pub(super) fn decode_bytes(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
     decode(&Found::bytes("a file".to_owned(), bytes.to_vec().into()), choice)
@@ -468,7 +472,7 @@ mod tests {
         assert!((linear.rgb[3][0] - 0.502_89).abs() < 1e-5);
     }
 
-    /// BMP and lossless WebP hold the same picture as a PNG, alpha too.
+    /// BMP and lossless WebP give the same picture as PNG, including alpha.
     #[test]
     fn bmp_and_webp_are_read() {
         let picture = image::RgbaImage::from_fn(5, 4, |x, y| {
@@ -492,7 +496,7 @@ mod tests {
         }
     }
 
-    /// A lossy WebP of a smooth picture against the PNG that it was made of (`xtask/picture_samples.py`): mean difference in CIELAB of 2.
+    /// A lossy WebP of a smooth picture differs from its original PNG (`xtask/picture_samples.py`) by less than 2 in CIELAB on average.
     #[test]
     fn lossy_webp_is_near_its_original() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/");
@@ -514,8 +518,8 @@ mod tests {
         assert!(mean < 2.0 && mean > 0.0, "{mean}");
     }
 
-    /// A TIFF of 20 x 19 pixels whose sample c of pixel (x, y) is `of(c, x, y)`, a plane for each channel or pixel by pixel, in
-    /// strips of 6 rows or tiles of 16 x 16.
+    /// Builds a TIFF of 20 x 19 pixels whose sample c of pixel (x, y) is `of(c, x, y)`. It has a plane for each channel or interleaved
+    /// pixels, in strips of 6 rows or tiles of 16 x 16.
     fn tiff_of(channels: usize, is_planar: bool, is_tiled: bool, of: impl Fn(usize, usize, usize) -> f32) -> Vec<u8> {
         use ::tiff::{encoder::TiffEncoder, tags::Tag};
         const SIZE: [usize; 2] = [20, 19];
@@ -581,7 +585,7 @@ mod tests {
         }
     }
 
-    /// A picture of four pixels, one clear and one half so: said where cover is not wanted, and nothing where all is opaque.
+    /// A picture with clear and half-clear pixels gives a warning if alpha is not wanted. An opaque picture gives none.
     #[test]
     fn cover_that_is_lost_is_said() {
         for side in [2, 300] {
@@ -606,7 +610,7 @@ mod tests {
         for cut in [0, 1, 7, 8, 20, 33, 50, good.len() - 13] {
             assert!(decode(&good[..cut], Choice::default()).is_err(), "cut at {cut}");
         }
-        // A header that claims 60 000 x 60 000 pixels, and one that claims 2^31 a side.
+        // A header that claims 60 000 x 60 000 pixels, and one that claims 2^31 per side.
         for side in [60_000_u32, 0x7fff_ffff] {
             let mut bad = good.clone();
             bad[16..20].copy_from_slice(&side.to_be_bytes());
@@ -629,7 +633,7 @@ mod tests {
         assert_eq!(decode(&exr, Choice { transfer: Some("srgb"), ..Choice::default() }).err().unwrap().key, "transfer");
     }
 
-    /// TIFF 6.0, `Orientation`: 6 says that the first row stored is the right side of the picture.
+    /// TIFF 6.0, `Orientation`: 6 means that the first stored row is the right side of the picture.
     #[test]
     fn a_picture_lies_as_its_orientation_says() {
         let mut stored = RgbImage::new(3, 2);
@@ -658,7 +662,7 @@ mod tests {
             let trouble = decode(bytes, Choice { name, ..Choice::default() }).expect_err("not read");
             assert!(trouble.hint.is_some_and(|hint| hint.contains("--features oiio")), "{name}: {}", trouble.text);
         }
-        // What no library reads, or what is broken, is not to be had by one.
+        // The message does not suggest a library for unknown or broken files.
         for name in ["notes.txt", "broken.png", "nothing"] {
             let trouble = decode(b"some text", Choice { name, ..Choice::default() }).expect_err("not read");
             assert!(trouble.hint.is_none_or(|hint| !hint.contains("oiio")), "{name}");

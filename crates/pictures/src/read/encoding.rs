@@ -1,27 +1,27 @@
-//! From code values to linear light.
+//! Converts code values to linear light.
 
 use super::linear::Trouble;
 use spectra_color::{Transfer, from_aces_cct};
 use std::sync::Arc;
 
-/// How code values stand for light.
+/// Encoding of light by code values.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Encoding {
-    /// A standard's curve.
+    /// The transfer curve of a standard.
     Curve(Transfer),
-    /// Light is the code value to this power.
+    /// A power law: light is the code value to this power.
     Gamma(f64),
-    /// Printing density of a scanned negative, see [`cineon`].
+    /// Printing density of a scanned negative (Cineon), see [`cineon`].
     Cineon,
-    /// The logarithm of ACES for grading.
+    /// ACEScct, the logarithmic encoding for grading.
     AcesCct,
-    /// Light of a display, see [`pq`].
+    /// Absolute light of a display (SMPTE ST 2084), see [`pq`].
     Pq,
-    /// Light at code values from 0 to 1 that stand equally far apart, two or more.
+    /// A sampled curve: light at evenly spaced code values from 0 to 1, at least two.
     Sampled(Arc<[f32]>),
 }
 
-/// What `transfer` may say. ITU-R BT.709 and BT.2020 share one curve.
+/// Names that `transfer` may have in a scene. ITU-R BT.709 and BT.2020 share one curve.
 const NAMES: [(&str, Encoding); 4] = [
     ("linear", Encoding::Curve(Transfer::Linear)),
     ("srgb", Encoding::Curve(Transfer::Srgb)),
@@ -29,8 +29,8 @@ const NAMES: [(&str, Encoding); 4] = [
     ("cineon", Encoding::Cineon),
 ];
 
-/// Words of OpenImageIO for the same, in lower case: names of color spaces (of release 3, too), and the transfer
-/// characteristics of SMPTE 268M that it hands on as they are. ITU-R BT.601 has the curve of BT.709; SMPTE 274M has it, too.
+/// Names of these encodings in OpenImageIO, in lower case: color spaces (including those of release 3), and the SMPTE 268M transfer
+/// characteristics that it passes on unchanged. ITU-R BT.601 and SMPTE 274M have the curve of BT.709.
 const WORDS: [(&str, &[&str]); 4] = [
     ("linear", &["linear", "scene_linear", "lin_srgb", "lin_rec709", "lin_rec709_scene"]),
     ("srgb", &["srgb", "srgb_rec709_scene", "srgb_rec709_display"]),
@@ -39,15 +39,15 @@ const WORDS: [(&str, &[&str]); 4] = [
 ];
 
 impl Encoding {
-    /// By its name in a scene.
+    /// Returns the encoding with this name in a scene.
     pub(super) fn named(name: &str) -> Result<Self, Trouble> {
         NAMES.iter().find(|(own, _)| *own == name).map(|(_, encoding)| encoding.clone()).ok_or_else(|| {
-            let trouble = Trouble::at("transfer", format!("no transfer `{name}` is known"));
-            trouble.hint("linear, srgb, rec709 or cineon")
+            let trouble = Trouble::at("transfer", format!("unknown transfer `{name}`"));
+            trouble.hint("choose linear, srgb, rec709 or cineon")
         })
     }
 
-    /// By what a library says of a file; `None` where that is not known here.
+    /// Returns the encoding that a library names for a file; `None` if the name is unknown here.
     pub(super) fn of_color_space(words: &str) -> Option<Self> {
         let words = words.trim().to_ascii_lowercase();
         if let Some((name, _)) = WORDS.iter().find(|(_, all)| all.contains(&words.as_str())) {
@@ -57,14 +57,14 @@ impl Encoding {
         (0.2..=5.0).contains(&gamma).then_some(Self::Gamma(gamma))
     }
 
-    /// Light of a code value that is no integer of a few bits: as [`Self::decode`], but codes below black, which logarithmic scales have,
-    /// are black.
+    /// Light of a code value that is not an integer of few bits. Unlike [`Self::decode`], returns black for codes below black, which
+    /// logarithmic scales have.
     pub(super) fn light(&self, code: f64) -> f32 {
         let light = self.decode(code) as f32;
         if matches!(self, Self::Cineon | Self::AcesCct) { light.max(0.0) } else { light }
     }
 
-    /// Linear light of a code value that is 1 at most where it is an integer.
+    /// Linear light of a code value. Integer codes are at most 1.
     pub(super) fn decode(&self, code: f64) -> f64 {
         match self {
             Self::Curve(transfer) => transfer.decode(code),
@@ -81,7 +81,7 @@ impl Encoding {
         }
     }
 
-    /// Whether it is a curve of displays, which photographs are made for: not of light itself, and of no logarithm.
+    /// Whether this is the curve of a display, for which photographs are made: not linear and not logarithmic.
     pub(super) fn is_for_display(&self) -> bool {
         match self {
             Self::Curve(Transfer::Linear) | Self::Cineon | Self::AcesCct | Self::Pq => false,
@@ -90,20 +90,22 @@ impl Encoding {
         }
     }
 
-    /// Light of all code values of integers.
+    /// Light of all integer codes, from 0 to `levels` - 1.
     pub(super) fn table(&self, levels: usize) -> Vec<f32> {
         (0..levels).map(|i| self.decode(i as f64 / (levels - 1) as f64).max(0.0) as f32).collect()
     }
 
-    /// Light of the largest integer.
+    /// Light of the largest integer code.
     pub(super) fn clipped_at(&self) -> f32 {
         self.decode(1.0) as f32
     }
 }
 
-/// Light of a code value of a scanned negative: 0.002 of density a step of 10 bits, on film of gamma 0.6, black at code
-/// 95, white (light 1) at code 685 (Eastman Kodak, "Conversion of 10-bit Log Film Data to 8-bit Linear or Video Data",
-/// 1995; G. Kennel and D. Snider, SMPTE Journal 102, 849 (1993)). Light below black is negative.
+/// Light of a code value of a scanned negative: density 0.002 per step of 10 bits, film of gamma 0.6, black at code 95, white (light 1) at
+/// code 685. Light below black is negative.
+///
+/// Sources: Eastman Kodak, "Conversion of 10-bit Log Film Data to 8-bit Linear or Video Data", 1995; G. Kennel and D. Snider, SMPTE Journal
+/// 102, 849 (1993).
 fn cineon(code: f64) -> f64 {
     const DENSITY_PER_CODE: f64 = 0.002;
     const GAMMA: f64 = 0.6;
@@ -112,7 +114,7 @@ fn cineon(code: f64) -> f64 {
     (relative(code * 1023.0) - black) / (1.0 - black)
 }
 
-/// Light of a code value of SMPTE ST 2084, 1 at the 203 cd/m2 that ITU-R BT.2408 has for white that diffuses.
+/// Light of a code value of SMPTE ST 2084; 1 is 203 cd/m2, the diffuse white of ITU-R BT.2408.
 fn pq(code: f64) -> f64 {
     const POWERS: [f64; 2] = [0.159_301_757_812_5, 78.843_75];
     const FACTORS: [f64; 3] = [0.835_937_5, 18.851_562_5, 18.687_5];
@@ -127,7 +129,7 @@ fn pq(code: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// ITU-R BT.2100, table 4: code 1 is 10 000 cd/m2; BT.2408 has 203 cd/m2 at 58 %, and 100 cd/m2 at 51 %.
+    /// ITU-R BT.2100, table 4: code 1 is 10 000 cd/m2. BT.2408 puts 203 cd/m2 at 58 %, and 100 cd/m2 at 51 %.
     #[test]
     fn pq_is_light_of_a_display() {
         let light = |code: f64| Encoding::Pq.decode(code) * 203.0;
@@ -146,7 +148,7 @@ mod tests {
             let found = with_black(685.0 + stops * 90.308_998_699_194_36);
             assert!((found / libm::exp2(stops) - 1.0).abs() < 1e-12, "{stops}: {found}");
         }
-        // Gray of 18 % as the documentation of the Python package colour-science has it (`log_encoding_Cineon`).
+        // Gray of 18 % from the documentation of the Python package colour-science (`log_encoding_Cineon`).
         assert!((Encoding::Cineon.decode(0.457_319_613_085_418) - 0.18).abs() < 1e-12);
         assert!((f64::from(Encoding::Cineon.clipped_at()) - 13.524).abs() < 1e-2);
     }

@@ -1,19 +1,19 @@
-//! Whether Exif says that a picture is in Adobe RGB (1998): cameras write no color profile (DCF 2.0, JEITA CP-3461).
+//! Detects from Exif whether a picture is in Adobe RGB (1998). Cameras write no color profile (DCF 2.0, JEITA CP-3461).
 
 use super::encoding::Encoding;
 use super::primaries::to_srgb;
 use super::profile::Stated;
 use spectra_color::{RgbSpace, Transfer};
 
-/// Tags of Exif 2.3.
+/// Tags of Exif 2.3 that are read.
 const EXIF_FOLDER: u16 = 0x8769;
 const COLOR_SPACE: u16 = 0xa001;
 const INTEROPERABILITY_FOLDER: u16 = 0xa005;
 const INTEROPERABILITY_INDEX: u16 = 1;
-/// `ColorSpace` of any space but sRGB.
+/// Value of `ColorSpace` for any space but sRGB.
 const UNCALIBRATED: u32 = 0xffff;
 
-/// Adobe RGB (1998), where the file says it: an uncalibrated space, and the optional color space of DCF, `R03`.
+/// Returns Adobe RGB (1998) if the file states it: an uncalibrated space, and the optional color space of DCF, `R03`.
 pub(super) fn stated(exif: &[u8]) -> Option<Stated> {
     let exif = exif.strip_prefix(b"Exif\0\0").unwrap_or(exif);
     let folder = entry(exif, long(exif, 4)?, EXIF_FOLDER)?.value;
@@ -31,11 +31,11 @@ pub(super) fn stated(exif: &[u8]) -> Option<Stated> {
 
 struct Entry<'a> {
     value: u32,
-    /// The four bytes in which a value stands that fits.
+    /// The four bytes of the entry in which a short value is stored directly.
     bytes: &'a [u8],
 }
 
-/// The entry of a tag in the folder at an offset.
+/// Finds the entry of a tag in the directory at the offset `folder`.
 fn entry(exif: &[u8], folder: u32, tag: u16) -> Option<Entry<'_>> {
     const SHORT: u16 = 3;
     let start = folder as usize;
@@ -68,7 +68,7 @@ mod tests {
     use crate::read::decode::decode_bytes;
     use crate::read::linear::Choice;
 
-    /// As cameras write it, in either order of bytes.
+    /// Builds Exif data as cameras write them, in either byte order.
     fn exif(is_big: bool, color_space: u16, index: &[u8; 4]) -> Vec<u8> {
         let short = |v: u16| if is_big { v.to_be_bytes() } else { v.to_le_bytes() };
         let long = |v: u32| if is_big { v.to_be_bytes() } else { v.to_le_bytes() };
@@ -106,7 +106,7 @@ mod tests {
         assert!(stated(&hostile).is_none());
     }
 
-    /// A green of Adobe RGB, in a JPEG without a profile: (0.2, 0.6, 0.3) of light there is another color in sRGB, by the matrices of
+    /// A green of Adobe RGB in a JPEG without a profile: light (0.2, 0.6, 0.3) in Adobe RGB is another color in sRGB, by the matrices of
     /// both spaces.
     #[test]
     fn its_colors_are_those_of_the_space() {

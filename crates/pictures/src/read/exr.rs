@@ -1,9 +1,11 @@
-//! OpenEXR: scene-linear light with its primaries, cover and depth, in one layer of several.
+//! Reads OpenEXR: scene-linear light with its primaries, alpha and depth, from one of several layers.
 //!
-//! Layers are what the format has two ways to say: parts of the file with a name, and channels named `layer.R`
-//! (OpenEXR, "Technical Introduction", 2013). The picture is the display window; what a file holds beside it is overscan, which is
-//! read where it is asked for, and where it holds nothing is black. Without a `chromaticities` attribute and the name of a linear space the primaries are
-//! those of Rec. 709, as the format's documentation says, which sRGB shares.
+//! The format has two kinds of layers: parts of the file with a name, and channels named `layer.R` (OpenEXR, "Technical Introduction",
+//! 2013).
+//! The picture is the display window. Pixels of a file outside it are overscan, which is read on request; pixels that the file does not
+//! store are black.
+//! Without a `chromaticities` attribute or the name of a linear space, the primaries are those of Rec. 709, as the format's documentation
+//! says. sRGB shares them.
 
 use super::linear::{Choice, Linear, OPAQUE, Trouble, check_size, finite, mend, over_black};
 use super::packed;
@@ -20,19 +22,19 @@ use spectra_color::matrix::{Matrix, product};
 use spectra_color::{Adaptation, RgbSpace, Transfer, xyz_of_xy};
 use std::io::{BufRead, Seek};
 
-/// First bytes of a file.
+/// First bytes of an OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-/// Most bytes that all layers of a file take in memory.
+/// Largest number of bytes that all layers of a file may take in memory.
 const MAX_BYTES: u64 = 4 << 30;
-/// No compression of the format packs more into a byte: deflate ends near 1 032 to 1.
+/// Upper limit of the compression ratio: no compression of the format exceeds deflate, which reaches about 1 032 to 1.
 const MAX_RATIO: u64 = 1_100;
 
-/// Channels that belong together.
+/// A group of channels that belong to one layer.
 struct Group {
-    /// Its name, as `layer` chooses it; empty for the plain channels of a file without names.
+    /// Name by which `layer` chooses the group; empty for the plain channels of a file without names.
     name: String,
     part: usize,
-    /// Name within the layer and number in the part.
+    /// Name of each channel within the layer, and its index in the part.
     channels: Vec<(String, usize)>,
 }
 
@@ -41,7 +43,7 @@ impl Group {
         self.channels.iter().find(|(own, _)| own.eq_ignore_ascii_case(name)).map(|(_, at)| (self.part, *at))
     }
 
-    /// Red, green and blue; or gray.
+    /// Red, green and blue, or gray; `None` if the group has no light.
     fn light(&self) -> Option<Vec<(usize, usize)>> {
         let rgb: Vec<_> = ["R", "G", "B"].iter().filter_map(|c| self.channel(c)).collect();
         if rgb.len() == 3 {
@@ -52,15 +54,15 @@ impl Group {
     }
 }
 
-/// The channels that are chosen of a file, each by its part and its number there.
+/// Channels chosen from a file, each by its part and its index there.
 struct Chosen {
-    /// Red, green and blue, or gray; none where no light is wanted.
+    /// Red, green and blue, or gray; empty if no light is wanted.
     light: Vec<(usize, usize)>,
     alpha: Option<(usize, usize)>,
     depth: Option<(usize, usize)>,
 }
 
-/// Headers of a file of `bytes` bytes, and what is chosen of it; without `lit` its depth only, and no light.
+/// Chooses channels from a file of `bytes` bytes. Without `lit`, chooses only the depth.
 fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Result<Chosen, Trouble> {
     check(headers, bytes)?;
     let groups = groups(headers);
@@ -76,7 +78,7 @@ fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Resu
         let sampling = headers[*part].channels.list[*at].sampling;
         (sampling.0, sampling.1) == (1, 1)
     };
-    // Where cover is not wanted it is looked at all the same, to say what is lost.
+    // Alpha is read even if it is not wanted, to warn about what is lost.
     let alpha = chosen.channel("A").filter(|at| lit && (choice.cover || is_whole(at)));
     for &(part, at) in light.iter().chain(&alpha).chain(&depth) {
         let channel = &headers[part].channels.list[at];
@@ -90,7 +92,11 @@ fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Resu
         let (a, b) = (window(chosen.part), window(part));
         if a != b {
             let size = |w: exr::meta::attribute::IntegerBounds| format!("{} x {}", w.size.0, w.size.1);
-            let text = format!("the depth has {} pixels, the picture {}, or lies elsewhere", size(b), size(a));
+            let text = format!(
+                "the depth has {} pixels and the picture {}, or their windows lie at different positions",
+                size(b),
+                size(a)
+            );
             return Err(Trouble::at("depth", text).hint("both must cover the same window"));
         }
     }
@@ -105,8 +111,8 @@ fn shape(headers: &[Header]) -> ([u32; 2], f64) {
     ([size.0 as u32, size.1 as u32], if (0.05..=20.0).contains(&aspect) { aspect } else { 1.0 })
 }
 
-/// What the chosen part of a file holds beyond the display window: as many pixels as both the left and the right have, and the top and
-/// the bottom; and what is left out, since one side has more.
+/// Returns the overscan of the chosen part: the number of pixels on each side beyond the display window, horizontally and vertically. Warns
+/// if opposite sides differ, because the excess is not used.
 fn overscan(headers: &[Header], part: usize) -> ([u32; 2], Option<Trouble>) {
     let display = headers[0].shared_attributes.display_window;
     let data = headers[part].data_window();
@@ -126,7 +132,7 @@ fn overscan(headers: &[Header], part: usize) -> ([u32; 2], Option<Trouble>) {
              below: {} are used on the left and the right, {} above and below",
             even[0], even[1]
         );
-        Trouble::file(text).hint("render as much overscan on opposite sides to have all of it used")
+        Trouble::file(text).hint("render equal overscan on opposite sides to use all of it")
     });
     (even, uneven)
 }
@@ -135,7 +141,7 @@ fn said(e: exr::error::Error) -> Trouble {
     Trouble::file(e.to_string())
 }
 
-/// What the header of a file of `bytes` bytes says.
+/// Reads the header of a file of `bytes` bytes.
 pub(super) fn header(
     reader: impl BufRead + Seek,
     bytes: u64,
@@ -149,7 +155,9 @@ pub(super) fn header(
     let [x, y] = overscan.map(u64::from);
     let fits = check_size(u64::from(width) + 2 * x, u64::from(height) + 2 * y).is_ok();
     let left = (!fits).then(|| {
-        let text = format!("with its overscan of {x} x {y} pixels on each side it is larger than what is read: the overscan is left out");
+        let text = format!(
+            "with its overscan of {x} x {y} pixels on each side the picture exceeds the limit: the overscan is not used"
+        );
         Trouble::file(text).hint("crop the data window")
     });
     let overscan = if fits { overscan } else { [0; 2] };
@@ -166,15 +174,15 @@ pub(super) fn header(
     })
 }
 
-/// How far the chosen depth of a file of `bytes` bytes reaches beyond the display window.
+/// Returns how many pixels the chosen depth of a file of `bytes` bytes reaches beyond the display window on each side.
 pub(super) fn depth_overscan(reader: impl BufRead + Seek, bytes: u64, choice: Choice<'_>) -> Result<[u32; 2], Trouble> {
     let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
     let part = chosen(&headers, bytes, choice, false)?.depth.map_or(0, |(part, _)| part);
     Ok(overscan(&headers, part).0)
 }
 
-/// Reads what is chosen of a file; without `lit` its depth only, and no light. Block after block goes to where it is
-/// wanted: what is not chosen takes no memory.
+/// Decodes the chosen channels of a file; without `lit`, only the depth. Blocks are unpacked one by one to where they belong, so channels
+/// that are not chosen take no memory.
 pub(super) fn decode(
     mut reader: impl BufRead + Seek + Send,
     bytes: u64,
@@ -190,7 +198,7 @@ pub(super) fn decode(
     check_size(sides[0], sides[1])?;
     let [width, height] = sides.map(|side| side as u32);
     let pixels = width as usize * height as usize;
-    // Where a file holds nothing of the window there is no light, and nothing near.
+    // Pixels that the file does not store have no light and infinite depth.
     let mut rgb = vec![[0.0_f32; 3]; if lit { pixels } else { 0 }];
     let mut alpha = alpha_at.filter(|_| choice.cover).map(|_| vec![0.0_f32; pixels]);
     let mut opaque = 0_usize;
@@ -252,7 +260,7 @@ pub(super) fn decode(
     Ok(Linear { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None, doubts })
 }
 
-/// Every channel of a file of `bytes` bytes as it is, and the texts of its header; 0 where the file holds nothing of the window.
+/// Reads every channel of a file of `bytes` bytes unchanged, and the texts of its header. Pixels that the file does not store are 0.
 pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Result<Planes, Trouble> {
     packed::check(&mut reader)?;
     let reader = exr::block::read(reader, false).map_err(said)?;
@@ -265,12 +273,12 @@ pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Resu
         let key = format!("unit {name}");
         attributes.iter().find(|(own, _)| *own == key).map(|(_, text)| text.clone()).unwrap_or_default()
     };
-    // Where the channels of each part begin.
+    // `first` holds the index of the first channel of each part.
     let (mut channels, mut first) = (Vec::new(), Vec::new());
     let count: usize = headers.iter().map(|header| header.channels.list.len()).sum();
     if (count as u64).saturating_mul(pixels as u64).saturating_mul(size_of::<f32>() as u64) > MAX_BYTES {
         return Err(Trouble::file(format!(
-            "{count} channels of {width} x {height} pixels; at most {MAX_BYTES} bytes are read"
+            "{count} channels of {width} x {height} pixels are too large: at most {MAX_BYTES} bytes can be read"
         )));
     }
     for header in &headers {
@@ -316,7 +324,7 @@ pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Resu
     let (stated, doubt) = space::of(headers[0].shared_attributes.chromaticities, &attributes);
     let has = |name: &str| channels.iter().any(|c| c.name == name);
     let doubts = doubt.filter(|_| ["R", "G", "B"].into_iter().all(has)).into_iter().collect();
-    // Refused here as everywhere where they span no colors.
+    // Chromaticities that span no colors are refused here too.
     stated.map(|c| matrix(c, None)).transpose()?;
     let chromaticities = stated.map(|c| [c.red, c.green, c.blue, c.white].map(place));
     Ok(Planes {
@@ -332,7 +340,7 @@ pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Resu
     })
 }
 
-/// Texts of the headers, sorted by name; of several parts the first that says it.
+/// Returns the texts of the headers, sorted by name. Of several parts, the first with a name counts.
 fn texts(headers: &[Header]) -> Vec<(String, String)> {
     let mut all = std::collections::BTreeMap::new();
     for header in headers {
@@ -347,7 +355,7 @@ fn texts(headers: &[Header]) -> Vec<(String, String)> {
     all.into_iter().collect()
 }
 
-/// The samples of a line as single precision.
+/// Returns the samples of a line in single precision.
 fn samples(line: &LineRef<'_>, kind: SampleType) -> exr::error::Result<Vec<f32>> {
     match kind {
         SampleType::F16 => line.read_samples::<f16>().map(|v| v.map(f16::to_f32)).collect(),
@@ -356,7 +364,7 @@ fn samples(line: &LineRef<'_>, kind: SampleType) -> exr::error::Result<Vec<f32>>
     }
 }
 
-/// Sizes, before anything is allocated.
+/// Checks the sizes before anything is allocated.
 fn check(headers: &[Header], file_bytes: u64) -> Result<(), Trouble> {
     let mut total = 0_u64;
     for header in headers {
@@ -375,10 +383,12 @@ fn check(headers: &[Header], file_bytes: u64) -> Result<(), Trouble> {
         return Err(Trouble::file("the picture has no layers"));
     }
     if total > MAX_BYTES {
-        return Err(Trouble::file(format!("all layers together take {total} bytes; at most {MAX_BYTES} are read")));
+        return Err(Trouble::file(format!("all layers together take {total} bytes; at most {MAX_BYTES} can be read")));
     }
     if total > file_bytes.saturating_mul(MAX_RATIO) {
-        return Err(Trouble::file(format!("the header says {total} bytes of pixels, which {file_bytes} cannot hold")));
+        return Err(Trouble::file(format!(
+            "the header states {total} bytes of pixels, but a file of {file_bytes} bytes cannot hold them"
+        )));
     }
     Ok(())
 }
@@ -406,7 +416,7 @@ fn groups(headers: &[Header]) -> Vec<Group> {
     groups
 }
 
-/// The layers that hold light, for a message.
+/// Names of the layers that hold light, for a message.
 fn names(groups: &[Group]) -> String {
     let names: Vec<_> = groups.iter().filter(|g| g.light().is_some() && !g.name.is_empty()).collect();
     let shown: Vec<_> = names.iter().take(12).map(|g| format!("`{}`", g.name)).collect();
@@ -421,7 +431,7 @@ fn choose<'a>(groups: &'a [Group], layer: Option<&str>) -> Result<&'a Group, Tro
             trouble.hint(if known.is_empty() { "it has no named layers".to_owned() } else { format!("it has {known}") })
         });
     }
-    // Plain channels first, then a part whose channels are plain, then whatever is the only one.
+    // Order of preference: plain channels, then a single layer with light.
     let with_light: Vec<&Group> = groups.iter().filter(|g| g.light().is_some()).collect();
     match (with_light.iter().find(|g| g.name.is_empty()), with_light.as_slice()) {
         (Some(plain), _) => Ok(plain),
@@ -437,14 +447,14 @@ fn choose<'a>(groups: &'a [Group], layer: Option<&str>) -> Result<&'a Group, Tro
 fn no_light(group: &Group, groups: &[Group]) -> Trouble {
     let own: Vec<_> = group.channels.iter().take(12).map(|(name, _)| format!("`{name}`")).collect();
     let of = if group.name.is_empty() { String::new() } else { format!(" in layer `{}`", group.name) };
-    let trouble = Trouble::file(format!("no channels R, G, B or Y{of}, but {}", own.join(", ")));
+    let trouble = Trouble::file(format!("the file has no channels R, G, B or Y{of}; it has {}", own.join(", ")));
     match names(groups) {
         known if known.is_empty() => trouble.hint("write it with R, G and B"),
-        known => trouble.hint(format!("layers with light are {known}")),
+        known => trouble.hint(format!("choose a layer with light: {known}")),
     }
 }
 
-/// The channel of that name in the layer; or of that full name anywhere; or the only one of that name.
+/// Finds the depth channel: one of this name in the chosen layer, or of this full name anywhere, or the only one of this name in the file.
 fn depth_channel(groups: &[Group], chosen: &Group, name: &str) -> Result<(usize, usize), Trouble> {
     let full = |g: &Group, own: &str| if g.name.is_empty() { own.to_owned() } else { format!("{}.{own}", g.name) };
     let anywhere = || {
@@ -464,8 +474,8 @@ fn depth_channel(groups: &[Group], chosen: &Group, name: &str) -> Result<(usize,
     })
 }
 
-/// From the file's primaries to those of sRGB, white to white (Bradford); `None` where they are the same. The values of CIE XYZ
-/// say nothing of white: there it is `neutral`, D65 where the file states none.
+/// Returns the matrix from the file's primaries to those of sRGB, white to white (Bradford); `None` if they are the same. The
+/// chromaticities of CIE XYZ do not define the picture's white: `neutral` does, or D65 if the file states none.
 fn matrix(c: Chromaticities, neutral: Option<[f64; 2]>) -> Result<Option<Matrix>, Trouble> {
     let xy = [c.red, c.green, c.blue, c.white].map(|v| [f64::from(v.0), f64::from(v.1)]);
     let [r, g, b, white] = xy;
@@ -476,11 +486,12 @@ fn matrix(c: Chromaticities, neutral: Option<[f64; 2]>) -> Result<Option<Matrix>
         return Ok(Some(product(&srgb.rgb_from_xyz, &Adaptation::Bradford.matrix(white, srgb.white_xyz()))));
     }
     let area = (g[0] - r[0]) * (b[1] - r[1]) - (g[1] - r[1]) * (b[0] - r[0]);
-    // ACES AP0 has a blue primary of negative y (SMPTE ST 2065-1); nothing has one of 0.
+    // ACES AP0 has a blue primary of negative y (SMPTE ST 2065-1); no space has a y of 0.
     let sound = xy.iter().all(|[x, y]| x.abs() < 2.0 && y.abs() < 2.0 && y.abs() > 1e-4) && area.abs() > 1e-4;
     let white_is_sound = (0.1..0.7).contains(&white[0]) && (0.1..0.7).contains(&white[1]);
     if !(sound && white_is_sound) {
-        return Err(Trouble::file("its `chromaticities` span no colors").hint("remove the attribute for Rec. 709"));
+        return Err(Trouble::file("its `chromaticities` do not span a range of colors")
+            .hint("remove the attribute if Rec. 709 is right"));
     }
     let srgb = RgbSpace::srgb();
     let primaries = [r, g, b];

@@ -1,4 +1,4 @@
-//! OpenEXR files, written by the `exr` crate and read back.
+//! Tests that read OpenEXR files written by the `exr` crate.
 
 use super::decode::decode_bytes as decode;
 use super::linear::{Choice, Linear, Trouble};
@@ -57,8 +57,8 @@ fn both_floating_point_kinds_keep_highlights_and_rows_start_at_the_top() {
     }
 }
 
-/// An infinite value is as bright as the brightest that the picture has, never darker than white; what is no number is black
-/// as a pixel, in whichever channel it stands.
+/// An infinite value becomes as bright as the brightest finite value of the picture, and at least white. A pixel with NaN in any channel
+/// becomes black.
 #[test]
 fn infinite_values_are_bright_and_counted() {
     let (nan, inf) = (f32::NAN, f32::INFINITY);
@@ -68,7 +68,7 @@ fn infinite_values_are_bright_and_counted() {
     assert_eq!(read.rgb, [[0.5, 0.25, 0.125], [12.0; 3], [0.0; 3], [12.0, 0.2, 0.0], [-0.5, 12.0, 0.1]]);
     let [doubt] = &read.doubts[..] else { panic!("{:?}", read.doubts) };
     assert!(doubt.text.contains("2 pixels with infinite values, which count as 12"), "{}", doubt.text);
-    assert!(doubt.text.contains("1 pixel with values that are no numbers"), "{}", doubt.text);
+    assert!(doubt.text.contains("1 pixel with values that are not numbers"), "{}", doubt.text);
     let dim = file(window(2, 1), vec![layer(None, (2, 1), rgb((2, 1), |i| [[0.2; 3], [inf; 3]][i], halves))]);
     assert_eq!(
         decode(&dim, Choice::default()).unwrap().rgb,
@@ -100,8 +100,8 @@ fn chromaticities_are_honored() {
     }
 }
 
-/// The chromaticities of CIE XYZ, and the picture's white as this program writes it: D65 is white, and so is another white that the
-/// file says is neutral.
+/// Reads a file with the chromaticities of CIE XYZ, as this program writes them. D65 is white, and so is another white if the file says
+/// that it is neutral.
 #[test]
 fn xyz_is_read_by_its_chromaticities() {
     let xyz = Chromaticities {
@@ -188,7 +188,7 @@ fn a_file_without_light_says_what_it_has() {
 
 #[test]
 fn the_display_window_is_the_picture() {
-    // Two pixels of data, of which the display window shows the right one and one beside it.
+    // Two pixels of data; the display window shows the right one and one pixel to the right of the data.
     let attributes = ImageAttributes::new(IntegerBounds::new((1, 0), (2, 1)));
     let bytes = file(attributes, vec![layer(None, (2, 1), rgb((2, 1), |i| [1.0 + i as f32; 3], floats))]);
     let read = decode(&bytes, Choice::default()).unwrap();
@@ -218,7 +218,7 @@ fn broken_and_hostile_files_are_refused_before_anything_is_allocated() {
     }
 }
 
-/// Blocks that say that they unpack to gigabytes: the word of each number at the head of a block.
+/// Refuses blocks that claim to unpack to gigabytes, in any of the counters at the start of a block.
 #[test]
 fn blocks_that_promise_too_much_are_refused() {
     let of = |i: usize| [(i as f32 * 0.37).sin() + 1.5, 0.5, i as f32 / 4096.0];
@@ -226,7 +226,7 @@ fn blocks_that_promise_too_much_are_refused() {
     one.encoding.compression = exr::compression::Compression::DWAA(Some(45.0));
     let good = file(window(64, 64), vec![one]);
     assert!(decode(&good, Choice::default()).is_ok());
-    // Two blocks of 32 lines: behind the table of their places stand line, size, then the numbers.
+    // Two blocks of 32 lines. After the offset table, each block has its line, its size, and then the counters.
     let place = |at: usize| good.get(at..at + 8).map(|b| u64::from_le_bytes(b.try_into().unwrap()) as usize);
     let table = (8..good.len()).find(|at| place(*at) == Some(at + 16)).expect("a table of places");
     let numbers = place(table).unwrap() + 8;
@@ -235,7 +235,7 @@ fn blocks_that_promise_too_much_are_refused() {
             let mut bad = good.clone();
             bad[numbers + 8 * number..][..8].copy_from_slice(&promise.to_le_bytes());
             let text = trouble(decode(&bad, Choice::default())).text;
-            assert!(text.contains("unpacks to more than its pixels hold"), "{number}, {promise}: {text}");
+            assert!(text.contains("unpack to more than its pixels can hold"), "{number}, {promise}: {text}");
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Formats that are read by a library, where the program was built with one: DPX, JPEG 2000, HEIC and many more.
+//! Reads formats that only a linked library supports: DPX, JPEG 2000, HEIC and many more.
 //!
-//! What a file says of its encoding is believed. Where it is silent, floating point is linear, a Cineon file is
-//! what the name says, the integers of FITS are counts of light, those of a DPX file can be anything and are refused, and
-//! all others are taken as sRGB.
+//! The color encoding that a file states is trusted. For files that state none:
+//! floating point is linear, Cineon files are logarithmic, and the integers of FITS are linear counts of light. Integers of a DPX file can
+//! be anything and are refused; all other integers are taken as sRGB.
 
 use super::encoding::Encoding;
 use super::header::Header;
@@ -12,19 +12,19 @@ use crate::library::{self, FilePicture, PictureLimits};
 use spectra_color::Transfer;
 use spectra_core::resources::Found;
 
-/// Endings of files that the library reads, beyond those that are read without it.
+/// File extensions that the library reads, in addition to those that are read without it.
 pub const ENDINGS: &str = "tx env sm vsm cin dds dcm dpx fits gif heic heif heics avif ico iff z jp2 j2k \
     j2c ppm pgm pbm pnm pfm psd pdd psb bay bmq cr2 cr3 crw cs1 dc2 dcr dng erf fff k25 kdc mdc mos mrw nef orf pef pxn \
     raf raw rdc sr2 srf x3f arw 3fr cine ia kc2 mef nrw qtk rw2 sti rwl srw drf dsc ptx cap iiq rwz rla sgi rgb rgba bw \
     int inta pic tga tpic";
 
-/// The ending of a name, in lower case, without the dot.
+/// Extension of a file name in lower case, without the dot.
 fn ending(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     last.rsplit_once('.').map_or(String::new(), |(_, ending)| ending.to_ascii_lowercase())
 }
 
-/// Reads by the library.
+/// Reads a file with the linked library, as linear light. `said` replaces the encoding that the file states.
 pub(super) fn decode(found: &Found, choice: Choice<'_>, said: Option<Encoding>) -> Result<Linear, Trouble> {
     let (picture, encoding) = read(found, choice.name, said, true)?;
     let linear = linear(picture, encoding);
@@ -37,7 +37,7 @@ pub(super) fn decode(found: &Found, choice: Choice<'_>, said: Option<Encoding>) 
     Ok(Linear { alpha: None, doubts, ..linear })
 }
 
-/// What the library says of a file before it reads its pixels.
+/// Reads the header of a file with the linked library, without pixels.
 pub(super) fn header(found: &Found, choice: Choice<'_>, said: Option<Encoding>) -> Result<Header, Trouble> {
     let (picture, encoding) = read(found, choice.name, said, false)?;
     let ([width, height], pixel_aspect) = seen(&picture);
@@ -58,7 +58,7 @@ fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Resu
     let known = ENDINGS.split(' ').any(|own| own == ending);
     let Some(own) = library::library() else {
         return Err(if known {
-            Trouble::file(format!("`.{ending}` files are read by OpenImageIO only"))
+            Trouble::file(format!("`.{ending}` files can be read only with OpenImageIO"))
                 .hint(format!("save it as PNG, TIFF or JPEG; {}", library::WITHOUT))
         } else {
             Trouble::file("this is not an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file")
@@ -74,13 +74,13 @@ fn read(found: &Found, name: &str, said: Option<Encoding>, pixels: bool) -> Resu
     let read = if pixels { own.read(&ending, found, limits) } else { own.header(&ending, found, limits) };
     let picture = read.map_err(|cause| {
         let trouble = Trouble::file(format!("{cause} (read as `.{ending}` by {})", own.name()));
-        trouble.hint("is the file whole, and does its extension match its content?")
+        trouble.hint("is the file complete, and does its extension match its content?")
     })?;
     let encoding = encoding(&picture, said)?;
     Ok((picture, encoding))
 }
 
-/// What the library says, where a file of a known kind is of a variant that only it may know.
+/// Combines the reason why a file of a known kind is not read here with the library's error; without a library, says how to get one.
 pub(super) fn also(why: &str, trouble: Trouble) -> Trouble {
     if library::library().is_none() {
         return Trouble::file(why).hint(library::WITHOUT);
@@ -106,7 +106,7 @@ fn encoding(picture: &FilePicture, said: Option<Encoding>) -> Result<Encoding, T
         let words = picture.color_space.as_deref().unwrap_or("nothing");
         let text = format!("the file states its encoding as `{words}`, which defines no curve");
         Trouble::file(text)
-            .hint("state it: `transfer: srgb`, linear, rec709, or cineon for the log of a scanned negative")
+            .hint("state the encoding: `transfer: srgb`, `linear`, `rec709`, or `cineon` for the log encoding of a scanned negative")
     })
 }
 
@@ -116,7 +116,8 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
             *cover = positive(*cover).min(1.0);
         }
     }
-    // Cover multiplied into code values of light is multiplied into light; into those of a curve it must be taken out first.
+    // Alpha multiplied into linear code values is already multiplied into light. If the codes have a curve, alpha must be divided out
+    // first.
     let is_light = encoding == Encoding::Curve(Transfer::Linear);
     if let Some(alpha) = picture.alpha.as_ref().filter(|_| picture.multiplied && !is_light) {
         for (pixel, cover) in picture.rgb.iter_mut().zip(alpha) {
@@ -127,7 +128,7 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
     }
     let mut doubts = Vec::new();
     if picture.integers {
-        // Of 16 bits at most: those of 8 lie on every 257th.
+        // A table of 16 bits serves 8-bit codes too: they are every 257th entry.
         let table = encoding.table(65_536);
         for value in picture.rgb.iter_mut().flatten() {
             *value = table[(positive(*value) * 65_535.0 + 0.5).min(65_535.0) as usize];
@@ -162,7 +163,7 @@ fn linear(mut picture: FilePicture, encoding: Encoding) -> Linear {
     }
 }
 
-/// Pixels across and down, and width over height of one, as the picture is seen.
+/// Returns width and height in pixels, and width over height of a pixel, as the picture is seen.
 fn seen(picture: &FilePicture) -> ([u32; 2], f64) {
     if turn::is_on_its_side(picture.orientation) {
         ([picture.height_px, picture.width_px], 1.0 / picture.pixel_aspect)
@@ -190,7 +191,7 @@ mod tests {
         }
     }
 
-    /// Half a cover over code 0.8 of sRGB, light 0.60383 (IEC 61966-2-1), is light 0.30191, however the file keeps it.
+    /// Alpha 0.5 over sRGB code 0.8, light 0.60383 (IEC 61966-2-1), gives light 0.30191, whether the file multiplies by alpha or not.
     #[test]
     fn cover_is_multiplied_into_light_once() {
         let curve = Encoding::Curve(Transfer::Srgb);

@@ -1,25 +1,25 @@
-//! Shape and kind of a picture.
+//! Size, shape and kind of a picture.
 
 use super::linear::Trouble;
 
-/// Shape and kind of a picture.
+/// Size, shape and kind of a picture file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// Pixels across, as the picture is seen.
+    /// Width of the picture as it is seen, pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height of the picture as it is seen, pixels.
     pub height: u32,
-    /// Pixels that the file holds beyond the picture to the left and to the right, and above and below: as many as both sides have.
+    /// Pixels that the file holds beyond the picture on each side: the smaller of left and right, and the smaller of top and bottom.
     pub overscan: [u32; 2],
     /// Width over height of a pixel.
     pub pixel_aspect: f64,
-    /// Whether its values are integers, which clip.
+    /// Whether the values are integers, which clip.
     pub clips: bool,
-    /// Whether its values are encoded for a display, as those of photographs are: neither light nor its logarithm.
+    /// Whether the values are encoded for a display, as in photographs: neither linear nor logarithmic.
     pub is_for_display: bool,
-    /// Whether it is a JPEG.
+    /// Whether the file is a JPEG.
     pub is_jpeg: bool,
-    /// What it says that a person should know before believing the picture.
+    /// Warnings about the picture that a user should know.
     pub doubts: Vec<Trouble>,
 }
 
@@ -30,13 +30,13 @@ impl Header {
         f64::from(self.width) * self.pixel_aspect / f64::from(self.height)
     }
 
-    /// Width of the picture with `overscan` pixels on each side over its width without them.
+    /// Returns the width of the picture with `overscan` pixels on each side, divided by its width without them.
     #[must_use]
     pub fn widened(&self, overscan: [u32; 2]) -> f64 {
         f64::from(self.width + 2 * overscan[0]) / f64::from(self.width)
     }
 
-    /// Width over height of the picture with `overscan` pixels on each side.
+    /// Returns width over height of the picture with `overscan` pixels on each side.
     #[must_use]
     pub fn aspect_with(&self, overscan: [u32; 2]) -> f64 {
         let [width, height] = [self.width + 2 * overscan[0], self.height + 2 * overscan[1]].map(f64::from);

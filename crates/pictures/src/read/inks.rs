@@ -1,48 +1,49 @@
-//! Color profiles of four printing inks (ICC.1:2022): amounts of ink to colors, by tables.
+//! Color profiles of four printing inks (ICC.1:2022): convert amounts of ink to colors by tables.
 //!
-//! Of the tables of a profile that for relative colorimetry is taken, else its first: paper is white, and the darkest ink is as dark as it
-//! is. Between the entries of the table colors are interpolated along the first ink, and in the tetrahedra of the cube of the others.
+//! The table for relative colorimetry is used if the profile has one, otherwise its first table. Paper becomes white, and the darkest ink
+//! stays as dark as it is.
+//! Interpolation between table entries is linear along the first ink, and tetrahedral in the cube of the other three.
 
 use super::profile::{D50, fixed, light, long, tag};
 use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, RgbSpace};
 
-/// Inks.
+/// Number of inks.
 const INKS: usize = 4;
-/// Most entries of a table: 33 to the fourth.
+/// Largest number of table entries: 33 to the fourth power.
 const MOST_ENTRIES: usize = 1_185_921;
-/// Points at which curves of other kinds are known.
+/// Number of points at which parametric and other curves are sampled.
 const POINTS: usize = 4096;
 
-/// What a profile makes of four inks.
+/// A color profile that converts four inks to linear light.
 #[derive(Clone, Debug)]
 pub(super) struct Inks {
-    /// Of each ink.
+    /// Input curve of each ink.
     input: [Vec<f64>; INKS],
-    /// Entries along each ink, and three values of each; the last ink varies fastest.
+    /// Number of entries along each ink; the last ink varies fastest.
     grid: [usize; INKS],
     table: Vec<[f32; 3]>,
-    /// Behind the table: curves, a matrix with an offset, and curves.
+    /// Stages after the table: curves, and a matrix with an offset. Other curves (`output`) follow them.
     middle: Option<([Vec<f64>; 3], Matrix, [f64; 3])>,
     output: [Vec<f64>; 3],
-    /// How three values stand for a color.
+    /// Meaning of the three output values.
     connection: Connection,
-    /// From XYZ under D50 to linear light in `space`.
+    /// Matrix from XYZ under D50 to linear light in the target space.
     to_rgb: Matrix,
 }
 
-/// How the three numbers of a profile, 0 to 1, stand for a color.
+/// Encodings of a color by the three numbers of a profile, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Connection {
     Xyz,
-    /// L* up to 100 and a*, b* of -128 to 127.
+    /// CIE Lab: L* up to 100, and a*, b* from -128 to 127.
     Lab,
-    /// The same in 16 bits of version 2, where 0xff00 is 100 (6.3.4.2).
+    /// CIE Lab in the 16-bit encoding of version 2, where 0xff00 is 100 (6.3.4.2).
     OldLab,
 }
 
 impl Inks {
-    /// By the bytes of a profile, into linear light of a space; `None` where it is of another kind, or broken.
+    /// Reads a profile that converts to linear light of `space`; `None` if it is of another kind or broken.
     pub(super) fn read(bytes: &[u8], space: &RgbSpace) -> Option<Self> {
         if bytes.get(36..40)? != b"acsp" || bytes.get(16..20)? != b"CMYK" {
             return None;
@@ -65,7 +66,8 @@ impl Inks {
         }
     }
 
-    /// Curves, a table and curves, all of so many bytes a number (10.10 and 10.11). Their matrix is for XYZ as input alone.
+    /// Reads curves, a table and curves, with `bytes` bytes per number (10.10 and 10.11). The matrix of these types applies only to XYZ
+    /// input and is ignored.
     fn plain(lut: &[u8], bytes: usize, connection: Connection, to_rgb: Matrix) -> Option<Self> {
         let grid = [usize::from(*lut.get(10)?); INKS];
         let short = |at: usize| Some(usize::from(u16::from_be_bytes([*lut.get(at)?, *lut.get(at + 1)?])));
@@ -95,7 +97,7 @@ impl Inks {
         Some(Self { input, grid, table, middle: None, output, connection, to_rgb })
     }
 
-    /// Curves, a table, curves, a matrix and curves (10.12).
+    /// Reads curves, a table, curves, a matrix and curves (10.12).
     fn staged(lut: &[u8], connection: Connection, to_rgb: Matrix) -> Option<Self> {
         let offset = |at: usize| long(lut, at).map(|at| at as usize);
         let [b, matrix, m, table, a] = [offset(12)?, offset(16)?, offset(20)?, offset(24)?, offset(28)?];
@@ -123,7 +125,7 @@ impl Inks {
         Some(Self { input, grid, table, middle, output: curves::<3>(lut, b)?, connection, to_rgb })
     }
 
-    /// Linear light of amounts of ink, each from 0 (none) to 1; paper is (1, 1, 1).
+    /// Converts amounts of ink, each from 0 (none) to 1, to linear light; paper is (1, 1, 1).
     pub(super) fn light(&self, inks: [f64; INKS]) -> [f64; 3] {
         let mut values = self.interpolated(std::array::from_fn(|ink| along(&self.input[ink], inks[ink])));
         if let Some((curves, matrix, offset)) = &self.middle {
@@ -147,7 +149,7 @@ impl Inks {
             step[ink] = step[ink + 1] * self.grid[ink + 1];
         }
         let corner: usize = (0..INKS).map(|ink| from[ink] * step[ink]).sum();
-        // From the near corner of the cube to the far one, along the longest part first.
+        // Tetrahedral interpolation: goes from the near corner of the cube to the far one, along the largest fraction first.
         let mut order = [1, 2, 3];
         order.sort_by(|a, b| part[*b].total_cmp(&part[*a]));
         let in_cube = |corner: usize| -> [f64; 3] {
@@ -166,9 +168,9 @@ impl Inks {
 }
 
 impl Connection {
-    /// XYZ under D50, white's Y 1.
+    /// XYZ under D50, where white has Y = 1.
     fn xyz(self, values: [f64; 3]) -> [f64; 3] {
-        /// Of an old L*, and of an old a* or b* over 255.
+        /// Scale of L* in the old encoding, and of a* and b* over 255.
         const OLD: f64 = 65_535.0 / 65_280.0;
         let (scale, [l, a, b]) = match self {
             Self::Xyz => return values.map(|v| v * (1.0 + 32_767.0 / 32_768.0)),
@@ -185,7 +187,7 @@ impl Connection {
     }
 }
 
-/// Numbers of one or two bytes, 0 to 1.
+/// Numbers of one or two bytes each, scaled to 0 to 1.
 struct Numbers<'a> {
     bytes: &'a [u8],
     size: usize,
@@ -205,7 +207,7 @@ impl Numbers<'_> {
             return None;
         }
         let entries = grid.iter().try_fold(1_usize, |all, n| all.checked_mul(*n)).filter(|n| *n <= MOST_ENTRIES)?;
-        // All there, before room is made.
+        // Checks that all entries are there before allocating.
         self.bytes.get(at..at.checked_add(3 * entries * self.size)?)?;
         let entry = |i: usize| -> Option<[f32; 3]> {
             let value = |c: usize| self.at(at + (3 * i + c) * self.size).map(|v| v as f32);
@@ -215,7 +217,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Curves that stand one behind the other, each at a multiple of four bytes.
+/// Reads consecutive curves, each aligned to four bytes.
 fn curves<const N: usize>(lut: &[u8], mut at: usize) -> Option<[Vec<f64>; N]> {
     let mut all: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
     for curve in &mut all {
@@ -232,7 +234,7 @@ fn curves<const N: usize>(lut: &[u8], mut at: usize) -> Option<[Vec<f64>; N]> {
     Some(all)
 }
 
-/// A curve at a place from 0 to 1.
+/// Interpolates a curve at a place from 0 to 1.
 fn along(curve: &[f64], place: f64) -> f64 {
     let at = place.clamp(0.0, 1.0) * (curve.len() - 1) as f64;
     let from = (at as usize).min(curve.len() - 2);

@@ -1,13 +1,13 @@
-//! Whether a JPEG is all there. Decoders fill what is missing with gray and say nothing.
+//! Checks whether a JPEG file is complete. Decoders fill missing parts with gray without an error.
 
 use super::linear::Trouble;
 use spectra_core::resources::Found;
 use std::io::{self, BufRead, Read};
 
-/// Refuses a file that ends before its picture does. It is read once, and none of it kept.
+/// Refuses a file that ends before its picture does. Reads the file once and keeps none of it.
 ///
 /// # Errors
-/// It is cut off, or cannot be read.
+/// The file is truncated, or cannot be read.
 pub(super) fn refuse_unless_whole(found: &Found) -> Result<(), Trouble> {
     let file = found.open().map_err(|error| Trouble::file(error.to_string()))?;
     match is_whole(file) {
@@ -18,8 +18,8 @@ pub(super) fn refuse_unless_whole(found: &Found) -> Result<(), Trouble> {
     }
 }
 
-/// Whether the file goes on to the end of its picture (marker EOI; ITU-T T.81, B.1 and B.2). Segments are stepped over by
-/// their lengths, so that the end of a thumbnail inside of one is not taken for it.
+/// Returns whether the file reaches the end of its picture (marker EOI; ITU-T T.81, B.1 and B.2). Skips segments by their lengths, so that
+/// the end of an embedded thumbnail does not count.
 fn is_whole(mut file: impl BufRead) -> io::Result<bool> {
     const EOI: u8 = 0xd9;
     let mut bytes = [0; 2];
@@ -27,8 +27,8 @@ fn is_whole(mut file: impl BufRead) -> io::Result<bool> {
         return Ok(false);
     }
     loop {
-        // The next marker: 0xff, which may come several times, and a number. In the data of a scan 0xff 0 is a value, and
-        // 0xd0 to 0xd7 only restart it.
+        // The next marker is 0xff, possibly repeated, and a number. In the data of a scan, 0xff 0 is a value, and 0xd0 to 0xd7 only restart
+        // the scan.
         file.skip_until(0xff)?;
         let mut marker = [0xff];
         while marker[0] == 0xff {
@@ -39,7 +39,7 @@ fn is_whole(mut file: impl BufRead) -> io::Result<bool> {
         match marker[0] {
             0 | 0x01 | 0xd0..=0xd8 => {}
             EOI => return Ok(true),
-            // Of a scan (SOS) the data follow its header, and are looked through for the next marker.
+            // A segment. After the header of a scan (SOS) its data follow, and are searched for the next marker.
             _ => {
                 if !fill(&mut file, &mut bytes)? {
                     return Ok(false);
@@ -51,9 +51,9 @@ fn is_whole(mut file: impl BufRead) -> io::Result<bool> {
     }
 }
 
-/// How many components its picture has, by the header of its frame (B.2.2); `None` where there is none.
+/// Returns the number of components of the picture from its frame header (B.2.2); `None` if there is no such header.
 pub(super) fn components(mut file: impl BufRead) -> Option<u8> {
-    /// Behind the length: bits of a sample, height, width, components.
+    /// Offset of the number of components after the segment length: bits per sample, height and width come first.
     const COMPONENTS_AT: usize = 5;
     let mut marker = [0; 2];
     fill(&mut file, &mut marker).ok().filter(|is| *is)?;
@@ -66,7 +66,7 @@ pub(super) fn components(mut file: impl BufRead) -> Option<u8> {
         fill(&mut file, &mut length).ok().filter(|is| *is)?;
         let length = u64::from(u16::from_be_bytes(length)).saturating_sub(2);
         match marker[0] {
-            // Tables of codes, JPEG extensions and arithmetic conditioning have numbers among those of frames.
+            // The markers of code tables, JPEG extensions and arithmetic conditioning lie among those of frames.
             0xc0..=0xcf if !matches!(marker[0], 0xc4 | 0xc8 | 0xcc) => {
                 let mut frame = [0; COMPONENTS_AT + 1];
                 fill(&mut file, &mut frame).ok().filter(|is| *is)?;
@@ -83,7 +83,7 @@ pub(super) fn components(mut file: impl BufRead) -> Option<u8> {
     }
 }
 
-/// Reads as many bytes; says whether there were so many.
+/// Fills `bytes` from the file; returns whether there were enough bytes.
 fn fill(file: &mut impl Read, bytes: &mut [u8]) -> io::Result<bool> {
     match file.read_exact(bytes) {
         Ok(()) => Ok(true),

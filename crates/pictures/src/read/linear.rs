@@ -1,59 +1,58 @@
-//! A picture in linear light, and what can be wrong with a picture file.
+//! Pictures in linear light, and errors and warnings about picture files.
 
 /// Largest side of a picture, pixels.
 pub(super) const MAX_SIDE: u32 = 65_535;
-/// Largest picture, pixels: as linear light it takes 12 bytes each.
+/// Largest picture, pixels: linear light takes 12 bytes for each.
 pub(super) const MAX_PIXELS: u64 = 120_000_000;
 
 /// A picture in linear light, sRGB primaries, upright, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linear {
-    /// Pixels across.
+    /// Width, pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height, pixels.
     pub height: u32,
     /// Width over height of a pixel.
     pub pixel_aspect: f64,
-    /// Light; where the picture is not opaque, times alpha. A color beyond sRGB has negative values.
+    /// Linear light, multiplied by alpha where the picture is not opaque. A color outside sRGB has negative values.
     pub rgb: Vec<[f32; 3]>,
-    /// Cover, 0 to 1; `None` where all of it is opaque, or none was asked for.
+    /// Opacity, 0 to 1; `None` if the whole picture is opaque, or if alpha was not requested.
     pub alpha: Option<Vec<f32>>,
-    /// The depth channel as the file has it, if one was asked for.
+    /// Depth channel as the file stores it, if requested.
     pub depth: Option<Vec<f32>>,
-    /// The code value from which on integers are clipped, in linear light; `None` for floating point.
+    /// Linear light at which integer code values clip; `None` for floating point.
     pub clipped_at: Option<f32>,
-    /// What of its pixels a person should know before believing them.
+    /// Warnings about the pixels that a user should know.
     pub doubts: Vec<Trouble>,
 }
 
-/// What is known of a file, and chosen of one of several layers.
+/// Options for reading a picture file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
-    /// What the file is called: its ending tells formats that its content does not.
+    /// Name of the file: its extension selects formats that the content does not reveal.
     pub name: &'a str,
-    /// How its code values are encoded, by name; as the file says, or else as its format has it, if absent.
+    /// Name of the encoding of the code values. `None` uses the one that the file states, or else the usual one of its format.
     pub transfer: Option<&'a str>,
-    /// Whether cover is wanted beside light.
+    /// Whether alpha is requested in addition to light.
     pub cover: bool,
-    /// The layer; the file's plain R, G, B if absent.
+    /// Name of the layer; `None` for the plain R, G, B of the file.
     pub layer: Option<&'a str>,
-    /// The channel that holds depth, where depth is wanted.
+    /// Name of the depth channel, if depth is requested.
     pub depth: Option<&'a str>,
-    /// How many pixels beyond the picture are wanted on the left and the right, and above and below; at most as many as the header's
-    /// `overscan`.
+    /// Number of pixels requested beyond the picture on each side, horizontally and vertically; at most the header's `overscan`.
     pub overscan: [u32; 2],
-    /// Whether its numbers are no light: no color space is followed, no cover multiplied in, and none is made finite.
+    /// Whether the values are not light: no color space is applied, alpha is not multiplied in, and values are not made finite.
     pub is_plain: bool,
 }
 
-/// What is wrong with a picture file, or doubtful in it.
+/// An error in a picture file, or a warning about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trouble {
-    /// The key whose value is to be changed: `file`, `layer`, `depth` or `transfer`.
+    /// Key whose value the user should change: `file`, `layer`, `depth` or `transfer`.
     pub key: &'static str,
-    /// What is wrong.
+    /// Description of the problem.
     pub text: String,
-    /// What to do about it.
+    /// What the user can do about the problem.
     pub hint: Option<String>,
 }
 
@@ -66,7 +65,7 @@ impl Trouble {
         Self { key, text: text.into(), hint: None }
     }
 
-    /// What to do about it, also where nothing but the file's bytes is to blame.
+    /// Returns what the user can do; general advice if only the bytes of the file are wrong.
     #[must_use]
     pub fn advice(&self) -> &str {
         self.hint.as_deref().unwrap_or("is the file complete? Save it again as OpenEXR, PNG, JPEG, TIFF or HDR")
@@ -77,20 +76,23 @@ impl Trouble {
     }
 }
 
-/// Whether a picture of that size is read at all.
+/// Returns an error if a picture of this size is empty or exceeds the limits.
 pub(super) fn check_size(width: u64, height: u64) -> Result<(), Trouble> {
     if width == 0 || height == 0 {
         return Err(Trouble::file("the picture has no pixels"));
     }
     if width > u64::from(MAX_SIDE) || height > u64::from(MAX_SIDE) || width * height > MAX_PIXELS {
-        let text = format!("{width} x {height} pixels; at most {MAX_PIXELS} in all and {MAX_SIDE} a side are read");
+        let text = format!(
+            "the picture is too large: {width} x {height} pixels; at most {MAX_PIXELS} in total and {MAX_SIDE} per side"
+        );
         return Err(Trouble::file(text));
     }
     Ok(())
 }
 
-/// Makes light of values that are none, and says of how many pixels: an infinite value counts as the largest finite one of
-/// the picture, or as white where that is more; a pixel with a value that is no number is black.
+/// Repairs values that are not finite, and returns a warning with the number of pixels.
+/// An infinite value becomes the largest finite value of the picture, or white if that is more. A pixel with NaN or negative infinity
+/// becomes black.
 pub(super) fn mend(rgb: &mut [[f32; 3]]) -> Option<Trouble> {
     let (mut largest, mut is_sound) = (1.0_f32, true);
     for value in rgb.iter().flatten() {
@@ -117,32 +119,32 @@ pub(super) fn mend(rgb: &mut [[f32; 3]]) -> Option<Trouble> {
     let infinite =
         (infinite > 0).then(|| format!("{} with infinite values, which count as {largest}", pixels(infinite)));
     let undefined =
-        (undefined > 0).then(|| format!("{} with values that are no numbers, taken as black", pixels(undefined)));
+        (undefined > 0).then(|| format!("{} with values that are not numbers, taken as black", pixels(undefined)));
     let all: Vec<String> = infinite.into_iter().chain(undefined).collect();
     let trouble = Trouble::file(format!("it has {}", all.join(", and ")));
     Some(trouble.hint("repair them in the program that wrote the file"))
 }
 
-/// Cover from which on a pixel counts as opaque: files of 16 bits do not always hold 1 to its last digit.
+/// Alpha from which a pixel counts as opaque: files of 16 bits do not always hold 1 to its last digit.
 pub(super) const OPAQUE: f32 = 0.999;
 
-/// What to say where `thin` of all pixels are not opaque and nothing is known of what lies behind them.
+/// Returns a warning if `thin` of `pixels` pixels are not opaque and the background is unknown.
 pub(super) fn over_black(thin: usize, pixels: usize) -> Option<Trouble> {
     if thin == 0 {
         return None;
     }
     let text = format!(
-        "{thin} of its {pixels} pixels are not opaque: they are laid over black, which a meter of the whole frame counts, too"
+        "{thin} of its {pixels} pixels are not opaque: they are laid over black, which a meter of the whole frame also counts"
     );
     Some(Trouble::file(text).hint("lay it over a background first, or save it without alpha"))
 }
 
-/// A value of light as the sources take it: infinite and undefined ones are none, negative ones belong to colors beyond sRGB.
+/// Replaces infinite and NaN values of light by 0. Negative values stay, because colors outside sRGB have them.
 pub(super) fn finite(value: f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// A value that cannot be negative, such as cover or a code: infinite and undefined ones are 0, too.
+/// Replaces negative, infinite and NaN values by 0, for quantities that cannot be negative (alpha, codes).
 pub(super) fn positive(value: f32) -> f32 {
     finite(value).max(0.0)
 }

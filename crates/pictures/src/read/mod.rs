@@ -1,4 +1,4 @@
-//! Picture files to linear light.
+//! Reads picture files as linear light.
 
 mod beginning;
 mod channels;

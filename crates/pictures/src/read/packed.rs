@@ -1,5 +1,5 @@
-//! What blocks of an OpenEXR file say of their own size where it is packed by DWA, before anything is made of that size: the decoder takes
-//! the word of the file for how much it unpacks.
+//! Checks DWA-compressed blocks of an OpenEXR file before anything is allocated. Each block states its unpacked sizes, and the decoder
+//! would trust them.
 
 use super::linear::Trouble;
 use exr::block::chunk::CompressedBlock;
@@ -8,12 +8,12 @@ use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use std::io::{BufRead, Seek, SeekFrom};
 
-/// Numbers at the head of a packed block (`internal_dwa.c` of OpenEXR): version, sizes and counts, and how it is packed.
+/// Number of counters at the start of a packed block (`internal_dwa.c` of OpenEXR): version, sizes and counts, and kind of compression.
 const COUNTERS: usize = 11;
-/// Those of them that say how much is unpacked, and the bytes of one.
+/// Index of each counter that states an unpacked size, and bytes per unit of it.
 const UNPACKED: [(usize, u64); 5] = [(1, 1), (6, 1), (7, 1), (8, 2), (9, 2)];
 
-/// Refuses a file whose blocks promise more than their pixels hold; the reader is where it was.
+/// Refuses a file with a block that claims to unpack to more than its pixels can hold. Restores the position of the reader.
 pub(super) fn check(reader: &mut (impl BufRead + Seek)) -> Result<(), Trouble> {
     let said = |error: exr::error::Error| Trouble::file(error.to_string());
     let start = reader.stream_position().map_err(|error| Trouble::file(error.to_string()))?;
@@ -30,8 +30,8 @@ pub(super) fn check(reader: &mut (impl BufRead + Seek)) -> Result<(), Trouble> {
                 _ => continue,
             };
             if promised(packed) > room(header) {
-                return Err(Trouble::file("a block of it says that it unpacks to more than its pixels hold")
-                    .hint("is the file complete? Write it anew, with another compression"));
+                return Err(Trouble::file("one of its blocks claims to unpack to more than its pixels can hold")
+                    .hint("is the file complete? Write it again with another compression"));
             }
         }
     } else {
@@ -40,14 +40,15 @@ pub(super) fn check(reader: &mut (impl BufRead + Seek)) -> Result<(), Trouble> {
     reader.seek(SeekFrom::Start(start)).map(drop).map_err(|error| Trouble::file(error.to_string()))
 }
 
-/// The largest of the sizes that a block promises, bytes.
+/// Largest unpacked size that a block claims, bytes.
 fn promised(packed: &[u8]) -> u64 {
     let (numbers, _) = packed.as_chunks::<8>();
     let Some(numbers) = numbers.get(..COUNTERS) else { return 0 };
     UNPACKED.iter().map(|(at, size)| u64::from_le_bytes(numbers[*at]).saturating_mul(*size)).max().unwrap_or(0)
 }
 
-/// What no honest block of a part exceeds, bytes: its pixels to whole squares of 8 x 8, and as much again for marks of runs.
+/// Upper limit for the size of a sound block, bytes: twice its pixels in whole squares of 8 x 8, plus 4 KiB. The factor two leaves room for
+/// run-length markers.
 fn room(header: &Header) -> u64 {
     let (width, height) = match header.blocks {
         BlockDescription::ScanLines => (header.layer_size.width(), header.compression.scan_lines_per_block()),

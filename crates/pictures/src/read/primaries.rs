@@ -1,11 +1,11 @@
-//! From the primaries of a file to those of sRGB.
+//! Conversion from the primaries of a file to those of sRGB.
 
 use super::profile::keeping_white;
 use spectra_color::matrix::{Matrix, product};
 use spectra_color::{Adaptation, RgbSpace};
 
-/// Linear light of a space to that of sRGB, white to white (CAT02, as pictures are written); `None` where primaries and white are
-/// those of sRGB.
+/// Returns the matrix from linear light of a space to linear sRGB, white to white (CAT02, as pictures are written). `None` if primaries and
+/// white are those of sRGB.
 pub(super) fn to_srgb(space: &RgbSpace) -> Option<Matrix> {
     let srgb = RgbSpace::srgb();
     let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs() < 1e-3 && (a[1] - b[1]).abs() < 1e-3;

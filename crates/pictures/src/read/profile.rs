@@ -1,27 +1,27 @@
-//! Color profiles of three primaries and one curve, or of gray (ICC.1:2022).
+//! Reads color profiles of three primaries and one curve, or of gray (ICC.1:2022).
 
 use super::encoding::Encoding;
 use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, RgbSpace, Transfer};
 
-/// XYZ of the white that profiles are connected by, D50 (7.2.16).
+/// XYZ of D50, the white of the profile connection space (7.2.16).
 pub(super) const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
-/// Bytes of a header, and of an entry of the table of tags.
+/// Bytes of a profile header, and of an entry of the tag table.
 const HEADER: usize = 128;
 const ENTRY: usize = 12;
-/// Most tags that are looked through.
+/// Largest number of tags that are searched.
 const MOST_TAGS: usize = 256;
-/// Points at which a curve is known, and two are compared.
+/// Number of points at which curves are sampled and compared.
 const POINTS: usize = 4096;
-/// Light by which two curves may differ that are one: profiles of sRGB of many makers have tables of it.
+/// Largest difference in light at which two curves count as the same: sRGB profiles of many makers have tables of the curve.
 const NEAR_CURVE: f64 = 1e-3;
-/// Difference of colorants that are the same.
+/// Largest difference at which two colorants count as the same.
 const NEAR_COLORANT: f64 = 2e-3;
 
-/// Curve, and matrix to the primaries of sRGB.
+/// A stated color encoding: the curve, and the matrix to the primaries of sRGB (`None` if they are the same).
 pub(super) type Stated = (Encoding, Option<Matrix>);
 
-/// A matrix of RGB, so that gray stays gray to the last digit.
+/// Scales the rows of an RGB matrix to a sum of 1, so that gray stays gray to the last digit.
 pub(super) fn keeping_white(matrix: Matrix) -> Matrix {
     matrix.map(|row| {
         let sum: f64 = row.iter().sum();
@@ -29,7 +29,7 @@ pub(super) fn keeping_white(matrix: Matrix) -> Matrix {
     })
 }
 
-/// What a profile says; `None` where it is of another kind, or broken.
+/// Reads curve and primaries of a profile; `None` if it is of another kind or broken.
 pub(super) fn read(bytes: &[u8]) -> Option<Stated> {
     if bytes.get(36..40)? != b"acsp" {
         return None;
@@ -45,7 +45,7 @@ pub(super) fn read(bytes: &[u8]) -> Option<Stated> {
     }
 }
 
-/// The bytes of a tag.
+/// Returns the data of a tag.
 pub(super) fn tag<'a>(bytes: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     let count = (long(bytes, HEADER)? as usize).min(MOST_TAGS);
     let entry =
@@ -59,7 +59,7 @@ pub(super) fn long(bytes: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_be_bytes([four[0], four[1], four[2], four[3]]))
 }
 
-/// A number in 16.16 bits.
+/// Reads a fixed-point number of 16.16 bits.
 pub(super) fn fixed(bytes: &[u8], at: usize) -> Option<f64> {
     Some(f64::from(long(bytes, at)? as i32) / 65_536.0)
 }
@@ -71,7 +71,7 @@ fn xyz(tag: &[u8]) -> Option<[f64; 3]> {
     Some([fixed(tag, 8)?, fixed(tag, 12)?, fixed(tag, 16)?])
 }
 
-/// From primaries with these XYZ under D50 to those of sRGB; `None` within where they are the same.
+/// Matrix from primaries with these XYZ under D50 to those of sRGB; the inner `None` means that they are the same.
 fn to_srgb(columns: [[f64; 3]; 3]) -> Option<Option<Matrix>> {
     let srgb = RgbSpace::srgb();
     let to_d50 = Adaptation::Bradford.matrix(srgb.white_xyz(), D50);
@@ -80,7 +80,7 @@ fn to_srgb(columns: [[f64; 3]; 3]) -> Option<Option<Matrix>> {
     if own.as_flattened().iter().zip(of_file.as_flattened()).all(|(a, b)| (a - b).abs() < NEAR_COLORANT) {
         return Some(None);
     }
-    // What adds up to no white is no set of primaries.
+    // Colorants whose sum is not near white are not a set of primaries.
     let white = apply(&of_file, [1.0; 3]);
     if white.iter().zip(D50).any(|(a, b)| (a - b).abs() > 0.05) {
         return None;
@@ -89,7 +89,7 @@ fn to_srgb(columns: [[f64; 3]; 3]) -> Option<Option<Matrix>> {
     Some(Some(keeping_white(product(&srgb.rgb_from_xyz, &product(&to_d65, &of_file)))))
 }
 
-/// The curve that all have.
+/// Returns the curve that all tags share; `None` if they differ.
 fn encoding(tags: &[&[u8]]) -> Option<Encoding> {
     let code = |i: usize| i as f64 / (POINTS - 1) as f64;
     let sampled = |tag: &[u8]| -> Option<Vec<f64>> {
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(read(RgbSpace::rec2020(), Transfer::Rec2020).0, Encoding::Curve(Transfer::Rec2020));
     }
 
-    /// A power, and a table of the same: light of 0.5 is 0.5 to that power.
+    /// A power and a table of the same power are one curve: the light of code 0.5 is 0.5 to this power.
     #[test]
     fn powers_and_tables_are_one_curve() {
         let power = [b"curv\0\0\0\0\0\0\0\x01".to_vec(), 0x0233_u16.to_be_bytes().to_vec()].concat();

@@ -1,16 +1,18 @@
-//! What the header of a Radiance picture says of its light (G. Ward, "Radiance file formats", 1992).
+//! Reads exposure and primaries from the header of a Radiance picture (G. Ward, "Radiance file formats", 1992).
 //!
-//! `EXPOSURE=` is what the values were multiplied by, and several lines multiply; `PRIMARIES=` are the xy of red, green, blue and white.
+//! `EXPOSURE=` is the factor by which the values were multiplied; the factors of several lines multiply. `PRIMARIES=` are the x, y of red,
+//! green, blue and white.
 
 use super::primaries::to_srgb;
 use spectra_color::matrix::Matrix;
 use spectra_color::{RgbSpace, Transfer};
 use std::io::BufRead;
 
-/// Longest header that is looked through, bytes.
+/// Longest header that is searched, bytes.
 const LONGEST: u64 = 1 << 16;
 
-/// From the values of a file to linear light of sRGB, white to white; `None` where they are that already, or where nothing sound is said.
+/// Returns the matrix from the values of a file to linear sRGB light, white to white. `None` if no conversion is needed, or if the header
+/// states nothing sound.
 pub(super) fn to_light(file: impl BufRead) -> Option<Matrix> {
     let mut exposure = 1.0;
     let mut primaries = None;
@@ -47,7 +49,7 @@ mod tests {
     use crate::read::decode::decode_bytes;
     use crate::read::linear::Choice;
 
-    /// A picture of one pixel, (0.5, 0.25, 0.125).
+    /// Reads a picture of one pixel, (0.5, 0.25, 0.125), with these header lines.
     fn read(header: &str) -> [f32; 3] {
         let bytes = [b"#?RADIANCE\n", header.as_bytes(), b"FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n", &[128, 64, 32, 128]]
             .concat();
@@ -63,7 +65,7 @@ mod tests {
         for (got, plain) in read("EXPOSURE=2\nEXPOSURE= 4.0\n").into_iter().zip(plain) {
             assert!((got * 8.0 - plain).abs() < 1e-6);
         }
-        // Of Rec. 709 nothing changes; of Display P3 by the matrix of CSS Color Module Level 4.
+        // Primaries of Rec. 709 change nothing; those of Display P3 act by the matrix of CSS Color Module Level 4.
         assert_eq!(read("PRIMARIES= 0.64 0.33 0.30 0.60 0.15 0.06 0.3127 0.3290\n"), plain);
         let p3 = read("PRIMARIES= 0.68 0.32 0.265 0.69 0.15 0.06 0.3127 0.3290\n");
         let matrix = [[1.2249, -0.2249, 0.0], [-0.0421, 1.0421, 0.0], [-0.0196, -0.0786, 1.0983]];
@@ -71,7 +73,7 @@ mod tests {
             let want: f32 = row.iter().zip(plain).map(|(a, b)| *a as f32 * b).sum();
             assert!((got - want).abs() < 3e-4, "{p3:?} {want}");
         }
-        // What is not sound is passed over, as if it were not there.
+        // Unsound header lines are ignored.
         assert_eq!(read("EXPOSURE=0\nPRIMARIES= 1 2 3\n"), plain);
     }
 }

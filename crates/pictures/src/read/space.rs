@@ -1,13 +1,13 @@
-//! The color space that an OpenEXR file names, as OpenImageIO, OpenColorIO and the Color Interop Forum call it.
+//! Interprets the name of the color space in an OpenEXR file, as OpenImageIO, OpenColorIO and the Color Interop Forum call it.
 //!
-//! `chromaticities` say the primaries in numbers and count before any name. Where there are none, names of linear spaces do.
+//! The numbers in `chromaticities` have priority over any name. Without them, the names of linear spaces count.
 
 use super::linear::Trouble;
 use exr::meta::attribute::Chromaticities;
 use exr::prelude::Vec2;
 use spectra_color::RgbSpace;
 
-/// Names of linear spaces in lower case. What a role such as `scene_linear` stands for is not known outside of its configuration.
+/// Names of linear spaces, in lower case. A role, for example `scene_linear`, is unknown outside its OpenColorIO configuration.
 const LINEAR: [(&str, Primaries); 27] = [
     ("lin_ap0_scene", Primaries::Ap0),
     ("lin_ap0", Primaries::Ap0),
@@ -37,9 +37,9 @@ const LINEAR: [(&str, Primaries); 27] = [
     ("cie xyz-d65 - scene-referred", Primaries::Xyz),
     ("cie xyz-d65 - display-referred", Primaries::Xyz),
 ];
-/// Names that say nothing of colors.
+/// Names that do not define a color space.
 const SILENT: [&str; 6] = ["", "data", "raw", "unknown", "scene_linear", "undefined"];
-/// What is in the names of spaces that are not linear.
+/// Parts of the names of spaces that are not linear.
 const ENCODED: [&str; 12] =
     ["log", "srgb", "acescc", "gamma", "g22", "g24", "rec709", "rec.709", "texture", "pq", "hlg", "adobe"];
 
@@ -73,7 +73,7 @@ impl Primaries {
     }
 }
 
-/// The chromaticities that count, and what is doubtful of the colors; `texts` are those of the header.
+/// Returns the chromaticities to use, and a warning if the colors are doubtful. `texts` are those of the header.
 pub(super) fn of(
     stated: Option<Chromaticities>,
     texts: &[(String, String)],
@@ -89,7 +89,7 @@ pub(super) fn of(
         return match stated {
             Some(own) if !are_near(own, named) => {
                 let text =
-                    format!("it names its color space `{name}`, but its `chromaticities` are others; these count");
+                    format!("it names its color space `{name}`, but its `chromaticities` differ; these are used");
                 (stated, Some(Trouble::file(text).hint("remove whichever of the two is wrong from the file")))
             }
             Some(_) => (stated, None),
@@ -100,8 +100,9 @@ pub(super) fn of(
     if stated.is_some() && !is_encoded {
         return (stated, None);
     }
-    let of = if stated.is_some() { "by its `chromaticities`" } else { "in the primaries of Rec. 709" };
-    let text = format!("it names its color space `{name}`, which is not read: its values are taken as linear, {of}");
+    let of = if stated.is_some() { "with its `chromaticities`" } else { "with the primaries of Rec. 709" };
+    let text =
+        format!("it names its color space `{name}`, which is not supported: its values are taken as linear light {of}");
     (stated, Some(Trouble::file(text).hint("convert it to linear light first: ACEScg, or linear Rec. 709")))
 }
 

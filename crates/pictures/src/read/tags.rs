@@ -1,4 +1,4 @@
-//! What a PNG, TIFF, JPEG or Radiance file says of its colors: by code points of ITU-R H.273, a color profile, or a power and primaries.
+//! Reads the color encoding of a PNG, TIFF, JPEG or Radiance file: code points of ITU-T H.273, a color profile, or a power and primaries.
 //!
 //! In a PNG the first of cICP, iCCP, sRGB, and gAMA with cHRM counts (PNG, third edition, 4.3).
 
@@ -13,25 +13,25 @@ use spectra_color::{RgbSpace, Transfer};
 use spectra_core::resources::Found;
 use std::io::{self, BufRead, Read, Seek, SeekFrom};
 
-/// The colors that a file states.
+/// Color encoding and pixel format that a file states.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Tags {
-    /// The curve; `None` where nothing is said of it.
+    /// Transfer curve; `None` if the file states none.
     pub encoding: Option<Encoding>,
-    /// From the file's primaries to those of sRGB, linear, white to white; `None` where they are the same.
+    /// Matrix from the file's primaries to those of sRGB, linear, white to white; `None` if they are the same.
     pub to_srgb: Option<Matrix>,
-    /// What is said and cannot be followed.
+    /// Warning about a stated encoding that cannot be used.
     pub doubt: Option<Trouble>,
-    /// Width over height of a pixel as it is stored, where the file says it.
+    /// Width over height of a stored pixel, if the file states it.
     pub pixel_aspect: Option<f64>,
     /// Whether samples of 32 bits are integers.
     pub is_long: bool,
-    /// Whether color is multiplied by alpha, where the file says which.
+    /// Whether color is multiplied by alpha, if the file states it.
     pub is_multiplied: Option<bool>,
 }
 
 impl Tags {
-    /// Of a file whose decoder has read its header.
+    /// Reads the tags of a file whose decoder has read its header.
     pub(super) fn of(found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
         let chunks = if format == ImageFormat::Png { found.open().ok().map(Chunks::of) } else { None };
         let chunks = chunks.unwrap_or_default();
@@ -61,7 +61,7 @@ impl Tags {
             _ => decoder.icc_profile().ok().flatten(),
         };
         if let Some(bytes) = profile {
-            return Self::stated(profile::read(&bytes), || "a color profile of another kind".to_owned());
+            return Self::stated(profile::read(&bytes), || "a color profile of an unsupported kind".to_owned());
         }
         if cmyk::is_one(found, format) {
             return Self { doubt: Some(cmyk::without_profile()), ..Self::default() };
@@ -92,7 +92,7 @@ impl Tags {
         match stated {
             Some((encoding, to_srgb)) => Self { encoding: Some(encoding), to_srgb, ..Self::default() },
             None => {
-                let text = format!("it states its colors by {}, which is not read: they are taken as sRGB", what());
+                let text = format!("it states its colors by {}, which cannot be used: they are taken as sRGB", what());
                 let hint = "save it as sRGB, Display P3 or Rec. 2020; `transfer: srgb` if sRGB is right";
                 Self { doubt: Some(Trouble::file(text).hint(hint)), ..Self::default() }
             }
@@ -100,7 +100,7 @@ impl Tags {
     }
 }
 
-/// Primaries, transfer, matrix and range by ITU-T H.273.
+/// Interprets the H.273 code points: primaries, transfer, matrix and range.
 fn of_code_points([primaries, transfer, matrix, range]: [u8; 4]) -> Option<Stated> {
     let space = match primaries {
         1 => RgbSpace::srgb(),
@@ -109,7 +109,7 @@ fn of_code_points([primaries, transfer, matrix, range]: [u8; 4]) -> Option<State
         _ => return None,
     };
     let encoding = match transfer {
-        // All of ITU-R BT.709, BT.601 and BT.2020.
+        // ITU-R BT.709, BT.601 and BT.2020 all have this curve.
         1 | 6 | 14 | 15 => Encoding::Curve(Transfer::Rec2020),
         4 => Encoding::Gamma(2.2),
         5 => Encoding::Gamma(2.8),
@@ -118,15 +118,15 @@ fn of_code_points([primaries, transfer, matrix, range]: [u8; 4]) -> Option<State
         16 => Encoding::Pq,
         _ => return None,
     };
-    // Red, green and blue, over all of the range.
+    // Only RGB in full range is supported.
     ((matrix, range) == (0, 1)).then(|| (encoding, to_srgb(space)))
 }
 
-/// The power from light to code value, in hundred thousandths.
+/// Interprets the power from light to code value, in hundred thousandths.
 fn of_gamma(stated: u32) -> Option<Encoding> {
     let power = f64::from(stated) / 1e5;
     Some(match power {
-        // What a PNG says that is in sRGB.
+        // The value that a PNG in sRGB states.
         p if (p - 1.0 / 2.2).abs() < 1e-3 => Encoding::Curve(Transfer::Srgb),
         p if (p - 1.0).abs() < 1e-3 => Encoding::Curve(Transfer::Linear),
         p if (0.2..=5.0).contains(&p) => Encoding::Gamma(1.0 / p),
@@ -134,22 +134,22 @@ fn of_gamma(stated: u32) -> Option<Encoding> {
     })
 }
 
-/// What stands before the pixels of a PNG.
+/// Chunks before the pixels of a PNG.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Chunks {
     cicp: Option<[u8; 4]>,
     is_srgb: bool,
     gamma: Option<u32>,
-    /// Of white, red, green and blue.
+    /// Chromaticities x, y of white, red, green and blue.
     chromaticities: Option<[[f64; 2]; 4]>,
-    /// As this program says it, since no tag can.
+    /// Whether the text that this program writes for ACEScct is there, because no chunk can say it.
     is_aces_cct: bool,
     /// Width over height of a pixel.
     pixel_aspect: Option<f64>,
 }
 
 impl Chunks {
-    /// As far as they can be read: what is wrong with the file is told by its decoder.
+    /// Reads the chunks as far as possible; the decoder reports what is wrong with the file.
     fn of(mut reader: impl BufRead + Seek) -> Self {
         let mut all = Self::default();
         let _ = all.read(&mut reader);
@@ -173,7 +173,7 @@ impl Chunks {
             if is_wanted {
                 reader.by_ref().take(length).read_to_end(&mut data)?;
             }
-            // The check follows.
+            // The checksum follows the data.
             reader.seek(SeekFrom::Current((length - data.len() as u64 + 4) as i64))?;
             self.take(&name, &data);
         }
@@ -196,7 +196,7 @@ impl Chunks {
                 };
             }
             b"pHYs" => {
-                // Pixels to a unit, across and down: where there are fewer, each is longer.
+                // Pixels per unit, across and down: the direction with fewer has longer pixels.
                 let aspect = long(0).zip(long(1)).map(|(across, down)| f64::from(down) / f64::from(across));
                 self.pixel_aspect = aspect.filter(|aspect| (0.05..=20.0).contains(aspect));
             }
@@ -218,7 +218,7 @@ mod tests {
         decode_bytes(bytes, Choice::default()).unwrap()
     }
 
-    /// A PNG of one pixel, with these chunks.
+    /// Builds a PNG of one pixel with these chunks.
     fn png(code: [u8; 3], chunks: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = std::io::Cursor::new(Vec::new());
         image::RgbImage::from_pixel(1, 1, image::Rgb(code)).write_to(&mut bytes, image::ImageFormat::Png).unwrap();
@@ -231,7 +231,7 @@ mod tests {
         assert!(got.iter().zip(want).all(|(a, b)| (f64::from(*a) - b).abs() < tolerance), "{got:?} {want:?}");
     }
 
-    /// One picture is one, whatever colors its file is written in.
+    /// A picture reads back the same, in whatever space its file is written.
     #[test]
     fn what_is_written_is_read() {
         let colors = vec![[0.18, 0.18, 0.18], [0.6, 0.1, 0.05], [0.05, 0.4, 0.3], [1.0, 1.0, 1.0]];
@@ -241,7 +241,7 @@ mod tests {
             let [mut png, mut tiff] = [std::io::Cursor::new(Vec::new()), std::io::Cursor::new(Vec::new())];
             png16(&mut png, &picture, space, 1.0).unwrap();
             tiff16(&mut tiff, &picture, space).unwrap();
-            // A TIFF has no way to say that it is in ACEScct.
+            // A TIFF cannot say that it is in ACEScct.
             let files = if space == PictureSpace::AcesCct { vec![png] } else { vec![png, tiff] };
             for bytes in files {
                 let linear = read(bytes.get_ref());
@@ -253,12 +253,12 @@ mod tests {
         }
     }
 
-    /// Primaries of Display P3, linear code values, a power, and the curves of SMPTE ST 2084 and ITU-R BT.709.
+    /// Checks primaries of Display P3, linear code values, a power, and the curves of SMPTE ST 2084 and ITU-R BT.709.
     #[test]
     fn code_points_and_powers_are_followed() {
         let p3 = read(&png([188, 188, 188], &[chunk(b"cICP", &[12, 13, 0, 1])])).rgb[0];
         close(p3, [Transfer::Srgb.decode(188.0 / 255.0); 3], 1e-6);
-        // Half of red in Display P3, by the matrices of CSS Color Module Level 4: 1.2249, -0.0421, -0.0196 times light.
+        // Pure red in Display P3, by the matrices of CSS Color Module Level 4: 1.2249, -0.0421, -0.0196 times its light.
         let red = read(&png([255, 0, 0], &[chunk(b"cICP", &[12, 13, 0, 1])])).rgb[0];
         close(red, [1.2249, -0.0421, -0.0196], 2e-4);
         let linear = read(&png([51, 51, 51], &[chunk(b"gAMA", &100_000_u32.to_be_bytes())])).rgb[0];
@@ -272,7 +272,7 @@ mod tests {
         close(rec709, [Transfer::Rec2020.decode(128.0 / 255.0); 3], 1e-6);
     }
 
-    /// As this program writes an anamorphic picture, and as a file says that stands on its side: an Exif orientation of 6.
+    /// Checks an anamorphic picture as this program writes it, and a file that is stored on its side: an Exif orientation of 6.
     #[test]
     fn pixels_are_as_wide_as_the_file_says() {
         let picture = DisplayPicture { width_px: 2, height_px: 1, rgb: vec![[0.18; 3]; 2] };
@@ -301,7 +301,7 @@ mod tests {
         close(said.rgb[0], [Transfer::Srgb.decode(0.2); 3], 1e-6);
     }
 
-    /// HLG is not read, and neither is a range that begins at 16.
+    /// HLG is not supported, nor is a range that begins at 16.
     #[test]
     fn what_cannot_be_followed_is_said() {
         for points in [[9, 18, 0, 1], [1, 13, 0, 0], [22, 13, 0, 1]] {
@@ -316,7 +316,7 @@ mod tests {
         }
     }
 
-    /// The chunk that says primaries in numbers: those of Rec. 2020 here.
+    /// Follows the chunk that states primaries as numbers, here those of Rec. 2020.
     #[test]
     fn primaries_in_numbers_are_followed() {
         let space = RgbSpace::rec2020();

@@ -1,4 +1,4 @@
-//! TIFF without a second copy of the picture: its strips and tiles are unpacked one by one, or to where they belong.
+//! Reads TIFF without a second copy of the picture: unpacks strips and tiles one by one, or directly to where they belong.
 
 mod sides;
 mod widened;
@@ -13,16 +13,16 @@ use tiff::decoder::{ChunkType, Decoder, Limits};
 use tiff::tags::{ByteOrder, Tag};
 pub(super) use widened::Widened;
 
-/// A file whose samples are of a kind that needs no conversion, pixel by pixel or a plane for each channel.
+/// A file whose samples need no conversion, interleaved or with a plane for each channel.
 pub(super) struct Plain<R: BufRead + Seek> {
     decoder: Decoder<R>,
     size: [usize; 2],
-    /// How many planes there are, one where the samples of a pixel lie together.
+    /// Number of planes; 1 if the samples of a pixel are stored together.
     planes: usize,
 }
 
 impl<R: BufRead + Seek> Plain<R> {
-    /// The file behind `decoder`, read once more; `None` of any other kind. `spare_bytes` is what it may take to unpack.
+    /// Opens the file of `decoder` again; `None` if it is of any other kind. `spare_bytes` is the memory that unpacking may take.
     pub(super) fn new(
         reader: R,
         decoder: &impl ImageDecoder,
@@ -43,7 +43,7 @@ impl<R: BufRead + Seek> Plain<R> {
             Some(2) => usize::from(decoder.color_type().channel_count()),
             Some(_) => return Ok(None),
         };
-        // Of one plane.
+        // Size of one plane.
         let layout_bytes = own.image_buffer_layout().map_err(said)?.len as u64;
         let (width, height) = decoder.dimensions();
         let size = [width as usize, height as usize];
@@ -55,8 +55,8 @@ impl<R: BufRead + Seek> Plain<R> {
         self.planes > 1
     }
 
-    /// All samples, row by row and pixel by pixel, of `pixel` bytes each. Of planes as many as a pixel has room for, of
-    /// `sample` bytes each.
+    /// Reads all samples, row by row and pixel by pixel, with `pixel` bytes per pixel. Of a planar file, reads as many planes as `pixel`
+    /// has room for at `sample` bytes each.
     pub(super) fn read(&mut self, to: &mut [u8], pixel: usize, sample: usize) -> Result<(), ImageError> {
         if !self.is_planar() {
             return self.decoder.read_image_bytes(to).map_err(said);
@@ -72,7 +72,7 @@ impl<R: BufRead + Seek> Plain<R> {
         Ok(())
     }
 
-    /// Calls back with runs of pixels of `size` bytes of a plane, each with the place of its first one in the picture.
+    /// Calls `take` with runs of pixels of a plane, each of `size` bytes, and with the index in the picture of the first pixel of the run.
     pub(super) fn runs(
         &mut self,
         plane: usize,
@@ -96,7 +96,7 @@ impl<R: BufRead + Seek> Plain<R> {
             chunk.resize(row_bytes * own_height as usize, 0);
             decoder.read_chunk_bytes(stored, &mut chunk).map_err(said)?;
             let (x, y) = (index % across * chunk_width as usize, index / across * chunk_height as usize);
-            // The lowest tiles of a plane but the first are given with the rows below the picture.
+            // The bottom tiles of all planes except the first come with rows below the picture.
             for (row, pixels) in chunk.chunks_exact(row_bytes).take(height - y).enumerate() {
                 take((y + row) * width + x, pixels);
             }
@@ -105,7 +105,7 @@ impl<R: BufRead + Seek> Plain<R> {
     }
 }
 
-/// Whether samples are integers of 32 bits: the crate `image` hands them on as if they were floating point.
+/// Returns whether samples are 32-bit integers. The crate `image` passes them on as if they were floating point.
 pub(super) fn has_long_integers(reader: impl BufRead + Seek) -> bool {
     const UNSIGNED: u16 = 1;
     let Ok(mut decoder) = Decoder::new(reader) else { return false };
@@ -116,7 +116,7 @@ pub(super) fn has_long_integers(reader: impl BufRead + Seek) -> bool {
     all(Tag::BitsPerSample, 1, 32) && all(Tag::SampleFormat, UNSIGNED, UNSIGNED)
 }
 
-/// Whether color is multiplied by alpha, where the file says which (TIFF 6.0, ExtraSamples).
+/// Returns whether color is multiplied by alpha, if the file states it (TIFF 6.0, ExtraSamples).
 pub(super) fn is_multiplied(reader: impl BufRead + Seek) -> Option<bool> {
     const ASSOCIATED: u16 = 1;
     const UNASSOCIATED: u16 = 2;
@@ -128,24 +128,23 @@ pub(super) fn is_multiplied(reader: impl BufRead + Seek) -> Option<bool> {
     }
 }
 
-/// The file as if its first picture that is no preview stood first; `None` where it does. Scanners and converters write a small picture
-/// in front.
+/// Returns the file with its first picture that is not a preview moved to the front; `None` if it is already there. Scanners and converters
+/// write a small preview first.
 ///
 /// # Errors
-/// All that it holds is a preview: in a camera's raw file the picture lies elsewhere. Or one of its pictures is larger than any that is read.
+/// The file holds only a preview, as camera raw files do, whose picture is stored elsewhere; or one of its pictures exceeds the size
+/// limits.
 pub(super) fn without_preview(found: &Found) -> Result<Option<Found>, Trouble> {
     const REDUCED: u32 = 1;
     let open = || found.open().map_err(|error| Trouble::file(error.to_string()));
-    let text = "it holds a preview only: the picture of a camera's raw file is not read";
-    let raw = || {
-        Trouble::file(text).hint("develop it in a raw converter, and save it as a TIFF of 16 bits or linear OpenEXR")
-    };
-    // Canon's raw files begin with a preview that does not say so.
+    let text = "it holds a preview only: the pictures in raw files of cameras cannot be read";
+    let raw = || Trouble::file(text).hint("develop it in a raw converter and save it as 16-bit TIFF or linear OpenEXR");
+    // Canon's raw files begin with a preview that is not marked as one.
     if found.read(12).is_ok_and(|begin| begin.get(8..10) == Some(b"CR")) {
         return Err(raw());
     }
     sides::check(open()?)?;
-    // What is wrong with the file is told where it is read.
+    // Other faults of the file are reported when it is read.
     let Ok(mut decoder) = Decoder::new(open()?) else { return Ok(None) };
     let is_preview = |decoder: &mut Decoder<_>| {
         let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType);
@@ -167,13 +166,13 @@ pub(super) fn without_preview(found: &Found) -> Result<Option<Found>, Trouble> {
     Err(raw())
 }
 
-/// Writes where the first picture's folder lies into the header of a file.
+/// Writes the offset of the first picture's directory into the header of a file.
 fn set_first(bytes: &mut [u8], at: u64, order: ByteOrder) {
     let at = match order {
         ByteOrder::LittleEndian => at.to_le_bytes(),
         ByteOrder::BigEndian => at.to_be_bytes(),
     };
-    // A file of more than 4 GB has eight bytes for it, behind four more.
+    // BigTIFF, for files of more than 4 GB, has eight bytes for the offset, after four more.
     let is_big = bytes[2..4].contains(&0x2b);
     match (is_big, order) {
         (true, _) => bytes[8..16].copy_from_slice(&at),
@@ -182,20 +181,20 @@ fn set_first(bytes: &mut [u8], at: u64, order: ByteOrder) {
     }
 }
 
-/// The color profile of a file. The decoder of the crate `image` has no more room for it than for the picture.
+/// Reads the color profile of a file. The decoder of the crate `image` would limit it to the size of the picture.
 pub(super) fn profile(reader: impl BufRead + Seek) -> Option<Vec<u8>> {
     let mut limits = Limits::default();
-    // A byte takes 32 of them: profiles of 2 MiB.
+    // The decoder counts 32 bytes per byte, so this allows profiles of 2 MiB.
     limits.decoding_buffer_size = 64 << 20;
     Decoder::new(reader).ok()?.with_limits(limits).get_tag_u8_vec(Tag::IccProfile).ok()
 }
 
-/// Whether the picture holds four inks.
+/// Returns whether the picture holds four inks.
 pub(super) fn has_inks(reader: impl BufRead + Seek) -> bool {
     Decoder::new(reader).is_ok_and(|mut decoder| matches!(decoder.colortype(), Ok(tiff::ColorType::CMYK(_))))
 }
 
-/// As the crate `image` says it.
+/// Converts an error to that of the crate `image`.
 pub(super) fn said(error: TiffError) -> ImageError {
     let format = ImageFormat::Tiff;
     match error {
@@ -244,7 +243,7 @@ mod tests {
         let mut bytes = Cursor::new(Vec::new());
         let codes = CODES.map(|code| u32::from(code) * 0x0101_0101);
         add::<_, colortype::RGB32>(&mut TiffEncoder::new(&mut bytes).expect("begun"), 2, false, &codes);
-        // Most programs leave the tag out, since integers are what is meant without it.
+        // Most programs leave the tag out, because its default means integers.
         let said = bytes.get_ref().clone();
         let bytes = bytes.get_mut();
         let at = bytes.windows(4).position(|tag| tag == [0x53, 0x01, 0x03, 0x00]).expect("the tag SampleFormat");
@@ -267,7 +266,7 @@ mod tests {
         assert_eq!(codes, CODES);
     }
 
-    /// The picture behind a preview is the picture, in small and in large files; one that has a preview only is refused.
+    /// Reads the picture behind a preview, in TIFF and BigTIFF; refuses a file with a preview only.
     #[test]
     fn previews_are_passed_over() {
         let preview = [7_u8; 3];
@@ -293,7 +292,7 @@ mod tests {
         assert!(trouble.text.contains("preview only") && trouble.hint.is_some());
     }
 
-    /// A file of one strip and one row: bits and format of a sample, photometric interpretation, kind of the extra sample.
+    /// Builds a file of one strip and one row by hand. `bits` and `format` describe a sample; `extra` is the kind of the extra sample.
     fn by_hand(width: u32, samples: u16, [bits, format]: [u16; 2], extra: Option<u16>, data: &[u8]) -> Vec<u8> {
         let mut tags: Vec<(u16, u16, u32)> = vec![
             (256, 4, width),
@@ -304,12 +303,12 @@ mod tests {
             (277, 3, u32::from(samples)),
             (278, 4, 1),
             (279, 4, data.len() as u32),
-            // Of one channel planes and pixels are the same.
+            // With one channel, planar and interleaved are the same.
             (284, 3, if samples == 1 { 2 } else { 1 }),
         ];
         tags.extend(extra.map(|kind| (338, 3, u32::from(kind))));
         let entries = tags.len() + 2;
-        // The folder begins at 8; lists of a value a sample, and then the data, follow it.
+        // The directory begins at 8; lists with one value per sample follow it, and then the data.
         let lists = 8 + 2 + 12 * entries + 4;
         let list_bytes = 2 * usize::from(samples);
         let start = lists + 2 * list_bytes;
@@ -335,7 +334,7 @@ mod tests {
         bytes
     }
 
-    /// Gray and half-precision floating point, and floating point of 64 bits, are light as those of 32 bits with three channels are.
+    /// Gray, half-precision and 64-bit floating point give the same light as 32-bit floating point with three channels.
     #[test]
     fn floating_point_of_all_kinds_is_light() {
         let light = [0.25_f32, 1.5, -0.125];
@@ -360,13 +359,13 @@ mod tests {
         );
     }
 
-    /// Associated alpha is multiplied into codes, unassociated is not, whatever the samples are.
+    /// Associated alpha is multiplied into codes, unassociated is not, for all sample types.
     #[test]
     fn alpha_is_what_the_file_says() {
         const ASSOCIATED: u16 = 1;
         const UNASSOCIATED: u16 = 2;
         let of_half = |linear: f64| 0.5 * linear as f32;
-        // Code 100 of 255 under a cover of 128 of 255 stands for 199.2.
+        // Code 100 of 255 under alpha 128 of 255 stands for 199.2.
         let straight = of_half(Transfer::Srgb.decode(100.0 / 255.0));
         let multiplied = of_half(Transfer::Srgb.decode(100.0 / 128.0));
         for (extra, want) in [(ASSOCIATED, multiplied), (UNASSOCIATED, straight)] {

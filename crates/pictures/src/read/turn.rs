@@ -1,14 +1,14 @@
-//! Pictures stored on their side or upside down.
+//! Turns pictures that are stored on their side or upside down.
 //!
-//! TIFF 6.0, `Orientation`, says which sides of the picture the first row and the first column stored are: 1 top left,
-//! 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right top, 7 right bottom, 8 left bottom.
+//! TIFF 6.0, `Orientation`, says which sides of the picture the first stored row and the first stored column are: 1 top left, 2 top right,
+//! 3 bottom right, 4 bottom left, 5 left top, 6 right top, 7 right bottom, 8 left bottom.
 
-/// Whether rows are stored as columns.
+/// Returns whether rows of the picture are stored as columns.
 pub(super) fn is_on_its_side(orientation: u8) -> bool {
     (5..=8).contains(&orientation)
 }
 
-/// Where a pixel of the upright picture is stored, both row by row. The picture is `width` wide as stored.
+/// Returns the stored index of pixel `i` of the upright picture; both are row by row. `width` and `height` are those of the stored picture.
 pub(super) fn stored(i: usize, [width, height]: [usize; 2], orientation: u8) -> usize {
     let columns = if is_on_its_side(orientation) { height } else { width };
     let (last_column, last_row) = (width - 1, height - 1);
@@ -26,8 +26,9 @@ pub(super) fn stored(i: usize, [width, height]: [usize; 2], orientation: u8) -> 
     row * width + column
 }
 
-/// Brings the pixels of a picture stored so into the order in which they are seen, where they lie: each cycle of the
-/// permutation is followed once, and the sign of a pixel's first value, which is 0 or more, marks that it is done.
+/// Reorders the pixels of a stored picture in place into the order in which they are seen.
+/// Follows each cycle of the permutation once. A negative sign of a pixel's first value, which is otherwise 0 or more, marks a finished
+/// pixel.
 pub(super) fn upright<const N: usize>(pixels: &mut [[f32; N]], size: [usize; 2], orientation: u8) {
     if !(2..=8).contains(&orientation) {
         return;
@@ -51,7 +52,7 @@ pub(super) fn upright<const N: usize>(pixels: &mut [[f32; N]], size: [usize; 2],
 mod tests {
     use super::*;
 
-    /// TIFF 6.0, page 36: where the corner stored first is seen, and in which direction the row goes on from there.
+    /// TIFF 6.0, page 36: where the first stored corner is seen, and in which direction its row continues.
     #[test]
     fn corners_come_to_lie_where_tiff_says() {
         for (orientation, want) in [

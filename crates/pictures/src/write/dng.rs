@@ -1,4 +1,4 @@
-//! Raw frames as DNG: what raw converters open.
+//! Writes raw frames as DNG, which raw converters open.
 
 use super::tiff::{
     Field, bytes, directory, doubles, exposure, length, longs, rationals, shorts, signed_rationals, text, undefined,
@@ -8,26 +8,27 @@ use spectra_core::sink::Out;
 use spectra_files::WriteFault;
 use std::io::{BufWriter, Write};
 
-/// What a raw file says of the lens.
+/// Description of the lens for a raw file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RawLens {
-    /// Its name.
+    /// Name of the lens.
     pub model: Option<String>,
-    /// Its maker.
+    /// Maker of the lens.
     pub maker: Option<String>,
     /// Focal length, mm.
     pub focal_length_mm: Option<f64>,
-    /// The f-number that it is set to.
+    /// The f-number to which the lens is set.
     pub f_number: Option<f64>,
 }
 
-/// Writes the frame as DNG: one uncompressed strip of 16 bits a pixel, little-endian, with the filters' pattern, black and
-/// white level, the color matrices for each light, the neutral color, the noise, and what was exposed how and through
-/// which lens (Adobe Systems, Digital Negative Specification 1.4.0.0; Exif 2.31). No date is written: the same frame
-/// gives the same bytes.
+/// Writes the frame as DNG: one uncompressed strip of 16 bits per pixel, little-endian.
+///
+/// The tags hold the filter pattern, black and white level, the color matrices for each light, the neutral color, the noise, the exposure
+/// and the lens.
+/// Sources: Adobe Systems, Digital Negative Specification 1.4.0.0; Exif 2.31. No date is written: the same frame gives the same bytes.
 ///
 /// # Errors
-/// [`WriteFault`]: the system refuses, or the number of values is not that of the size.
+/// [`WriteFault`]: the system refuses, the number of values does not match the size, or the file would exceed 4 GB.
 pub fn dng(out: &mut dyn Out, frame: &RawFrame, lens: &RawLens) -> Result<(), WriteFault> {
     let mut to = BufWriter::new(out);
     to.write_all(&head(frame, lens)?)?;
@@ -40,15 +41,17 @@ pub fn dng(out: &mut dyn Out, frame: &RawFrame, lens: &RawLens) -> Result<(), Wr
 
 const STRIP_OFFSETS: u16 = 273;
 const EXIF_DIRECTORY: u16 = 34_665;
-/// Where the first directory stands.
+/// Position of the first directory, bytes.
 const START: usize = 8;
 
-/// All that stands before the pixels.
+/// Builds everything before the pixels.
 fn head(frame: &RawFrame, lens: &RawLens) -> Result<Vec<u8>, WriteFault> {
     let (width, height, found) = (frame.width_px, frame.height_px, frame.values.len());
     let size = found as u64 * 2;
     if found == 0 || found as u64 != u64::from(width) * u64::from(height) || size > u64::from(u32::MAX) - 65_536 {
-        return Err(WriteFault::Format(format!("{found} values for a raw frame of {width} x {height}")));
+        return Err(WriteFault::Format(format!(
+            "a raw frame of {width} x {height} pixels with {found} values cannot be written"
+        )));
     }
     let exif = exif(frame, lens);
     let mut main = picture(frame, size as u32);
@@ -71,14 +74,14 @@ fn head(frame: &RawFrame, lens: &RawLens) -> Result<Vec<u8>, WriteFault> {
     Ok(out)
 }
 
-/// What the numbers are.
+/// Fields that describe the numbers of the frame.
 fn picture(frame: &RawFrame, size: u32) -> Vec<Field> {
     const COLOR_FILTER_ARRAY: u16 = 32_803;
     const LINEAR_RAW: u16 = 34_892;
     let (width, height) = (frame.width_px, frame.height_px);
     let interpretation = if frame.pattern.is_some() { COLOR_FILTER_ARRAY } else { LINEAR_RAW };
     let [across, down] = frame.pixel_mm;
-    // About as many pixels where they are not square.
+    // Scales that keep the number of pixels about the same if they are not square.
     let side = (across * down).sqrt();
     let mut fields = vec![
         longs(254, &[0]), // NewSubfileType: the picture in full
@@ -120,7 +123,7 @@ fn picture(frame: &RawFrame, size: u32) -> Vec<Field> {
     fields
 }
 
-/// What the colors mean.
+/// Fields that describe the colors of the frame.
 fn color(frame: &RawFrame) -> Vec<Field> {
     const COLOR_MATRIX: u16 = 50_721;
     const CALIBRATION_ILLUMINANT: u16 = 50_778;
@@ -140,7 +143,7 @@ fn color(frame: &RawFrame) -> Vec<Field> {
     fields
 }
 
-/// How the picture was taken.
+/// Exif fields that describe how the picture was taken.
 fn exif(frame: &RawFrame, lens: &RawLens) -> Vec<Field> {
     const RECOMMENDED_EXPOSURE_INDEX: u16 = 2;
     const PER_CENTIMETER: u16 = 3;
@@ -148,7 +151,7 @@ fn exif(frame: &RawFrame, lens: &RawLens) -> Vec<Field> {
     let iso = frame.iso.round();
     let mut fields = vec![
         exposure(33_434, frame.exposure_time_s),
-        // The tag ends at 65535; the next ones hold more.
+        // This tag ends at 65535; the next ones hold more.
         shorts(34_855, &[iso as u16]),                       // PhotographicSensitivity
         shorts(34_864, &[RECOMMENDED_EXPOSURE_INDEX]),       // SensitivityType
         longs(34_866, &[iso as u32]),                        // RecommendedExposureIndex
@@ -209,8 +212,7 @@ mod tests {
         RawLens { model: Some("Biotar".into()), maker: None, focal_length_mm: Some(49.784), f_number: Some(2.8) }
     }
 
-    /// Read back by hand as TIFF 6.0 says: directories are sorted, values are where they say, and the strip holds the
-    /// numbers.
+    /// Reads the file back by hand as TIFF 6.0 says: directories are sorted, values are where they say, and the strip holds the numbers.
     #[test]
     fn everything_is_where_the_directories_say() {
         let mut file = Cursor::new(Vec::new());
@@ -239,7 +241,7 @@ mod tests {
         assert_eq!([ratio(main(50_721), 1), ratio(main(50_722), 1)], [-0.2, -0.3]);
         assert_eq!([ratio(main(50_964), 8), ratio(main(50_965), 8)], [1.0, 0.9]);
         assert_eq!([ratio(main(50_728), 0), ratio(main(50_730), 0)], [0.5, -0.25]);
-        // Pixels four times as wide as high.
+        // Pixels are four times as wide as high.
         assert_eq!([ratio(main(50_718), 0), ratio(main(50_718), 1)], [2.0, 0.5]);
         let noise = long(main(51_041) + 8) as usize;
         let double = |at: usize| f64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight"));

@@ -1,16 +1,17 @@
-//! Linear light in 8 bits of sRGB by comparison: the curve's power costs more than all else that a pixel of a file does.
+//! Encodes linear light as 8-bit sRGB by comparison. The power of the curve costs more than everything else that is done for a pixel of a
+//! file.
 
 use spectra_color::{Transfer, to_u8};
 use std::sync::OnceLock;
 
-/// Bits of an `f32` that a bin holds together: it has 128 bins an octave, each within two code values.
+/// Number of low bits of an `f32` that share a bin: an octave has 128 bins, and each bin spans at most two code values.
 const BIN: u32 = 16;
 
-/// Where each code value begins.
+/// Thresholds of the 8-bit sRGB code values.
 pub(super) struct Eight {
-    /// The least light of each code value.
+    /// Smallest light of each code value.
     begins: Vec<f32>,
-    /// The code value of the least light of each bin, up to 1.
+    /// Code value of the smallest light of each bin, up to 1.
     of_bin: Vec<u8>,
 }
 
@@ -19,12 +20,12 @@ fn exact(linear: f32) -> u8 {
 }
 
 impl Eight {
-    /// The only one.
+    /// Returns the shared table.
     pub(super) fn srgb() -> &'static Self {
         static ONE: OnceLock<Eight> = OnceLock::new();
         ONE.get_or_init(|| {
             let begin = |code: u8| {
-                // Positive numbers rise with their bits.
+                // Positive floating-point numbers sort like their bits.
                 let (mut below, mut from) = (0, 1.0_f32.to_bits());
                 while from - below > 1 {
                     let middle = below + (from - below) / 2;
@@ -38,7 +39,7 @@ impl Eight {
         })
     }
 
-    /// The code value of linear light, clipped; of no number 0.
+    /// Converts linear light to a code value, clipped; NaN becomes 0.
     #[inline(always)]
     pub(super) fn code(&self, linear: f32) -> u8 {
         if linear.is_nan() || linear <= 0.0 {
@@ -59,7 +60,7 @@ impl Eight {
 mod tests {
     use super::*;
 
-    /// At both sides of every step, and between.
+    /// Compares with the exact curve on both sides of every step, and between steps.
     #[test]
     fn codes_are_those_of_the_curve() {
         let eight = Eight::srgb();

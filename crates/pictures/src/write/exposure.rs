@@ -1,4 +1,4 @@
-//! OpenEXR of the linear exposure.
+//! Writes the linear exposure as OpenEXR.
 
 use exr::meta::attribute::{AttributeValue, Chromaticities};
 use exr::prelude::{
@@ -11,23 +11,26 @@ use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::io::{BufReader, Read, SeekFrom};
 use std::path::Path;
 
-/// Writes the frame as [`exr()`] does, to a file.
+/// Writes the frame to an OpenEXR file at `path` as [`exr()`] does, without gains.
 ///
 /// # Errors
-/// [`WriteError`].
+/// [`WriteError`]: the errors of [`exr()`].
 pub fn write_exr(path: &Path, frame: &ExposureFrame, attributes: &[(String, String)]) -> Result<(), WriteError> {
     write_atomically(path, |file| exr(file, frame, &[], 1.0, attributes))
 }
 
-/// Writes the frame, the values of each channel times a gain (in the order of the channels; 1 where there is none), as OpenEXR:
-/// 32-bit floats, scanlines in increasing order, lossless (zip), a channel
-/// of the file for each of the frame under its name, `attributes` (name, text) in the header beside each
-/// channel's unit (`unit NAME`). Pixels are said to be `squeeze` times as wide as on the film, as those of an anamorphic lens are
-/// looked at. An attribute `framesPerSecond` with a value such as `24/1` is written as the rational number that OpenEXR has for it. The same frame and attributes give the same bytes.
+/// Writes the frame as OpenEXR: 32-bit floats, scan lines in increasing order, lossless (zip), with a channel for each channel of the
+/// frame, under the same name.
+///
+/// Each channel is multiplied by its gain; `gains` is in the order of the channels, and missing gains are 1.
+/// The header holds `attributes` (name, text) and the unit of each channel (`unit NAME`). An attribute `framesPerSecond` with a value like
+/// `24/1` is written as OpenEXR's rational number.
+/// The header's pixel aspect is that of the film times `squeeze`, as pictures of an anamorphic lens are viewed. The same frame and
+/// attributes give the same bytes.
 ///
 /// # Errors
-/// [`WriteFault`]: the system refuses, the frame has no channel, or an attribute has a name that is empty,
-/// longer than 255 bytes, given twice, or reserved by OpenEXR.
+/// [`WriteFault`]: the system refuses, the frame has no channel, a channel has too few or too many values, or the name of an attribute is
+/// empty, longer than 255 bytes, given twice, or reserved by OpenEXR.
 pub fn exr(
     out: &mut dyn Out,
     frame: &ExposureFrame,
@@ -39,10 +42,11 @@ pub fn exr(
     write(out, frame, attributes, &colors, &|at, values| FlatSamples::F32(times(values, gain(gains, at))))
 }
 
-/// The same with 16 bits a value, in half the space: three digits, up to 65 504 (more becomes infinite).
+/// Writes the frame as [`exr()`] does, but with 16-bit floats in half the space: three digits, up to 65 504 (larger values become
+/// infinite).
 ///
 /// # Errors
-/// As [`exr()`].
+/// The errors of [`exr()`].
 pub fn half_exr(
     out: &mut dyn Out,
     frame: &ExposureFrame,
@@ -61,17 +65,17 @@ fn gain(gains: &[f64], channel: usize) -> f64 {
     gains.get(channel).copied().unwrap_or(1.0)
 }
 
-/// Values times a gain; with a gain of 1 they keep every bit.
+/// Multiplies values by a gain; with a gain of 1 they keep every bit.
 pub(super) fn times(values: &[f32], gain: f64) -> Vec<f32> {
     if gain == 1.0 { values.to_vec() } else { values.iter().map(|v| (f64::from(*v) * gain) as f32).collect() }
 }
 
-/// Makes the samples of a file of a channel's number and values.
+/// A function that converts a channel, given its index and values, to the samples of a file.
 pub(super) type Samples<'a> = &'a dyn Fn(usize, &[f32]) -> FlatSamples;
 
-/// What the header of a picture says of its colors.
+/// Color information for the header of a picture.
 pub(super) struct Colors {
-    /// Chromaticities of red, green, blue and white, and of what is neutral; none of values that are no colors.
+    /// Chromaticities of red, green, blue and white, and of the neutral color; `None` for values that are not colors.
     pub chromaticities: Option<([[f64; 2]; 4], [f64; 2])>,
     /// Width over height of a pixel.
     pub pixel_aspect: f64,
@@ -96,7 +100,7 @@ fn fault(error: exr::error::Error) -> WriteFault {
     }
 }
 
-/// Each channel's unit, and what is said besides.
+/// Attributes with the unit of each channel, followed by `attributes`.
 pub(super) fn all_attributes(
     frame: &ExposureFrame,
     attributes: &[(String, String)],
@@ -131,7 +135,7 @@ fn image_of(
             layer.frames_per_second = Some(rate);
             continue;
         }
-        // The bytes as they are: OpenEXR leaves the encoding open, and its tools take UTF-8.
+        // The bytes are written unchanged: OpenEXR leaves the encoding open, and its tools expect UTF-8.
         let value = AttributeValue::Text(Text::from_slice_unchecked(value.as_bytes()));
         if layer.other.insert(Text::from_slice_unchecked(name.as_bytes()), value).is_some() {
             return Err(WriteFault::Format(format!("the attribute `{name}` is given twice")));
@@ -163,14 +167,14 @@ fn image_of(
     Ok(Image { attributes: shared, layer_data: Layer::new(size, layer, encoding, channels) })
 }
 
-/// A number such as `24000/1001`.
+/// Parses a rational number like `24000/1001`.
 fn rational(text: &str) -> Option<(i32, u32)> {
     let (above, below) = text.split_once('/')?;
     Some((above.parse().ok()?, below.parse().ok()?))
 }
 
-/// Sorts the attributes of the header by name, in place: the library writes those of one's own in the
-/// order of a hash table, which differs from run to run. Sizes, and with them all offsets, stay.
+/// Sorts the header attributes by name, in place. The library writes custom attributes in the order of a hash table, which differs from run
+/// to run. Sizes, and thus all offsets, do not change.
 fn sort_header(file: &mut dyn Out) -> Result<(), WriteFault> {
     const START: u64 = 8; // magic number and version
     file.seek(SeekFrom::Start(START))?;
@@ -199,7 +203,7 @@ fn sort_header(file: &mut dyn Out) -> Result<(), WriteFault> {
     Ok(())
 }
 
-/// Reads to the next zero byte; adds what was read, with the zero, to `all`, and returns it without.
+/// Reads to the next zero byte. Appends what was read, with the zero, to `all`, and returns it without the zero.
 fn null_terminated(from: &mut impl Read, all: &mut Vec<u8>) -> Result<Vec<u8>, WriteFault> {
     let mut text = Vec::new();
     loop {
@@ -280,7 +284,7 @@ mod tests {
         assert_eq!(rate("24000/1001"), Some((24000, 1001)));
     }
 
-    /// Every channel has a gain of its own; half floats keep three digits.
+    /// Every channel has its own gain; half floats keep three digits.
     #[test]
     fn gains_multiply_the_values() {
         let folder = tempfile::tempdir().expect("a folder");

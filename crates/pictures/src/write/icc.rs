@@ -3,15 +3,15 @@
 use spectra_color::matrix::Matrix;
 use spectra_color::{Adaptation, RgbSpace, Transfer};
 
-/// XYZ of the white that profiles are connected by, D50 (ICC.1:2022, 7.2.16).
+/// XYZ of D50, the white of the profile connection space (ICC.1:2022, 7.2.16).
 const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
 
-/// Bytes of a header, and of an entry of the table of tags.
+/// Bytes of a profile header, and of an entry of the tag table.
 const HEADER: usize = 128;
 const ENTRY: usize = 12;
 
-/// The profile of a display of this space under this name, its colors brought to D50 by Bradford. No date or machine is in it:
-/// the same space gives the same bytes.
+/// Builds a display profile of this space under this name, adapted to D50 by Bradford. It names no date of creation and no machine: the
+/// same space gives the same bytes.
 #[must_use]
 pub fn display_profile(space: &RgbSpace, name: &str, transfer: Transfer) -> Vec<u8> {
     let adaptation = Adaptation::Bradford.matrix(space.white_xyz(), D50);
@@ -37,7 +37,7 @@ pub fn display_profile(space: &RgbSpace, name: &str, transfer: Transfer) -> Vec<
     let first = HEADER + 4 + ENTRY * tags.len();
     let mut placed: Vec<(usize, &[u8])> = Vec::new();
     for (name, content) in &tags {
-        // The three curves are one.
+        // The three curves share one copy.
         let known = placed.iter().find(|(_, other)| *other == content.as_slice()).map(|(at, _)| *at);
         let at = known.unwrap_or(first + data.len());
         if known.is_none() {
@@ -55,23 +55,23 @@ pub fn display_profile(space: &RgbSpace, name: &str, transfer: Transfer) -> Vec<
     profile
 }
 
-/// The header of a profile of this size.
+/// Builds the header of a profile of `size` bytes.
 fn header(size: usize) -> Vec<u8> {
     let mut bytes = vec![0; HEADER];
     let mut put = |at: usize, what: &[u8]| bytes[at..at + what.len()].copy_from_slice(what);
     put(0, &(size as u32).to_be_bytes());
     put(8, &[4, 0x40, 0, 0]);
     put(12, b"mntrRGB XYZ ");
-    // A date must stand here; that of the standard is as good as any.
+    // A date is required; this one is the date of the standard.
     put(24, &[2022_u16, 5, 1, 0, 0, 0].map(u16::to_be_bytes).concat());
     put(36, b"acsp");
-    // Intent: media-relative colorimetric.
+    // Rendering intent: media-relative colorimetric.
     put(64, &1_u32.to_be_bytes());
     put(68, &D50.map(fixed).concat());
     bytes
 }
 
-/// A number in 16.16 bits.
+/// Encodes a fixed-point number of 16.16 bits.
 fn fixed(value: f64) -> [u8; 4] {
     ((value * 65_536.0).round() as i32).to_be_bytes()
 }
@@ -84,7 +84,7 @@ fn chad(matrix: &Matrix) -> Vec<u8> {
     [b"sf32\0\0\0\0".to_vec(), matrix.as_flattened().iter().flat_map(|v| fixed(*v)).collect()].concat()
 }
 
-/// A text in English.
+/// Encodes a text in English.
 fn text(value: &str) -> Vec<u8> {
     let letters: Vec<u8> = value.encode_utf16().flat_map(u16::to_be_bytes).collect();
     let mut bytes = b"mluc\0\0\0\0".to_vec();
@@ -95,7 +95,7 @@ fn text(value: &str) -> Vec<u8> {
     bytes
 }
 
-/// The curve, from code value to light: (a x + b)^g from d on, c x below.
+/// Encodes the curve from code value to light: (a x + b)^g from d on, c x below.
 fn parametric(transfer: Transfer) -> Vec<u8> {
     let [kind, parameters]: [&[f64]; 2] = match transfer {
         Transfer::Linear => [&[0.0], &[1.0]],
@@ -117,8 +117,8 @@ mod tests {
         u32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]) as usize
     }
 
-    /// Read back as ICC.1:2022 says: sizes, signatures, and the numbers of the sRGB profile that the ICC hands out
-    /// (sRGB_v4_ICC_preference's colorants are others; these are those of sRGB2014.icc, 2015).
+    /// Reads the profile back as ICC.1:2022 says: sizes, signatures, and the numbers of sRGB2014.icc (ICC, 2015). The colorants of
+    /// sRGB_v4_ICC_preference differ.
     #[test]
     fn the_profile_is_read_back() {
         let bytes = display_profile(RgbSpace::srgb(), "sRGB", Transfer::Srgb);
@@ -142,7 +142,7 @@ mod tests {
                 assert!((number(at + 4 * i) - want).abs() < 2e-4, "{name:?} {i}: {}", number(at + 4 * i));
             }
         }
-        // The primaries add up to the white that profiles are connected by.
+        // The primaries add up to the white of the profile connection space.
         for i in 0..3 {
             let sum: f64 = [b"rXYZ", b"gXYZ", b"bXYZ"].map(|name| number(tag(name) + 8 + 4 * i)).iter().sum();
             assert!((sum - D50[i]).abs() < 5e-5, "{i}: {sum}");

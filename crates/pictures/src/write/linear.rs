@@ -1,4 +1,4 @@
-//! OpenEXR of a finished picture, for compositing.
+//! Writes a finished picture as OpenEXR, for compositing.
 
 use super::exposure::{Colors, write};
 use super::space::from_srgb;
@@ -10,24 +10,24 @@ use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, FrameS
 use spectra_core::sink::Out;
 use spectra_files::WriteFault;
 
-/// Linear colors of an OpenEXR.
+/// Linear color space of an OpenEXR file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinearSpace {
-    /// Primaries of sRGB, ITU-R BT.709.
+    /// Primaries of sRGB (ITU-R BT.709).
     #[default]
     Srgb,
     /// Primaries of ITU-R BT.2020.
     Rec2020,
-    /// Primaries of the digital cinema, white D65.
+    /// Primaries of digital cinema, white D65.
     P3D65,
-    /// Primaries AP1 with the white of ACES.
+    /// Primaries AP1 with the white of ACES (ACEScg).
     AcesCg,
-    /// CIE XYZ, white D65, Y of white 1: X in R, Y in G, Z in B.
+    /// CIE XYZ, white D65, where white has Y = 1: X in R, Y in G, Z in B.
     Xyz,
 }
 
 impl LinearSpace {
-    /// Its name in the configurations of OpenColorIO (OpenColorIO-Config-ACES, `cg-config-v1.0.0` and later).
+    /// Name of the space in configurations of OpenColorIO (OpenColorIO-Config-ACES, `cg-config-v1.0.0` and later).
     #[must_use]
     pub fn ocio_name(self, state: ImageState) -> &'static str {
         match (self, state) {
@@ -41,8 +41,8 @@ impl LinearSpace {
         }
     }
 
-    /// Its identifier by the Color Interop Forum (recommendations for texture assets, 2024, and display color spaces, 2026), which
-    /// OpenEXR 3.4 has an attribute for; `None` where there is none.
+    /// Identifier of the space by the Color Interop Forum (recommendations for texture assets, 2024, and display color spaces, 2026).
+    /// OpenEXR 3.4 has an attribute for it. `None` if there is no identifier.
     #[must_use]
     pub fn interop_id(self, state: ImageState) -> Option<&'static str> {
         Some(match (self, state) {
@@ -59,7 +59,7 @@ impl LinearSpace {
         })
     }
 
-    /// From linear sRGB; whites are brought together by CAT02.
+    /// Returns the matrix from linear sRGB to this space, white to white (CAT02).
     #[must_use]
     pub fn from_srgb(self) -> Matrix {
         match self {
@@ -71,12 +71,12 @@ impl LinearSpace {
         }
     }
 
-    /// Chromaticity of what is neutral.
+    /// Chromaticity x, y of the neutral color.
     fn neutral(self) -> [f64; 2] {
         if self == Self::AcesCg { RgbSpace::aces_cg().white_xy } else { RgbSpace::srgb().white_xy }
     }
 
-    /// Chromaticities of red, green, blue and white. Those of XYZ as the documentation of OpenEXR has them.
+    /// Chromaticities of red, green, blue and white. Those of XYZ follow the documentation of OpenEXR.
     fn chromaticities(self) -> [[f64; 2]; 4] {
         let of = |space: &RgbSpace| {
             let [r, g, b] = space.primaries_xy;
@@ -92,13 +92,15 @@ impl LinearSpace {
     }
 }
 
-/// Writes a finished picture, linear sRGB in no gamut, as OpenEXR: R, G and B in a space, beside them `layers` under their own
-/// names; 32-bit floats, R, G and B of 16 bits where it is `half`. In the header: `chromaticities` and `adoptedNeutral`, the name of the space
-/// for OpenColorIO (`oiio:ColorSpace`) and the Color Interop Forum (`colorInteropID`), whether it is scene- or display-referred
-/// (`spectra:image state`), and `attributes`.
+/// Writes a finished picture, linear sRGB without gamut limits, as OpenEXR: R, G and B in `space`, and `layers` as further channels under
+/// their own names.
+///
+/// Values are 32-bit floats; with `half`, R, G and B have 16 bits.
+/// The header holds `chromaticities` and `adoptedNeutral`, the name of the space for OpenColorIO (`oiio:ColorSpace`) and the Color Interop
+/// Forum (`colorInteropID`), whether the picture is scene- or display-referred (`spectra:image state`), and `attributes`.
 ///
 /// # Errors
-/// As [`super::exr()`].
+/// The errors of [`super::exr()`].
 pub fn picture_exr(
     out: &mut dyn Out,
     picture: &DisplayPicture,
@@ -128,7 +130,7 @@ pub fn picture_exr(
     said.extend(attributes.iter().cloned());
     let chromaticities = (state != ImageState::Data).then(|| (space.chromaticities(), space.neutral()));
     let colors = Colors { chromaticities, pixel_aspect };
-    // Layers keep all their digits: exposures go beyond what 16 bits hold.
+    // Layers keep full precision: exposures exceed the range of 16 bits.
     write(out, &frame, &said, &colors, &|at, values| {
         if half && at < 3 {
             FlatSamples::F16(values.iter().map(|v| exr::prelude::f16::from_f32(*v)).collect())

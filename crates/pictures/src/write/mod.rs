@@ -1,4 +1,4 @@
-//! Files: each is written whole or not at all, and nothing in it changes from run to run.
+//! Writes picture files. Each is written completely or not at all, and the bytes do not change from run to run.
 
 mod dng;
 mod eight;

@@ -1,4 +1,4 @@
-//! Pictures for a screen.
+//! Writes pictures for a screen as PNG, TIFF and JPEG.
 
 use super::eight::Eight;
 use super::space::{PictureSpace, chunk};
@@ -14,22 +14,22 @@ use spectra_files::{WriteError, WriteFault, write_atomically};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Pixels that a thread encodes at a time.
+/// Number of pixels that a thread encodes at a time.
 const PIXELS_A_TASK: usize = 8192;
 
-/// Writes an 8-bit PNG: sRGB encoding, 1 is 255, values outside of [0, 1] clipped, no dithering.
+/// Writes an 8-bit PNG file at `path`: sRGB encoding, 1 becomes 255, values outside [0, 1] are clipped, no dithering.
 ///
 /// # Errors
-/// [`WriteError`].
+/// [`WriteError`]: the system refuses, or the number of pixels does not match the size.
 pub fn write_png8(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
     write_atomically(path, |file| png8(file, picture, PictureSpace::Srgb, 1.0))
 }
 
-/// The same, in another space, of a picture whose pixels are `pixel_aspect` times as wide as high; where that is not 1, the file
-/// says so.
+/// Writes an 8-bit PNG in the color space `space`: 1 becomes 255, values outside [0, 1] are clipped, no dithering.
+/// Pixels are `pixel_aspect` times as wide as high; if this is not 1, the file states it.
 ///
 /// # Errors
-/// [`WriteFault`].
+/// [`WriteFault`]: the system refuses, or the number of pixels does not match the size.
 pub fn png8(
     out: &mut dyn Out,
     picture: &DisplayPicture,
@@ -40,10 +40,11 @@ pub fn png8(
     png(out, picture, &bytes, ExtendedColorType::Rgb8, space, pixel_aspect)
 }
 
-/// The same with 16 bits: 1 is 65535.
+/// Writes a 16-bit PNG in the color space `space`: 1 becomes 65535, values outside [0, 1] are clipped.
+/// Pixels are `pixel_aspect` times as wide as high; if this is not 1, the file states it.
 ///
 /// # Errors
-/// [`WriteFault`].
+/// [`WriteFault`]: the system refuses, or the number of pixels does not match the size.
 pub fn png16(
     out: &mut dyn Out,
     picture: &DisplayPicture,
@@ -54,19 +55,18 @@ pub fn png16(
     png(out, picture, &bytes, ExtendedColorType::Rgb16, space, pixel_aspect)
 }
 
-/// Writes a 16-bit PNG: sRGB encoding, 1 is 65535, values outside of [0, 1] clipped.
+/// Writes a 16-bit PNG file at `path`: sRGB encoding, 1 becomes 65535, values outside [0, 1] are clipped.
 ///
 /// # Errors
-/// [`WriteError`].
+/// [`WriteError`]: the system refuses, or the number of pixels does not match the size.
 pub fn write_png16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteError> {
     write_atomically(path, |file| png16(file, picture, PictureSpace::Srgb, 1.0))
 }
 
-/// Writes a 16-bit TIFF, uncompressed: 1 is 65535, values outside of [0, 1] clipped; with a color profile, where the space has
-/// one.
+/// Writes an uncompressed 16-bit TIFF: 1 becomes 65535, values outside [0, 1] are clipped. Includes a color profile if the space has one.
 ///
 /// # Errors
-/// [`WriteFault`].
+/// [`WriteFault`]: the system refuses, or the number of pixels does not match the size.
 pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture, space: PictureSpace) -> Result<(), WriteFault> {
     let bytes = encoded(picture, space, code16);
     check(picture)?;
@@ -80,10 +80,10 @@ pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture, space: PictureSpace) 
     Ok(to.flush()?)
 }
 
-/// Writes a JPEG of 8 bits, each channel at full resolution, with a color profile where the space has one; `quality` from 1 to 100.
+/// Writes an 8-bit JPEG, each channel at full resolution, with a color profile if the space has one. `quality` is 1 to 100.
 ///
 /// # Errors
-/// [`WriteFault`].
+/// [`WriteFault`]: the system refuses, or the number of pixels does not match the size.
 pub fn jpeg(out: &mut dyn Out, picture: &DisplayPicture, space: PictureSpace, quality: u8) -> Result<(), WriteFault> {
     let bytes = if space.is_srgb() { eight(picture) } else { encoded(picture, space, |code| [to_u8(code)]) };
     check(picture)?;
@@ -107,11 +107,11 @@ fn png(
     check(picture)?;
     let mut to = BufWriter::new(out);
     let mut png = Vec::new();
-    // Photographs, grain above all, hold little that repeats: the fast way makes them no larger, in a fortieth of the time.
+    // Photographs, and grain above all, repeat little: fast compression gives files of the same size in a fortieth of the time.
     PngEncoder::new_with_quality(&mut png, CompressionType::Fast, FilterType::Adaptive)
         .write_image(bytes, picture.width_px, picture.height_px, color)
         .map_err(fault)?;
-    // Signature and IHDR come first (PNG, third edition, 5.6): what says the colors, and pHYs, may follow at once.
+    // Signature and IHDR come first (PNG, third edition, 5.6). Chunks about color, and pHYs, may follow directly.
     let (head, rest) = png.split_at(8 + 25);
     to.write_all(head)?;
     to.write_all(&space.chunks())?;
@@ -122,18 +122,18 @@ fn png(
     Ok(to.flush()?)
 }
 
-/// The chunk pHYs (PNG, third edition, 11.3.4.3) of pixels of this width over height, without a unit.
+/// Builds the chunk pHYs (PNG, third edition, 11.3.4.3) for pixels of this width over height, without a unit.
 fn physical_dimensions(pixel_aspect: f64) -> Vec<u8> {
     const ACROSS: u32 = 1_000_000;
     let down = (f64::from(ACROSS) * pixel_aspect).round() as u32;
     chunk(b"pHYs", &[&ACROSS.to_be_bytes()[..], &down.to_be_bytes(), &[0]].concat())
 }
 
-/// The encoders panic where the number of pixels is not that of the size.
+/// Checks the number of pixels, because the encoders panic if it does not match the size.
 fn check(picture: &DisplayPicture) -> Result<(), WriteFault> {
     let (width, height, found) = (picture.width_px, picture.height_px, picture.rgb.len());
     if found == 0 || found as u64 != u64::from(width) * u64::from(height) {
-        return Err(WriteFault::Format(format!("{found} pixels for a picture of {width} x {height}")));
+        return Err(WriteFault::Format(format!("a picture of {width} x {height} pixels cannot have {found} pixels")));
     }
     Ok(())
 }
@@ -145,7 +145,7 @@ fn fault(error: ImageError) -> WriteFault {
     }
 }
 
-/// The picture in code values of a space, `N` bytes each, by `code`.
+/// Encodes the picture in code values of a space; `code` converts a value to `N` bytes.
 fn encoded<const N: usize>(
     picture: &DisplayPicture,
     space: PictureSpace,
@@ -164,7 +164,7 @@ fn encoded<const N: usize>(
     bytes
 }
 
-/// The picture in 8 bits of sRGB.
+/// Encodes the picture in 8-bit sRGB.
 fn eight(picture: &DisplayPicture) -> Vec<u8> {
     let codes = Eight::srgb();
     let mut bytes = vec![0; picture.rgb.len() * 3];
@@ -176,9 +176,9 @@ fn eight(picture: &DisplayPicture) -> Vec<u8> {
     bytes
 }
 
-/// A code value in 16 bits, in the order of the machine's bytes, as the encoders take them.
+/// Converts a code value to 16 bits in native byte order, as the encoders expect.
 fn code16(code: f64) -> [u8; 2] {
-    // The cast saturates, and takes NaN to 0.
+    // The cast saturates and converts NaN to 0.
     ((code * 65_535.0 + 0.5).floor() as u16).to_ne_bytes()
 }
 
@@ -192,7 +192,7 @@ mod tests {
         DisplayPicture { width_px: 4, height_px: 3, rgb }
     }
 
-    /// IEC 61966-2-1: linear 0.18 is code 0.46136, so 118 of 255 and 30235 of 65535.
+    /// IEC 61966-2-1: linear 0.18 is code 0.46136, that is 118 of 255 and 30235 of 65535.
     #[test]
     fn pictures_come_back_as_srgb_codes() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,11 +1,13 @@
-//! Pictures with square pixels, of pictures whose pixels are not.
+//! Resamples pictures to square pixels.
 
 use rayon::prelude::*;
 use spectra_core::frame::DisplayPicture;
 
-/// The picture as it is to be seen, pixels `pixel_aspect` times as wide as high made square: it grows along one side and loses
-/// nothing. Between pixels by the cubic of E. Catmull and R. Rom (1974), in linear light; what that swings below 0, next to lamps,
-/// is 0 where the pixels around were.
+/// Resamples a picture whose pixels are `pixel_aspect` times as wide as high to square pixels. The picture grows along one side, so no
+/// detail is lost.
+///
+/// Interpolates with the cubic of E. Catmull and R. Rom (1974) in linear light. Negative overshoot, next to lamps, is clipped to 0 if the
+/// neighboring pixels are not negative.
 #[must_use]
 pub fn squared(picture: &DisplayPicture, pixel_aspect: f64) -> DisplayPicture {
     let (width, height) = (picture.width_px as usize, picture.height_px as usize);
@@ -23,7 +25,7 @@ pub fn squared(picture: &DisplayPicture, pixel_aspect: f64) -> DisplayPicture {
     DisplayPicture { width_px: picture.width_px, height_px: high as u32, rgb }
 }
 
-/// Four neighbors and their weights.
+/// Indices of four neighbors and their weights.
 struct Tap {
     at: [usize; 4],
     weight: [f64; 4],
@@ -41,7 +43,7 @@ impl Tap {
     }
 }
 
-/// Where `to` pixels lie among `from`.
+/// Computes the neighbors and weights that resample `from` pixels to `to` pixels.
 fn taps(from: usize, to: usize) -> Vec<Tap> {
     let one = |i: usize| {
         let place = (i as f64 + 0.5) * from as f64 / to as f64 - 0.5;
@@ -68,7 +70,7 @@ mod tests {
         DisplayPicture { width_px: width, height_px: height, rgb: (0..width * height).map(pixel).collect() }
     }
 
-    /// A ramp stays a ramp, along either side; a lamp stays above 0; pixels that are square stay as they are.
+    /// A ramp stays a ramp along either side; a lamp stays above 0; square pixels do not change.
     #[test]
     fn straight_lines_stay_straight() {
         let wide = squared(&ramp(20, 3, |x, _| x / 20.0), 1.9);

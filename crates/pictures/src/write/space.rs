@@ -1,23 +1,23 @@
-//! In which colors a picture is written, and how its file says so.
+//! Color spaces in which a picture is written, and how a file states them.
 
 use super::icc::display_profile;
 use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, Gamut, RgbSpace, Transfer, aces_cct, into_gamut};
 
-/// Colors of a picture file.
+/// Color space of a picture file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PictureSpace {
-    /// sRGB, IEC 61966-2-1.
+    /// sRGB (IEC 61966-2-1).
     #[default]
     Srgb,
-    /// Primaries of the digital cinema, curve of sRGB.
+    /// Display P3: primaries of digital cinema, curve of sRGB.
     DisplayP3,
-    /// Primaries of ITU-R BT.2020 under the curve of sRGB, which all programs read alike: of its own curve some take the inverse,
-    /// others that of a display.
+    /// Primaries of ITU-R BT.2020 with the curve of sRGB, which all programs read alike. For BT.2020's own curve, some programs apply its
+    /// inverse and others a display curve.
     Rec2020,
     /// ACEScct: primaries AP1, logarithmic.
     AcesCct,
-    /// No colors but values, which are written under the curve of sRGB as a picture's are, and are not tagged.
+    /// Values that are not colors, for example densities. They are written with the curve of sRGB, as a picture is, but are not tagged.
     Values,
 }
 
@@ -31,7 +31,7 @@ impl PictureSpace {
         }
     }
 
-    /// Its name in a file.
+    /// Name of the space in a file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -43,13 +43,13 @@ impl PictureSpace {
         }
     }
 
-    /// Whether pictures for a screen already lie in it.
+    /// Whether pictures for a screen are already in this space.
     #[must_use]
     pub fn is_srgb(self) -> bool {
         matches!(self, Self::Srgb | Self::Values)
     }
 
-    /// From linear sRGB to code values.
+    /// Returns a function from linear sRGB to code values of this space.
     pub(super) fn encoder(self) -> impl Fn([f32; 3]) -> [f64; 3] + Sync {
         let (space, matrix) = (self.space(), from_srgb(self.space()));
         move |rgb| {
@@ -64,7 +64,7 @@ impl PictureSpace {
         }
     }
 
-    /// Color primaries and curve by ITU-T H.273, with RGB in full range, where it has numbers for them.
+    /// Color primaries and curve by ITU-T H.273, with RGB in full range; `None` if it has no numbers for them.
     fn code_points(self) -> Option<[u8; 4]> {
         match self {
             Self::Srgb => Some([1, 13, 0, 1]),
@@ -74,7 +74,7 @@ impl PictureSpace {
         }
     }
 
-    /// A color profile, where one can say what it is.
+    /// Returns a color profile of the space; `None` if a profile cannot describe it.
     #[must_use]
     pub fn profile(self) -> Option<Vec<u8>> {
         match self {
@@ -85,7 +85,7 @@ impl PictureSpace {
         }
     }
 
-    /// The chunks that say it in a PNG (third edition, 11.3.2), which stand before the pixels: cICP, and for older programs sRGB
+    /// Returns the PNG chunks that state the space (third edition, 11.3.2), which come before the pixels: cICP, and for older programs sRGB
     /// with gAMA and cHRM, or iCCP.
     pub(super) fn chunks(self) -> Vec<u8> {
         let mut all = Vec::new();
@@ -113,14 +113,14 @@ impl PictureSpace {
     }
 }
 
-/// From linear sRGB to a space, white to white (CAT02).
+/// Returns the matrix from linear sRGB to a space, white to white (CAT02).
 pub(crate) fn from_srgb(space: &RgbSpace) -> Matrix {
     let srgb = RgbSpace::srgb();
     let adapted = Adaptation::Cat02.matrix(srgb.white_xyz(), space.white_xyz());
     product(&space.rgb_from_xyz, &product(&adapted, &srgb.xyz_from_rgb))
 }
 
-/// A chunk of a PNG.
+/// Builds a chunk of a PNG.
 pub(crate) fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
     let mut chunk = (data.len() as u32).to_be_bytes().to_vec();
     chunk.extend(name);
@@ -130,13 +130,13 @@ pub(crate) fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
     chunk
 }
 
-/// The check of a chunk (PNG, third edition, annex D).
+/// Computes the checksum of a chunk (PNG, third edition, annex D).
 fn crc32(bytes: &[u8]) -> u32 {
     let step = |crc: u32| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 };
     !bytes.iter().fold(u32::MAX, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc)))
 }
 
-/// At most 65 535 bytes as they are, in the wrapping of zlib (RFC 1950, RFC 1951): profiles are short.
+/// Wraps at most 65 535 bytes, uncompressed, as a zlib stream (RFC 1950, RFC 1951). Profiles are short enough.
 fn zlib(bytes: &[u8]) -> Vec<u8> {
     const MODULUS: u32 = 65_521;
     let length = bytes.len() as u16;

@@ -1,6 +1,6 @@
-//! Directories of a TIFF file, little-endian (TIFF 6.0, Adobe, 1992).
+//! Directories of a little-endian TIFF file (TIFF 6.0, Adobe, 1992).
 
-/// A field of a directory: tag, type, count, and its value or the bytes that stand behind the directory.
+/// A field of a directory: tag, type, count and value. Values of more than four bytes are stored after the directory.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Field {
     pub tag: u16,
@@ -9,7 +9,7 @@ pub(super) struct Field {
     bytes: Vec<u8>,
 }
 
-// Types.
+// Field types of TIFF.
 const BYTE: u16 = 1;
 const ASCII: u16 = 2;
 const SHORT: u16 = 3;
@@ -49,7 +49,7 @@ pub(super) fn doubles(tag: u16, values: &[f64]) -> Field {
     field(tag, DOUBLE, values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect())
 }
 
-/// Numbers of 0 or more, to a millionth below 4000 and to nine digits above; infinity is 1/0.
+/// Builds a field of non-negative numbers: accurate to a millionth below 4000, and to nine digits above. Infinity is 1/0.
 pub(super) fn rationals(tag: u16, values: &[f64]) -> Field {
     let one = |v: &f64| {
         if v.is_infinite() {
@@ -64,13 +64,13 @@ pub(super) fn rationals(tag: u16, values: &[f64]) -> Field {
     field(tag, RATIONAL, values.len(), values.iter().flat_map(one).collect())
 }
 
-/// Numbers of -2000 to 2000, to a millionth.
+/// Builds a field of numbers from -2000 to 2000, accurate to a millionth.
 pub(super) fn signed_rationals(tag: u16, values: &[f64]) -> Field {
     let one = |v: &f64| [(v * 1e6).round() as i32, 1_000_000].map(i32::to_le_bytes).concat();
     field(tag, SRATIONAL, values.len(), values.iter().flat_map(one).collect())
 }
 
-/// A time as photographers write it: one over a whole number where it is that, or short.
+/// Builds a field with an exposure time as photographers write it: 1/n if n is a whole number or large.
 pub(super) fn exposure(tag: u16, time_s: f64) -> Field {
     let inverse = 1.0 / time_s;
     let whole = (inverse.round() - inverse).abs() < 1e-6 * inverse || inverse > 1000.0;
@@ -80,13 +80,13 @@ pub(super) fn exposure(tag: u16, time_s: f64) -> Field {
     rationals(tag, &[time_s])
 }
 
-/// How many bytes a directory of these fields takes, with what stands behind it.
+/// Returns the number of bytes of a directory with these fields, including the values after it.
 pub(super) fn length(fields: &[Field]) -> usize {
     let beside = |f: &Field| if f.bytes.len() > 4 { f.bytes.len().next_multiple_of(2) } else { 0 };
     2 + fields.len() * 12 + 4 + fields.iter().map(beside).sum::<usize>()
 }
 
-/// The directory as it stands at byte `at` of the file, the only one or the last of its chain.
+/// Returns the bytes of the directory at byte `at` of the file. It is the only directory or the last of its chain.
 pub(super) fn directory(fields: &[Field], at: usize) -> Vec<u8> {
     let mut fields: Vec<&Field> = fields.iter().collect();
     fields.sort_by_key(|f| f.tag);

@@ -1,4 +1,4 @@
-//! OpenEXR of the linear exposure, in tiles.
+//! Writes the linear exposure as tiled OpenEXR.
 
 use super::exposure::{all_attributes, pixel_aspect, times};
 use crate::library::{self, TiledExr};
@@ -6,15 +6,15 @@ use spectra_core::frame::ExposureFrame;
 use spectra_core::sink::Out;
 use spectra_files::WriteFault;
 
-/// Side of a tile, pixels: what texture tools use.
+/// Side of a tile, pixels, as texture tools use it.
 const TILE_PX: u32 = 64;
 
-/// Writes the frame as [`super::exr()`] does, in tiles of 64 pixels a side, by the library of picture formats that
-/// the program is linked with. The same frame and attributes give the same bytes.
+/// Writes the frame as [`super::exr()`] does, but in tiles of 64 x 64 pixels, with the linked picture library. The same frame and
+/// attributes give the same bytes.
 ///
 /// # Errors
-/// [`WriteFault`]: the system refuses, there is no such library, the frame has no channel or too few values, or an
-/// attribute is given twice.
+/// [`WriteFault`]: the system refuses, there is no such library, the frame has no channel or too few values, or an attribute has no name or
+/// is given twice.
 pub fn tiled_exr(
     out: &mut dyn Out,
     frame: &ExposureFrame,
@@ -28,7 +28,7 @@ pub fn tiled_exr(
     let attributes: Vec<(String, String)> = all_attributes(frame, attributes).collect();
     for (i, (name, _)) in attributes.iter().enumerate() {
         if name.is_empty() || attributes[..i].iter().any(|(other, _)| other == name) {
-            return Err(WriteFault::Format(format!("the attribute `{name}` has no name, or is given twice")));
+            return Err(WriteFault::Format(format!("an attribute has no name or is given twice: `{name}`")));
         }
     }
     let gain = |at: usize| gains.get(at).copied().unwrap_or(1.0);

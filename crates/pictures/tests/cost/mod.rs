@@ -1,4 +1,4 @@
-//! What reading a picture costs: the peak of a process of its own that reads it, as the system counts it.
+//! Measures the memory that reading a picture takes: the peak of a separate process that reads it, as the system counts it.
 
 use spectra_core::resources::Found;
 use spectra_pictures::read::{Choice, decode, header};
@@ -8,17 +8,17 @@ use std::process::Command;
 pub const WIDTH: u32 = 2896;
 pub const HEIGHT: u32 = 1930;
 const PIXELS: f64 = (WIDTH * HEIGHT) as f64;
-/// For decoders and what they unpack at a time.
+/// Memory for decoders and what they unpack at a time.
 const SPARE_BYTES: f64 = (12 << 20) as f64;
 
-/// Largest memory of this process so far, bytes (proc(5), `VmHWM`).
+/// Returns the largest memory of this process so far, bytes (proc(5), `VmHWM`).
 fn peak_bytes() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux says it");
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("a line of it");
     line.trim().trim_end_matches("kB").trim().parse::<f64>().expect("a number") * 1024.0
 }
 
-/// Reads the file that a test names, and prints what that cost.
+/// Reads the file that a test names, and prints how much memory that took.
 #[test]
 #[ignore = "started by a test, in a process of its own"]
 fn reader() {
@@ -40,10 +40,10 @@ pub fn ramp<T: Copy>(channels: u32, of: impl Fn(u32) -> T) -> Vec<T> {
     row.repeat(HEIGHT as usize)
 }
 
-/// A file, and the pixels that it holds.
+/// A file name, and a function that writes the file.
 pub type Case = (&'static str, fn(&Path));
 
-/// Holds each of these files to twelve bytes a pixel, and its header to none.
+/// Checks that each of these files takes at most twelve bytes per pixel, and its header none.
 pub fn holds(cases: &[Case]) {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, write) in cases {

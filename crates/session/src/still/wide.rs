@@ -1,31 +1,31 @@
-//! What the channels get of colors beyond sRGB, tabulated.
+//! Table of the channels' exposures by colors beyond sRGB.
 
 use super::{Colors, JUDGES};
 use rayon::prelude::*;
 use spectra_color::RealColors;
 use spectra_core::stage::ColorGamut;
 
-/// Directions from white.
+/// Number of directions from white.
 const DIRECTIONS: usize = 1440;
-/// Points of each direction, closer together toward the spectral locus.
+/// Number of points in each direction, denser toward the spectral locus.
 const ROWS: usize = 65;
 
-/// A table over the direction from white and the depth between sRGB and the rim of real colors.
+/// A table over the direction from white, and the depth between sRGB and the boundary of real colors.
 pub(super) struct Wide {
     real: RealColors,
-    /// Of each direction and row what each channel gets of the color whose largest value is 1.
+    /// Exposures of the channels by the color whose largest value is 1, for each direction and row.
     points: Vec<f32>,
     channels: usize,
 }
 
-/// Depth of a row.
+/// Returns the depth of a row, from 0 to 1.
 fn depth(row: usize) -> f64 {
     let left = 1.0 - row as f64 / (ROWS - 1) as f64;
     1.0 - left * left
 }
 
 impl Wide {
-    /// The table; `None` where the color model makes no spectra beyond sRGB.
+    /// Computes the table; `None` if the color model makes no spectra beyond sRGB.
     pub(super) fn new(colors: &Colors<'_>) -> Option<Self> {
         if colors.model.gamut() == ColorGamut::Srgb {
             return None;
@@ -39,10 +39,10 @@ impl Wide {
         Some(Self { real, points, channels: colors.channels.len() })
     }
 
-    /// Largest difference between table and integrals over colors of all directions and depths.
+    /// Returns the largest error of the table against integrals, over colors of all directions and depths.
     pub(super) fn worst(&self, colors: &Colors<'_>) -> f64 {
         let off = |i: usize| {
-            // Additive recurrences of irrational steps fill a square evenly (the plastic number).
+            // Additive recurrences with irrational steps fill a square evenly (the plastic number).
             let at = |step: f64| (0.5 + i as f64 * step).fract();
             let color = RealColors::color(4.0 * at(0.754_877_666_246_692_7), at(0.569_840_290_998_053_3));
             let color = color.map(|v| v as f32);
@@ -52,7 +52,7 @@ impl Wide {
         (0..JUDGES).into_par_iter().map(off).reduce(|| 0.0, f64::max)
     }
 
-    /// What each channel gets of a color with a negative value; whether it has any luminance.
+    /// Looks up the exposure of each channel by a color with a negative value. Returns whether the color has any luminance.
     pub(super) fn at(&self, rgb: [f32; 3], to: &mut [f32]) -> bool {
         let Some(place) = self.real.place(rgb.map(f64::from)) else { return false };
         let row = (((1.0 - (1.0 - place.depth).sqrt()) * (ROWS - 1) as f64) as usize).min(ROWS - 2);

@@ -1,32 +1,33 @@
-//! The best few Gaussians for a whole spectrum.
+//! Fit of a few Gaussians to a whole spectrum.
 
-use spectra_core::numbers::mix64;
+use spectra_core::numbers::{SplitMix64, mix64};
 use spectra_core::spectral::Grid;
 
 use super::projection::{Place, Problem, Projected};
 use super::{GaussianMixture, GaussianTerm};
 use crate::error::{SpectrumError, check};
 
-/// Most terms that a fit may have.
+/// Largest number of terms of a fit.
 const MAX_TERMS: usize = 32;
 
-/// How well a mixture stands for a spectrum on a grid.
+/// Differences between a mixture and the spectrum that it approximates, on a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussianFitReport {
-    /// Root of the sum of squared differences over that of squared values.
+    /// Relative L2 error: root of the sum of squared differences over that of squared values.
     pub relative_l2: f64,
-    /// Largest difference, over the largest value.
+    /// Largest absolute difference, over the largest absolute value.
     pub maximum: f64,
-    /// Integral of the mixture over that of the values, less 1; the latter linear between the points.
+    /// Relative error of the integral: that of the mixture over that of the values, less 1. The values are taken as linear
+    /// between the points.
     pub integral: f64,
-    /// Smallest value of the mixture on the grid, over the largest value of the spectrum: how far it falls below 0.
+    /// Smallest value of the mixture on the grid, over the largest absolute value of the spectrum; shows how far it falls below 0.
     pub smallest: f64,
-    /// How much the terms cancel over the band; see [`GaussianMixture::kappa`].
+    /// Cancellation of the terms over the band; see [`GaussianMixture::kappa`].
     pub kappa: f64,
 }
 
 impl GaussianFitReport {
-    /// Compares `mixture` with `values` on `grid`; NaN where the values are all 0.
+    /// Compares `mixture` with `values` on `grid`; the result is NaN if the values are all 0.
     #[must_use]
     pub fn of(mixture: &GaussianMixture, grid: &Grid, values: &[f64]) -> Self {
         let fitted: Vec<f64> = grid.wavelengths_nm().map(|w| mixture.at(w)).collect();
@@ -45,28 +46,28 @@ impl GaussianFitReport {
     }
 }
 
-/// A mixture that stands for a spectrum, and how well it does.
+/// Mixture that approximates a spectrum, and how well it does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaussianFit {
-    /// The terms, by their centers.
+    /// Fitted terms, sorted by center.
     pub mixture: GaussianMixture,
-    /// Its differences from the spectrum.
+    /// Differences of the mixture from the spectrum.
     pub report: GaussianFitReport,
 }
 
-/// The `terms` signed Gaussian terms whose sum comes nearest to `values` on `grid`, in least squares.
+/// Fits a sum of `terms` signed Gaussian terms to `values` on `grid` by least squares.
 ///
-/// Terms are added where they help most, along several ways at once, and all are moved after each; then the best is
-/// started anew with terms taken out, split and put elsewhere. No search of this kind is sure of the very best sum, but
-/// it gives the same terms on every machine, in about a second for eight terms on 401 points. Lines are narrower than
-/// any good sum of few terms: take them out first.
+/// Terms are added where they lower the error most, in several candidate sums at once, and all terms are refined after each
+/// addition. Then the search restarts many times from the best sums, with terms removed, split or placed elsewhere. No search
+/// of this kind is certain to find the very best sum. It gives the same terms on every machine, in about a second for eight
+/// terms on 401 points. Spectral lines are narrower than any term of a good small sum: remove them first.
 ///
 /// # Errors
-/// [`SpectrumError::OutOfRange`] unless there is a value for each point of the grid, all are finite and not all 0, and
-/// terms are 1 to 32 and at most a third of the points.
+/// [`SpectrumError::OutOfRange`] unless there is one value for each point of the grid, all are finite and not all are 0. The
+/// number of terms must be 1 to 32, and at most a third of the number of points.
 pub fn fit_gaussians(grid: &Grid, values: &[f64], terms: usize) -> Result<GaussianFit, SpectrumError> {
     let points = grid.count as f64;
-    check("number of values", "that of the points of the grid", values.len() as f64, |n| n == points)?;
+    check("number of values", "the number of points of the grid", values.len() as f64, |n| n == points)?;
     for v in values {
         check("value", "finite", *v, |_| true)?;
     }
@@ -93,18 +94,18 @@ pub fn fit_gaussians(grid: &Grid, values: &[f64], terms: usize) -> Result<Gaussi
     Ok(GaussianFit { mixture, report })
 }
 
-/// Ways that are followed at once, additions tried on each, and steps that each is given at first.
+/// Candidate sums that are followed at once, additions tried on each, and refinement steps that each is given at first.
 const WAYS: usize = 4;
 const ADDITIONS: usize = 6;
 const FIRST_STEPS: usize = 25;
-/// Steps to the bottom.
+/// Steps of the final refinement.
 const LAST_STEPS: usize = 600;
-/// Starts anew for each term.
+/// Number of restarts for each term.
 const RESTARTS_PER_TERM: u64 = 14;
 
 struct Search<'a> {
     problem: Problem<'a>,
-    /// Where a term may be added.
+    /// Centers and widths at which a term may be added.
     candidates: Vec<Place>,
 }
 
@@ -112,13 +113,13 @@ impl<'a> Search<'a> {
     fn new(grid: &Grid, x: &'a [f64], y: &'a [f64]) -> Self {
         let (start, end) = (grid.start_nm, grid.end_nm());
         let band = end - start;
-        // A bell under two thirds of a step falls between the points; one of ten bands is a parabola.
+        // A bell narrower than about two thirds of a step falls between the points; one as wide as ten bands is a parabola.
         let log_sigmas = [libm::log(0.7 * grid.step_nm), libm::log(10.0 * band)];
         let centers = [start - 2.0 * band, end + 2.0 * band];
         let mut candidates = Vec::new();
         let mut sigma = 2.0 * grid.step_nm;
         while sigma < 1.5 * band {
-            // Closer together where they are narrow, but no more than a grid of 48.
+            // The centers of narrow candidates lie closer together, but never closer than 48 to the band.
             let step = (0.7 * sigma).max(band / 48.0);
             let mut center = start - 0.5 * sigma;
             while center <= end + 0.5 * sigma {
@@ -149,7 +150,7 @@ impl<'a> Search<'a> {
         best_of(bottom, 1).swap_remove(0)
     }
 
-    /// The sum with one more term, at the places that help most.
+    /// Extends the sum by one more term, at each of the places that help most.
     fn with_one_more(&self, way: &Projected) -> Vec<Projected> {
         let mut gains: Vec<(f64, Place)> =
             self.candidates.iter().map(|place| (self.problem.gain(way, *place), *place)).collect();
@@ -168,13 +169,10 @@ impl<'a> Search<'a> {
         taken.iter().map(|place| self.problem.refine(self.problem.extend(way, &[*place]), FIRST_STEPS)).collect()
     }
 
-    /// A start near a good sum: one or two terms put elsewhere, or all of them shaken.
+    /// Makes a starting point near a good sum: one or two terms placed elsewhere, or all of them perturbed.
     fn disturbed(&self, from: &Projected, number: u64) -> Projected {
-        let mut state = number;
-        let mut random = || {
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            (mix64(state) >> 11) as f64 / 9_007_199_254_740_992.0
-        };
+        let mut stream = SplitMix64::new(number);
+        let mut random = || stream.unit();
         let mut places = from.places.clone();
         let count = places.len();
         if number.is_multiple_of(3) {
@@ -190,7 +188,7 @@ impl<'a> Search<'a> {
             places.swap_remove(which.min(places.len() - 1));
         }
         for _ in 0..out {
-            // One of the better additions, or a half of a term that is there.
+            // Adds one of the better candidates, or splits an existing term in two.
             let rest = self.problem.project(&places);
             if !places.is_empty() && random() < 0.4 {
                 let which = ((random() * places.len() as f64) as usize).min(places.len() - 1);
@@ -210,7 +208,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The best few, no two of them alike.
+/// Returns the `count` best sums, without duplicates.
 fn best_of(mut ways: Vec<Projected>, count: usize) -> Vec<Projected> {
     ways.sort_by(|a, b| a.sum.total_cmp(&b.sum));
     ways.dedup_by(|a, b| (a.sum - b.sum).abs() <= 1e-4 * b.sum);

@@ -6,13 +6,13 @@ use crate::shape::Shape;
 /// Why no Gaussian touches a function at a point.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoGaussian {
-    /// The function is 0 there (or not finite): it has no logarithm.
+    /// The function is 0 at that point (or not finite), so it has no logarithm.
     #[error("no Gaussian here: the value is {value}")]
     NoLogarithm {
-        /// The value.
+        /// Value of the function at that point.
         value: f64,
     },
-    /// The logarithm does not bend down: its second derivative is 0 or more.
+    /// The logarithm of the function does not bend down: its second derivative is 0 or more.
     #[error("no Gaussian here: the logarithm does not bend down, its second derivative is {curvature_per_nm2} nm^-2")]
     NotConcave {
         /// Second derivative of ln |f|, nm^-2.
@@ -21,13 +21,13 @@ pub enum NoGaussian {
 }
 
 impl GaussianTerm {
-    /// The Gaussian with the value, slope and curvature that a function has at `wavelength_nm`.
+    /// Returns the Gaussian that has the value, slope and curvature of a function at `wavelength_nm`.
     ///
-    /// From ln |f|: with g = f'/f and h = f''/f - g^2, sigma^2 = -1/h and the center lies sigma^2 g away. There is none
-    /// where h is 0 or more; of D65 that is on large parts of the band.
+    /// It follows from ln |f|: with g = f'/f and h = f''/f - g^2, sigma^2 = -1/h and the center lies sigma^2 g away. No such
+    /// Gaussian exists where h is 0 or more, which holds for large parts of D65's band.
     ///
     /// # Errors
-    /// [`NoGaussian`]: the answer that there is none, and why.
+    /// [`NoGaussian`] says that there is none, and why.
     pub fn local(
         wavelength_nm: f64,
         value: f64,
@@ -48,13 +48,13 @@ impl GaussianTerm {
         Ok(Self::of_log(value < 0.0, log_amplitude, center, variance.sqrt()))
     }
 
-    /// The Gaussian that touches `shape` at `wavelength_nm`, its slope and curvature by central differences over
-    /// `step_nm` either way.
+    /// Returns the Gaussian that touches `shape` at `wavelength_nm`. Slope and curvature are central differences over `step_nm`
+    /// either way.
     ///
-    /// A table that is linear between its points has a curvature only over steps of its own spacing or more.
+    /// A table that is linear between its points has curvature only over steps of its own spacing or more.
     ///
     /// # Errors
-    /// [`NoGaussian`], also for a step that is not positive.
+    /// [`NoGaussian`] if there is none, also for a step that is not positive.
     pub fn local_of(shape: &Shape, wavelength_nm: f64, step_nm: f64) -> Result<Self, NoGaussian> {
         let [below, here, above] = [-step_nm, 0.0, step_nm].map(|d| shape.at(wavelength_nm + d));
         let slope = (above - below) / (2.0 * step_nm);
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
     use crate::find_emission;
 
-    /// A Gaussian is its own best fit, wherever one looks.
+    /// A Gaussian is its own best fit at any point.
     #[test]
     fn gaussian_is_found_from_any_point() {
         let term = GaussianTerm::new(-3.0, 540.0, 35.0).expect("valid");
@@ -81,7 +81,7 @@ mod tests {
         }
     }
 
-    /// Planck's law in wavelength: ln B = const - 5 ln x - ln(exp(c2 / (x T)) - 1), its derivatives in closed form.
+    /// Planck's law in wavelength: ln B = const - 5 ln x - ln(exp(c2 / (x T)) - 1), with derivatives in closed form.
     #[test]
     fn local_fit_of_a_black_body() {
         let shape = Shape::blackbody(5000.0).expect("valid");
@@ -98,7 +98,7 @@ mod tests {
         assert!((term.at(x) / shape.at(x) - 1.0).abs() < 1e-12);
     }
 
-    /// Large parts of D65 have none, and say so.
+    /// On large parts of D65 there is no Gaussian, and the function reports that.
     #[test]
     fn no_gaussian_is_an_answer() {
         let light = find_emission("D65").expect("bundled");

@@ -21,59 +21,59 @@ pub struct GaussianMixture {
 }
 
 impl GaussianMixture {
-    /// The sum of `terms`; 0 everywhere without any.
+    /// Creates the sum of `terms`; without any it is 0 everywhere.
     #[must_use]
     pub fn new(terms: Vec<GaussianTerm>) -> Self {
         Self { terms }
     }
 
-    /// Its terms.
+    /// Terms of the sum, in order.
     #[must_use]
     pub fn terms(&self) -> &[GaussianTerm] {
         &self.terms
     }
 
-    /// Value at `wavelength_nm`.
+    /// Returns the value at `wavelength_nm`.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         self.terms.iter().map(|t| t.at(wavelength_nm)).sum()
     }
 
-    /// Integral from `min_nm` to `max_nm`, exact.
+    /// Returns the exact integral from `min_nm` to `max_nm`.
     #[must_use]
     pub fn band_integral(&self, min_nm: f64, max_nm: f64) -> f64 {
         self.terms.iter().map(|t| t.band_integral(min_nm, max_nm)).sum()
     }
 
-    /// Sum of both: the terms of both.
+    /// Returns the sum of both mixtures, which has the terms of both.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self::new([self.terms.as_slice(), &other.terms].concat())
     }
 
-    /// Product of both, exact: each term of this with each of the other, in that order.
+    /// Returns the exact product of both mixtures: each term of `self` times each term of `other`, in that order.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         let products = self.terms.iter().flat_map(|a| other.terms.iter().map(|b| a.times(b)));
         Self::new(products.collect())
     }
 
-    /// This times a number of either sign.
+    /// Multiplies the mixture by a number of either sign.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self::new(self.terms.iter().map(|t| t.scaled(factor)).collect())
     }
 
-    /// The same terms without their signs: nowhere below this one's absolute value.
+    /// Returns the mixture of the same terms without their signs; nowhere is it below the absolute value of this mixture.
     #[must_use]
     pub fn absolute(&self) -> Self {
         Self::new(self.terms.iter().map(GaussianTerm::absolute).collect())
     }
 
-    /// How much the terms cancel over a band: sum |w| / |sum w| of their band integrals w; 1 for terms of one sign,
-    /// infinite where nothing is left, NaN without terms.
+    /// Returns the cancellation of the terms over a band: sum |w| / |sum w| of their band integrals w. It is 1 for terms of one
+    /// sign, infinite if the terms cancel completely, and NaN without terms.
     ///
-    /// An estimate that draws one term in proportion to |w|, and takes its integral, has the relative standard deviation
+    /// An estimate that draws one term in proportion to |w| and takes its integral has the relative standard deviation
     /// sqrt(kappa^2 - 1).
     #[must_use]
     pub fn kappa(&self, min_nm: f64, max_nm: f64) -> f64 {
@@ -93,7 +93,7 @@ mod tests {
         GaussianMixture::new(terms.iter().map(term).collect())
     }
 
-    /// Source, filters and detector of the term strategies: product of n filters against dense quadrature, 1e-12.
+    /// Source, filters and detector of the term strategies: a product of n filters agrees with dense quadrature to 1e-12.
     #[test]
     fn products_of_mixtures_are_exact() {
         let source = mixture(&[[1.0, 560.0, 120.0], [-0.3, 600.0, 40.0]]);
@@ -114,9 +114,10 @@ mod tests {
         assert!((sum.at(450.0) - (source.at(450.0) - 2.0 * detector.at(450.0))).abs() < 1e-15);
     }
 
-    /// Following one term per ray, by enumeration: of each factor a term is drawn in proportion to the absolute value of
-    /// its own band integral, weight sign over probability, the product integrated exactly. Relative standard
-    /// deviation of one sample after n equal filters, computed twice by other programs.
+    /// Second moment of following one term per ray, by enumeration. One term of each factor is drawn in proportion to the
+    /// absolute value of its own band integral. The weight is the sign over the probability, and the product is integrated
+    /// exactly. The expected values are the relative standard deviation of one sample after n equal filters, computed twice by
+    /// other programs.
     #[test]
     fn following_one_term_has_the_exact_second_moment() {
         let source = mixture(&[[1.0, 560.0, 120.0]]);

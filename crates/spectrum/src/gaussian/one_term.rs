@@ -2,13 +2,13 @@
 
 use super::{GaussianMixture, GaussianTerm};
 
-/// An integral over a band of a product of signed Gaussian mixtures (a source, filters, a detector), estimated by
-/// following one term of each factor.
+/// Estimator of the integral over a band of a product of signed Gaussian mixtures (a source, filters, a detector) that follows
+/// one term of each factor.
 ///
-/// Of each factor a term is drawn in proportion to the absolute value of its own integral over the band; the product of the drawn
-/// terms is one term, integrated exactly, over the probability of the choices. It needs no wavelength, so it
-/// passes no lens, and its scatter multiplies with every factor whose terms cancel: with many of them rare
-/// choices carry it all, and the scatter that samples show is far too low.
+/// One term of each factor is drawn in proportion to the absolute value of its own integral over the band. The product of the
+/// drawn terms is one term; its exact integral is divided by the probability of the choices. The method needs no wavelength, so
+/// it cannot trace a ray through a lens. Its scatter multiplies with every factor whose terms cancel: with many such factors
+/// rare choices carry the whole integral, and the scatter that samples show is far too low.
 ///
 /// ```
 /// use spectra_spectrum::{GaussianMixture, GaussianTerm, OneTerm};
@@ -19,15 +19,15 @@ use super::{GaussianMixture, GaussianTerm};
 /// ```
 #[derive(Clone, Debug)]
 pub struct OneTerm {
-    /// Each factor's terms with the upper ends of their parts of [0, 1) and their probabilities.
+    /// Terms of each factor, with the upper ends of their parts of [0, 1) and their probabilities.
     factors: Vec<Vec<(GaussianTerm, f64, f64)>>,
     min_nm: f64,
     max_nm: f64,
 }
 
 impl OneTerm {
-    /// The product of `factors` from `min_nm` to `max_nm`; `None` without factors, or where one of them has no term
-    /// that reaches the band.
+    /// Creates the estimator for the product of `factors` from `min_nm` to `max_nm`. Returns `None` without factors, or if one
+    /// of them has no term that reaches the band.
     #[must_use]
     pub fn new(factors: Vec<GaussianMixture>, min_nm: f64, max_nm: f64) -> Option<Self> {
         let share = |factor: &GaussianMixture| {
@@ -47,13 +47,13 @@ impl OneTerm {
         (!factors.is_empty()).then_some(Self { factors, min_nm, max_nm })
     }
 
-    /// How many numbers an estimate takes: one a factor.
+    /// Returns how many random numbers an estimate needs: one per factor.
     #[must_use]
     pub fn numbers(&self) -> usize {
         self.factors.len()
     }
 
-    /// One estimate of the integral, by independent numbers in [0, 1), one a factor; those that are missing count as 0.
+    /// Returns one estimate of the integral from independent numbers in [0, 1), one per factor; missing numbers count as 0.
     #[must_use]
     pub fn estimate(&self, u: &[f64]) -> f64 {
         let mut product: Option<GaussianTerm> = None;
@@ -67,13 +67,13 @@ impl OneTerm {
         product.map_or(0.0, |term| term.band_integral(self.min_nm, self.max_nm) / probability)
     }
 
-    /// How many choices there are: the product of the numbers of terms that reach the band.
+    /// Returns the number of possible choices: the product of the numbers of terms that reach the band.
     #[must_use]
     pub fn choices(&self) -> f64 {
         self.factors.iter().map(|factor| factor.len() as f64).product()
     }
 
-    /// Exact mean (the integral) and standard deviation of one estimate, by all choices that there are: their number is
+    /// Returns the exact mean (the integral) and standard deviation of one estimate. It enumerates all choices, whose number is
     /// the product of the numbers of terms.
     #[must_use]
     pub fn moments(&self) -> (f64, f64) {

@@ -1,41 +1,41 @@
-//! Least squares of a sum of Gaussians: heights are solved for, centers and widths searched.
+//! Least-squares fit of a sum of Gaussians: heights are solved for, centers and widths are searched.
 //!
 //! Variable projection (G. Golub, V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973): for given centers and widths the best
-//! heights are a linear problem, solved by orthogonalization, so only the two shape parameters of each term are left to
-//! Levenberg and Marquardt's method. Its Jacobian is analytic, in L. Kaufman's form (BIT 15, 49, 1975).
+//! heights are a linear problem, solved by orthogonalization. Only the two shape parameters of each term are left to the
+//! Levenberg-Marquardt method. Its Jacobian is analytic, in L. Kaufman's form (BIT 15, 49, 1975).
 
-/// Center and logarithm of the standard deviation, both in nm.
+/// Center, nm, and natural logarithm of the standard deviation in nm.
 pub(super) type Place = [f64; 2];
 
-/// A share of a function's length below which it is taken as a sum of those before it.
+/// A function counts as linearly dependent on those before it if less than this share of its length is left after orthogonalization.
 const DEPENDENT: f64 = 1e-11;
 
-/// A function on points, and where its terms may lie.
+/// Sampled function to fit, and the bounds within which its terms may lie.
 pub(super) struct Problem<'a> {
     pub x: &'a [f64],
     pub y: &'a [f64],
-    /// Bounds of centers, and of the logarithms of standard deviations.
+    /// Bounds of the centers, nm, and of the logarithms of the standard deviations.
     pub centers: [f64; 2],
     pub log_sigmas: [f64; 2],
 }
 
-/// The best heights for given places.
+/// Result of a projection: the best heights for given centers and widths.
 #[derive(Clone)]
 pub(super) struct Projected {
     pub places: Vec<Place>,
     pub heights: Vec<f64>,
-    /// What is left of y.
+    /// Residual: y minus the fitted sum.
     pub residual: Vec<f64>,
-    /// Its sum of squares.
+    /// Sum of squares of the residual.
     pub sum: f64,
-    /// The terms at height 1.
+    /// Values of each term at height 1.
     bells: Vec<Vec<f64>>,
-    /// An orthonormal basis of them; empty for one that depends on those before it.
+    /// Orthonormal basis of the terms; empty for a term that depends on those before it.
     basis: Vec<Vec<f64>>,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Four sums side by side: one alone waits for each addition.
+    // Four independent sums, because a single one would wait for each addition.
     let mut sums = [0.0; 4];
     let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
     let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
@@ -53,7 +53,8 @@ fn subtract(a: &mut [f64], factor: f64, b: &[f64]) {
     }
 }
 
-/// Takes the part along each of `basis` off `v`, and adds its size to `along`. Twice, as roundoff asks.
+/// Subtracts from `v` its component along each of `basis`, and adds that component to `along`. It does so twice, as roundoff
+/// requires.
 fn orthogonalize(v: &mut [f64], basis: &[Vec<f64>], along: &mut [f64]) {
     for _ in 0..2 {
         for (q, a) in basis.iter().zip(along.iter_mut()).filter(|(q, _)| !q.is_empty()) {
@@ -74,7 +75,7 @@ impl Problem<'_> {
         self.x.iter().map(value).collect()
     }
 
-    /// The best heights for these places.
+    /// Finds the best heights for terms at `places`.
     pub fn project(&self, places: &[Place]) -> Projected {
         let empty = Projected {
             places: Vec::new(),
@@ -87,7 +88,7 @@ impl Problem<'_> {
         self.extend(&empty, places)
     }
 
-    /// The same with further places.
+    /// Adds terms at further `places` to `start` and finds the best heights of all terms.
     pub fn extend(&self, start: &Projected, places: &[Place]) -> Projected {
         let mut p = start.clone();
         let mut triangle: Vec<Vec<f64>> = Vec::new();
@@ -123,7 +124,7 @@ impl Problem<'_> {
         p
     }
 
-    /// How much the sum of squares would fall by one more term at `place`.
+    /// Returns the amount by which one more term at `place` would lower the sum of squares.
     pub fn gain(&self, p: &Projected, place: Place) -> f64 {
         let mut bell = self.bell(place);
         let length = dot(&bell, &bell);
@@ -133,7 +134,7 @@ impl Problem<'_> {
         if left > 1e-8 * length { along * along / left } else { 0.0 }
     }
 
-    /// Moves the places downhill, at most `steps` times.
+    /// Lowers the sum of squares by moving centers and widths, in at most `steps` steps.
     pub fn refine(&self, start: Projected, steps: usize) -> Projected {
         let mut now = start;
         let mut damping = 1e-2;
@@ -152,7 +153,7 @@ impl Problem<'_> {
                 damping *= 4.0;
             }
             let Some(next) = better else { break };
-            // Along a flat valley steps stay small for long, and then grow.
+            // In a flat valley the steps stay small for a long time and then grow.
             idle = if next.sum > now.sum * (1.0 - 1e-5) { idle + 1 } else { 0 };
             now = next;
             damping = (damping * 0.15).max(1e-12);
@@ -173,7 +174,7 @@ impl Problem<'_> {
         places.iter().zip(step.chunks_exact(2)).map(moved).collect()
     }
 
-    /// J'J and -J'r for the centers (in widths) and logarithms of the widths.
+    /// Returns J'J and -J'r for the centers (in units of the width) and the logarithms of the widths.
     fn normal_equations(&self, p: &Projected) -> (Vec<Vec<f64>>, Vec<f64>) {
         let mut columns = Vec::with_capacity(2 * p.places.len());
         for ((bell, [center, log_sigma]), height) in p.bells.iter().zip(&p.places).zip(&p.heights) {
@@ -197,10 +198,10 @@ impl Problem<'_> {
     }
 }
 
-/// Solves (M + damping diag M) step = g by Cholesky's method; `None` where it is singular.
+/// Solves (M + damping diag M) step = g by Cholesky's method; `None` if the matrix is singular.
 fn damped_step(matrix: &[Vec<f64>], gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
     let n = gradient.len();
-    // A parameter without any effect stays where it is.
+    // A parameter without effect stays unchanged.
     let floor = 1e-14 * (0..n).map(|i| matrix[i][i]).fold(0.0, f64::max);
     let mut l = vec![vec![0.0; n]; n];
     for i in 0..n {

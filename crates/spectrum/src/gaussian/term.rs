@@ -3,7 +3,7 @@
 use crate::error::{SpectrumError, check};
 use crate::normal::{Mass, SQRT_TAU};
 
-/// sign times exp(log_amplitude - (x - center)^2 / (2 sigma^2)), x a wavelength in nm.
+/// Gaussian of either sign: sign times exp(log_amplitude - (x - center)^2 / (2 sigma^2)), x a wavelength in nm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussianTerm {
     negative: bool,
@@ -13,10 +13,10 @@ pub struct GaussianTerm {
 }
 
 impl GaussianTerm {
-    /// A term of height `amplitude` (of either sign) at `center_nm`, standard deviation `sigma_nm`.
+    /// Creates a term of height `amplitude` (of either sign) at `center_nm`, with standard deviation `sigma_nm`.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless the amplitude is finite, the center within 1e9 nm of 0, and sigma from 1e-6
+    /// [`SpectrumError::OutOfRange`] unless the amplitude is finite, the center is within 1e9 nm of 0, and sigma is from 1e-6
     /// to 1e9 nm.
     pub fn new(amplitude: f64, center_nm: f64, sigma_nm: f64) -> Result<Self, SpectrumError> {
         check("amplitude", "finite", amplitude, |_| true)?;
@@ -25,10 +25,10 @@ impl GaussianTerm {
         Ok(Self { negative: amplitude < 0.0, log_amplitude: libm::log(amplitude.abs()), center_nm, sigma_nm })
     }
 
-    /// The term `sign` exp(-a x^2 + b x + c), x in nm.
+    /// Creates the term `sign` exp(-a x^2 + b x + c), x in nm.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless a is positive and all are finite, and as [`GaussianTerm::new`].
+    /// [`SpectrumError::OutOfRange`] unless the sign is 1 or -1, a is positive and all are finite, and as [`GaussianTerm::new`].
     pub fn from_abc(sign: f64, [a, b, c]: [f64; 3]) -> Result<Self, SpectrumError> {
         check("sign", "1 or -1", sign, |s| s.abs() == 1.0)?;
         check("a of a Gaussian, nm^-2", "positive", a, |a| a > 0.0)?;
@@ -38,8 +38,8 @@ impl GaussianTerm {
         Ok(Self { log_amplitude: c + 0.5 * b * center_nm, ..Self::new(sign, center_nm, (0.5 / a).sqrt())? })
     }
 
-    /// Coefficients of exp(-a x^2 + b x + c), x in nm: a view, whose c has lost the digits of the amplitude where the
-    /// term is narrow.
+    /// Returns the coefficients a, b and c of exp(-a x^2 + b x + c), x in nm. For a narrow term, c does not keep the digits of
+    /// the amplitude.
     #[must_use]
     pub fn abc(&self) -> [f64; 3] {
         let variance = self.sigma_nm * self.sigma_nm;
@@ -47,7 +47,7 @@ impl GaussianTerm {
         [0.5 / variance, b, self.log_amplitude - 0.5 * b * self.center_nm]
     }
 
-    /// 1 or -1.
+    /// Sign of the term, 1 or -1.
     #[must_use]
     pub fn sign(&self) -> f64 {
         if self.negative { -1.0 } else { 1.0 }
@@ -59,40 +59,41 @@ impl GaussianTerm {
         self.log_amplitude
     }
 
-    /// Where its peak lies, nm.
+    /// Wavelength of the peak, nm.
     #[must_use]
     pub fn center_nm(&self) -> f64 {
         self.center_nm
     }
 
-    /// Standard deviation, nm.
+    /// Standard deviation of the term, nm.
     #[must_use]
     pub fn sigma_nm(&self) -> f64 {
         self.sigma_nm
     }
 
-    /// Height of the peak, with its sign; 0 or infinite where the logarithm alone can hold it.
+    /// Height of the peak, with its sign; 0 or infinite if only its logarithm can be represented.
     #[must_use]
     pub fn peak(&self) -> f64 {
         self.sign() * libm::exp(self.log_amplitude)
     }
 
-    /// Value at `wavelength_nm`.
+    /// Returns the value at `wavelength_nm`.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         let t = (wavelength_nm - self.center_nm) / self.sigma_nm;
         self.sign() * libm::exp(self.log_amplitude - 0.5 * t * t)
     }
 
-    /// Integral over all wavelengths, negative ones too: up to twice that over the band for a center at its end.
+    /// Returns the integral over all wavelengths, negative ones too. For a center at an end of the band it is up to twice the
+    /// integral over the band.
     #[must_use]
     pub fn line_integral(&self) -> f64 {
         SQRT_TAU * self.sigma_nm * self.peak()
     }
 
-    /// Integral from `min_nm` to `max_nm`, either of which may be infinite; 0 if they do not increase.
+    /// Returns the integral from `min_nm` to `max_nm`, either of which may be infinite; 0 if they do not increase.
     ///
-    /// By erf and, in the tails, erfc: relative error under 1e-12.
+    /// It uses erf and, in the tails, erfc; the relative error is below 1e-12.
     #[must_use]
     pub fn band_integral(&self, min_nm: f64, max_nm: f64) -> f64 {
         let mass = Mass::of_width(
@@ -100,12 +101,12 @@ impl GaussianTerm {
             (max_nm - self.center_nm) / self.sigma_nm,
             (max_nm - min_nm) / self.sigma_nm,
         );
-        // In one exponent, since either factor alone may be beyond all numbers.
+        // In one exponent, because either factor alone may overflow or underflow.
         let exponent = self.log_amplitude - 0.5 * mass.nearest * mass.nearest;
         self.sign() * self.sigma_nm * mass.scaled * libm::exp(exponent)
     }
 
-    /// The product with another term, exact: it is a term.
+    /// Returns the exact product with another term, which is a term again.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         let (v, w) = (self.sigma_nm * self.sigma_nm, other.sigma_nm * other.sigma_nm);
@@ -119,7 +120,7 @@ impl GaussianTerm {
         }
     }
 
-    /// The same times a number of either sign; NaN counts as 0.
+    /// Multiplies the term by a number of either sign; NaN counts as 0.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let factor = if factor.is_nan() { 0.0 } else { factor };
@@ -130,13 +131,14 @@ impl GaussianTerm {
         }
     }
 
-    /// The same without its sign.
+    /// Returns the term without its sign.
     #[must_use]
     pub fn absolute(&self) -> Self {
         Self { negative: false, ..*self }
     }
 
-    /// A term of checked width; for fits, whose amplitudes come out as numbers.
+    /// Creates a term from the logarithm of its amplitude; the width must already be checked. Used by fits, whose amplitudes
+    /// are computed.
     pub(super) fn of_log(negative: bool, log_amplitude: f64, center_nm: f64, sigma_nm: f64) -> Self {
         Self { negative, log_amplitude, center_nm, sigma_nm }
     }
@@ -148,8 +150,8 @@ mod tests {
     use crate::cell;
     use spectra_core::numbers::{Dimension, Numbers};
 
-    /// Adaptive quadrature: an interval is halved until two halves of the eight-point rule agree with the whole, to what
-    /// the roundings of an exponent of 700 leave, or to nothing beside `all`.
+    /// Adaptive quadrature: an interval is halved until two halves of the eight-point rule agree with the whole. The tolerance
+    /// is what the roundoff of an exponent of 700 leaves, or an amount negligible against `all`.
     fn adaptive(f: &dyn Fn(f64) -> f64, a: f64, b: f64, all: f64, depth: u32) -> f64 {
         let middle = 0.5 * (a + b);
         let (whole, halves) = (cell::integral(f, &[a, b]), cell::integral(f, &[a, middle, b]));
@@ -160,7 +162,7 @@ mod tests {
         }
     }
 
-    /// Integral of the term from `a` to `b`, cut at its own structure first so that no narrow line is missed.
+    /// Integral of the term from `a` to `b`, with breaks at the term's own structure so that no narrow line is missed.
     fn quadrature(term: &GaussianTerm, a: f64, b: f64) -> f64 {
         let mut breaks = vec![a, b];
         for k in -40..=40 {
@@ -215,7 +217,7 @@ mod tests {
             let sign = |u: f64| if u < 0.5 { -1.0 } else { 1.0 };
             let width = |u: f64| libm::exp10(-0.5 + 3.0 * u);
             let a = GaussianTerm::new(sign(u[4]) * (0.1 + u[4]), 350.0 + 480.0 * u[0], width(u[1])).expect("valid");
-            // Within a few widths of each other: further apart the product is nothing that quadrature could see.
+            // Within a few widths of each other: further apart the product is too small for any quadrature.
             let apart = 6.0 * (u[2] - 0.5) * (a.sigma_nm() + width(u[3]));
             let b = GaussianTerm::new(sign(u[5]) * 3.0, a.center_nm() + apart, width(u[3])).expect("valid");
             let product = a.times(&b);
@@ -234,7 +236,7 @@ mod tests {
         println!("worst of 1000: {worst:e}");
     }
 
-    /// The integral over the whole line over-counts by up to 2 where a center lies at an end of the band.
+    /// The integral over the whole line over-counts by a factor of up to 2 if a center lies at an end of the band.
     #[test]
     fn whole_line_counts_twice_at_the_end_of_a_band() {
         let term = GaussianTerm::new(-2.0, 380.0, 30.0).expect("valid");
@@ -261,7 +263,7 @@ mod tests {
         assert!((line.abc()[2] + 151_250.0).abs() < 1e-6 && line.at(550.0) == 1.0);
     }
 
-    /// Height and distance whose factors alone are beyond f64, with a product that is not.
+    /// Height and distance whose factors alone exceed the range of f64, with a product that does not.
     #[test]
     fn products_do_not_underflow_on_the_way() {
         let high = GaussianTerm::from_abc(1.0, [0.5, 0.0, 900.0]).expect("valid");

@@ -1,4 +1,4 @@
-//! `kind: rectangle`.
+//! The spectrum of `kind: rectangle`.
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind, times};
 use crate::error::SpectrumError;
@@ -10,9 +10,9 @@ use serde::Deserialize;
 use spectra_core::params::{Faults, NonNegative, Wavelength};
 use spectra_core::quantity::light_nm;
 
-/// A value between two wavelengths, and nothing outside.
+/// A constant value between two wavelengths, and 0 outside.
 ///
-/// An ideal band-pass filter, or light of a band with sharp ends. In a line: `rectangle:500,600`.
+/// Use it for an ideal band-pass filter, or for light of a band with sharp ends. As an expression: `rectangle:500,600`.
 ///
 /// # Example
 /// ```yaml
@@ -21,11 +21,11 @@ use spectra_core::quantity::light_nm;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Rectangle {
-    /// Where it begins, nm if bare.
+    /// Lower edge, nm if bare.
     from: Wavelength,
-    /// Where it ends, nm if bare.
+    /// Upper edge, nm if bare.
     to: Wavelength,
-    /// Its value in between; 1 if absent. Outside it is 0.
+    /// Value between the edges; 1 if absent. Outside it is 0.
     value: Option<NonNegative<f64>>,
 }
 

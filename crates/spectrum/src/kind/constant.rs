@@ -1,4 +1,4 @@
-//! `kind: constant`.
+//! The spectrum of `kind: constant`.
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
 use crate::inline::numbers;
@@ -8,9 +8,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, NonNegative};
 
-/// The same at every wavelength.
+/// A constant value at every wavelength.
 ///
-/// As light the equal-energy spectrum; as a filter or a surface a neutral gray. In a line: `constant:0.18`, or `constant` for 1.
+/// As light it is the equal-energy spectrum; as a filter or a surface it is a neutral gray. As an expression: `constant:0.18`,
+/// or `constant` for 1.
 ///
 /// # Example
 /// ```yaml
@@ -19,7 +20,7 @@ use spectra_core::params::{Faults, NonNegative};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Constant {
-    /// Its value at every wavelength; 1 if absent.
+    /// Value at every wavelength; 1 if absent.
     value: Option<NonNegative<f64>>,
 }
 

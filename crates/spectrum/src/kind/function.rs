@@ -1,4 +1,4 @@
-//! `kind: function`.
+//! The spectrum of `kind: function`.
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
 use crate::error::SpectrumError;
@@ -9,10 +9,10 @@ use serde::Deserialize;
 use spectra_core::params::Faults;
 use spectra_numerics::formula::Formula;
 
-/// A formula of the wavelength.
+/// A spectrum that is written as a formula of the wavelength.
 ///
-/// `w` is the wavelength in nm. Known are `+ - * / ^`, parentheses, `pi`, and abs, cos, erf, exp, ln, log10, max, min, sin, sqrt, step, tan, tanh
-/// (step is 1 from 0 on, 0 below). In a line: `function:exp(-((w - 550) / 20)^4)`.
+/// `w` is the wavelength in nm. A formula may contain `+ - * / ^`, parentheses, `pi`, and abs, cos, erf, exp, ln, log10, max,
+/// min, sin, sqrt, step, tan, tanh (step is 1 from 0 on, 0 below). As an expression: `function:exp(-((w - 550) / 20)^4)`.
 ///
 /// # Example
 /// ```yaml
@@ -21,7 +21,7 @@ use spectra_numerics::formula::Formula;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Function {
-    /// The formula, of the wavelength `w` in nm.
+    /// The formula, a function of the wavelength `w` in nm.
     formula: String,
 }
 

@@ -1,4 +1,4 @@
-//! `kind: gaussian`, and a center of Gaussians.
+//! The spectrum of `kind: gaussian`, and the center of a Gaussian.
 
 use super::{Making, SpectrumEntry, SpectrumKind, bell_nm, build_kind, times};
 use crate::error::SpectrumError;
@@ -10,7 +10,7 @@ use serde::Deserialize;
 use spectra_core::params::{Dimension, Faults, NonNegative, Positive, Quantity, Wavelength, schema_of};
 use spectra_core::quantity;
 
-/// A place on the axis of wavelengths, of any sign: a Gaussian's center may lie far outside of all light. nm if bare.
+/// The center of a Gaussian, nm if bare. It may have any sign, since it may lie far outside of all light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Center(pub(super) f64);
 
@@ -49,9 +49,9 @@ impl<'de> Deserialize<'de> for Center {
     }
 }
 
-/// A bell: peak x exp(-(w - center)^2 / (2 sigma^2)).
+/// A Gaussian: peak x exp(-(w - center)^2 / (2 sigma^2)).
 ///
-/// An LED, a narrow filter, a band of absorption. In a line: `gaussian:550,20`. Several together are a `mixture`.
+/// Use it for an LED, a narrow filter or a band of absorption. As an expression: `gaussian:550,20`. Several together are a `mixture`.
 ///
 /// # Example
 /// ```yaml

@@ -1,4 +1,4 @@
-//! `kind: histogram`.
+//! The spectrum of `kind: histogram`.
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising, some_light};
 use crate::piece::Piece;
@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Wavelength};
 
-/// What a detector measured in bins.
+/// A spectrum that a detector measured in bins.
 ///
-/// Counts between neighboring edges, as a spectrometer or a simulation hands them over; each bin keeps its own content.
+/// Counts between neighboring edges, as a spectrometer or a simulation delivers them; each bin keeps its own content.
 ///
 /// # Example
 /// ```yaml
@@ -21,7 +21,7 @@ struct Histogram {
     /// Edges of the bins, nm if bare, increasing.
     #[schemars(length(min = 2))]
     edges: Vec<Wavelength>,
-    /// What was measured between neighboring edges, one fewer; 0 or more.
+    /// Counts between neighboring edges, one fewer than edges; 0 or more.
     counts: Vec<f64>,
 }
 
@@ -31,7 +31,7 @@ impl SpectrumKind for Histogram {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
         let params = making.params();
         let wanted = [self.counts.len(), self.edges.len().saturating_sub(1)];
-        lengths(params, ["edges", "counts"], wanted, "one between each two edges")?;
+        lengths(params, ["edges", "counts"], wanted, "the list of edges")?;
         let mut faults = Faults::new();
         rising(params, "edges", &self.edges, &mut faults);
         some_light(params, "edges", &self.edges, &mut faults);

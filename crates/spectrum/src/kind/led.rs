@@ -1,4 +1,4 @@
-//! `kind: led`.
+//! The spectrum of `kind: led`.
 //!
 //! Y. Ohno, "Spectral design considerations for white LED color rendering", Optical Engineering 44, 111302 (2005): with
 //! g = exp(-((w - w0) / d)^2) the light is (g + 2 g^5) / 3. The second term is a Gaussian too, so the whole is a mixture of two.
@@ -14,10 +14,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Positive, Wavelength};
 
-/// Light of one LED chip by its peak and its width at half of that.
+/// Light of one LED chip, by its peak wavelength and its width at half maximum.
 ///
-/// Sharper at the top and wider at the foot than a Gaussian, as chips measure; relative. A white LED is a `sum` of several, or of
-/// one and the measured light of its phosphor. In a line: `led:450,20`.
+/// The curve is sharper at the top and wider at the foot than a Gaussian, as chips measure; its scale is relative. A white LED
+/// is a `sum` of several, or of one and the measured light of its phosphor. As an expression: `led:450,20`.
 ///
 /// # Example
 /// ```yaml
@@ -29,14 +29,14 @@ use spectra_core::params::{Faults, Positive, Wavelength};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Led {
-    /// Wavelength at which it is brightest, nm if bare.
+    /// Wavelength of the peak, nm if bare.
     peak: Center,
-    /// Full width at half of the peak, as data sheets state it, nm if bare.
+    /// Full width at half maximum, as data sheets state it, nm if bare.
     width: Positive<Wavelength>,
 }
 
 spectra_core::register!(SpectrumEntry, "led": Led, build_kind::<Led>);
-crate::expression!("led:450,20", "write peak and width at half of it in nm, such as led:450,20", |text| {
+crate::expression!("led:450,20", "write peak and width at half maximum in nm, such as led:450,20", |text| {
     let [peak_nm, width_nm] = wavelengths(text)?.try_into().ok()?;
     Some(led(peak_nm, width_nm))
 });
@@ -48,7 +48,7 @@ impl SpectrumKind for Led {
     }
 }
 
-/// Width at half of the peak over d: twice the root of -ln y where y + 2 y^5 = 3 / 2.
+/// Width at half maximum over d: twice the root of -ln y where y + 2 y^5 = 3 / 2.
 const WIDTH_OVER_D: f64 = 0.921_823_119_649_820_5;
 
 fn led(peak_nm: f64, width_nm: f64) -> Result<Piece, SpectrumError> {
@@ -63,7 +63,8 @@ fn led(peak_nm: f64, width_nm: f64) -> Result<Piece, SpectrumError> {
 mod tests {
     use crate::find_emission;
 
-    /// 1 at the peak, half of it at half the width on both sides, and the area of Ohno's formula: d sqrt(pi) (1 + 2 / sqrt(5)) / 3.
+    /// The light is 1 at the peak, half of it at half the width on both sides, and has the area of Ohno's formula: d sqrt(pi)
+    /// (1 + 2 / sqrt(5)) / 3.
     #[test]
     fn peak_width_and_area_are_those_of_the_formula() {
         for (peak_nm, width_nm) in [(450.0, 20.0), (530.0, 35.0), (625.0, 18.0)] {
@@ -75,7 +76,7 @@ mod tests {
             }
             // Twice as far out it is brighter than a Gaussian of that width, 1 / 16.
             assert!(light.at(peak_nm + width_nm) > 1.0 / 16.0);
-            // By nanometers; of so smooth a function the sum is the integral.
+            // In steps of 0.1 nm; for so smooth a function the sum is the integral.
             let sum: f64 = (0..=4000).map(|i| light.at(peak_nm - 200.0 + 0.1 * f64::from(i))).sum::<f64>() * 0.1;
             let d_nm = width_nm / 0.921_823_12;
             let area = d_nm * std::f64::consts::PI.sqrt() * (1.0 + 2.0 / 5.0_f64.sqrt()) / 3.0;

@@ -1,4 +1,4 @@
-//! `kind: line` and `kind: lines`.
+//! The spectra of `kind: line` and `kind: lines`.
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
 use crate::emission::Emission;
@@ -14,8 +14,8 @@ use spectra_core::spectral::Line;
 
 /// One spectral line.
 ///
-/// A laser, or a line of a lamp that a filter has picked out. A line is drawn as such, at its own wavelength. In a line of text:
-/// `line:632.8`, `line:C'`.
+/// Use it for a laser, or for a line of a lamp that a filter has picked out. A line is drawn as such, at its own wavelength. As
+/// an expression: `line:632.8`, `line:C'`.
 ///
 /// # Example
 /// ```yaml
@@ -24,7 +24,7 @@ use spectra_core::spectral::Line;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LineParams {
-    /// Where it lies: a short name such as `C'`, or a wavelength, nm if bare.
+    /// Wavelength of the line, nm if bare, or a short name such as `C'`.
     wavelength: LineOrWavelength,
     /// Power of the line, relative or W; 1 if absent.
     power: Option<NonNegative<f64>>,
@@ -32,7 +32,7 @@ struct LineParams {
 
 /// Several spectral lines.
 ///
-/// A discharge lamp by its lines and their powers. In a line of text: `lines:404.66=1,435.84=2`.
+/// Use it for a discharge lamp, by its lines and their powers. As an expression: `lines:404.66=1,435.84=2`.
 ///
 /// # Example
 /// ```yaml
@@ -88,14 +88,14 @@ impl LineParams {
 }
 
 fn of_lines(lines: Vec<Line>) -> Result<Piece, SpectrumError> {
-    // Of what is no positive number more is said below.
+    // Wavelengths that are not positive are refused below.
     for line in lines.iter().filter(|line| line.wavelength_nm > 0.0) {
         light_nm(line.wavelength_nm)?;
     }
     Emission::new(None, lines).map(Piece::from)
 }
 
-/// A line as an expression has it: `435.84=2`.
+/// Reads a line of an expression: `435.84=2`.
 fn weighted(text: &str) -> Option<Line> {
     let (nm, power) = match text.split_once('=') {
         Some((nm, power)) => (nm, number(power)?),

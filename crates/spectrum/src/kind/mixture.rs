@@ -1,4 +1,4 @@
-//! `kind: mixture`.
+//! The spectrum of `kind: mixture`.
 
 use super::gaussian::Center;
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
@@ -11,7 +11,7 @@ use spectra_core::params::{Faults, Positive, Wavelength};
 
 /// A sum of signed Gaussians.
 ///
-/// What `spectra spectrum fit` makes of a table: smooth, compact, known at every wavelength.
+/// `spectra spectrum fit` makes such a sum of a table: it is smooth, compact, and known at every wavelength.
 ///
 /// # Example
 /// ```yaml
@@ -33,9 +33,9 @@ struct Mixture {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Term {
-    /// Value at its center, of either sign.
+    /// Value at the center, of either sign.
     amplitude: f64,
-    /// Wavelength of its center, nm if bare; it may lie outside of all light.
+    /// Wavelength of the center, nm if bare; it may lie outside of all light.
     center: Center,
     /// Standard deviation, nm if bare.
     sigma: Positive<Wavelength>,

@@ -1,6 +1,6 @@
-//! The kinds of spectra: each is a file of this folder, and a plugin may bring others.
+//! The kinds of spectra: each has a file in this folder, and a plugin may bring others.
 //!
-//! A kind is a struct of parameters that says what spectrum they make:
+//! A kind is a struct of parameters with a function that makes the spectrum:
 //!
 //! ```
 //! use schemars::JsonSchema;
@@ -12,12 +12,12 @@
 //! #[derive(Debug, Deserialize, JsonSchema)]
 //! #[serde(deny_unknown_fields)]
 //! struct Pair {
-//!     /// What lies between them, nm if bare.
+//!     /// Wavelength between them, nm if bare.
 //!     center: Wavelength,
 //! }
 //!
 //! spectra_core::register!(SpectrumEntry, "pair": Pair, build_kind::<Pair>);
-//! // What may stand in a line, if anything: `pair:550`.
+//! // The form as an expression, if there is one: `pair:550`.
 //! spectra_spectrum::expression!("pair:550", "write a wavelength in nm, such as pair:550", |text| {
 //!     text.parse().ok().map(two)
 //! });
@@ -63,19 +63,19 @@ use spectra_core::spectral::BAND;
 
 spectra_core::declare!(SpectrumEntry, dyn SpectrumKind, "spectrum", "A registered kind of spectrum.");
 
-/// Parameters that say what a spectrum is.
+/// Parameters that define a spectrum.
 pub trait SpectrumKind {
-    /// The spectrum.
+    /// Makes the spectrum of these parameters.
     ///
     /// # Errors
-    /// What is wrong with the parameters, placed.
+    /// The faults of the parameters, placed.
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults>;
 }
 
-/// A kind from its parameters, for [`register!`](spectra_core::register).
+/// Reads a kind from its parameters, for [`register!`](spectra_core::register).
 ///
 /// # Errors
-/// All that is wrong with them.
+/// All faults of the parameters.
 pub fn build_kind<K: SpectrumKind + Readable + 'static>(
     params: &Params,
     _: &Context<'_>,
@@ -83,24 +83,24 @@ pub fn build_kind<K: SpectrumKind + Readable + 'static>(
     Ok(Box::new(params.parse::<K>()?))
 }
 
-/// What a spectrum is made for, and of which others.
+/// The context in which a spectrum is made: the kind that is wanted, and other spectra.
 pub struct Making<'a> {
     params: &'a Params,
     wanted: Kind,
-    /// Whether it is a part of a sum, which is judged as a whole.
+    /// Whether the spectrum is a part of a sum, which is checked as a whole.
     is_part: bool,
     loader: &'a Loader<'a>,
     files: &'a dyn Resources,
 }
 
 impl Making<'_> {
-    /// The parameters as they were written, to place faults.
+    /// Returns the parameters as they were written, to place faults.
     #[must_use]
     pub fn params(&self) -> &Params {
         self.params
     }
 
-    /// What is wanted where the spectrum is named; a function of wavelength becomes that.
+    /// Kind that is wanted where the spectrum is named; a function of wavelength becomes this kind.
     #[must_use]
     pub fn wanted(&self) -> Kind {
         self.wanted
@@ -114,22 +114,22 @@ impl Making<'_> {
         }
     }
 
-    /// Whether it is a part of a sum: then it may be negative, as the sum is judged as a whole.
+    /// Returns whether the spectrum is a part of a sum. It may then be negative, because the sum is checked as a whole.
     #[must_use]
     pub fn is_part(&self) -> bool {
         self.is_part
     }
 
-    /// Another spectrum that this one is made of: a name, an expression, or a map with its kind.
+    /// Makes another spectrum that this one is made of, from a name, an expression, or a map with its kind.
     ///
     /// # Errors
-    /// What is wrong with it, placed.
+    /// The faults of that spectrum, placed.
     pub fn part(&self, node: &StageNode, wanted: Kind) -> Result<Piece, Faults> {
         let piece = self.addend(node, wanted, false)?;
         piece.settled().map_err(|e| e.faults(|text| node.fault(text)))
     }
 
-    /// The same, which may be negative if it `is_part` of a sum.
+    /// Makes another spectrum like [`Making::part`]; it may be negative if it `is_part` of a sum.
     pub(crate) fn addend(&self, node: &StageNode, wanted: Kind, is_part: bool) -> Result<Piece, Faults> {
         match node.node().as_str() {
             Some(name) => self.loader.part(name, wanted).map_err(|e| match e {
@@ -144,7 +144,7 @@ impl Making<'_> {
     }
 }
 
-/// The spectrum of a map with its kind and that kind's own keys.
+/// Makes the spectrum of a map with its kind and that kind's own keys.
 pub(crate) fn of_params(
     params: &Params,
     wanted: Kind,
@@ -152,7 +152,7 @@ pub(crate) fn of_params(
     files: &dyn Resources,
 ) -> Result<Piece, Faults> {
     let piece = made(params, wanted, false, loader, files)?;
-    // What only the whole can be wrong with has no key of its own.
+    // An error of the whole spectrum has no key of its own.
     piece.settled().map_err(|e| e.faults(|text| params.fault("kind", text)))
 }
 
@@ -167,7 +167,7 @@ fn made(
     kind.make(&Making { params, wanted, is_part, loader, files })
 }
 
-/// What stands where a spectrum is wanted in a spectrum: a name or an expression, or a map with its kind.
+/// The form of a spectrum within a spectrum: a name or an expression, or a map with its kind.
 pub struct SpectrumForm;
 
 impl JsonSchema for SpectrumForm {
@@ -189,7 +189,7 @@ impl JsonSchema for SpectrumForm {
     }
 }
 
-/// A shape times a value, if one is stated.
+/// Multiplies a shape by a value, if one is stated.
 fn times(shape: Shape, value: Option<NonNegative<f64>>) -> Result<Piece, SpectrumError> {
     match value {
         Some(value) => shape.scaled(value.get()).map(Piece::Bare),
@@ -197,19 +197,19 @@ fn times(shape: Shape, value: Option<NonNegative<f64>>) -> Result<Piece, Spectru
     }
 }
 
-/// A bell whose center may lie outside of all light, if it is wide; a narrow one has its center in light.
+/// Checks the center of a Gaussian: it may lie outside of all light if the Gaussian is wide; a narrow one has its center in light.
 fn bell_nm(center_nm: f64, width_nm: f64) -> Result<f64, SpectrumError> {
     if center_nm > 0.0 && width_nm < SHORTEST_LIGHT_NM { Ok(light_nm(center_nm)?) } else { Ok(center_nm) }
 }
 
-/// A fault if all of these, which increase, lie below any light.
+/// Adds a fault if all of these wavelengths, which increase, are too short for light.
 fn some_light(params: &Params, key: &str, nm: &[Wavelength], faults: &mut Faults) {
     if let Some(Err(wrong)) = nm.last().map(|last| light_nm(last.nm())) {
         faults.push(params.fault(&format!("{key}[{}]", nm.len() - 1), wrong.to_string()).hint(wrong.hint()));
     }
 }
 
-/// A fault for each value that does not increase.
+/// Adds a fault for each wavelength that does not increase.
 fn rising(params: &Params, key: &str, nm: &[Wavelength], faults: &mut Faults) {
     for (i, pair) in nm.windows(2).enumerate() {
         if pair[1].nm() <= pair[0].nm() {
@@ -219,14 +219,14 @@ fn rising(params: &Params, key: &str, nm: &[Wavelength], faults: &mut Faults) {
     }
 }
 
-/// Checks lengths before anything is made of them.
+/// Checks the lengths of two lists before anything is made of them.
 fn lengths(params: &Params, keys: [&str; 2], [found, wanted]: [usize; 2], what: &str) -> Result<(), Fault> {
     if found > MAX_ROWS || wanted > MAX_ROWS {
         return Err(params.fault(keys[0], format!("more than {MAX_ROWS} points")));
     }
     if found == 0 || found != wanted {
-        let fault = params.fault(keys[1], format!("{found} {}, but {what} asks for {wanted}", keys[1]));
-        return Err(fault.hint("each has its own, in the same order"));
+        let fault = params.fault(keys[1], format!("{found} {}, but {what} needs {wanted}", keys[1]));
+        return Err(fault.hint("write exactly that many, in the same order"));
     }
     Ok(())
 }

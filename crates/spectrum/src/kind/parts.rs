@@ -1,4 +1,4 @@
-//! `kind: product` and `kind: sum`.
+//! The spectra of `kind: product` and `kind: sum`.
 
 use super::{Making, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
 use crate::error::SpectrumError;
@@ -8,9 +8,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Part};
 
-/// Spectra multiplied: a light behind filters.
+/// A product of spectra, such as a light behind filters.
 ///
-/// The first is what is wanted, the others are filters; functions take part as filters. In a line: `D65 * wratten-15`.
+/// The first factor is of the kind that is wanted, such as a light; the others are filters. Functions count as filters. As an
+/// expression: `D65 * wratten-15`.
 ///
 /// # Example
 /// ```yaml
@@ -22,15 +23,15 @@ use spectra_core::params::{Faults, Part};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Product {
-    /// What is multiplied, one or more: the first is what is wanted, such as a light, the others are filters. By name,
-    /// or as maps with their `kind`.
+    /// Factors, one or more, by name or as maps with their `kind`. The first is of the kind that is wanted, such as a light;
+    /// the others are filters.
     factors: Vec<Part<SpectrumForm>>,
 }
 
-/// Spectra added.
+/// A sum of spectra.
 ///
-/// Lamps that shine together, or bands of one filter. Parts may be negative (a notch is 1 minus a band); the sum must not. In a
-/// line: `D65 + 5000 * line:e`, `1 - 0.9 * gaussian:550,20`.
+/// Use it for lamps that shine together, or for the bands of one filter. Parts may be negative (a notch is 1 minus a band); the
+/// sum must not. As an expression: `D65 + 5000 * line:e`, `1 - 0.9 * gaussian:550,20`.
 ///
 /// # Example
 /// ```yaml
@@ -39,7 +40,7 @@ struct Product {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Sum {
-    /// What is added, one or more: by name, or as maps with their `kind`.
+    /// Parts to add, one or more, by name or as maps with their `kind`.
     parts: Vec<Part<SpectrumForm>>,
 }
 
@@ -48,7 +49,7 @@ spectra_core::register!(SpectrumEntry, "sum": Sum, build_kind::<Sum>);
 
 impl SpectrumKind for Product {
     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        // The first may be what is wanted; what stands behind it are filters.
+        // The first factor may be of the wanted kind; the others are filters.
         let wanted = |i| if i == 0 { making.wanted() } else { Kind::Transmittance };
         together(&self.factors, "factors", making, |node, i| making.part(node, wanted(i)), Piece::times)
     }
@@ -63,7 +64,7 @@ impl SpectrumKind for Sum {
         }
         let wrong = |e: SpectrumError| e.faults(|text| making.params().fault("parts", text));
         match whole.settled().map_err(wrong)? {
-            // What is of no kind yet is judged as what is wanted, so that the fault is told here.
+            // A bare function is checked as the wanted kind, so that the fault is reported here.
             Piece::Bare(shape) => {
                 of_shape(shape.clone(), making.wanted()).map_err(wrong)?;
                 Ok(Piece::Bare(shape))
@@ -83,7 +84,7 @@ fn together(
     let mut faults = Faults::new();
     let mut joined: Option<Piece> = None;
     for (i, node) in nodes.iter().enumerate() {
-        // What is wrong with one hides nothing that is wrong with the next.
+        // A fault in one part hides no fault in the next.
         let Some(next) = faults.take(part(node, i)) else { continue };
         joined = match joined {
             None => Some(next),
@@ -91,5 +92,5 @@ fn together(
         };
     }
     faults.into_result(())?;
-    joined.ok_or_else(|| making.params().fault(key, "there are none").into())
+    joined.ok_or_else(|| making.params().fault(key, "the list is empty").into())
 }

@@ -1,4 +1,4 @@
-//! `kind: scale`.
+//! The spectrum of `kind: scale`.
 
 use super::{Making, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
 use crate::error::SpectrumError;
@@ -9,9 +9,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Luminance, NonNegative, Part, Power};
 
-/// A spectrum, brighter or darker.
+/// A spectrum that is made brighter or darker.
 ///
-/// By a factor, to a peak, or, of light, to a power or a luminance: how bright a lamp of a relative spectrum is.
+/// Scales by a factor or to a peak, and light also to a power or a luminance. Use it to say how bright a lamp with a relative
+/// spectrum is.
 ///
 /// # Example
 /// ```yaml
@@ -20,15 +21,15 @@ use spectra_core::params::{Faults, Luminance, NonNegative, Part, Power};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Scaled {
-    /// What is scaled: by name, or as a map with its `kind`.
+    /// Spectrum to scale, by name or as a map with its `kind`.
     spectrum: Part<SpectrumForm>,
-    /// What it is multiplied by. One of the four is given.
+    /// Factor to multiply by. Exactly one of `factor`, `peak`, `power` and `luminance` is given.
     factor: Option<NonNegative<f64>>,
-    /// Its greatest value afterwards.
+    /// Largest value afterwards.
     peak: Option<NonNegative<f64>>,
-    /// Its power over 350-830 nm afterwards, W if bare; of light only.
+    /// Power over 350-830 nm afterwards, W if bare; for light only.
     power: Option<Power>,
-    /// Its luminance afterwards, cd/m2 if bare; of light only.
+    /// Luminance afterwards, cd/m2 if bare; for light only.
     luminance: Option<Luminance>,
 }
 
@@ -67,7 +68,8 @@ impl SpectrumKind for Scaled {
             }
             (matter, Some(peak), ..) => ("peak", to_peak(matter, peak.get())),
             (matter, ..) => {
-                let text = format!("only light is scaled to a power or a luminance; this is of kind {}", matter.kind());
+                let text =
+                    format!("only light can be scaled to a power or a luminance; this is of kind {}", matter.kind());
                 return Err(params.fault("spectrum", text).into());
             }
         };

@@ -1,4 +1,4 @@
-//! `kind: table`.
+//! The spectrum of `kind: table`.
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising, some_light};
 use crate::meta::{Outside, Scale};
@@ -9,9 +9,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Wavelength};
 
-/// Values at wavelengths, linear in between.
+/// A table of values at wavelengths, linear in between.
 ///
-/// What was measured, or read from a printed curve. A table of many rows is better kept as CSV.
+/// Use it for measured values, or for values read from a printed curve. A table of many rows is better kept as CSV.
 ///
 /// # Example
 /// ```yaml
@@ -23,12 +23,12 @@ struct Table {
     /// Wavelengths, nm if bare, increasing.
     #[schemars(length(min = 1))]
     wavelengths: Vec<Wavelength>,
-    /// Values there, as many: shares of 1 of a transmittance or reflectance, any scale of the others.
+    /// Values at these wavelengths, as many: fractions of 1 for a transmittance or reflectance, any scale for the others.
     values: Vec<f64>,
-    /// What the values are: `linear`, or `log10` of it; `linear` if absent.
+    /// Scale of the values: `linear`, or `log10` if they are logarithms to base 10; `linear` if absent.
     scale: Option<Scale>,
-    /// What lies outside of the table: `zero`, `constant` (the nearest value) or `geometric` (falling off as at the
-    /// end); what is usual of its kind if absent.
+    /// Values outside of the table: `zero`, `constant` (the nearest value) or `geometric` (falling off as at the end); if
+    /// absent, those usual for the kind of spectrum.
     outside: Option<Outside>,
 }
 

@@ -1,4 +1,4 @@
-//! `kind: blackbody` and `kind: daylight`.
+//! The spectra of `kind: blackbody` and `kind: daylight`.
 
 use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
 use crate::emission::Emission;
@@ -11,7 +11,7 @@ use spectra_core::params::{Faults, Temperature};
 
 /// Light of a blackbody by Planck's law, W m^-2 sr^-1 nm^-1.
 ///
-/// The light of incandescent lamps, candles and, at 5800 K, roughly of the sun. In a line: `blackbody:2856`.
+/// Use it for the light of incandescent lamps, candles and, at 5800 K, roughly that of the sun. As an expression: `blackbody:2856`.
 ///
 /// # Example
 /// ```yaml
@@ -20,13 +20,13 @@ use spectra_core::params::{Faults, Temperature};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Blackbody {
-    /// Its temperature, K if bare.
+    /// Temperature of the blackbody, K if bare.
     temperature: Temperature,
 }
 
 /// CIE daylight of a correlated color temperature, relative.
 ///
-/// Phases of daylight from 4000 to 25000 K, as D65 is one. In a line: `daylight:5500`.
+/// Covers the phases of daylight from 4000 to 25000 K; D65 is one of them. As an expression: `daylight:5500`.
 ///
 /// # Example
 /// ```yaml
@@ -38,7 +38,7 @@ struct Blackbody {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Daylight {
-    /// Its correlated color temperature, K if bare.
+    /// Correlated color temperature, K if bare.
     temperature: Temperature,
 }
 

@@ -1,4 +1,4 @@
-//! Algebra of spectra, against numpy and scipy; and what is said of expressions that are wrong.
+//! Algebra of spectra, compared with numpy and scipy, and the messages for wrong expressions.
 
 use spectra_core::params::Fault;
 use spectra_scene::FileResources;
@@ -18,7 +18,7 @@ fn at(found: &Found, nm: f64) -> f64 {
     }
 }
 
-/// 200 random trees, evaluated by another program from the tree and not from the text.
+/// Evaluates 200 random trees; another program evaluated each from the tree and not from the text.
 #[test]
 fn expressions_have_the_values_of_an_independent_program() {
     const AT_NM: [f64; 5] = [400.0, 470.0, 550.0, 630.0, 700.0];
@@ -43,13 +43,13 @@ fn expressions_have_the_values_of_an_independent_program() {
     assert_eq!(count, 200);
 }
 
-/// The fault of an expression as a light: its message and its hint.
+/// Returns the fault of an expression as a light: its message and its hint.
 fn refused(expression: &str) -> Fault {
     let error: SpectrumError = find_emission_in(expression, &nowhere()).expect_err(expression);
     error.faults(Fault::new).into_iter().next().expect("a fault")
 }
 
-/// Each with the character (from 1) at which it is wrong, words of the message, and words of the hint.
+/// Each case has the character (from 1) at which it is wrong, words of the message, and words of the hint.
 #[test]
 fn wrong_expressions_are_told_with_place_and_hint() {
     let cases: [(&str, usize, &str, &str); 40] = [
@@ -57,18 +57,18 @@ fn wrong_expressions_are_told_with_place_and_hint() {
         ("2 * (D65 + A", 5, "never closed", "write a `)`"),
         ("D65)", 4, "closes nothing", "remove it"),
         ("(D65 + A))", 10, "closes nothing", "remove it"),
-        ("()", 2, "missing before this `)`", "stands behind each sign"),
-        ("D65 + ", 6, "ends where", "stands behind each sign"),
-        ("D65 *", 6, "ends where", "stands behind each sign"),
-        ("* D65", 1, "missing before this `*`", "stands behind each sign"),
-        ("/ D65", 1, "missing before this `/`", "stands behind each sign"),
-        ("^2", 1, "missing before this `^`", "stands behind each sign"),
-        ("D65 * * A", 7, "missing before this `*`", "stands behind each sign"),
-        ("D65 + * A", 7, "missing before this `*`", "stands behind each sign"),
-        ("(D65 + )", 8, "missing before this `)`", "stands behind each sign"),
+        ("()", 2, "missing before this `)`", "after each sign"),
+        ("D65 + ", 6, "ends where", "after each sign"),
+        ("D65 *", 6, "ends where", "after each sign"),
+        ("* D65", 1, "missing before this `*`", "after each sign"),
+        ("/ D65", 1, "missing before this `/`", "after each sign"),
+        ("^2", 1, "missing before this `^`", "after each sign"),
+        ("D65 * * A", 7, "missing before this `*`", "after each sign"),
+        ("D65 + * A", 7, "missing before this `*`", "after each sign"),
+        ("(D65 + )", 8, "missing before this `)`", "after each sign"),
         ("(D65) A", 7, "sign is missing", "one of"),
         ("((D65) A)", 8, "sign is missing", "one of"),
-        ("wratten-12^", 12, "ends where", "stands behind each sign"),
+        ("wratten-12^", 12, "ends where", "after each sign"),
         ("0.5 * D66", 7, "no spectrum is called `D66`", "D65"),
         ("D65 + 2 * mercurry", 11, "no spectrum is called `mercurry`", "mercury"),
         ("1 - wratten-26 * D65", 5, "no spectrum is called `wratten-26`", "wratten-25"),
@@ -104,7 +104,7 @@ fn wrong_expressions_are_told_with_place_and_hint() {
     }
 }
 
-/// A notch, and what a mixture leaves over, are judged as a whole; lines that cancel are gone.
+/// A notch, and what a mixture leaves over, are checked as a whole; lines that cancel are gone.
 #[test]
 fn signed_parts_are_judged_as_a_whole() {
     let notch = find_transmittance("1 - 0.9 * gaussian:550,10").expect("a filter");
@@ -122,13 +122,13 @@ fn signed_parts_are_judged_as_a_whole() {
     assert_eq!(lines.lines().iter().map(|l| l.wavelength_nm).collect::<Vec<_>>(), [587.56, 656.27]);
     assert_eq!(find_emission("F'eC'").expect("a set of lines").lines().len(), 3);
     assert!(find_emission("line:e - 2 * line:e").expect_err("negative").to_string().contains("negative"));
-    // A density is a function; a filter twice as thick its square.
+    // A density is a function; a filter twice as thick is its square.
     let density = find_transmittance("10^(-0.3 * gaussian:550,20)").expect("a filter");
     assert!((density.at(550.0) - 0.501_187_233_627_272_2).abs() < 1e-15);
     assert!((find_transmittance("wratten-25^2").expect("a filter").at(600.0) - red.at(600.0).powi(2)).abs() < 1e-15);
 }
 
-/// Power on the grid is kept by a formula as by a Gaussian, however narrow.
+/// A formula keeps its power on the grid as a Gaussian does, however narrow.
 #[test]
 fn formulas_are_as_fine_as_they_are() {
     let grid = spectra_spectrum::BAND;

@@ -26,7 +26,7 @@ fn each_fault_has_its_place() {
         ),
         (
             "wavelength_nm,p\n-400,1\n",
-            "bad.csv: row 2, column 1 (wavelength_nm): a wavelength is a positive number of nanometres, not -400",
+            "bad.csv: row 2, column 1 (wavelength_nm): a wavelength is a positive number of nanometers, not -400",
         ),
         ("wavelength_nm,p,q\n400,1,2\n410,1,-2\n", "bad.csv: row 3, column 3 (q): emission cannot be negative: -2"),
         ("wavelength_nm,p\n400,NaN\n", "bad.csv: row 2, column 2 (p): `NaN` is not a finite number"),
@@ -83,7 +83,7 @@ fn front_matter_is_checked() {
     let sprague = format!("{HEAD}# interpolation: sprague\nwavelength_nm,p\n400,1\n");
     assert_eq!(
         message(&sprague, None),
-        "bad.csv: interpolation: sprague wants at least six equally spaced wavelengths"
+        "bad.csv: `interpolation: sprague` needs at least six equally spaced wavelengths"
     );
     assert!(
         message(&format!("{HEAD}# sauce: x\nwavelength_nm,p\n400,1\n"), None).contains("row 3: unknown key `sauce`")
@@ -115,25 +115,25 @@ fn windows_files_and_free_comments_are_read() {
     assert!((log.column_at(0).at(400.0) - 0.1).abs() < 1e-16);
 }
 
-/// Each of these is the same table: 400 nm 0.5, 410 nm 1, 420 nm 0.25.
+/// Each of these texts is the same table: 400 nm 0.5, 410 nm 1, 420 nm 0.25.
 #[test]
 fn tables_are_read_as_people_have_them() {
     for (text, column, notes) in [
-        ("400,0.5\n410,1\n420,0.25\n", "value", &["no names of columns"][..]),
+        ("400,0.5\n410,1\n420,0.25\n", "value", &["no column names"][..]),
         ("wavelength,value\n400,0.5\n410,1\n420,0.25\n", "value", &[]),
         ("\"Wavelength (nm)\",\"Power\"\n400,0.5\n410,1\n420,0.25\n", "Power", &[]),
         ("nm;power\n400;0,5\n410;1\n420;0,25\n", "power", &[]),
-        ("400,0;0,5\n410,0;1,0\n420,0;0,25\n", "value", &["no names of columns"]),
+        ("400,0;0,5\n410,0;1,0\n420,0;0,25\n", "value", &["no column names"]),
         ("nm\tpower\n400\t0.5\n410\t1\n420\t0,25\n", "power", &[]),
-        ("# lamp\n  400   0.5\n  410   1\n  420   2.5e-1\n", "value", &["no names of columns"]),
-        ("400 0,5\n410 1\n420 0,25\n", "value", &["no names of columns"]),
-        ("Wavelength [nm]  Power [W]\n400 0.5\n410 1\n420 0.25\n", "value", &["no names of columns"]),
-        ("420, 0.25\n410, 1\n400, 0.5\n", "value", &["no names of columns", "falling wavelengths"]),
+        ("# lamp\n  400   0.5\n  410   1\n  420   2.5e-1\n", "value", &["no column names"]),
+        ("400 0,5\n410 1\n420 0,25\n", "value", &["no column names"]),
+        ("Wavelength [nm]  Power [W]\n400 0.5\n410 1\n420 0.25\n", "value", &["no column names"]),
+        ("420, 0.25\n410, 1\n400, 0.5\n", "value", &["no column names", "falling wavelengths"]),
         ("um,p\n0.4,0.5\n0.41,1\n0.42,0.25\n", "p", &["wavelengths in micrometers"]),
         (
             "0.42 0.25\r\n0.41 1\r\n0.4 0.5\r\n",
             "value",
-            &["no names of columns", "falling wavelengths", "wavelengths in micrometers"],
+            &["no column names", "falling wavelengths", "wavelengths in micrometers"],
         ),
     ] {
         let table = Table::parse("mine.txt", text, Some(Kind::Emission)).unwrap_or_else(|e| panic!("{text}{e}"));
@@ -144,7 +144,7 @@ fn tables_are_read_as_people_have_them() {
         );
         assert_eq!((table.columns, &table.notes[..]), (vec![column.to_owned()], notes), "{text}");
     }
-    // A table that says that it is written as ours are is held to that.
+    // A table that declares our format must keep to it.
     for text in
         ["400,1\n410,1\n", "wavelength_nm;p\n400;1\n", "wavelength_nm,p\n410,1\n400,1\n", "wavelength_nm,p\n0.4,1\n"]
     {

@@ -13,7 +13,7 @@ fn number(field: &str) -> f64 {
     field.parse().expect("a number")
 }
 
-/// Chromaticities of all 59, aligned to 360-830 nm by 1 nm, linear, constant ends, as colour-science has them.
+/// Chromaticities of all 59 illuminants, aligned to 360-830 nm by 1 nm, linear, with constant ends, as in colour-science.
 #[test]
 fn all_illuminants_have_their_chromaticity() {
     let mut count = 0;
@@ -30,8 +30,8 @@ fn all_illuminants_have_their_chromaticity() {
     println!("largest difference in x or y: {worst:e}");
 }
 
-/// Correlated color temperatures by Y. Ohno (Leukos 10, 47, 2014), whose published method is good to 1 K within
-/// 0.01 of the locus from 1000 to 20 000 K; ours searches the locus itself.
+/// Correlated color temperatures by Y. Ohno (Leukos 10, 47, 2014). The published method is good to 1 K within 0.01 of the locus
+/// from 1000 to 20 000 K; ours searches the locus itself.
 #[test]
 fn color_temperatures_agree_with_ohno() {
     let mut count = 0;
@@ -92,7 +92,7 @@ fn colorchecker_under_d50() {
     }
 }
 
-/// All 24 against the other program; what differs is the band below 360 nm.
+/// All 24 patches compared with the other program; they differ because of the band below 360 nm.
 #[test]
 fn all_patches_agree_with_another_program() {
     let mut count = 0;
@@ -106,7 +106,7 @@ fn all_patches_agree_with_another_program() {
     assert_eq!(count, 24);
 }
 
-/// Every daylight illuminant is tabulated to the 350 nm edge of the band; film sees there.
+/// Every daylight illuminant is tabulated down to the 350 nm edge of the band, because film is sensitive there.
 #[test]
 fn daylight_reaches_the_ultraviolet_edge() {
     for name in ["D50", "D55", "D60", "D65", "D75"] {

@@ -1,4 +1,4 @@
-//! Lines of the bundled lamps against what makers of glass and laboratories state.
+//! Lines of the bundled lamps, compared with the values that makers of glass and laboratories state.
 
 use spectra_color::{chromaticity, dominant_wavelength};
 use spectra_spectrum::{Observer, Strengths, balmer, bundled_meta, find_emission, named_line};
@@ -26,7 +26,7 @@ fn lamps_hold_the_named_lines() {
         let got = nearest(lamp, want);
         assert!((got - want).abs() < 0.0015, "{lamp} {symbol}: {got} {want}");
     }
-    // D stands for both lines of sodium; F and C for unresolved doublets whose centre depends on the discharge.
+    // D stands for both lines of sodium; F and C for unresolved doublets whose center depends on the discharge.
     let d = find_emission("sodium").expect("bundled");
     let mean = 0.5 * (d.lines()[0].wavelength_nm + d.lines()[1].wavelength_nm);
     assert!((mean - named_line("D").expect("named").precise_nm).abs() < 0.001, "{mean}");
@@ -55,9 +55,9 @@ fn lamps_have_the_color_that_one_sees() {
     }
 }
 
-/// Mercury's strengths are those of a measured lamp: power by groups of lines as summed by hand from the 5 nm values of the
-/// lamp H38HT-100 over a straight base (violet, blue, green, yellow), and the chromaticity of these lines computed apart. The
-/// observers' estimates have half as much green as blue, at (0.234, 0.225).
+/// Mercury's strengths are those of a measured lamp. The test checks the power by groups of lines (violet, blue, green,
+/// yellow), summed by hand from the 5 nm values of the lamp H38HT-100 over a straight base. It also checks the chromaticity of
+/// these lines, computed separately. The observers' estimates have half as much green as blue, at (0.234, 0.225).
 #[test]
 fn mercury_shines_as_it_was_measured() {
     let lamp = find_emission("mercury").expect("bundled");
@@ -72,7 +72,7 @@ fn mercury_shines_as_it_was_measured() {
     assert!((xy[0] - 0.3154).abs() < 2e-4 && (xy[1] - 0.3882).abs() < 2e-4, "{xy:?}");
 }
 
-/// Every lamp says what its strengths are worth.
+/// Every lamp states the origin of its strengths.
 #[test]
 fn lamps_say_where_their_strengths_come_from() {
     for (lamp, want) in [

@@ -31,7 +31,7 @@ fn every_table_reads_and_states_its_origin() {
     assert!(count >= 69, "{count}");
 }
 
-/// What is in `spectra/` is a table, or text about tables, or belongs to a folder with its own test; nothing strays in.
+/// Every file in `spectra/` is a table, or text about tables, or belongs to a folder with its own test; no stray files are allowed.
 #[test]
 fn nothing_else_lies_there() {
     for path in files() {
@@ -40,7 +40,7 @@ fn nothing_else_lies_there() {
     }
 }
 
-/// Data of any format is under known terms: each data file states `source` and `license` in its first lines.
+/// Data of any format has known terms: each data file states `source` and `license` in its first lines.
 #[test]
 fn every_data_file_states_source_and_license() {
     let stated = spectra_data::licenses();
@@ -49,7 +49,7 @@ fn every_data_file_states_source_and_license() {
     }
 }
 
-/// A file can be named by its name alone, so no two may share one.
+/// A file can be named without its folder, so no two may share a name.
 #[test]
 fn names_are_unique_and_found() {
     let mut names: Vec<_> =

@@ -1,4 +1,4 @@
-//! Products of signed Gaussian mixtures: exact integrals, and the scatter of following one term of every factor.
+//! Products of signed Gaussian mixtures: exact integrals, and the scatter of following one term of each factor.
 
 use spectra_core::Isa;
 use spectra_core::numbers::Numbers;
@@ -24,7 +24,7 @@ impl Random {
         u[0]
     }
 
-    /// 4 to 6 signed terms of 8 to 250 nm, of which about a third take away.
+    /// Mixture of 4 to 6 signed terms of 8 to 250 nm, about a third of them negative.
     fn mixture(&mut self) -> GaussianMixture {
         let count = 4 + (3.0 * self.number()) as usize;
         let term = |random: &mut Self| {
@@ -37,8 +37,8 @@ impl Random {
     }
 }
 
-/// 1 000 random products of four: the sum of the exact integrals of all terms is the quadrature of the product of the four sums,
-/// within 1e-12 of the sum of the sizes of what is added.
+/// 1000 random products of four mixtures: the sum of the exact integrals of all terms equals the quadrature of the product of
+/// the four sums, within 1e-12 of the sum of the absolute values that are added.
 #[test]
 fn products_of_four_mixtures_have_the_integral_of_quadrature() {
     let mut random = Random::new(17);
@@ -65,7 +65,8 @@ fn products_of_four_mixtures_have_the_integral_of_quadrature() {
     assert!(most > 1000);
 }
 
-/// The second moment of samples is that of all choices, within four of its own standard errors, which follow from the fourth moment.
+/// The second moment of samples equals that of all choices within four of its own standard errors, which follow from the fourth
+/// moment.
 #[test]
 fn one_term_samples_have_the_computed_second_moment() {
     const SAMPLES: usize = 20_000;

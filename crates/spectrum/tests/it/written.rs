@@ -42,7 +42,7 @@ fn every_kind_has_the_value_of_its_formula() {
     near(light("{kind: blackbody, temperature: 2856 K}").at(560.0), planck_radiance(560.0, 2856.0));
     near(light("{kind: table, wavelengths: [400, 500], values: [1, 3]}").at(425.0), 1.5);
     near(light("{kind: table, wavelengths: [400, 500], values: [0, 2], scale: log10, outside: zero}").at(450.0), 10.0);
-    // 50 counts between 400 and 410 nm are 5 a nanometre.
+    // 50 counts between 400 and 410 nm are 5 per nanometer.
     let bins = light("{kind: histogram, edges: [400, 410, 430], counts: [50, 8]}");
     assert_eq!([bins.at(405.0), bins.at(420.0), bins.at(399.0), bins.at(431.0)], [5.0, 0.4, 0.0, 0.0]);
     let terms = "terms: [{amplitude: 1, center: 560, sigma: 300}, {amplitude: -0.6, center: 520, sigma: 25}]";
@@ -60,7 +60,7 @@ fn every_kind_has_the_value_of_its_formula() {
     assert!((daylight.at(450.0) / daylight.at(560.0) - 1.17).abs() < 0.02);
 }
 
-/// Through the one module that is the same everywhere.
+/// Loads a file as each kind through the same module.
 fn libm_exp(x: f64) -> f64 {
     spectra_core::math::exp(x)
 }
@@ -81,7 +81,7 @@ fn spectra_are_made_of_others() {
     near(light("{kind: scale, spectrum: D65, luminance: 300 cd/m2}").luminance() / 300.0, 1.0);
     near(light("{kind: scale, spectrum: D65, power: 5 mW}").power(&BAND) / 0.005, 1.0);
     near(light("{kind: scale, spectrum: 'gaussian:550.5,20', peak: 7}").at(550.5), 7.0);
-    // What nothing says to be light is what is wanted.
+    // A shape that is not stated to be light is of the kind that is wanted.
     let (_folder, files) = folder("{kind: gaussian, center: 550, sigma: 20}");
     assert!(find_transmittance_in("a.yaml", &files).is_ok() && find_sensitivity_in("a.yaml", &files).is_ok());
     // Unless the file says so.
@@ -156,14 +156,14 @@ fn faults_name_file_line_and_column() {
         ("kind: constant\nof: light\n", "a.yaml:2:5: unknown value `light` for `of`"),
         (
             "kind: blackbody\nof: reflectance\ntemperature: 3000\n",
-            "a.yaml:2:5: what the file holds is of kind emission",
+            "a.yaml:2:5: the spectrum in the file is of kind emission",
         ),
         ("spectra: 2\nkind: constant\n", "a.yaml:1:10: unknown value 2 for `spectra`"),
     ] {
         let got = refused(text);
         assert!(got.contains(want), "{text}: {got}");
     }
-    // All of them at once.
+    // All faults are reported at once.
     let got = refused("kind: table\nwavelengths: [400, 390, 380]\nvalues: [-1, -2, 1]\n");
     assert_eq!(got.lines().count(), 4, "{got}");
 }
@@ -178,7 +178,7 @@ fn files_that_name_themselves_end() {
     assert!(refused(&many).contains("too many"));
 }
 
-/// What has no folder is found among the bundled names only.
+/// A name without a folder is found only among the bundled names.
 #[test]
 fn yaml_needs_a_place_to_be_found() {
     assert!(spectra_spectrum::find("a.yaml").expect_err("nowhere").to_string().contains("beside a scene"));
@@ -187,7 +187,7 @@ fn yaml_needs_a_place_to_be_found() {
     assert!(error.contains("a.yaml") && error.contains("no such file"), "{error}");
 }
 
-/// A wavelength in micrometers is told, with what to write; widths, wide bells and infrared pass.
+/// A wavelength in micrometers is reported, with what to write; widths, wide bells and infrared pass.
 #[test]
 fn micrometers_are_told() {
     let told = |name: &str| {
@@ -229,7 +229,7 @@ fn micrometers_are_told() {
     }
 }
 
-/// Where nothing says what is wanted, the names of columns do; the place and a stated kind come first.
+/// If no kind is requested, the names of columns decide; the place of use and a stated kind take precedence.
 #[test]
 fn the_header_says_what_a_table_is() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -259,7 +259,7 @@ fn the_header_says_what_a_table_is() {
     assert_eq!(kind(both, "mine.csv#reflectance"), Kind::Reflectance);
     assert_eq!(kind("wavelength_nm,transmittance", "0.5 * mine.csv"), Kind::Transmittance);
     assert_eq!(kind("wavelength_nm,reflectance", "D65 * mine.csv"), Kind::Emission);
-    // What is said where it is named comes first.
+    // The statement at the place of use takes precedence.
     assert_eq!(kind("wavelength_nm,reflectance", "mine.csv"), Kind::Reflectance);
     assert!(find_transmittance_in("mine.csv", &files).is_ok());
     assert!(spectra_spectrum::find_as_in("mine.csv", Kind::Emission, &files).is_ok());

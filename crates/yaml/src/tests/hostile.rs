@@ -1,4 +1,4 @@
-//! Inputs that were made to harm: they end in a word, soon and in bounded memory.
+//! Tests malicious inputs: each ends with a message, quickly and in bounded memory.
 
 use super::super::*;
 use super::Camera;
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-/// Time for which the processor worked on this thread. Elsewhere than on Linux, time that passed.
+/// Returns the processor time of this thread. On systems other than Linux, returns the elapsed time.
 fn worked() -> Duration {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let line = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
@@ -14,7 +14,7 @@ fn worked() -> Duration {
     ns.map_or_else(|| START.elapsed(), Duration::from_nanos)
 }
 
-/// The value of `run`, which must not cost more than a second of the processor, whatever else runs beside it.
+/// Returns the value of `run`, and checks that it takes less than a second of processor time, whatever else runs at the same time.
 fn soon<T>(run: impl FnOnce() -> T) -> T {
     let start = worked();
     let value = run();
@@ -23,7 +23,7 @@ fn soon<T>(run: impl FnOnce() -> T) -> T {
     value
 }
 
-/// The first faults of a hostile text, which must cost less than a second.
+/// Returns the first faults of a malicious text, and checks that parsing takes less than a second.
 fn refused(text: String) -> String {
     let typed = soon(|| parse(SourceFile::new("t.yaml", text.clone())).and_then(|node| node.parse::<Camera>()));
     typed.expect_err("hostile").to_string().chars().take(300).collect()
@@ -56,7 +56,7 @@ fn aliases_are_bounded() {
     }
     assert!(refused(laughs).contains("more than 200000 values"));
 
-    // Aliases make it deep where the text is not.
+    // Aliases nest deeply although the text does not.
     let mut deep = "a0: &a0 [x]\n".to_owned();
     for level in 1..100 {
         deep += &format!("a{level}: &a{level} [*a{}]\n", level - 1);
@@ -78,7 +78,7 @@ fn large_files_are_refused() {
 #[test]
 fn many_values_and_long_texts_are_bounded() {
     assert!(refused(format!("[{}]", "1,".repeat(1_000_000))).contains("more than 200000 values"));
-    assert!(refused("a:\n".repeat(90_000)).contains("comes twice"));
+    assert!(refused("a:\n".repeat(90_000)).contains("appears twice"));
     assert!(refused((0..300_000).map(|i| format!("k{i}:\n")).collect()).contains("more than 200000 values"));
     let long = refused(format!("radius: {}", "x".repeat(4_000_000)));
     assert!(long.len() < 300 && long.contains("found the text `xxx"), "{long}");
@@ -109,13 +109,13 @@ fn many_faults_are_cut() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Nothing panics on any bytes, and each fault lies inside of its file.
+    /// Checks that no bytes cause a panic, and that each fault lies inside its file.
     #[test]
     fn any_bytes_end_in_a_word(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         sound(&bytes)?;
     }
 
-    /// Nor on texts that look like YAML.
+    /// Checks the same for texts that look like YAML.
     #[test]
     fn any_yaml_like_text_ends_in_a_word(
         parts in prop::collection::vec(
@@ -130,7 +130,7 @@ proptest! {
         sound(parts.concat().as_bytes())?;
     }
 
-    /// Nor do overrides, and what is refused changes nothing.
+    /// Checks that overrides do not panic, and that a refused override changes nothing.
     #[test]
     fn any_override_ends_in_a_word(argument in "[a-c.\\[\\]0-3= :{},\"-]{0,30}") {
         let mut root = parse(SourceFile::new("t.yaml", "a: {b: 1, c: [1, {a: 2}]}\nb:\n")).unwrap();
@@ -159,7 +159,7 @@ fn sound(bytes: &[u8]) -> Result<(), TestCaseError> {
             let lines = before.replace("\r\n", "\n").replace('\r', "\n");
             prop_assert_eq!(span.line, 1 + lines.matches('\n').count(), "{:?} {:?}", fault, file.text);
             let last = lines.rsplit('\n').next().unwrap_or("");
-            // A byte order mark has a column inside of a text and none elsewhere.
+            // A byte order mark counts as a column inside a text and not elsewhere.
             if !last.contains('\u{feff}') {
                 prop_assert_eq!(span.column, 1 + last.chars().count(), "{:?} {:?}", fault, file.text);
             }

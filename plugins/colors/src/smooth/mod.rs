@@ -1,17 +1,16 @@
-//! `kind: smooth`: a smooth reflectance for each color, under the illuminant.
+//! The color model `smooth`: each color becomes a smooth reflectance, lit by the illuminant.
 //!
-//! W. Jakob and J. Hanika, "A low-dimensional function space for efficient spectral upsampling", Computer Graphics Forum
-//! 38(2), 147 (2019): a reflectance is a sigmoid of a quadratic in the wavelength, s(x) = 1/2 + x / (2 sqrt(1 + x^2)), whose
-//! three coefficients are solved for the color that it has under D65. As M. Pharr, W. Jakob and G. Humphreys do for light
-//! that has no upper bound ("Physically Based Rendering", 4th edition, 4.6.6), a color is first scaled to a largest value of
-//! 1/2, and its spectrum scaled back: so there is no color too bright, a grey is the illuminant itself, times a number,
-//! and twice the color is twice the spectrum. The price: the reflectance of a full and saturated color exceeds 1.
+//! The model is that of W. Jakob and J. Hanika, "A low-dimensional function space for efficient spectral upsampling", Computer
+//! Graphics Forum 38(2), 147 (2019). A reflectance is a sigmoid of a quadratic in the wavelength, s(x) = 1/2 + x / (2 sqrt(1 +
+//! x^2)). Its three coefficients are solved for the color that it has under D65. Following M. Pharr, W. Jakob and G. Humphreys for
+//! unbounded light ("Physically Based Rendering", 4th edition, 4.6.6), a color is first scaled to a largest value of 1/2 and its
+//! spectrum scaled back. Thus no color is too bright, a gray is the illuminant times a number, and twice the color is twice the
+//! spectrum. The price is that the reflectance of a bright, saturated color exceeds 1.
 //!
-//! Coefficients lie in a table over the two smaller values relative to the largest, filled by Newton's method when the
-//! first model is made. Between pixels of a picture it is the color that is interpolated, not the coefficients: toward
-//! black they have no limit.
+//! Coefficients are stored in a table over the two smaller values relative to the largest. Newton's method fills it when the first
+//! model is made. Between pixels of a picture, the color is interpolated and not the coefficients, which have no limit toward black.
 //!
-//! Colors beyond sRGB, which have negative values, have a table of their own ([`wide`]) up to 0.001 from the spectral locus.
+//! Colors outside sRGB, which have negative values, have a separate table ([`wide`]) up to 0.001 from the spectral locus.
 
 mod reflectance;
 mod solver;
@@ -33,18 +32,19 @@ use spectra_spectrum::illuminant;
 use table::{LEVEL, SIDE, Table, cell, mix};
 use wide::WideTable;
 
-/// A smooth reflectance for each color, under the illuminant.
+/// Each color becomes a smooth reflectance, lit by the illuminant.
 ///
-/// The default model, for pictures of lit objects: each color becomes the reflectance s(a + b t + c t^2), with the sigmoid s(x) = 1/2 + x
-/// / (2 sqrt(1 + x^2)) and t running over the band, with the three numbers that give the color under D65; its light is
-/// that reflectance times the illuminant. So grays have the spectrum of the illuminant itself, lines included, and
-/// colors change under fluorescent or sodium light as real ones do.
+/// This is the default model, for pictures of lit objects. Each color becomes the reflectance s(a + b t + c t^2), with the
+/// sigmoid s(x) = 1/2 + x / (2 sqrt(1 + x^2)) and t running over the band; a, b and c are the numbers that give the color
+/// under D65. The light of the color is that reflectance times the illuminant. Grays therefore have the spectrum of the
+/// illuminant itself, lines included, and colors change under fluorescent or sodium light as real ones do.
 ///
 /// A color is first scaled to a largest value of 1/2 and its spectrum scaled back, so that no color is too bright; as a
 /// result, the reflectance of a bright, saturated color can exceed 1.
 ///
-/// Colors beyond sRGB, as in pictures of wide gamut, keep their luminance and hue up to 0.001 in xy from the spectral locus; those
-/// nearer to it, and colors that no light has, are moved toward D65 to there, luminance kept.
+/// Colors outside sRGB, as in pictures of wide gamut, keep their luminance and hue up to 0.001 in xy from the spectral
+/// locus. Colors nearer to it, and colors that no light can have, are moved toward D65 onto that boundary and keep their
+/// luminance.
 ///
 /// # Example
 /// ```yaml
@@ -66,12 +66,12 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn ColorModel>, 
     Ok(Box::new(Smooth::new(light)))
 }
 
-/// The light under which a reflectance has the color that its RGB says.
+/// Returns D65, the light under which a reflectance has exactly the color of its RGB values.
 fn daylight() -> spectra_spectrum::Emission {
     illuminant("D65").expect("D65 is bundled")
 }
 
-/// A smooth reflectance of the color, times an illuminant.
+/// The color model `smooth` for one illuminant.
 struct Smooth {
     light: SpectralPower,
     lines_nm: Vec<f64>,
@@ -86,7 +86,7 @@ impl Smooth {
 }
 
 impl Smooth {
-    /// Of the illuminant: per nm, or of a line.
+    /// Returns the power of the illuminant: per nm in its continuum, or that of a line.
     #[inline(always)]
     fn power(&self, wavelength_nm: f64, line: u32) -> f64 {
         if line == CONTINUUM {
@@ -106,7 +106,7 @@ impl ColorModel for Smooth {
         ColorGamut::Real
     }
 
-    /// The color itself: what lies between two pixels is a mixture of their colors.
+    /// Returns the color itself, so that a place between two pixels gets a mixture of their colors.
     fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3] {
         linear_srgb.map(|v| v as f32)
     }
@@ -139,7 +139,7 @@ fn is_beyond_srgb([r, g, b]: [f64; 3]) -> bool {
     (r < 0.0) | (g < 0.0) | (b < 0.0)
 }
 
-/// The number to multiply by, and the coefficients, of any color; what is no color is black.
+/// Returns the scale and the coefficients of the spectrum of any color; a color without luminance, or with NaN, is black.
 fn look_up(table: &Table, linear_srgb: [f64; 3]) -> (f64, Coefficients) {
     if is_beyond_srgb(linear_srgb) {
         return WideTable::get().look_up(linear_srgb).unwrap_or_default();
@@ -166,23 +166,25 @@ impl Vectorized for Reflect<'_> {
     }
 }
 
-/// A wavelength beside the band of the illuminant.
+/// Marks a wavelength outside the band of the illuminant.
 const BESIDE: u32 = u32::MAX;
 
-/// Rays that are worked on side by side.
+/// Number of rays processed side by side.
 const CHUNK: usize = 64;
 type Each<T> = [T; CHUNK];
 
-/// What is known of them: where their colors lie in the table, and what stands there.
+/// Results of the table look-ups for a chunk of rays: positions of their colors in the table, and the values there.
 struct Looked {
-    /// The number to multiply by.
+    /// Scale of the spectrum.
     scale: Each<f64>,
-    /// The first of four points, and how far a color lies from it along rows and along columns.
+    /// Index of the first of the four table points around the color; `along` is the color's position between them, along rows and along
+    /// columns, 0 to 1.
     point: Each<u32>,
     along: [Each<f64>; 2],
-    /// The three coefficients of each of the four points.
+    /// Three coefficients at each of the four points.
     corners: [[Each<f32>; 3]; 4],
-    /// The illuminant before and behind a wavelength, and how far this lies from one to the other.
+    /// Power of the illuminant at the grid points before and behind the wavelength; `between` is the wavelength's position between them,
+    /// 0 to 1.
     lit: [Each<f64>; 2],
     between: Each<f64>,
 }
@@ -200,8 +202,8 @@ impl Looked {
     }
 }
 
-/// Multiplies the weights of up to [`CHUNK`] rays by their spectra: as [`look_up`] for each, but what needs no table in vectors.
-/// Colors beyond sRGB, which are few, are looked up one by one.
+/// Multiplies the weights of up to [`CHUNK`] rays by their spectra. The result equals [`look_up`] for each ray; steps that need no table
+/// run in vectors. Colors outside sRGB, which are few, are looked up one by one.
 struct Evaluate<'a> {
     model: &'a Smooth,
     looked: &'a mut Looked,
@@ -258,7 +260,7 @@ impl Vectorized for Evaluate<'_> {
                 let pair = &continuum[shade[i] as usize..][..2];
                 [pair[0], pair[1]]
             } else {
-                // The same on both sides.
+                // A line, or a wavelength outside the band: the same power on both sides.
                 [model.power(wavelength_nm[i], line[i]); 2]
             };
         }
@@ -301,7 +303,7 @@ mod tests {
         Smooth::new(daylight().to_power(&BAND))
     }
 
-    /// Newton's method reaches every color of the table, the bounds of sRGB among them.
+    /// Newton's method reaches every color of the table, including the boundary of sRGB.
     #[test]
     fn every_color_is_solved() {
         let (solver, table) = (Solver::new(), Table::of_srgb());
@@ -318,11 +320,11 @@ mod tests {
             }
         }
         println!("largest difference in linear RGB at the points of the table: {worst:e}");
-        // What is left is the table's single precision.
+        // The remaining difference comes from the table's single precision.
         assert!(worst < 1e-6, "{worst:e}");
     }
 
-    /// Batches of any length are what the table says of each color alone, bit by bit, on every tier.
+    /// Batches of any length give bit by bit the values that the table gives for each color alone.
     #[test]
     fn side_by_side_is_as_alone() {
         let model = model();
@@ -369,7 +371,7 @@ mod tests {
         }
     }
 
-    /// Rays get what the spectrum says, on lines too, and the color goes over from one third of the table to the next.
+    /// Rays get the values of the spectrum, on lines too, and spectra are continuous from one third of the table to the next.
     #[test]
     fn rays_see_the_spectrum() {
         let mut light = daylight().to_power(&BAND);
@@ -382,7 +384,7 @@ mod tests {
             model.evaluate(&[color; 3], &[450.0, 620.0, 546.07], &[CONTINUUM, CONTINUUM, 0], &mut weight);
             let want = [spectrum.continuum[100], 2.0 * spectrum.continuum[270], spectrum.lines[0].power];
             for (got, want) in weight.iter().zip(want) {
-                // Single precision of the color, twice.
+                // The color passes through single precision twice.
                 assert!((got / want - 1.0).abs() < 1e-5, "{rgb:?}: {weight:?} {want}");
             }
         }
@@ -390,7 +392,7 @@ mod tests {
         assert!(a.continuum.iter().zip(&b.continuum).all(|(a, b)| (a / b - 1.0).abs() < 1e-4));
     }
 
-    /// Any real color has its luminance and its place in xy, none has negative light, and nothing jumps at the border of sRGB.
+    /// Every real color keeps its luminance and its place in xy, no spectrum is negative, and spectra do not jump at the boundary of sRGB.
     #[test]
     fn colors_beyond_srgb_are_themselves() {
         let (model, observer) = (model(), Observer::cie_1931_2deg());

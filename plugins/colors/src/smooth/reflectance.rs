@@ -1,8 +1,8 @@
-//! The reflectance: a sigmoid of a quadratic in the wavelength.
+//! The reflectance of a color: a sigmoid of a quadratic in the wavelength.
 
 use spectra_core::spectral::BAND;
 
-/// Coefficients of the quadratic: of 1, t and (3 t^2 - 1) / 2, t from -1 to 1 over 350-830 nm.
+/// Coefficients of the quadratic in terms of 1, t and (3 t^2 - 1) / 2, with t from -1 to 1 over 350-830 nm.
 pub(super) type Coefficients = [f64; 3];
 
 #[inline(always)]

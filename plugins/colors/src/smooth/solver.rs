@@ -1,4 +1,4 @@
-//! Newton's method for the coefficients of a color.
+//! Newton's method that solves for the coefficients of a color.
 
 use super::daylight;
 use super::reflectance::{Coefficients, place};
@@ -9,20 +9,20 @@ use spectra_core::spectral::BAND;
 use spectra_spectrum::Observer;
 use std::array::from_fn;
 
-/// Finds the coefficients whose reflectance has a color under D65.
+/// Solver for the coefficients whose reflectance has a given color under D65.
 pub(super) struct Solver {
-    /// Linear sRGB per reflectance at each wavelength, and the quadratic's three functions there.
+    /// Linear sRGB per unit of reflectance, and the values of the quadratic's three functions, at each wavelength.
     points: Vec<([f64; 3], [f64; 3])>,
     isa: Isa,
 }
 
-/// Red, green and blue of a reflectance, and of its change with each coefficient. A fourth value, 0, fills each vector.
+/// Computes linear sRGB of a reflectance and its derivatives by the three coefficients. A fourth value, 0, pads each vector.
 struct Seen<'a> {
     points: &'a [([f64; 3], [f64; 3])],
     c: Coefficients,
 }
 
-/// Wavelengths that are worked out side by side.
+/// Number of wavelengths processed side by side.
 const ABREAST: usize = 32;
 
 impl Vectorized for Seen<'_> {
@@ -60,7 +60,7 @@ impl Solver {
         let light = daylight();
         let observer = Observer::cie_1931_2deg();
         let xyz = observer.xyz(&light);
-        // Primaries of sRGB with the white of D65 as tabulated: a reflectance of 1 has RGB (1, 1, 1).
+        // The space has the primaries of sRGB and the white of tabulated D65, so that a reflectance of 1 has RGB (1, 1, 1).
         let srgb = RgbSpace::srgb();
         let white = chromaticity(xyz).unwrap_or(srgb.white_xy);
         let space = RgbSpace::new("sRGB", srgb.primaries_xy, white, srgb.transfer);
@@ -73,18 +73,19 @@ impl Solver {
         Self { points: points.collect(), isa: Isa::detect() }
     }
 
-    /// Color of the reflectance, and its change with each coefficient (columns).
+    /// Returns the linear sRGB color of the reflectance and its derivatives by the coefficients (columns).
     pub(super) fn color(&self, c: Coefficients) -> ([f64; 3], matrix::Matrix) {
         let [rgb, by_coefficient @ ..] = self.isa.run(Seen { points: &self.points, c });
         (from_fn(|i| rgb[i]), from_fn(|i| from_fn(|j| by_coefficient[j][i])))
     }
 
-    /// Newton's method from `start`, each step halved until it comes nearer; `near` is the distance between colors that ends it.
+    /// Solves for the coefficients of the color `wanted` by Newton's method from `start`. Each step is halved until it comes nearer. The
+    /// iteration ends when the distance between the colors is below `near`, or when no step comes nearer.
     pub(super) fn solve(&self, wanted: [f64; 3], start: Coefficients, near: f64) -> Coefficients {
         let distance = |rgb: [f64; 3]| rgb.iter().zip(wanted).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
         let mut now = start;
         let (mut rgb, mut change) = self.color(now);
-        // Quadratic convergence: from a neighbor of the table three steps do.
+        // Convergence is quadratic: from a neighboring point of the table, three steps are enough.
         for _ in 0..40 {
             let off = distance(rgb);
             if off < near * near {

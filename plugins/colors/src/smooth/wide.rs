@@ -1,11 +1,11 @@
-//! Coefficients of the colors beyond sRGB, tabulated.
+//! Table of the coefficients of colors outside sRGB.
 //!
-//! Nearer to the spectral locus only darker reflectances are found: the largest value to which a color is scaled falls from that of sRGB's
-//! table on the triangle of sRGB to 0.005 on the rim of [`RealColors`], and its spectrum is scaled back. So spectra change
-//! without a step where a picture's colors leave sRGB.
+//! Near the spectral locus only dark reflectances exist. The largest value to which a color is scaled therefore falls toward the boundary:
+//! on the triangle of sRGB it is that of sRGB's table, on the boundary of [`RealColors`] it is 0.005. The spectrum is scaled back. Spectra
+//! thus change without a step where a picture's colors leave sRGB.
 //!
-//! The table has a column for each direction from white, and more of them where coefficients turn quickly: two columns lie so close that
-//! the color halfway between them is right to [`NEAR`].
+//! The table has a column for each direction from white, and more columns where coefficients change quickly: neighboring columns are so
+//! close that the color halfway between them is right to [`NEAR`].
 
 use super::reflectance::Coefficients;
 use super::solver::Solver;
@@ -14,32 +14,32 @@ use spectra_color::{RealColors, RgbSpace};
 use spectra_core::math::exp;
 use std::sync::OnceLock;
 
-/// Natural logarithm of the largest value to which a color on the rim is scaled, 0.005, over [`LEVEL`].
+/// Natural logarithm of the ratio of 0.005, the largest value to which a color on the boundary is scaled, to [`LEVEL`].
 const FALL: f64 = -4.605_170_185_988_091;
-/// Points of a column, closer together toward the rim.
+/// Number of points in a column; they are closer together toward the boundary.
 const ROWS: usize = 33;
-/// Directions to begin with.
+/// Number of directions before refinement.
 const DIRECTIONS: usize = 180;
-/// Largest difference of a value of a color halfway between two directions, relative to the largest value; and of its luminance, relative
-/// to itself.
+/// Largest error of a color halfway between two directions: of each value, relative to the largest value, and of the luminance, relative to
+/// itself.
 const NEAR: f64 = 4e-3;
-/// Two directions that lie closer are near enough: the corners of the rim are sharp.
+/// Directions that differ by less than this turn are not refined further, since the corners of the boundary are sharp.
 const NARROWEST: f64 = 4e-4;
-/// How near to their color the points lie, likewise.
+/// Largest distance of the solved color of a point from the wanted one, relative to the largest value.
 const SOLVED: f64 = 1e-6;
-/// Steps from gray to the triangle of sRGB.
+/// Number of steps from gray to the triangle of sRGB.
 const STEPS: usize = 12;
 
 type Column = Vec<Coefficients>;
 
-/// Coefficients over direction and depth, as [`spectra_color::Place`] has them.
+/// Table of coefficients over the direction and depth of a color, as defined by [`spectra_color::Place`].
 pub(super) struct WideTable {
     real: RealColors,
     points: Vec<Coefficients>,
 }
 
 impl WideTable {
-    /// The one table, filled when it is first asked for.
+    /// Returns the only table; the first call fills it.
     pub(super) fn get() -> &'static Self {
         static ONE: OnceLock<WideTable> = OnceLock::new();
         ONE.get_or_init(Self::new)
@@ -61,7 +61,7 @@ impl WideTable {
         Self { real, points }
     }
 
-    /// The number to multiply by, and the coefficients, of a color with a negative value; `None` where it has no luminance.
+    /// Returns the scale and the coefficients of the spectrum of a color with a negative value; `None` if its luminance is not positive.
     pub(super) fn look_up(&self, linear_srgb: [f64; 3]) -> Option<(f64, Coefficients)> {
         let place = self.real.place(linear_srgb)?;
         let at = row_of(place.depth) * (ROWS - 1) as f64;
@@ -81,7 +81,7 @@ impl WideTable {
     }
 }
 
-/// Weights of the four points nearest to a place `part` of the way from `row` to the next (Lagrange).
+/// Returns the Lagrange weights of the four points nearest to a place that lies the fraction `part` of the way from `row` to the next row.
 fn cubic(row: usize, part: f64) -> [f64; 4] {
     let x = part + row as f64 - row.clamp(1, ROWS - 3) as f64;
     [
@@ -92,18 +92,18 @@ fn cubic(row: usize, part: f64) -> [f64; 4] {
     ]
 }
 
-/// The largest value to which a color at that depth is scaled.
+/// Returns the largest value to which a color at that depth is scaled.
 fn level(depth: f64) -> f64 {
     LEVEL * exp(depth * depth * depth * FALL)
 }
 
-/// Depth of a row.
+/// Returns the depth of a row, 0 to 1.
 fn depth(row: usize) -> f64 {
     let left = 1.0 - row as f64 / (ROWS - 1) as f64;
     1.0 - left * left
 }
 
-/// The inverse of [`depth`], 0 to 1.
+/// Returns the row of a depth as a fraction of a column, 0 to 1; the inverse of [`depth`].
 fn row_of(depth: f64) -> f64 {
     1.0 - (1.0 - depth).sqrt()
 }
@@ -112,7 +112,7 @@ fn color(turn: f64, row: usize) -> [f64; 3] {
     RealColors::color(turn, depth(row)).map(|v| v * level(depth(row)))
 }
 
-/// A column, each point from the one before it.
+/// Solves a column; each point starts from those before it.
 fn from_gray(solver: &Solver, turn: f64) -> Column {
     let border = color(turn, 0);
     let mut found = [0.0; 3];
@@ -122,7 +122,7 @@ fn from_gray(solver: &Solver, turn: f64) -> Column {
     }
     let mut column: Column = Vec::with_capacity(ROWS);
     for row in 0..ROWS {
-        // As straight on as the last two went.
+        // Starts from the linear extrapolation of the last two points.
         let start = match column[..] {
             [.., a, b] => [0, 1, 2].map(|k| 2.0 * b[k] - a[k]),
             _ => found,
@@ -133,7 +133,7 @@ fn from_gray(solver: &Solver, turn: f64) -> Column {
     column
 }
 
-/// Appends `before` and columns between it and `behind` as far as they are needed.
+/// Appends `before` and as many columns between it and `behind` as accuracy needs.
 fn refine(solver: &Solver, before: (f64, Column), behind: &(f64, Column), to: &mut Vec<(f64, Column)>) {
     let turn = 0.5 * (before.0 + behind.0);
     let mut is_near = true;
@@ -159,7 +159,7 @@ fn refine(solver: &Solver, before: (f64, Column), behind: &(f64, Column), to: &m
 mod tests {
     use super::*;
 
-    /// Newton's method reaches the whole rim, and what lies between points has its color.
+    /// Newton's method reaches every point of the table, up to the boundary.
     #[test]
     fn every_color_is_solved() {
         let start = std::time::Instant::now();

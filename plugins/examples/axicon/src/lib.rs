@@ -1,14 +1,15 @@
-//! `kind: axicon`, a surface.
+//! The surface `kind: axicon`, a cone.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::tan;
 use spectra_core::prelude::*;
 
-/// A cone: it draws a point out into a line along the axis, and a star into a ring.
+/// A cone: it images a point into a line along the axis, and a star into a ring.
 ///
-/// z = tan(angle) (sqrt(r^2 + tip^2) - tip). A ray along the axis is turned by asin(n sin(angle)) - angle, wherever it meets
-/// the cone. To paraxial optics it is a plane: a tip has no focal length.
+/// The sag is z = tan(angle) (sqrt(r^2 + tip^2) - tip). A ray parallel to the axis is deflected by
+/// asin(n sin(angle)) - angle, wherever it meets the cone. In paraxial optics the surface is a plane, because a tip has no focal
+/// length.
 ///
 /// # Example
 /// ```yaml
@@ -19,11 +20,11 @@ use spectra_core::prelude::*;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct AxiconParams {
-    /// Angle between the cone's side and the plane across the axis, -80 to 80 degrees, degrees if bare: positive where the side
-    /// bends toward +z.
+    /// Angle between the side of the cone and the plane perpendicular to the axis, -80 to 80 degrees, degrees if bare.
+    /// Positive: the side bends toward +z.
     #[schemars(range(min = -80, max = 80))]
     angle: Angle,
-    /// Roundness of the tip, mm if bare: how far from the axis it passes into the cone; sharp if absent.
+    /// Radius around the axis within which the tip is rounded, mm if bare; sharp if absent.
     tip: Option<NonNegative<Length>>,
 }
 
@@ -61,7 +62,8 @@ mod tests {
     use spectra_core::surface::Action;
     use spectra_testing::{SurfaceLaws, assert_fault, ray, surface};
 
-    /// Out of glass of index 1.5 through a side of 10 degrees: Snell's law by hand, at any height alike.
+    /// Compares rays that leave glass of index 1.5 through a side of 10 degrees with Snell's law: all heights have the same
+    /// deflection.
     #[test]
     fn every_ray_is_turned_by_the_same_angle() {
         let cone = surface("{kind: axicon, angle: -10 deg}");

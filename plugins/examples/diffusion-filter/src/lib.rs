@@ -1,4 +1,4 @@
-//! `kind: diffusion-filter`, a surface that needs numbers.
+//! The surface `kind: diffusion-filter`, which needs random numbers.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -10,15 +10,15 @@ use spectra_core::surface::{Action, Bending, Intersection, ScalarShape};
 
 /// A filter that scatters a share of the light: lamps get a glow, and dark parts of the picture a veil.
 ///
-/// What is scattered has two lobes, a narrow and a wide one. Each is a normal distribution of the direction cosines: the direction
-/// across the surface changes by a step that depends neither on the direction nor on the place, as behind a thin rough layer
-/// (Harvey 1979). `glow` and `veil` are the standard deviations of the step to each side, as angles of light that
-/// arrives along the axis. Such steps are as likely one way as back, and keep the etendue; so light of
-/// either sense of travel keeps its weight, and the picture is the same from the source and from the imager. What would leave at
-/// more than 90 degrees is absorbed.
+/// The scattered light has a narrow and a wide lobe. Each lobe is a normal distribution of direction cosines: the direction
+/// across the surface changes by a step that depends on neither direction nor position, as behind a thin rough layer (Harvey
+/// 1979). `glow` and `veil` are the standard deviations of the step along each axis, given as angles of light that arrives
+/// along the axis. A step and its reverse are equally likely, and steps keep the etendue. Therefore light keeps its weight in
+/// both directions of travel, and the picture is the same from the source and from the imager. Light that would leave at more
+/// than 90 degrees is absorbed.
 ///
-/// It is a plane. Stand it in front of the lens, in air or on a glass; its own reflections are not counted. Drawings,
-/// focus and f-numbers see the light that passes straight.
+/// The surface is a plane. Put it in front of the lens, in air or on a glass. Its own reflections are not computed. Drawings,
+/// focus and f-numbers use the light that is not scattered.
 ///
 /// # Example
 /// ```yaml
@@ -36,12 +36,12 @@ struct DiffusionFilterParams {
     glow: NonNegative<Angle>,
     /// Width of the wide lobe, degrees if bare, up to 20.
     veil: NonNegative<Angle>,
-    /// Share of the scattered light that is in the wide lobe, 0 to 1; half of it if absent.
+    /// Share of the scattered light that is in the wide lobe, 0 to 1; 0.5 if absent.
     #[schemars(range(max = 1))]
     veil_share: Option<NonNegative<Ratio>>,
 }
 
-/// Wider lobes would lose a good part of the light beyond 90 degrees.
+/// Largest width of a lobe, degrees. A wider lobe would lose much of its light beyond 90 degrees.
 const WIDEST_DEG: f64 = 20.0;
 
 spectra_core::register!(surface "diffusion-filter": DiffusionFilterParams, build);
@@ -52,12 +52,12 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let veil_share = p.veil_share.map_or(0.5, |share| share.number());
     for (key, share) in [("share", p.share.number()), ("veil-share", veil_share)] {
         if share > 1.0 {
-            faults.push(params.fault(key, format!("{share} is more than all of it")).hint("0 to 1"));
+            faults.push(params.fault(key, format!("a share of {share} is more than all the light")).hint("0 to 1"));
         }
     }
     for (key, width) in [("glow", p.glow), ("veil", p.veil)] {
         if width.rad() > WIDEST_DEG.to_radians() {
-            faults.push(params.fault(key, "too wide for a filter").hint(format!("at most {WIDEST_DEG} degrees")));
+            faults.push(params.fault(key, "this lobe is too wide").hint(format!("at most {WIDEST_DEG} degrees")));
         }
     }
     let widths = [p.glow, p.veil].map(|width| sin(width.rad()));
@@ -68,19 +68,20 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
 struct DiffusionFilter {
     share: f64,
     veil_share: f64,
-    /// Standard deviations of glow and veil, direction cosines.
+    /// Standard deviations of the glow and the veil, as direction cosines.
     widths: [f64; 2],
 }
 
-/// What is decided for a ray, in order.
+/// Index of the ray's random number that selects the lobe.
 const WHICH_LOBE: u32 = 0;
+/// Index of the ray's random numbers that select the step.
 const HOW_FAR: u32 = 1;
 
 impl DiffusionFilter {
-    /// By how much the direction cosines of a ray change; `None` where it passes straight.
+    /// Returns the change of a ray's direction cosines, or `None` if the ray is not scattered.
     fn step(&self, at: &Bending) -> Option<DVec2> {
         let numbers = at.numbers?;
-        // Below the share it is scattered, and so far below it decides on the lobe.
+        // Below the share, the ray is scattered; the same number, scaled to 0..1, selects the lobe.
         let part = numbers.number(WHICH_LOBE) / self.share;
         if part.is_nan() || part >= 1.0 {
             return None;
@@ -111,7 +112,7 @@ impl ScalarShape for DiffusionFilter {
 
     fn redirect(&self, at: &Bending) -> Option<Result<DVec3, Loss>> {
         let step = self.step(at)?;
-        // Along the plane, index times direction is what refraction keeps.
+        // Refraction keeps the component of index times direction along the plane.
         let n_after = if at.action == Action::Reflect { at.n_before } else { at.n_after };
         let along = (at.n_before * at.direction.truncate() + step) / n_after;
         let square = 1.0 - along.length_squared();
@@ -131,7 +132,7 @@ mod tests {
 
     const RAYS: usize = 1 << 14;
 
-    /// The steps of direction cosines that rays from this direction make, and how many end.
+    /// Returns the steps in direction cosines of rays from this direction, and how many rays end.
     fn steps(yaml: &str, from: DVec3) -> (Vec<DVec3>, usize) {
         let how = Rays { indices: (1.0, 1.0), seed: Some(5), ..Rays::default() };
         let met = how.meet(&*surface(yaml), &vec![(-10.0 * from, from); RAYS], Isa::detect());
@@ -141,7 +142,7 @@ mod tests {
         (steps, ended)
     }
 
-    /// The share that passes straight is exact to a sample, whatever the direction of the light and its sense.
+    /// The share of rays that are not scattered is exact to one ray, for any direction and either direction of travel.
     #[test]
     fn the_share_is_what_is_stated() {
         for from in [DVec3::Z, DVec3::NEG_Z, DVec3::new(0.5, -0.3, 1.0).normalize()] {
@@ -150,8 +151,8 @@ mod tests {
             let straight = steps.iter().filter(|step| **step == DVec3::ZERO).count();
             assert!((straight as f64 - 0.7 * RAYS as f64).abs() <= 1.0, "{straight}");
             assert_eq!(ended, 0);
-            // Standard deviations of 0.0087 and 0.07: what is within 0.03 is of the narrow lobe, or of the wide one with
-            // probability 1 - exp(-0.03^2 / (2 0.0698^2)) = 0.0884; beyond, of the wide one.
+            // The standard deviations are 0.0087 and 0.07. A step within 0.03 belongs to the narrow lobe, or with probability
+            // 1 - exp(-0.03^2 / (2 0.0698^2)) = 0.0884 to the wide one; a longer step belongs to the wide lobe.
             let wide = steps.iter().filter(|step| step.truncate().length() > 0.03).count() as f64;
             let (s, g) = (4_f64.to_radians().sin(), 0.5_f64.to_radians().sin());
             let beyond = |width: f64| (-0.5 * (0.03 / width) * (0.03 / width)).exp();
@@ -160,8 +161,8 @@ mod tests {
         }
     }
 
-    /// Mean 0, squares s^2 to each side, fourth power of the length 8 s^4: closed forms of the normal distribution; across
-    /// and along are uncorrelated. Within 3 standard errors of independent samples, along the axis and aslant.
+    /// Closed forms of the normal distribution: mean 0, mean square s^2 along each axis, fourth power of the length 8 s^4, no
+    /// correlation between the axes. Checked on the axis and obliquely, within 3 standard errors of independent samples.
     #[test]
     fn lobes_have_the_moments_of_their_widths() {
         let n = RAYS as f64;
@@ -185,7 +186,7 @@ mod tests {
         }
     }
 
-    /// Light that grazes is partly scattered back behind the plane, and lost there.
+    /// Part of grazing light is scattered back behind the plane and lost there.
     #[test]
     fn what_would_not_leave_is_absorbed() {
         let from = DVec3::new(0.995, 0.0, 0.1).normalize();

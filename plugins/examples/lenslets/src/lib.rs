@@ -1,4 +1,4 @@
-//! `kind: lenslets`, a source.
+//! The source `kind: lenslets`, an integral photograph.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -6,11 +6,11 @@ use spectra_core::math::{cos, exp, sin};
 use spectra_core::prelude::*;
 use std::f64::consts::TAU;
 
-/// An integral photograph: a panel of lenslets, from each of which another view of a wheel shines.
+/// An integral photograph: a panel of lenslets, each of which shows a different view of a wheel.
 ///
-/// Behind each lenslet lies a micropicture, so that the panel sends light out as a wheel would that floats before or behind
-/// it. A lens that focuses on the panel sees sharp lenslets and a blurred wheel; focused on the wheel it sees a wheel,
-/// as sharp as the pitch allows.
+/// Behind each lenslet lies a small picture, so the panel emits the light of a wheel that floats in front of it or behind it.
+/// A lens focused on the panel sees sharp lenslets and a blurred wheel. A lens focused on the wheel sees the wheel as sharply
+/// as the pitch allows.
 ///
 /// # Example
 /// ```yaml
@@ -25,9 +25,10 @@ struct LensletsParams {
     distance: Positive<Length>,
     /// Width and height of the panel, mm if bare.
     width: Positive<Length>,
-    /// Distance of neighboring lenslets, mm if bare; they stand in a square grid.
+    /// Distance between neighboring lenslets, mm if bare; they form a square grid.
     pitch: Positive<Length>,
-    /// How far behind the panel the wheel floats, mm if bare; before it where negative, and nearer than the lens.
+    /// Distance of the floating wheel behind the panel, mm if bare. Negative: in front of the panel, but behind the first
+    /// vertex of the lens.
     depth: Length,
 }
 
@@ -38,13 +39,13 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let (distance_mm, width_mm, pitch_mm) = (p.distance.mm(), p.width.mm(), p.pitch.mm());
     let mut faults = Faults::new();
     if pitch_mm > width_mm {
-        faults.push(params.fault("pitch", "not one lenslet fits on the panel").hint("at most `width`"));
+        faults.push(params.fault("pitch", "one lenslet is wider than the panel").hint("at most `width`"));
     }
     if p.depth.mm() <= -distance_mm {
-        let fault = params.fault("depth", "the wheel would float in the lens or behind it");
-        faults.push(fault.hint(format!("above -{distance_mm} mm, the distance of the panel")));
+        let fault = params.fault("depth", "the wheel would float inside the lens or behind it");
+        faults.push(fault.hint(format!("write more than -{distance_mm} mm, the negative distance of the panel")));
     }
-    // A light-emitting diode of 530 nm, 40 nm wide, 0.1 W m^-2 sr^-1 at its peak.
+    // The spectrum of a light-emitting diode: 530 nm, 40 nm wide, 0.1 W m^-2 sr^-1 nm^-1 at its peak.
     let grid = context.grid;
     let continuum = grid.wavelengths_nm().map(|nm| 0.1 * exp(-0.5 * ((nm - 530.0) / 17.0) * ((nm - 530.0) / 17.0)));
     let radiance = SpectralPower { grid, continuum: continuum.collect(), lines: Vec::new() };
@@ -56,25 +57,25 @@ struct Lenslets {
     width_mm: f64,
     pitch_mm: f64,
     depth_mm: f64,
-    /// W m^-2 sr^-1 nm^-1, where it shines.
+    /// Radiance of the parts that shine, W m^-2 sr^-1 nm^-1.
     radiance: SpectralPower,
 }
 
 impl Lenslets {
-    /// Whether light shines from a point of the panel, mm, along slopes dx/dz and dy/dz.
+    /// Returns whether light leaves a point of the panel, mm, along the slopes dx/dz and dy/dz.
     fn shines(&self, [x, y]: [f64; 2], [along_x, along_y]: [f64; 2]) -> bool {
         let half = 0.5 * self.width_mm;
         if x.abs() > half || y.abs() > half {
             return false;
         }
-        // All of a lenslet sends the light of its center.
+        // Every point of a lenslet shows what its center shows.
         let center = |at: f64| ((at / self.pitch_mm).floor() + 0.5) * self.pitch_mm;
         let (px, py) = (center(x) - self.depth_mm * along_x, center(y) - self.depth_mm * along_y);
         wheel(px / half, py / half)
     }
 }
 
-/// A wheel of radius 0.8 with eight spokes.
+/// Returns whether a point lies on a wheel of radius 0.8 with eight spokes.
 fn wheel(x: f64, y: f64) -> bool {
     let radius = (x * x + y * y).sqrt();
     let spoke = (0..4).any(|i| (x * sin(f64::from(i) * TAU / 8.0) - y * cos(f64::from(i) * TAU / 8.0)).abs() < 0.03);
@@ -99,7 +100,7 @@ impl Source for Lenslets {
     }
 }
 
-/// What rays see where they meet the panel.
+/// Radiance that rays meet at the panel.
 impl Radiance for Lenslets {
     fn radiance(&self, rays: &mut RayBatch, _: Isa) {
         let c = rays.columns_mut();
@@ -118,7 +119,7 @@ mod tests {
     use super::*;
     use spectra_testing::{SourceLaws, assert_fault, source};
 
-    /// Rays toward one point of the floating wheel agree, whichever lenslet they come from: as far apart as a lenslet.
+    /// Rays toward one point of the floating wheel agree from every lenslet, to within the pitch.
     #[test]
     fn the_wheel_floats() {
         let p = Lenslets {

@@ -1,4 +1,4 @@
-//! `kind: night-vision`, a film.
+//! The film `kind: night-vision`, a phosphor screen.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -6,10 +6,11 @@ use spectra_core::math::exp;
 use spectra_core::numbers::{Numbers, poisson};
 use spectra_core::prelude::*;
 
-/// The phosphor screen of an image intensifier: every photoelectron is a spark.
+/// The phosphor screen of an image intensifier: every photoelectron makes a spark.
 ///
-/// A gallium arsenide cathode sees 450 to 900 nm (give the scene such a band: `wavelengths: {band: [400, 930]}`); a
-/// pixel's electrons are counted, amplified, and light the green phosphor P43, of chromaticity (0.33, 0.56), until it saturates.
+/// A gallium arsenide cathode sees 450 to 900 nm, so give the scene such a band: `wavelengths: {band: [400, 930]}`. The
+/// electrons of a pixel are counted and amplified. They excite the green phosphor P43, of chromaticity (0.33, 0.56), until it
+/// saturates.
 ///
 /// # Example
 /// ```yaml
@@ -18,9 +19,9 @@ use spectra_core::prelude::*;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct NightVisionParams {
-    /// Time over which the eye sums, s if bare.
+    /// Integration time of the eye, s if bare.
     exposure: Positive<Time>,
-    /// Electrons that light a pixel to 63 % of the screen's most.
+    /// Number of electrons that light a pixel to 63 % of the maximum of the screen.
     full: Positive<f64>,
 }
 
@@ -28,7 +29,8 @@ spectra_core::register!(film "night-vision": NightVisionParams, build);
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Film>, Faults> {
     let p: NightVisionParams = params.parse()?;
-    // Electrons mm^-2 of J m^-2: quantum efficiency, a plateau with soft ends, over the energy of a photon.
+    // Electrons per mm^2 for an exposure of 1 J m^-2: quantum efficiency, a plateau with soft edges, over the energy of a
+    // photon.
     let efficiency = |nm: f64| 0.35 / (1.0 + exp((450.0 - nm) / 15.0)) / (1.0 + exp((nm - 890.0) / 8.0));
     let sees = move |nm: f64| efficiency(nm) * nm / 1.986_445_857e-10;
     let screen = move |per_mm2: f64, pixel: Pixel| {
@@ -45,7 +47,7 @@ mod tests {
 
     const FILM: &str = "{kind: night-vision, exposure: 1 s, full: 20}";
 
-    /// Where five electrons are expected, as many pixels as Poisson says stay dark; tolerance: four standard errors.
+    /// The number of dark pixels follows Poisson's formula within four standard errors, for five expected electrons per pixel.
     #[test]
     fn electrons_are_counted() {
         let size = FrameSize { width_px: 200, height_px: 100, width_mm: 2.0, height_mm: 1.0 };

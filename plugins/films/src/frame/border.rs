@@ -1,4 +1,4 @@
-//! The film around the frame: rebate, perforations, and what is exposed on the edge.
+//! The film around the frame: rebate, perforations, and the letters exposed on the edge.
 
 use super::BorderKind;
 use super::shape::{Capsule, cover};
@@ -7,18 +7,19 @@ use spectra_plot::font::{CAP_HEIGHT, PEN, glyph};
 
 /// Width of the film, mm (ISO 1007, ISO 491).
 const FILM_MM: f64 = 35.0;
-/// From the film's edge to a perforation, and from one perforation to the next, mm.
+/// Distance from the film's edge to a perforation, and pitch of the perforations, mm.
 const EDGE_MM: f64 = 2.01;
 const PITCH_MM: f64 = 4.75;
-/// Perforations across and along the film, mm. Positive (KS): a rectangle with round corners; negative (BH): a circle, cut off.
+/// Size of perforations across and along the film, mm. Still film has positive (KS) perforations, rectangles with round corners. Cine film
+/// has negative (BH) perforations, circles cut off on two sides.
 const STILL_MM: [f64; 2] = [2.8, 1.98];
 const CORNER_MM: f64 = 0.5;
 const CINE_MM: [f64; 2] = [2.794, 1.854];
-/// Around a frame without perforations, mm.
+/// Width of the border around a frame without perforations, mm.
 const PLAIN_MM: f64 = 3.0;
 /// Height of a letter on the edge, mm.
 const LETTER_MM: f64 = 0.9;
-/// Looks that a pixel takes at a perforation, a side.
+/// Samples per pixel along each axis, for the coverage of pixels by perforations.
 const LOOKS: usize = 4;
 
 /// The border of one frame.
@@ -29,7 +30,7 @@ pub(super) struct Border {
     words: [String; 2],
 }
 
-/// Whether the film has room for such a frame.
+/// Checks that a frame of this size, mm, fits between the perforations of the film. The error is a message and a hint.
 pub(super) fn check(kind: BorderKind, size_mm: [f64; 2]) -> Result<(), [String; 2]> {
     let (across, word) = match kind {
         BorderKind::Plain => return Ok(()),
@@ -41,7 +42,7 @@ pub(super) fn check(kind: BorderKind, size_mm: [f64; 2]) -> Result<(), [String; 
         return Ok(());
     }
     let text = format!(
-        "a frame {across:.1} mm {word} does not lie between the perforations of 35 mm film, {room:.1} mm apart"
+        "a frame {across:.1} mm {word} does not fit between the perforations of 35 mm film, {room:.1} mm apart"
     );
     Err([text, "`border: plain`, or another format".to_owned()])
 }
@@ -52,7 +53,7 @@ impl Border {
         Self { kind, size_mm, words: [name.to_owned(), number] }
     }
 
-    /// What stands on either side of the frame, mm across and down the picture.
+    /// Returns the width of the border on either side of the frame, mm, across and down the picture.
     pub(super) fn margin_mm(&self) -> [f64; 2] {
         let [width, height] = self.size_mm;
         let whole = |side: f64| (side / PITCH_MM + 0.05).ceil() * PITCH_MM;
@@ -63,11 +64,11 @@ impl Border {
         }
     }
 
-    /// Exposes name and number on the edge.
+    /// Exposes the name of the film and the number of the frame on the edges.
     pub(super) fn print(&self, plane: &mut [f32], raster: &Raster, light: f32) {
         let [width, height] = self.size_mm;
         let margin = self.margin_mm();
-        // Middle of the letters from the film's edge.
+        // Distance from the film's edge to the middle of the letters.
         let edge = match self.kind {
             BorderKind::Plain => 0.5 * PLAIN_MM,
             BorderKind::Still | BorderKind::Cine => 0.5 * EDGE_MM,
@@ -89,7 +90,7 @@ impl Border {
         }
     }
 
-    /// Puts `hole` where there is no film.
+    /// Blends in the color `hole` where perforations leave no film.
     pub(super) fn punch(&self, rgb: &mut [[f32; 3]], raster: &Raster, hole: [f32; 3]) {
         let part = 1.0 / LOOKS as f64;
         for (i, pixel) in rgb.iter_mut().enumerate() {
@@ -108,7 +109,7 @@ impl Border {
         }
     }
 
-    /// Whether there is no film at a place, mm from the frame's upper left.
+    /// Returns whether a place, mm from the frame's upper left corner, lies in a perforation.
     fn is_hole(&self, place: [f64; 2]) -> bool {
         let middle = [0, 1].map(|axis| place[axis] - 0.5 * self.size_mm[axis]);
         let (along, across, [high, long]) = match self.kind {
@@ -116,7 +117,7 @@ impl Border {
             BorderKind::Still => (middle[0], middle[1], STILL_MM),
             BorderKind::Cine => (middle[1], middle[0], CINE_MM),
         };
-        // Perforations lie in pairs about the middle of the frame.
+        // Perforations lie symmetrically about the middle of the frame.
         let turn = along / PITCH_MM;
         let u = ((turn - turn.floor()) - 0.5) * PITCH_MM;
         let v = across.abs() - (0.5 * FILM_MM - EDGE_MM - 0.5 * high);
@@ -131,7 +132,8 @@ impl Border {
     }
 }
 
-/// The strokes of each letter of a text about a place, mm; turned by a quarter where it is read along a film that runs down.
+/// Returns the strokes of each letter of a text centered at a place, mm. `turned` rotates it by 90 degrees, to be read along a film that
+/// runs down.
 fn written(words: &str, [x, y]: [f64; 2], turned: bool) -> Vec<Vec<Capsule>> {
     let unit = LETTER_MM / CAP_HEIGHT;
     let length: f64 = words.chars().map(|letter| glyph(letter).advance).sum();
@@ -169,8 +171,8 @@ mod tests {
         (area, count.map(|n| n as f64 * pitch_mm))
     }
 
-    /// Eight perforations on either side of a still frame of 38 mm, four of a motion-picture frame of 19 mm, each of its own area, on
-    /// 35 mm of film.
+    /// A still frame with a pitch of 38 mm has eight perforations on either side, a motion-picture frame with a pitch of 19 mm has four.
+    /// Each kind has its own area, and the film is 35 mm wide.
     #[test]
     fn perforations_are_those_of_the_standards() {
         let still = 2.8 * 1.98 - (4.0 - std::f64::consts::PI) * 0.25;

@@ -1,9 +1,10 @@
-//! Numbers that follow from what they are for.
+//! Random numbers that are functions of a seed and of what they are drawn for, so that they do not depend on order.
 
 use spectra_core::math::{cos, log};
+use spectra_core::numbers::{GOLDEN, mix64};
 use std::f64::consts::TAU;
 
-/// A seed of its own for each thing that is drawn.
+/// A seed from which the random numbers of one drawn thing follow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chance(u64);
 
@@ -12,31 +13,28 @@ impl Chance {
         what.bytes().fold(Self(mixed(seed)), |chance, letter| chance.with(u64::from(letter)))
     }
 
-    /// That of a part of it.
+    /// Returns the seed of part `part` of this thing.
     pub(super) fn with(self, part: u64) -> Self {
         Self(mixed(self.0 ^ mixed(part)))
     }
 
-    /// A number in (0, 1), the `which`-th.
+    /// Returns the `which`-th uniform number in (0, 1).
     pub(super) fn uniform(self, which: u64) -> f64 {
         ((self.with(which).0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
-    /// A number between two.
+    /// Returns the `which`-th uniform number between `low` and `high`.
     pub(super) fn between(self, which: u64, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform(which)
     }
 
-    /// A normal number (G. E. P. Box and M. E. Muller, 1958).
+    /// Returns the `which`-th number with the standard normal distribution (G. E. P. Box and M. E. Muller, 1958).
     pub(super) fn normal(self, which: u64) -> f64 {
         (-2.0 * log(self.uniform(2 * which))).sqrt() * cos(TAU * self.uniform(2 * which + 1))
     }
 }
 
-/// S. Vigna's mixer of splitmix64 (D. Stafford's thirteenth), public domain.
+/// Mixes the bits of a number; zero does not stay zero.
 fn mixed(value: u64) -> u64 {
-    let z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
+    mix64(value.wrapping_add(GOLDEN))
 }

@@ -1,4 +1,4 @@
-//! Specks and fibers on the film, which hold light back.
+//! Dust on the film: specks and fibers, which block light.
 
 use super::chance::Chance;
 use super::shape::{Capsule, cover};
@@ -6,23 +6,24 @@ use spectra_core::math::{cos, exp, log10, pow, sin};
 use spectra_film::raster::Raster;
 use std::f64::consts::TAU;
 
-/// Side of the squares that dust is counted in, mm.
+/// Side of the square cells for which dust is drawn, mm.
 const CELL_MM: f64 = 2.0;
 const MM2_PER_CM2: f64 = 100.0;
-/// Median radius of a speck, its spread (natural logarithm), and the largest, mm. Assumed: what a clean room's filter lets by is
-/// below, what hands leave above.
+/// Median radius of a speck, mm; spread of its natural logarithm; largest radius, mm. Assumed: what passes the filter of a clean room is
+/// smaller, and what hands leave is larger.
 const SPECK: (f64, f64, f64) = (0.008, 0.7, 0.08);
-/// One in so many is a fiber.
+/// Fraction of the dust particles that are fibers.
 const FIBERS: f64 = 0.1;
-/// Density of the thickest dust.
+/// Optical density of dust.
 const OPAQUE: f64 = 2.0;
 
-/// Lays dust on a plane of amounts, of which `most` is the most that the layer has.
+/// Adds dust to a plane of amounts. `per_cm2` is the mean number of particles per square centimeter, and `most` is the largest amount that
+/// the layer can have.
 pub(super) fn apply(chance: Chance, per_cm2: f64, plane: &mut [f32], raster: &Raster, most: f64) {
     let mean = per_cm2 * CELL_MM * CELL_MM / MM2_PER_CM2;
     let cells = |axis: usize, count: usize| {
         let cell = |px: i64| (px as f64 * raster.pitch_mm / CELL_MM).floor() as i64;
-        // One more around: fibers reach over.
+        // One more cell on each side, since fibers reach into the next one.
         cell(raster.offset_px[axis]) - 1..=cell(raster.offset_px[axis] + count as i64) + 1
     };
     for y in cells(1, raster.height) {
@@ -46,7 +47,7 @@ pub(super) fn apply(chance: Chance, per_cm2: f64, plane: &mut [f32], raster: &Ra
     }
 }
 
-/// How many of a mean number: Knuth's product, which is short where there are few.
+/// Draws a number with a Poisson distribution of the given mean, by Knuth's product of uniform numbers, which is fast for small means.
 fn poisson(chance: Chance, mean: f64) -> u64 {
     let least = exp(-mean);
     let mut product = 1.0;
@@ -58,14 +59,14 @@ fn poisson(chance: Chance, mean: f64) -> u64 {
         .unwrap_or(0)
 }
 
-/// A speck, or a fiber, about a place.
+/// Draws a speck or a fiber at a place, mm.
 fn grain(chance: Chance, at: [f64; 2]) -> Vec<Capsule> {
     if chance.uniform(0) < FIBERS {
         return fiber(chance, at);
     }
     let (median, spread, largest) = SPECK;
     let radius = (median * exp(spread * chance.normal(40))).clamp(0.25 * median, largest);
-    // Four disks that overlap: no two alike, none round.
+    // Four overlapping disks make an irregular shape that differs from speck to speck.
     let disk = |k: u64| {
         let place = |axis: usize| at[axis] + radius * chance.between(10 + 3 * k + axis as u64, -0.7, 0.7);
         let center = [place(0), place(1)];
@@ -74,7 +75,7 @@ fn grain(chance: Chance, at: [f64; 2]) -> Vec<Capsule> {
     (0..4).map(disk).collect()
 }
 
-/// A hair that turns a little from piece to piece.
+/// Draws a fiber: a chain of short pieces, each turned a little from the one before.
 fn fiber(chance: Chance, at: [f64; 2]) -> Vec<Capsule> {
     const PIECES: u64 = 14;
     let (radius, step) = (chance.between(1, 0.003, 0.007), chance.between(2, 0.2, 1.4) / PIECES as f64);
@@ -96,7 +97,7 @@ fn fiber(chance: Chance, at: [f64; 2]) -> Vec<Capsule> {
 mod tests {
     use super::*;
 
-    /// As many as stated; the same dust on pixels of half the size, and on a part of the film.
+    /// The number of particles is as stated. Dust is the same on pixels of half the size, and on a part of the film.
     #[test]
     fn dust_lies_on_the_film_and_not_on_pixels() {
         let counts: u64 = (0..20_000).map(|k| poisson(Chance::new(k, "count"), 0.7)).sum();
@@ -116,8 +117,8 @@ mod tests {
             "{}",
             held(&fine)
         );
-        // 0.6 of them in a mm^2. A speck is four disks of some 0.65 of a radius whose mean square is 1.7e-4 mm^2, a third of them on each
-        // other; a fiber is 0.8 mm long and 0.01 mm wide; both hold back 0.7 of the light.
+        // There are 0.6 particles per mm^2. A speck is four disks of about 0.65 of a radius whose mean square is 1.7e-4 mm^2; a third of
+        // their area overlaps. A fiber is 0.8 mm long and 0.01 mm wide. Both block 0.7 of the light.
         let want = 0.6 * 0.7 * (0.9 * 6.6e-4 + 0.1 * 8e-3);
         let ratio = (1.0 - held(&fine)) / want;
         assert!((0.4..2.5).contains(&ratio), "{ratio}");

@@ -1,6 +1,8 @@
-//! What becomes of a piece of film in camera and hands: it moves in the gate, flickers, gathers dust and scratches, and has a border.
+//! Traces of camera and handling on a piece of film: gate weave, flicker, dust, scratches and a border.
 //!
-//! All of it is a function of the film's seed and the frame's number, and lies in mm on the film: other pixels show the same.
+//! Weave, flicker and border act on the exposure before the characteristic curve, dust and scratches on the density, perforations on the
+//! picture. Everything is a function of the film's seed and the frame's number, and is placed in mm on the film, so it does not depend on
+//! the resolution.
 
 mod border;
 mod chance;
@@ -17,32 +19,32 @@ use spectra_core::frame::FrameSize;
 use spectra_core::params::{Length, Positive};
 use spectra_film::raster::Raster;
 
-/// `frame` as written in a scene: all of it is off unless it is written.
+/// The map `frame` as written in a scene; every effect is off unless it is written.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct FrameParams {
-    /// How far the picture wanders in the gate from frame to frame, root mean square across and down, up to 1 mm, mm if bare; a good
-    /// camera has `5 um`. None if left out.
+    /// Gate weave: root mean square of the picture's shift in the gate from frame to frame, both across and down, up to 1 mm, mm if bare;
+    /// a good camera has `5 um`. Off if left out.
     #[schemars(extend("maximum" = 1))]
     pub gate_weave: Option<Positive<Length>>,
-    /// By how much exposure goes up and down from frame to frame, stops, root mean square, more than 0 to 2. None if left out.
+    /// Flicker: root mean square of the change in exposure from frame to frame, stops, more than 0 to 2. Off if left out.
     #[schemars(range(max = 2))]
     pub breathing: Option<Positive<f64>>,
-    /// Specks and fibers on the film a square centimeter, more than 0 to 1000; others on each frame. They hold light back: white on a
-    /// print, black in a projection and on the negative. None if left out.
+    /// Specks and fibers per square centimeter of film, more than 0 to 1000; different ones on each frame. They block light, so they are
+    /// white on a print and black in a projection and on the negative. No dust if left out.
     #[schemars(range(max = 1000))]
     pub dust: Option<Positive<f64>>,
-    /// How many scratches a frame has on average, more than 0 to 100. They run along the film and stay for some frames: white on a print
-    /// of a negative, bright in a projection, where they have taken emulsion away. None if left out.
+    /// Mean number of scratches on a frame, more than 0 to 100. Scratches run along the film and last for some frames. They are white on a
+    /// print of a negative, and bright in a projection, because they have removed emulsion. No scratches if left out.
     #[schemars(range(max = 100))]
     pub scratches: Option<Positive<f64>>,
-    /// The film around the frame: `still`, 135 film that runs across, `cine`, 35 mm film that runs down, both with perforations, or
-    /// `plain`, 3 mm without any, each with the stock's name and the frame's number exposed on it. The picture is larger by it. On a
-    /// print perforations are black, as the film around them is; the negative shows them. None if left out.
+    /// Film around the frame: `still` is 135 film that runs across, `cine` 35 mm film that runs down, both with perforations; `plain` is
+    /// 3 mm of film without any. The stock's name and the frame's number are exposed on it. The border makes the picture larger. On a
+    /// print the perforations are as black as the film around them; the negative shows them. No border if left out.
     pub border: Option<BorderKind>,
 }
 
-/// `border` as written in a scene.
+/// The value of `border` as written in a scene.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum BorderKind {
@@ -54,22 +56,22 @@ pub enum BorderKind {
     Plain,
 }
 
-/// The effects of one film.
+/// Traces of camera and handling on one film, at one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FrameEffects {
     params: FrameParams,
-    /// What stands on the border.
+    /// Name of the stock, which is exposed on the border.
     name: String,
     seed: u64,
     frame: u64,
 }
 
-/// A plane of a film with its border.
+/// Layout of a frame on its film: the raster with the border, and the shift by gate weave.
 pub(crate) struct Laid {
-    /// Where its pixels lie; the frame begins at 0.
+    /// Position of the pixels on the film; the frame begins at pixel 0, and the border lies around it.
     pub raster: Raster,
     border: Option<Border>,
-    /// By how much the picture is shifted, pixels.
+    /// Shift of the picture, pixels, across and down.
     shift_px: [f64; 2],
 }
 
@@ -82,7 +84,7 @@ impl FrameEffects {
         self.frame = frame;
     }
 
-    /// Whether a frame of this size has room for the border.
+    /// Checks that a frame of this size fits in the border. The error is a message and a hint.
     pub(crate) fn check(&self, size: &FrameSize) -> Result<(), [String; 2]> {
         match self.params.border {
             Some(kind) => border::check(kind, [size.width_mm, size.height_mm]),
@@ -90,12 +92,12 @@ impl FrameEffects {
         }
     }
 
-    /// By how much more the frame is exposed than it should.
+    /// Returns the factor by which flicker changes the exposure of the frame.
     pub(crate) fn exposure(&self) -> f64 {
         self.params.breathing.map_or(1.0, |stops| motion::flicker(self.chance("breathing"), self.frame, stops.get()))
     }
 
-    /// How a frame with pixels at `raster` lies on its film.
+    /// Returns the layout on the film of a frame with pixels at `raster`.
     pub(crate) fn laid(&self, raster: &Raster) -> Laid {
         let pitch = raster.pitch_mm;
         let size_mm = [raster.width as f64 * pitch, raster.height as f64 * pitch];
@@ -111,8 +113,8 @@ impl FrameEffects {
         Laid { raster: outer, border, shift_px: weave.unwrap_or_default().map(|mm| mm / pitch) }
     }
 
-    /// Lays dust on the developed film, and scratches it: a plane of amounts, between those of unexposed film (`clear`) and the most
-    /// that the layer has. On a reversal film scratches take away.
+    /// Adds scratches and dust to a plane of amounts of the developed film. `range` is the layer's least and largest amount, and `clear`
+    /// the amount of unexposed film. On a reversal film scratches remove emulsion.
     pub(crate) fn soil(&self, plane: &mut [f32], laid: &Laid, range: (f64, f64), clear: f64, reversal: bool) {
         let vertical = self.params.border != Some(BorderKind::Still);
         if let Some(count) = self.params.scratches {
@@ -132,14 +134,14 @@ impl FrameEffects {
 }
 
 impl Laid {
-    /// Left, top, right and bottom, mm from the frame's upper left.
+    /// Returns the left, top, right and bottom edges of the raster, mm from the frame's upper left corner.
     fn extent_mm(&self) -> [f64; 4] {
         let [x, y] = self.raster.offset_px.map(|px| px as f64 * self.raster.pitch_mm);
         let [width, height] = [self.raster.width, self.raster.height].map(|px| px as f64 * self.raster.pitch_mm);
         [x, y, x + width, y + height]
     }
 
-    /// A plane of the frame's exposure, as it lies on the film: shifted, unexposed around.
+    /// Places a plane of the frame's exposure on the film: shifted by gate weave, and surrounded by unexposed border.
     pub(crate) fn lay(&self, plane: Vec<f32>, frame: &Raster) -> Vec<f32> {
         let (width, height) = (self.raster.width, self.raster.height);
         let mut out = plane;
@@ -158,14 +160,14 @@ impl Laid {
         out
     }
 
-    /// Exposes what stands on the border to `light`, in the unit of the plane.
+    /// Exposes the letters on the border with `light`, in the unit of the plane.
     pub(crate) fn print(&self, plane: &mut [f32], light: f32) {
         if let Some(border) = &self.border {
             border.print(plane, &self.raster, light);
         }
     }
 
-    /// Shows perforations as `hole` in a finished picture.
+    /// Paints perforations in the color `hole` into a finished picture.
     pub(crate) fn punch(&self, rgb: &mut [[f32; 3]], hole: [f32; 3]) {
         if let Some(border) = &self.border {
             border.punch(rgb, &self.raster, hole);

@@ -1,30 +1,30 @@
-//! From frame to frame: the picture wanders in the gate, its exposure flickers.
+//! Changes from frame to frame: the picture moves in the gate, and its exposure flickers.
 
 use super::chance::Chance;
 use rayon::prelude::*;
 use spectra_core::math::pow;
 
-/// Weights of neighboring frames: what moves a frame moves the next ones still.
+/// Weights of neighboring frames in a moving average, so that a movement lasts for a few frames.
 const NEIGHBORS: [f64; 5] = [1.0, 3.0, 5.0, 3.0, 1.0];
 
-/// A normal number of variance 1 that changes gently from frame to frame.
+/// Returns a normal number of variance 1 that changes smoothly from frame to frame.
 fn wandering(chance: Chance, frame: u64) -> f64 {
     let norm = NEIGHBORS.iter().map(|w| w * w).sum::<f64>().sqrt();
     (0..).zip(NEIGHBORS).map(|(k, weight)| weight * chance.normal(frame.wrapping_add(k))).sum::<f64>() / norm
 }
 
-/// By how much the picture is shifted, mm across and down.
+/// Returns the shift of the picture by gate weave, mm, across and down.
 pub(super) fn weave(chance: Chance, frame: u64, rms_mm: f64) -> [f64; 2] {
     [0, 1].map(|axis| rms_mm * wandering(chance.with(axis), frame))
 }
 
-/// A factor of the exposure.
+/// Returns the factor by which the exposure of a frame flickers.
 pub(super) fn flicker(chance: Chance, frame: u64, rms_stops: f64) -> f64 {
     pow(2.0, rms_stops * wandering(chance, frame))
 }
 
-/// A plane shifted by parts of a pixel: between pixels by the cubic of Catmull and Rom, held between its neighbors, so that no lamp
-/// gets a dark ring. Beyond the plane its edge goes on.
+/// Shifts a plane by fractions of a pixel, by Catmull-Rom cubic interpolation. Each value is clamped between its two nearest neighbors, so
+/// that lamps get no dark ring. Pixels outside the plane repeat its edge.
 pub(super) fn shifted(plane: &[f32], width: usize, height: usize, by_px: [f64; 2]) -> Vec<f32> {
     let [across, down] =
         by_px.map(|by| (-by).floor() as i64).into_iter().zip(by_px).map(Tap::new).collect::<Vec<_>>()[..]
@@ -46,7 +46,7 @@ pub(super) fn shifted(plane: &[f32], width: usize, height: usize, by_px: [f64; 2
     out
 }
 
-/// Four neighbors of a place between pixels.
+/// The four neighbors of a place between pixels, with their weights.
 #[derive(Clone, Copy)]
 struct Tap {
     first: i64,
@@ -77,7 +77,7 @@ impl Tap {
 mod tests {
     use super::*;
 
-    /// Root mean square over many frames as stated; the same frame, the same place; neighbors near each other.
+    /// Over many frames the shift has the stated root mean square. A frame always has the same shift, and neighboring frames similar ones.
     #[test]
     fn weave_is_as_wide_as_stated() {
         let chance = Chance::new(3, "weave");

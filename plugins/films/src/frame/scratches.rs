@@ -1,4 +1,4 @@
-//! Scratches along the film, which stay for some frames.
+//! Scratches along the film, which last for some frames.
 
 use super::chance::Chance;
 use rayon::prelude::*;
@@ -10,24 +10,25 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scratch {
     chance: Chance,
-    /// Where it runs, mm across the film.
+    /// Position across the film, mm.
     place: f64,
     width: f64,
-    /// Density that it adds at its deepest.
+    /// Density that the scratch adds where it is deepest.
     depth: f64,
-    /// Way of the film up to this frame, mm: what varies along a scratch runs on from frame to frame.
+    /// Length of film before this frame, mm, so that variation along a scratch continues from frame to frame.
     way: f64,
 }
 
-/// Scratches that may be, for each that is.
+/// Possible scratches per scratch of the mean number.
 const SLOTS: f64 = 3.0;
-/// Frames that one lasts.
+/// Least and largest number of frames for which a scratch lasts.
 const FRAMES: (f64, f64) = (12.0, 240.0);
-/// Width, mm, and density.
+/// Least and largest width of a scratch, mm; `DEPTH` holds the least and largest density.
 const WIDTH_MM: (f64, f64) = (0.004, 0.02);
 const DEPTH: (f64, f64) = (0.15, 0.7);
 
-/// The scratches of a frame on film of this extent.
+/// Draws the scratches of a frame. `mean` is their mean number, `extent_mm` the left, top, right and bottom edges of the film, and
+/// `vertical` says whether the film runs down.
 pub(super) fn of(chance: Chance, frame: u64, mean: f64, extent_mm: [f64; 4], vertical: bool) -> Vec<Scratch> {
     let slots = (SLOTS * mean).ceil().max(1.0);
     let [left, top, right, bottom] = extent_mm;
@@ -52,7 +53,8 @@ pub(super) fn of(chance: Chance, frame: u64, mean: f64, extent_mm: [f64; 4], ver
     (0..slots as u64).filter_map(one).collect()
 }
 
-/// Scratches a plane of amounts; `away` is -1 where they take emulsion away, down to `least`.
+/// Applies scratches to a plane of amounts. `away` is 1 if they add density and -1 if they remove emulsion; amounts do not fall below
+/// `least`.
 pub(super) fn apply(all: &[Scratch], plane: &mut [f32], raster: &Raster, vertical: bool, away: f64, least: f64) {
     let pitch = raster.pitch_mm;
     let (along, across) = if vertical { (1, 0) } else { (0, 1) };
@@ -81,10 +83,11 @@ pub(super) fn apply(all: &[Scratch], plane: &mut [f32], raster: &Raster, vertica
 }
 
 impl Scratch {
-    /// The share of a pixel from `low` to `high` across that it takes at a place along the film, mm.
+    /// Returns the fraction of a pixel that the scratch covers, times its pressure there. The pixel lies from `low` to `high` across the
+    /// film and at `along` along it, all in mm.
     fn share(&self, low: f64, high: f64, along: f64) -> f64 {
         let way = self.way + along;
-        // A hand's tremble, of a few wavelengths.
+        // The scratch wavers like a trembling hand, with a few wavelengths.
         let wave = |k: u64, mm: f64| cos(TAU * (way / mm + self.chance.uniform(10 + k)));
         let place = self.place + 0.006 * wave(0, 31.0) + 0.002 * wave(1, 4.3);
         let pressed = (0.75 + 0.6 * wave(2, 53.0) + 0.5 * wave(3, 7.7)).clamp(0.0, 1.0);
@@ -97,7 +100,8 @@ impl Scratch {
 mod tests {
     use super::*;
 
-    /// As many as stated, over many frames; most of a frame's are there on the next; the same on pixels of half the size.
+    /// Over many frames the mean number of scratches is as stated. Most scratches of a frame are still there on the next, and they look
+    /// alike on pixels of other sizes.
     #[test]
     fn scratches_stay_and_scale() {
         let chance = Chance::new(9, "scratches");

@@ -1,8 +1,8 @@
-//! Capsules, which all that lies on a film is made of, on pixels.
+//! Capsules, the shapes that make up dust and letters on a film, and their coverage of pixels.
 
 use spectra_film::raster::Raster;
 
-/// All places within a radius of a line, mm from the frame's upper left.
+/// A capsule: all places within `radius` of the line from `from` to `to`, mm from the frame's upper left corner.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Capsule {
     pub from: [f64; 2],
@@ -21,12 +21,12 @@ impl Capsule {
     }
 }
 
-/// Looks that a pixel takes a side, at least and at most.
+/// Least and largest number of samples per pixel along each axis.
 const LOOKS: (f64, f64) = (3.0, 48.0);
-/// Looks in the radius of the thinnest capsule.
+/// Samples per radius of the thinnest capsule.
 const LOOKS_A_RADIUS: f64 = 6.0;
 
-/// Goes over the pixels that capsules cover, with the share of each that they do.
+/// Calls `each` for every pixel that the union of the capsules covers, with the pixel's index and the covered fraction.
 pub(super) fn cover(capsules: &[Capsule], raster: &Raster, mut each: impl FnMut(usize, f64)) {
     let reach = |pick: &dyn Fn(&Capsule) -> [f64; 2]| {
         capsules.iter().map(pick).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)])
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// The same area on pixels of any size.
+    /// A capsule covers the same area on pixels of any size.
     #[test]
     fn a_capsule_covers_its_area() {
         let capsule = Capsule { from: [0.5, 0.5], to: [0.9, 0.7], radius: 0.05 };

@@ -1,4 +1,4 @@
-//! What becomes of film in camera and hands: nothing where it is off, the same of every frame however it is reached.
+//! Tests of `frame`, the traces of camera and handling: no change if it is off, and the same result for a frame however it is reached.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::stage::Film;
@@ -7,7 +7,7 @@ use spectra_testing::{assert_fault, film};
 
 const SIZE: FrameSize = FrameSize { width_px: 120, height_px: 80, width_mm: 36.0, height_mm: 24.0 };
 
-/// A film whose frame is all mid gray but for a bright square, exposed by hand.
+/// Returns a film and a manually exposed frame, mid gray with a bright square.
 fn exposed(stock: &str, more: &str) -> (Box<dyn Film>, ExposureFrame) {
     let film = film(&format!("{{stock: {stock}, exposure: 1 s, optics: off{more}}}"));
     let gray = if stock == "kodak-tri-x-400" { 10.0 / 400.0 } else { 0.1 };
@@ -25,7 +25,7 @@ fn exposed(stock: &str, more: &str) -> (Box<dyn Film>, ExposureFrame) {
     (film, ExposureFrame { size: SIZE, channels })
 }
 
-/// Nothing between light and curve, no grain.
+/// Settings that switch off scatter, adjacency, halation and grain.
 const BARE: &str = ", scatter: false, adjacency: false, halation: off, grain: false";
 
 fn picture(stock: &str, more: &str, frame: u64) -> spectra_core::frame::DisplayPicture {
@@ -60,7 +60,7 @@ fn dust_holds_light_back() {
     }
 }
 
-/// The same frame is the same, whatever came before; the next one is not.
+/// A frame looks the same whatever frames came before it; the next frame looks different.
 #[test]
 fn frames_are_their_own() {
     for effect in ["gate-weave: 0.3 mm", "breathing: 0.2", "dust: 40", "scratches: 8"] {
@@ -72,14 +72,14 @@ fn frames_are_their_own() {
         let eighth = film.develop(&exposure).expect("developed");
         film.set_frame(9);
         assert_eq!(ninth, film.develop(&exposure).expect("developed"), "{effect}");
-        // A scratch stays, but runs on.
+        // A scratch lasts for several frames, but it varies along the film.
         assert_ne!(ninth, eighth, "{effect}");
         let other = picture("kodak-tri-x-400", &format!("{more}, grain-seed: 5"), 9);
         assert_ne!(ninth, other, "{effect}");
     }
 }
 
-/// The frame lies in its border as it was, grain by grain; around it is unexposed film with letters, and holes.
+/// Inside the border the frame is unchanged, grain by grain. Around it are unexposed film with letters, and perforations.
 #[test]
 fn a_border_leaves_the_frame_alone() {
     const LEFT: usize = 3;
@@ -93,7 +93,7 @@ fn a_border_leaves_the_frame_alone() {
             let inner = &framed.rgb[(TOP + y) * 126 + LEFT..][..120];
             assert_eq!(inner, &plain.rgb[y * 120..(y + 1) * 120], "{stock} {y}");
         }
-        // A perforation half a pitch beside the middle, 2.01 mm and half of 2.8 mm from the edge.
+        // A place near the center of a perforation: half a pitch beside the middle, 2.01 mm and half of 2.8 mm from the edge.
         let (x, y) = (63.0 + 0.5 * 4.75 / 0.3, (2.01 + 1.4 - 0.1) / 0.3);
         let hole = framed.rgb[y as usize * 126 + x as usize];
         assert!(if hole_is_light { hole[1] > 0.9 } else { hole[1] < 0.05 }, "{stock}: {hole:?}");

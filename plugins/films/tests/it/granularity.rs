@@ -1,4 +1,4 @@
-//! Grain through the film process, read as a microdensitometer does: through a round aperture of 48 um.
+//! Grain of the film process, measured like a microdensitometer does, through a round aperture of 48 um.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::math::{log10, pow};
@@ -11,7 +11,7 @@ use spectra_plugin_films::StockFilm;
 use spectra_scene::FileResources;
 
 const APERTURE_MM: f64 = 0.048;
-/// Apertures along a side: 8100, so a deviation is known to 0.8 %.
+/// Apertures along a side. There are 8100 in all, so the standard deviation is known to 0.8 %.
 const MANY: usize = 90;
 
 fn build(stock: &str) -> StockFilm {
@@ -23,7 +23,7 @@ fn build(stock: &str) -> StockFilm {
     StockFilm::build(&params, &Context::new(&resources, BAND)).unwrap_or_else(|faults| panic!("{stock}: {faults}"))
 }
 
-/// Means of each layer over round apertures on film that was evenly exposed to `lx_s`.
+/// Returns the mean amount of each layer in each round aperture, on film that was evenly exposed to `lx_s`.
 fn read(film: &StockFilm, lx_s: f64, pitch_mm: f64) -> Vec<Vec<f64>> {
     let side = (MANY as f64 * APERTURE_MM / pitch_mm).round() as usize;
     let side_mm = side as f64 * pitch_mm;
@@ -35,7 +35,7 @@ fn read(film: &StockFilm, lx_s: f64, pitch_mm: f64) -> Vec<Vec<f64>> {
     };
     let frame = ExposureFrame { size, channels: film.channels().into_iter().map(channel).collect() };
     let planes = film.developed(&frame).expect("complete");
-    // Weights of the pixels under an aperture, by 8 x 8 points: apertures lie on whole pixels.
+    // Weights of the pixels under an aperture, from 8 x 8 points in each pixel. Apertures are aligned to whole pixels.
     let across = (APERTURE_MM / pitch_mm).round() as usize;
     let inside = |k: usize, s: usize| (k as f64 + (s as f64 + 0.5) / 8.0) / across as f64 - 0.5;
     let weight = |x: usize, y: usize| {
@@ -60,7 +60,7 @@ fn rms(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (mean, 1e3 * (values.map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)).sqrt())
 }
 
-/// Silver at the density 1 over base and fog, as the sheets say: F-4017 and H-1-5222; and as assumed of the others.
+/// At density 1 over base and fog, silver has the granularity of its data sheet (F-4017 and H-1-5222), or the assumed one of other stocks.
 #[test]
 fn silver_is_as_grainy_as_its_figure_at_any_pixel() {
     for (stock, figure) in [
@@ -84,8 +84,8 @@ fn silver_is_as_grainy_as_its_figure_at_any_pixel() {
     }
 }
 
-/// Neutral color film through the filter of each layer: the sheet's granularity at that density, within 5 %, at pixels of any
-/// size; what dye of other layers adds through their filters included.
+/// Neutrally exposed color film, measured through the filter of each layer, has the sheet's granularity at that density, within 5 %, at
+/// any pixel size. This includes what the dyes of other layers add through the filter.
 #[test]
 fn color_film_is_as_grainy_as_its_sheet_through_each_filter() {
     let resources = FileResources::beside("/nowhere".as_ref());

@@ -1,4 +1,4 @@
-//! Halos of the bundled stocks, through the film process.
+//! Halation of the bundled stocks in the film process.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::registry::Context;
@@ -20,7 +20,7 @@ fn build(yaml: &str) -> StockFilm {
 const SIDE: u32 = 201;
 const PITCH_MM: f64 = 0.006;
 
-/// A white point of `light` in the middle of a dark frame.
+/// Returns a frame of exposure `dark` with one pixel of exposure `light` in the middle.
 fn point(film: &StockFilm, light: f32, dark: f32) -> ExposureFrame {
     let side_mm = f64::from(SIDE) * PITCH_MM;
     let size = FrameSize { width_px: SIDE, height_px: SIDE, width_mm: side_mm, height_mm: side_mm };
@@ -31,13 +31,13 @@ fn point(film: &StockFilm, light: f32, dark: f32) -> ExposureFrame {
     ExposureFrame { size, channels: film.channels().into_iter().map(channel).collect() }
 }
 
-/// Along a row from the middle on.
+/// Returns the middle row of a plane from its center to the right end.
 fn ray<T: Copy>(plane: &[T]) -> Vec<T> {
     let middle = (SIDE / 2) as usize;
     plane[middle * SIDE as usize + middle..][..=middle].to_vec()
 }
 
-/// Every camera film halates, says that this is assumed, and stops where it is told to.
+/// Every camera film has halation, says that it is assumed, and has none if it is switched off.
 #[test]
 fn every_camera_film_halates_unless_told_not_to() {
     let resources = FileResources::beside("/nowhere".as_ref());
@@ -57,7 +57,7 @@ fn every_camera_film_halates_unless_told_not_to() {
         assert!(halo("") > 0.0, "{name}");
         assert_eq!(halo("halation: off\n"), 0.0, "{name}");
         assert!(build(&plain).describe().contains("halation"), "{name}");
-        // What a scene says goes the same way in all.
+        // Settings of a scene act alike on all stocks, so three are enough.
         if !["kodak-tri-x-400", "kodak-vision3-250d-5207", "kodak-ektachrome-100d"].contains(&name) {
             continue;
         }
@@ -67,8 +67,8 @@ fn every_camera_film_halates_unless_told_not_to() {
     }
 }
 
-/// Light that comes back meets the layers from below: red, green, blue. The ring begins where total reflection does,
-/// 2 t tan(asin(1/n)), in each of them.
+/// Returning light reaches the layers from below: first red, then green, then blue. In the red and green layers the ring begins where
+/// total reflection does, at 2 t tan(asin(1/n)).
 #[test]
 fn halos_on_color_film_are_as_the_layers_lie() {
     for name in ["kodak-vision3-250d-5207", "kodak-ektachrome-100d"] {
@@ -88,13 +88,14 @@ fn halos_on_color_film_are_as_the_layers_lie() {
         for k in [10, 30, 45, 60, 90] {
             let shares = [blue[k] / red[k], green[k] / red[k]];
             println!("{name} at {:.3} mm: blue {:.4}, green {:.4} of red", k as f64 * PITCH_MM, shares[0], shares[1]);
-            // Shares of what enters; each layer counts by even light, halation included, which differs by under 2 %.
+            // Fractions of the light that enters the base. Each layer is scaled by its response to even light with halation, which changes
+            // them by under 2 %.
             assert!((shares[0] / 0.01 - 1.0).abs() < 0.03 && (shares[1] / 0.25 - 1.0).abs() < 0.03, "{shares:?}");
         }
     }
 }
 
-/// Around a white lamp in the dark, the print of a color negative without its backing and a slide show red to orange.
+/// Around a white lamp in the dark, a slide and the print of a color negative without backing show a red to orange halo.
 #[test]
 fn the_halo_of_a_white_lamp_is_red_to_orange() {
     for (name, light) in [("cinestill-800t", 2e5), ("kodak-ektachrome-100d", 2e6)] {

@@ -1,11 +1,11 @@
-//! Every built-in film keeps the laws of films.
+//! Checks that every built-in film obeys the laws of films.
 
 use spectra_plugin_films as _;
 use spectra_testing::{FilmLaws, assert_fault, film};
 
 #[test]
 fn stocks_develop_what_they_are_given() {
-    // Dyes show colors that a screen cannot; grain, and a meter, go their own way.
+    // Dyes make colors that a screen cannot show. Grain and the meter break the rule that more light makes a brighter picture.
     let laws = FilmLaws { beyond_screen: 0.5, brighter_with_light: false, ..FilmLaws::default() };
     for yaml in [
         "{stock: ilford-ortho-plus, exposure: 1/60 s}",

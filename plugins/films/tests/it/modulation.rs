@@ -1,4 +1,4 @@
-//! Edges through the film process: what reaches the developed film of a sheet's modulation transfer.
+//! Edges in the film process: comparison of the developed film with the MTF on the data sheet.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::registry::Context;
@@ -18,7 +18,7 @@ fn build(yaml: &str) -> StockFilm {
     StockFilm::build(&params, &Context::new(&resources, BAND)).unwrap_or_else(|faults| panic!("{yaml}: {faults}"))
 }
 
-/// A frame of square pixels with the same `value` in each channel.
+/// Returns a frame of square pixels that has the exposure `value(column, row)` in every channel.
 fn frame(film: &StockFilm, [width, height]: [u32; 2], pitch_mm: f64, value: impl Fn(u32, u32) -> f64) -> ExposureFrame {
     let [width_mm, height_mm] = [width, height].map(|n| f64::from(n) * pitch_mm);
     let size = FrameSize { width_px: width, height_px: height, width_mm, height_mm };
@@ -28,8 +28,8 @@ fn frame(film: &StockFilm, [width, height]: [u32; 2], pitch_mm: f64, value: impl
     ExposureFrame { size, channels: film.channels().into_iter().map(channel).collect() }
 }
 
-/// An edge of 1.4 : 1 at the exposure of a mid gray, ideally sharp, developed, taken back through the curve to exposure:
-/// the response along it at `frequency`, the pixel's own loss divided out.
+/// Returns the modulation transfer at `frequencies`, cycles/mm. An ideally sharp edge of contrast 1.4 : 1 around the exposure of a mid gray
+/// is developed and converted back to exposure through the curve. The loss by the pixel's own size is divided out.
 fn response(film: &StockFilm, layer: usize, pitch_mm: f64, frequencies: &[f64]) -> Vec<f64> {
     let gray = metered_exposure_lx_s(film.stock().iso.expect("a speed"));
     let (width, height) = ((2.4 / pitch_mm) as u32, (1.2 / pitch_mm) as u32);
@@ -41,7 +41,7 @@ fn response(film: &StockFilm, layer: usize, pitch_mm: f64, frequencies: &[f64]) 
         spectra_core::math::pow(10.0, x)
     };
     let profile: Vec<f64> = row.iter().map(exposure).collect();
-    // What lies near the frame's ends is developed beside unexposed film.
+    // Near the ends of the frame, development is affected by the unexposed film beside it.
     let middle = width as usize / 2;
     let steps: Vec<f64> = (middle / 2..3 * middle / 2).map(|k| profile[k + 1] - profile[k]).collect();
     let total: f64 = steps.iter().sum();
@@ -58,8 +58,8 @@ fn response(film: &StockFilm, layer: usize, pitch_mm: f64, frequencies: &[f64]) 
     frequencies.iter().map(at).collect()
 }
 
-/// Of the film alone, 10 to 60 cycles/mm: within 0.04 of the sheet, whose curve rises to 1.10 and 1.23. The points are those
-/// of the sheets, as in the stocks' files.
+/// From 10 to 60 cycles/mm the MTF of the film alone is within 0.04 of the sheets, whose curves rise to 1.10 and 1.23. The points are
+/// those of the sheets, from the stocks' files.
 #[test]
 fn edges_are_as_sharp_as_the_sheet_says() {
     for name in ["kodak-tri-x-400", "kodak-double-x-5222"] {
@@ -78,7 +78,7 @@ fn edges_are_as_sharp_as_the_sheet_says() {
     }
 }
 
-/// Without adjacency an edge falls evenly; with it, it overshoots on both sides, and even areas keep the curve's densities.
+/// An edge falls monotonically without adjacency. With it, the edge overshoots on both sides, and even areas keep the curve's densities.
 #[test]
 fn edges_overshoot_and_even_areas_do_not() {
     let gray = metered_exposure_lx_s(400.0);
@@ -97,7 +97,7 @@ fn edges_overshoot_and_even_areas_do_not() {
     assert!((with[100] - high).abs() < 0.003 && (with[299] - low).abs() < 0.003);
 }
 
-/// Lamps of any strength: no density below base and fog, none above the curve's end.
+/// Around bright lamps, adjacency makes no density below base and fog and none above the curve's end.
 #[test]
 fn adjacency_stays_between_the_ends_of_the_curve() {
     for name in ["kodak-tri-x-400", "kodak-double-x-5222", "kodak-vision3-250d-5207", "kodak-ektachrome-100d"] {

@@ -1,4 +1,4 @@
-//! The film process `stock`, as a scene uses it.
+//! Tests of the film process `stock`, as a scene uses it.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params};
@@ -44,8 +44,8 @@ fn is_registered_as_the_default() {
     assert!(film.describe().contains("Ilford Ortho Plus, ISO 80"));
 }
 
-/// A mid gray subject at the meter's exposure, 10/S lx s, is 18 % of the screen's white; a red patch, which leaves no
-/// exposure on this film, is as black as the paper (a density of 2.1) under half a percent of flare; all of it is neutral.
+/// A mid gray subject at the meter's exposure, 10/S lx s, is 18 % of the screen's white. A red patch does not expose this film, so it is as
+/// black as the paper (density 2.1) with half a percent of flare. The picture is neutral.
 #[test]
 fn gray_is_gray_and_red_is_black() {
     let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nscatter: false\nhalation: off\ngrain: false\n")
@@ -57,7 +57,7 @@ fn gray_is_gray_and_red_is_black() {
     let paper = (10_f32.powf(-2.1) + 0.005) / 1.005;
     assert!((black / paper - 1.0).abs() < 0.02, "{black} {paper}");
     assert!(white > 0.7 && white < burnt && burnt <= 1.0, "{white} {burnt}");
-    // The line of a red patch (C', 643.85 nm) is beyond what the film sees.
+    // The film is not sensitive at the line of a red patch (C', 643.85 nm).
     let response = &film.channels()[0].response;
     assert_eq!(BAND.interpolate(response, 643.85), 0.0);
     assert!(BAND.interpolate(response, 546.07) > 0.0 && BAND.interpolate(response, 435.84) > 0.0);
@@ -133,9 +133,9 @@ fn frame_of(names: &[&str], planes: &[Vec<f32>]) -> ExposureFrame {
     ExposureFrame { size, channels: names.iter().zip(planes).map(channel).collect() }
 }
 
-/// A metered gray card prints as 18 % on a plate, whatever the light: its meter weighs light as it does. A photopic meter
-/// gives the unsensitized plate half a stop too much in D55 and 1.3 too little in A; and panchromatic film its due, more or
-/// less, as a soft paper shows it.
+/// A metered gray card on a plate prints as 18 % in any light, because the plate's meter has the plate's sensitivity. A photopic meter
+/// would give the unsensitized plate half a stop too much in D55 and 1.3 stops too little in A. For panchromatic film it is about right;
+/// the paper is soft.
 #[test]
 fn a_metered_gray_is_gray_on_a_plate_in_any_light() {
     for (stock, tolerance) in [("blue-sensitive-plate", 1e-4), ("panchromatic-plate", 1e-4), ("kodak-tri-x-400", 0.06)]
@@ -155,16 +155,16 @@ fn a_metered_gray_is_gray_on_a_plate_in_any_light() {
     }
 }
 
-/// The meter makes the mean of what it sees a mid gray of 10/S lx s, whatever the scene's own time; compensation is in stops.
+/// The meter gives the mean of the metered area the exposure of a mid gray, 10/S lx s. Compensation is in stops.
 #[test]
 fn a_metered_frame_gets_the_meters_exposure() {
     for (yaml, factor) in [
         ("stock: kodak-tri-x-400\nmetering: average\n", 0.025 / 3.0),
         ("stock: kodak-tri-x-400\nmetering: average\ncompensation: 1\n", 0.05 / 3.0),
         ("stock: kodak-tri-x-400\nmetering: average\niso: 800\n", 0.0125 / 3.0),
-        // Rated higher where it is developed longer.
+        // A pushed film is rated at a higher speed.
         ("stock: kodak-tri-x-400\nmetering: average\npush: 1\n", 0.0125 / 3.0),
-        // The middle one of five pixels, one high.
+        // The spot covers the middle one of five pixels in a row.
         ("stock: kodak-tri-x-400\nmetering: spot\nspot: {diameter: 1}\n", 0.025 / 5.0),
         ("stock: kodak-tri-x-400\nmetering: spot\nspot: {center: [0.1, 0.5], diameter: 1}\n", 0.025),
         ("stock: kodak-tri-x-400\nexposure: 1/8 s\n", 1.0),
@@ -182,7 +182,7 @@ fn a_metered_frame_gets_the_meters_exposure() {
     }
 }
 
-/// A step wedge of exposures through the film stage comes out on the stock's own curve, to 0.02 in density.
+/// A step wedge of exposures, developed by the film stage, lies on the stock's own curve to 1e-4 in density.
 #[test]
 fn a_step_wedge_through_the_stage_recovers_the_curve() {
     for name in ["kodak-tri-x-400", "kodak-double-x-5222", "ilford-ortho-plus"] {
@@ -198,7 +198,7 @@ fn a_step_wedge_through_the_stage_recovers_the_curve() {
     }
 }
 
-/// Long exposures count less: Tri-X metered at 10 s needs 50 s (Kodak F-4017), so 50 s count as 10.
+/// Long exposures lose speed: Tri-X metered at 10 s needs 50 s (Kodak F-4017), so 50 s have the effect of 10 s.
 #[test]
 fn long_exposures_count_as_the_sheet_says() {
     let developed = |yaml: &str, lx_s: f32| {
@@ -210,8 +210,8 @@ fn long_exposures_count_as_the_sheet_says() {
     assert!((long - short).abs() < 1e-5, "{long} {short}");
 }
 
-/// Color film through the stage: a neutral of the meter's exposure is a neutral mid gray, on print and scan; more light on
-/// the red layer alone makes it red.
+/// On color film, a neutral subject at the meter's exposure becomes a neutral mid gray, on print and scan. More light on the red layer
+/// alone makes it red.
 #[test]
 fn color_negative_prints_in_color() {
     for view in ["print", "scan"] {
@@ -227,7 +227,7 @@ fn color_negative_prints_in_color() {
     }
 }
 
-/// `grade: auto` prints each frame from near the paper's black to its white, and a flat one as the meter has it.
+/// A print with `grade: auto` reaches from near the paper's black to its white; a flat frame is printed as metered.
 #[test]
 fn an_automatic_print_is_made_for_the_frame() {
     let automatic =
@@ -239,12 +239,12 @@ fn an_automatic_print_is_made_for_the_frame() {
         film.develop(&frame).expect("complete").rgb.iter().map(|p| p[1]).collect()
     };
     let lightness = |y: f32| spectra_color::lab([f64::from(y); 3], [1.0; 3])[0];
-    // Unlit border, black to white in a chart, a highlight.
+    // An unlit border and a ramp from black to white.
     let chart: Vec<f32> = (0..1000).map(|i| if i < 100 { 0.0 } else { 0.025 * 5.0 * i as f32 / 1000.0 }).collect();
     let mut print = shown(&automatic, &chart);
     print.sort_by(f32::total_cmp);
     let (black, white) = (lightness(print[2]), lightness(print[997]));
-    // ISO 6846: a paper's range of exposures ends where its density over white is nine tenths of the largest. Flare is 0.5 %.
+    // By ISO 6846, a paper's exposure range ends where its density over white is nine tenths of the largest. Flare is 0.5 %.
     let range_end = lightness((10_f32.powf(-0.9 * 2.1) + 0.005) / 1.005);
     assert!((black - range_end).abs() < 0.5 && white >= 96.0, "{black} {range_end} {white}");
     let flat: Vec<f32> = (0..1000).map(|i| 0.025 * (0.9 + 0.2 * i as f32 / 1000.0)).collect();
@@ -260,9 +260,9 @@ fn square(side: u32, side_mm: f64, value: impl Fn(usize, usize) -> f32) -> Expos
     ExposureFrame { size, channels: vec![ExposureChannel { name: "panchromatic".into(), unit: "lx s".into(), values }] }
 }
 
-/// A plain gray through the stage is as grainy as the sheet says, read through squares of the area of the 48 um aperture
-/// (Selwyn: deviation times the root of the area is constant), each of 8 x 8 pixels: within 7 %. 1681 squares have a
-/// standard error of 1.7 %, so that is four of them.
+/// A plain gray has the granularity of the data sheet within 7 %. It is read through squares of 8 x 8 pixels with the area of the 48 um
+/// aperture (Selwyn: the deviation times the root of the area is constant). With 1681 squares the standard error is 1.7 %, so 7 % is four
+/// standard errors.
 #[test]
 fn a_plain_gray_is_as_grainy_as_the_sheet_says() {
     const FINE: usize = 8;
@@ -278,7 +278,7 @@ fn a_plain_gray_is_as_grainy_as_the_sheet_says() {
         let pixels = (0..FINE * FINE).map(|i| (row * FINE + i / FINE) * side + column * FINE + i % FINE);
         pixels.map(|i| f64::from(plane[i])).sum::<f64>() / (FINE * FINE) as f64
     };
-    // Away from the border, beyond which the film is unexposed.
+    // Squares away from the border, because the film outside the frame is unexposed.
     let inner: Vec<f64> = (2..SQUARES - 2)
         .flat_map(|row| (2..SQUARES - 2).map(move |column| (row, column)))
         .map(|(r, c)| read(r, c))
@@ -288,13 +288,13 @@ fn a_plain_gray_is_as_grainy_as_the_sheet_says() {
     println!("mean over fog {}, RMS {}", mean - clear, 1000.0 * deviation);
     assert!((mean - clear - 1.0).abs() < 0.005, "{mean}");
     assert!((1000.0 * deviation / 17.0 - 1.0).abs() < 0.07, "{deviation}");
-    // The same film twice, and another piece of it.
+    // The same piece of film has the same grain; another piece has not.
     assert_eq!(plane, &film.developed(&frame).expect("complete")[0]);
     let other = build("stock: kodak-tri-x-400\nexposure: 1/60 s\ngrain-seed: 7\n").expect("sound");
     assert_ne!(plane, &other.developed(&frame).expect("complete")[0]);
 }
 
-/// A point of light on film without backing has its ring at 2 t tan(asin(1/n)) = 0.2291 mm for 0.125 mm of index 1.48.
+/// A point of light on film without backing has a ring of the radius 2 t tan(asin(1/n)) = 0.2291 mm, for 0.125 mm of index 1.48.
 #[test]
 fn a_point_has_its_ring() {
     let yaml = "stock: kodak-tri-x-400\nexposure: 1/60 s\ngrain: false\nscatter: false\n\
@@ -303,15 +303,15 @@ fn a_point_has_its_ring() {
     let frame = square(101, 1.01, |c, r| if (c, r) == (50, 50) { 1000.0 } else { 0.0 });
     let plane = &film.developed(&frame).expect("complete")[0];
     let at = |r: usize| plane[50 * 101 + 50 + r];
-    // The steepest step outward, pixels of 10 um.
+    // Finds the steepest rise outward; pixels are 10 um wide.
     let edge = (5..45).max_by(|a, b| (at(*a + 1) - at(*a)).total_cmp(&(at(*b + 1) - at(*b)))).expect("some");
     let radius = (edge as f64 + 0.5) * 0.01;
     println!("ring at {radius} mm");
     assert!((radius - 0.2291).abs() <= 0.01, "{radius}");
 }
 
-/// A camera counts the middle of the frame more, and lights no more than eight times the median: by hand. A gray frame gets what an
-/// average gives it.
+/// `metering: camera` is center-weighted and clips lights to eight times the median, compared with a calculation by hand. A gray frame gets
+/// the same exposure as with `average`.
 #[test]
 fn a_camera_holds_lights_back() {
     let of = |metering: &str| build(&format!("stock: kodak-tri-x-400\nmetering: {metering}\n")).expect("sound");
@@ -321,7 +321,7 @@ fn a_camera_holds_lights_back() {
     let gray = vec![0.05; 1000];
     let [camera, average] = ["camera", "average"].map(|metering| time(&of(metering), gray.clone()));
     assert!((camera / average - 1.0).abs() < 1e-12, "{camera} {average}");
-    // A row of 1000 pixels: weights 1/(1 + 2 x^2) for x from -1 to 1, of the only row y is 0.
+    // In a row of 1000 pixels the weights are 1/(1 + 2 x^2) for x from -1 to 1; y is 0 for the only row.
     let mut lights = vec![0.05_f32; 1000];
     lights[..20].fill(50.0);
     let weight = |i: usize| {
@@ -334,7 +334,7 @@ fn a_camera_holds_lights_back() {
     assert!((found * mean / (10.0 / 400.0) - 1.0).abs() < 1e-6, "{found}");
 }
 
-/// `exposure: metered` is the camera's meter; how it meters may be stated beside it, but not that it does not.
+/// `exposure: metered` switches the camera's meter on. It may be combined with any metering mode except `manual`.
 #[test]
 fn metered_is_a_word_for_the_exposure() {
     let of = |text: &str| build(&format!("stock: kodak-tri-x-400\n{text}"));
@@ -348,7 +348,7 @@ fn metered_is_a_word_for_the_exposure() {
     assert!(both.contains("by hand"), "{both}");
 }
 
-/// Paper keeps its black or is stretched to it; film in the dark is lighter and softer than its density; none of it is for scans.
+/// The black of paper is kept or stretched. Film in a dark surround looks lighter and softer than its density. Scans have neither setting.
 #[test]
 fn blacks_and_surrounds_are_chosen() {
     let shown = |text: &str, lx_s: f32| {

@@ -1,4 +1,4 @@
-//! The film process `three-strip`, as a scene uses it.
+//! Tests of the film process `three-strip`, as a scene uses it.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::params::{Faults, Params};
@@ -26,14 +26,15 @@ fn shown(film: &ThreeStrip, blue: f32, green: f32, red: f32) -> [f32; 3] {
     film.develop(&ExposureFrame { size, channels }).expect("complete").rgb[0]
 }
 
-/// In the light that the camera is balanced for, a mid gray leaves on each record what the meter says, and prints neutral.
+/// In the light that the camera is balanced for, a mid gray at the meter's exposure prints neutral. More light on one record than on the
+/// others gives that record's color.
 #[test]
 fn a_mid_gray_prints_neutral_and_colors_lead() {
     let film = build("exposure: 1/60 s\n").expect("sound");
     let light = illuminant("D55").expect("bundled").to_power(&BAND);
     let v = spectra_spectrum::v_lambda();
     let luminous: Vec<f64> = BAND.wavelengths_nm().map(|w| 683.0 * v.at(w)).collect();
-    // 10/5 lx s of a mid gray.
+    // Scales the light to 10/5 lx s, the exposure of a mid gray.
     let scale = 2.0 / light.seen_by(&luminous);
     let [b, g, r] = [0, 1, 2].map(|i| (light.seen_by(&film.channels()[i].response) * scale) as f32);
     let gray = shown(&film, b, g, r);
@@ -47,17 +48,17 @@ fn a_mid_gray_prints_neutral_and_colors_lead() {
     }
 }
 
-/// Exposures of the three records by a mid gray in the light of the balance, lx s.
+/// Returns the exposures of the three records, blue, green and red, by a mid gray in the balance light, lx s.
 fn mid_gray(film: &ThreeStrip) -> [f32; 3] {
     let light = illuminant("D55").expect("bundled").to_power(&BAND);
     let v = spectra_spectrum::v_lambda();
     let luminous: Vec<f64> = BAND.wavelengths_nm().map(|w| 683.0 * v.at(w)).collect();
-    // 10/5 lx s of a mid gray.
+    // Scales the light to 10/5 lx s, the exposure of a mid gray.
     let scale = 2.0 / light.seen_by(&luminous);
     [0, 1, 2].map(|i| (light.seen_by(&film.channels()[i].response) * scale) as f32)
 }
 
-/// a*, b* within 2 of neutral from 2 stops under mid gray to 3 over it, white the clear print.
+/// From 2 stops under mid gray to 3 over it, a* and b* are within 2 of neutral. The clear print is white.
 #[test]
 fn a_gray_scale_is_gray_and_reaches_white() {
     let film = build("exposure: 1/60 s\ngrain: false\n").expect("sound");
@@ -72,7 +73,7 @@ fn a_gray_scale_is_gray_and_reaches_white() {
         assert!(stops > 3.0 || (a.abs() <= 2.0 && b.abs() <= 2.0), "{stops:+}: {l:.1} {a:+.2} {b:+.2}");
         assert!(stops < 5.0 || l > 95.0, "{stops:+}: {l:.1}");
     }
-    // The bare light as white: the clear print is a little darker than it.
+    // With the bare light as white, the clear print is a little darker than white.
     let lamp = build("exposure: 1/60 s\ngrain: false\nwhite: lamp\n").expect("sound");
     let (film, lamp) = ([&film, &lamp]).map(|f| shown(f, b * 32.0, g * 32.0, r * 32.0)[1]).into();
     assert!(lamp <= film, "{lamp} {film}");
@@ -93,8 +94,8 @@ fn parameters_are_checked() {
     }
 }
 
-/// A white point in the dark through the records: each spreads it as its stock does, the red one, behind the blue one, most;
-/// green and red halate, blue has no base behind it.
+/// Each record spreads a white point in the dark as its stock does; the red one, behind the blue one, spreads it most. Green and red have
+/// halation; blue has none, because no base lies behind it.
 #[test]
 fn records_spread_light_and_have_grain() {
     let plain = "exposure: 1/60 s\noptics: off\n";
@@ -125,7 +126,7 @@ fn records_spread_light_and_have_grain() {
     assert!((along(&scattered, 0, 5) - along(&scattered, 1, 5)).abs() < 0.01);
     let halo = lamp("scatter: false\nadjacency: false\ngrain: false\n", 1e6);
     assert!(along(&halo, 0, 40) == clear && along(&halo, 1, 40) > clear && along(&halo, 2, 40) > clear);
-    // Each record has grains of its own, which `grain: false` takes away.
+    // Each record has its own grain, which `grain: false` removes.
     let even = |yaml: &str| {
         let film = build(&format!("{plain}{yaml}")).expect("sound");
         film.negatives(&frame(&film, 1.0, 1.0)).expect("complete")
@@ -138,8 +139,8 @@ fn records_spread_light_and_have_grain() {
     assert!(film.describe().contains("halation assumed"), "{}", film.describe());
 }
 
-/// The same lux seconds in 10 s as in 1/100 s leave less on a film that has reciprocity failure: Tri-X in all three records, to which
-/// its sheet gives 50 s where a meter says 10.
+/// Reciprocity failure makes a long exposure less effective than a short one with the same lux-seconds. All three records are Tri-X, whose
+/// sheet gives 50 s for a metered time of 10 s.
 #[test]
 fn long_exposures_lose_speed() {
     let record = "{stock: kodak-tri-x-400, filters: []}";

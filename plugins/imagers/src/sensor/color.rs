@@ -1,4 +1,4 @@
-//! What the sensor's colors mean: its matrix and its white, from its sensitivities.
+//! Color of a sensor: the matrices and the white, computed from its sensitivities.
 
 use glam::{DMat3, DVec3};
 use spectra_color::Adaptation;
@@ -6,29 +6,29 @@ use spectra_core::spectral::{Channel, Grid, SpectralPower};
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{COLOR_CHECKER, Emission, Observer, find_reflectance};
 
-/// XYZ of D50, x 0.3457, y 0.3585: white of the space that converters work in (Adobe, Digital Negative Specification 1.4).
+/// XYZ of D50, x 0.3457, y 0.3585: the white of the color space of raw converters (Adobe, Digital Negative Specification 1.4).
 const D50: [f64; 3] = [0.3457 / 0.3585, 1.0, (1.0 - 0.3457 - 0.3585) / 0.3585];
 
-/// Matrices and white of a camera under a light.
+/// Color matrices and white of a camera under one light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraColor {
-    /// The camera's red, green and blue, of which those of white have 1 as the largest, from XYZ, of which white has Y 1.
+    /// Matrix from XYZ to the camera's red, green and blue. White has Y = 1 in XYZ and 1 as its largest camera value.
     pub camera_from_xyz: DMat3,
-    /// The camera's red, green and blue of white; the largest is 1.
+    /// The camera's red, green and blue for white; the largest is 1.
     pub neutral: DVec3,
-    /// XYZ of white, Y 1.
+    /// XYZ of white, with Y = 1.
     pub white_xyz: DVec3,
-    /// XYZ adapted to D50 (Bradford) from the camera's red, green and blue, each divided by that of white.
+    /// Matrix to XYZ adapted to D50 (Bradford) from the camera's red, green and blue, each divided by its value for white.
     pub d50_from_balanced: DMat3,
-    /// What the channel that sees most records of white for one lux second.
+    /// Signal that 1 lx s of white light gives in the channel with the largest signal, in the unit of the channels.
     pub largest_per_lx_s: f64,
 }
 
 impl CameraColor {
-    /// Fits the matrices to the ColorChecker's patches (ISO 17321-1) under a light, by least squares; white is met exactly: by what is
-    /// left over, shared out along white, in the matrix from XYZ, and as a condition of the fit in the matrix to D50
-    /// (G. D. Finlayson, M. S. Drew, J. Electron. Imaging 6, 484 (1997)). `None` for sensitivities that are blind to one
-    /// of three colors.
+    /// Fits the matrices to the patches of the ColorChecker (ISO 17321-1) under a light, by least squares. White is reproduced
+    /// exactly. In the matrix from XYZ, the error of white is added back along white; in the matrix to D50, white is a
+    /// constraint of the fit (G. D. Finlayson, M. S. Drew, J. Electron. Imaging 6, 484 (1997)). `None` if there are not three
+    /// channels, or if they cannot distinguish three colors under this light.
     #[must_use]
     pub fn fit(channels: &[Channel], light: &Emission, grid: &Grid) -> Option<Self> {
         let [red, green, blue] = channels else { return None };
@@ -60,7 +60,7 @@ impl CameraColor {
             let lines = power.lines.iter().map(line).collect();
             let (camera, xyz) = seen(&SpectralPower { grid: *grid, continuum, lines });
             let (camera, xyz) = (camera / largest, xyz / y);
-            // Every patch counts alike, the dark ones too.
+            // Relative weights, so that dark patches count as much as bright ones.
             let weight = 1.0 / (xyz.y * xyz.y);
             products += outer(camera, xyz) * weight;
             squares += outer(xyz, xyz) * weight;
@@ -74,7 +74,7 @@ impl CameraColor {
         let camera_from_xyz = fitted + outer(missing, along);
         let inverse = balanced_squares.inverse();
         let fitted = adapted_products * inverse;
-        // Lagrange: of all matrices that take (1, 1, 1) to white, the one of the least squares.
+        // Lagrange multipliers: the least-squares matrix among all that map (1, 1, 1) to white.
         let along = inverse * DVec3::ONE;
         let missing = DVec3::from_array(D50) - fitted * DVec3::ONE;
         let d50_from_balanced = fitted + outer(missing, along / along.element_sum());
@@ -84,7 +84,7 @@ impl CameraColor {
     }
 }
 
-/// The matrix a b^T.
+/// Returns the outer product a b^T.
 fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

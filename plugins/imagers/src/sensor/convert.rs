@@ -1,4 +1,4 @@
-//! From electrons to numbers, and from numbers to a picture.
+//! Conversion from electrons to digital numbers, and from digital numbers to a picture.
 
 use super::color::CameraColor;
 use super::demosaic::demosaic;
@@ -13,43 +13,43 @@ use spectra_core::frame::{
 use spectra_core::stage::Digitize;
 use spectra_film::display::{White, finish_xyz};
 
-/// The electronics.
+/// The electronics of a sensor, from the well to a developed picture.
 #[derive(Clone, Debug)]
 pub struct Converter {
-    /// Its filters.
+    /// Color filters of the sensor.
     pub pattern: Pattern,
     /// Exposure time, s.
     pub exposure_time_s: f64,
-    /// Most electrons of a well.
+    /// Largest number of electrons in a well.
     pub full_well: f64,
-    /// Standard deviation of what reading adds, electrons.
+    /// Standard deviation of the read noise, electrons.
     pub read_noise: f64,
-    /// Electrons a number.
+    /// Electrons per digital number.
     pub electrons_per_number: f64,
-    /// Value without light.
+    /// Digital number without light.
     pub black_level: u16,
-    /// Largest value.
+    /// Largest digital number.
     pub white_level: u16,
-    /// Whether light is counted and reading is noisy, and the seed of both.
+    /// Seed of photon and read noise; `None` without noise.
     pub noise: Option<u64>,
-    /// ISO setting.
+    /// ISO setting of the exposure.
     pub iso: f64,
-    /// Matrix and white; `None` without filters.
+    /// Color matrices and white; `None` without filters.
     pub color: Option<CameraColor>,
-    /// EXIF number of the light of white.
+    /// EXIF number (`LightSource`) of the light that is shown as white; 255 is any other.
     pub illuminant: u16,
-    /// Matrices for raw converters: lights by their EXIF numbers, the one of lower color temperature first.
+    /// Color matrices for raw converters, each with the EXIF number of its light. The light of lower color temperature comes first.
     pub calibrations: Vec<(u16, CameraColor)>,
-    /// Name for the file.
+    /// Name of the camera in the raw file.
     pub model: String,
-    /// Name that sets sensors of other colors apart.
+    /// Name that distinguishes cameras with different sensitivities.
     pub unique_model: String,
 }
 
-/// Lux seconds that fill the well at ISO 1, by the saturation-based speed of ISO 12232.
+/// Exposure, lx s, that fills the well at ISO 1, from the saturation-based speed of ISO 12232.
 const SATURATION_LX_S: f64 = 78.0;
 
-/// What each well holds on average: the sum of the channels.
+/// Returns the mean number of electrons in each well: the sum of the channels.
 #[must_use]
 pub fn electrons(exposure: &ExposureFrame) -> Vec<f64> {
     let mut sum = vec![0.0; exposure.size.pixels()];
@@ -62,7 +62,7 @@ pub fn electrons(exposure: &ExposureFrame) -> Vec<f64> {
 }
 
 impl Digitize for Converter {
-    /// One exposure: photons arrive as they will, wells fill, the amplifier adds its noise, the converter rounds.
+    /// Simulates one exposure: photons arrive at random, wells fill, the amplifier adds its noise, the converter rounds.
     fn raw(&self, exposure: &ExposureFrame) -> RawFrame {
         let one = |(pixel, mean): (usize, &f64)| {
             let (counted, read) = match self.noise {
@@ -73,7 +73,7 @@ impl Digitize for Converter {
                 }
             };
             let value = f64::from(self.black_level) + (counted.min(self.full_well) + read) / self.electrons_per_number;
-            // The cast saturates, and takes what is no number to 0.
+            // The cast saturates, and turns NaN into 0.
             value.round().min(f64::from(self.white_level)) as u16
         };
         let values = electrons(exposure).par_iter().enumerate().with_min_len(1 << 12).map(one).collect();
@@ -110,12 +110,13 @@ impl Digitize for Converter {
 }
 
 impl Converter {
-    /// Electrons that give the largest number.
+    /// Returns the number of electrons that gives the largest digital number.
     fn largest_electrons(&self) -> f64 {
         self.electrons_per_number * (f64::from(self.white_level) - f64::from(self.black_level))
     }
 
-    /// Photons, of which the variance is the mean; reading; and rounding, 1/12 of a number.
+    /// Returns the noise of photons (the variance equals the mean), of reading, and of rounding (a variance of 1/12 of a digital
+    /// number squared); `None` without noise.
     fn noise_profile(&self) -> Option<RawNoise> {
         self.noise?;
         let largest = self.largest_electrons();
@@ -124,7 +125,7 @@ impl Converter {
         Some(RawNoise { scale: 1.0 / largest, offset })
     }
 
-    /// By how much the numbers reach beyond what a sensor of that ISO speed records of daylight, stops.
+    /// Returns the headroom, in stops: how much more daylight the numbers record than a sensor of this ISO speed does.
     fn baseline_exposure_stops(&self) -> f64 {
         let daylight = self.calibrations.last();
         daylight.map_or(0.0, |(_, color)| {
@@ -133,13 +134,13 @@ impl Converter {
         })
     }
 
-    /// A picture of a raw frame: missing colors filled in, white made white, matrix, automatic exposure.
+    /// Develops a picture from a raw frame: demosaicing, white balance, color matrix, automatic exposure.
     #[must_use]
     pub fn show(&self, raw: &RawFrame) -> Option<DisplayPicture> {
         self.finish(raw, Wanted::default()).map(|finished| finished.shown)
     }
 
-    /// The same with what else is `wanted`.
+    /// Develops a picture from a raw frame as [`Converter::show`] does, with the further outputs that are `wanted`.
     #[must_use]
     pub fn finish(&self, raw: &RawFrame, wanted: Wanted) -> Option<Finished> {
         let (black, range) = (f32::from(self.black_level), f32::from(self.white_level) - f32::from(self.black_level));
@@ -150,7 +151,7 @@ impl Converter {
         let xyz = |[r, g, b]: [f32; 3]| match &self.color {
             None => screen.to_xyz([r, g, b].map(f64::from)),
             Some(color) => {
-                // A color that is clipped must not tint the others: all end at the lowest ceiling.
+                // A clipped channel must not tint highlights: clip all channels at the level where the first one saturates.
                 let camera = DVec3::new(r.into(), g.into(), b.into());
                 let camera = (camera / color.neutral).min(DVec3::ONE) * color.neutral;
                 (color.camera_from_xyz.inverse() * camera).to_array()

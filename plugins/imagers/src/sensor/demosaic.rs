@@ -1,15 +1,16 @@
-//! From one color a pixel to three: H. S. Malvar, L. He, R. Cutler, "High-quality linear interpolation for demosaicing of
-//! Bayer-patterned color images", ICASSP 2004.
+//! Demosaicing, from one color per pixel to three: H. S. Malvar, L. He, R. Cutler, "High-quality linear interpolation for
+//! demosaicing of Bayer-patterned color images", ICASSP 2004.
 
 use super::pattern::Pattern;
 
-/// Fills in the missing colors of a Bayer mosaic: (red, green, blue) of each pixel.
+/// Interpolates the missing colors of a Bayer mosaic. `values` are row-major; returns red, green and blue of each pixel. Without
+/// filters all three equal the value of the pixel.
 #[must_use]
 pub fn demosaic(values: &[f32], width: usize, height: usize, pattern: Pattern) -> Vec<[f32; 3]> {
     if pattern == Pattern::Monochrome {
         return values.iter().map(|v| [*v; 3]).collect();
     }
-    // Reflected at the edges about the edge pixel, which keeps the colors in their places.
+    // Mirror the picture about its edge pixels, which preserves the filter pattern.
     let reflect = |at: i64, len: usize| {
         let last = len as i64 - 1;
         let at = at.abs();
@@ -29,7 +30,7 @@ pub fn demosaic(values: &[f32], width: usize, height: usize, pattern: Pattern) -
             let corners = p(-1, -1) + p(1, -1) + p(-1, 1) + p(1, 1);
             let mut rgb = [here; 3];
             if own == 1 {
-                // The color of the row's neighbors, then of the column's.
+                // Interpolate the color of the neighbors in the row, then of those in the column.
                 let in_row = (5.0 * here + 4.0 * near_x - corners - far_x + 0.5 * far_y) / 8.0;
                 let in_column = (5.0 * here + 4.0 * near_y - corners - far_y + 0.5 * far_x) / 8.0;
                 let row_color = pattern.channel(column as u32 + 1, row as u32) as usize;
@@ -49,8 +50,8 @@ pub fn demosaic(values: &[f32], width: usize, height: usize, pattern: Pattern) -
 mod tests {
     use super::*;
 
-    /// The filters sum to 1 and reproduce what is linear: a ramp in which the colors differ by constants comes back
-    /// exactly, away from the edges.
+    /// The filters sum to 1 and reproduce linear functions: a ramp in which the colors differ by constants is restored
+    /// exactly, except at the edges.
     #[test]
     fn ramps_of_constant_hue_come_back() {
         let (width, height) = (12, 10);

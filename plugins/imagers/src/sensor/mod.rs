@@ -1,4 +1,5 @@
-//! `imager: sensor`, a chip of pixels: color filters, measured sensitivities, photons counted, a converter.
+//! `imager: sensor`: a chip of pixels with color filters, measured sensitivities, photon noise and an analog-to-digital
+//! converter.
 
 mod color;
 mod convert;
@@ -28,7 +29,8 @@ use spectra_core::spectral::Channel;
 use spectra_core::stage::{Digitize, Imager, Launch, Receive, Response};
 use spectra_core::{Loss, RayBatch};
 
-/// A sensor. Its channels are electrons by the filter that their light passed: each pixel's well holds their sum.
+/// An image sensor. Each channel holds the electrons of light that passed one filter; the well of a pixel holds the sum of all
+/// channels.
 #[derive(Clone, Debug)]
 pub struct Sensor {
     pub(crate) pixels: Pixels,
@@ -36,21 +38,22 @@ pub struct Sensor {
     pub(crate) converter: Converter,
 }
 
-/// The geometry of the pixels.
+/// Geometry of the pixels of a sensor.
 #[derive(Clone, Debug)]
 pub(crate) struct Pixels {
     pub(crate) plane: Plane,
     pub(crate) pattern: Pattern,
-    /// Side of the open part of a pixel over the pitch.
+    /// Side of the light-sensitive part of a pixel, as a fraction of the pitch.
     pub(crate) open: f64,
     pub(crate) photosite: Option<Photosite>,
-    /// Whether the pixels of the picture are coarser than the sensor's own. Then a neighbor's well lies in the same pixel of
-    /// the picture, and only the filter that light has passed is another one.
+    /// Whether the picture is rendered with its own, coarser pixels. A neighbor's well then lies in the same pixel of the picture,
+    /// and only the filter that light has passed is a different one.
     pub(crate) coarse: bool,
 }
 
-/// Why a ray adds nothing.
+/// The cause of loss of a ray that misses the frame.
 const BESIDE: (Loss, u32) = (Loss::OutOfFrame, 0);
+/// The cause of loss of a ray that hits the walls between pixels.
 const WALLED: (Loss, u32) = (Loss::Absorbed, 0);
 
 impl Pixels {
@@ -61,7 +64,7 @@ impl Pixels {
         }
     }
 
-    /// Column and row of a place on the frame, with fractions.
+    /// Returns the column and row of a point on the frame, with fractions.
     fn place(&self, x: f64, y: f64) -> [f64; 2] {
         let FrameSize { width_px, height_px, width_mm, height_mm } = self.plane.size();
         [(0.5 - x / width_mm) * f64::from(width_px), (0.5 + y / height_mm) * f64::from(height_px)]
@@ -73,11 +76,12 @@ impl Pixels {
         (column < size.width_px && row < size.height_px).then_some((column, row))
     }
 
-    /// From the pixel whose filter light passes to the one whose well it ends in.
+    /// Returns the columns and rows from the pixel whose filter light passes to the one whose well collects it, or the cause of
+    /// its loss.
     fn landing(&self, entry: [f64; 2], x: f64, y: f64, way: DVec3, nm: f64) -> Result<[i32; 2], (Loss, u32)> {
         let Some(photosite) = &self.photosite else { return Ok([0, 0]) };
         let by = photosite.landing(entry, [x, y], self.plane.axes(x, y), way, nm);
-        // Farther than the next well there are walls of metal.
+        // Metal walls stop light that would go beyond the adjacent wells.
         if by.iter().all(|d| d.abs() <= 1) { Ok(by) } else { Err(WALLED) }
     }
 
@@ -122,7 +126,7 @@ impl Pixels {
             c.tag[i] = self.tag(column.wrapping_add_signed(-dc), row.wrapping_add_signed(-dr), well);
             return Ok(());
         }
-        // What ends in this well came in by that neighbor: the ray is moved there.
+        // The light of this well came in through that neighbor: move the ray there.
         let (from_column, from_row) = self.neighbor(column, row, [-dc, -dr]).ok_or(WALLED)?;
         c.tag[i] = self.tag(from_column, from_row, well);
         if [dc, dr] != [0, 0] {
@@ -135,7 +139,7 @@ impl Pixels {
     }
 }
 
-/// Does `one` to each living ray, and ends those for which it says why.
+/// Applies `one` to each living ray, and ends those for which it returns a cause of loss.
 fn each(rays: &mut RayBatch, one: impl Fn(&mut Columns<'_>, usize) -> Result<(), (Loss, u32)>) {
     let mut c = rays.columns_mut();
     for i in 0..c.x.len() {
@@ -232,8 +236,8 @@ mod tests {
     use spectra_core::numbers::Numbers;
     use spectra_core::spectral::BAND;
 
-    /// A ray that a well admits, sent back along its way, ends in that well with the same filter, on the sensor's own
-    /// pixels and on coarser ones; at 35 to 50 degrees a good part has passed a neighbor's filter, beyond that walls end it.
+    /// A ray that a well admits, sent back along its path, ends in that well with the same filter, on the sensor's own pixels
+    /// and on coarser ones. At 35 to 50 degrees many rays have passed a neighbor's filter; beyond that, walls stop them.
     #[test]
     fn receive_undoes_admit() {
         let silicon = spectra_glass::Catalogue::bundled().medium("Si/Green-2008").expect("bundled");
@@ -256,7 +260,7 @@ mod tests {
             rays.restart(n);
             let c = rays.columns_mut();
             for i in 0..n {
-                // Away from the border, whose neighbors are beyond it.
+                // Stay away from the border, where neighbors would lie outside the frame.
                 let (x, y) = (2 + i as u32 % 56, 2 + i as u32 / 56 % 36);
                 (c.tag[i], c.wavelength_nm[i]) = (y * 60 + x, 550.0);
             }

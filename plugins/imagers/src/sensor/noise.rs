@@ -1,38 +1,31 @@
-//! Numbers of electrons, with the scatter that nature and electronics give them: counter-based, pixel by pixel.
+//! Photon noise and read noise of electron counts, from counter-based random numbers of each pixel.
 
 use spectra_core::math::{cos, log};
-use spectra_core::numbers::mix64;
+use spectra_core::numbers::{GOLDEN, SplitMix64, mix64};
 use spectra_numerics::poisson;
 
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// Random numbers of one pixel.
-pub struct PixelNumbers {
-    key: u64,
-    count: u64,
-}
+/// Stream of random numbers of one pixel.
+pub struct PixelNumbers(SplitMix64);
 
 impl PixelNumbers {
-    /// Those of `pixel` under a seed.
+    /// Creates the stream of `pixel` for a seed.
     #[must_use]
     pub fn new(seed: u64, pixel: u64) -> Self {
-        Self { key: mix64(mix64(seed.wrapping_add(GOLDEN)) ^ mix64(pixel.wrapping_mul(GOLDEN))), count: 0 }
+        Self(SplitMix64::new(mix64(mix64(seed.wrapping_add(GOLDEN)) ^ mix64(pixel.wrapping_mul(GOLDEN)))))
     }
 
-    /// Uniform in (0, 1).
+    /// Draws a uniform random number in (0, 1).
     pub fn uniform(&mut self) -> f64 {
-        self.count += 1;
-        let bits = mix64(self.key.wrapping_add(self.count.wrapping_mul(GOLDEN)));
-        ((bits >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
+        self.0.open_unit()
     }
 
-    /// Normal, of mean 0 and variance 1 (G. E. P. Box, M. E. Muller, 1958).
+    /// Draws a normal random number of mean 0 and variance 1 (G. E. P. Box, M. E. Muller, 1958).
     pub fn normal(&mut self) -> f64 {
         let (u, v) = (self.uniform(), self.uniform());
         (-2.0 * log(u)).sqrt() * cos(std::f64::consts::TAU * v)
     }
 
-    /// Poisson, exact.
+    /// Draws from the exact Poisson distribution with this mean.
     pub fn poisson(&mut self, mean: f64) -> f64 {
         poisson::draw(mean, || self.uniform())
     }

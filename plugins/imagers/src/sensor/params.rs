@@ -1,4 +1,4 @@
-//! `kind: sensor` as a scene writes it.
+//! Parameters of `kind: sensor`, as written in a scene.
 
 use super::{CameraColor, Converter, Pattern, PatternName, Photosite, Pixels, Sensor};
 use crate::params::Frame;
@@ -12,24 +12,24 @@ use spectra_glass::Catalogue;
 use spectra_spectrum::constants::{LIGHT_M_PER_S, PLANCK_J_S};
 use spectra_spectrum::{find_emission, find_emission_in, find_sensitivity_in};
 
-/// A chip of pixels with color filters: electrons, noise, raw files.
+/// A chip of pixels with color filters, with electrons, noise and raw files.
 ///
-/// Light becomes electrons by the sensitivities of the filters and pixels, electrons scatter as photons do
-/// (Poisson) and as reading does (normal), a well holds so many of them, and a converter makes whole numbers: those
-/// go into a DNG file (`output: [dng]`), and a picture is developed from them, demosaicked and balanced. Color
-/// matrices are fitted to the 24 patches of a ColorChecker; the DNG file carries those for A and for D65, the noise,
-/// exposure and lens. It carries no date, since the same scene gives the same bytes.
+/// The sensitivities of filters and pixels turn light into electrons. Their number has photon noise (Poisson) and read noise
+/// (normal), and a well holds a limited number. A converter turns them into whole numbers. These go into a DNG file
+/// (`output: [dng]`), and a picture is developed from them, with demosaicing and white balance. Color matrices are fitted
+/// to the 24 patches of a ColorChecker. The DNG file holds the matrices for A and D65, the noise, the exposure and the
+/// lens. It has no date, so that the same scene gives the same bytes.
 ///
-/// With `photosite` light that comes at a slant lands beside the middle of its pixel, by the height of the stack,
-/// and goes on sideways in the silicon: at the edge of the frame of a wide-angle lens colors mix and shift. What is
-/// not known of a sensor (quantum efficiency, full well, read noise) has a default that is an assumption, and says
-/// so. One peak quantum efficiency serves all colors, so how red and blue compare with green, and with it the numbers
-/// of white before balancing and the noise of each color, is what the table says: that of the bundled sensor was
-/// measured color by color, and its colors are set to each other by what the camera answers to D65.
+/// With `photosite`, oblique light lands beside the center of its pixel, by the height of the stack, and continues sideways
+/// in the silicon. At the edge of the frame of a wide-angle lens, colors then mix and shift. Figures that are not known for a
+/// sensor (quantum efficiency, full well, read noise) have a default, marked as an assumption. All colors share one peak
+/// quantum efficiency. The table alone therefore sets red and blue relative to green, and with them the values of white
+/// before balancing and the noise of each color. The bundled sensor was measured color by color; its colors are
+/// scaled relative to each other by the camera's response to D65.
 ///
-/// `resolution` is the number of pixels across and down; where their shape differs from that of the frame, pixels
-/// are not square. The frame stands in the image plane of the lens unless it is shifted or tilted (as on a view
-/// camera), or bent.
+/// `resolution` is the number of pixels across and down. If its aspect ratio differs from that of the frame, the pixels
+/// are not square. The frame lies in the image plane of the lens unless you shift it, tilt it (as on a view camera) or
+/// curve it.
 ///
 /// # Example
 /// ```yaml
@@ -47,9 +47,9 @@ use spectra_spectrum::{find_emission, find_emission_in, find_sensitivity_in};
 /// photosite: {stack: 0.004 mm, microlens: 0.6, exit-pupil: 80 mm, well: 0.006 mm}
 /// ```
 /// # References
-/// - P. B. Catrysse and B. A. Wandell, J. Opt. Soc. Am. A 19, 1610 (2002): light at a slant in a pixel.
+/// - P. B. Catrysse and B. A. Wandell, J. Opt. Soc. Am. A 19, 1610 (2002): oblique light in a pixel.
 /// - M. A. Green, Solar Energy Materials and Solar Cells 92, 1305 (2008): index and absorption of silicon.
-/// - ISO 17321-1: the patches that the color matrix is fitted to.
+/// - ISO 17321-1: the patches to which the color matrix is fitted.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(deny_unknown_fields)]
@@ -62,51 +62,52 @@ pub struct SensorParams {
     /// `monochrome`.
     #[serde(default)]
     pattern: PatternName,
-    /// What the pixels see: a bundled table or a file with the columns red, green and blue, relative per power;
-    /// of a monochrome sensor one sensitivity, such as `file#column`. The default is `nikon-d5100`, with filters.
+    /// Spectral sensitivity of the pixels: a bundled table or a file with the columns red, green and blue, relative per power.
+    /// A monochrome sensor needs one sensitivity, such as `file#column`; with filters the default is `nikon-d5100`.
     #[serde(default)]
     sensitivity: Option<String>,
-    /// Electrons per photon where that is largest, above 0 to 1: what makes a relative table absolute. 0.5 if left
-    /// out, an assumption.
+    /// Largest number of electrons per photon, above 0 to 1, which makes a relative table absolute; 0.5 if left out, an
+    /// assumption.
     #[serde(default)]
     #[schemars(extend("maximum" = 1))]
     peak_quantum_efficiency: Option<Positive<Ratio>>,
-    /// Distance of two pixels of the sensor, mm if bare; that of `resolution` if left out. A picture of fewer pixels
-    /// shows what the sensor's own pixels give.
+    /// Distance between two pixels of the sensor, mm if bare; that of `resolution` if left out. With it, a picture with fewer
+    /// pixels shows the signal of the sensor's own pixels.
     #[serde(default)]
     pitch: Option<Positive<Length>>,
-    /// Share of a pixel's area that takes in light, its microlens included, above 0 to 1; 1 if left out.
+    /// Fraction of a pixel's area that receives light, microlens included, above 0 to 1; 1 if left out.
     #[serde(default)]
     #[schemars(extend("maximum" = 1))]
     fill_factor: Option<Positive<Ratio>>,
-    /// What stands before the silicon; without it a pixel takes light from all directions alike.
+    /// Layers in front of the silicon. If left out, a pixel has the same sensitivity for all directions.
     #[serde(default)]
     photosite: Option<PhotositeParams>,
-    /// Most electrons of a well, more than 0; 30000 if left out, an assumption.
+    /// Largest number of electrons in a well, more than 0; 30000 if left out, an assumption.
     #[serde(default)]
     full_well: Option<Positive<f64>>,
-    /// Standard deviation of reading, electrons, 0 or more; 3 if left out, an assumption.
+    /// Standard deviation of the read noise, electrons, 0 or more; 3 if left out, an assumption.
     #[serde(default)]
     read_noise: Option<NonNegative<f64>>,
-    /// ISO setting, `base-iso` or more: numbers end at full well times `base-iso` over `iso`; the base if left out.
+    /// ISO setting, `base-iso` or more; `base-iso` if left out. The largest digital number is reached at the full well times
+    /// `base-iso` / `iso`.
     #[serde(default)]
     iso: Option<Positive<f64>>,
-    /// The ISO setting at which a full well is the largest number; 100 if left out.
+    /// ISO setting at which a full well gives the largest digital number; 100 if left out.
     #[serde(default)]
     base_iso: Option<Positive<f64>>,
     /// Bits of the converter, 8 to 16; 14 if left out.
     #[serde(default)]
     bits: Option<Whole<8, 16>>,
-    /// Value without light, below the largest number; a 32nd of the range if left out.
+    /// Digital number without light, below the largest number; 1/32 of the range if left out.
     #[serde(default)]
     black_level: Option<Whole<0, 65534>>,
-    /// Whether photons and reading are noisy; they are if left out.
+    /// Whether there is photon noise and read noise; `true` if left out.
     #[serde(default)]
     noise: Option<bool>,
     /// Seed of the noise, 0 or more; 1 if left out.
     #[serde(default)]
     noise_seed: Option<u64>,
-    /// The light that is shown as white: the name of a spectrum, or a file beside the scene; D65 if left out.
+    /// Light that is shown as white: the name of a spectrum, or a file beside the scene; D65 if left out.
     #[serde(default)]
     white_balance: Option<String>,
     /// Name of the camera in the raw file; `sensor` if left out.
@@ -118,20 +119,20 @@ pub struct SensorParams {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PhotositeParams {
-    /// From the color filter to the silicon, mm if bare.
+    /// Height of the stack, from the color filter to the silicon, mm if bare.
     pub stack: NonNegative<Length>,
-    /// Refractive index of the stack, 1 to 5; 1.46, silica, if left out.
+    /// Refractive index of the stack, 1 to 5; 1.46 (silica) if left out.
     #[serde(default)]
     #[schemars(extend("minimum" = 1, "maximum" = 5))]
     pub index: Option<Positive<f64>>,
-    /// How far the microlens concentrates light toward the middle, 0 (not at all) to 1 (to a point); 0 if left out.
+    /// Strength with which the microlens concentrates light toward the center, 0 (not at all) to 1 (to a point); 0 if left out.
     #[serde(default)]
     #[schemars(extend("maximum" = 1))]
     pub microlens: Option<NonNegative<Ratio>>,
-    /// Distance of the exit pupil for which the microlenses are shifted, mm if bare; not shifted if left out.
+    /// Distance of the exit pupil for which the microlenses are shifted, mm if bare; no shift if left out.
     #[serde(default)]
     pub exit_pupil: Option<OrInfinity<Positive<Length>>>,
-    /// Depth of the well, mm if bare; 0 if left out: all is absorbed at the surface.
+    /// Depth of the well, mm if bare; 0 if left out, which means that all light is absorbed at the surface.
     #[serde(default)]
     pub well: Option<NonNegative<Length>>,
 }
@@ -141,17 +142,17 @@ const DEFAULT_PEAK: f64 = 0.5;
 const DEFAULT_FULL_WELL: f64 = 30_000.0;
 const DEFAULT_READ_NOISE: f64 = 3.0;
 const SILICA: f64 = 1.46;
-/// M. A. Green, Solar Energy Materials and Solar Cells 92, 1305 (2008).
+/// Name of silicon in the glass catalog: M. A. Green, Solar Energy Materials and Solar Cells 92, 1305 (2008).
 const SILICON: &str = "Si/Green-2008";
-/// EXIF numbers (`LightSource`) of lights; 255 is any other.
+/// EXIF numbers (`LightSource`) of standard lights; 255 is any other.
 const LIGHT_SOURCES: [(&str, u16); 7] =
     [("A", 17), ("B", 18), ("C", 19), ("D55", 20), ("D65", 21), ("D75", 22), ("D50", 23)];
 
-/// The two lights of which raw files carry matrices, the warmer one first.
+/// The two lights for which raw files hold color matrices, the warmer one first.
 const CALIBRATION_LIGHTS: [&str; 2] = ["A", "D65"];
 
 impl SensorParams {
-    /// The channels, in electrons for the light of the exposure.
+    /// Builds the channels, which are in electrons.
     fn channels(
         &self,
         params: &Params,
@@ -162,8 +163,10 @@ impl SensorParams {
         let mut faults = Faults::new();
         let name = self.sensitivity.as_deref().unwrap_or(DEFAULT_SENSITIVITY);
         if pattern == Pattern::Monochrome && self.sensitivity.is_none() {
-            let fault = params.fault("sensitivity", "a monochrome sensor needs its sensitivity");
-            return Err(fault.hint("a file beside the scene with the columns wavelength_nm and sensitivity").into());
+            let fault = params.fault("sensitivity", "a monochrome sensor needs a `sensitivity`");
+            return Err(fault
+                .hint("write a file beside the scene with the columns `wavelength_nm` and `sensitivity`")
+                .into());
         }
         let wanted: Vec<(&str, String)> = match pattern {
             Pattern::Monochrome => vec![("Y", name.to_owned())],
@@ -179,13 +182,15 @@ impl SensorParams {
             tables.extend(faults.take(found.map(|s| (channel, s.on_grid(grid)))));
         }
         faults.into_result(())?;
-        // Photons per joule go with the wavelength: electrons a photon are sensitivity over wavelength.
+        // Photons per joule are proportional to the wavelength, so electrons per photon are sensitivity / wavelength.
         let peak = tables
             .iter()
             .flat_map(|(_, table)| table.iter().zip(grid.wavelengths_nm()).map(|(s, w)| s / w))
             .fold(0.0, f64::max);
         if !(peak > 0.0) {
-            return Err(params.fault("sensitivity", format!("`{name}` sees nothing of the band")).into());
+            return Err(params
+                .fault("sensitivity", format!("`{name}` has no sensitivity in the band of the scene"))
+                .into());
         }
         let efficiency = self.peak_quantum_efficiency.map_or(DEFAULT_PEAK, |q| q.number());
         const M2_PER_MM2: f64 = 1e-6;
@@ -228,13 +233,17 @@ impl SensorParams {
         let black = self.black_level.map_or(u32::from(white_level).div_ceil(32), Whole::get_u32);
         if black >= u32::from(white_level) {
             faults.push(
-                params.fault("black-level", format!("{black} leaves no range")).hint(format!("below {white_level}")),
+                params
+                    .fault("black-level", format!("a black level of {black} leaves no range"))
+                    .hint(format!("write less than {white_level}")),
             );
         }
         let base_iso = self.base_iso.map_or(100.0, |i| i.bare());
         let iso = self.iso.map_or(base_iso, |i| i.bare());
         if iso < base_iso {
-            faults.push(params.fault("iso", format!("{iso} is below the base")).hint(format!("{base_iso} or more")));
+            faults.push(
+                params.fault("iso", format!("{iso} is below `base-iso`")).hint(format!("write {base_iso} or more")),
+            );
         }
         let light = self.white_balance.as_deref().unwrap_or("D65");
         let color = match pattern {
@@ -259,7 +268,7 @@ impl SensorParams {
                     let light = find_emission(name).ok()?;
                     CameraColor::fit(channels, &light, &context.grid).map(|color| (number_of(name), color))
                 });
-                // A band in which one of the two lights shows no colors has that of white.
+                // If one of the two lights shows no colors in this band, use the matrices of the white light.
                 fitted.collect::<Option<Vec<_>>>().unwrap_or_else(|| vec![(number_of(light), *white)])
             }
         };

@@ -1,4 +1,4 @@
-//! Which filter lies over which pixel.
+//! Pattern of the color filters over the pixels.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -6,13 +6,13 @@ use serde::Deserialize;
 /// A mosaic of 2 x 2 color filters, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pattern {
-    /// No filters: every pixel sees alike.
+    /// No filters: all pixels have the same sensitivity.
     Monochrome,
-    /// Rows from the upper left of the upright picture: 0 red, 1 green, 2 blue (B. E. Bayer, US 3971065).
+    /// A Bayer mosaic, row by row from the upper left of the upright picture: 0 red, 1 green, 2 blue (B. E. Bayer, US 3971065).
     Bayer([u8; 4]),
 }
 
-/// A pattern by its name in a scene.
+/// Name of a filter pattern, as written in a scene.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -27,7 +27,7 @@ pub enum PatternName {
 }
 
 impl PatternName {
-    /// The pattern.
+    /// Pattern with this name.
     #[must_use]
     pub fn pattern(self) -> Pattern {
         match self {
@@ -41,7 +41,7 @@ impl PatternName {
 }
 
 impl Pattern {
-    /// The channel of a pixel.
+    /// Index of the channel that a pixel records: 0 red, 1 green, 2 blue; always 0 without filters.
     #[inline(always)]
     #[must_use]
     pub fn channel(self, column: u32, row: u32) -> u32 {

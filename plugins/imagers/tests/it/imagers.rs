@@ -1,4 +1,4 @@
-//! The imagers `xyz` and `film`, as a scene uses them.
+//! Tests of the imagers `xyz` and `film` as a scene uses them.
 
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::params::Faults;
@@ -69,7 +69,7 @@ fn faulty_frames_are_told_at_their_keys() {
     }
 }
 
-/// One number is the width; the other side follows, so that pixels are square.
+/// One number is the width in pixels; the other side follows so that pixels are square.
 #[test]
 fn a_width_in_pixels_is_enough() {
     let size = build("xyz", "format: 135\nresolution: 960").expect("sound").size();
@@ -82,9 +82,9 @@ fn the_film_decides_what_a_film_plane_records() {
     assert!(film.response().is_none() && film.receive().is_some() && film.launch().is_some());
 }
 
-/// 683 lm/W and the 1931 functions: light of one lux records Y = 1, and its X and Z are those of its chromaticity. D65 has
-/// XYZ 95.047, 100, 108.883 (CIE 15:2004), here by the exact integral of the tables joined by straight lines
-/// instead of the sum over them: 3e-5.
+/// Light of one lux records Y = 1, and X and Z according to its chromaticity, with 683 lm/W and the 1931 functions. D65 has
+/// XYZ 95.047, 100, 108.883 (CIE 15:2004). The integral here is exact for the tables joined by straight lines instead of the
+/// sum over them, which differs by 3e-5.
 #[test]
 fn xyz_is_absolute() {
     let xyz = build("xyz", "format: 135\nresolution: [9, 6]").expect("sound");

@@ -1,4 +1,4 @@
-//! Every built-in imager keeps the laws of imagers.
+//! Every built-in imager passes the checks that apply to all imagers.
 
 use spectra_plugin_imagers as _;
 use spectra_testing::{ImagerLaws, imager};

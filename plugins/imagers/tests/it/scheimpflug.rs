@@ -1,17 +1,18 @@
-//! A tilted imager through a real lens: where it is sharp.
+//! The plane of sharp focus of a tilted imager behind a real lens.
 
 use glam::{DMat3, DVec3};
 use spectra_core::frame::FrameSize;
 use spectra_core::stage::Launch;
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Indices, RearPupil, Tracer, Travel};
+use spectra_optics::{RearPupil, stop_down};
 use spectra_plugin_imagers::{Bend, Plane, Standing};
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
+use spectra_tracer::{Indices, Tracer, Travel};
 use std::path::Path;
 
-/// Where all the light of one pixel comes closest together in front of the lens: the weighted least squares of the
-/// distances from its rays.
+/// Returns the point in front of the lens where the light of one pixel comes closest together: the weighted least-squares
+/// solution for the distances from its rays.
 fn sharp_point(tracer: &Tracer, pupil: &RearPupil, plane: &Plane, pixel: u32, nm: f64) -> DVec3 {
     const SIDE: usize = 64;
     let n = SIDE * SIDE;
@@ -37,12 +38,12 @@ fn sharp_point(tracer: &Tracer, pupil: &RearPupil, plane: &Plane, pixel: u32, nm
     matrix.inverse() * right
 }
 
-/// T. Scheimpflug, British patent 1196 (1904): image plane and plane of sharp focus meet the principal planes in the
-/// same height. By real rays of a Biotar at f/8, near the axis, where the field is flat; in degrees of the plane.
+/// The image plane and the plane of sharp focus meet the principal planes at the same height (T. Scheimpflug, British patent
+/// 1196 (1904)). Checked with real rays of a Biotar at f/8, near the axis, where the field is flat, in degrees of the plane.
 #[test]
 fn a_tilted_imager_is_sharp_on_scheimpflugs_plane() {
     let lens = spectra_lens::load("zeiss-biotar-50-f1.4", &FileResources::beside(Path::new("."))).expect("bundled");
-    let lens = lens.at_f_number(8.0).expect("stopped down").focused_at(2000.0).expect("focused");
+    let lens = stop_down(lens, 8.0).expect("stopped down").focused_at(2000.0).expect("focused");
     let nm = lens.reference_nm;
     let tracer =
         Tracer::new(&lens, Indices::Band { min_nm: nm - 1.0, max_nm: nm + 1.0 }, Isa::Baseline).expect("a lens");
@@ -55,7 +56,7 @@ fn a_tilted_imager_is_sharp_on_scheimpflugs_plane() {
         let points: Vec<DVec3> = (-10..=10).map(|k| standing.at(0.0, 0.125 * f64::from(k)).0).collect();
         let pupil = RearPupil::search(&lens, &tracer, &points, nm - 1.0, nm + 1.0).expect("an aperture");
         let sharp: Vec<DVec3> = (0..5).map(|pixel| sharp_point(&tracer, &pupil, &plane, pixel, nm)).collect();
-        // Straight line z = at_axis + slope y through the five.
+        // Fit the straight line z = at_axis + slope y through the five points.
         let mean = sharp.iter().sum::<DVec3>() / 5.0;
         let (yz, yy) = sharp.iter().fold((0.0, 0.0), |(yz, yy), p| {
             (yz + (p.y - mean.y) * (p.z - mean.z), yy + (p.y - mean.y) * (p.y - mean.y))

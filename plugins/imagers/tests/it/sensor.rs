@@ -1,4 +1,4 @@
-//! The sensor: electrons, noise, colors, and what it says of faulty keys.
+//! Tests of the sensor: electrons, noise, colors, and messages about faulty keys.
 
 use spectra_color::{Adaptation, ciede2000, lab};
 use spectra_core::frame::{ExposureChannel, ExposureFrame, RawFrame};
@@ -36,12 +36,12 @@ fn channels(imager: &dyn Imager) -> Vec<Channel> {
     imager.response().expect("its own").channels()
 }
 
-/// The numbers of its raw file.
+/// Returns the numbers of the sensor's raw file.
 fn raw(imager: &dyn Imager, exposure: &ExposureFrame) -> RawFrame {
     imager.response().and_then(|own| own.digitize()).expect("a converter").raw(exposure)
 }
 
-/// The same mean in every well.
+/// Returns an exposure with the same mean number of electrons in every well.
 fn flat(imager: &dyn Imager, electrons: f32) -> ExposureFrame {
     let size = imager.size();
     let all = channels(imager).into_iter().enumerate().map(|(i, c)| ExposureChannel {
@@ -52,8 +52,8 @@ fn flat(imager: &dyn Imager, electrons: f32) -> ExposureFrame {
     ExposureFrame { size, channels: all.collect() }
 }
 
-/// One W m^-2 at a wavelength is wavelength / (h c) photons: 2.7689e18 a second and m^2 at 550 nm (h c = 1.98645e-25 J m).
-/// The pixel has 5 um; at the peak of quantum efficiency 40 % of them become electrons.
+/// 1 W m^-2 at a wavelength is wavelength / (h c) photons: 2.7689e18 per second and m^2 at 550 nm (h c = 1.98645e-25 J m).
+/// The pixel measures 5 um; at the peak of the quantum efficiency 40 % of the photons become electrons.
 #[test]
 fn electrons_are_photons_times_quantum_efficiency() {
     let imager = sensor("peak-quantum-efficiency: 40 %\n");
@@ -67,7 +67,7 @@ fn electrons_are_photons_times_quantum_efficiency() {
     }
     assert!((peak - 0.4).abs() < 1e-9, "{peak}");
     assert_eq!(imager.response().and_then(|own| own.exposure_time_s()), Some(0.01));
-    // The pitch counts, not the pixels of the picture.
+    // The pitch determines the area, not the pixels of the picture.
     let green = |imager: &dyn Imager| channels(imager)[1].response[200];
     let coarse = sensor("pitch: 10 um\npeak-quantum-efficiency: 40 %\n");
     assert!((green(&*coarse) / green(&*imager) - 4.0).abs() < 1e-12);
@@ -76,8 +76,8 @@ fn electrons_are_photons_times_quantum_efficiency() {
     assert_eq!(only.name, "Y");
 }
 
-/// The photon transfer of J. R. Janesick: variance against mean has one over the gain as its slope and the read noise at
-/// its foot; each within five standard errors of 40000 pixels, quantization (1/12) counted in.
+/// Photon transfer curve after J. R. Janesick: the variance as a function of the mean has the slope 1 / gain and starts at the read
+/// noise. Each value is within five standard errors of 40000 pixels, including quantization (1/12).
 #[test]
 fn photon_transfer_gives_back_gain_and_read_noise() {
     let imager = sensor("full-well: 20000\nread-noise: 4\niso: 200\nbits: 14\nblack-level: 500\n");
@@ -92,7 +92,7 @@ fn photon_transfer_gives_back_gain_and_read_noise() {
         let wanted = (f64::from(mean) + 16.0) / (gain * gain) + 1.0 / 12.0;
         assert!((got - want).abs() < 5.0 * (wanted / n).sqrt(), "{mean}: mean {got} {want}");
         assert!((variance / wanted - 1.0).abs() < 5.0 * (2.3 / n).sqrt(), "{mean}: variance {variance} {wanted}");
-        // The same as a raw file says it, in shares of the range.
+        // The raw file states the same noise, relative to the range.
         let (noise, range) = (raw.noise.expect("noisy"), 16_383.0 - 500.0);
         let said = noise.scale * want / range + noise.offset;
         assert!((said * range * range / wanted - 1.0).abs() < 1e-9, "{mean}: {said}");
@@ -107,7 +107,7 @@ fn wells_and_numbers_end_somewhere() {
     let number = |imager: &dyn Imager, electrons| raw(imager, &flat(imager, electrons)).values[7];
     assert_eq!([number(&*quiet, 0.0), number(&*quiet, 20_000.0), number(&*quiet, 1e6)], [600, 16_383, 16_383]);
     assert_eq!(number(&*quiet, 10_000.0), 600 + 7892);
-    // At four times the base setting a quarter of the well is the largest number.
+    // At four times the base setting a quarter of the well gives the largest number.
     let fast = sensor("noise: false\nfull-well: 20000\nblack-level: 600\niso: 400\n");
     assert_eq!([number(&*fast, 2500.0), number(&*fast, 5000.0)], [600 + 7892, 16_383]);
     let again = sensor("noise-seed: 5\n");
@@ -116,8 +116,8 @@ fn wells_and_numbers_end_somewhere() {
     assert_ne!(raw(&*again, &frame).values, raw(&*sensor("noise-seed: 6\n"), &frame).values);
 }
 
-/// The matrix, turned round, gives the colors of the ColorChecker back as the eye sees them: CIEDE2000 below 2 on average
-/// and below 6 for the worst patch, which is what a camera of three colors and a linear matrix reaches; white exactly.
+/// The inverse matrix restores the colors of the ColorChecker as the eye sees them: CIEDE2000 below 2 on average and below 6
+/// for the worst patch, which a camera with three colors and a linear matrix can reach. White is exact.
 #[test]
 fn the_matrix_gives_colors_back() {
     let imager = sensor("");
@@ -161,8 +161,8 @@ fn the_matrix_gives_colors_back() {
     assert!(mean < 2.0 && errors.iter().all(|e| *e < 6.0), "{errors:?}");
 }
 
-/// What raw converters take from the file for A and for D65, whatever light white is balanced for: the camera's colors, each
-/// over that of white, become XYZ under D50, white exactly, the ColorChecker to 1.5 of CIEDE2000 on average.
+/// Raw converters use the file's matrices for A and for D65, whatever light is balanced to white. The camera's colors, each
+/// divided by its value for white, become XYZ under D50: white exactly, the ColorChecker to a mean CIEDE2000 of 1.5.
 #[test]
 fn raw_files_carry_matrices_for_two_lights() {
     let imager = sensor("white-balance: FL11\nmodel: Mine\n");
@@ -196,7 +196,7 @@ fn raw_files_carry_matrices_for_two_lights() {
         println!("{name}: CIEDE2000 mean {mean:.3}");
         assert!(errors.len() == 24 && mean < 1.5, "{name}: {mean}");
     }
-    // Three colors of D65 white through the file's other matrix are that white's.
+    // The file's other matrix maps the XYZ of D65 white to the camera's three colors of that white.
     let power = find_emission("D65").expect("bundled").to_power(&BAND);
     let white = [0, 1, 2].map(|i: usize| power.seen_by(&observer[i]));
     let seen = raw.colors[1].camera_from_xyz.map(|r| (0..3).map(|i| r[i] * white[i] / white[1]).sum::<f64>());
@@ -205,7 +205,7 @@ fn raw_files_carry_matrices_for_two_lights() {
     assert!(seen.iter().zip(want).all(|(s, w)| (s - w / largest).abs() < 1e-12), "{seen:?}");
 }
 
-/// The file says how far its numbers reach beyond an exposure by ISO 12232: a full well at 78/S lx s of daylight is even.
+/// The file states how far its numbers reach beyond an exposure by ISO 12232: it is 0 if 78/S lx s of daylight fill the well.
 #[test]
 fn the_baseline_exposure_is_that_of_a_saturation_based_speed() {
     let stops = |more: &str| {
@@ -219,11 +219,11 @@ fn the_baseline_exposure_is_that_of_a_saturation_based_speed() {
     let largest = channels.iter().map(|c| power.seen_by(&c.response)).fold(0.0, f64::max);
     let saturation_lx_s = 30_000.0 / (largest / (683.0 * y));
     assert!((even - libm::log2(saturation_lx_s * 100.0 / 78.0)).abs() < 1e-9, "{even}");
-    // Twice the well is a stop more; a higher setting cuts the range by as much as it asks for.
+    // A well twice as large gives one stop more. A higher setting cuts the range by as much as it shortens the exposure.
     assert!((stops("full-well: 60000\n") - even - 1.0).abs() < 1e-9 && (stops("iso: 400\n") - even).abs() < 1e-9);
 }
 
-/// A gray card is shown gray: the picture of white light has three equal values.
+/// A gray card is shown as gray: the picture of white light has three equal values.
 #[test]
 fn white_is_shown_white() {
     let imager = sensor("noise: false\n");
@@ -258,10 +258,10 @@ fn faulty_keys_are_told_at_their_places() {
         ("fill-factor: 2", "up to 1"),
         ("sensitivity: nikon-d5010", "nikon-d5100"),
         ("sensitivity: colorchecker", "red"),
-        ("pattern: monochrome", "needs its sensitivity"),
+        ("pattern: monochrome", "needs a `sensitivity`"),
         ("bits: 20", "8 to 16"),
         ("black-level: 20000", "no range"),
-        ("iso: 50", "below the base"),
+        ("iso: 50", "below `base-iso`"),
         ("white-balance: D56", "D55"),
         ("photosite: {stack: 3 um, index: 0.5}", "1 to 5"),
         ("photosite: {stack: 3 um, microlens: 2}", "0 to 1"),

@@ -1,4 +1,4 @@
-//! Files of other formats, written by OpenImageIO and by hand, against what was written.
+//! Compares files of other formats, written by OpenImageIO and by hand, with what was written.
 
 use spectra_core::resources::Found;
 use spectra_pictures::read::{self, Choice, ENDINGS, Linear, Trouble};
@@ -8,8 +8,8 @@ use std::io::{Read, Seek};
 const WIDTH: u32 = 70;
 const HEIGHT: u32 = 50;
 
-/// Code values of three channels: ramps in both directions and their product, 0 and 1 among them; in whole steps of
-/// one over `levels`, where that is not 0.
+/// Code values of three channels: ramps in both directions and their product, including 0 and 1. They come in whole steps of one over
+/// `levels`, unless that is 0.
 fn ramps(levels: u32) -> [Vec<f32>; 3] {
     let at = |c: usize, i: usize| {
         let (x, y) =
@@ -23,7 +23,7 @@ fn ramps(levels: u32) -> [Vec<f32>; 3] {
 struct File<'a> {
     format: &'a str,
     ending: &'a str,
-    /// Codes come in whole steps of one over this; 0 leaves them as they are.
+    /// Number of steps from 0 to 1; 0 leaves the codes as they are.
     levels: u32,
     samples: Samples,
     texts: Vec<(&'a str, &'a str)>,
@@ -62,7 +62,7 @@ impl<'a> File<'a> {
         self
     }
 
-    /// In whole steps of so many bits: the library cuts to them where it should round.
+    /// Uses whole steps of this many bits, because the library truncates to them instead of rounding.
     fn bits(mut self, bits: u32) -> Self {
         self.levels = (1 << bits) - 1;
         self.integer("oiio:BitsPerSample", bits as i32)
@@ -110,8 +110,8 @@ fn read(bytes: &[u8], name: &str) -> Result<Linear, Trouble> {
     decode(bytes, Choice { name, cover: true, ..Choice::default() })
 }
 
-/// Largest difference of light to that of the ramps by `curve`, where a code value may be off by `step`. In units of
-/// that: 1 is what `step` explains, beside the rounding of single precision.
+/// Returns the largest difference between the light and that of the ramps by `curve`, where a code value may be off by `step`.
+/// The unit is the difference that `step` and single precision explain: 1 is the limit.
 fn worst(found: &Linear, levels: u32, curve: impl Fn(f64) -> f64, step: f64) -> f64 {
     assert_eq!((found.width, found.height), (WIDTH, HEIGHT));
     let ramps = ramps(levels);
@@ -119,7 +119,7 @@ fn worst(found: &Linear, levels: u32, curve: impl Fn(f64) -> f64, step: f64) -> 
     for (i, pixel) in found.rgb.iter().enumerate() {
         for c in 0..3 {
             let code = f64::from(ramps[c][i]);
-            // Light is none below black.
+            // There is no light below black.
             let light = |code: f64| curve(code).max(0.0);
             let (low, high) = (light((code - step).max(0.0)), light(code + step));
             let (want, light) = (light(code), f64::from(pixel[c]));
@@ -139,7 +139,7 @@ fn srgb(code: f64) -> f64 {
     if code <= 0.040_45 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
 }
 
-/// 8 and 16 bits come back as they were; 10 and 12 are handed on in 16, to a step of those.
+/// 8 and 16 bits come back unchanged; 10 and 12 bits arrive in 16 bits, within one step of those.
 #[test]
 fn dpx_comes_back_in_whole_steps_of_its_bits() {
     for bits in [8, 10, 12, 16] {
@@ -158,7 +158,7 @@ fn dpx_comes_back_in_whole_steps_of_its_bits() {
         let off = [
             worst(&linear, levels, |v| v, step),
             worst(&log, levels, cineon, step),
-            // The curve has three digits in BT.709, and all of them here: 4e-4 of a code apart.
+            // The curve has three digits in BT.709 and all digits here: they differ by 4e-4 of a code.
             worst(&video, levels, rec709, step + 4e-4),
         ];
         println!("{bits} bits: {off:.3?} of {step:.1e}");
@@ -175,7 +175,7 @@ fn a_dpx_file_that_says_nothing_is_not_guessed() {
     assert!(trouble.text.contains("Undefined") && trouble.hint.is_some_and(|h| h.contains("transfer: srgb")));
     let said = decode(&bytes, Choice { name: "a.dpx", transfer: Some("srgb"), ..Choice::default() }).unwrap();
     assert!(worst(&said, 1023, srgb, 1.0 / 65_535.0) <= 1.0);
-    // Transfer characteristic 1 of SMPTE 268M, byte 801 of the file, is what film scanners write.
+    // Film scanners write transfer characteristic 1 of SMPTE 268M, byte 801 of the file.
     let mut density = bytes;
     density[801] = 1;
     let log = read(&density, "a.dpx").unwrap();
@@ -185,12 +185,12 @@ fn a_dpx_file_that_says_nothing_is_not_guessed() {
 #[test]
 fn jpeg_2000_webp_and_others_come_back() {
     for (format, name, samples, step) in [
-        // Wavelets without loss, at both depths.
+        // Lossless wavelets, at both depths.
         ("jpeg2000", "a.jp2", Samples::U8, 1e-7),
         ("jpeg2000", "a.j2k", Samples::U16, 1e-7),
         ("targa", "a.tga", Samples::U8, 1e-7),
         ("bmp", "a.bmp", Samples::U8, 1e-7),
-        // Color in half the size, and loss: some steps.
+        // Lossy, with color at half the resolution: several steps.
         ("webp", "a.webp", Samples::U8, 12.0 / 255.0),
     ] {
         let bytes = File { ending: &name[2..], ..File::new(format, samples) }.bytes();
@@ -208,7 +208,7 @@ fn textures_are_read_at_full_size() {
     for (samples, curve, step) in [
         (Samples::U8, srgb as fn(f64) -> f64, 1e-7),
         (Samples::U16, srgb, 1e-7),
-        // Half a step of eleven digits below 1.
+        // Half a step of eleven binary digits below 1.
         (Samples::F16, |v| v, 1.0 / 4096.0),
         (Samples::F32, |v| v, 0.0),
     ] {
@@ -220,14 +220,14 @@ fn textures_are_read_at_full_size() {
         assert!(off <= 1.0, "{samples:?}: {off}");
         assert_eq!(found.clipped_at.is_none(), matches!(samples, Samples::F16 | Samples::F32));
     }
-    // A texture of OpenEXR is read without the library.
+    // An OpenEXR texture is read without the library.
     let path = folder.path().join("b.exr");
     File::new("openexr", Samples::F32).with(|picture| make_texture(&path, picture)).expect("written");
     assert!(worst(&read(&std::fs::read(&path).expect("there"), "b.tx").unwrap(), 0, |v| v, 0.0) <= 1.0);
 }
 
-/// A Cineon file by hand (Kodak, "Cineon Image File Format Draft", 1995): header of 1024 bytes, three channels of 10 bits
-/// filled into 32.
+/// Builds a Cineon file by hand (Kodak, "Cineon Image File Format Draft", 1995): header of 1024 bytes, three channels of 10 bits packed
+/// into 32.
 fn cineon(codes: [[u32; 3]; 2]) -> Vec<u8> {
     let mut bytes = vec![0xff; 2048];
     let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
@@ -248,7 +248,7 @@ fn cineon(codes: [[u32; 3]; 2]) -> Vec<u8> {
             put(at + 12 + 4 * k, &value.to_be_bytes());
         }
     }
-    // Pixels interleaved, 5: filled into 32 bits from the left; positive; nothing at the ends of lines.
+    // Interleaved pixels; 5: packed into 32 bits from the left; positive; no padding at the ends of lines.
     put(680, &[0, 5, 0, 0]);
     put(684, &0_u32.to_be_bytes());
     put(688, &0_u32.to_be_bytes());
@@ -266,7 +266,7 @@ fn a_cineon_file_is_log() {
     let light = |code: f64| ((10_f64.powf((code - 685.0) / 300.0) - black) / (1.0 - black)).max(0.0);
     for (pixel, codes) in found.rgb.iter().zip([[95.0, 685.0, 1023.0], [445.0, 0.0, 685.0]]) {
         for (found, code) in pixel.iter().zip(codes) {
-            // A 64th of a step: ten bits are handed on in sixteen.
+            // The tolerance is a 64th of a step, because ten bits arrive in sixteen.
             let slack = light(code + 1.0 / 64.0) - light(code) + 1e-6;
             assert!((f64::from(*found) - light(code)).abs() < slack, "{code}: {found}");
         }
@@ -275,7 +275,7 @@ fn a_cineon_file_is_log() {
 
 #[test]
 fn orientation_and_cover_are_heeded() {
-    // SMPTE 268M, bytes 768 and 769: 3 runs from right to left and from the bottom up, 5 down and then to the left.
+    // SMPTE 268M, bytes 768 and 769: 3 runs from right to left and from the bottom up, 5 runs down and then to the left.
     let mut bytes = File::new("dpx", Samples::U8).text("oiio:ColorSpace", "Linear").bytes();
     let upright = read(&bytes, "a.dpx").unwrap().rgb;
     assert!(bytes.starts_with(b"XPDS"), "the byte of low worth comes first");
@@ -283,7 +283,7 @@ fn orientation_and_cover_are_heeded() {
     assert!(read(&bytes, "a.dpx").unwrap().rgb.iter().eq(upright.iter().rev()), "turned by half");
     bytes[768] = 5;
     assert!(read(&bytes, "a.dpx").err().is_some_and(|trouble| trouble.text.contains("column by column")));
-    // Targa keeps cover straight: code values are as they were, light is multiplied.
+    // Targa stores straight alpha: code values are unchanged, light is multiplied.
     let mut file = File::new("targa", Samples::U8).integer("oiio:UnassociatedAlpha", 1);
     file.alpha = Some(vec![0.2; (WIDTH * HEIGHT) as usize]);
     let found = read(&file.bytes(), "a.tga").unwrap();
@@ -309,7 +309,7 @@ fn broken_and_hostile_files_are_errors() {
                 kept.push(cut);
             }
         }
-        // Some readers make do with what is there near the end of a file; none with a header.
+        // Some readers accept a file cut near its end, but none accepts a cut header.
         assert!(kept.iter().all(|cut| *cut > 800), "{name}: {kept:?}");
         let text = read(b"This is no picture at all, but some text of two lines.\nThis is the second.\n", name);
         assert!(text.err().is_some_and(|trouble| trouble.hint.is_some()), "{name}: a text");
@@ -322,7 +322,7 @@ fn huge_sizes_in_headers_are_refused_before_anything_is_unpacked() {
     let jp2 = jpeg_2000();
     let tga = File::new("targa", Samples::U8).bytes();
     let siz = jp2.windows(4).position(|w| w == [0xff, 0x4f, 0xff, 0x51]).expect("a codestream");
-    // Where width and height stand, and in how many bytes of which order.
+    // Positions of width and height, their size in bytes, and the byte order.
     for (name, good, at, size, big) in [
         ("a.dpx", &dpx, [772, 776], 4, false),
         ("a.jp2", &jp2, [siz + 8, siz + 12], 4, true),

@@ -1,4 +1,4 @@
-//! What a picture of another format costs, read by OpenImageIO.
+//! Memory that OpenImageIO needs to read a picture of another format.
 
 use crate::cost::{Case, HEIGHT, WIDTH, ramp};
 use spectra_plugin_oiio::{Samples, Written, make_texture, write};
@@ -26,7 +26,7 @@ fn foreign(path: &Path) {
     planes(Samples::U16, |picture| write(&mut file, picture)).expect("written");
 }
 
-/// Half a float a sample is what is read by OpenImageIO alone.
+/// Writes half floats, which only OpenImageIO reads.
 fn texture(path: &Path) {
     planes(Samples::F16, |picture| make_texture(path, picture)).expect("written");
 }

@@ -1,6 +1,6 @@
-//! What the picture sources and the program do not see: files that fill disks, repetitions, limits.
+//! Cases that tests of the picture sources and the program do not cover: full disks, repeated writes, limits.
 
-/// Its test runs with those of this file.
+/// The unit test of `stated.rs` runs with the tests of this file.
 #[path = "../../src/stated.rs"]
 mod stated;
 
@@ -57,7 +57,7 @@ fn the_same_picture_gives_the_same_bytes() {
     assert!((0..4).all(|_| once() == first));
     let date = first.windows(8).position(|bytes| bytes == b"capDate\0").expect("written in any case");
     assert_eq!(first[date + 8..][..11], *b"string\0\0\0\0\0", "no time of day");
-    // What is read back by the library that wrote it.
+    // The library reads back what it wrote.
     let read = OpenImageIo.read("exr", &file_of(&first), LIMITS);
     assert!(read.is_err_and(|cause| cause.contains("`X`")), "X, Y and Z are no red, green and blue");
 }

@@ -1,4 +1,4 @@
-//! The tests of this crate as its users see it, by a name of their own: `.ci/run` builds them once more with the feature.
+//! Integration tests under a name of their own, so that `.ci/run` can build them once more with the feature.
 
 #![cfg(feature = "oiio")]
 

@@ -1,4 +1,4 @@
-//! Samples against the stated density: chi-square, and Kolmogorov and Smirnov's test on the continuum.
+//! Tests of samples against the stated density: chi-square, and the Kolmogorov-Smirnov test on the continuum.
 
 use crate::world::{CONTINUUM, Draws, draw, imagers, lights, may_refuse, strategies, system};
 use spectra_core::isa::Isa;
@@ -8,10 +8,10 @@ use spectra_core::stage::WavelengthDensity;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 const SAMPLES: usize = 100_000;
-/// Steps a nanometre in which a stated density is summed.
+/// Number of steps per nanometer in which a stated density is integrated.
 const STEPS: usize = 64;
 
-/// Cumulative of the continuum on a fine grid, by the midpoint rule over the stated density.
+/// Cumulative distribution of the continuum on a fine grid, by the midpoint rule over the stated density.
 struct Cumulative {
     start_nm: f64,
     at: Vec<f64>,
@@ -41,7 +41,7 @@ impl Cumulative {
     }
 }
 
-/// p of the draws by 64 bins of the continuum, equal in probability, and one for each line.
+/// Returns the p-value of the draws by the chi-square test, with 64 bins of equal probability for the continuum and one for each line.
 fn chi_square(draws: &Draws, cumulative: &Cumulative, lines: &[f64]) -> f64 {
     const BINS: usize = 64;
     let n = draws.line.len() as f64;
@@ -67,8 +67,8 @@ fn chi_square(draws: &Draws, cumulative: &Cumulative, lines: &[f64]) -> f64 {
     if bins < 2.0 { 1.0 } else { ChiSquared::new(bins - 1.0).expect("positive").sf(chi2) }
 }
 
-/// p by the limiting distribution of the greatest distance (A. Kolmogorov, 1933), with M. A. Stephens's correction for finite
-/// numbers of draws (Journal of the Royal Statistical Society B 32, 1970).
+/// Returns the p-value by the limiting distribution of the greatest distance (A. Kolmogorov, 1933), with M. A. Stephens's correction for
+/// finite numbers of draws (Journal of the Royal Statistical Society B 32, 1970).
 fn kolmogorov_smirnov(draws: &Draws, cumulative: &Cumulative) -> f64 {
     let of_continuum = draws.wavelength_nm.iter().zip(&draws.line).filter(|d| *d.1 == CONTINUUM);
     let mut shares: Vec<f64> = of_continuum.map(|d| cumulative.at(*d.0) / cumulative.total()).collect();
@@ -115,7 +115,7 @@ fn samples_follow_the_stated_density() {
     println!("smallest p {least:.4}");
 }
 
-/// Every weight is one over the probability (density) that the strategy states for what was drawn.
+/// Every weight is one over the probability (or density) that the strategy states for the line (or wavelength) drawn.
 #[test]
 fn weights_are_one_over_the_stated_density() {
     for (light, source) in lights() {
@@ -124,7 +124,7 @@ fn weights_are_one_over_the_stated_density() {
             for (name, sampler) in strategies() {
                 let Ok(density) = sampler.prepare(&system) else { continue };
                 if ["gaussian-terms, term then wavelength", "gaussian-terms, one term"].contains(&name) {
-                    continue; // signed: the mean of its weights at a wavelength is
+                    continue; // weights are signed: only their mean at a wavelength is one over the density
                 }
                 let mut u = vec![0.0; 4096];
                 Numbers::sobol(3).fill(Isa::detect(), 0, 0, 0, &mut u);
@@ -135,7 +135,7 @@ fn weights_are_one_over_the_stated_density() {
                         line => density.line_probability(line as usize),
                     };
                     let product = probability * draws.weight[i];
-                    // A draw within a rounding of a quantile's edge may find the density beside it.
+                    // A draw that is within a rounding error of a quantile's edge may find the density on the other side.
                     let near_edge = 1e-9 * draws.weight[i].max(1.0);
                     let beside = [-near_edge, near_edge]
                         .map(|d| density.density_per_nm(draws.wavelength_nm[i] + d) * draws.weight[i]);

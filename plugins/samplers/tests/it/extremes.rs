@@ -1,4 +1,4 @@
-//! Widths and centers beyond reason, blind spots, and what is refused.
+//! Extreme widths and centers, densities with blind spots, and refused parameters.
 
 use crate::world::{draw, estimate, exact, light, ortho_plus, system, xyz, y_bar};
 use spectra_core::isa::Isa;
@@ -18,7 +18,7 @@ fn numbers() -> Vec<f64> {
     u
 }
 
-/// Widths from 0.01 to 10 000 nm, centers far outside of the band, and the ends of [0, 1).
+/// Widths from 0.01 to 10 000 nm, centers far outside the band and numbers at the ends of [0, 1) give finite positive weights.
 #[test]
 fn no_weight_is_infinite_or_nan() {
     for channels in [xyz(), ortho_plus()] {
@@ -31,7 +31,7 @@ fn no_weight_is_infinite_or_nan() {
                 for (name, sampler) in [("gaussian", &gaussian as &dyn WavelengthSampler), ("terms", &terms)] {
                     let density = match sampler.prepare(&system) {
                         Ok(density) => density,
-                        // What does not reach the band, or what is seen of it, is refused, with its reason.
+                        // A Gaussian that does not reach the band, or the channels' response in it, is refused with the reason.
                         Err(text) => {
                             let reason =
                                 if name == "terms" { "no Gaussian term reaches" } else { "does not reach what" };
@@ -65,7 +65,7 @@ fn ends_of_the_numbers_stay_in_the_band() {
     }
 }
 
-/// What would be a bias is refused, and says where.
+/// A density that would cause bias is refused, and the message says where.
 #[test]
 fn blind_densities_are_refused() {
     let daylight = system(light("D65"), xyz());
@@ -94,7 +94,7 @@ fn blind_densities_are_refused() {
     assert!(Lines.prepare(&daylight).is_err());
 }
 
-/// `center: 540 mm` for nm, and a center beside what the film sees: fifteen of sixteen rays would be lost without a word.
+/// A center of `540 mm` instead of nm, or outside the film's sensitivity, is refused: fifteen of sixteen rays would be lost silently.
 #[test]
 fn a_gaussian_far_from_what_is_seen_is_refused() {
     let ortho = system(light("D65"), ortho_plus());
@@ -106,7 +106,7 @@ fn a_gaussian_far_from_what_is_seen_is_refused() {
         let text = refused(center, sigma).expect("refused");
         assert!(text.contains("set `center` within") && text.contains(&format!("{center} nm")), "{text}");
     }
-    // One that only just reaches, one that is narrower than a cell, and a far one that is wide enough.
+    // A Gaussian that just reaches the sensitive range, one narrower than a cell, and a distant but wide one are accepted.
     for (center, sigma) in [(780.0, 60.0), (540.3, 0.01), (2000.0, 10_000.0)] {
         assert_eq!(refused(center, sigma), None, "{center} {sigma}");
     }
@@ -124,7 +124,7 @@ fn parameters_out_of_range_are_refused() {
     assert!(InverseTransform::new("x", BAND, vec![1.0; 3], Floor::default()).is_none());
 }
 
-/// A source that is dark as a whole may be lit in places: its density follows what is seen.
+/// A source that is dark on the whole may be lit in places, so it can be sampled; the density follows the response.
 #[test]
 fn darkness_can_be_sampled() {
     let dark = system(SpectralPower::dark(BAND), xyz());

@@ -1,4 +1,4 @@
-//! Groups of samples that share one number, rotated.
+//! Tests of `hero`: groups of samples that share one rotated number.
 
 use crate::world::{draw, estimate, exact, imagers, light, lights, system, xyz};
 use spectra_core::isa::Isa;
@@ -11,7 +11,7 @@ fn hero(group: u32, density: impl WavelengthSampler + 'static) -> Hero {
     Hero::new(group, Box::new(density)).expect("in range")
 }
 
-/// Numbers as the renderer draws them.
+/// Returns numbers as the renderer draws them for this density.
 fn numbers(density: &dyn WavelengthDensity, numbers: &Numbers, many: usize) -> Vec<f64> {
     let mut u = vec![0.0; many];
     numbers.fill_rotated(Isa::detect(), 3, 0, density.group(), 0, &mut u);
@@ -26,15 +26,15 @@ fn the_group_reaches_the_renderer() {
     assert!(Hero::new(1, Box::new(Uniform)).is_none() && Hero::new(1025, Box::new(Uniform)).is_none());
 }
 
-/// Each member of a group has the density of the whole: chi-square over 64 parts of equal probability. (Members of one
-/// group are not independent, so each is tested apart.)
+/// Each member of a group follows the density of the strategy, by chi-square over 64 bins of equal probability. (Members of one group
+/// are not independent, so each is tested separately.)
 #[test]
 fn every_member_of_a_group_follows_the_density() {
     let system = system(light("D65"), xyz());
     let density = hero(4, SourceTimesResponse).prepare(&system).expect("can be drawn");
     let u = numbers(density.as_ref(), &Numbers::random(5), 400_000);
     let draws = draw(density.as_ref(), &u);
-    // Edges of equal probability, by the midpoint rule over the stated density.
+    // Edges of bins with equal probability, by the midpoint rule over the stated density.
     let (cells, step) = (480 * 64, 1.0 / 64.0);
     let mut edges = Vec::new();
     let mut sum = 0.0;
@@ -49,7 +49,7 @@ fn every_member_of_a_group_follows_the_density() {
         let of_member = draws.wavelength_nm.iter().skip(member).step_by(4);
         let n = 100_000.0;
         of_member.for_each(|nm| counts[edges.partition_point(|e| e <= nm)] += 1.0);
-        // The edges lie on a grid: what they hold exactly is what the density says between them.
+        // The edges lie on a grid, so the exact probability of a bin is the density integrated between its edges.
         let mut chi2 = 0.0;
         for (i, count) in counts.iter().enumerate() {
             let from = if i == 0 { 350.0 } else { edges[i - 1] };
@@ -64,7 +64,8 @@ fn every_member_of_a_group_follows_the_density() {
     }
 }
 
-/// Within three standard errors over 1 000 seeds, for groups that divide the number of samples and one that does not.
+/// Estimates are unbiased within three standard errors over 1 000 seeds, for a group that divides the number of samples and one that does
+/// not.
 #[test]
 fn groups_are_unbiased() {
     for (light, source) in lights() {
@@ -93,7 +94,7 @@ fn groups_are_unbiased() {
     }
 }
 
-/// What it is for: with independent numbers, 64 samples in groups of 16 scatter less than 64 independent ones.
+/// The purpose of groups: with independent numbers, 64 samples in groups of 16 scatter less than 64 independent ones.
 #[test]
 fn groups_take_noise_from_independent_numbers() {
     let system = system(light("D65"), xyz());

@@ -1,4 +1,4 @@
-//! Every built-in sampler keeps the laws of samplers.
+//! Checks that every built-in sampler obeys the laws of samplers.
 
 use spectra_plugin_samplers as _;
 use spectra_testing::{SamplerLaws, wavelengths};

@@ -1,4 +1,4 @@
-//! Every strategy: its samples against its density, its estimates against quadrature, its errors, its speed.
+//! Tests of every strategy: samples against density, estimates against quadrature, errors, and speed.
 
 mod density;
 mod errors;

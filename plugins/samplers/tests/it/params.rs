@@ -1,4 +1,4 @@
-//! What a scene writes, by the registry.
+//! Strategies built from the text of a scene, through the registry.
 
 use crate::world::{draw, light, sobol, system, xyz};
 use spectra_core::params::{Faults, Params};

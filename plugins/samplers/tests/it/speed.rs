@@ -1,4 +1,4 @@
-//! Draws a second on one thread; printed, for `cargo test --release -- --ignored --nocapture speed`.
+//! Measurement of draws per second on one thread; run `cargo test --release -- --ignored --nocapture speed` to print it.
 
 use crate::world::{light, mixed, strategies, system, xyz};
 use spectra_core::isa::Isa;
@@ -8,9 +8,9 @@ use std::time::Instant;
 
 const BATCH: usize = 4096;
 
-/// The best of some runs, draws a second: other work on the machine only slows.
+/// Returns the best of many runs, in draws per second, because other work on the machine can only slow a run down.
 fn best(mut run: impl FnMut()) -> f64 {
-    // Short enough to fit between two turns of the scheduler on a busy machine.
+    // A run is short enough to fit into one time slice of the scheduler on a busy machine.
     const BATCHES: u32 = 8;
     let once = |_| {
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Gaussian-term strategies on the set-up that two other programs computed: source G(560, 120) with and without
+//! Tests of Gaussian-term strategies on a setup that two other programs computed: source G(560, 120) with and without
 //! -0.3 G(600, 40), n equal filters G(560, 300) - 0.6 G(520, 25), detector G(445, 22) + G(560, 45), band 380-780 nm.
 
 use crate::world::{draw, estimate, exact, light, sobol, system, xyz};
@@ -31,7 +31,7 @@ fn one_term(n: usize) -> OneTerm {
     OneTerm::new(factors, BAND.0, BAND.1).expect("reaches the band")
 }
 
-/// Exact second moments by enumeration, to the digits printed.
+/// Exact second moments by enumeration agree with the computed figures to the printed digits.
 #[test]
 fn following_one_term_scatters_as_computed() {
     for (n, want, digit) in [(1, 1.1825, 1e-4), (2, 2.361, 1e-3), (4, 9.669, 1e-3), (8, 223.3, 0.1), (12, 5687.0, 1.0)]
@@ -41,7 +41,7 @@ fn following_one_term_scatters_as_computed() {
     }
 }
 
-/// Up to four filters; beyond, samples cannot show it.
+/// Following one term is unbiased with up to four filters; with more, the scatter is too large for samples to show it.
 #[test]
 fn following_one_term_is_unbiased() {
     for n in [1, 2, 3, 4] {
@@ -64,7 +64,7 @@ fn following_one_term_is_unbiased() {
     }
 }
 
-/// Relative standard deviation of one sample, within 5 %.
+/// The relative standard deviation of one sample agrees with the computed figures within 5 %.
 #[test]
 fn terms_with_wavelengths_scatter_as_computed() {
     let source = mixture(&[[1.0, 560.0, 120.0], [-0.3, 600.0, 40.0]]);
@@ -101,8 +101,8 @@ fn terms_with_wavelengths_scatter_as_computed() {
     }
 }
 
-/// One term of the source followed in a scene: daylight by a single Gaussian that misses it by far. What is left over is
-/// followed too, or the estimate would be that of the Gaussian.
+/// Following one term of the source is unbiased even if daylight is fitted by a single Gaussian that misses it by far. The residual is
+/// followed, too; otherwise the estimate would be that of the Gaussian.
 #[test]
 fn following_one_term_of_the_source_is_unbiased_however_bad_the_fit() {
     let system = system(light("D65"), xyz());

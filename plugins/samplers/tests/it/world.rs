@@ -13,14 +13,14 @@ use spectra_scene::FileResources;
 use spectra_spectrum::{Observer, find_emission};
 use std::sync::Arc;
 
-/// The line number of a wavelength from the continuum.
+/// Line number that marks a wavelength from the continuum.
 pub use spectra_core::batch::CONTINUUM;
 
 pub fn light(name: &str) -> SpectralPower {
     find_emission(name).expect("bundled").to_power(&BAND)
 }
 
-/// FL11's continuum and the mercury lamp together: about half of Y in lines.
+/// Returns FL11 with the lines of the mercury lamp added; about half of Y is in lines.
 pub fn mixed() -> SpectralPower {
     let (mut light, mercury) = (light("FL11"), light("mercury"));
     light.lines = mercury.scaled(0.02).lines;
@@ -55,7 +55,7 @@ pub fn y_bar(floor: Floor) -> InverseTransform {
     InverseTransform::new("y-bar", BAND, spectrum, floor).expect("sound")
 }
 
-/// All strategies, each with usual parameters.
+/// Returns all strategies, each with usual parameters.
 pub fn strategies() -> Vec<(&'static str, Box<dyn WavelengthSampler>)> {
     let terms = |follow| GaussianTerms::fitted(4, follow, Floor::default()).expect("in range");
     let gaussian = |center, sigma| TruncatedGaussianSampler::new(center, sigma, Floor::default()).expect("in range");
@@ -74,7 +74,7 @@ pub fn strategies() -> Vec<(&'static str, Box<dyn WavelengthSampler>)> {
     ]
 }
 
-/// What was drawn.
+/// Drawn wavelengths with their lines and weights.
 #[derive(Clone)]
 pub struct Draws {
     pub wavelength_nm: Vec<f64>,
@@ -89,7 +89,7 @@ pub fn draw(density: &dyn WavelengthDensity, u: &[f64]) -> Draws {
     draws
 }
 
-/// Exposure of each channel by the samples, as a renderer sums them.
+/// Returns the exposure of each channel estimated from the samples, as a renderer sums them.
 pub fn estimate(system: &SystemResponse, draws: &Draws) -> Vec<f64> {
     let mut sums = vec![0.0; system.channels.len()];
     for i in 0..draws.line.len() {
@@ -105,24 +105,24 @@ pub fn estimate(system: &SystemResponse, draws: &Draws) -> Vec<f64> {
     sums.iter().map(|s| s / draws.line.len() as f64).collect()
 }
 
-/// Exposure of each channel by quadrature.
+/// Returns the exposure of each channel by quadrature.
 pub fn exact(system: &SystemResponse) -> Vec<f64> {
     system.channels.iter().map(|c| system.source.seen_by(&c.response)).collect()
 }
 
-/// Whether a strategy may refuse: no lines, or terms that cancel.
+/// Returns whether a strategy may refuse a source: because it has a continuum, or because terms cancel.
 pub fn may_refuse(name: &str) -> bool {
     ["lines", "gaussian-terms, one term"].contains(&name)
 }
 
-/// Sobol numbers: in a power of 2, one in each of `n` equal parts of [0, 1), in a random order.
+/// Returns `n` Sobol numbers; if `n` is a power of 2, there is one in each of `n` equal parts of [0, 1), in random order.
 pub fn sobol(seed: u64, n: usize) -> Vec<f64> {
     let mut u = vec![0.0; n];
     Numbers::sobol(seed).fill(Isa::detect(), 2, 0, 0, &mut u);
     u
 }
 
-/// One number in each of `n` equal parts of [0, 1), at an independent place.
+/// Returns one number in each of `n` equal parts of [0, 1), at an independent place in each.
 pub fn jittered(seed: u64, n: usize) -> Vec<f64> {
     let mut u = vec![0.0; n];
     Numbers::random(seed).fill(Isa::detect(), 1, 0, 0, &mut u);

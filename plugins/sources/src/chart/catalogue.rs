@@ -1,4 +1,4 @@
-//! The charts by name.
+//! List of the charts, by name.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -8,19 +8,19 @@ use super::designs;
 use super::drawing::Drawing;
 use super::sheet::Chart;
 
-/// One chart that can be asked for.
+/// A chart that a scene can name.
 #[derive(Clone, Copy, Debug)]
 pub struct ChartEntry {
-    /// Name in a scene.
+    /// Name of the chart in a scene.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Description of the chart in one line.
     pub summary: &'static str,
     draw: fn(seed: u64) -> Drawing,
 }
 
 impl ChartEntry {
-    /// Draws the chart `width_mm` wide, or in the size of its design. Only charts with something random in
-    /// them look at `seed`.
+    /// Draws the chart `width_mm` wide, or in the size of its design if that is `None`. Only charts with random parts use
+    /// `seed`.
     ///
     /// # Errors
     /// [`ChartError::Width`] if the width is not positive and finite.
@@ -89,29 +89,31 @@ pub const CHARTS: &[ChartEntry] = &[
     },
 ];
 
-/// The name of a chart of the user's own patches.
+/// Name of the chart that shows the user's reflectances as patches.
 pub const OWN_PATCHES: &str = "patches";
 
-/// A chart of `count` patches ([`Ink::Own`](super::Ink::Own)) in a block on a black frame, `width_mm` wide.
+/// Draws a chart of `count` patches ([`Ink::Own`](super::Ink::Own)) in a block on a black frame, `width_mm` wide.
 #[must_use]
 pub fn own_patches(count: u16, width_mm: f64) -> Chart {
     let key = (OWN_PATCHES, u64::from(count));
     known(key, || designs::patches(count).finish(OWN_PATCHES)).scaled(width_mm)
 }
 
-/// So many designs are kept, those that were asked for last: to draw one takes tens of milliseconds, to scale it less than one.
+/// Number of designs in the cache, which keeps the latest ones. Drawing a design takes tens of milliseconds, scaling it less than
+/// one.
 const KEPT: usize = 4;
 
-/// What a chart's name and its seed, or its number of patches, stand for.
+/// Cache key: the name of a chart, and its seed or its number of patches.
 type Key = (&'static str, u64);
 
-/// The chart in the size of its design. What is drawn twice is the same, so nothing but time depends on what is known.
+/// Returns the chart in the size of its design, from the cache if it is there. Drawing is deterministic, so the cache affects only
+/// the time.
 fn known(key: Key, draw: impl FnOnce() -> Chart) -> Arc<Chart> {
     static KNOWN: Mutex<VecDeque<(Key, Arc<Chart>)>> = Mutex::new(VecDeque::new());
     let all = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     let found = all().iter().find(|(other, _)| *other == key).map(|(_, chart)| Arc::clone(chart));
     found.unwrap_or_else(|| {
-        // Not under the lock: other threads may ask meanwhile.
+        // Draw without holding the lock, so that other threads can use the cache meanwhile.
         let drawn = Arc::new(draw());
         let mut all = all();
         all.truncate(KEPT - 1);
@@ -133,7 +135,7 @@ fn known(key: Key, draw: impl FnOnce() -> Chart) -> Arc<Chart> {
 /// ```
 ///
 /// # Errors
-/// [`ChartError::Unknown`] names the chart that reads most like `name`; [`ChartError::Width`] if the width
+/// [`ChartError::Unknown`] if there is no such chart, with the name most similar to `name`; [`ChartError::Width`] if the width
 /// is not positive and finite.
 pub fn chart(name: &str, width_mm: Option<f64>, seed: u64) -> Result<Chart, ChartError> {
     match CHARTS.iter().find(|entry| entry.name == name) {
@@ -142,25 +144,25 @@ pub fn chart(name: &str, width_mm: Option<f64>, seed: u64) -> Result<Chart, Char
     }
 }
 
-/// Why there is no chart.
+/// The reason why a chart cannot be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChartError {
     /// No chart has that name.
     Unknown {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// The known name that reads most like it.
+        /// The known name that is most similar to it.
         nearest: &'static str,
     },
     /// The width is not a positive, finite length.
     Width {
-        /// The width asked for, mm.
+        /// The requested width, mm.
         width_mm: f64,
     },
 }
 
 impl ChartError {
-    /// The same as a message and what to do about it.
+    /// Returns the error as a message and a hint.
     #[must_use]
     pub(crate) fn parts(&self) -> (String, String) {
         match self {
@@ -170,7 +172,7 @@ impl ChartError {
                 let name: String = name.chars().take(48).collect();
                 (format!("unknown chart `{name}`"), spectra_core::names::hint(&name, &known, ""))
             }
-            Self::Width { .. } => (self.to_string(), "such as 1.5 m".to_owned()),
+            Self::Width { .. } => (self.to_string(), "write a width such as `1.5 m`".to_owned()),
         }
     }
 }
@@ -179,7 +181,7 @@ impl fmt::Display for ChartError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown { name, nearest } => {
-                write!(f, "there is no chart `{name}`; did you mean `{nearest}`? There are: ")?;
+                write!(f, "there is no chart `{name}`; did you mean `{nearest}`? Known charts: ")?;
                 for (i, entry) in CHARTS.iter().enumerate() {
                     write!(f, "{}{}", if i == 0 { "" } else { ", " }, entry.name)?;
                 }
@@ -194,8 +196,8 @@ impl fmt::Display for ChartError {
 
 impl std::error::Error for ChartError {}
 
-/// The chart whose name takes the fewest edits to reach from `name`; a name that contains it, or lies in it, is
-/// nearer than any other.
+/// Finds the chart whose name needs the fewest edits to reach from `name`. A name that contains `name`, or is contained in
+/// it, is nearer than any other.
 fn nearest(name: &str) -> &'static str {
     let asked = name.trim().to_lowercase().replace(['_', ' '], "-");
     let rank = |known: &str| {
@@ -205,7 +207,7 @@ fn nearest(name: &str) -> &'static str {
     CHARTS.iter().map(|entry| entry.name).min_by_key(|known| rank(known)).expect("there are charts")
 }
 
-/// Levenshtein distance, in characters.
+/// Computes the Levenshtein distance of two texts, in characters.
 fn edits(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

@@ -1,44 +1,44 @@
-//! A cell of the acceleration grid, and what a shape says about it.
+//! A cell of the acceleration grid, and how much of it a shape covers.
 
-/// How much of a cell a shape covers.
+/// The part of a cell that a shape covers.
 ///
-/// `None` and `Full` are promises: no point, or every point, of the cell lies in the shape.
-/// `Partial` promises nothing; a shape in doubt says so.
+/// `None` and `Full` are guarantees: no point, or every point, of the cell lies in the shape. `Partial` guarantees nothing; a
+/// shape returns it if it cannot decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coverage {
     /// No point of the cell lies in the shape.
     None,
-    /// Perhaps some points do, perhaps some do not.
+    /// Some points of the cell may lie in the shape, and some may not.
     Partial,
     /// Every point of the cell lies in the shape.
     Full,
 }
 
-/// An axis-parallel rectangle of the chart.
+/// An axis-parallel rectangle on the chart.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
-    /// Center, mm.
+    /// Center of the cell, mm.
     pub center_mm: [f64; 2],
-    /// Half width and half height, mm.
+    /// Half width and half height of the cell, mm.
     pub half_mm: [f64; 2],
 }
 
 impl Cell {
-    /// Half extents along the axis (`cos`, `sin`) and along its normal, mm.
+    /// Returns half the extent of the cell along the axis (`cos`, `sin`) and along its normal, mm.
     #[must_use]
     pub fn half_along(&self, cos: f64, sin: f64) -> [f64; 2] {
         let [hx, hy] = self.half_mm;
         [hx * cos.abs() + hy * sin.abs(), hx * sin.abs() + hy * cos.abs()]
     }
 
-    /// Half of the diagonal, mm.
+    /// Half the diagonal of the cell, mm.
     #[must_use]
     pub fn half_diagonal_mm(&self) -> f64 {
         let [hx, hy] = self.half_mm;
         (hx * hx + hy * hy).sqrt()
     }
 
-    /// Least and largest squared distance, mm^2, of a point of the cell from `point_mm`.
+    /// Returns the smallest and the largest squared distance, mm^2, of points of the cell from `point_mm`.
     #[must_use]
     pub fn distance_squared(&self, point_mm: [f64; 2]) -> [f64; 2] {
         let mut least = 0.0;
@@ -53,7 +53,7 @@ impl Cell {
         [least, largest]
     }
 
-    /// Corners, counter-clockwise from the lower left, mm.
+    /// Corners of the cell, mm, counterclockwise from the lower left.
     #[must_use]
     pub fn corners(&self) -> [[f64; 2]; 4] {
         let [cx, cy] = self.center_mm;
@@ -61,7 +61,7 @@ impl Cell {
         [[cx - hx, cy - hy], [cx + hx, cy - hy], [cx + hx, cy + hy], [cx - hx, cy + hy]]
     }
 
-    /// Quarter `index` of the cell: 0 lower left, 1 lower right, 2 upper left, 3 upper right.
+    /// Returns quarter `index` of the cell: 0 lower left, 1 lower right, 2 upper left, 3 upper right.
     #[must_use]
     pub fn quarter(&self, index: usize) -> Self {
         let half_mm = [0.5 * self.half_mm[0], 0.5 * self.half_mm[1]];
@@ -75,7 +75,7 @@ impl Cell {
         }
     }
 
-    /// The cell, wider by `margin_mm` on each side.
+    /// Returns the cell extended by `margin_mm` on each side.
     #[must_use]
     pub fn padded(&self, margin_mm: f64) -> Self {
         Self { center_mm: self.center_mm, half_mm: [self.half_mm[0] + margin_mm, self.half_mm[1] + margin_mm] }

@@ -1,23 +1,23 @@
-//! A chart while it is being drawn.
+//! Builder of a chart: a drawing of shapes and text.
 
 use super::font::{self, Pen};
 use super::ink::Ink;
 use super::shape::{Arc, Shape, Stroke};
 use super::sheet::{Chart, Landmark};
 
-/// Where a line of text stands from its anchor.
+/// Alignment of a line of text with its anchor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
-    /// It begins there.
+    /// The text begins at the anchor.
     Left,
-    /// It is centered there.
+    /// The text is centered on the anchor.
     Center,
-    /// It ends there.
+    /// The text ends at the anchor.
     Right,
 }
 
-/// Shapes on a ground, later ones on top, in millimetres of the drawing (origin at the center, +x right, +y
-/// up); a finished chart is brought to the wanted size.
+/// Shapes on a ground, later ones on top, in millimeters of the drawing (origin at the center, +x right, +y up). The finished
+/// chart can be scaled to any size.
 #[derive(Debug)]
 pub struct Drawing {
     width_mm: f64,
@@ -28,7 +28,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Empty sheet of `ground`, `width_mm` x `height_mm`, both positive.
+    /// Creates an empty sheet in the ink `ground`, `width_mm` x `height_mm`, both positive.
     #[must_use]
     pub fn new(width_mm: f64, height_mm: f64, ground: Ink) -> Self {
         Self { width_mm, height_mm, inks: vec![ground], shapes: Vec::new(), landmarks: Vec::new() }
@@ -47,13 +47,13 @@ impl Drawing {
         self.shapes.push((shape.into(), index));
     }
 
-    /// Names a place: `center_mm` and the radius within which the named thing lies alone.
+    /// Adds a landmark with its center and the radius within which nothing else is drawn.
     pub fn mark(&mut self, name: impl Into<String>, center_mm: [f64; 2], radius_mm: f64) {
         self.landmarks.push(Landmark { name: name.into(), center_mm, radius_mm });
     }
 
-    /// Writes a line of text in `ink`: `anchor_mm` lies on its lower edge, capitals are `height_mm` tall from
-    /// edge to edge.
+    /// Writes a line of text in `ink`. `anchor_mm` lies on its lower edge, and capitals are `height_mm` tall from edge to
+    /// edge.
     pub fn text(&mut self, text: &str, anchor_mm: [f64; 2], height_mm: f64, align: Align, ink: Ink) {
         let unit_mm = height_mm / font::CAPITAL_HEIGHT;
         let width_mm = text_width_mm(text, height_mm);
@@ -62,7 +62,7 @@ impl Drawing {
             Align::Center => anchor_mm[0] - 0.5 * width_mm,
             Align::Right => anchor_mm[0] - width_mm,
         };
-        // The pen is one unit wide: its middle runs half a unit inside of the edges.
+        // The pen is one unit wide: its center runs half a unit inside the edges.
         let mut x_mm = left_mm + 0.5 * unit_mm;
         let y_mm = anchor_mm[1] + 0.5 * unit_mm;
         for character in text.chars() {
@@ -87,14 +87,14 @@ impl Drawing {
         }
     }
 
-    /// The chart, in the size of the drawing.
+    /// Returns the finished chart, in the size of the drawing.
     #[must_use]
     pub fn finish(self, name: &'static str) -> Chart {
         Chart::new(name, self.width_mm, self.height_mm, self.inks, self.shapes, self.landmarks)
     }
 }
 
-/// Width of a line of text from edge to edge, mm, with capitals of `height_mm`.
+/// Returns the width of a line of text from edge to edge, mm, with capitals of `height_mm`.
 #[must_use]
 pub fn text_width_mm(text: &str, height_mm: f64) -> f64 {
     let unit_mm = height_mm / font::CAPITAL_HEIGHT;

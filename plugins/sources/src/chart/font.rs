@@ -1,37 +1,35 @@
-//! A lettering of straight strokes and arcs, drawn for these charts in the manner of engraved letters
-//! (one pen width, round ends).
+//! A font of straight strokes and arcs, drawn for these charts in the style of engraved letters (one pen width, round ends).
 //!
-//! Units: the pen is 1 wide, its middle runs from 0 (base line) to 7 (capitals), 4.6 (small letters) and
-//! -2.3 (descenders).
+//! Units: the pen is 1 wide. Its center runs from 0 (baseline) to 7 (capitals), 4.6 (small letters) and -2.3 (descenders).
 
-/// What the pen does.
+/// One movement of the pen.
 #[derive(Clone, Copy, Debug)]
 pub enum Pen {
-    /// Straight from point to point; a dot if there is one point.
+    /// Straight lines from point to point; a dot if there is one point.
     Path(&'static [(f64, f64)]),
-    /// Arc about (x, y): radius, start and sweep in degrees, counter-clockwise from +x.
+    /// An arc about (x, y): radius, start and sweep in degrees, counterclockwise from +x.
     Turn(f64, f64, f64, f64, f64),
 }
 
 use Pen::{Path, Turn};
 
-/// Height of a capital from outside to outside, units.
+/// Height of a capital from edge to edge, units.
 pub const CAPITAL_HEIGHT: f64 = 8.0;
-/// Gap between the middles of the last stroke of a letter and the first one of the next, units.
+/// Gap between the centers of the last stroke of a letter and the first one of the next, units.
 pub const SPACING: f64 = 2.2;
 /// Width of a blank, units.
 const BLANK: f64 = 1.6;
 
-/// One letter: its width between the middles of the outer strokes, units, and what the pen does.
+/// One letter: the character, its width between the centers of the outer strokes, units, and the movements of the pen.
 pub type Glyph = (char, f64, &'static [Pen]);
 
-/// The letter for `character`; a box if there is none.
+/// Returns the letter for `character`; a box if the font has none.
 #[must_use]
 pub fn glyph(character: char) -> &'static Glyph {
     GLYPHS.iter().find(|g| g.0 == character).unwrap_or(&MISSING)
 }
 
-/// Whether the lettering has `character`.
+/// Returns whether the font has `character`.
 #[cfg(test)]
 #[must_use]
 pub fn has(character: char) -> bool {

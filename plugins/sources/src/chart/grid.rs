@@ -1,10 +1,9 @@
-//! Acceleration: which shapes can matter where.
+//! Acceleration grid: finds the shapes that may cover a point.
 //!
-//! The chart lies in square cells, 1024 along its longer side (fewer if the lists below grew too many), gathered in
-//! blocks of 8 x 8. A block or
-//! cell of one ink says so; any other cell lists the shapes that may touch it, top first, down to the ink
-//! that covers all of it. Equal lists are kept once. The cells are found by halving a square around the chart again and
-//! again, each part asking only the shapes that its whole could not decide.
+//! The chart is divided into square cells, 1024 along its longer side (fewer if there would be too many of the lists below),
+//! grouped in blocks of 8 x 8. A block or cell of one ink stores that ink. Any other cell lists the shapes that may touch it,
+//! top first, down to the ink that covers all of it. Equal lists are stored once. The grid is built by halving a square around
+//! the chart again and again; each part tests only the shapes that its parent could not decide.
 
 use std::collections::HashMap;
 
@@ -14,56 +13,56 @@ use super::shape::Shape;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::math::whole;
 
-/// Halvings from the whole to a cell.
+/// Number of halvings from the whole chart to a cell.
 const DEPTH: u32 = 10;
-/// Halvings from a block to a cell.
+/// Number of halvings from a block to a cell.
 const BLOCK_DEPTH: u32 = 3;
 const BLOCK: usize = 1 << BLOCK_DEPTH;
-/// Shapes are asked about cells wider by this part of a cell on each side, so that the rounding of a
-/// point to its cell (some 1e-13 of the chart) can never matter.
+/// Margin of a cell, as a fraction of its size, when shapes are tested against it. Rounding (some 1e-13 of the chart) may assign a
+/// point to a neighboring cell, and must not change its ink.
 const MARGIN: f64 = 1e-6;
 
-/// Low bits of a block: the mask of the cell number within it, all ones if it has cells of its own, 0
-/// if one cell stands for all of it. The bits above are the index of its first cell. As the mask is
-/// data and not a question, the compiler makes no branch of it, which random points would often mispredict.
+/// Low bits of a block entry: a mask for the cell number within the block. It is all ones if the block has its own cells, and 0 if
+/// one cell represents all of it. The bits above are the index of its first cell. Since the mask is data, the compiler makes
+/// no branch of it, which random points would often mispredict.
 const CELL_MASK: u32 = (BLOCK * BLOCK - 1) as u32;
 const CELL_BITS: u32 = 2 * BLOCK_DEPTH;
-/// Set in the entry of a cell that has a list, whose number stands in the other bits.
+/// Bit that is set in the entry of a cell with a list; the other bits are the number of the list.
 const HAS_LIST: u16 = 1 << 15;
-/// The cell of a point that lies on no chart.
+/// Cell number of a point outside the chart.
 const OUTSIDE: u32 = u32::MAX;
-/// Points that a batch looks up at a time.
+/// Number of points that a batch looks up at a time.
 const CHUNK: usize = 256;
 
-/// The cells of a chart.
+/// Acceleration grid of a chart.
 #[derive(Clone, Debug)]
 pub struct Grid {
-    /// Cells along the longer side.
+    /// Number of cells along the longer side.
     along: usize,
     half_width_mm: f64,
     half_height_mm: f64,
     cells_per_mm: f64,
-    /// Blocks in a row.
+    /// Number of blocks in a row.
     columns: usize,
-    /// Column and row of the last cells.
+    /// Last column and last row of cells.
     last: [usize; 2],
     blocks: Vec<u32>,
-    /// First one for each ink, for the blocks of one ink to point to; then those of the other blocks.
+    /// Entries of cells: first one for each ink, to which blocks of one ink point, then those of the other blocks.
     cells: Vec<u16>,
-    /// Where each list starts in `listed`.
+    /// Start of each list in `listed`.
     lists: Vec<u32>,
-    /// Each list: number of shapes, ink below them, shapes from the top.
+    /// All lists. Each consists of the number of shapes, the ink below them, and the shapes from the top.
     listed: Vec<u16>,
 }
 
 impl Grid {
-    /// Grid for `shapes`, later ones on top, each with its ink, on a ground of ink 0.
+    /// Builds the grid for `shapes`, later ones on top, each with its ink, on a ground of ink 0.
     #[must_use]
     pub fn new(width_mm: f64, height_mm: f64, shapes: &[(Shape, u16)]) -> Self {
         let mut depth = DEPTH;
         loop {
             let grid = Self::of_depth(width_mm, height_mm, shapes, depth);
-            // Number 32767 would read as no ink. Cells twice as large have fewer lists, one block has 64 at most.
+            // List number 32767 would be read as no ink. Cells twice as large need fewer lists; one block has 64 at most.
             if grid.lists.len() < usize::from(HAS_LIST) {
                 return grid;
             }
@@ -71,7 +70,7 @@ impl Grid {
         }
     }
 
-    /// The same for a chart of the same shape and another size: which shapes may touch a cell does not change with it.
+    /// Returns the grid for the same chart in another size, since the shapes that may touch a cell stay the same.
     #[must_use]
     pub fn scaled(&self, width_mm: f64, height_mm: f64) -> Self {
         let cell_mm = width_mm.max(height_mm) / self.along as f64;
@@ -107,7 +106,7 @@ impl Grid {
         builder.grid
     }
 
-    /// Index of the ink at a point of the chart, mm; [`NO_INK`] outside of it.
+    /// Returns the index of the ink at a point of the chart, mm; [`NO_INK`] outside it.
     #[inline]
     #[must_use]
     pub fn ink_at(&self, shapes: &[(Shape, u16)], x_mm: f64, y_mm: f64) -> u16 {
@@ -115,8 +114,8 @@ impl Grid {
         if entry & HAS_LIST == 0 || entry == NO_INK { entry } else { self.top_of_list(entry, shapes, x_mm, y_mm) }
     }
 
-    /// [`Grid::ink_at`] for many points. First the cells of a chunk are found, in vectors; then all are looked up, without a
-    /// branch; then those that have a list are decided.
+    /// Computes [`Grid::ink_at`] for many points, chunk by chunk. For each chunk it finds the cells with vector code, looks them
+    /// all up without a branch, and then decides the points whose cells have a list.
     pub fn ink_at_batch(&self, shapes: &[(Shape, u16)], x_mm: &[f64], y_mm: &[f64], ink: &mut [u16], isa: Isa) {
         let chunks = x_mm.chunks(CHUNK).zip(y_mm.chunks(CHUNK)).zip(ink.chunks_mut(CHUNK));
         let (mut block, mut within) = ([0; CHUNK], [0; CHUNK]);
@@ -139,19 +138,19 @@ impl Grid {
         }
     }
 
-    /// Entry of the cell of a point: an ink, or a list.
+    /// Returns the entry of the cell of a point: an ink, or a list.
     #[inline(always)]
     fn entry(&self, x_mm: f64, y_mm: f64) -> u16 {
         let [block, within] = self.place(x_mm, y_mm);
         self.entry_at(block, within)
     }
 
-    /// Number of the block of a point, and of its cell within it, or [`OUTSIDE`].
+    /// Returns the number of the block of a point, and the number of its cell within the block or [`OUTSIDE`].
     #[inline(always)]
     fn place(&self, x_mm: f64, y_mm: f64) -> [u32; 2] {
         const SIDE: u32 = BLOCK as u32;
         let inside = (x_mm.abs() <= self.half_width_mm) & (y_mm.abs() <= self.half_height_mm);
-        // A point outside has some cell of the grid.
+        // A point outside the chart still gets a valid cell of the grid.
         let (column, _) = whole((x_mm + self.half_width_mm) * self.cells_per_mm, self.last[0] as f64);
         let (row, _) = whole((y_mm + self.half_height_mm) * self.cells_per_mm, self.last[1] as f64);
         let within = row % SIDE * SIDE + column % SIDE;
@@ -177,14 +176,14 @@ impl Grid {
         self.listed[start + 1]
     }
 
-    /// Bytes in use.
+    /// Memory used by the grid, bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         4 * (self.blocks.len() + self.lists.len()) + 2 * (self.cells.len() + self.listed.len())
     }
 }
 
-/// [`Grid::place`] for a chunk of points.
+/// A job that computes [`Grid::place`] for a chunk of points.
 struct Find<'a> {
     grid: &'a Grid,
     x_mm: &'a [f64],
@@ -215,8 +214,8 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Decides a part: `place` is its column and row among its like, `above` the shapes that may touch
-    /// it, top first, `ink` what lies below them.
+    /// Decides one part of the chart. `place` is its column and row among parts of this size, `above` are the shapes that may
+    /// touch it, top first, and `ink` lies below them.
     fn part(&mut self, cell: &Cell, depth: u32, place: [usize; 2], above: &[u16], ink: u16) {
         let rows = self.grid.blocks.len() / self.grid.columns;
         if depth <= self.depth - BLOCK_DEPTH {
@@ -242,7 +241,7 @@ impl Builder<'_> {
         self.fill(depth, place, entry);
     }
 
-    /// The shapes of `above` that the part cannot decide, and the ink below them.
+    /// Returns the shapes of `above` that may cover only some of the part, and the ink below them.
     fn remaining(&self, cell: &Cell, above: &[u16], ink: u16) -> (Vec<u16>, u16) {
         let padded = cell.padded(self.margin_mm);
         let mut rest = Vec::new();
@@ -257,7 +256,8 @@ impl Builder<'_> {
         (trimmed(rest, self.shapes, ink), ink)
     }
 
-    /// Number of the list; some number if there are more than an entry can name.
+    /// Returns the number of the list, which is added if it is new. The number is wrong if there are more lists than an entry can
+    /// name.
     fn list(&mut self, above: &[u16], ink: u16) -> u16 {
         let mut list = vec![above.len() as u16, ink];
         list.extend_from_slice(above);
@@ -269,7 +269,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Writes `entry` to all cells of a part: to the block, or to cells of the block that holds them.
+    /// Writes `entry` to all cells of a part: to the block itself, or to cells of the block that contains the part.
     fn fill(&mut self, depth: u32, place: [usize; 2], entry: u16) {
         if depth == self.depth - BLOCK_DEPTH {
             self.grid.blocks[place[1] * self.grid.columns + place[0]] = u32::from(entry) << CELL_BITS;
@@ -286,7 +286,7 @@ impl Builder<'_> {
     }
 }
 
-/// Drops the lowest shapes as long as they have the ink that lies below them anyway.
+/// Drops the lowest shapes as long as they have the same ink as the ground below them.
 fn trimmed(mut above: Vec<u16>, shapes: &[(Shape, u16)], ink: u16) -> Vec<u16> {
     while above.last().is_some_and(|&index| shapes[usize::from(index)].1 == ink) {
         above.pop();

@@ -1,8 +1,8 @@
-//! What a chart is printed with.
+//! Inks with which a chart is printed.
 
 /// The 24 patches of a classic ColorChecker, row by row from the top left.
 ///
-/// Names as colour-science prints them for its data set `ISO 17321-1`.
+/// The names are those of colour-science for its data set `ISO 17321-1`.
 pub const PATCHES: [&str; 24] = [
     "dark skin",
     "light skin",
@@ -30,24 +30,24 @@ pub const PATCHES: [&str; 24] = [
     "black 2 (1.5 D)",
 ];
 
-/// Answer where there is no chart.
+/// Ink number of points outside the chart.
 pub const NO_INK: u16 = u16::MAX;
 
-/// One ink of a chart: a flat, opaque, diffuse color.
+/// An ink of a chart: a uniform, opaque, diffuse color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ink {
-    /// Encoded sRGB (the values of a picture file, not linear light; IEC 61966-2-1), each 0 to 1.
+    /// A color in encoded sRGB (the values of a picture file, not linear light; IEC 61966-2-1), each 0 to 1.
     Rgb([f64; 3]),
-    /// Measured reflectance of the ColorChecker patch of that name, one of [`PATCHES`].
+    /// The measured reflectance of a ColorChecker patch, by its name in [`PATCHES`].
     Patch(&'static str),
-    /// Spectrally neutral reflectance: the same linear factor, 0 to 1, at every wavelength.
+    /// A spectrally neutral reflectance: the same linear factor, 0 to 1, at every wavelength.
     Gray(f64),
-    /// A patch whose reflectance the user brings, by number from 0.
+    /// A patch with the user's reflectance, by number from 0.
     Own(u16),
 }
 
 impl Ink {
-    /// Neutral ink of optical density `density` (decadic): reflectance 10^-density.
+    /// Creates a neutral ink of optical density `density` (decadic): reflectance 10^-density.
     #[must_use]
     pub fn density(density: f64) -> Self {
         Self::Gray(libm::pow(10.0, -density))

@@ -1,13 +1,13 @@
-//! Test charts drawn by the program.
+//! Test charts that the program draws.
 //!
-//! A chart is a list of vector shapes, later ones on top, each in one [`Ink`]; no raster stands behind it, so
-//! an edge is an edge at any magnification. A grid over the chart knows which shapes can matter
-//! where: most points are answered by one look at it, the others ask a few shapes exactly.
+//! A chart is a list of vector shapes, later ones on top, each in one [`Ink`]. There is no raster, so edges are sharp at any
+//! magnification. A grid over the chart lists the shapes that may cover each of its cells: most points need one lookup in it,
+//! the others test a few shapes exactly.
 //!
-//! Lengths are millimetres on the chart: origin at the center, +x to the right as a person sees the
-//! upright chart, +y up. A chart has the proportions of its design and any width; everything scales with
-//! it. Figures printed on a chart therefore do not name lengths: line widths per picture height
-//! (LW/PH) count lines, black and white, that fit into the height of the chart.
+//! Lengths are millimeters on the chart: origin at the center, +x to the right as a person sees the upright chart, +y up. A
+//! chart has the proportions of its design and any width; everything scales with the width. Figures printed on a chart are
+//! therefore not lengths: line widths per picture height (LW/PH) count the black and white lines that fit into the height of
+//! the chart.
 
 mod catalogue;
 mod cell;

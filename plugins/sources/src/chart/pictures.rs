@@ -1,4 +1,4 @@
-//! Each chart as a PNG, to be looked at.
+//! Writes each chart as a PNG for visual inspection.
 //!
 //! ```text
 //! SPECTRA_CHART_PICTURES=folder cargo test -p spectra-plugin-sources chart::pictures -- --ignored
@@ -6,7 +6,7 @@
 
 use super::*;
 
-/// Encoded sRGB, 8 bit, of the patches in their order (maker's figures, ColorChecker before November 2014).
+/// Encoded sRGB, 8 bit, of the patches in their order (manufacturer's values, ColorChecker before November 2014).
 const PATCH_SRGB: [[u8; 3]; 24] = [
     [115, 82, 68],
     [194, 150, 130],
@@ -54,7 +54,7 @@ fn linear(ink: Ink) -> [f64; 3] {
     }
 }
 
-/// Picture of the part of a chart between two corners, `columns` pixels wide, each the mean of 4 x 4 points.
+/// Renders the part of a chart between two corners, `columns` pixels wide; each pixel is the mean of 4 x 4 points.
 fn picture(chart: &Chart, low: [f64; 2], high: [f64; 2], columns: u32) -> image::RgbImage {
     let pixel = (high[0] - low[0]) / f64::from(columns);
     let rows = ((high[1] - low[1]) / pixel).round() as u32;

@@ -1,18 +1,18 @@
-//! A finished chart.
+//! A finished chart, which knows the ink at every point.
 
 use super::grid::Grid;
 use super::ink::Ink;
 use super::shape::Shape;
 use spectra_core::Isa;
 
-/// A place of the chart that a measurement may want to find again.
+/// A named part of the chart that a measurement may need to find.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmark {
-    /// What is there: the name of a patch, `siemens star`, `slanted edge +5` ...
+    /// Name of the part, such as that of a patch, `siemens star` or `slanted edge +5`.
     pub name: String,
-    /// Its center on the chart, mm.
+    /// Center of the part on the chart, mm.
     pub center_mm: [f64; 2],
-    /// Radius about the center within which it lies alone, mm.
+    /// Radius about the center within which there is nothing else, mm.
     pub radius_mm: f64,
 }
 
@@ -23,10 +23,9 @@ impl Landmark {
     }
 }
 
-/// A test chart: which ink lies at which point, exact at any magnification.
+/// A test chart: gives the ink at any point, exactly at any magnification.
 ///
-/// Coordinates are millimetres: origin at the center, +x to the right as a person sees the upright
-/// chart, +y up.
+/// Coordinates are millimeters: origin at the center, +x to the right as a person sees the upright chart, +y up.
 #[derive(Clone, Debug)]
 pub struct Chart {
     name: &'static str,
@@ -35,12 +34,12 @@ pub struct Chart {
     inks: Vec<Ink>,
     shapes: Vec<(Shape, u16)>,
     landmarks: Vec<Landmark>,
-    /// Part of the chart that each ink covers.
+    /// Fraction of the chart that each ink covers.
     areas: Vec<f64>,
     grid: Grid,
 }
 
-/// Points a side at which a chart is looked at to weigh its inks.
+/// Number of sample points along a side with which the areas of the inks are counted.
 const CENSUS: usize = 512;
 
 impl Chart {
@@ -66,7 +65,7 @@ impl Chart {
         Self { name, width_mm, height_mm, inks, shapes, landmarks, areas, grid }
     }
 
-    /// The same `width_mm` wide, everything in proportion.
+    /// Returns the chart scaled to `width_mm`.
     pub(super) fn scaled(&self, width_mm: f64) -> Self {
         let factor = width_mm / self.width_mm;
         let height_mm = self.height_mm * factor;
@@ -82,67 +81,68 @@ impl Chart {
         }
     }
 
-    /// Name in the list of charts.
+    /// Name of the chart in [`CHARTS`](super::CHARTS).
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// Width, mm.
+    /// Width of the chart, mm.
     #[must_use]
     pub fn width_mm(&self) -> f64 {
         self.width_mm
     }
 
-    /// Height, mm.
+    /// Height of the chart, mm.
     #[must_use]
     pub fn height_mm(&self) -> f64 {
         self.height_mm
     }
 
-    /// The inks, by the index that [`Chart::ink_at`] answers; 0 is the ground.
+    /// Inks of the chart, by the index that [`Chart::ink_at`] returns; 0 is the ground.
     #[must_use]
     pub fn inks(&self) -> &[Ink] {
         &self.inks
     }
 
-    /// The part of the chart that each ink covers, in all 1, by a count of 512 x 512 points: whatever the width, the same.
+    /// Fraction of the chart that each ink covers, counted at 512 x 512 points. The sum is 1, and the values do not depend on the
+    /// width.
     #[must_use]
     pub fn areas(&self) -> &[f64] {
         &self.areas
     }
 
-    /// Named places, in the order in which they were drawn.
+    /// Landmarks of the chart, in the order in which they were drawn.
     #[must_use]
     pub fn landmarks(&self) -> &[Landmark] {
         &self.landmarks
     }
 
-    /// Index of the ink at a point; [`NO_INK`](super::NO_INK) outside of the chart, and for coordinates that are not numbers.
+    /// Returns the index of the ink at a point, mm; [`NO_INK`](super::NO_INK) outside the chart and for NaN coordinates.
     #[inline]
     #[must_use]
     pub fn ink_at(&self, x_mm: f64, y_mm: f64) -> u16 {
         self.grid.ink_at(&self.shapes, x_mm, y_mm)
     }
 
-    /// [`Chart::ink_at`] for each point (`x_mm[i]`, `y_mm[i]`), into `ink[i]`; stops at the shortest slice.
+    /// Writes [`Chart::ink_at`] of each point (`x_mm[i]`, `y_mm[i]`) to `ink[i]`; stops at the end of the shortest slice.
     pub fn ink_at_batch(&self, x_mm: &[f64], y_mm: &[f64], ink: &mut [u16], isa: Isa) {
         self.grid.ink_at_batch(&self.shapes, x_mm, y_mm, ink, isa);
     }
 
-    /// Number of shapes.
+    /// Number of shapes on the chart.
     #[must_use]
     pub fn shape_count(&self) -> usize {
         self.shapes.len()
     }
 
-    /// Bytes that the acceleration grid takes.
+    /// Memory used by the acceleration grid, bytes.
     #[must_use]
     pub fn grid_bytes(&self) -> usize {
         self.grid.bytes()
     }
 
-    /// What [`Chart::ink_at`] must answer, found by asking every shape.
+    /// Returns the ink at a point by testing every shape, as a reference for [`Chart::ink_at`].
     #[cfg(test)]
     pub(super) fn ink_by_all_shapes(&self, x_mm: f64, y_mm: f64) -> u16 {
         if !(x_mm.abs() <= 0.5 * self.width_mm && y_mm.abs() <= 0.5 * self.height_mm) {

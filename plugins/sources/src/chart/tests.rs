@@ -2,11 +2,11 @@ use super::drawing::{Align, Drawing, text_width_mm};
 use super::*;
 use spectra_core::Isa;
 
-/// A linear congruential generator is random enough to place points.
+/// A linear congruential generator, which is random enough to place points.
 struct Dice(u64);
 
 impl Dice {
-    /// Uniform in [-1, 1).
+    /// Draws a uniform random number in [-1, 1).
     fn throw(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
@@ -21,7 +21,7 @@ fn ink(chart: &Chart, x: f64, y: f64) -> Ink {
     chart.inks()[usize::from(chart.ink_at(x, y))]
 }
 
-/// Where the ink changes between two points of different ink, as the part of the way, within 1e-12.
+/// Finds where the ink changes between two points of different ink, as a fraction of the distance, within 1e-12.
 fn change(chart: &Chart, from: [f64; 2], to: [f64; 2]) -> f64 {
     let at = |t: f64| chart.ink_at(from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1]));
     let first = at(0.0);
@@ -44,7 +44,7 @@ fn grid_answers_as_all_shapes_do() {
             let [x, y] = [1.001 * half[0] * dice.throw(), 1.001 * half[1] * dice.throw()];
             assert_eq!(chart.ink_at(x, y), chart.ink_by_all_shapes(x, y), "{} ({x}, {y})", entry.name);
         }
-        // On and next to borders of cells, where rounding decides.
+        // Test points on and next to borders of cells, where rounding decides.
         let cell = 2.0 * half[0].max(half[1]) / 1024.0;
         for _ in 0..20_000 {
             let on = |dice: &mut Dice, half: f64| {
@@ -60,7 +60,7 @@ fn grid_answers_as_all_shapes_do() {
 
 #[test]
 fn grid_answers_as_all_shapes_do_around_small_things() {
-    // Random points seldom meet a star 1 mm wide: look around every landmark, closely.
+    // Random points seldom hit a star 1 mm wide, so test many points close to every landmark.
     for name in ["resolution", "star-field", "siemens", "text"] {
         let chart = built(name);
         let mut dice = Dice(6);
@@ -105,7 +105,7 @@ fn outside_there_is_no_ink() {
 fn resolution_has_its_inks_in_their_places() {
     let chart = built("resolution");
     let (white, black) = (Ink::Gray(0.9), Ink::Gray(0.03));
-    // Border teeth, net, slanted squares, ground between rings.
+    // Border blocks, grid, slanted squares, ground between rings.
     for (x, y, expected) in [
         (710.0, 490.0, black),
         (660.0, 490.0, white),
@@ -126,7 +126,7 @@ fn resolution_has_its_inks_in_their_places() {
     ] {
         assert_eq!(ink(&chart, x, y), expected, "({x}, {y})");
     }
-    // First patch at the upper left of the block, last at the lower right; 60 mm, 65 mm apart.
+    // The first patch is at the upper left of the block, the last at the lower right; 60 mm wide, 65 mm apart.
     assert_eq!(ink(&chart, -162.5, -154.5), Ink::Patch("dark skin"));
     assert_eq!(ink(&chart, 162.5, -154.5), Ink::Patch("bluish green"));
     assert_eq!(ink(&chart, -162.5, -349.5), Ink::Patch("white 9.5 (.05 D)"));
@@ -170,12 +170,12 @@ fn slanted_edges_lean_by_five_degrees() {
         for edge in edges {
             let [x, y] = edge.center_mm;
             let expected: f64 = if edge.name.ends_with("+5") { 5.0 } else { -5.0 };
-            // Of the side at the right, two heights 2 h apart.
+            // The right side, at two heights 2 h apart.
             let (reach, h) = (if name == "resolution" { 0.75 } else { 0.9 } * edge.radius_mm, 12.0);
             let cross = |dy: f64| reach * change(&chart, [x, y + dy], [x + reach, y + dy]);
             let lean = libm::atan((cross(-h) - cross(h)) / (2.0 * h)).to_degrees();
             assert!((lean - expected).abs() < 1e-8, "{name} {x} {y}: {lean}");
-            // Of the side at the top, two places 2 h apart.
+            // The top side, at two positions 2 h apart.
             let climb = |dx: f64| reach * change(&chart, [x + dx, y], [x + dx, y + reach]);
             let lean = libm::atan((climb(h) - climb(-h)) / (2.0 * h)).to_degrees();
             assert!((lean - expected).abs() < 1e-8, "{name} {x} {y}: {lean}");
@@ -186,11 +186,11 @@ fn slanted_edges_lean_by_five_degrees() {
 #[test]
 fn wedges_read_in_line_widths_per_picture_height() {
     let chart = built("resolution");
-    // Coarse vertical wedge: 2 at y = 345, 10 at y = 140, axis x = -48; 9 lines and 8 gaps.
+    // The coarse vertical wedge: 2 at y = 345, 10 at y = 140, axis at x = -48; 9 lines and 8 gaps.
     for figure in [3.0, 5.0, 9.0] {
         let y = 345.0 - 205.0 * (figure - 2.0) / 8.0;
         let stripe = 1000.0 / (100.0 * figure);
-        // The middle of a line is 4 pairs from the middle of the outermost one.
+        // The center line is 4 line pairs away from the outermost line.
         assert_eq!(ink(&chart, -48.0, y), Ink::Gray(0.03));
         let border = change(&chart, [-48.0 - 8.0 * stripe, y], [-48.0 - 8.0 * stripe - 2.0 * stripe, y]);
         assert!((2.0 * border - 0.5).abs() < 1e-9, "{figure}: {border}");
@@ -220,23 +220,23 @@ fn letters_read_left_to_right_and_stand_upright() {
     drawing.text("FR", [-20.0, -20.0], 40.0, Align::Left, Ink::Gray(0.0));
     let chart = drawing.finish("test");
     let black = |x: f64, y: f64| ink(&chart, x, y) == Ink::Gray(0.0);
-    // Units of 5 mm; the middle of the pen of F runs from (-17.5, -17.5) to 17.5 above and back.
+    // Units of 5 mm; the center of the pen that draws the F runs from (-17.5, -17.5) up to y = 17.5.
     let unit = 5.0;
     let f = |x: f64, y: f64| black(-17.5 + x * unit, -17.5 + y * unit);
     assert!(f(0.0, 0.0) && f(0.0, 7.0) && f(3.5, 7.0) && f(2.9, 3.5), "stem and two bars");
     assert!(!f(2.5, 0.0) && !f(3.5, 3.5) && !f(2.0, 5.25), "open at the lower right");
-    // R follows to its right, its bowl on top, its leg below.
+    // The R follows on the right, its bowl on top, its leg below.
     let r = |x: f64, y: f64| f(3.5 + 2.2 + x, y);
     assert!(r(0.0, 0.0) && r(0.0, 7.0) && r(4.0, 5.1) && r(4.1, 0.0), "stem, bowl and leg");
     assert!(!r(2.1, 5.1) && !r(4.0, 2.2) && !r(1.5, 1.0), "eye of the bowl, below it, between stem and leg");
-    // Edge to edge, capitals are as tall as asked for.
+    // From edge to edge, capitals have the requested height.
     assert!(black(-17.5, 19.99) && !black(-17.5, 20.01) && black(-17.5, -19.99) && !black(-17.5, -20.01));
     assert!((change(&chart, [-25.0, 0.0], [-17.5, 0.0]) * 7.5 - 5.0).abs() < 1e-9, "starts at its anchor");
 }
 
 #[test]
 fn title_of_the_resolution_chart_reads_from_the_left() {
-    // "SPECTRA", 16 mm tall, from (-330, -432): the P begins 3.8 + 2.2 units of 2 mm after the S.
+    // "SPECTRA", 16 mm tall, starts at (-330, -432): the P begins 3.8 + 2.2 units of 2 mm after the S.
     let chart = built("resolution");
     let p = |x: f64, y: f64| ink(&chart, -330.0 + 1.0 + 2.0 * (6.0 + x), -432.0 + 1.0 + 2.0 * y) == Ink::Gray(0.03);
     assert!(p(0.0, 0.0) && p(0.0, 7.0) && p(2.0, 7.0) && p(4.0, 5.05));
@@ -260,13 +260,13 @@ fn charts_scale_with_their_width() {
     for entry in CHARTS {
         let design = entry.build(None, 3).expect("every chart can be built");
         let [w, h] = [design.width_mm(), design.height_mm()];
-        // Powers of two change no bit of the geometry; 0.317 does, but no point comes near enough to a border.
+        // Powers of two change no bit of the geometry. The factor 0.317 does, but no point is close enough to a border.
         for factor in [0.25, 4.0, 0.317] {
             let scaled = entry.build(Some(factor * w), 3).expect("every chart can be scaled");
             assert_eq!(scaled.width_mm(), factor * w);
             assert!((scaled.height_mm() - factor * h).abs() < 1e-12 * h);
             assert_eq!(scaled.inks(), design.inks());
-            // So that the light of a chart that fills the frame is the same in front of every lens.
+            // Equal areas give a chart that fills the frame the same light in front of every lens.
             assert_eq!(scaled.areas(), design.areas());
             assert!((scaled.areas().iter().sum::<f64>() - 1.0).abs() < 1e-9, "{}", entry.name);
             let mut dice = Dice(9);

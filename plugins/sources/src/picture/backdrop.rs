@@ -1,21 +1,21 @@
-//! What lies behind the mixed pixels of a picture with depth, for rays that come through them.
+//! The background behind the mixed pixels of a picture with depth, for rays that pass through them.
 
 use super::edges::{Mixed, Sparse};
 use super::field::{HeightField, Hit};
 use super::spot::Spot;
 use spectra_core::stage::ColorModel;
 
-/// The picture once more with its mixed pixels at the depth and in the color of what is behind, and how much covers them in front.
+/// A copy of the picture in which mixed pixels have the depth and color of their background, with the opacity of the foreground there.
 pub(super) struct Backdrop {
     cells: Sparse,
     opacity: Vec<f32>,
-    /// What the color model needs of each.
+    /// Coefficients of the color model for the background of each mixed pixel.
     colors: Vec<[f32; 3]>,
     pub field: HeightField,
 }
 
 impl Backdrop {
-    /// Of the mixed pixels of a picture whose depths in front are `depth_mm`.
+    /// Creates the background for the mixed pixels of a picture whose depths in front are `depth_mm`, mm.
     pub(super) fn new(mixed: Mixed, model: &dyn ColorModel, depth_mm: &[f32], width: usize, edge: f64) -> Self {
         let mut all = depth_mm.to_vec();
         mixed.cells.cells().zip(&mixed.behind).for_each(|(cell, behind)| all[cell] = behind.depth_mm);
@@ -25,19 +25,20 @@ impl Backdrop {
         Self { cells: mixed.cells, opacity, colors, field }
     }
 
-    /// The mixed pixels.
+    /// Returns the mixed pixels, in rising order.
     pub(super) fn cells(&self) -> impl Iterator<Item = usize> {
         self.cells.cells()
     }
 
-    /// Whether a pixel is one of them.
+    /// Returns whether a pixel is mixed.
     #[inline(always)]
     pub(super) fn has(&self, cell: usize) -> bool {
         self.cells.has(cell)
     }
 
-    /// Whether what is guessed for a ray that goes behind the edge of a near thing need not be: where it ends lies a mixed pixel, or one that
-    /// touches it, of which it is known what is behind. A lamp whose rim alone is to be seen beside hair shines all the same.
+    /// Returns whether the background is known where a ray passes behind the edge of a near object, so that it need not be guessed. It is
+    /// known if the ray ends at a mixed pixel or at one that touches it. A lamp of which only the rim is visible beside hair therefore
+    /// keeps its light.
     #[inline(always)]
     pub(super) fn shows(&self, hit: &Hit) -> bool {
         if !hit.guessed {
@@ -47,20 +48,20 @@ impl Backdrop {
         self.has(cell) && self.field.together(hit.cell, cell)
     }
 
-    /// The color behind a pixel, if it is a mixed one.
+    /// Returns the coefficients of the color behind a pixel; `None` if the pixel is not mixed.
     #[inline(always)]
     pub(super) fn color(&self, cell: usize) -> Option<[f32; 3]> {
         self.cells.place(cell).map(|place| self.colors[place])
     }
 
-    /// How much of what is met in a mixed pixel is in front there, linear between the centers of pixels; `None` in any other pixel.
+    /// Returns the opacity of the foreground at a point of a mixed pixel, linear between the centers of pixels; `None` in any other pixel.
     #[inline(always)]
     pub(super) fn opacity(&self, cell: usize, spot: &Spot) -> Option<f32> {
         let own = self.opacity[self.cells.place(cell)?];
         Some(spot.mix(|cell| [self.cells.place(cell).map_or(own, |place| self.opacity[place])])[0])
     }
 
-    /// The same all over a pixel, wherever it is met.
+    /// Returns the opacity of the foreground of a whole pixel; `None` if the pixel is not mixed.
     #[inline(always)]
     pub(super) fn opacity_of(&self, cell: usize) -> Option<f32> {
         self.cells.place(cell).map(|place| self.opacity[place])

@@ -1,10 +1,10 @@
-//! The nearest and the farthest surface in squares of a picture with depth, of many sizes: what a ray meets lies between them.
+//! Depth bounds: the nearest and the farthest surface in squares of many sizes. What a ray meets lies between them.
 //!
-//! A ray is a straight chord over the picture (see [`super::field`]). What stands in the square around the chord bounds where the
-//! ray can meet anything, that shortens the chord, and a smaller square bounds it closer: over a plane, a wall or a slope two or
-//! three looks leave a pixel or two to walk through.
+//! A ray is a straight chord over the picture (see [`super::field`]). The bounds in the square around the chord limit where the ray can
+//! meet a surface. That shortens the chord, and a smaller square then has tighter bounds. Over a plane, a wall or a slope, two or three
+//! lookups leave a pixel or two to walk through.
 
-/// The largest and the smallest of one over the depth.
+/// The largest and the smallest inverse depth, 1/mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ends {
     pub nearest: f32,
@@ -17,24 +17,25 @@ impl Ends {
     }
 }
 
-/// Squares of all sizes. Those of one size begin at steps of a quarter of it: what has at most four steps a side lies in one.
+/// Bounds of squares of all sizes. Squares of one size start at steps of a quarter of their size, so that a box of at most four steps per
+/// side lies within one.
 pub(super) struct Bounds {
-    /// Steps of 2, 4, 8, ... pixels, one size after the other, row by row.
+    /// Bounds for steps of 2, 4, 8, ... pixels, one size after the other, row by row.
     squares: Vec<Ends>,
-    /// Where each size begins, and how many squares lie side by side.
+    /// Start of each size in `squares`, and the number of squares per row.
     levels: Vec<[usize; 2]>,
 }
 
-/// Pixels of the smallest step, as a power of two.
+/// Smallest step in pixels, as an exponent of two.
 const FIRST_STEP: u32 = 1;
-/// Steps that a box may be long, for a square to hold it wherever it begins.
+/// Largest length of a box, in steps, that a square always contains, wherever the box starts.
 const STEPS: usize = 4;
 
 impl Bounds {
-    /// Of the pixels of a picture.
+    /// Creates the bounds from the inverse depth of the pixels, 1/mm.
     pub(super) fn new(width: usize, height: usize, inverse_mm: &[f32]) -> Self {
         let of = |w: &f32| Ends { nearest: *w, farthest: *w };
-        // Cells of one step a side, without what lies beside them.
+        // Cells of one step per side, without their surroundings.
         let mut cells: Vec<Ends> = inverse_mm.iter().map(of).collect();
         let (mut across, mut down) = (width, height);
         let (mut all, mut levels) = (Vec::new(), Vec::new());
@@ -52,10 +53,10 @@ impl Bounds {
         Self { squares: all, levels }
     }
 
-    /// The ends of what stands in a box of pixels and not far beside it, from its first to its last column and row.
+    /// Returns the bounds in a box of pixels, from its first to its last column and row, and a little beyond it.
     #[inline(always)]
     pub(super) fn of(&self, first: [usize; 2], last: [usize; 2]) -> Ends {
-        // The smallest step of which four hold it.
+        // The smallest step of which four cover the box.
         let steps = long(first, last).div_ceil(STEPS);
         let power = (usize::BITS - (steps.max(1) - 1).leading_zeros()).max(FIRST_STEP);
         let at = ((power - FIRST_STEP) as usize).min(self.levels.len() - 1);
@@ -64,20 +65,20 @@ impl Bounds {
         self.squares[begin + (first[1] >> shift) * across + (first[0] >> shift)]
     }
 
-    /// Whether a box is as small as the smallest square: there is no closer look.
+    /// Returns whether a box is as small as the smallest square, so that there are no tighter bounds.
     #[inline(always)]
     pub(super) fn is_small(first: [usize; 2], last: [usize; 2]) -> bool {
         long(first, last) <= STEPS << (FIRST_STEP - 1)
     }
 }
 
-/// The longer side of a box, without its first pixel.
+/// Returns the longer side of a box, without its first pixel.
 #[inline(always)]
 fn long(first: [usize; 2], last: [usize; 2]) -> usize {
     (last[0] - first[0]).max(last[1] - first[1])
 }
 
-/// Cells of twice the side.
+/// Merges cells into cells of twice the side.
 fn halved(cells: &[Ends], across: usize, down: usize) -> (Vec<Ends>, usize, usize) {
     let (wide, high) = (across.div_ceil(2), down.div_ceil(2));
     let mut all = Vec::with_capacity(wide * high);
@@ -92,7 +93,7 @@ fn halved(cells: &[Ends], across: usize, down: usize) -> (Vec<Ends>, usize, usiz
     (all, wide, high)
 }
 
-/// From each cell on, [`STEPS`] + 1 of them to the right and down.
+/// Merges, for each cell, [`STEPS`] + 1 cells to the right and down from it.
 fn squares(cells: &[Ends], across: usize, down: usize) -> Vec<Ends> {
     let mut wide = Vec::with_capacity(cells.len());
     for row in cells.chunks_exact(across) {
@@ -136,7 +137,7 @@ mod tests {
         }
     }
 
-    /// A square holds little more than the box: at most two steps on each side.
+    /// A square extends little beyond the box: at most two steps on each side.
     #[test]
     fn squares_are_close() {
         let (width, height) = (200, 100);

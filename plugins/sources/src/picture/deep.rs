@@ -1,12 +1,12 @@
-//! A picture with depth as a source: what comes against a ray from the lens, and what goes toward it.
+//! A picture with depth as a source: its radiance along rays from the lens, and the rays that it emits toward the lens.
 //!
-//! Both are the same light: a ray that is emitted carries the light that [`HeightField::hit`] finds along it, and none where
-//! something else stands before the place that it starts from. What can be met are the plane of each pixel and the step between
-//! a pixel and one that stands nearer: where a ray passes there it meets the step, or what is guessed behind it. So rays start on
-//! both, and each ray that meets anything can be drawn in one way.
+//! Both describe the same light: an emitted ray carries the light that [`HeightField::hit`] finds along it, and none if another surface
+//! hides its start. A ray can meet the plane of a pixel, or the step between a pixel and a nearer neighbor. At a step it meets the step
+//! itself, or the background that is guessed behind it. Rays therefore start on planes and on steps, and each ray that meets a surface
+//! can be drawn in exactly one way.
 //!
-//! A mixed pixel at an edge covers its share only ([`super::edges`]): of what a ray carries that meets one, so much is the light in front,
-//! and the rest is that of the same ray in the picture behind it ([`Backdrop`]), where no mixed pixel stands in front.
+//! A mixed pixel at an edge covers only a fraction of its area ([`super::edges`]). A ray that meets one gets this fraction of its light
+//! from the front, and the rest from the same ray in the background picture ([`Backdrop`]), where no mixed pixel is in front.
 
 use super::backdrop::Backdrop;
 use super::field::{HeightField, Hit};
@@ -22,22 +22,22 @@ use spectra_core::stage::{Emit, Radiance, Source};
 use spectra_core::{Isa, RayBatch};
 use std::sync::{Arc, OnceLock};
 
-/// A picture whose pixels stand at their depths.
+/// A picture source whose pixels lie at their depths.
 pub(super) struct DeepPicture {
-    /// Colors; its size is that on the plane at `plane_mm`.
+    /// Colors of the picture. Its size is that on the plane at `plane_mm`.
     pub(super) map: PictureMap,
     pub(super) field: Arc<HeightField>,
-    /// What lies behind its mixed pixels, if there are any.
+    /// Background behind mixed pixels, if there are any.
     pub(super) behind: Option<Arc<Backdrop>>,
     /// Distance of the plane from the center of projection, mm.
     pub(super) plane_mm: f64,
-    /// The center of projection on the axis, mm behind the first vertex.
+    /// Position of the center of projection on the axis, mm behind the first vertex.
     eye_mm: f64,
     nearest_mm: f64,
     farthest_mm: f64,
-    /// What its depths were taken for.
+    /// Description of how the depths were read.
     meaning: Arc<str>,
-    /// What rays start on beside the planes in front, found when the first does.
+    /// Surfaces on which rays start besides the planes in front; found when the first ray starts.
     pub(super) starts: OnceLock<Starts>,
 }
 
@@ -68,8 +68,8 @@ impl Source for DeepPicture {
 }
 
 impl DeepPicture {
-    /// Places the pixels of a map at the depths of a field, with what lies behind those that are mixed, of which the nearest and the farthest are `ends_mm`; `meaning` says for the
-    /// summary what the depths were taken for.
+    /// Places the pixels of a map at the depths of a field, with the background of mixed pixels. `ends_mm` are the nearest and the farthest
+    /// depth. `meaning` describes for the summary how the depths were read.
     pub(super) fn new(
         map: PictureMap,
         (field, behind): (Arc<HeightField>, Option<Arc<Backdrop>>),
@@ -81,7 +81,8 @@ impl DeepPicture {
         Self { map, field, behind, plane_mm, eye_mm, nearest_mm, farthest_mm, meaning, starts: OnceLock::new() }
     }
 
-    /// Pixels a mm on the plane, to the right and up (rows count down), and the middle of the picture in pixels.
+    /// Returns the number of pixels per mm on the plane, to the right and up (negative, since row numbers rise downward), and the center of
+    /// the picture in pixels.
     #[inline(always)]
     pub(super) fn lattice(&self) -> [[f64; 2]; 2] {
         let map = &self.map;
@@ -89,7 +90,7 @@ impl DeepPicture {
         [per_mm, [0.5 * map.width_px as f64, 0.5 * map.height_px as f64]]
     }
 
-    /// The ray through a point in a direction, over the picture.
+    /// Returns the line over the picture of a ray through a point in a direction.
     #[inline(always)]
     fn line(&self, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> Line {
         let t = (self.eye_mm - z) / n;
@@ -102,23 +103,23 @@ impl DeepPicture {
         }
     }
 
-    /// How far right and up of the axis a place of the picture is seen, per unit of depth.
+    /// Returns the slopes to the right and up under which a point of the picture is seen, per unit of depth.
     #[inline(always)]
     pub(super) fn slopes(&self, [column, row]: [f64; 2]) -> [f64; 2] {
         let [[per_x, per_y], [middle_x, middle_y]] = self.lattice();
         [(column - middle_x) / (per_x * self.plane_mm), (row - middle_y) / (per_y * self.plane_mm)]
     }
 
-    /// The point at a place of the picture and a depth, in the frame of the lens.
+    /// Returns the point in space, mm in the frame of the lens, for a point of the picture and a depth.
     pub(super) fn point(&self, place: [f64; 2], depth_mm: f64) -> [f64; 3] {
         let [x, y] = self.slopes(place);
         [x * depth_mm, y * depth_mm, self.eye_mm - depth_mm]
     }
 
-    /// The color that a ray meets, and which part of the light there is this picture's.
+    /// Returns the color that a ray meets, and the fraction of its light that belongs to this part of the picture.
     #[inline(always)]
     pub(super) fn color(&self, hit: &Hit) -> ([f32; 3], f32) {
-        // Between pixels of the same thing colors are smooth; others do not count.
+        // Interpolate colors only between pixels of the same object.
         let spot = self.map.spot(hit.place);
         if !hit.guessed && self.field.is_smooth(hit.cell) {
             return self.map.color(&spot);
@@ -126,7 +127,7 @@ impl DeepPicture {
         let is_whole = self.map.half == Half::Whole;
         if hit.guessed {
             let cell = self.field.goes_on(hit);
-            // A light does not go on behind what stands before it: as far as the guess goes it would shine in place of a background.
+            // A light is not continued behind the foreground: it would shine over the whole guessed background.
             if self.map.is_light(cell) {
                 return ([0.0; 3], 0.0);
             }
@@ -140,7 +141,7 @@ impl DeepPicture {
         (color, if is_whole { 1.0 } else { self.map.share(&spot, of) })
     }
 
-    /// How much of the light that a ray carries comes from what it meets first; the rest comes through a mixed pixel from behind.
+    /// Returns the fraction of a ray's light that comes from the first surface it meets. The rest comes through a mixed pixel from behind.
     #[inline(always)]
     pub(super) fn opacity(&self, hit: &Hit) -> f32 {
         let Some(behind) = &self.behind else { return 1.0 };
@@ -155,7 +156,7 @@ impl DeepPicture {
         opacity.unwrap_or(1.0)
     }
 
-    /// As [`DeepPicture::color`] where a ray meets the picture behind.
+    /// Returns the color as [`DeepPicture::color`] does, where a ray meets the background picture.
     pub(super) fn color_behind(&self, behind: &Backdrop, hit: &Hit) -> ([f32; 3], f32) {
         let spot = self.map.spot(hit.place);
         let color = |cell: usize| behind.color(cell).unwrap_or(self.map.coefficients[cell]);
@@ -191,10 +192,10 @@ impl Radiance for DeepPicture {
     }
 }
 
-/// Rays that are worked on at a time.
+/// Number of rays that are processed together.
 pub(super) const CHUNK: usize = SIDE_BY_SIDE;
 
-/// What is known of a chunk of rays: their lines over the picture, what they meet, its colors, and what comes from behind.
+/// The results for a chunk of rays: their lines over the picture, what they meet, its colors, and the light from behind.
 pub(super) struct Looked {
     pub lines: Lines,
     pub hits: [Option<Hit>; CHUNK],
@@ -202,7 +203,7 @@ pub(super) struct Looked {
     through: Through,
 }
 
-/// The rays of a chunk that look through mixed pixels, one after the other: which, their colors behind, and their weights with these.
+/// The rays of a chunk that pass through mixed pixels: their indices, the colors behind, and the weights for these.
 struct Through {
     len: usize,
     ray: [u8; CHUNK],
@@ -211,7 +212,7 @@ struct Through {
 }
 
 impl Through {
-    /// Adds to each weight what comes from behind.
+    /// Adds the light from behind to the weights.
     fn shine(&mut self, deep: &DeepPicture, wavelength_nm: &[f64], line: &[u32], weight: &mut [f64]) {
         if self.len == 0 {
             return;
@@ -232,7 +233,7 @@ impl Looked {
         Self { lines: Lines::new(), hits: [None; CHUNK], colors: [[0.0; 3]; CHUNK], through }
     }
 
-    /// Finds what rays meet that have not ended.
+    /// Finds what the rays meet that have not ended.
     #[inline(always)]
     pub(super) fn look(&mut self, deep: &DeepPicture, [x, y, z]: [&[f64]; 3], [l, m, n]: [&[f64]; 3], state: &[u64]) {
         let len = x.len().min(CHUNK);
@@ -250,7 +251,7 @@ impl Looked {
         deep.field.hits(lines, len, &wanted, &mut self.hits);
     }
 
-    /// Finds what comes through a mixed pixel along ray `i`, which has this weight for it.
+    /// Finds the light that ray `i` gets through a mixed pixel, with this weight.
     fn look_through(&mut self, deep: &DeepPicture, i: usize, weight: f64) {
         let Some(behind) = &deep.behind else { return };
         let Some(hit) = behind.field.hit(&self.lines.line(i)) else { return };
@@ -262,7 +263,7 @@ impl Looked {
     }
 }
 
-/// Finds what a chunk of rays from the lens meets.
+/// A job that finds what a chunk of rays from the lens meets.
 struct See<'a> {
     deep: &'a DeepPicture,
     position: [&'a [f64]; 3],
@@ -287,7 +288,7 @@ impl Vectorized for See<'_> {
         for i in 0..weight.len() {
             let mut share = 1.0;
             looked.colors[i] = [0.0; 3];
-            // Black beside the picture.
+            // A ray that misses the picture gets no light.
             if let Some(hit) = &looked.hits[i] {
                 (looked.colors[i], share) = deep.color(hit);
                 let opacity = deep.opacity(hit);

@@ -1,4 +1,4 @@
-//! The depth of a picture, from what a file says to millimetres along the axis.
+//! Depth of a picture: converts the numbers of a file to millimeters along the axis.
 
 use super::edges::Mixed;
 use super::planes::{self, Pixels};
@@ -10,52 +10,52 @@ use spectra_core::registry::Context;
 use spectra_core::resources::Found;
 use spectra_pictures::read::{self, Choice, Linear, Trouble};
 
-/// `depth` of a picture.
+/// `depth` of a picture, as written in a scene.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct DepthParams {
-    /// A file of its own of the picture's size: an OpenEXR with the depth channel, or a PNG or TIFF, of which the first channel counts and
-    /// integers run from 0 to 1; the picture's file if absent.
+    /// Separate depth file of the same size as the picture: an OpenEXR with the depth channel, or a PNG or TIFF. In a PNG or TIFF the
+    /// first channel is used, and integers run from 0 to 1. The picture's own file if left out.
     file: Option<String>,
-    /// The channel of the file that holds the depth; `Z` if absent.
+    /// Channel of the file that holds the depth; `Z` if left out.
     channel: Option<String>,
-    /// What its numbers count: `mm`, `cm`, `m`, `in` or `ft`; `mm` if absent.
+    /// Unit of the numbers: `mm`, `cm`, `m`, `in` or `ft`; `mm` if left out.
     unit: Option<DepthUnit>,
-    /// What the numbers are multiplied by besides, not 0; 1 if absent. -1 where they count against the view, as from Houdini.
+    /// Further factor of the numbers, not 0; 1 if left out. Write -1 if depth is negative in front of the camera, as from Houdini.
     scale: Option<f64>,
-    /// What is nearer is taken to be there, mm if bare; nothing is moved if absent.
+    /// Smallest distance, mm if bare: nearer pixels are moved there; no pixel is moved if left out.
     near: Option<Positive<Length>>,
-    /// What is farther, or infinitely far, is taken to be there, mm if bare; nothing is moved if absent.
+    /// Largest distance, mm if bare: pixels that are farther, or infinitely far, are moved there; no pixel is moved if left out.
     far: Option<Positive<Length>>,
-    /// What the numbers are: distance along the axis, `z`, or along the line of sight, `ray`; or `inverse`, one over that along the axis, as
-    /// Nuke and depth guessed from photographs have it; `z` if absent.
+    /// Meaning of the numbers: `z` for distance along the axis (the default), `ray` for distance along the line of sight, or `inverse` for
+    /// one over the distance along the axis, as from Nuke and from depth estimated from photographs.
     kind: Option<DepthKind>,
-    /// Depths of neighbors that differ by more than this part, 0 to 1, belong to different things; 5 % if absent.
+    /// Largest relative difference in depth, 0 to 1, between neighbors that belong to the same object; 5 % if left out.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     edge: Option<Ratio>,
-    /// What becomes of pixels at edges that hold a mixture of two things, since a renderer averages color and not depth: `clean` takes them
-    /// apart, so that the near thing covers its share of the pixel and what is behind goes on there; `as-is` leaves the mixture at the depth
-    /// that the file says. `clean` if absent; a picture without such pixels is the same with both.
+    /// Treatment of pixels at edges that contain a mixture of two objects, since a renderer averages color but not depth. `clean` separates
+    /// them: the near object covers its fraction of the pixel, and the background continues behind it. `as-is` leaves the mixture at the
+    /// depth that the file states. `clean` if left out; a picture without such pixels looks the same with both.
     edges: Option<Edges>,
-    /// Distance of the center of projection behind the first vertex, mm if bare; at the vertex if absent.
+    /// Distance of the center of projection behind the first vertex, mm if bare; at the vertex if left out.
     eye: Option<Length>,
 }
 
-/// Depth as the section says it.
+/// The depth of a picture, as read from the section.
 pub(super) struct Depth {
     params: Params,
     p: DepthParams,
     unit_mm: f64,
     kind: DepthKind,
     pub edge: f64,
-    /// Whether mixed pixels at edges are taken apart.
+    /// Whether mixed pixels at edges are separated.
     pub cleans_edges: bool,
     pub eye_mm: f64,
-    /// The file of its own.
+    /// Separate depth file, if there is one.
     found: Option<Found>,
 }
 
-/// What becomes of mixed pixels.
+/// Treatment of mixed pixels at edges.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -64,7 +64,7 @@ enum Edges {
     AsIs,
 }
 
-/// The units that depth channels come in.
+/// Unit of the numbers of a depth channel.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -77,7 +77,7 @@ enum DepthUnit {
 }
 
 impl DepthUnit {
-    /// One of it, mm.
+    /// Length of the unit, mm.
     fn mm(self) -> f64 {
         match self {
             Self::Mm => 1.0,
@@ -89,7 +89,7 @@ impl DepthUnit {
     }
 }
 
-/// What depth counts.
+/// Meaning of the numbers of a depth channel.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -107,7 +107,9 @@ impl Depth {
         let unit_mm = p.unit.map_or(1.0, DepthUnit::mm) * p.scale.unwrap_or(1.0);
         if p.scale == Some(0.0) {
             faults.push(
-                params.fault("scale", "all depths would be 0").hint("1, or -1 where depth counts against the view"),
+                params
+                    .fault("scale", "all depths would be 0")
+                    .hint("write 1, or -1 if depth is negative in front of the camera"),
             );
         }
         let edge = p.edge.map_or(0.05, Ratio::number);
@@ -123,7 +125,7 @@ impl Depth {
         Ok(Self { unit_mm, kind, edge, cleans_edges, eye_mm, found, params, p })
     }
 
-    /// The channel, where the picture's own file holds it.
+    /// Returns the depth channel if the picture's own file holds it.
     pub(super) fn channel(&self) -> Option<&str> {
         self.p.file.is_none().then(|| self.name())
     }
@@ -132,8 +134,8 @@ impl Depth {
         self.p.channel.as_deref().unwrap_or("Z")
     }
 
-    /// Depth of each pixel along the axis from the center of projection, mm. `plane_mm` is the distance of the plane from
-    /// there on which the picture with its `overscan` measures `width_mm`.
+    /// Computes the depth of each pixel, mm, along the axis from the center of projection. `plane_mm` is the distance from there to the
+    /// plane on which the picture with its `overscan` is `width_mm` wide. Fails for depths that are not positive and finite.
     pub(super) fn of(
         &self,
         picture: &Linear,
@@ -176,7 +178,7 @@ impl Depth {
                 Some(1)
             } else {
                 mm = mm.max(near.unwrap_or(0.0)).min(far.unwrap_or(f64::INFINITY));
-                // Beyond what 32 bits hold of millimetres is as good as infinite.
+                // A distance that 32 bits cannot hold in millimeters counts as infinite.
                 (mm > 1e30).then_some(2)
             };
             if let Some(kind) = fault {
@@ -187,19 +189,19 @@ impl Depth {
         let mut faults = Faults::new();
         let against = raw.iter().filter(|v| **v < 0.0).count() > raw.len() / 2;
         let texts = [
-            ("is not a number", "the renderer wrote no depth there: fill it with a large one, and give `far`"),
+            ("is not a number", "the renderer wrote no depth there: replace it with a large value, and set `far`"),
             (
                 "is 0 or less",
                 if against && self.unit_mm > 0.0 {
-                    "most of it is negative: it counts against the view, so write `scale: -1`, or turn the sign of the `scale` that is there"
+                    "most of it is negative, measured against the view: write `scale: -1`, or reverse the sign of your `scale`"
                 } else if self.kind == DepthKind::Z && raw.iter().all(|v| (0.0..=1.0).contains(v)) {
-                    "give pixels without depth a large value, and set `far`; or, since it runs from 0 to 1, write `kind: inverse` for one \
-                     over the distance, another `channel` where it is alpha, and normalised depth anew in meters"
+                    "give pixels without depth a large value, and set `far`. The depth runs from 0 to 1: if it is the inverse of the \
+                     distance, write `kind: inverse`; if it is alpha, another `channel`; if it is normalized, export it in meters"
                 } else {
                     "depth is measured from the camera; give pixels without depth a large value, and set `far`"
                 },
             ),
-            ("is infinite", "say where the backdrop stands, such as `far: 1 km`"),
+            ("is infinite", "write the distance of the backdrop, such as `far: 1 km`"),
         ];
         for (first, (what, hint)) in bad.iter().zip(texts) {
             if let Some(i) = first {
@@ -212,12 +214,12 @@ impl Depth {
         let nearest = depth.iter().fold(f32::INFINITY, |a, b| a.min(*b));
         if faults.is_empty() && f64::from(nearest) <= self.eye_mm {
             let text = format!("the nearest depth, {nearest} mm, lies inside the lens");
-            faults.push(self.params.fault("unit", text).hint("are its numbers in another unit? `unit: m`"));
+            faults.push(self.params.fault("unit", text).hint("is the depth in another unit, such as `unit: m`?"));
         }
         faults.into_result(depth)
     }
 
-    /// What its numbers are taken for, for the summary: channel, kind, unit and factor, which of them are assumed, and how many of
+    /// Describes for the summary how the numbers were read: channel, kind, unit and factor, which of them are assumed, and how many of
     /// the picture's pixels were mixed.
     pub(super) fn describe(&self, pixels: usize, mixed: Option<&Mixed>) -> String {
         let unit = match self.p.unit {
@@ -236,12 +238,15 @@ impl Depth {
         let assumed = if self.p.kind.is_none() { ", assumed" } else { "" };
         let scale = self.p.scale.map(|scale| format!(" times {scale}")).unwrap_or_default();
         let mixed = mixed.map(|mixed| {
-            format!("; {:.2} % of its pixels, mixed at edges, taken apart", 100.0 * mixed.parted as f64 / pixels as f64)
+            format!(
+                "; {:.2} % of its pixels were mixed at edges and separated",
+                100.0 * mixed.parted as f64 / pixels as f64
+            )
         });
         format!("`{}`{scale} in {unit}; {kind}{assumed}{}", self.name(), mixed.unwrap_or_default())
     }
 
-    /// How far the depth reaches beyond the picture, at most as far as the picture does itself, `overscan` pixels.
+    /// Returns the overscan of the depth, pixels on each side: at most `overscan`, that of the picture.
     pub(super) fn overscan(&self, overscan: [u32; 2]) -> [u32; 2] {
         let (Some(name), Some(found)) = (&self.p.file, &self.found) else { return overscan };
         if overscan == [0; 2] {
@@ -252,7 +257,7 @@ impl Depth {
         [overscan[0].min(x), overscan[1].min(y)]
     }
 
-    /// A file of its own: the channel of an OpenEXR, or the first one of any other picture as linear numbers.
+    /// Reads a separate depth file: the channel of an OpenEXR, or the first channel of any other picture as linear numbers.
     fn own(&self, name: &str, found: &Found, overscan: [u32; 2]) -> Result<Linear, Trouble> {
         let choice = Choice { name, depth: Some(self.name()), overscan, ..Choice::default() };
         if read::is_exr(found)? {
@@ -263,10 +268,10 @@ impl Depth {
         if read.clipped_at.is_some() && self.p.scale.is_none() {
             return Err(Trouble {
                 key: "file",
-                text: "its integers are read as 0 to 1, which is no distance yet".to_owned(),
+                text: "its integers are read as values from 0 to 1, which are not yet distances".to_owned(),
                 hint: Some(
-                    "write what 1 stands for: `scale: 65535, unit: mm` if each of 16 bits is a millimeter, `scale: 10, unit: m` if white \
-                     is 10 m away; with `kind: inverse` how far away white is, `scale: 1, unit: m` for 1 m"
+                    "write what 1 stands for: `scale: 65535, unit: mm` if one step of 16 bits is a millimeter, `scale: 10, unit: m` if \
+                     white is 10 m away; with `kind: inverse` write the distance of white, such as `scale: 1, unit: m` for 1 m"
                         .to_owned(),
                 ),
             });
@@ -275,7 +280,8 @@ impl Depth {
         Ok(read)
     }
 
-    /// Whether depth that was read as distance along the axis is one along the ray, or the other way round, which bends walls and floors.
+    /// Returns a warning if depth that was read as distance along the axis is probably distance along the ray, or vice versa, which curves
+    /// walls and floors.
     pub(super) fn doubt_kind(&self, depth: &[f32], plane_mm: f64, pixels: Pixels) -> Option<Warning> {
         let (is_ray, other, bend) = match self.kind {
             DepthKind::Inverse => return None,
@@ -287,13 +293,14 @@ impl Depth {
             return None;
         }
         let read = if is_ray { "`kind: ray`" } else { "`kind: z`, distance along the axis" };
-        let text = format!("read as {read}, its walls and floors are not plane: {bend}");
-        let hint = format!("did you mean `kind: {other}`? Then they are");
+        let text = format!("read as {read}, the depth has walls and floors that are not flat: {bend}");
+        let hint = format!("did you mean `kind: {other}`? Then they are flat");
         Some(self.params.fault(if self.p.kind.is_some() { "kind" } else { "channel" }, text).hint(hint).into())
     }
 
-    /// What makes depths doubtful that were read as millimetres: most of them lie far from the plane, where another unit or kind would
-    /// bring them near, or they run from 0 to 1; or the nearest lies under two focal lengths from the lens, while the plane is no close-up.
+    /// Returns a warning if the depths, mm, were probably read wrongly. It is raised if most depths lie far from the plane, while another
+    /// unit or kind would bring them near, or if they run from 0 to 1. It is also raised if the nearest one is less than two focal lengths
+    /// from the lens, while the plane is not that close.
     pub(super) fn doubt(&self, depth: &[f32], plane_mm: f64, focal_length_mm: Option<f64>) -> Option<Warning> {
         let farthest = self.p.far.map_or(f64::INFINITY, |l| l.mm());
         let mut all: Vec<f32> = depth.iter().copied().filter(|mm| f64::from(*mm) < farthest && *mm < 1e10).collect();
@@ -307,15 +314,15 @@ impl Depth {
         let is_normalised = self.kind == DepthKind::Z
             && (f64::from(most) / self.unit_mm - 1.0).abs() < 1e-6
             && f64::from(least) < 0.5 * self.unit_mm;
-        // Alpha, and what is normalised, as meters: all of it lies within the first one, and the plane beyond.
+        // Alpha or normalized depth, read as meters, lies within the first meter, and the plane beyond it.
         let is_within_one = is_normalised && plane_mm > f64::from(most);
-        // A view into the distance has its plane in front of most things, but not of all.
+        // In a view into the distance the plane lies in front of most objects, but not of all.
         let is_view = median_mm > plane_mm && f64::from(least) < 3.0 * plane_mm;
         let near = focal_length_mm.filter(|f| f64::from(least) < NEAR * f && plane_mm > 2.0 * NEAR * f);
         if !is_within_one && (off(median_mm) < FAR_OFF || is_view) {
             return near.map(|f| {
                 let text = format!(
-                    "its nearest depth is {}, under two focal lengths of the lens ({}), while the plane of the picture stands at {}",
+                    "the nearest depth is {}, less than two focal lengths of the lens ({}), but the plane of the picture is at {}",
                     length(f64::from(least)),
                     length(f),
                     length(plane_mm)
@@ -323,7 +330,7 @@ impl Depth {
                 // A little beyond two focal lengths, in whole centimeters.
                 let near_cm = (0.22 * f).ceil();
                 let hint = format!(
-                    "are its numbers in another unit, or a few of them wrong? `near: {near_cm} cm` takes what is nearer to be there"
+                    "is the depth in another unit, or are a few values wrong? `near: {near_cm} cm` moves nearer pixels to that distance"
                 );
                 self.params.fault("unit", text).hint(hint).into()
             });
@@ -333,7 +340,7 @@ impl Depth {
             DepthKind::Z | DepthKind::Ray => median_mm / self.unit_mm,
         };
         let stretch = self.p.scale.unwrap_or(1.0);
-        // With another unit or kind the plane would lie among the things, and about the middle of them.
+        // With the right unit or kind the plane lies among the objects, near the middle of them.
         let kind = if self.kind == DepthKind::Z { "" } else { ", kind: z" };
         let mut others: Vec<(String, f64)> = [("mm", 1.0), ("cm", 10.0), ("m", 1000.0), ("in", 25.4), ("ft", 304.8)]
             .into_iter()
@@ -341,7 +348,7 @@ impl Depth {
             .map(|(unit, mm)| (format!("`unit: {unit}{kind}`"), said * stretch * mm))
             .collect();
         others.push(("`unit: m, kind: inverse`".to_owned(), 1000.0 * stretch / said));
-        // Where the plane stands in front of most things a view fits, too; feet and inches are asked about last.
+        // A view, with the plane in front of most objects, is accepted, too. Feet and inches are suggested last.
         let as_view = |mm: f64| mm > plane_mm && f64::from(least) * (mm / median_mm) < plane_mm;
         let is_z = |remedy: &str| !remedy.contains("inverse");
         let other = others
@@ -355,27 +362,28 @@ impl Depth {
                 rank(a).total_cmp(&rank(b))
             });
         let text = format!(
-            "half of the depth lies nearer than {}, while the plane of the picture stands at {}",
+            "half of the depth is nearer than {}, but the plane of the picture is at {}",
             length(median_mm),
             length(plane_mm)
         );
         let hint = match other {
             _ if is_normalised => {
-                "its numbers run to exactly 1: normalised depth has to be written anew in meters; of alpha name another `channel`".to_owned()
+                "the values run to exactly 1: if this is normalized depth, export it in meters; if it is alpha, name another `channel`"
+                    .to_owned()
             }
-            Some((remedy, fits)) => format!("did you mean {remedy}? Half would lie nearer than {}", length(fits)),
+            Some((remedy, fits)) => format!("did you mean {remedy}? Then half would be nearer than {}", length(fits)),
             None => return None,
         };
         Some(self.params.fault("unit", text).hint(hint).into())
     }
 }
 
-/// Focal lengths within which nothing stands before a lens but in close-ups.
+/// Distance, in focal lengths, within which there is no object in front of a lens except in close-ups.
 const NEAR: f64 = 2.0;
-/// How many times farther or nearer than the plane the middle depth is doubted.
+/// Ratio of the median depth to the distance of the plane, or its inverse, from which the depth is doubted.
 const FAR_OFF: f64 = 10.0;
 
-/// A length for people.
+/// Formats a length for a message.
 fn length(mm: f64) -> String {
     if mm >= 1000.0 { format!("{:.3} m", mm / 1000.0) } else { format!("{mm:.2} mm") }
 }

@@ -1,4 +1,5 @@
-//! Rays that a picture with depth emits: from the planes of its pixels and from its [`Starts`], each carrying what it is the first to meet.
+//! Rays that a picture with depth emits, from the planes of its pixels and from its [`Starts`]. Each carries light only if the surface
+//! from which it starts is the first on its line.
 
 use super::deep::{CHUNK, DeepPicture, Looked};
 use super::field::Hit;
@@ -11,14 +12,15 @@ use spectra_core::stage::Emit;
 use spectra_core::{Isa, RayBatch};
 
 impl DeepPicture {
-    /// What rays start on beside the planes in front; `level` says how bright a pixel is.
+    /// Finds the surfaces on which rays start besides the planes in front. `level` returns the brightness of a pixel.
     fn starts(&self, level: impl Fn(usize) -> f32) -> Starts {
         let [per_mm, _] = self.lattice();
         let px_per_slope = self.plane_mm * per_mm[0].abs().max(per_mm[1].abs());
         Starts::of(&self.map, &self.field, self.behind.as_deref(), px_per_slope, level)
     }
 
-    /// The color of what a ray starts on, and which part of the light there it carries; `None` where something else stands before it.
+    /// Returns the color of the surface on which a ray starts, and the fraction of its light that the ray carries; `None` if another
+    /// surface hides it.
     #[inline(always)]
     fn carried(&self, start: &Start, first: Option<Hit>, line: impl FnOnce() -> Line) -> Option<([f32; 3], f32)> {
         let first = first?;
@@ -30,7 +32,7 @@ impl DeepPicture {
         if opacity == 1.0 {
             return None;
         }
-        // What is no mixed pixel is the same in front and behind.
+        // A pixel that is not mixed has the same surface in front and behind.
         let behind = self.behind.as_ref()?;
         let beside = start.wall.and_then(|wall| behind.field.beside(start.cell, wall.side));
         if !start.is_behind && (behind.has(start.cell) || beside.is_some_and(|beside| behind.has(beside))) {
@@ -70,7 +72,7 @@ impl Emit for DeepPicture {
                     let mut at = [corner[0] + v[i], corner[1] + v[i]];
                     at[axis] = corner[axis] + f64::from(wall.side % 2);
                     depth_mm = 1.0 / (w + part * range);
-                    // Along the step its area grows by depth dD d(slope), and dD is depth^2 dw.
+                    // The area element of the step is depth dD d(slope), and dD is depth^2 dw.
                     let slope = 1.0 / (per_mm[1 - axis].abs() * self.plane_mm);
                     area_mm2 = depth_mm * depth_mm * depth_mm * range * slope * inverse / starts.share;
                     place = at;
@@ -93,7 +95,7 @@ impl Emit for DeepPicture {
         }
     }
 
-    /// What a ray carries shows once it has a direction: only then is it known what stands before it.
+    /// Computes the light of rays once their directions are known, since only then is it known what hides their start.
     fn radiate(&self, rays: &mut RayBatch, isa: Isa) {
         let c = rays.columns_mut();
         let mut looked = Looked::new();
@@ -114,7 +116,7 @@ impl Emit for DeepPicture {
     }
 }
 
-/// Finds what rays that were emitted carry: light, if they start from the first thing that stands on their line.
+/// A job that finds the light of emitted rays. A ray carries light if it starts on the first surface on its line.
 struct Shine<'a> {
     deep: &'a DeepPicture,
     position: [&'a [f64]; 3],
@@ -146,8 +148,8 @@ impl Vectorized for Shine<'_> {
                 }
             }
             let cosine = if let Some(wall) = start.wall {
-                // The step lies along the lines through the center of projection: its normal is (1, 0, x/depth) or
-                // (0, 1, y/depth), and the area counts by that vector.
+                // The step contains the lines through the center of projection: its normal is (1, 0, x/depth) or
+                // (0, 1, y/depth), and the area above goes with this vector.
                 let axis = usize::from(wall.side / 2);
                 let (cell, beyond, width) = (start.cell, usize::from(wall.side % 2), deep.map.width_px);
                 let border = [(cell % width + beyond) as f64, (cell / width + beyond) as f64];

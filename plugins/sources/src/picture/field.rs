@@ -1,69 +1,68 @@
-//! What a ray meets of a picture with depth.
+//! Intersection of rays with a picture with depth.
 //!
-//! The picture is a height field over its own perspective. In the coordinates (column, row, w), w being one over the
-//! depth in front of the center of projection, every straight ray is a straight line (a projective map keeps lines), each
-//! pixel is a flat cell at its w, and w only falls along a ray from the lens: the cells are walked through in order (J.
-//! Amanatides and A. Woo, "A fast voxel traversal algorithm", Eurographics 1987), with no step that could miss one. What stands
-//! around the line bounds the part of it that has to be walked ([`super::bounds`]); the result is that of walking all of it.
+//! The picture is a height field over its own perspective, in the coordinates (column, row, w), where w is one over the depth in front of
+//! the center of projection. Every straight ray is a straight line there, since a projective map keeps lines. Each pixel is a flat cell at
+//! its w, and w only falls along a ray from the lens. The cells are walked through in order (J. Amanatides and A. Woo, "A fast voxel
+//! traversal algorithm", Eurographics 1987), so that none is missed. The surfaces around the line bound the part of it that has to be
+//! walked ([`super::bounds`]); the result is the same as that of walking all of it.
 //!
-//! What lies behind a foreground no single picture knows. Where a ray passes from in front of one pixel to behind the next,
-//! and the two belong to different things, the background goes on behind the foreground as it was last seen: at the depth
-//! and in the color of the last pixel in front of which the ray was: black, if that is one of the picture's lights, for a lamp
-//! is no background. No light of the foreground leaks into it. Where the
-//! two belong to the same thing the ray meets the step between them. A ray that comes in behind a foreground from
-//! beside the picture sees nothing until it comes out again.
+//! No single picture shows what lies behind a foreground. A ray may pass from in front of one pixel to behind the next. If the two belong
+//! to different objects, the background continues behind the foreground: at the depth and in the color of the last pixel that the ray was
+//! in front of. It is black if that pixel is one of the picture's lights, since a lamp is not a background. No light of the foreground
+//! leaks into it. If the two belong to the same object, the ray meets the step between them. A ray that enters from outside the picture
+//! behind a foreground sees no light until it emerges again.
 
 use super::bounds::Bounds;
 use super::narrowing::{Each, Line, Lines, Look, MUCH_SHORTER, Narrowing, SIDE_BY_SIDE, less, more, pixel};
 
-/// One over the depth of each pixel.
+/// A picture's height field: the inverse depth of each pixel.
 pub(super) struct HeightField {
     width: usize,
     height: usize,
-    /// 1/mm, row by row from the top.
+    /// Inverse depths, 1/mm, row by row from the top.
     inverse_mm: Vec<f32>,
     bounds: Bounds,
-    /// Of each pixel, whether all that touch it belong to the same thing.
+    /// Whether all pixels that touch a pixel belong to the same object.
     smooth: Vec<bool>,
     nearest: f64,
     farthest: f64,
     edge: f64,
 }
 
-/// What a ray meets.
+/// The point where a ray meets the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hit {
-    /// Where, in pixels.
+    /// Column and row of the point, pixels.
     pub place: [f64; 2],
-    /// The pixel whose surface it is.
+    /// Pixel whose surface the ray meets.
     pub cell: usize,
-    /// Whether that surface is guessed: a background that goes on behind a foreground.
+    /// Whether the surface is guessed, that is, a background continued behind a foreground.
     pub guessed: bool,
-    /// Where the ray passed from in front of one pixel to behind the next; `None` if it met a pixel's own plane.
+    /// Step at which the ray passed from in front of one pixel to behind the next; `None` if it met the plane of a pixel.
     pub wall: Option<Wall>,
 }
 
-/// The step between a pixel and a neighbor that stands nearer: what a ray meets there, or the guess that goes on from there.
+/// The step between a pixel and a nearer neighbor. A ray meets the step itself, or the guessed background that continues from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Wall {
-    /// The pixel that stands farther: the ray leaves it.
+    /// The farther pixel, which the ray leaves.
     pub cell: u32,
-    /// Where the nearer one lies: 0 left, 1 right, 2 above, 3 below.
+    /// Side on which the nearer pixel lies: 0 left, 1 right, 2 above, 3 below.
     pub side: u8,
 }
 
-/// Steps of w below this part of the largest move nothing by as much as a pixel in any sensible picture.
+/// Steps of w below this fraction of the largest w shift no point by as much as a pixel in any realistic picture.
 const STEP: f64 = 1e-3;
-/// Rounding moves a place by less than this part of its coordinates: some 2^-52 times a few.
+/// Upper limit of the shift of a point by rounding, relative to its coordinates: a few times 2^-52.
 const ROUNDING: f64 = 1e-12;
-/// A line is looked at no more often.
+/// Largest number of narrowing steps for a line.
 const MOST_LOOKS: usize = 16;
-/// Pixels across a step within which the background is looked for that goes on behind it.
+/// Number of pixels across a step within which the continued background is searched for.
 const MOST_ACROSS: usize = 64;
 
 impl HeightField {
-    /// `depth_mm` is positive and finite; neighbors whose depths differ by more than the part `edge` belong to
-    /// different things.
+    /// Creates the field from positive, finite depths, mm. Neighbors whose depths differ by more than the fraction `edge` belong to
+    /// different objects.
     pub(super) fn new(width: usize, height: usize, depth_mm: &[f32], edge: f64) -> Self {
         let inverse_mm: Vec<f32> = depth_mm.iter().map(|d| 1.0 / d).collect();
         let nearest = inverse_mm.iter().fold(0.0_f32, |a, b| a.max(*b));
@@ -75,7 +74,7 @@ impl HeightField {
         own
     }
 
-    /// A pixel and all that touch it.
+    /// Returns a pixel and all pixels that touch it.
     fn around(&self, cell: usize) -> impl Iterator<Item = usize> + use<> {
         let (column, row, width) = (cell % self.width, cell / self.width, self.width);
         let columns = column.saturating_sub(1)..=(column + 1).min(width - 1);
@@ -83,19 +82,19 @@ impl HeightField {
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
-    /// Whether all pixels that touch one belong to the same thing as it does.
+    /// Returns whether all pixels that touch a pixel belong to the same object.
     #[inline(always)]
     pub(super) fn is_smooth(&self, cell: usize) -> bool {
         self.smooth[cell]
     }
 
-    /// One over the depth of a pixel, 1/mm.
+    /// Inverse depth of a pixel, 1/mm.
     #[inline(always)]
     pub(super) fn w(&self, cell: usize) -> f64 {
         f64::from(self.inverse_mm[cell])
     }
 
-    /// The pixel beside one, on a side as [`Wall::side`] counts them.
+    /// Returns the neighbor of a pixel on a side, numbered as in [`Wall::side`]; `None` outside the picture.
     pub(super) fn beside(&self, cell: usize, side: u8) -> Option<usize> {
         let (column, row) = (cell % self.width, cell / self.width);
         match side {
@@ -106,21 +105,21 @@ impl HeightField {
         }
     }
 
-    /// How many pixels there are.
+    /// Number of pixels of the picture.
     pub(super) fn cells(&self) -> usize {
         self.inverse_mm.len()
     }
 
-    /// Whether two pixels belong to the same thing.
+    /// Returns whether two pixels belong to the same object.
     #[inline(always)]
     pub(super) fn together(&self, a: usize, b: usize) -> bool {
         let (a, b) = (self.w(a), self.w(b));
         (a - b).abs() <= (self.edge * a.max(b)).max(STEP * self.nearest)
     }
 
-    /// What the rays along `len` lines meet first, coming from the lens; those that are not `wanted` are left out. Each finds what
-    /// [`HeightField::hit`] finds, but they are narrowed side by side: a loop of its own for each thing that is done, so that all
-    /// but the look at the squares runs in vectors, and none waits for another's.
+    /// Finds what the rays along `len` lines meet first, coming from the lens; lines that are not `wanted` are skipped. The results are
+    /// those of [`HeightField::hit`], but the lines are narrowed in parallel, with a separate loop for each operation. Everything except
+    /// the lookup of the squares is then vectorized, and no line waits for another.
     #[inline(always)]
     pub(super) fn hits(&self, lines: &Lines, len: usize, wanted: &[bool; SIDE_BY_SIDE], hits: &mut [Option<Hit>]) {
         let len = len.min(SIDE_BY_SIDE);
@@ -160,7 +159,7 @@ impl HeightField {
         }
     }
 
-    /// Which lines lie over the picture from in front of everything to the farthest: see [`HeightField::over`].
+    /// Finds the lines that stay over the picture from the nearest to the farthest depth: see [`HeightField::over`].
     #[inline(always)]
     fn lie_inside(&self, lines: &Lines, inside: &mut [bool; SIDE_BY_SIDE]) {
         let size = [self.width as f64, self.height as f64];
@@ -176,7 +175,7 @@ impl HeightField {
         }
     }
 
-    /// [`HeightField::narrowed`] for lines side by side: writes where each has anything beside it first.
+    /// Computes [`HeightField::narrowed`] for lines in parallel: writes the w at which each first comes beside a surface.
     #[inline(always)]
     fn narrow(&self, lines: &mut Narrowing, found: &mut Each) {
         let last = [self.width as f64 - 1.0, self.height as f64 - 1.0];
@@ -207,7 +206,7 @@ impl HeightField {
         }
     }
 
-    /// The pixels that lines are over at these w, and whether rounding leaves no doubt of it and they were narrowed at all.
+    /// Finds the pixels under the lines at these w. `sure` is whether a line was narrowed and rounding leaves no doubt about the pixel.
     #[inline(always)]
     fn begin(&self, lines: &Lines, near: &Each, cells: &mut [[u32; SIDE_BY_SIDE]; 2], sure: &mut [bool; SIDE_BY_SIDE]) {
         let last = [self.width as f64 - 1.0, self.height as f64 - 1.0];
@@ -225,17 +224,17 @@ impl HeightField {
         }
     }
 
-    /// What the ray along a line meets first, coming from the lens.
+    /// Finds what the ray along a line meets first, coming from the lens.
     ///
-    /// Code that runs for each ray: it is inlined into what is compiled for each instruction set, hence no closures.
+    /// This code runs for each ray. It is inlined into code that is compiled for each instruction set, so it has no closures.
     #[inline(always)]
     pub(super) fn hit(&self, line: &Line) -> Option<Hit> {
         let [w_in, w_end] = self.over(line)?;
-        // A ray that comes in from beside the picture may do so behind something: that needs every step of its way.
+        // A ray that enters from outside the picture may do so behind a surface, so every step of it has to be walked.
         let narrowed = if w_in >= self.nearest { self.narrowed(line, w_in, w_end) } else { None };
         let (cell, near) = match narrowed {
             Some((cell, near)) => {
-                // In front of it the ray passed everything, since nothing stands nearer.
+                // Up to here the ray passed in front of everything, since no surface is nearer.
                 let here = cell[1] * self.width + cell[0];
                 if self.w(here) == near {
                     return Some(Hit { place: line.at(near), cell: here, guessed: false, wall: None });
@@ -247,9 +246,9 @@ impl HeightField {
         self.walk::<true>(line, cell, near, w_end)
     }
 
-    /// The pixel whose color stands for what a ray meets, where that is a guess: of the background that the ray left at a step, the one
-    /// beside the hidden place, straight across the step. The pixel at the step itself would do for rays that go straight back; others go
-    /// on to other rows (or columns), and what crosses the edge there must not be drawn sharp beside it.
+    /// Returns the pixel whose color is used for a guessed background: the one beside the hidden point, straight across the step. For rays
+    /// that go straight back, the pixel at the step itself would do. Other rays continue to other rows (or columns), and what crosses the
+    /// edge there must not appear sharp beside it.
     #[inline]
     pub(super) fn goes_on(&self, hit: &Hit) -> usize {
         let Some(wall) = hit.wall.filter(|_| hit.guessed) else { return hit.cell };
@@ -262,7 +261,7 @@ impl HeightField {
             if self.together(hit.cell, cell) {
                 return cell;
             }
-            // Away from what stands nearer.
+            // Move away from the nearer side.
             if is_backward && at[axis] == 0 || !is_backward && at[axis] + 1 == size[axis] {
                 break;
             }
@@ -271,7 +270,8 @@ impl HeightField {
         hit.cell
     }
 
-    /// Part of a line that lies over the picture, from in front of everything to the farthest: its ends in w.
+    /// Returns the part of a line that lies over the picture, from the nearest to the farthest depth, as its ends in w; `None` if there is
+    /// none.
     #[inline(always)]
     fn over(&self, line: &Line) -> Option<[f64; 2]> {
         let size = [self.width as f64, self.height as f64];
@@ -301,44 +301,44 @@ impl HeightField {
         (w_in >= w_end).then_some([w_in, w_end])
     }
 
-    /// Far more than rounding moves a place on a line, pixels.
+    /// Returns a bound, in pixels, of the shift of a point on a line by rounding, with a large margin.
     #[inline(always)]
     fn room(&self, line: &Line) -> [f64; 2] {
         let ([a, b], [x, y]) = (line.at_infinity, line.per_w);
         [ROUNDING * (1.0 + a.abs() + x.abs() * self.nearest), ROUNDING * (1.0 + b.abs() + y.abs() * self.nearest)]
     }
 
-    /// The pixel of a place, or the nearest one.
+    /// Returns the column and row of the pixel at a point, or of the nearest one.
     #[inline(always)]
     fn cell_at(&self, [column, row]: [f64; 2]) -> [usize; 2] {
-        // Also where it is no number.
+        // Also for NaN.
         let (column, row) = (if column > 0.0 { column } else { 0.0 }, if row > 0.0 { row } else { 0.0 });
         [(column as i32 as usize).min(self.width - 1), (row as i32 as usize).min(self.height - 1)]
     }
 
-    /// The same by its number.
+    /// Returns the index of the pixel at a point, or of the nearest one.
     #[inline(always)]
     pub(super) fn cell(&self, place: [f64; 2]) -> usize {
         let [column, row] = self.cell_at(place);
         row * self.width + column
     }
 
-    /// Where a line that comes from in front of everything has anything beside it first: the pixel that it is over there, and w.
-    /// `None` where that is where it begins, or too close to a border for rounding to say which pixel it is over.
+    /// Finds where a line that starts in front of everything first comes beside a surface. Returns the pixel under it there, and w.
+    /// `None` if that is at its start, or too close to a border for rounding to tell which pixel is under it.
     #[inline(always)]
     fn narrowed(&self, line: &Line, w_in: f64, w_end: f64) -> Option<([usize; 2], f64)> {
         let room = self.room(line);
         let (mut near, mut far) = (w_in, w_end);
-        // How much of what is left is looked at.
+        // Fraction of the remaining line that the next look covers.
         let mut part = 1.0;
         for _ in 0..MOST_LOOKS {
             let upto = if part == 1.0 { far } else { near - part * (near - far) };
             let (first, last) = self.around_line(line, near, upto, room);
             let ends = self.bounds.of(first, last);
             let (nearest, farthest) = (f64::from(ends.nearest), f64::from(ends.farthest));
-            // It runs in front of all that, or meets what is nearest there at the earliest.
+            // The line runs in front of all that, or meets the nearest surface there at the earliest.
             let next = less(near, more(nearest, upto));
-            // It has met something where what is farthest there lies in front of the end.
+            // The line has met a surface by then if the farthest one there lies in front of the end.
             let end = if farthest > far && farthest >= upto { less(farthest, next) } else { far };
             let shorter = next - end < MUCH_SHORTER * (near - far);
             let moved = next < near;
@@ -368,7 +368,7 @@ impl HeightField {
         is_sure.then_some((cell, near))
     }
 
-    /// The box of pixels that a part of a line is over, first and last column and row, with room for rounding.
+    /// Returns the box of pixels under a part of a line (first and last column and row), with a margin for rounding.
     #[inline(always)]
     fn around_line(&self, line: &Line, near: f64, far: f64, room: [f64; 2]) -> ([usize; 2], [usize; 2]) {
         let [a, b] = [line.at(near), line.at(far)];
@@ -377,31 +377,31 @@ impl HeightField {
         (first, last)
     }
 
-    /// Whether a line stays behind all that stands around it between two ends.
+    /// Returns whether a line stays behind all surfaces around it between two ends.
     #[inline(always)]
     fn stays_behind(&self, line: &Line, near: f64, far: f64) -> bool {
         let (first, last) = self.around_line(line, near, far, self.room(line));
         f64::from(self.bounds.of(first, last).farthest) > near
     }
 
-    /// The same without a look at what stands around the line: what [`HeightField::hit`] is tested by.
+    /// Finds what a ray meets without using the bounds, as a reference for [`HeightField::hit`].
     #[cfg(test)]
     fn hit_step_by_step(&self, line: &Line) -> Option<Hit> {
         let [w_in, w_end] = self.over(line)?;
         self.walk::<false>(line, self.cell_at(line.at(w_in)), w_in, w_end)
     }
 
-    /// Follows a line pixel by pixel, from a pixel that it is over at `w_in`; `LOOKS` ahead where that may save steps.
+    /// Follows a line pixel by pixel, from the pixel under it at `w_in`. With `LOOKS` it uses the bounds where that may save steps.
     ///
-    /// Which side a pixel is left by is a toss-up, so nothing branches on it: both axes are carried on.
+    /// The side on which the line leaves a pixel is unpredictable, so the code does not branch on it and updates both axes.
     #[inline(always)]
     fn walk<const LOOKS: bool>(&self, line: &Line, cell: [usize; 2], mut w_in: f64, w_end: f64) -> Option<Hit> {
         let [mut across, mut down] = [self.way(line, cell, 0), self.way(line, cell, 1)];
         let mut here = cell[1] * self.width + cell[0];
-        // The pixel whose surface the ray was last in front of, and whether it still is.
+        // The last pixel that the ray was in front of, and whether the ray still is in front.
         let mut before: Option<usize> = None;
         let mut in_front = w_in >= self.nearest;
-        // Where it last came behind something, and by which side it came into the pixel where it is.
+        // The step at which the ray last went behind a surface, and the side of the previous pixel on which the current one lies.
         let mut wall = None;
         let mut side = 0;
         loop {
@@ -434,7 +434,7 @@ impl HeightField {
                     return Some(Hit { place: line.at(self.w(before)), cell: before, guessed: true, wall });
                 }
             }
-            // Out of the picture, too, there is nothing.
+            // The ray meets nothing if its line ends or leaves the picture.
             let (border, end) = if is_down { (down.border, down.end) } else { (across.border, across.end) };
             if ends | (border == end) {
                 return None;
@@ -447,7 +447,7 @@ impl HeightField {
         }
     }
 
-    /// How a line goes over columns (`axis` 0) or rows, from this pixel on.
+    /// Returns how a line crosses columns (`axis` 0) or rows, from this pixel on.
     #[inline(always)]
     fn way(&self, line: &Line, cell: [usize; 2], axis: usize) -> Way {
         let slope = line.per_w[axis];
@@ -465,25 +465,26 @@ impl HeightField {
     }
 }
 
-/// How a line goes over columns or rows, coming from large w.
+/// Traversal state of a line along columns or rows, coming from large w.
 struct Way {
-    /// Where it leaves the column or row that it is over.
+    /// Border where the line leaves the current column or row.
     border: f64,
-    /// From one border to the next.
+    /// Step from one border to the next.
     step: f64,
-    /// The picture's border that it comes to.
+    /// Border of the picture toward which the line runs.
     end: f64,
-    /// Where it is at w = 0, and one over its change per w.
+    /// Position of the line at w = 0.
     origin: f64,
+    /// Inverse of the change of position per w.
     inverse: f64,
-    /// From pixel to pixel.
+    /// Step of the pixel index from one pixel to the next.
     stride: usize,
-    /// Of the pixel that it comes to, the side by which it comes: see [`Wall::side`].
+    /// Side of the current pixel on which the next one lies: see [`Wall::side`].
     side: u8,
 }
 
 impl Way {
-    /// The w at which it leaves; nowhere if it runs along.
+    /// Returns the w at which the line leaves the current column or row; minus infinity if it runs along it.
     #[inline(always)]
     fn leaves(&self) -> f64 {
         more((self.border - self.origin) * self.inverse, f64::NEG_INFINITY)
@@ -494,13 +495,13 @@ impl Way {
 mod tests {
     use super::*;
 
-    /// Eight columns: the left four at 1 m, the others at 2 m.
+    /// A field of eight columns: the left four at 1 m, the others at 2 m.
     fn step() -> HeightField {
         let depth: Vec<f32> = (0..16).map(|i| if i % 8 < 4 { 1000.0 } else { 2000.0 }).collect();
         HeightField::new(8, 2, &depth, 0.05)
     }
 
-    /// The line of a ray through (column, row) at depth `at_mm` with a slope in columns per w.
+    /// Returns the line of a ray through a column at depth `at_mm`, with a slope in columns per w.
     fn through(column: f64, at_mm: f64, slope: f64) -> Line {
         Line { at_infinity: [column - slope / at_mm, 0.5], per_w: [slope, 0.0] }
     }
@@ -513,8 +514,8 @@ mod tests {
         }
     }
 
-    /// Rays through the plane of the foreground, on either side of its edge, at any slope: the left ones meet it, the
-    /// right ones pass and see background only, guessed where it is hidden.
+    /// Rays cross the plane of the foreground on either side of its edge, at any slope. The left ones meet it. The right ones
+    /// pass and see only background, which is guessed where it is hidden.
     #[test]
     fn the_edge_is_sharp_and_leaks_nothing() {
         let field = step();
@@ -530,7 +531,7 @@ mod tests {
         }
     }
 
-    /// A ray that goes behind the edge and on to other rows meets the background of those rows.
+    /// A ray that passes behind the edge and continues to other rows meets the background of those rows.
     #[test]
     fn what_is_hidden_is_guessed_from_beside_it() {
         let depth: Vec<f32> = (0..48).map(|i| if i % 8 < 4 { 1000.0 } else { 2000.0 }).collect();
@@ -548,7 +549,7 @@ mod tests {
         assert_eq!(rows, [3, 2, 1]);
     }
 
-    /// A slanted plane has steps between its pixels; a ray slips through none of them.
+    /// A slanted plane has steps between its pixels, but no ray slips through them.
     #[test]
     fn a_slanted_surface_has_no_cracks() {
         let depth: Vec<f32> = (0..100).map(|i| 1.0 / (1e-3 - 1e-5 * (i % 50) as f32)).collect();
@@ -559,7 +560,7 @@ mod tests {
             if let Some(hit) = field.hit(&through(25.3, 1100.0, slope)) {
                 met += 1;
                 assert!(!hit.guessed, "{slope} {hit:?}");
-                // The exact plane: w = 1e-3 - 1e-5 (column - 0.5), met within one pixel and one step.
+                // The exact plane is w = 1e-3 - 1e-5 (column - 0.5); the ray meets it within one pixel and one step.
                 let w = (hit.place[0] - (25.3 - slope / 1100.0)) / slope;
                 if slope.abs() > 1.0 {
                     let plane = 1e-3 - 1e-5 * (hit.place[0] - 0.5);
@@ -570,7 +571,7 @@ mod tests {
         assert!(met > 1900, "{met}");
     }
 
-    /// With and without a look at what stands around a line, bit by bit: planes, slopes, noise, posts before a wall.
+    /// Results are the same with and without the bounds, bit by bit: planes, slopes, noise, posts in front of a wall.
     #[test]
     fn narrowing_changes_nothing() {
         let mut state = 1_u64;
@@ -596,7 +597,7 @@ mod tests {
                     .collect();
                 let field = HeightField::new(width, height, &depth, 0.05);
                 for _ in 0..4000 {
-                    // Through a place over or beside the picture, at a depth in it.
+                    // Through a point over or outside the picture, at a depth within it.
                     let at = [draw() * 1.2 - 0.1, draw() * 1.2 - 0.1];
                     let w = field.farthest + (field.nearest - field.farthest) * draw();
                     let reach = 10.0_f64.powf(4.0 * draw()) / field.nearest.max(1e-9);
@@ -626,7 +627,7 @@ mod tests {
         assert!(met > 20_000 && walls > 2000 && guessed > 1000 && skipped > 5000, "{met} {walls} {guessed} {skipped}");
     }
 
-    /// Side by side, with some left out and some beside the picture, each line meets what it meets alone.
+    /// Lines processed in parallel, some skipped and some outside the picture, meet what they meet alone.
     #[test]
     fn side_by_side_is_as_alone() {
         let mut state = 5_u64;
@@ -665,7 +666,7 @@ mod tests {
                     for i in 0..len {
                         let alone = field.hit_step_by_step(&lines.line(i)).filter(|_| wanted[i]);
                         if i == 7 {
-                            // Nowhere is nowhere, whatever is found there.
+                            // The line has a NaN: any result is accepted.
                             continue;
                         }
                         assert_eq!(hits[i], alone, "{width} x {height}, {kind}: {:?}", lines.line(i));
@@ -684,7 +685,7 @@ mod tests {
     fn beside_the_picture_there_is_nothing() {
         assert_eq!(step().hit(&through(8.5, 1000.0, 0.0)), None);
         assert_eq!(step().hit(&through(-0.1, 1000.0, 0.0)), None);
-        // Comes in from the left behind the foreground, and leaves the hidden part over the background.
+        // The ray enters from the left behind the foreground, and emerges over the background.
         let hit = step().hit(&through(-1.0, 1200.0, -24_000.0)).unwrap();
         assert!(hit.cell % 8 >= 4 && !hit.guessed);
     }

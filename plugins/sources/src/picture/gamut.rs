@@ -1,16 +1,16 @@
-//! Colors of a picture that its color model makes no spectra of: they are moved toward white, and counted.
+//! Gamut mapping: colors for which the color model has no spectrum are moved toward white and counted.
 
 use spectra_color::{MARGIN, fit};
 use spectra_core::stage::{ColorGamut, ColorModel};
 use spectra_pictures::read::{Linear, Trouble};
 
-/// Pixels whose largest value is less, white being 1, are too dark to be worth a word.
+/// Pixels whose largest value is below this fraction of white are too dark for a warning.
 const DARK: f32 = 1e-3;
-/// Distance in xy up to which a move is not worth a word: less than an eye sees (a MacAdam ellipse). The red of Display P3, which many a
-/// photograph has, moves by a third of it.
+/// Distance in xy up to which a shift needs no warning: less than an eye sees (a MacAdam ellipse). The red of Display P3, which many
+/// photographs contain, moves by a third of it.
 const UNSEEN: f64 = 3.0 * MARGIN;
 
-/// Brings the picture's colors into the gamut of the model, and adds to its doubts how many moved.
+/// Moves the picture's colors into the gamut of the model, and adds a warning about how many moved.
 pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
     let gamut = model.gamut();
     let (mut moved, mut farthest, mut black) = (0_usize, 0.0_f64, 0_usize);
@@ -29,11 +29,11 @@ pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
     let mut said = Vec::new();
     if farthest > UNSEEN {
         let beyond = match gamut {
-            ColorGamut::Srgb => "colors beyond sRGB, of which this color model makes no light",
-            ColorGamut::Real => "colors that no light has, or only that of a single wavelength",
+            ColorGamut::Srgb => "colors outside sRGB, for which this color model has no spectrum",
+            ColorGamut::Real => "colors that no light has, or only light of a single wavelength",
         };
         said.push(format!(
-            "{moved} of its {all} pixels have {beyond}: they are moved toward white, by {farthest:.4} in xy at most, luminance kept"
+            "{moved} of its {all} pixels have {beyond}: they are moved toward white by at most {farthest:.4} in xy, at the same luminance"
         ));
     }
     if black > 0 {
@@ -46,7 +46,9 @@ pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
         ColorGamut::Srgb => {
             "write `color: {kind: smooth}`, which keeps all real colors, or convert the picture to sRGB"
         }
-        ColorGamut::Real => "convert it to a narrower gamut, such as Rec. 2020 or Display P3, where it was made",
+        ColorGamut::Real => {
+            "convert it to a narrower gamut, such as Rec. 2020 or Display P3, in the program that made it"
+        }
     };
     linear.doubts.push(Trouble { key: "file", text: said.join("; "), hint: Some(hint.to_owned()) });
 }

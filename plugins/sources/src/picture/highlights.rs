@@ -1,17 +1,17 @@
-//! A guess at what clipped highlights were, for pictures of 8 or 16 bits.
+//! Estimates the light of clipped highlights in pictures of 8 or 16 bits.
 //!
-//! A pixel of which a channel stands at the top of its range was at least that bright; how much more is not in the file.
-//! The rule says what a lamp or a reflection looks like: brightest in its middle, and the brighter the larger its clipped
-//! area is, since glare and blur widen what is far beyond white. With d the distance (pixels) to the nearest pixel that
-//! is not clipped, all channels are multiplied by 2^(stops d / (d + 4)): it rises without a step from the rim, reaches
-//! half of the stops 4 pixels inside, and never exceeds `stops`. Pixels that are not clipped keep their value.
+//! A pixel with a channel at the top of its range was at least that bright; the file does not tell how much brighter. The rule models
+//! a lamp or a reflection: brightest at its center, and the brighter the larger its clipped area, since glare and blur widen light far
+//! beyond white. Let d be the distance (pixels) to the nearest pixel that is not clipped. All channels are multiplied by
+//! 2^(stops d / (d + 4)). This gain rises without a step from the rim, reaches half of the stops 4 pixels inside, and never
+//! exceeds `stops`. Pixels that are not clipped keep their values.
 
 use spectra_core::math;
 
 /// Distance from the rim at which half of the stops are reached, pixels.
 const REACH: f64 = 4.0;
 
-/// Multiplies clipped pixels, row by row, as the rule says.
+/// Multiplies clipped pixels according to the rule. Pixels are in rows of `width`, clipped from the value `clipped_at` on.
 pub(super) fn recover(rgb: &mut [[f32; 3]], width: usize, clipped_at: f32, stops: f64) {
     let clipped: Vec<bool> = rgb.iter().map(|p| p.iter().any(|v| *v >= clipped_at)).collect();
     if !clipped.contains(&true) {
@@ -26,9 +26,9 @@ pub(super) fn recover(rgb: &mut [[f32; 3]], width: usize, clipped_at: f32, stops
     }
 }
 
-/// Squared distance from each pixel to the nearest that is not marked: exact, in linear time (P. Felzenszwalb and D.
-/// Huttenlocher, "Distance transforms of sampled functions", Theory of Computing 8, 2012). Where all are marked, the
-/// distance to beyond the rim of the picture.
+/// Computes the squared distance, pixels^2, from each pixel to the nearest one that is not marked: exactly, in linear time
+/// (P. Felzenszwalb and D. Huttenlocher, "Distance transforms of sampled functions", Theory of Computing 8, 2012). If all pixels are
+/// marked, it is the distance to the first pixel beyond the rim of the picture.
 fn squared_distances(marked: &[bool], width: usize) -> Vec<f64> {
     let height = marked.len() / width;
     let everywhere = marked.iter().all(|m| *m);
@@ -56,7 +56,7 @@ fn squared_distances(marked: &[bool], width: usize) -> Vec<f64> {
     all
 }
 
-/// For each q the least of f(p) + (q - p)^2: the lower envelope of parabolas.
+/// Computes, for each q, the minimum of f(p) + (q - p)^2 over p: the lower envelope of parabolas.
 fn envelope(f: &[f64]) -> Vec<f64> {
     let meet = |p: usize, q: usize| {
         let (a, b) = (p as f64, q as f64);
@@ -115,8 +115,8 @@ mod tests {
         }
     }
 
-    /// It rises toward the middle, nothing below white changes, energy grows but by no more than the stops, and larger
-    /// highlights become brighter.
+    /// Highlights rise toward their centers, and pixels below white do not change. Energy grows by no more than the stops, and
+    /// larger highlights become brighter.
     #[test]
     fn highlights_rise_toward_their_middle_and_nothing_else_changes() {
         let (width, stops) = (41, 3.0);

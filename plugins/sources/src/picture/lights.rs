@@ -1,51 +1,59 @@
-//! Which pixels of a picture are lights: much brighter than what they stand among, and few.
+//! Finds the lights of a picture: few pixels that are much brighter than the rest.
 //!
-//! Rays from the imager find small bright things by chance, and are noisy where they are out of focus; rays from the bright pixels
-//! find the imager always. So the picture is taken as the sum of two: its light times `share`, and its light times one minus
-//! `share`. `share` is 1 on the pixels of lights, 0 on others, and linear between their centers as the light itself.
+//! Rays from the imager hit small bright objects by chance, which is noisy where these are out of focus. Rays from the bright
+//! pixels always reach the imager. The picture is therefore split into a sum of two: its light times `share`, and its light times
+//! one minus `share`. `share` is 1 on the pixels of lights, 0 on others, and linear between their centers like the light itself.
 //!
-//! A pixel is a light if it is brighter than [`TIMES`] times the mean of those that are none, and among the brightest
-//! [`MOST`] of all. So are its eight neighbors: between a light and a neighbor all light is then the lights'.
+//! A pixel is a light if it is brighter than [`TIMES`] times the mean of the pixels that are not, and among the brightest
+//! [`MOST`] of all. Its eight neighbors are lights, too, so that all light between a light and a neighbor belongs to the lights.
+//! Both sums are the picture times a weight, so they work with any color model. Which pixels are lights is a rule of the picture alone.
+//!
+//! Two directions pay if a pixel of the frame that sees all of the picture would have at most an eighth of the variance ([`PAYS`]).
+//!
+//! **Limits.** A window of many pixels is not a light, however bright it is. Rays from the source would land at random and leave 4 to 5 %
+//! of noise, in colors, in each pixel of it, while rays from the imager are clean except at its blurred edges. With a window of a seventh
+//! of the picture, the noise only moved from its edges to its middle, for six times the time. The remaining noise is that each ray has one
+//! wavelength: behind the last surface that disperses light (seen from the imager), each wavelength takes a path of its own.
 
 use super::places::LightPlaces;
 use spectra_core::spectral::SpectralPower;
 
-/// How much brighter than the mean of the rest a light is.
+/// Smallest ratio of the brightness of a light to the mean of the rest.
 const TIMES: f64 = 8.0;
-/// At most this part of a picture is lights.
+/// Largest fraction of a picture that can be lights.
 const MOST: f64 = 0.05;
-/// Two directions pay where the variance of a wholly blurred picture falls by this factor at least: they cost up to four times as
-/// much as one.
+/// Smallest factor by which the variance of a fully blurred picture must fall to make tracing in two directions worthwhile: two
+/// directions cost up to four times as much as one.
 const PAYS: f64 = 8.0;
-/// A light that is black is drawn as if it had this part of the mean brightness: its neighborhood may have light.
+/// Fraction of the lights' mean brightness with which a black pixel of a light is drawn, since there may be light around its center.
 const LEAST: f32 = 1e-3;
 
 /// The lights of a picture.
 pub(crate) struct Lights {
-    /// Of each pixel: 0 where it is none, else its brightness, which is above 0.
+    /// Brightness of each pixel, above 0, if it is a light; 0 otherwise.
     pub level: Vec<f32>,
-    /// Whether one of the four pixels from this one on, to the right and down, is a light: else light interpolated between them is
-    /// none of the lights'.
+    /// Whether each pixel, or its neighbor to the right, below or to the lower right, is a light. If not, no light interpolated between
+    /// these four belongs to the lights.
     pub touched: Vec<bool>,
-    /// Draws places on them.
+    /// Draws points on the lights.
     pub places: LightPlaces,
-    /// Light of the lights and of the rest, a mean over the picture.
+    /// Mean light over the picture, of the lights and of the rest.
     pub mean: [SpectralPower; 2],
-    /// Peak over mean of each, among its own pixels.
+    /// Ratio of peak to mean, of the lights and of the rest, each among its own pixels.
     pub peak_over_mean: [f64; 2],
     pub pays: bool,
 }
 
-/// What is known of the pixels before their spectra are.
+/// The lights as found from the brightness of pixels, before their spectra are known.
 pub(super) struct Found {
     pub level: Vec<f32>,
-    /// What is no brighter than this is a light only as the neighbor of one.
+    /// Brightness limit: a pixel that is not brighter is a light only as the neighbor of one.
     pub limit: f32,
     pub peak_over_mean: [f64; 2],
     pub pays: bool,
 }
 
-/// For [`Lights::touched`], by the level of each pixel.
+/// Computes [`Lights::touched`] from the level of each pixel.
 pub(super) fn touched(width: usize, level: &[f32]) -> Vec<bool> {
     let height = level.len() / width;
     let lit = |row: usize, column: usize| level[row.min(height - 1) * width + column.min(width - 1)] > 0.0;
@@ -53,7 +61,7 @@ pub(super) fn touched(width: usize, level: &[f32]) -> Vec<bool> {
     (0..level.len()).map(|i| any((i / width, i % width))).collect()
 }
 
-/// The lights among pixels of this brightness; `None` where there are none.
+/// Finds the lights among pixels of this brightness; `None` if there are none.
 pub(super) fn find(width: usize, brightness: &[f32]) -> Option<Found> {
     let all = brightness.len() as f64;
     let mean = |limit: f64| {
@@ -93,7 +101,7 @@ pub(super) fn find(width: usize, brightness: &[f32]) -> Option<Found> {
     if !any {
         return None;
     }
-    // First and second moment, peak, number of pixels: of lights and rest.
+    // First and second moment, peak and number of pixels, for the lights and for the rest.
     let mut moments = [[0.0_f64; 4]; 2];
     for (b, level) in brightness.iter().zip(&level) {
         let b = f64::from(b.max(0.0));
@@ -103,8 +111,8 @@ pub(super) fn find(width: usize, brightness: &[f32]) -> Option<Found> {
     let [lights, rest] = moments;
     let of = |sum: f64| sum / all;
     let square = |x: f64| x * x;
-    // A pixel of the imager that sees all of the picture: backward each sample finds one place of it; forward a light's ray finds
-    // one pixel of all.
+    // Variances for a pixel of the imager that sees the whole picture. Backward, each sample finds one point of the picture; forward,
+    // a ray from a light finds one of all pixels.
     let one = of(lights[1] + rest[1]) - square(of(lights[0] + rest[0]));
     let two = of(rest[1]) - square(of(rest[0])) + square(of(lights[0]));
     let least = LEAST * (lights[0] / lights[3]) as f32;

@@ -1,4 +1,4 @@
-//! A picture in linear light as a texture: smooth between pixels, sampled where it is bright.
+//! A picture in linear light as a texture: smooth between pixels, with rays drawn where it is bright.
 
 use crate::flat::{Places, Texture};
 use crate::frame::Edge;
@@ -12,34 +12,34 @@ use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The picture on the plane. Copies share its pixels.
+/// A picture on its plane. Copies share the pixels.
 #[derive(Clone)]
 pub(crate) struct PictureMap {
     pub width_px: usize,
     pub height_px: usize,
     pub width_mm: f64,
     pub height_mm: f64,
-    /// What the color model needs of each pixel, times the luminance scale where the model is linear.
+    /// Coefficients of the color model for each pixel.
     pub coefficients: Arc<Vec<[f32; 3]>>,
     pub model: Arc<dyn ColorModel>,
-    /// Radiance per unit of the model.
+    /// Radiance, W m^-2 sr^-1 nm^-1, per unit of the model's spectra.
     pub scale: f64,
     pub mean: SpectralPower,
     pub peak_over_mean: f64,
     pub importance: Arc<Importance>,
-    /// Whether all that shines are pixels with nothing but black around each.
+    /// Whether all light comes from single pixels surrounded by black.
     pub is_lamps: bool,
-    /// Its bright pixels, if there are any.
+    /// Bright pixels of the picture, if there are any.
     pub lights: Option<Arc<Lights>>,
-    /// Which light of it this is.
+    /// Part of the picture's light that this copy represents.
     pub half: Half,
     pub name: String,
-    /// What lies beyond its border.
+    /// Light beyond the border of the picture.
     pub edge: Edge,
 }
 
 impl PictureMap {
-    /// Column and row of a point, pixels from the upper left, as if the picture went on without end.
+    /// Returns the column and row of a point, pixels from the upper left, as if the picture continued without end.
     #[inline(always)]
     fn unfolded(&self, x_mm: f64, y_mm: f64) -> [f64; 2] {
         let column = (x_mm / self.width_mm + 0.5) * self.width_px as f64;
@@ -47,18 +47,18 @@ impl PictureMap {
         [column, row]
     }
 
-    /// Brings such a place to where something is; `None` where nothing is.
+    /// Maps such a position into the picture according to its edge; `None` if there is no light at it.
     #[inline]
     fn folded(&self, [column, row]: [f64; 2]) -> Option<[f64; 2]> {
         Some([self.edge.place(column, self.width_px as f64)?, self.edge.place(row, self.height_px as f64)?])
     }
 
-    /// Column and row of a point, pixels from the upper left; `None` where nothing is.
+    /// Returns the column and row of a point (mm on the plane), pixels from the upper left; `None` if there is no light at it.
     pub(crate) fn place(&self, x_mm: f64, y_mm: f64) -> Option<[f64; 2]> {
         self.folded(self.unfolded(x_mm, y_mm))
     }
 
-    /// Looks up pixels of some places that were looked for: the one above on the left and the one below on the right.
+    /// Loads pixels into the cache ahead of their use: the upper left and the lower right one of each point in `rays`.
     #[inline(always)]
     fn look_ahead(&self, looked: &Looked, rays: Range<usize>) {
         let ([across, down], last) = (&looked.pixel, self.coefficients.len() - 1);
@@ -71,7 +71,7 @@ impl PictureMap {
         black_box(all);
     }
 
-    /// Coefficients at one of some places that were looked for, and which part of the light there is this one's.
+    /// Returns the coefficients at point `i`, and the fraction of the light there that this copy represents.
     #[inline(always)]
     fn looked(&self, looked: &Looked, i: usize) -> ([f32; 3], f32) {
         let place = looked.place.each_ref().map(|each| each[i]);
@@ -84,13 +84,14 @@ impl PictureMap {
         self.folded(place).map(|place| self.color(&self.spot(place))).unwrap_or_default()
     }
 
-    /// The four pixels around a place in the picture; at its rim those of the rim.
+    /// Returns the four pixels around a point of the picture. Beyond the outermost centers these are the pixels at the rim.
     #[inline(always)]
     pub(crate) fn spot(&self, place: [f64; 2]) -> Spot {
         Spot::of(place, [self.width_px, self.height_px])
     }
 
-    /// Draws a place where this light is: column and row (pixels, fractional), and one over the density relative to uniform.
+    /// Draws a point with light. Returns its column and row (pixels, fractional), and the inverse of its density relative to a uniform
+    /// one.
     pub(crate) fn draw_place(&self, u: f64, v: f64) -> (f64, f64, f64) {
         match (&self.lights, self.half) {
             (Some(lights), Half::Lights) => lights.places.draw(u, v),
@@ -98,7 +99,8 @@ impl PictureMap {
         }
     }
 
-    /// Coefficients at a spot, linear between the centres of pixels, constant beyond the outermost; and which part of the light there is this one's.
+    /// Returns the coefficients at a spot, linear between the centers of pixels and constant beyond the outermost ones. Also returns the
+    /// fraction of the light there that this copy represents.
     #[inline(always)]
     pub(crate) fn color(&self, spot: &Spot) -> ([f32; 3], f32) {
         let (all, [a, b, d, e]) = (&self.coefficients[..], spot.cells());
@@ -113,13 +115,14 @@ impl PictureMap {
         (color, share)
     }
 
-    /// Whether a pixel is one of the lights.
+    /// Returns whether a pixel is one of the lights.
     #[inline]
     pub(crate) fn is_light(&self, cell: usize) -> bool {
         self.lights.as_ref().and_then(|lights| lights.level.get(cell)).is_some_and(|level| *level > 0.0)
     }
 
-    /// Which part of the light at a spot is this one's; `of` says which pixel's light stands at each of the four.
+    /// Returns the fraction of the light at a spot that this copy represents. `of` gives, for each of the four pixels, the pixel whose
+    /// light is used there.
     #[inline]
     pub(crate) fn share(&self, spot: &Spot, of: impl Fn(usize) -> usize) -> f32 {
         let of_lights = || {
@@ -134,7 +137,7 @@ impl PictureMap {
         }
     }
 
-    /// One half of its light.
+    /// Returns a copy that represents one half of the light.
     pub(crate) fn half(&self, half: Half) -> Self {
         let (half, number) = match (&self.lights, half) {
             (Some(_), Half::Lights) => (half, 0),
@@ -204,7 +207,7 @@ impl Texture for PictureMap {
 }
 
 impl PictureMap {
-    /// A place of the picture on its plane, mm, and the area that it stands for, mm^2.
+    /// Converts a drawn point: returns its position on the plane, mm, and the area that it represents, mm^2.
     fn drawn(&self, (column, row, inverse): (f64, f64, f64)) -> (f64, f64, f64) {
         let x = (column / self.width_px as f64 - 0.5) * self.width_mm;
         let y = (0.5 - row / self.height_px as f64) * self.height_mm;
@@ -212,18 +215,19 @@ impl PictureMap {
     }
 }
 
-/// Rays whose pixels are looked up before any is worked on: of a large picture they would be waited for one by one.
+/// Number of rays whose pixels are loaded ahead. In a large picture each load would otherwise be waited for.
 const AHEAD: usize = 32;
-/// Rays that are worked on side by side.
+/// Number of rays that are processed together.
 const CHUNK: usize = 256;
 type Each<T> = [T; CHUNK];
 
-/// Where their places lie among the pixels.
+/// Positions of the points of a chunk among the pixels.
 struct Looked {
-    /// Column and row of a place, pixels from the upper left.
+    /// Column and row of each point, pixels from the upper left.
     place: [Each<f64>; 2],
-    /// The pixel, and how far from it toward the next ones.
+    /// Column and row of the pixel at the upper left of each point.
     pixel: [Each<u32>; 2],
+    /// Distance of each point from the center of that pixel, as a fraction of the distance to the next ones.
     part: [Each<f32>; 2],
 }
 
@@ -233,7 +237,7 @@ impl Looked {
     }
 }
 
-/// Finds up to [`CHUNK`] places among the pixels, as [`PictureMap::spot`] each.
+/// A job that locates up to [`CHUNK`] points among the pixels, as [`PictureMap::spot`] does for one.
 struct Look<'a> {
     map: &'a PictureMap,
     x_mm: &'a [f64],
@@ -259,25 +263,26 @@ impl Vectorized for Look<'_> {
     }
 }
 
-/// Most cells of an [`Importance`]: those of a larger picture hold several pixels.
+/// Largest number of cells of an [`Importance`]. In a larger picture a cell contains several pixels.
 const MAX_CELLS: usize = 1 << 22;
 
-/// Draws places in proportion to light, row first, then column: monotone from cell to cell, so strata stay strata.
+/// Importance sampling of a picture: draws points in proportion to light, first the row, then the column. The mapping is monotone from
+/// cell to cell, so strata stay strata.
 ///
-/// Light is linear between the centers of cells, which is the sum of a tent over each, as high as the cell is bright. So a cell is
-/// drawn by what it weighs and a place under its tent: the density is linear between cells as the light is, and what a ray carries
-/// from a lamp of one cell does not depend on where on the lamp it starts.
+/// Light is linear between the centers of cells. This is a sum of tents, one over each cell, whose height is the cell's brightness.
+/// A cell is drawn by its weight, and a point under its tent, so the density is linear between cells like the light. A ray from a lamp
+/// of one cell therefore carries the same light wherever on the lamp it starts.
 pub(crate) struct Importance {
-    /// Pixels of the picture, across and down.
+    /// Number of pixels of the picture, across and down.
     size_px: [f64; 2],
-    /// Pixels a side of a cell.
+    /// Number of pixels along a side of a cell.
     cell_px: f64,
     rows: Cumulative,
     columns: Vec<Cumulative>,
 }
 
 impl Importance {
-    /// From the brightness of each pixel.
+    /// Creates the sampling from the brightness of each pixel.
     pub(super) fn new(width: usize, height: usize, brightness: impl Fn(usize) -> f32) -> Self {
         let mut cell = 1;
         while width.div_ceil(cell) * height.div_ceil(cell) > MAX_CELLS {
@@ -292,8 +297,8 @@ impl Importance {
         Self { size_px, cell_px: cell as f64, ..Self::of_cells(cells, &sums) }
     }
 
-    /// From the brightness of each cell. Half of the weight is by brightness; the other half is the same for all cells with light, so
-    /// that what is dark gets its share, too.
+    /// Creates the sampling from the brightness of each cell. Half of the weight is proportional to brightness. The other half is the
+    /// same for all cells with light, so that dark parts get rays, too.
     fn of_cells([width, height]: [usize; 2], brightness: &[f32]) -> Self {
         let lit = brightness.iter().filter(|cell| **cell > 0.0).count();
         let all = brightness.iter().map(|cell| f64::from(cell.max(0.0))).sum::<f64>();
@@ -311,12 +316,12 @@ impl Importance {
         Self { size_px: [width as f64, height as f64], cell_px: 1.0, rows: Cumulative::new(&sums), columns }
     }
 
-    /// Column and row (pixels, fractional) and one over the density relative to uniform.
+    /// Draws a point. Returns its column and row (pixels, fractional), and the inverse of its density relative to a uniform one.
     pub(crate) fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
         self.place(u, v, tent)
     }
 
-    /// The same in the middle of a cell.
+    /// Draws a point as [`Importance::draw`] does, but at the center of a cell.
     pub(crate) fn draw_middle(&self, u: f64, v: f64) -> (f64, f64, f64) {
         self.place(u, v, |cell, _, _| cell as f64 + 0.5)
     }
@@ -331,13 +336,13 @@ impl Importance {
             let (column, row) = (cell % cells[0], cell / cells[0]);
             [(self.rows.mass(row) * self.columns[row].mass(column)) as f32]
         });
-        // Cells at the right and lower rim may reach beyond the picture, where nothing shines: densities count all of them.
+        // Cells at the right and lower rim may extend beyond the picture, where there is no light. Densities refer to whole cells.
         let share = self.cell_px * self.cell_px / (self.size_px[0] * self.size_px[1]);
         (place[0] * self.cell_px, place[1] * self.cell_px, share / f64::from(density[0]))
     }
 }
 
-/// Whether all that is bright in a picture of this width are pixels with nothing but black around each, and none at the rim.
+/// Returns whether all light of a picture of this width comes from single pixels surrounded by black, none of them at the rim.
 pub(super) fn are_lamps(width: usize, brightness: impl Fn(usize) -> f32, pixels: usize) -> bool {
     let height = pixels / width;
     let is_lamp = |cell: usize| {
@@ -349,16 +354,17 @@ pub(super) fn are_lamps(width: usize, brightness: impl Fn(usize) -> f32, pixels:
     pixels <= MAX_CELLS && (0..pixels).all(|cell| brightness(cell) == 0.0 || is_lamp(cell))
 }
 
-/// A piecewise constant density over cells of width 1, by its cumulative sums and a guide table.
+/// A piecewise constant density over cells of width 1, stored as cumulative sums with a guide table.
 struct Cumulative {
     sums: Vec<f32>,
-    /// For each of as many equal parts of [0, 1) the cell that its lower end lies in: a draw starts there.
+    /// Guide table: [0, 1) is divided into as many equal parts as there are cells. Each entry is the cell at the lower end of its part,
+    /// where a search starts.
     guide: Vec<u16>,
 }
 
 impl Cumulative {
     fn new(weights: &[f64]) -> Self {
-        // A cell with any light gets a little of the mean at least, or single precision could lose it.
+        // Every cell with light gets at least a little of the mean, or single precision could lose it.
         let floor = 1e-4 * weights.iter().sum::<f64>() / weights.len() as f64;
         let weights: Vec<f64> = weights.iter().map(|w| if *w > 0.0 { w + floor } else { 0.0 }).collect();
         let total: f64 = weights.iter().sum();
@@ -366,7 +372,7 @@ impl Cumulative {
         let mut sums = Vec::with_capacity(weights.len() + 1);
         sums.push(0.0);
         for (i, w) in weights.iter().enumerate() {
-            // A dark row is drawn evenly: it is never drawn, but must be well-formed.
+            // A dark row is never drawn, but its sums must be valid.
             sum += if total > 0.0 { w / total } else { 1.0 / weights.len() as f64 };
             sums.push(if i + 1 == weights.len() { 1.0 } else { (sum as f32).min(1.0) });
         }
@@ -386,13 +392,13 @@ impl Cumulative {
         self.sums.len() - 1
     }
 
-    /// How likely a cell is.
+    /// Returns the probability of a cell.
     #[inline(always)]
     fn mass(&self, cell: usize) -> f64 {
         f64::from(self.sums[cell + 1]) - f64::from(self.sums[cell])
     }
 
-    /// A cell, and how far in [0, 1) the number lies between those of the cells beside it.
+    /// Draws a cell with `u`. Also returns the position of `u` within the cell's interval, rescaled to 0 to 1.
     fn draw(&self, u: f64) -> (usize, f64) {
         let cells = self.sums.len() - 1;
         let mut cell = usize::from(self.guide[((u * cells as f64) as usize).min(cells - 1)]);
@@ -408,8 +414,8 @@ impl Cumulative {
 mod tests {
     use super::*;
 
-    /// Integral of any light over the picture by drawing, against the sum over pixels: the mean of f / density must be the mean of f,
-    /// dark rows and columns included.
+    /// Drawing integrates any light over the picture without bias: the mean of f / density must be the mean of f over the pixels, even
+    /// with dark rows and columns.
     #[test]
     fn importance_is_unbiased() {
         let (width, height) = (7, 5);
@@ -436,8 +442,8 @@ mod tests {
         assert!((mean / want - 1.0).abs() < 0.01, "{mean} {want}");
     }
 
-    /// A ray from a lamp of one pixel on black carries the same light wherever it starts, and none starts where there is no light. Drawn
-    /// evenly over the pixels around, four of nine rays carried light, and that four times as noisy as their number said.
+    /// A ray from a lamp of one pixel on black carries the same light wherever it starts, and no ray starts where there is no light. When
+    /// rays were drawn evenly over the surrounding pixels, four of nine carried light, with four times the noise expected of their number.
     #[test]
     fn rays_from_a_lamp_of_one_pixel_carry_alike() {
         let (width, height) = (9, 7);

@@ -1,4 +1,4 @@
-//! `kind: picture`: a picture file on a plane at a distance, or with the depth that it states.
+//! `kind: picture`: a picture file on a plane at a distance, or with the depth of each pixel.
 
 mod backdrop;
 mod bounds;
@@ -44,23 +44,24 @@ use spectra_pictures::read::{self, Choice, Header, Linear, Trouble};
 use std::sync::Arc;
 use tone::CameraTone;
 
-/// Largest picture file, bytes.
+/// Size limit of a picture file, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 
 /// A picture file (EXR, PNG, JPEG, TIFF, WebP, BMP, HDR) on a plane at a distance.
 ///
-/// The picture stands across the axis, upright and unmirrored as the photographer sees it, and shines as a Lambertian
-/// surface. Where a file does not say its colors (by cICP, a color profile of three primaries, gAMA and cHRM, or chromaticities),
-/// integers of 8 and 16 bits are taken as sRGB-encoded (255 of 8 bits is 1), floating point as linear with the primaries of
-/// sRGB; a value of 1 is white, of the stated luminance and with the chromaticity of the illuminant.
-/// Between pixels light is interpolated, so that no mosaic is seen however near one looks.
+/// The picture is perpendicular to the axis, upright and unmirrored as the photographer sees it, and emits light as a Lambertian
+/// surface. A file may state its colors (by cICP, a color profile of three primaries, gAMA and cHRM, or chromaticities). Otherwise
+/// integers of 8 and 16 bits are taken as sRGB-encoded (255 of 8 bits is 1) and floating point as linear with the primaries of sRGB. A
+/// value of 1 is white, with the given luminance and the chromaticity of the illuminant. Light is interpolated between pixels, so that
+/// no mosaic is seen at any magnification.
 ///
-/// With `depth` each pixel stands at its own distance, in the perspective of the camera that took the picture: what is
-/// out of focus is blurred, and edges cover what lies behind them. Where a picture in depth was never seen, behind an
-/// edge, there is nothing to show; `kind: layers` knows what is there.
+/// With `depth` each pixel has its own distance, in the perspective of the camera that took the picture: what is out of focus is
+/// blurred, and edges cover what lies behind them. A single picture does not show what is hidden behind an edge, so the background is
+/// continued there; use `kind: layers` if you have the hidden parts.
 ///
-/// A renderer averages color over a pixel, so the pixels on an edge hold light of two things at one depth. They are taken apart: the near
-/// thing covers its share of such a pixel, and what is behind goes on there. `depth: {edges: as-is}` leaves them as they are.
+/// A renderer averages color over a pixel, so the pixels on an edge contain light of two objects but only one depth. These pixels are
+/// separated: the near object covers its fraction of the pixel, and the background continues behind it. `depth: {edges: as-is}` leaves
+/// them unchanged.
 ///
 /// # Example
 /// ```yaml
@@ -84,59 +85,59 @@ const MAX_BYTES: u64 = 1 << 30;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PictureParams {
-    /// An OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file, beside the scene; built with OpenImageIO any that it reads. At
-    /// most 1 GiB.
+    /// OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file beside the scene, or any other that OpenImageIO reads if `spectra` was
+    /// built with it. At most 1 GiB.
     file: String,
-    /// How code values are encoded: linear, srgb, rec709 or cineon; as the file says, or else srgb of integers and linear
-    /// of floating point, if absent.
+    /// Encoding of the code values: `linear`, `srgb`, `rec709` or `cineon`. If left out, the encoding that the file states is used, or
+    /// else `srgb` for integers and `linear` for floating point.
     transfer: Option<String>,
-    /// What was done to the light before it was encoded: `camera`, the tone curve of a camera, which is taken back channel by channel (18 %
-    /// gray stays, and white lies 2.96 stops above it), or `none`. Of integers that are encoded for a display only; `none` if absent, but
-    /// `camera` of such files in `spectra film develop`.
+    /// Tone curve that was applied to the light before it was encoded: `camera`, which is undone channel by channel (18 % gray stays, and
+    /// white lies 2.96 stops above it), or `none`. Only for integers that are encoded for a display. `none` if left out, but `camera` for
+    /// such files in `spectra film develop`.
     tone: Option<Tone>,
-    /// The layer of an OpenEXR file; its plain R, G and B if absent.
+    /// Layer of an OpenEXR file; its plain R, G and B if left out.
     layer: Option<String>,
-    /// Distance of its plane from the first vertex, mm if bare.
+    /// Distance of the picture from the first vertex, mm if bare.
     distance: Positive<Length>,
-    /// Width of the picture on that plane, mm if bare; the height follows. Overscan of an OpenEXR file, its data window beyond the display
-    /// window, lies beside that. Or `fill`: 2 % more than what the frame sees
-    /// there through this lens, so that no border shows; what does not fit into the frame's shape is cut off.
+    /// Width of the picture on that plane, mm if bare; the height follows. Overscan of an OpenEXR file (its data window beyond the display
+    /// window) lies outside this width. `fill` makes the picture 2 % wider than what the frame sees there through this lens, so that no
+    /// border shows; parts that do not fit into the shape of the frame are cut off.
     width: Width,
-    /// What lies beyond the picture: `black`, nothing; `clamp`, the color of its border; `mirror`, the picture mirrored.
-    /// `black` if absent, with a warning where the frame sees it. With `clamp` and `mirror` light is traced backward only.
+    /// Light beyond the picture: `black` (none), `clamp` (continues the color of the border) or `mirror` (mirrors the picture). `black` if
+    /// left out, with a warning if the frame sees it. With `clamp` and `mirror` light is traced backward only.
     edge: Option<Edge>,
-    /// The light that white has the chromaticity of: the name of a spectrum, a file beside the scene, or an expression
-    /// such as `blackbody:3200`.
+    /// Light whose chromaticity is white: the name of a spectrum, a file beside the scene, or an expression such as
+    /// `blackbody:3200`.
     #[serde(default = "daylight")]
     illuminant: String,
     /// Luminance of white (255 of 8 bits, 1.0 of floating point), cd/m2 if bare.
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
-    /// How RGB becomes a spectrum: a color model; `smooth` if absent.
+    /// Color model that turns RGB into a spectrum; `smooth` if left out.
     color: Option<Part<StageOf<dyn ColorModel>>>,
-    /// How far each pixel stands, from a depth channel; all on the plane if absent.
+    /// Distance of each pixel, from a depth channel; all pixels lie on the plane if left out.
     depth: Option<Part<depth::DepthParams>>,
-    /// Guesses the light of the clipped highlights of integer files; nothing is guessed if absent.
+    /// Estimates the light of clipped highlights in integer files; they stay clipped if left out.
     recover_highlights: Option<RecoverParams>,
 }
 
-/// `tone` as written.
+/// `tone` as written in a scene.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 enum Tone {
-    /// The curve of a camera.
+    /// The tone curve of a camera.
     Camera,
-    /// Light itself.
+    /// No tone curve: values are proportional to light.
     #[default]
     None,
 }
 
-/// `recover-highlights`: see [`highlights`].
+/// `recover-highlights` as written in a scene: see [`highlights`].
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RecoverParams {
-    /// Stops above white that the middle of a large highlight may reach, above 0 to 12: a clipped pixel d pixels inside
-    /// of its highlight gets stops x d / (d + 4) of them.
+    /// Number of stops above white that the center of a large highlight can approach, above 0 to 12. A clipped pixel d pixels
+    /// inside its highlight gets stops x d / (d + 4).
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 12))]
     stops: f64,
 }
@@ -154,7 +155,7 @@ spectra_core::register!(source "picture": PictureParams, build);
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
     let mut faults = Faults::new();
     let Some(p) = faults.take(params.parse::<PictureParams>()) else {
-        // Whatever else is wrong, a missing picture is said in the same go.
+        // Whatever else is wrong, a missing picture is reported at the same time.
         if let Some(file) = params.get("file").and_then(|node| node.as_str()) {
             faults.take(find(file, params, context));
         }
@@ -166,7 +167,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let edge = p.edge.unwrap_or_default();
     if p.depth.is_some() && edge != Edge::Black {
         let fault = params.fault("edge", "a picture with `depth` has no depth beyond its border");
-        faults.push(fault.hint("leave `edge` out, and take a `width` that fills the frame"));
+        faults.push(fault.hint("remove `edge`, and write a `width` that fills the frame"));
     }
     let file = found.map(|found| PictureFile {
         found,
@@ -178,34 +179,35 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         params: params.clone(),
     });
     let header = file.as_ref().and_then(|file| faults.take(file.header()));
-    // What both the picture and a file of its depth have is used.
+    // Use the overscan that both the picture and its depth file have.
     let overscan = header.as_ref().map_or([0; 2], |header| match &depth {
         Some(depth) => depth.overscan(header.overscan),
         None => header.overscan,
     });
     if let Some(header) = header.as_ref().filter(|header| header.overscan != overscan) {
         let [own, used] = [header.overscan, overscan].map(|[x, y]| format!("{x} x {y}"));
-        let text = format!("the picture has {own} pixels of overscan on each side, its depth fewer: {used} are used");
+        let text =
+            format!("the picture has {own} pixels of overscan on each side, but its depth has fewer: {used} are used");
         context.warn(params.fault("depth", text).hint("render depth with the same overscan as the picture"));
     }
     let recover_stops = p.recover_highlights.as_ref().map(|recover| recover.stops);
     if let (Some(_), Some(header)) = (recover_stops, &header) {
         let key = "recover-highlights";
         if !header.clips {
-            let fault = params.fault(key, format!("`{}` holds floating point, which clips nothing", p.file));
-            faults.push(fault.hint("leave `recover-highlights` out"));
+            let fault = params.fault(key, format!("`{}` holds floating-point values, which are not clipped", p.file));
+            faults.push(fault.hint("remove `recover-highlights`"));
         }
     }
     let tone = p.tone.unwrap_or_default();
     if let (Tone::Camera, Some(header)) = (tone, header.as_ref().filter(|header| !header.is_for_display)) {
         let holds = if header.clips { "light or its logarithm" } else { "floating point" };
-        let fault = params.fault("tone", format!("`{}` holds {holds}, which no camera has given a tone curve", p.file));
-        faults.push(fault.hint("leave `tone` out"));
+        let fault = params.fault("tone", format!("`{}` holds {holds}, which has no camera tone curve", p.file));
+        faults.push(fault.hint("remove `tone`"));
     }
     let model = light.and_then(|light| faults.take(color_model(p.color, &light, params, context)));
     let distance_mm = p.distance.mm();
     let aspect = header.as_ref().map_or(1.0, Header::aspect);
-    // A picture in its own perspective is as wide for its camera as the plane is for it.
+    // With depth, too, `width` is the width on the plane, as seen from the picture's center of projection.
     let eye_mm = depth.as_ref().map_or(0.0, |depth| depth.eye_mm);
     let width_mm = faults.take(p.width.mm(aspect, distance_mm, [0.0; 2], context.view, params));
     if depth.is_some() && distance_mm + eye_mm <= 0.0 {
@@ -269,7 +271,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let pixels = Pixels { size_px, aspect: linear.pixel_aspect, pixel_mm: width_mm / f64::from(linear.width) };
         doubts
             .extend(depth.doubt(&all, plane_mm, focal_length_mm).or_else(|| depth.doubt_kind(&all, plane_mm, pixels)));
-        // The picture's own depths are not needed any more.
+        // The raw depths of the picture are no longer needed.
         linear.depth = None;
         let width_px = linear.width as usize;
         let mixed = match depth.cleans_edges {
@@ -293,7 +295,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     Ok(Box::new(if is_flat { lazy.with_still(still) } else { lazy }))
 }
 
-/// A source of a picture, as two as well where it has lights and may emit.
+/// Makes the source of a picture. If the picture has lights and may emit, the source also has a part with the lights and one with the
+/// rest.
 fn with_halves<S: Source + 'static>(map: PictureMap, emits: bool, make: impl Fn(PictureMap) -> S) -> Box<dyn Source> {
     let Some(pays) = map.lights.as_ref().filter(|_| emits).map(|lights| lights.pays) else {
         return Box::new(make(map));
@@ -302,17 +305,17 @@ fn with_halves<S: Source + 'static>(map: PictureMap, emits: bool, make: impl Fn(
     Box::new(Halves { lights, rest, whole: make(map), pays })
 }
 
-/// A picture file that was found, with what a scene says of it.
+/// A picture file that was found, with its keys in the scene.
 pub(crate) struct PictureFile {
     pub found: Found,
     pub name: String,
     pub transfer: Option<String>,
     pub layer: Option<String>,
-    /// Whether cover is wanted beside light.
+    /// Whether to read alpha, too.
     pub cover: bool,
-    /// The channel that holds depth, where depth is wanted.
+    /// The depth channel; `None` if depth is not read from this file.
     pub depth: Option<String>,
-    /// Where its keys are.
+    /// Parameters that hold the keys of this file.
     pub params: Params,
 }
 
@@ -329,23 +332,23 @@ impl PictureFile {
         }
     }
 
-    /// What its beginning says.
+    /// Reads the header of the file.
     pub(crate) fn header(&self) -> Result<Header, Faults> {
         read::header(&self.found, self.choice()).map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
-    /// All of it in linear light, with that many pixels of its overscan on each side.
+    /// Reads the file in linear light, with this many pixels of its overscan on each side.
     fn read(&self, overscan: [u32; 2]) -> Result<Linear, Faults> {
         read::decode(&self.found, Choice { overscan, ..self.choice() })
             .map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
-    /// What is doubtful in its pixels.
+    /// Returns the warnings about the pixels of the file.
     pub(crate) fn doubts(&self, linear: &Linear) -> Vec<Warning> {
         linear.doubts.iter().map(|doubt| trouble(&self.name, doubt, &self.params).into()).collect()
     }
 
-    /// Warns of what the header leaves in doubt, and of a photograph whose code values are taken as light.
+    /// Reports the warnings about the header, and warns of a photograph whose code values are taken as light.
     pub(crate) fn warn(&self, header: &Header, context: &Context<'_>) {
         header.doubts.iter().for_each(|doubt| context.warn(trouble(&self.name, doubt, &self.params)));
         if header.is_jpeg && self.transfer.as_deref() == Some("linear") {
@@ -356,7 +359,7 @@ impl PictureFile {
     }
 }
 
-/// What makes light of a picture's pixels.
+/// Parameters that turn the pixels of a picture into light.
 pub(crate) struct Making {
     pub model: Arc<dyn ColorModel>,
     pub width_mm: f64,
@@ -365,14 +368,14 @@ pub(crate) struct Making {
 }
 
 impl Making {
-    /// All of a file, in colors that the model makes light of.
+    /// Reads a file, with colors moved into the gamut of the color model.
     pub(crate) fn read(&self, file: &PictureFile, overscan: [u32; 2]) -> Result<Linear, Faults> {
         let mut linear = file.read(overscan)?;
         gamut::bring_in(&mut linear, &*self.model);
         Ok(linear)
     }
 
-    /// A white picture of that width over height.
+    /// Returns a white picture with this ratio of width to height.
     pub(crate) fn white(&self, aspect: f64, name: &str) -> PictureMap {
         let pixel = Linear {
             width: 1,
@@ -387,25 +390,25 @@ impl Making {
         self.map(pixel, name)
     }
 
-    /// The radiance of the model's white is that of white.
+    /// Returns the factor that gives the model's white the luminance of white.
     fn scale(&self) -> f64 {
         self.luminance_cd_m2 / white::luminance_cd_m2(&self.model.spectrum([1.0; 3]))
     }
 
-    /// The picture pixel by pixel.
+    /// Returns the pixels of the picture, for exposing film without a lens.
     fn still(&self, linear: Linear) -> Still {
         let Linear { width, height, pixel_aspect, rgb, .. } = linear;
         let (model, scale) = (Arc::clone(&self.model), self.scale());
         Still { width_px: width, height_px: height, pixel_aspect, rgb, model, scale }
     }
 
-    /// The picture on its plane; its pixels are turned into what the color model needs of them where they lie.
+    /// Returns the picture on its plane. Its pixels are replaced in place by the coefficients of the color model.
     pub(crate) fn map(&self, linear: Linear, name: &str) -> PictureMap {
         assemble(linear, name, self, None)
     }
 }
 
-/// The color model under `color`, for this light.
+/// Builds the color model under `color`, for this light.
 pub(crate) fn color_model(
     color: Option<Part<StageOf<dyn ColorModel>>>,
     light: &SpectralPower,
@@ -416,7 +419,7 @@ pub(crate) fn color_model(
     build_stage::<dyn ColorModel>(&color, &Context { illuminant: Some(light), ..*context }).map(Arc::from)
 }
 
-/// A fault of a picture file, at the key that it belongs to.
+/// Returns the fault of a picture file, at the key to which it belongs.
 pub(crate) fn trouble(file: &str, trouble: &Trouble, params: &Params) -> Fault {
     let named = trouble.key == "depth" && trouble.text.starts_with("the file has no depth channel");
     let key = match trouble.key {
@@ -428,7 +431,7 @@ pub(crate) fn trouble(file: &str, trouble: &Trouble, params: &Params) -> Fault {
     fault.hint(trouble.advice())
 }
 
-/// What to write for the pictures of a numbered sequence: `plate.####.exr`, `plate.%04d.exr`, `plate.${frame}.exr`.
+/// Returns the hint for a numbered sequence of pictures: `plate.####.exr`, `plate.%04d.exr` or `plate.${frame}.exr`.
 fn sequence_hint(file: &str) -> Option<String> {
     let from = file.find(['#', '%', '$', '*'])?;
     let (mark, behind) = file[from..].split_at(1);
@@ -439,8 +442,8 @@ fn sequence_hint(file: &str) -> Option<String> {
     };
     let frame = |n: u32| format!("{}{n:04}{rest}", &file[..from]);
     Some(format!(
-        "a sequence is an animation of one picture a frame: `animation: {{frames: 2, animate: {{source.file: {{1: {}, 2: {}, \
-         interpolation: hold}}}}}}`; `film develop` without a scene reads a pattern with `####` as it is",
+        "write a sequence as an animation with one picture per frame: `animation: {{frames: 2, animate: {{source.file: {{1: {}, 2: {}, \
+         interpolation: hold}}}}}}`; `film develop` without a scene accepts a pattern with `####`",
         frame(1),
         frame(2)
     ))
@@ -459,13 +462,13 @@ pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result
     })
 }
 
-/// Luminance by the weights of linear sRGB (IEC 61966-2-1): good enough to say where a picture is bright. Deep violets and reds, which
-/// film sees better than the eye, count as the blue of sRGB at least: what shines is drawn.
+/// Returns the luminance by the weights of linear sRGB (IEC 61966-2-1), which is accurate enough to find where a picture is bright. Deep
+/// violets and reds, which film sees better than the eye, count at least as much as the blue of sRGB, so that rays are drawn from them.
 fn brightness([r, g, b]: [f32; 3]) -> f32 {
     (0.2126 * r + 0.7152 * g + 0.0722 * b).max(0.0721 * r.max(g).max(b))
 }
 
-/// The picture on its plane; of mixed pixels `rgb` holds what is in front.
+/// Makes the map of a picture on its plane. `rgb` holds the front color of mixed pixels.
 fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) -> PictureMap {
     let (width, height) = (linear.width as usize, linear.height as usize);
     let model = &making.model;
@@ -473,7 +476,7 @@ fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) 
     let mut rgb = linear.rgb;
     let pixels = rgb.len() as f64;
     let behind = |cell: usize| mixed.and_then(|mixed| mixed.cells.place(cell).map(|place| &mixed.behind[place]));
-    // What a pixel shines with as a whole, and the brighter of what is in front and behind: either may be a light.
+    // The light of a whole pixel, and the brighter of its front and back, since either may be a light.
     let whole = |cell: usize| match behind(cell) {
         None => rgb[cell],
         Some(behind) => [0, 1, 2].map(|k| behind.rgb[k] + (rgb[cell][k] - behind.rgb[k]) * behind.opacity),

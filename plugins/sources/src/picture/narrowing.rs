@@ -1,20 +1,21 @@
-//! Lines through a height field, many side by side, each narrowed to the part of it that has to be walked.
+//! Narrows lines through a height field to the part of each that has to be walked, many lines in parallel.
 
 use spectra_core::math::whole;
 
-/// Lines that are looked at side by side.
+/// Number of lines that are processed in parallel.
 pub(super) const SIDE_BY_SIDE: usize = 64;
 
-/// Loops over some of them go by as many: no vector is left half done.
+/// Loops over some of the lines are rounded up to a multiple of this number, so that all vectors are full.
 const VECTOR: usize = 8;
 
-/// One number of each of them.
+/// One number for each line.
 pub(super) type Each = [f64; SIDE_BY_SIDE];
 
-/// A closer look is worth its time where the last one left less of the way than this.
+/// A further look at the bounds is worthwhile if the last one left less than this fraction of the line.
 pub(super) const MUCH_SHORTER: f64 = 0.8;
 
-/// A line in picture coordinates: column and row (pixels from the upper left) at w = 0, and their change per w.
+/// A line in picture coordinates: column and row (pixels from the upper left) at w = 0, and their change per w, where w is one over the
+/// depth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
     pub at_infinity: [f64; 2],
@@ -29,7 +30,7 @@ impl Line {
     }
 }
 
-/// Lines side by side, a column each; what lies beyond the last one is any line.
+/// Lines stored in columns, for parallel processing. Entries beyond the last line are arbitrary.
 pub(super) struct Lines {
     pub at_infinity: [Each; 2],
     pub per_w: [Each; 2],
@@ -49,30 +50,30 @@ impl Lines {
     }
 }
 
-/// Lines that are being narrowed: those that are done leave, the others move up.
+/// Lines that are being narrowed. Finished lines are removed, and the others move up.
 pub(super) struct Narrowing {
     pub(super) len: usize,
-    /// Which of the [`Lines`] each is.
+    /// Index of each line in [`Lines`].
     pub(super) ray: [u32; SIDE_BY_SIDE],
     pub(super) at_infinity: [Each; 2],
     pub(super) per_w: [Each; 2],
     pub(super) room: [Each; 2],
     pub(super) near: Each,
     pub(super) far: Each,
-    /// How much of what is left is looked at.
+    /// Fraction of the remaining line that the next look covers.
     pub(super) part: Each,
 }
 
-/// One look at what stands around each line.
+/// Bounds of the surfaces around each line, for one step of narrowing.
 pub(super) struct Look {
     pub(super) upto: Each,
-    /// The box: first column and row, last column and row.
+    /// The box of pixels around the line: first column and row, last column and row.
     pub(super) corners: [[u32; SIDE_BY_SIDE]; 4],
     pub(super) nearest: [f32; SIDE_BY_SIDE],
     pub(super) farthest: [f32; SIDE_BY_SIDE],
-    /// Not 0 where there is no closer look.
+    /// Not 0 if the box is as small as the smallest square.
     pub(super) small: [u32; SIDE_BY_SIDE],
-    /// Not 0 where the line is done.
+    /// Not 0 if the line is finished.
     pub(super) done: [u32; SIDE_BY_SIDE],
 }
 
@@ -120,7 +121,7 @@ impl Narrowing {
         }
     }
 
-    /// Appends a line, if it is to be narrowed.
+    /// Appends a line if `is_wanted`.
     #[inline(always)]
     pub(super) fn take(&mut self, lines: &Lines, i: usize, is_wanted: bool) {
         let at = self.len % SIDE_BY_SIDE;
@@ -132,7 +133,7 @@ impl Narrowing {
         self.len += usize::from(is_wanted);
     }
 
-    /// The boxes that the parts of the lines that are looked at are over: see [`super::field::HeightField::around_line`].
+    /// Computes the boxes of pixels under the parts of the lines to look at: see [`super::field::HeightField::around_line`].
     #[inline(always)]
     pub(super) fn boxes(&self, last: [f64; 2], look: &mut Look) {
         for i in 0..self.len.next_multiple_of(VECTOR).min(SIDE_BY_SIDE) {
@@ -147,7 +148,7 @@ impl Narrowing {
         }
     }
 
-    /// Moves the ends of the lines by what was seen.
+    /// Moves the ends of the lines according to the bounds found.
     #[inline(always)]
     pub(super) fn shorten(&mut self, look: &mut Look) {
         for i in 0..self.len.next_multiple_of(VECTOR).min(SIDE_BY_SIDE) {
@@ -170,7 +171,7 @@ impl Narrowing {
         }
     }
 
-    /// Writes how far all have come, and drops those that are done.
+    /// Writes the current near end of all lines, and removes the finished ones.
     #[inline(always)]
     pub(super) fn keep(&mut self, look: &Look, found: &mut Each) {
         let mut kept = 0;
@@ -193,19 +194,19 @@ impl Narrowing {
     }
 }
 
-/// The pixel of a column or row, or the nearest one.
+/// Returns the pixel that contains a position along a side, or the nearest one.
 #[inline(always)]
 pub(super) fn pixel(at: f64, last: f64) -> u32 {
     whole(at, last).0
 }
 
-/// The smaller of two numbers, or the second.
+/// Returns the smaller of two numbers, or the second one if one is NaN.
 #[inline(always)]
 pub(super) fn less(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers, or the second.
+/// Returns the larger of two numbers, or the second one if one is NaN.
 #[inline(always)]
 pub(super) fn more(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }

@@ -1,41 +1,42 @@
-//! Draws places on the lights of a picture.
+//! Draws points on the lights of a picture.
 //!
-//! What a pixel of the frame owes a light out of focus is as noisy as the rays are few that the light sent there. A small lamp that
-//! is as far out of focus as a large one fills as large a disk with less light: drawn by power alone it would be grain beside a
-//! smooth disk. So some of the rays go by power, some by area, and the most fall on all lights alike, whatever their size ([`PARTS`]):
-//! none of the three is far from the best where lamps are sharp, far out of focus, or large and uneven. A lit window that touches a lamp
-//! a thousand times as bright is a light of its own ([`MUCH_DIMMER`]): as a part of the lamp it would have no rays.
+//! The fewer rays a light sends to a pixel of the frame, the noisier its light there is. A small lamp that is as far out of focus as a
+//! large one fills an equally large disk with less light. Drawn by power alone, it would be grainy beside a smooth disk. Therefore some
+//! rays are drawn by power, some by area, and most equally on all lights, whatever their size ([`PARTS`]). This mixture is never far from
+//! the best choice, whether lamps are sharp, far out of focus, or large and uneven. A lit window that touches a lamp a thousand times as
+//! bright is a separate light ([`MUCH_DIMMER`]): as a part of the lamp it would get no rays.
 //!
-//! As [`super::map::Importance`] does, it draws a pixel and a place under its tent: between a lamp of one pixel and its dark neighbors
-//! the density falls as the light.
+//! Like [`super::map::Importance`], this draws a pixel and a point under its tent: between a lamp of one pixel and its dark neighbors
+//! the density falls like the light.
 
 use super::spot::{Spot, tent};
 
-/// The parts of the rays that go by power, by area, and on all lights alike.
+/// Fractions of the rays that are drawn by power, by area, and equally on all lights.
 const PARTS: [f64; 3] = [0.3, 0.3, 0.4];
-/// Pixels as bright as this part of the brightest of their light count with all of their area.
+/// Pixels that are at least as bright as this fraction of the brightest one of their light count with their full area.
 const BRIGHT: f32 = 0.25;
-/// Pixels dimmer than this part of the brightest of their light, and lights by themselves, are another light.
+/// Pixels below this fraction of the brightest one of their light are a separate light, if they are bright enough to be lights at all.
 const MUCH_DIMMER: f32 = 1.0 / 64.0;
-/// Pixels that such a light has at least to count as much as others: fewer may be the soft edge of a lamp.
+/// Number of pixels from which such a separate light counts as much as others. A smaller one may be the soft edge of a lamp.
 const WINDOW: f64 = 32.0;
 
-/// The pixels of lights, one light after the other, and how likely each is.
+/// The pixels of all lights, one light after the other, with their probabilities.
 pub(crate) struct LightPlaces {
     size: [usize; 2],
     cells: Vec<u32>,
-    /// Up to and with each pixel, times `total`.
+    /// Cumulative probabilities up to and including each pixel, times `total`.
     sums: Vec<f64>,
-    /// For each of as many equal parts of [0, 1) the pixel that its lower end lies in.
+    /// Guide table: [0, 1) is divided into as many equal parts as there are pixels of lights. Each entry is the pixel at the lower end of
+    /// its part.
     guide: Vec<u32>,
-    /// Of all pixels of the picture, times `total`: 0 where none of the lights is.
+    /// Probabilities of all pixels of the picture, times `total`; 0 for pixels that are not lights.
     masses: Vec<f32>,
     total: f64,
 }
 
 impl LightPlaces {
-    /// From the level of each pixel as a light ([`super::lights::Lights::level`]); pixels no brighter than `limit` are lights as neighbors
-    /// of others alone.
+    /// Creates the sampling from the level of each pixel as a light ([`super::lights::Lights::level`]). Pixels that are not brighter than
+    /// `limit` are lights only as neighbors of others.
     pub(super) fn new(width: usize, level: &[f32], limit: f32) -> Self {
         let height = level.len() / width;
         let mut groups = Groups::new(width, height);
@@ -81,7 +82,7 @@ impl LightPlaces {
         Self { size: [width, height], cells, sums, guide, masses, total }
     }
 
-    /// Column and row (pixels, fractional) and one over the density relative to uniform.
+    /// Draws a point. Returns its column and row (pixels, fractional), and the inverse of its density relative to a uniform one.
     #[inline]
     pub(crate) fn draw(&self, u: f64, v: f64) -> (f64, f64, f64) {
         let many = self.sums.len();
@@ -101,11 +102,11 @@ impl LightPlaces {
     }
 }
 
-/// Pixels and all that touch them, in groups that touch.
+/// A set of pixels with all pixels that touch them, split into connected groups.
 struct Groups {
     width: usize,
     height: usize,
-    /// Whether a pixel is one of them.
+    /// Whether a pixel belongs to the set.
     inside: Vec<bool>,
 }
 
@@ -114,7 +115,7 @@ impl Groups {
         Self { width, height, inside: vec![false; width * height] }
     }
 
-    /// A pixel and all that touch it.
+    /// Returns a pixel and all pixels that touch it.
     fn around(&self, cell: usize) -> impl Iterator<Item = usize> + use<> {
         let (column, row, width) = (cell % self.width, cell / self.width, self.width);
         let columns = column.saturating_sub(1)..=(column + 1).min(width - 1);
@@ -128,7 +129,8 @@ impl Groups {
         }
     }
 
-    /// Takes out the groups that some pixels, in rising order, belong to: each row by row, by the first pixel of each.
+    /// Removes the groups that contain some `pixels` (in rising order) and returns them, ordered by their first pixel. The pixels of a
+    /// group are ordered row by row.
     fn ordered(&mut self, pixels: impl Iterator<Item = usize>) -> Vec<Vec<usize>> {
         let mut groups = Vec::new();
         for first in pixels {
@@ -162,7 +164,7 @@ mod tests {
         (LightPlaces::new(WIDTH, &found.level, found.limit), found.level)
     }
 
-    /// A lamp of one bright pixel and a dim one of sixteen, in a corner.
+    /// A picture with a lamp of one bright pixel, and a dimmer one of sixteen in a corner.
     fn lamps() -> Vec<f32> {
         let mut brightness: Vec<f32> = (0..WIDTH * 30).map(|i| 0.1 + 0.05 * (i % 7) as f32).collect();
         brightness[10 * WIDTH + 20] = 50.0;
@@ -172,7 +174,7 @@ mod tests {
         brightness
     }
 
-    /// A window that touches a lamp a thousand times as bright is drawn about as often as one that stands alone.
+    /// A window that touches a lamp a thousand times as bright is drawn about as often as a separate one.
     #[test]
     fn a_window_beside_a_lamp_is_drawn() {
         let drawn = |first: usize| {
@@ -188,7 +190,7 @@ mod tests {
         assert!(touching > 0.7 * alone && touching > 0.3 / 48.0, "{touching} {alone}");
     }
 
-    /// What is drawn, each place by one over its density, adds up to the lights' light, in all and of each lamp.
+    /// Drawn points, each weighted by the inverse of its density, add up to the light of all lights and of each lamp.
     #[test]
     fn draws_stand_for_all_light() {
         let brightness = lamps();
@@ -199,7 +201,7 @@ mod tests {
             f64::from(share * spot.mix(|cell| [brightness[cell]])[0])
         };
         let n = 2000;
-        // All of it, the part of the small lamp, and draws on it and on nothing.
+        // Sums by lamp and their expected values, draws on the small lamp, and draws without light.
         let (mut sums, mut wants, mut drawn, mut dark) = ([0.0; 2], [0.0; 2], 0, 0);
         for k in 0..n * n {
             let at = |k: usize| (k as f64 + 0.5) / n as f64;
@@ -214,14 +216,14 @@ mod tests {
         for (sum, want) in sums.iter().zip(wants) {
             assert!((sum / want - 1.0).abs() < 2e-3, "{sums:?} {wants:?}");
         }
-        // The small lamp has a seventh of the light and a sixth of the area; it gets more.
+        // The small lamp has a seventh of the light and a sixth of the area, but gets more rays.
         let part = drawn as f64 / (n * n) as f64;
         assert!(part > 0.25 && part < 0.45, "{part}");
         assert!((dark as f64) < 0.1 * (n * n) as f64, "{dark}");
     }
 
-    /// What a ray from a lamp of one pixel carries does not depend on where in the lamp it starts, but for its dim neighbors. Drawn evenly over
-    /// pixels, rays differed so much that their light was as noisy as that of less than half of them.
+    /// The light of a ray from a lamp of one pixel does not depend on where on the lamp it starts, except for its dim neighbors. When
+    /// points were drawn evenly over pixels, rays differed so much that the noise was that of fewer than half of them.
     #[test]
     fn rays_from_a_lamp_of_one_pixel_carry_alike() {
         let mut brightness = vec![0.01_f32; WIDTH * 30];

@@ -1,43 +1,45 @@
-//! Whether walls and floors of a depth channel are plane.
+//! Checks whether walls and floors of a depth channel are flat.
 //!
-//! In perspective one over the depth along the axis is linear across the picture on every plane, however it stands. One over the distance
-//! along the ray is that times the cosine of the angle to the axis, so it is curved. Which of the two is linear in most places tells how
-//! depth is meant, if the picture shows planes at all; round things decide nothing.
+//! In perspective, one over the depth along the axis is linear across the picture on every plane, whatever its orientation. One over the
+//! distance along the ray is that times the cosine of the angle to the axis, so it is curved. The one that is linear at most points tells
+//! which kind of depth a file has, if the picture shows planes at all. Round objects do not decide it.
 
-/// The raster that depth lies on.
+/// The pixel raster of the depth.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pixels {
     pub size_px: [u32; 2],
-    /// Width over height of a pixel.
+    /// Ratio of width to height of a pixel.
     pub aspect: f64,
     /// Width of a pixel on the plane of the picture, mm.
     pub pixel_mm: f64,
 }
 
-/// Places tried along each side.
+/// Number of points tested along each side.
 const TRIED: u32 = 64;
-/// Distance of neighbors, as part of the picture's width.
+/// Distance between the points compared, as a fraction of the picture's width.
 const STEP: f64 = 1.0 / 12.0;
-/// Least bend that counts, as part of the depth: numbers of 16 bits are that good.
+/// Smallest curvature that counts, relative to the depth: 16-bit numbers are accurate enough for it.
 const LEAST: f64 = 1.5e-3;
-/// How much straighter a place must be the other way.
+/// A point is straighter with the other kind of depth if its curvature is below this fraction.
 const STRAIGHTER: f64 = 0.1;
-/// How many times as many places must be, and which part of all.
+/// Ratio of points that are straighter with the other kind to points that are less straight, above which the other kind is right.
 const TIMES: usize = 10;
+/// Fraction of all points that must be straighter with the other kind.
 const PART: f64 = 0.1;
 
-/// Depth from which on nothing stands, mm: renderers write some such number where they met nothing.
+/// Depth, mm, from which on there is no object: renderers write such a number where a ray hits nothing.
 const BACKDROP_MM: f64 = 1e9;
 
-/// Whether depths along the axis, mm, are straight in far more places if they are along the ray (`ray`), or in the other case if the
-/// numbers behind them, which were along the ray, are along the axis. What lies as far as `farthest_mm` is no thing and does not count.
+/// Returns whether surfaces are straighter at far more points with the other kind of depth. `depth` is along the axis, mm. If `ray` is
+/// true, the other kind is distance along the ray; otherwise the numbers were read as distance along the ray, and the other kind is
+/// distance along the axis. Points at `farthest_mm` and beyond do not count.
 pub(super) fn are_straighter_as(ray: bool, depth: &[f32], plane_mm: f64, farthest_mm: f64, pixels: Pixels) -> bool {
     let [width, height] = pixels.size_px;
     let step = (STEP * f64::from(width)).round() as u32;
     if step < 2 || height <= 2 * step || depth.len() != width as usize * height as usize {
         return false;
     }
-    // One over the cosine of the angle to the axis.
+    // The inverse of the cosine of the angle to the axis.
     let slant = |x: u32, y: u32| {
         let from_middle = |at: u32, size: u32| f64::from(at) + 0.5 - 0.5 * f64::from(size);
         let across = from_middle(x, width) * pixels.pixel_mm / plane_mm;
@@ -80,7 +82,8 @@ mod tests {
     const PIXELS: Pixels = Pixels { size_px: [240, 135], aspect: 1.0, pixel_mm: 10.0 };
     const PLANE_MM: f64 = 2000.0;
 
-    /// Depth along the axis, or the ray, of a floor 1.2 m below and a wall 5 m away, at a slant; or of a ball before nothing.
+    /// Returns the depth, along the axis or the ray, of a room (a floor 1.2 m below and a slanted wall 5 m away), or of a ball in front of
+    /// a dome.
     fn depth(ray: bool, is_room: bool) -> Vec<f32> {
         let [width, height] = PIXELS.size_px;
         let mut all = Vec::new();
@@ -92,7 +95,7 @@ mod tests {
                     let floor = if v > 0.0 { 1200.0 / v } else { f64::INFINITY };
                     (5000.0 / (1.0 + 0.2 * u)).min(floor)
                 } else {
-                    // The near side of a ball of 900 mm at 2 m, and a backdrop like a dome about the eye.
+                    // The near side of a ball of 900 mm radius at 2 m, and a backdrop like a dome around the eye.
                     let (a, b, c) = (1.0 + u * u + v * v, -2.0 * 2000.0, 2000.0_f64.powi(2) - 900.0_f64.powi(2));
                     let root = b * b - 4.0 * a * c;
                     if root > 0.0 { (-b - root.sqrt()) / (2.0 * a) } else { 4000.0 - 500.0 * (u * u + v * v) }
@@ -105,11 +108,11 @@ mod tests {
 
     #[test]
     fn the_kind_of_depth_shows_in_planes() {
-        // Read as it is meant, nothing is straighter the other way.
+        // Depth that is read correctly is not straighter as the other kind.
         assert!(!are_straighter_as(true, &depth(false, true), PLANE_MM, f64::INFINITY, PIXELS));
         // Distances along the ray that were read as depth.
         assert!(are_straighter_as(true, &depth(true, true), PLANE_MM, f64::INFINITY, PIXELS));
-        // Depths that were read as distances along the ray, and so divided by the slant once.
+        // Depths that were read as distances along the ray, and therefore divided by the slant.
         let slant = |i: usize| {
             let [u, v] = [(i % 240, 240.0), (i / 240, 135.0)]
                 .map(|(at, size)| (at as f64 + 0.5 - 0.5 * size) * PIXELS.pixel_mm / PLANE_MM);
@@ -119,7 +122,7 @@ mod tests {
             depth(false, true).iter().enumerate().map(|(i, z)| (f64::from(*z) / slant(i)) as f32).collect();
         assert!(are_straighter_as(false, &divided, PLANE_MM, f64::INFINITY, PIXELS));
         assert!(!are_straighter_as(false, &depth(false, true), PLANE_MM, f64::INFINITY, PIXELS));
-        // Round things decide nothing.
+        // Round objects do not decide it.
         for ray in [false, true] {
             assert!(!are_straighter_as(true, &depth(ray, false), PLANE_MM, f64::INFINITY, PIXELS), "{ray}");
         }

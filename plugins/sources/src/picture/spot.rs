@@ -1,9 +1,9 @@
-//! A place of a picture among its pixels.
+//! Interpolation between the four pixels around a point of a picture.
 
 use spectra_core::math::whole;
 
-/// The last pixel whose center does not lie behind a place along a side of so many, and which part of the way to the next one the place
-/// lies beyond it. Before the first center there is none such.
+/// Finds the last pixel whose center lies at or before a position along a side of `pixels` pixels. Also returns how far the position lies
+/// beyond that center, as a fraction of the distance to the next one. Before the first center, returns the first pixel and 0.
 #[inline(always)]
 pub(super) fn along(place: f64, pixels: usize) -> (u32, f32) {
     let from_first = place - 0.5;
@@ -12,8 +12,8 @@ pub(super) fn along(place: f64, pixels: usize) -> (u32, f32) {
     (pixel, (from_first - below) as f32)
 }
 
-/// A place under the tent of a cell of a side, which reaches to the centers of its neighbors; the outermost are flat toward the rim. `part`
-/// is even in [0, 1).
+/// Draws a position under the tent of a cell along a side. The tent reaches to the centers of the neighbors; that of the outermost cells
+/// is flat toward the rim. `part` is uniform in [0, 1).
 #[inline(always)]
 pub(super) fn tent(cell: usize, part: f64, cells: usize) -> f64 {
     let at_rim = if part < 0.5 { cell == 0 } else { cell + 1 == cells };
@@ -25,21 +25,21 @@ pub(super) fn tent(cell: usize, part: f64, cells: usize) -> f64 {
     cell as f64 + 0.5 + from_center
 }
 
-/// Four pixels, and how far a place lies from the upper left one of them toward the others.
+/// The four pixels around a point, and how far the point lies from the upper left one toward the others.
 pub(crate) struct Spot {
     cells: [usize; 4],
     part: [f32; 2],
 }
 
 impl Spot {
-    /// Around a place in a picture of these sides; at its rim those of the rim.
+    /// Returns the four pixels around a point of a picture of this size. Beyond the outermost centers these are the pixels at the rim.
     #[inline(always)]
     pub(super) fn of([column, row]: [f64; 2], size: [usize; 2]) -> Self {
         let [(c0, part_x), (r0, part_y)] = [along(column, size[0]), along(row, size[1])];
         Self::beside([c0, r0], [part_x, part_y], size)
     }
 
-    /// Beside the pixel of this column and row, this part of the way to the next ones.
+    /// Returns the spot at the given fractions of the distance from the pixel of this column and row to the next ones.
     #[inline(always)]
     pub(super) fn beside([c0, r0]: [u32; 2], part: [f32; 2], [width, height]: [usize; 2]) -> Self {
         let (c0, r0) = (c0 as usize, r0 as usize);
@@ -48,20 +48,20 @@ impl Spot {
         Self { cells: [upper + c0, upper + c1, lower + c0, lower + c1], part }
     }
 
-    /// The four pixels: two above, and two below.
+    /// Indices of the four pixels: two above, and two below.
     #[inline(always)]
     pub(super) fn cells(&self) -> [usize; 4] {
         self.cells
     }
 
-    /// Linear between the values of the four pixels.
+    /// Interpolates linearly between the values of the four pixels.
     #[inline(always)]
     pub(crate) fn mix<const N: usize>(&self, value: impl Fn(usize) -> [f32; N]) -> [f32; N] {
         let [a, b, d, e] = self.cells;
         self.between([value(a), value(b), value(d), value(e)])
     }
 
-    /// Linear between these values of the four pixels.
+    /// Interpolates linearly between these values at the four pixels.
     #[inline(always)]
     pub(crate) fn between<const N: usize>(&self, [a, b, d, e]: [[f32; N]; 4]) -> [f32; N] {
         let mut mixed = [0.0; N];

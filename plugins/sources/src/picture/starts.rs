@@ -1,36 +1,40 @@
-//! What rays start on that a picture with depth emits: the planes of pixels, the steps between them, and what lies behind mixed pixels.
+//! The surfaces on which the rays start that a picture with depth emits: the planes of pixels, the steps between them, and the
+//! background of mixed pixels.
 
 use super::backdrop::Backdrop;
 use super::field::{HeightField, Hit, Wall};
 use super::map::PictureMap;
 
-/// Pixels that a tag has room for beside side and kind.
+/// Largest number of pixels that a tag can hold besides side and kind.
 pub(super) const MOST_CELLS: usize = 1 << 28;
-/// In a tag: the ray starts on a step, on this side of the pixel.
+/// Bit of a tag: the ray starts on a step, on the side of the pixel given by [`SIDE_BITS`].
 const IS_WALL: u32 = 1 << 31;
-/// In a tag: the ray starts on what lies behind mixed pixels.
+/// Bit of a tag: the ray starts on the background of mixed pixels.
 const IS_BEHIND: u32 = 1 << 30;
+/// Position of the two bits of a tag that hold the side of the step.
 const SIDE_BITS: u32 = 28;
-/// How far from the axis light enters a lens, mm, as a guess: it decides how many rays start on steps, not what they carry.
+/// Estimated distance from the axis at which light enters a lens, mm. It sets how many rays start on steps, not how much light they
+/// carry.
 const OFF_AXIS_MM: f64 = 6.0;
-/// At most this part of the rays starts on these, where planes in front shine as well.
+/// Largest fraction of the rays that start on steps and backgrounds if planes in front emit light, too.
 const MOST: f64 = 0.5;
 
-/// The steps of a picture, and the planes and steps behind its mixed pixels, in proportion to how much light is expected to pass them.
+/// The steps of a picture, and the planes and steps behind its mixed pixels. Each is drawn in proportion to the light expected from it.
 pub(super) struct Starts {
-    /// The tags of rays that start on each.
+    /// Tag of the rays that start on each surface.
     all: Vec<u32>,
-    /// Up to and with each; the last is 1.
+    /// Cumulative probabilities up to and including each surface; the last is 1.
     sums: Vec<f64>,
-    /// For each of as many equal parts of [0, 1) the start that its lower end lies in.
+    /// Guide table: [0, 1) is divided into as many equal parts as there are surfaces. Each entry is the surface at the lower end of its
+    /// part.
     guide: Vec<u32>,
-    /// Which part of the rays starts on them.
+    /// Fraction of the rays that start on these surfaces.
     pub share: f64,
 }
 
 impl Starts {
-    /// Finds them in a picture and what lies behind its mixed pixels; a direction of slope 1 is `px_per_slope` pixels from the axis, and
-    /// `level` says how bright a pixel is, 0 if it is none of this picture's.
+    /// Finds the surfaces in a picture and in the background of its mixed pixels. A direction of slope 1 is `px_per_slope` pixels from the
+    /// axis. `level` returns the brightness of a pixel, 0 if the pixel does not belong to this part of the picture.
     pub(super) fn of(
         map: &PictureMap,
         front: &HeightField,
@@ -38,7 +42,7 @@ impl Starts {
         px_per_slope: f64,
         level: impl Fn(usize) -> f32,
     ) -> Self {
-        // Places of the background that a step hides, in pixels, for each unit of 1/depth between.
+        // Width of the background that a step hides, pixels per unit of 1/depth across the step.
         let hidden = px_per_slope * OFF_AXIS_MM;
         let around = |cell: usize| {
             let (column, row) = (cell % map.width_px, cell / map.width_px);
@@ -59,7 +63,7 @@ impl Starts {
                 let Some(nearer) = field.beside(cell, side).filter(|beside| field.w(*beside) > field.w(cell)) else {
                     continue;
                 };
-                // A step of one thing has the light of its nearer pixel; behind another thing goes on what it hides.
+                // A step within one object has the light of its nearer pixel. Behind another object the background continues.
                 let level = match field.together(cell, nearer) {
                     true => around(nearer),
                     false if map.is_light(cell) => 0.0,
@@ -96,13 +100,14 @@ impl Starts {
             while at + 1 < sums.len() && sums[at] <= from {
                 at += 1;
             }
-            at as u32 // there are nine a pixel at most
+            at as u32 // there are at most nine per pixel
         });
         let guide = guide.collect();
         Self { all, sums, guide, share }
     }
 
-    /// Draws one of them by a number from 0 to 1: its tag, what is left of the number, and one over its probability.
+    /// Draws a surface with a number from 0 to 1. Returns its tag, the number rescaled within its interval, and the inverse of its
+    /// probability.
     pub(super) fn draw(&self, u: f64) -> (u32, f64, f64) {
         let many = self.sums.len();
         let mut at = self.guide[((u * many as f64) as usize).min(many - 1)] as usize;
@@ -115,12 +120,12 @@ impl Starts {
     }
 }
 
-/// What a ray starts on.
+/// The surface on which a ray starts.
 pub(super) struct Start {
     pub cell: usize,
-    /// The step, if it is none of the planes.
+    /// The step, or `None` if the surface is the plane of a pixel.
     pub wall: Option<Wall>,
-    /// Whether it lies behind mixed pixels.
+    /// Whether the surface lies behind mixed pixels.
     pub is_behind: bool,
 }
 
@@ -132,7 +137,7 @@ impl Start {
         Self { cell: cell as usize, wall, is_behind: tag & IS_BEHIND != 0 }
     }
 
-    /// Whether it is what a ray meets.
+    /// Returns whether this is the surface that a ray meets.
     #[inline(always)]
     pub(super) fn is(&self, hit: &Hit) -> bool {
         match self.wall {

@@ -1,27 +1,27 @@
-//! The tone curve of a camera, taken back: from a finished photograph to the light that it was taken in.
+//! Inverse of a camera's tone curve: from a finished photograph to the light of the scene.
 //!
-//! What a camera writes is a picture to look at: steeper than the scene in the middle, with a shoulder that brings highlights under white.
-//! Printed on film as it is it would get two such curves. With x the light of the scene and f that of the file, channel by channel as
-//! cameras and films have them, the camera's curve is taken for
+//! A camera writes a picture for viewing: steeper than the scene in the midtones, with a shoulder that keeps highlights below white.
+//! Exposed on film unchanged, it would get two such curves. With x the light of the scene and f that of the file, separately for each
+//! channel as in cameras and films, the camera's curve is assumed to be
 //!
 //!   f = (1 + c) p / (p + c), p = (x / w)^g,
 //!
-//! a power in the shadows under a shoulder. Gray of 18 % stays where it is, and the file's white is w, 7.8 times that, 2.96 stops above
-//! it: of a camera's saturation-based speed S, 78/S lx s saturates where 10/S lx s is metered (ISO 12232:2019). Assumed is c = 0.25, by
-//! which the file is 1.32 times as steep as the scene at gray.
+//! a power law in the shadows below a shoulder. Gray of 18 % does not change. The file's white is w, 7.8 times as bright, 2.96 stops above
+//! gray, since at a saturation-based speed S a camera saturates at 78/S lx s and meters for 10/S lx s (ISO 12232:2019). The assumed
+//! c = 0.25 makes the file 1.32 times as steep as the scene at gray.
 
 use spectra_core::math::{log, pow};
 
-/// Light of mid gray in the file and in the scene.
+/// Mid gray in the file and in the scene, as a fraction of white.
 pub(super) const MID_GRAY: f64 = 0.18;
-/// White of the file over mid gray in the light of the scene.
+/// Ratio of the file's white to mid gray, in the light of the scene.
 const WHITE_OVER_GRAY: f64 = 7.8;
 /// Sharpness of the shoulder.
 const SHOULDER: f64 = 0.25;
-/// Steps of the table, even in the root of the file's light.
+/// Number of steps of the table, equal in the square root of the file's light.
 const STEPS: usize = 1 << 13;
 
-/// Light of the scene where the file has `file`, 0 or more: beyond the file's white in proportion.
+/// Returns the light of the scene for a value of the file, 0 or more. Beyond the file's white it is proportional.
 fn scene(file: f64) -> f64 {
     let gray = SHOULDER * MID_GRAY / (1.0 + SHOULDER - MID_GRAY);
     let exponent = -log(WHITE_OVER_GRAY) / log(gray);
@@ -29,7 +29,7 @@ fn scene(file: f64) -> f64 {
     WHITE_OVER_GRAY * MID_GRAY * pow(file_over_white, exponent) * file.max(1.0)
 }
 
-/// Light of the scene for that of a file.
+/// Table of the scene's light as a function of the file's.
 pub(super) struct CameraTone(Vec<f32>);
 
 impl CameraTone {
@@ -41,7 +41,7 @@ impl CameraTone {
         Self((0..=STEPS).map(at).collect())
     }
 
-    /// The curve taken back of one value, 0 or more.
+    /// Undoes the curve for one value, 0 or more.
     pub(super) fn value(&self, file: f32) -> f32 {
         let place = file.min(1.0).sqrt() * STEPS as f32;
         let at = (place as usize).min(STEPS - 1);
@@ -49,7 +49,7 @@ impl CameraTone {
         (a + (b - a) * (place - at as f32)) * file.max(1.0)
     }
 
-    /// The same of each channel of each pixel; values below 0, of colors beyond sRGB, stay in proportion to the largest.
+    /// Undoes the curve in each channel of each pixel. Values below 0, of colors outside sRGB, are scaled like the largest one.
     pub(super) fn take_back(&self, rgb: &mut [[f32; 3]]) {
         for pixel in rgb {
             let largest = pixel.iter().copied().fold(0.0_f32, f32::max);
@@ -63,7 +63,7 @@ impl CameraTone {
 mod tests {
     use super::*;
 
-    /// Gray stays, white lies 2.96 stops above it, and between them the curve is that of the formula above, turned around.
+    /// Gray does not change, white lies 2.96 stops above it, and the values between follow the inverse of the formula above.
     #[test]
     fn gray_stays_and_white_is_where_sensors_saturate() {
         let tone = CameraTone::new();
@@ -81,7 +81,7 @@ mod tests {
             assert!(found > before);
             before = found;
         }
-        // As steep as said.
+        // The slope at gray is the documented one.
         let slope = (scene(0.1818) / scene(0.1782)).ln() / (0.1818_f64 / 0.1782).ln();
         assert!((slope - 1.0 / 1.32).abs() < 0.01, "{slope}");
     }

@@ -1,4 +1,5 @@
-//! Each kind against a closed form: foci of conics, the lens and the grating equation, spheres and planes in disguise.
+//! Compares each kind with a closed form: foci of conics, the lens and the grating equation, and spheres and planes written as
+//! other kinds.
 
 use crate::common::{Line, meet, meet_all, sense};
 use glam::DVec3;
@@ -9,12 +10,12 @@ use spectra_plugin_surfaces::*;
 
 const AIR_GLASS: (f64, f64) = (1.0, 1.5168);
 
-/// Distance between a line and a point.
+/// Returns the distance between a line and a point.
 fn miss((p, d): Line, point: DVec3) -> f64 {
     (point - p).cross(d).length()
 }
 
-/// From a point toward places of a disk on the vertex plane.
+/// Returns rays from a point toward points of a disk on the vertex plane.
 fn pencil(from: DVec3, radius_mm: f64) -> Vec<Line> {
     (0..24)
         .map(|i| {
@@ -24,7 +25,7 @@ fn pencil(from: DVec3, radius_mm: f64) -> Vec<Line> {
         .collect()
 }
 
-/// Parallel to the axis, toward +z, over a disk.
+/// Returns rays parallel to the axis, toward +z, over a disk.
 fn beam(radius_mm: f64) -> Vec<Line> {
     let up = DVec3::new(0.0, 0.0, 1.0);
     pencil(DVec3::new(0.0, 0.0, -1.0), radius_mm).into_iter().map(|(p, d)| (p + d / d.z - 50.0 * up, up)).collect()
@@ -34,7 +35,7 @@ fn reflected(surface: &dyn Surface, rays: &[Line]) -> Vec<Line> {
     rays.iter().map(|r| meet(surface, *r, (1.0, 1.0), Action::Reflect).expect("it meets the mirror")).collect()
 }
 
-/// A paraboloid of radius -200 has its focus at -100; light from there leaves parallel.
+/// A paraboloid of radius -200 has its focus at -100, and light from there leaves parallel.
 #[test]
 fn parabolic_mirror_has_a_focus() {
     let mirrors: [Box<dyn Surface>; 4] = [
@@ -61,7 +62,7 @@ fn ellipse_and_hyperbola_image_focus_to_focus() {
         let e = f64::sqrt(-k);
         let (near, far) = (DVec3::new(0.0, 0.0, radius / (1.0 + e)), DVec3::new(0.0, 0.0, radius / (1.0 - e)));
         let mirror = Kernel(Conic::new(radius, k));
-        // From the one that lies on the side of the light; lines meet the other, if virtually.
+        // The light starts at the focus on its own side. The lines then pass through the other focus, real or virtual.
         let (from, to) = if near.z < 0.0 { (near, far) } else { (far, near) };
         for ray in reflected(&mirror, &pencil(from, 30.0)) {
             assert!(miss(ray, to) < 1e-11, "{radius} {k}: {}", miss(ray, to));
@@ -69,7 +70,7 @@ fn ellipse_and_hyperbola_image_focus_to_focus() {
     }
 }
 
-/// An ellipsoid of e = 1/n gathers parallel light in glass at its far focus, R n / (n - 1), without aberration (Descartes).
+/// An ellipsoid of glass with e = 1/n focuses parallel light at its far focus, R n / (n - 1), without aberration (Descartes).
 #[test]
 fn ellipsoid_of_descartes() {
     let n = 1.5168;
@@ -80,7 +81,7 @@ fn ellipsoid_of_descartes() {
     }
 }
 
-/// Rays over both sides of a surface, in either sense.
+/// Returns rays from both sides of a surface, in either direction of travel.
 fn sheaf(radius_mm: f64) -> Vec<Line> {
     let forward = pencil(DVec3::new(3.0, -5.0, -30.0), radius_mm);
     let backward = pencil(DVec3::new(-4.0, 2.0, 40.0), radius_mm);
@@ -114,7 +115,7 @@ fn same(a: &dyn Surface, b: &dyn Surface, radius_mm: f64, tolerance: f64) {
 fn spheres_in_disguise() {
     for radius in [25.0, -25.0] {
         let sphere = Kernel(Sphere::new(radius));
-        // The series of a sphere: coefficient i of r^2i is that before times (2 i - 3) / (2 i) / R^2.
+        // The series of a sphere: the coefficient of r^2i is the one before times (2 i - 3) / (2 i) / R^2.
         let (mut series, mut a) = (vec![0.5 / radius], 0.5 / radius);
         for i in 2..=20 {
             a *= f64::from(2 * i - 3) / f64::from(2 * i) / (radius * radius);
@@ -122,7 +123,7 @@ fn spheres_in_disguise() {
         }
         same(&Kernel(Conic::new(radius, 0.0)), &sphere, 12.0, 1e-13);
         same(&Kernel(EvenAsphere::<4>::new(radius, 0.0, &[0.0])), &sphere, 12.0, 1e-13);
-        // At r = 8 the series left out is below (8/25)^40.
+        // At r = 8 the rest of the series is below (8/25)^40.
         same(&Kernel(EvenAsphere::<20>::new(f64::INFINITY, 0.0, &series)), &sphere, 8.0, 1e-13);
         same(&PerRay(FromSag(Toroid::new(radius, 0.0, &[], radius))), &sphere, 12.0, 1e-13);
         same(&PerRay(FromSag(Biconic::new((radius, radius), (0.0, 0.0)))), &sphere, 12.0, 1e-13);
@@ -148,15 +149,15 @@ fn conics_in_disguise() {
         same(&PerRay(FromSag(Biconic::new((radius, radius), (k, k)))), &conic, 10.0, 1e-12);
         same(&Kernel(EvenAsphere::<8>::new(radius, k, &[])), &conic, 10.0, 1e-12);
     }
-    // A cylinder is a toroid without rotation, or a straight line rotated.
+    // A cylinder is a toroid whose curve is shifted, or whose straight line is rotated.
     let x = Kernel(Cylinder::new(19.0, CylinderAxis::X));
     same(&PerRay(FromSag(Toroid::new(19.0, 0.0, &[], f64::INFINITY))), &x, 10.0, 1e-12);
     let y = Kernel(Cylinder::new(-19.0, CylinderAxis::Y));
     same(&PerRay(FromSag(Toroid::new(f64::INFINITY, 0.0, &[], -19.0))), &y, 10.0, 1e-12);
 }
 
-/// In the section across its lines a cylinder is a circle: sin i = h / R for parallel light, and the ray along the lines
-/// keeps its part.
+/// In the section across its lines a cylinder is a circle: sin i = h / R for parallel light. The component of the ray along
+/// the lines does not change.
 #[test]
 fn cylinder_is_a_circle_in_its_section() {
     let n = 1.5168;
@@ -180,8 +181,8 @@ fn cylinder_is_a_circle_in_its_section() {
     }
 }
 
-/// The tilts are right-handed rotations: 30 degrees about x lift the upper part, and light along the axis is refracted by
-/// Snell's law in the y-z plane.
+/// The tilts are right-handed rotations: 30 degrees about x move the upper part to larger z, and light along the axis is
+/// refracted by Snell's law in the y-z plane.
 #[test]
 fn tilted_plane_is_a_prism_face() {
     let tilt = 30.0_f64.to_radians();
@@ -194,7 +195,7 @@ fn tilted_plane_is_a_prism_face() {
     assert!((d - DVec3::new(0.0, -sin(turned), cos(turned))).length() < 1e-15, "{d}");
     let about_y = TiltedPlane::new(0.0, tilt);
     assert!((spectra_core::surface::KernelShape::sag_mm(&about_y, 2.0, 5.0).unwrap() + 2.0 * tilt.tan()).abs() < 1e-14);
-    // Both: rotating x first, then about the new y. The new axes (1, 0, 0) and (0, cos, sin) ... span the plane.
+    // Both tilts: first about x, then about the new y axis. The rotated x and y axes span the plane.
     let (a, b) = (0.4_f64, -0.3_f64);
     let both = TiltedPlane::new(a, b);
     for v in [DVec3::new(cos(b), sin(a) * sin(b), -cos(a) * sin(b)), DVec3::new(0.0, cos(a), sin(a))] {
@@ -203,7 +204,8 @@ fn tilted_plane_is_a_prism_face() {
     }
 }
 
-/// n'/s' = n/s + 1/f, with the magnification s' n / (s n'), for points on and off the axis, both senses, and as a mirror.
+/// A thin lens obeys n'/s' = n/s + 1/f, with the magnification s' n / (s n'), for points on and off the axis, in both directions of
+/// travel, and as a mirror.
 #[test]
 fn thin_lens_images_points() {
     for (f, s, y, n, n2) in [
@@ -232,8 +234,8 @@ fn thin_lens_images_points() {
     }
 }
 
-/// sin i' = sin i + m lambda g in the plane across the lines; n' counts behind a surface of glass; and where that exceeds 1
-/// there is no light.
+/// A grating obeys n' sin i' = sin i + m lambda g in the plane across the lines, with n' the index behind the surface. There is
+/// no light where the sine would exceed 1.
 #[test]
 fn grating_equation() {
     let (g, wavelength) = (600.0, 500.0);
@@ -259,8 +261,8 @@ fn grating_equation() {
     assert!((d.x + 0.33).abs() < 1e-15 && d.y.abs() < 1e-15, "{d}");
 }
 
-/// A spherical grating images its own Rowland circle sharp in the plane across the lines (to the order of coma): sin a + sin b
-/// = m lambda g for the chief ray, with the object at R cos a and the image at R cos b.
+/// A spherical grating images its own Rowland circle sharply in the plane across the lines (to the order of coma). The chief ray
+/// obeys sin a + sin b = m lambda g, with the object at R cos a and the image at R cos b.
 #[test]
 fn rowland_circle() {
     let (radius, g, a) = (-500.0_f64, 600.0, 0.2_f64);
@@ -275,12 +277,12 @@ fn rowland_circle() {
     assert!((chief.y - (sin(a) + 550e-6 * g)).abs() < 1e-14);
     let image = radius.abs() * (1.0 - chief.y * chief.y).sqrt() * chief;
     for y in [-5.0, 5.0] {
-        // Off the circle by its depth the blur would be 5 mm / 500 mm times millimeters; the third order leaves (5/500)^3.
+        // Millimeters off the circle, the blur would be 5 mm / 500 mm of that distance. The third order leaves (5/500)^3.
         assert!(miss(after(y), image) < 2e-3, "{}", miss(after(y), image));
     }
 }
 
-/// Noll (1976), table I; Wyant and Creath (1992), table III: at rho = 0.8, 0.4 rad.
+/// The terms have the published values at rho = 0.8, 0.4 rad: Noll (1976), table I; Wyant and Creath (1992), table III.
 #[test]
 fn zernike_terms_as_published() {
     let (r, t) = (0.8_f64, 0.4_f64);
@@ -336,7 +338,7 @@ fn zernike_terms_as_published() {
     }
 }
 
-/// A table of a cubic surface is that surface; one of a sphere comes close by the fourth power of the step.
+/// A table of a cubic surface reproduces that surface. The error of a table of a sphere falls with the fourth power of the step.
 #[test]
 fn sag_table_of_known_surfaces() {
     let table = |step: f64, count: i32, sag: &dyn Fn(f64, f64) -> f64| {
@@ -363,7 +365,7 @@ fn sag_table_of_known_surfaces() {
         places.iter().map(|(x, y)| (t.sag_mm(*x, *y).unwrap() - sphere(*x, *y)).abs()).fold(0.0, f64::max)
     });
     assert!(errors[0] < 1e-5 && errors[1] < errors[0] / 8.0 && errors[2] < errors[1] / 8.0, "{errors:?}");
-    // Rays land on it as on the sphere, to that accuracy.
+    // Rays meet the table as they meet the sphere, to that accuracy.
     same(&PerRay(FromSag(table(0.25, 129, &sphere))), &Kernel(Sphere::new(40.0)), 10.0, 1e-7);
     assert!(
         SagTable::new(1.0, &vec![vec![0.0; 4]; 3]).is_none()
@@ -371,7 +373,7 @@ fn sag_table_of_known_surfaces() {
     );
 }
 
-/// Near the rim of a deep even asphere, under a grazing angle, and where the polynomial runs wild outside, rays land on the sag or miss.
+/// Rays meet the sag or miss, even near the rim of a deep even asphere, at grazing angles, and outside, where the polynomial grows fast.
 #[test]
 fn even_asphere_never_lands_on_a_wrong_sheet() {
     let shapes = [
@@ -391,7 +393,7 @@ fn even_asphere_never_lands_on_a_wrong_sheet() {
                 Ok((q, _)) => {
                     let sag = surface.sag_mm(q.x, q.y).expect("on the surface");
                     assert!((q.z - sag).abs() < 1e-9 && (q - p).cross(d).length() < 1e-9, "{} {sag}", q.z);
-                    // From the side of the light: just before, the ray is on it.
+                    // The ray comes from the side of the light: just before the hit it is on that side.
                     let before = q - 1e-5 * d;
                     if let Some(sag) = surface.sag_mm(before.x, before.y) {
                         assert!((before.z - sag) * sense_z < 1e-9);
@@ -401,7 +403,7 @@ fn even_asphere_never_lands_on_a_wrong_sheet() {
                 Err(loss) => {
                     assert_eq!(loss, Loss::Missed);
                     missed += 1;
-                    // Nowhere within the sphere of 6 mm does the line come through in its sense (a coarse walk along it).
+                    // Nowhere within a sphere of 6 mm does the line cross in its direction of travel (sampled coarsely along it).
                     let mut was = None;
                     for k in -1200..=1200 {
                         let at = p + (f64::from(k) * 0.01 - p.dot(d)) * d;

@@ -1,4 +1,4 @@
-//! Every built-in surface keeps the laws of surfaces.
+//! Every built-in surface passes the checks that apply to all surfaces.
 
 use spectra_plugin_surfaces as _;
 use spectra_testing::{SurfaceLaws, surface};
@@ -29,7 +29,7 @@ fn smooth_surfaces() {
     hold(SurfaceLaws::default(), &all);
 }
 
-/// The kernel of the sphere is made for the distances within a lens: it loses digits with the square of the distance.
+/// The kernel of the sphere is tuned for the distances within a lens: it loses digits with the square of the distance.
 #[test]
 fn spheres_from_near() {
     let near = SurfaceLaws { farthest_mm: 50.0, ..SurfaceLaws::default() };
@@ -49,6 +49,6 @@ fn surfaces_whose_vertex_is_not_across_the_axis() {
 fn surfaces_with_a_law_of_their_own() {
     let own = SurfaceLaws { snell: false, ..SurfaceLaws::default() };
     hold(own, &["{kind: grating, lines-per-mm: 100, order: 1}"]);
-    // An ideal lens bends the way back differently where media differ.
+    // An ideal lens is not reversible if the media in front and behind differ.
     hold(SurfaceLaws { reversible: true, ..own }, &["{kind: thin-lens, focal-length: 50}"]);
 }

@@ -1,4 +1,4 @@
-//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+//! Tests of the public interface of this crate. They form one program, so that their dependencies are linked once.
 
 mod closed_forms;
 mod common;

@@ -1,4 +1,4 @@
-//! What a lens file may say of a surface: every kind as its documentation shows it, and what is wrong, all of it at once.
+//! Surfaces in a lens file: every kind is built as documented, and all faults are reported at once.
 
 use spectra_core::params::Faults;
 use spectra_core::registry::{Context, build};
@@ -8,7 +8,7 @@ use spectra_core::surface::Surface;
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
 
-/// The surface that a line of YAML describes, beside a sag table of a paraboloid and one with a slip.
+/// Builds the surface that a line of YAML describes. The folder holds a sag table of a paraboloid and two faulty tables.
 fn surface(line: &str) -> Result<Box<dyn Surface>, Faults> {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");

@@ -1,5 +1,5 @@
-//! Random valid shapes and rays: the hit lies on the sag, refraction obeys Snell's law in the plane of incidence, and light goes
-//! back the way it came.
+//! Tests with random valid shapes and rays: the hit lies on the sag, refraction obeys Snell's law in the plane of incidence, and
+//! light returns along the path on which it came.
 
 use crate::common::meet;
 use glam::DVec3;
@@ -8,20 +8,20 @@ use proptest::test_runner::RngSeed;
 use spectra_core::surface::{Action, FromSag, Kernel, PerRay, Surface};
 use spectra_plugin_surfaces::*;
 
-/// A radius between 12 and 100 mm, of either sign.
+/// Generates a radius between 12 and 100 mm, of either sign.
 fn radius() -> impl Strategy<Value = f64> {
     (12.0..100.0, any::<bool>()).prop_map(|(r, negative): (f64, bool)| if negative { -r } else { r })
 }
 
-/// Coefficients that each add up to 0.3 mm at 10 mm.
+/// Generates coefficients that each contribute at most 0.3 mm at 10 mm.
 fn coefficients(first: i32, by: i32) -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-0.3..0.3, 1..12).prop_map(move |heights: Vec<f64>| {
         heights.iter().zip(0..).map(|(h, i)| h / 10f64.powi(first + by * i)).collect()
     })
 }
 
-/// A surface, and the largest distance of rays, mm: the kernel of the sphere is tuned for the distances within a lens, and
-/// loses digits by the square of the distance.
+/// Generates a sphere, with the largest distance of rays, mm. The kernel of the sphere is tuned for the distances within a
+/// lens, and loses digits with the square of the distance.
 fn spheres() -> impl Strategy<Value = (Box<dyn Surface>, f64)> {
     radius().prop_map(|r| (Box::new(Kernel(Sphere::new(r))) as Box<dyn Surface>, 50.0))
 }
@@ -54,7 +54,7 @@ fn surfaces() -> impl Strategy<Value = Box<dyn Surface>> {
     ]
 }
 
-/// Through a point near the vertex plane, from 5 to 2000 mm away, in either sense.
+/// Generates a ray through a point of the vertex plane, 5 to 2000 mm away, in either direction of travel.
 fn ray() -> impl Strategy<Value = (DVec3, DVec3, f64)> {
     (-7.0..7.0, -7.0..7.0, -0.4..0.4, -0.4..0.4, 5.0..2000.0, any::<bool>()).prop_map(|(x, y, u, v, far, forward)| {
         let d = DVec3::new(u, v, if forward { 1.0 } else { -1.0 }).normalize();
@@ -62,7 +62,7 @@ fn ray() -> impl Strategy<Value = (DVec3, DVec3, f64)> {
     })
 }
 
-/// Normal by differences of the sag: good to 1e-9.
+/// Computes the normal from differences of the sag, to an accuracy of 1e-9.
 fn normal(surface: &dyn Surface, q: DVec3) -> Option<DVec3> {
     let h = 1e-3;
     let along = |dx: f64, dy: f64| {
@@ -95,7 +95,7 @@ proptest! {
                 let (_, mirrored) = meet(&*surface, (p, d), indices, Action::Reflect).unwrap();
                 prop_assert!((mirrored - (d - 2.0 * d.dot(n) * n)).length() < 1e-8);
             }
-            // Back from a little behind. Where the light came close to the surface or along it, it may meet it elsewhere.
+            // Trace back from a little behind. Light that came close to the surface or along it may meet it elsewhere.
             if after.z * d.z > 0.05 {
                 let (back, out) = meet(&*surface, (q + 2.0 * after, -after), (indices.1, indices.0), Action::Refract)
                     .map_err(|loss| TestCaseError::fail(format!("{loss:?} on the way back")))?;

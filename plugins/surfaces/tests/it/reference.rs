@@ -1,4 +1,4 @@
-//! Aspheric surfaces against rays computed with 40 digits by `xtask/reference_surfaces.py`.
+//! Compares aspheric surfaces with rays that `xtask/reference_surfaces.py` computed with 40 digits.
 
 use crate::common::meet;
 use glam::DVec3;
@@ -7,7 +7,7 @@ use spectra_plugin_surfaces::{
     Biconic, Cylinder, CylinderAxis, EvenAsphere, OddAsphere, Toroid, Zernike, ZernikeOrdering,
 };
 
-/// Largest errors of position, mm, and direction over the rays of a kind; their number.
+/// Returns the largest errors of position, mm, and of direction over the rays of a kind, and the number of rays.
 fn errors(kind: &str, make: impl Fn(&[f64]) -> Box<dyn Surface>) -> (f64, f64, usize) {
     let path = format!("{}/../../tests/data/surfaces/{kind}.csv", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).expect("the reference rays are in the repository");

@@ -1,5 +1,5 @@
-//! The two authoring tiers and the sag alone give the same rays as the built-in sphere, in either sense of travel, on
-//! every instruction set; and light goes back the way it came.
+//! The two authoring tiers and a bare sag give the same rays as the built-in sphere, in either direction of travel, on
+//! every instruction set.
 
 use glam::DVec3;
 use spectra_core::batch::Column;
@@ -16,7 +16,7 @@ use spectra_plugin_surfaces::{
 const RADIUS_MM: f64 = 40.0;
 const RAYS: usize = 2000;
 
-/// A sphere as a plugin author would write it with a pencil: |o + t d - c|^2 = r^2.
+/// A sphere as a plugin author would work it out on paper: |o + t d - c|^2 = r^2.
 #[derive(Debug)]
 struct Pencil;
 
@@ -37,7 +37,7 @@ impl ScalarShape for Pencil {
     }
 }
 
-/// The least a plugin author can write.
+/// The smallest shape that a plugin author can write: only the sag.
 #[derive(Clone, Copy, Debug)]
 struct Sag;
 
@@ -48,7 +48,7 @@ impl SagShape for Sag {
     }
 }
 
-/// Random rays, some of which miss the sphere, some beyond the rim, some beyond the critical angle.
+/// Draws random rays. Some miss the sphere, some pass beyond the rim, some exceed the critical angle.
 fn rays(travel: Travel) -> RayBatch {
     let numbers = Numbers::random(5);
     let mut batch = RayBatch::new(RAYS);
@@ -109,7 +109,7 @@ fn tiers_agree_ray_by_ray() {
             let (got, _) = interact(&*surface, travel, Isa::detect());
             for i in 0..RAYS {
                 match (got.loss(i), want.loss(i)) {
-                    // A sag has no surface beyond its rim: what others clip there, it misses.
+                    // A sag has no surface beyond its rim: it reports a miss where the others clip.
                     (Some(got), Some(_)) if name == "sag" => assert_eq!(got.1, 3),
                     (got, want) => assert_eq!(got, want, "{name}, ray {i}"),
                 }
@@ -117,7 +117,7 @@ fn tiers_agree_ray_by_ray() {
                     for (a, b) in got.positions().iter().zip(want.positions()) {
                         assert!((a[i] - b[i]).abs() < 1e-10, "{name}, ray {i}: {} and {} mm", a[i], b[i]);
                     }
-                    // The slope of a sag alone comes from differences.
+                    // The slope of a bare sag comes from differences.
                     let tolerance = if name == "sag" { 1e-9 } else { 1e-12 };
                     for (a, b) in got.directions().iter().zip(want.directions()) {
                         assert!((a[i] - b[i]).abs() < tolerance, "{name}, ray {i}: direction {} and {}", a[i], b[i]);
@@ -128,7 +128,8 @@ fn tiers_agree_ray_by_ray() {
     }
 }
 
-/// Branch-free code against the scalar tier, which knows a shape by its sag alone; and the same bits on every instruction set.
+/// Compares the branch-free code with the scalar tier, which knows a shape only by its sag. Also checks for the same bits on every
+/// instruction set.
 fn same_in_both_tiers(name: &str, kernel: &dyn Surface, scalar: &dyn Surface, few_disagree: usize) {
     for travel in [Travel::Forward, Travel::Backward] {
         let (want, lost) = interact(scalar, travel, Isa::Baseline);
@@ -174,7 +175,7 @@ impl<S: spectra_core::surface::KernelShape> SagShape for SagOf<S> {
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64> {
         self.0.sag_mm(x_mm, y_mm)
     }
-    /// From the normal, which the reference rays test.
+    /// Derived from the normal, which the reference rays test.
     fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
         let [a, b, c] = self.0.normal([x_mm, y_mm, self.sag_mm(x_mm, y_mm)?]);
         Some((-a / c, -b / c))
@@ -186,7 +187,7 @@ fn kernels_agree_with_their_sags() {
     let even = [0.0, 2e-6, -3e-9, 1e-12];
     let odd = [0.0, 0.0, 0.0, 2e-6, 0.0, -3e-9, 0.0, 1e-12];
     same_in_both_tiers("conic", &Kernel(Conic::new(60.0, -2.0)), &PerRay(FromSag(SagOf(Conic::new(60.0, -2.0)))), 0);
-    // The line may cross an ellipsoid near its rim, where the sag is steep without bounds.
+    // The line may cross an ellipsoid near its rim, where the slope of the sag is unbounded.
     same_in_both_tiers(
         "ellipsoid",
         &Kernel(Conic::new(-45.0, 0.5)),
@@ -207,7 +208,7 @@ fn kernels_agree_with_their_sags() {
     same_in_both_tiers("tilted plane", &Kernel(plane), &PerRay(FromSag(SagOf(plane))), 0);
 }
 
-/// A sag whose rays are searched one by one, with slopes at every step.
+/// A sag that is intersected ray by ray, with slopes at every step.
 #[derive(Debug)]
 struct Alone<S>(FromSag<S>);
 
@@ -223,7 +224,7 @@ impl<S: SagShape> ScalarShape for Alone<S> {
     }
 }
 
-/// A sheet with a ripple as high as it is steep: many crossings a ray.
+/// A sheet with a ripple so high and steep that a ray crosses it many times.
 #[derive(Clone, Copy, Debug)]
 struct Ripple;
 
@@ -233,8 +234,9 @@ impl SagShape for Ripple {
     }
 }
 
-/// Batches step side by side where single rays search alone: the same rays go on, and go to the same places within 1e-11 mm, or within 1e-9
-/// where slopes come from differences. What becomes of a ray has the same bits on every instruction set and in a batch of its own.
+/// The rays of a batch step together, single rays search alone. In both cases the same rays survive and meet the surface within
+/// 1e-11 mm of each other, or 1e-9 where slopes come from differences. The result for a ray has the same bits on every instruction
+/// set and in a batch of its own.
 #[test]
 fn batches_step_to_where_single_rays_go() {
     fn held(name: &str, few_apart: usize, tolerance: f64, shape: impl SagShape + Clone + 'static) {
@@ -249,7 +251,7 @@ fn batches_step_to_where_single_rays_go() {
                 let both = got.positions().into_iter().zip(want.positions());
                 let both = both.chain(got.directions().into_iter().zip(want.directions()));
                 let miss = both.map(|(a, b)| (a[i] - b[i]).abs()).fold(0.0, f64::max);
-                // Far beyond the rim, where slopes are steep, one may find a place to be clipped at and the other none.
+                // Far beyond the rim, where slopes are steep, one may find a point where the ray is clipped, and the other none.
                 if got.loss(i).is_some() != want.loss(i).is_some() || got.loss(i).is_none() && !(miss < tolerance) {
                     apart.push((i, got.loss(i), want.loss(i), miss));
                 }
@@ -268,7 +270,7 @@ fn batches_step_to_where_single_rays_go() {
             }
         }
     }
-    /// The rays of a batch against those of another one from `first` on.
+    /// Compares the rays of one batch with those of another one from `first` on.
     fn same_bits(name: &str, some: &RayBatch, all: &RayBatch, first: usize) {
         let columns = |batch: &RayBatch, i: usize| -> Vec<u64> {
             let places = batch.positions().into_iter().chain(batch.directions());
@@ -284,6 +286,6 @@ fn batches_step_to_where_single_rays_go() {
     held("biconic", 0, 1e-11, Biconic::new((60.0, -80.0), (-0.5, 0.3)));
     held("toroid", 0, 1e-11, Toroid::new(70.0, -0.5, &[1e-6], 55.0));
     held("Zernike", 0, 1e-11, Zernike::new(90.0, -1.0, 30.0, &[0.0, 0.1, 0.0, 0.05, 0.02], ZernikeOrdering::Noll));
-    // Which of the crossings is met first is a matter of the steps, where they are not sure to begin with.
+    // Where it is unclear which crossing is the first, the result depends on the steps.
     held("ripple", RAYS / 10, 1e-9, Ripple);
 }

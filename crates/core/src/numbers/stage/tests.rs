@@ -9,7 +9,7 @@ fn rays(numbers: &Numbers, estimator: &str, stream: u64, first: u64, many: usize
     rays
 }
 
-/// What a stage draws for them.
+/// Pairs that a stage draws for these rays.
 fn drawn(rays: &mut RayBatch, stage: StageKey, event: u32) -> Vec<[f64; 2]> {
     rays.set_stage(stage);
     let c = rays.columns_mut();
@@ -19,7 +19,7 @@ fn drawn(rays: &mut RayBatch, stage: StageKey, event: u32) -> Vec<[f64; 2]> {
 const A: StageKey = StageKey::new("a", 0);
 const B: StageKey = StageKey::new("b", 0);
 
-/// Of each aligned block of 2^8 samples every elementary interval of area 2^-8 holds one: a (0, 8, 2)-net, for any stage,
+/// Every elementary interval of area 2^-8 holds one point of each aligned block of 2^8 samples: a (0, 8, 2)-net, for any stage,
 /// event and stream, however many there are.
 #[test]
 fn each_event_is_a_net() {
@@ -73,8 +73,8 @@ fn means_converge_as_with_a_net() {
     assert!(error(&random, 2048) > 30.0 * error(&sobol, 2048));
 }
 
-/// Uniform, and uncorrelated between coordinates, events, stages, streams, estimators, seeds and the dimensions of the path:
-/// 36 pairs of columns, each within four standard errors.
+/// Numbers are uniform, and uncorrelated between coordinates, events, stages, streams, estimators, seeds and the dimensions of
+/// the path: 36 pairs of columns, each within four standard errors.
 #[test]
 fn events_are_independent() {
     let n = 20_000;

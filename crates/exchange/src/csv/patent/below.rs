@@ -1,4 +1,4 @@
-//! What stands below a table: coefficients of aspheres, gaps that vary, and the back focus.
+//! Reads what is printed below a table: coefficients of aspheres, gaps that vary, and the back focus.
 
 use super::equations::{Equation, equations_of};
 use super::rows::Head;
@@ -7,34 +7,34 @@ use super::words::{figure, gap_number, is_back_focus, is_other, surface_number};
 use crate::number;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The conic constant and the coefficients of an asphere by their powers.
+/// The conic constant of an asphere, and its coefficients by power.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Asphere {
     pub conic: Option<String>,
     pub coefficients: BTreeMap<u32, String>,
 }
 
-/// What stands below a table, and the back focus that stands anywhere.
+/// Data from below a table, and the back focus from anywhere.
 #[derive(Default)]
 pub(super) struct Below {
     pub aspheres: BTreeMap<u32, Asphere>,
-    /// First values of gaps by the numbers of their surfaces.
+    /// First values of gaps, by the numbers of their surfaces.
     pub gaps: BTreeMap<u32, String>,
     pub back_focus: Option<String>,
-    /// Whether the conic constant was given by kappa.
+    /// Whether a conic constant was given as kappa.
     pub has_kappa: bool,
-    /// Whether kappa is the conic constant itself, and not 1 more.
+    /// Whether kappa is the conic constant itself instead of 1 plus it.
     pub kappa_is_conic: bool,
 }
 
-/// What kappa is, by the formula of the sag where it is printed, 1 - kappa or 1 + kappa, or else by its name.
+/// Determines the meaning of kappa from the printed formula of the sag (1 - kappa or 1 + kappa), or else from its name.
 fn kappa_is_conic(lines: &[&str]) -> bool {
     let plain: String = lines.concat().to_lowercase().chars().filter(|c| !c.is_whitespace()).collect();
     let formula = |sign: char| plain.contains(&format!("1{sign}κ"));
     !formula('-') && (formula('+') || plain.contains("conicconstantκ") || plain.contains("conicconstant(κ)"))
 }
 
-/// The words of a line, each with where it ends, in characters.
+/// Splits a line into words, each with the column where it ends, in characters.
 fn placed(line: &str) -> Vec<(String, usize)> {
     let mut words = Vec::new();
     let mut word = String::new();
@@ -48,7 +48,7 @@ fn placed(line: &str) -> Vec<(String, usize)> {
     words
 }
 
-/// `Surface # 2 3 4 5`: the surfaces of a table of aspheres whose columns they are, with where each number ends.
+/// Reads the heading of a table of aspheres with one column per surface, `Surface # 2 3 4 5`: the numbers and where each one ends.
 fn surfaces_across(line: &str) -> Option<Vec<(u32, usize)>> {
     let words = placed(line);
     let (first, rest) = words.split_first()?;
@@ -64,7 +64,7 @@ fn surfaces_across(line: &str) -> Option<Vec<(u32, usize)>> {
     columns.filter(|all| all.len() >= 2 && all.windows(2).all(|pair| pair[0].0 < pair[1].0))
 }
 
-/// What a figure of an asphere is.
+/// Meaning of a figure of an asphere.
 #[derive(Clone, Copy)]
 enum Term {
     Conic,
@@ -73,7 +73,7 @@ enum Term {
 }
 
 impl Term {
-    /// By its name and number: `K`, `A4`, `C6`, or `A`, `B`, `C` for the fourth, sixth and eighth power.
+    /// Returns the term with this name and number: `K`, `A4`, `C6`, or `A`, `B`, `C` for the fourth, sixth and eighth power.
     fn of(name: &str, number: Option<u32>) -> Option<Self> {
         Some(match (name, number) {
             ("k" | "cc" | "conic", None) => Self::Conic,
@@ -88,13 +88,13 @@ impl Term {
 }
 
 impl Below {
-    /// Powers that any asphere has, rising.
+    /// Returns the powers that any asphere has, rising.
     pub(super) fn powers(&self) -> Vec<u32> {
         let all: BTreeSet<u32> = self.aspheres.values().flat_map(|a| a.coefficients.keys().copied()).collect();
         all.into_iter().collect()
     }
 
-    /// The conic constant and the coefficients of these powers of a surface, empty where there are none.
+    /// Returns the conic constant and the coefficients of these powers for a surface; empty where there are none.
     pub(super) fn terms(&self, surface: Option<u32>, powers: &[u32]) -> Vec<String> {
         let asphere = surface.and_then(|number| self.aspheres.get(&number));
         let of = |power: &u32| asphere.and_then(|a| a.coefficients.get(power).cloned()).unwrap_or_default();
@@ -106,14 +106,14 @@ impl Below {
         let mut below = Self { kappa_is_conic: kappa_is_conic(lines), ..Self::default() };
         lines.iter().for_each(|line| below.take_back_focus(line));
         let mut surface = None;
-        // The terms of a table of aspheres, the surface of its row, and how many of them it has.
+        // Terms of a table of aspheres, the surface of its current row, and how many terms have been read.
         let mut terms: Vec<Term> = Vec::new();
-        // The surfaces of a table of aspheres whose columns they are, each with where its figures end.
+        // Surfaces of a table of aspheres with one column per surface, each with the position where its figures end.
         let mut columns: Vec<(u32, usize)> = Vec::new();
         let mut row: Option<(u32, usize)> = None;
         for line in lines.iter().skip(from) {
             let plain = line.trim();
-            // A second example is another lens.
+            // Stop at a second example, which is another lens.
             if Head::of(plain).is_some_and(|head| head.is_of_surfaces())
                 || plain.to_lowercase().starts_with("example 2")
             {
@@ -144,7 +144,7 @@ impl Below {
             let leads = |e: &Equation| matches!(e.name.as_str(), "k" | "κ" | "kappa" | "a") || e.number.is_some();
             let is_of_asphere = all.iter().any(leads);
             for equation in all {
-                // Bare letters are coefficients beside the conic constant or `A`, and a focal length elsewhere.
+                // Read bare letters as coefficients only together with a conic constant or `A`; elsewhere they may be a focal length.
                 if !is_of_asphere && equation.number.is_none() {
                     continue;
                 }
@@ -164,7 +164,8 @@ impl Below {
         below
     }
 
-    /// `A4 = 9.9e-3 -3.0e-3 ...`: one term of several surfaces, each figure below the number of its surface; whether the line is one.
+    /// Reads one term of several surfaces, each figure below the number of its surface: `A4 = 9.9e-3 -3.0e-3 ...`. Returns whether the line
+    /// is such a row.
     fn take_across(&mut self, line: &str, columns: &[(u32, usize)]) -> bool {
         let words = placed(line);
         let Some(((name, _), figures)) = words.split_first().filter(|_| !columns.is_empty()) else { return false };
@@ -182,14 +183,14 @@ impl Below {
         let surfaces: Vec<u32> = if figures.len() == columns.len() {
             columns.iter().map(|(surface, _)| *surface).collect()
         } else {
-            // Each below its column, where blanks have kept their places.
+            // Assign each figure to the nearest column, if blanks have kept the positions.
             let nearest = |end: usize| columns.iter().min_by_key(|(_, column)| column.abs_diff(end)).map(|(s, _)| *s);
             figures.iter().filter_map(|(_, end)| nearest(*end)).collect()
         };
         if surfaces.windows(2).any(|pair| pair[0] == pair[1]) {
             return false;
         }
-        // A dash stands where a surface has no such term.
+        // Skip a dash, which means that a surface has no such term.
         for ((word, _), surface) in figures.into_iter().zip(surfaces).filter(|((word, _), _)| word != "-") {
             self.set(surface, term, figure(word));
         }
@@ -210,7 +211,7 @@ impl Below {
         }
     }
 
-    /// A line of a table of aspheres: headings such as `Si K A B C`, rows, and lines that go on with a row.
+    /// Reads a line of a table of aspheres: headings such as `Si K A B C`, rows, and lines that continue a row.
     fn take_row(&mut self, line: &str, terms: &mut Vec<Term>, row: &mut Option<(u32, usize)>) {
         let words: Vec<&str> = line.split_whitespace().collect();
         let term = |word: &&str| {
@@ -245,7 +246,7 @@ impl Below {
         }
     }
 
-    /// `d5 1.20 8.40 16.50` or `d 5 1.20`: values of a gap, of which the first counts.
+    /// Reads the values of a gap, `d5 1.20 8.40 16.50` or `d 5 1.20`; the first one is used.
     fn take_gap(&mut self, line: &str) {
         let words: Vec<&str> =
             line.split(|c: char| c.is_whitespace() || c == ',' || c == ';').filter(|w| !w.is_empty()).collect();
@@ -260,7 +261,7 @@ impl Below {
         }
     }
 
-    /// `BF = 37.78`, `Back focus = +79.8`, `s' = 47,96` or `BF 37.78`.
+    /// Reads the back focus: `BF = 37.78`, `Back focus = +79.8`, `s' = 47,96` or `BF 37.78`.
     fn take_back_focus(&mut self, line: &str) {
         if self.back_focus.is_some() {
             return;

@@ -1,4 +1,4 @@
-//! Tables of equations: `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`, in one line or many.
+//! Reads tables of equations: `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`, on one line or many.
 
 use super::words::{figure, is_back_focus, is_end, is_other, is_plane, is_stop_phrase};
 use super::{Found, Row, value};
@@ -6,30 +6,30 @@ use crate::MAX_ITEMS;
 
 /// An equation of a patent: its name, its number and its value.
 pub(super) struct Equation {
-    /// Letters, small.
+    /// Letters of the name, in lower case.
     pub name: String,
-    /// As it stands.
+    /// Name as printed.
     written: String,
     pub number: Option<u32>,
     pub value: String,
-    /// Words behind the value.
+    /// Words after the value.
     pub words: String,
-    /// Whether an asterisk stands behind the value.
+    /// Whether an asterisk follows the value.
     pub is_marked: bool,
 }
 
-/// Whether a word goes on with a figure: `e-5`, `×10^-5`.
+/// Whether a word continues a number: `e-5`, `×10^-5`.
 fn is_power(word: &str) -> bool {
     let rest = word.strip_prefix(['×', 'e', 'E']);
     rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '+'))
 }
 
-/// A line without the marks of lower letters and the rules of a table.
+/// Removes the markup of subscripts and the rules of a table from a line.
 fn unmarked(line: &str) -> String {
     line.replace(".sub.", "").replace("<sub>", "").replace("</sub>", "").replace(['_', '{', '}'], "").replace('|', " ")
 }
 
-/// The equations of a line.
+/// Returns the equations of a line.
 pub(super) fn equations_of(line: &str) -> Vec<Equation> {
     let plain = unmarked(line);
     let parts: Vec<&str> = plain.split('=').collect();
@@ -66,7 +66,7 @@ pub(super) fn equations_of(line: &str) -> Vec<Equation> {
     found
 }
 
-/// Splits the name of the next equation off the end of a text: `4.99 n 1` is `n1` behind `4.99`.
+/// Splits the name of the next equation off the end of a text: `4.99 n 1` is `n1` after `4.99`.
 fn last_name(part: &str) -> (String, String) {
     let words: Vec<&str> = part.split_whitespace().collect();
     let Some(last) = words.last() else { return (String::new(), String::new()) };
@@ -77,7 +77,7 @@ fn last_name(part: &str) -> (String, String) {
     (words[at..].concat(), words[..at].join(" "))
 }
 
-/// An index and an Abbe number that stand in a text without equations.
+/// Returns an index and an Abbe number found in a text without equations.
 fn glass_in(words: &str) -> Option<[String; 2]> {
     let figures: Vec<&str> = words.split_whitespace().filter(|word| value(word).is_some()).collect();
     let pair = figures.windows(2).find(|pair| {
@@ -87,8 +87,7 @@ fn glass_in(words: &str) -> Option<[String; 2]> {
     Some([pair[0], pair[1]].map(|word| if word.contains('.') { word.to_owned() } else { word.replacen(',', ".", 1) }))
 }
 
-/// Lines that name a figure without a sign of equality, `R1  +.4089` and `D1 .0645`, as equations; `None` where fewer than three radii are
-/// written so.
+/// Adds the missing equals signs to lines such as `R1  +.4089` and `D1 .0645`; `None` if fewer than three radii are written like this.
 fn with_signs(lines: &[&str]) -> Option<Vec<String>> {
     let named = |line: &str| -> Option<(String, String)> {
         let mut words = line.split_whitespace();
@@ -109,7 +108,7 @@ fn with_signs(lines: &[&str]) -> Option<Vec<String>> {
     (radii >= 3).then(|| all.into_iter().zip(lines).map(typed).collect())
 }
 
-/// Rows of a table of equations; `None` where there are fewer than three radii.
+/// Reads the rows of a table of equations; `None` if there are fewer than three radii.
 pub(super) fn rows(lines: &[&str]) -> Option<Found> {
     if let Some(typed) = with_signs(lines) {
         return rows_of(&typed.iter().map(String::as_str).collect::<Vec<_>>());
@@ -131,7 +130,7 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
         }
         let plain = unmarked(line);
         let all = equations_of(line);
-        // The stop between the lenses, with a gap and no radius of its own.
+        // The stop is printed between the lenses, with a gap but no radius of its own.
         let first_cell = line.split('|').next().unwrap_or_default().split("  ").find(|cell| !cell.trim().is_empty());
         if !all.is_empty()
             && !all.iter().any(|equation| equation.name == "r")
@@ -146,7 +145,7 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
             let name = match equation.name.as_str() {
                 "r" => "radius",
                 "d" | "t" | "l" | "s" | "b" if !is_back_focus(&equation.written) => "thickness",
-                // `a2` is an air gap where none is there yet, a coefficient elsewhere.
+                // Read `a2` as an air gap if the row has none yet, otherwise as a coefficient.
                 "a" if found.rows.last().is_some_and(|row| !row.cells.contains_key("thickness")) => "thickness",
                 "n" | "nd" | "ne" => "nd",
                 "v" | "vd" | "ve" | "nu" | "ny" => "vd",
@@ -154,21 +153,21 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
                 _ => continue,
             };
             let is_stop_word = is_stop_phrase(&equation.value);
-            // The image plane is no surface.
+            // Skip the image plane.
             if name == "radius" && is_end(equation.words.trim_start_matches('(')) {
                 continue;
             }
             if name == "radius" && !is_stop_word && !is_plane(&equation.value) && value(&equation.value).is_none() {
-                // A sentence about radii.
+                // Skip a sentence about radii.
                 continue;
             }
-            // A gap without a number is one that has none yet.
+            // A gap without a number is accepted if the row has none yet.
             let is_new_gap = || found.rows.last().is_some_and(|row| !row.cells.contains_key("thickness"));
             if equation.number.is_none() && !(name == "thickness" && is_new_gap()) {
                 continue;
             }
             if name == "radius" {
-                // One row a line of the table that is typed.
+                // Put one row on each line of the resulting table.
                 let line = found.rows.last().map_or(at, |last: &Row| at.max(last.line + 1));
                 let is_marked = equation.written.contains('*')
                     || equation.is_marked
@@ -191,7 +190,7 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
                 row.cells.insert("vd", vd);
             }
         }
-        // Figures of a glass in columns of their own, before the first equation.
+        // Read the figures of a glass in columns of their own, before the first equation.
         let before = plain.split('=').next().unwrap_or_default();
         if !all.is_empty()
             && let (Some([nd, vd]), Some(row)) = (glass_in(before), found.rows.last_mut())
@@ -200,7 +199,7 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
             row.cells.insert("nd", nd);
             row.cells.insert("vd", vd);
         }
-        // A word of the stop that stands alone below a radius.
+        // Read a word for the stop that is printed alone below a radius.
         if all.is_empty()
             && is_stop_phrase(line)
             && line.split_whitespace().count() <= 2
@@ -215,7 +214,8 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
     (found.rows.len() >= 3).then_some(found)
 }
 
-/// Indices and Abbe numbers in lines of their own, `nD 1.623 1.670` and `v 56.9 47.2`, one of each lens: lens k fills the gap `dk`.
+/// Reads indices and Abbe numbers printed on lines of their own, one for each lens: `nD 1.623 1.670` and `v 56.9 47.2`. Lens k fills the
+/// gap `dk`.
 fn glasses_apart(lines: &[&str], rows: &mut [Row]) {
     if rows.iter().any(|row| row.cells.contains_key("nd")) {
         return;
@@ -240,7 +240,7 @@ fn glasses_apart(lines: &[&str], rows: &mut [Row]) {
     }
 }
 
-/// A face that two cemented lenses share may stand twice, `r4` and `r4'`: the first has no gap, and goes.
+/// Removes the first of two rows for the same cemented surface, which may be printed twice, as `r4` and `r4'`. The first one has no gap.
 fn cemented(rows: &mut Vec<Row>) {
     let is_twice = |pair: &[Row]| {
         pair[0].number.is_some()

@@ -1,26 +1,26 @@
-//! Tables as lists, one below the other: all radii, then all thicknesses and gaps, then the glasses of the lenses.
+//! Reads tables printed as lists one below the other: all radii, then all thicknesses and gaps, then the glasses of the lenses.
 
 use super::equations::equations_of;
 use super::words::{is_back_focus, is_plane};
 use super::{Found, Row, value};
 use crate::MAX_ITEMS;
 
-/// Rows of lists; `None` where radii and gaps do not stand apart, or are not as many as belong to each other.
+/// Reads the rows of such lists; `None` if radii and gaps are not separate, or their numbers do not match.
 pub(super) fn rows(lines: &[&str]) -> Option<Found> {
     let mut rows: Vec<Row> = Vec::new();
-    // Letter and value of each gap, and its line.
+    // Letter, value and line of each gap.
     let mut gaps: Vec<(String, String, usize)> = Vec::new();
     for (at, line) in lines.iter().enumerate() {
         let all = equations_of(line);
         let [equation] = &all[..] else {
-            // Several in a line are a table of another kind.
+            // Several equations in a line belong to a table of another kind.
             if all.iter().any(|e| e.name == "r" && e.number.is_some()) {
                 return None;
             }
             continue;
         };
         let name = equation.name.as_str();
-        // Coefficients of an asphere are no gaps.
+        // Coefficients of an asphere are not gaps.
         if matches!(name, "k" | "κ") || line.to_lowercase().contains("asph") || line.contains("非球面") {
             break;
         }
@@ -46,20 +46,20 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
             return None;
         }
     }
-    // The last gap is that to the film, which may stand elsewhere.
+    // The last gap is that to the film, which may be printed elsewhere.
     if rows.len() < 3 || gaps.len() + 1 < rows.len() {
         return None;
     }
     let end = gaps.last()?.2 + 1;
     let glasses = glasses(&lines[end..]);
-    // Where two letters are used, that of the first gap is of glass, since light meets a lens first.
+    // If two letters are used, that of the first gap stands for glass, since light meets a lens first.
     let glass = gaps[0].0.clone();
     let has_air = gaps.iter().any(|(letter, ..)| *letter != glass);
     let lenses = gaps.iter().filter(|(letter, ..)| *letter == glass).count();
     let mut notes = Vec::new();
     if has_air && !glasses.is_empty() && glasses.len() != lenses {
         let text = format!(
-            "the list of glasses has {}, the list of thicknesses {lenses}: which lens has none?",
+            "the list of glasses has {} entries, the list of thicknesses {lenses}: find the lens without a glass",
             glasses.len()
         );
         notes.push((end + 1, true, text));
@@ -79,7 +79,7 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
     Some(Found { head, rows, end, notes, is_needed: true, is_line_e: false })
 }
 
-/// Index and Abbe number of each lens, `L1 1.6227 56.9`, in order.
+/// Reads the index and Abbe number of each lens, `L1 1.6227 56.9`, in order.
 fn glasses(lines: &[&str]) -> Vec<[String; 2]> {
     let mut found = Vec::new();
     for line in lines {

@@ -1,9 +1,9 @@
-//! Tables of lenses as patents print them, typed again as a table with separators.
+//! Converts lens tables as printed in patents to tables with separators.
 //!
-//! A patent prints a title, then a line of headings (`Surface No. R D Nd vd Effective diameter Remarks`) and rows in columns of blanks;
-//! or equations, `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`. Surfaces are marked where they are aspherical (`14*`) or the stop
-//! (`7 stop`), gaps vary, and coefficients of aspheres and values of gaps follow below. All of it becomes one table, each row of which
-//! stands on the line on which it stood where that is possible, so that faults are found.
+//! A patent prints a title, then a line of headings (`Surface No. R D Nd vd Effective diameter Remarks`) and rows with columns separated by
+//! blanks. Or it prints equations: `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`. Surfaces are marked as aspherical (`14*`) or as the stop
+//! (`7 stop`), gaps vary, and coefficients of aspheres and values of gaps follow below. All of this becomes one table. If possible, each
+//! row stays on the line on which it was printed, so that error messages name the right line.
 
 mod below;
 mod equations;
@@ -21,14 +21,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 pub(super) use words::{figure, is_stop_phrase, is_variable, plain};
 
-/// A table typed again.
+/// A table converted to one with separators.
 pub(super) struct Retyped {
     pub text: String,
-    /// What was assumed or could not be carried: line, whether light goes another way without it, words.
+    /// Notes of what was assumed or could not be carried over: line, whether light takes another path without it, text.
     pub notes: Vec<Told>,
 }
 
-/// Something to be told: a line from 1, or 0; whether light goes another way without it; words.
+/// A note: line from 1, or 0; whether light takes another path without it; text.
 type Told = (usize, bool, String);
 
 /// A surface of the table.
@@ -36,33 +36,33 @@ type Told = (usize, bool, String);
 struct Row {
     line: usize,
     number: Option<u32>,
-    /// By the names of [`COLUMNS`].
+    /// Cells by the names in [`COLUMNS`].
     cells: BTreeMap<&'static str, String>,
     is_stop: bool,
     is_marked: bool,
-    /// The name of its gap in a table of equations: `d3` is that of the third lens.
+    /// Name of the gap in a table of equations: `d3` is the gap of the third lens.
     gap: Option<(String, u32)>,
 }
 
-/// The rows of a table, and where it ends.
+/// The rows found in a table, and its extent.
 struct Found {
-    /// The line of its headings.
+    /// Index of the line of headings.
     head: usize,
     rows: Vec<Row>,
-    /// The line behind its last row.
+    /// Index of the line after the last row.
     end: usize,
     notes: Vec<Told>,
-    /// Whether something in it has to be typed in another way.
+    /// Whether something in the table requires a conversion.
     is_needed: bool,
-    /// Whether its indices are those of the line e.
+    /// Whether the indices are at the line e.
     is_line_e: bool,
 }
 
-/// Columns of the table that is typed.
+/// Columns of the resulting table.
 const COLUMNS: [&str; 10] =
     ["surface", "type", "radius", "thickness", "nd", "vd", "glass", "diameter", "semi-diameter", "comment"];
 
-/// Types a table again; `None` where the text is a table with separators and headings already, and nothing in it needs that.
+/// Converts a table. `None` if the text is already a table with separators and headings in which nothing requires a conversion.
 pub(super) fn retype(text: &str) -> Option<Retyped> {
     let lines: Vec<&str> = text.lines().collect();
     let is_word = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
@@ -90,7 +90,7 @@ pub(super) fn retype(text: &str) -> Option<Retyped> {
         notes.push((
             0,
             true,
-            "no row has a glass: add its index and Abbe number behind each radius, as columns `nd` and `vd`".to_owned(),
+            "no row has a glass: add the index and Abbe number of each glass in columns `nd` and `vd`".to_owned(),
         ));
     }
     if !found.rows.iter().any(|row| row.is_stop) {
@@ -103,8 +103,8 @@ pub(super) fn retype(text: &str) -> Option<Retyped> {
     Some(Retyped { text, notes })
 }
 
-/// A table that has separators: its rows stay as they are, but for marks, gaps that vary and what stands below it, and lines that are no
-/// rows go.
+/// Converts a table that has separators. Rows stay as they are except for marks, gaps that vary and data from below the table. Lines that
+/// are not rows are removed.
 fn kept(lines: &[&str], separator: char, head: &Head, found: &Found, below: &Below, notes: &mut Vec<Told>) -> String {
     let powers = below.powers();
     let mut out: Vec<String> = lines.iter().map(|_| "#".to_owned()).collect();
@@ -116,7 +116,7 @@ fn kept(lines: &[&str], separator: char, head: &Head, found: &Found, below: &Bel
     let has_aspheres = !below.aspheres.is_empty();
     let mut heads = own(lines[found.head]);
     let count = heads.len();
-    // A heading that nobody knows is told, where it is not that of a patent's groups.
+    // Note an unknown heading and clear it, so that its column is ignored.
     for (cell, column) in heads.iter_mut().zip(&head.columns) {
         if column.is_none() && !cell.is_empty() {
             notes.push((found.head + 1, false, format!("the column `{}` is not read", shown(cell))));
@@ -156,17 +156,17 @@ fn kept(lines: &[&str], separator: char, head: &Head, found: &Found, below: &Bel
     out.join("\n") + "\n"
 }
 
-/// Tells of a surface that is marked as an asphere and has no coefficients.
+/// Notes a surface that is marked as an asphere but has no coefficients.
 fn tell_marked(row: &Row, below: &Below, notes: &mut Vec<Told>) {
     if row.is_marked && row.number.is_none_or(|number| !below.aspheres.contains_key(&number)) {
         let number = row.number.map(|n| n.to_string()).unwrap_or_default();
         let text =
-            format!("surface {number} is marked as an asphere, and no coefficients follow: carried as its sphere");
+            format!("surface {number} is marked as an asphere, but no coefficients follow: carried as its sphere");
         notes.push((row.line + 1, true, text));
     }
 }
 
-/// Tells of coefficients of surfaces that the table does not have, and of what kappa was taken for.
+/// Notes coefficients of surfaces that the table does not have, and how kappa was interpreted.
 fn tell_unused(used: &BTreeSet<u32>, below: &Below, notes: &mut Vec<Told>) {
     for number in below.aspheres.keys().filter(|number| !used.contains(number)) {
         notes.push((0, true, format!("coefficients of surface {number}, which the table does not have")));
@@ -177,11 +177,12 @@ fn tell_unused(used: &BTreeSet<u32>, below: &Below, notes: &mut Vec<Told>) {
         } else {
             "1 plus the conic constant: 1 is a sphere"
         };
-        notes.push((0, true, format!("kappa is taken as {is}")));
+        notes.push((0, true, format!("kappa is read as {is}")));
     }
 }
 
-/// Gaps that vary get the first of their values, the last gap the back focus that stands anywhere; without one it is left out.
+/// Fills in gaps that vary with the first of their values, and the last gap with the back focus if it is printed anywhere. Otherwise the
+/// last gap is removed.
 fn fill_gaps(rows: &mut [Row], below: &Below, notes: &mut Vec<Told>) {
     let count = rows.len();
     for (at, row) in rows.iter_mut().enumerate() {
@@ -194,11 +195,7 @@ fn fill_gaps(rows: &mut [Row], below: &Below, notes: &mut Vec<Told>) {
         let value = own.or(below.back_focus.as_ref().filter(|_| is_last));
         match (cell, value) {
             (Some(cell), Some(value)) if own.is_some() => {
-                notes.push((
-                    row.line + 1,
-                    true,
-                    format!("the gap `{cell}` varies: its first value, {value}, is taken"),
-                ));
+                notes.push((row.line + 1, true, format!("the gap `{cell}` varies: its first value, {value}, is used")));
                 row.cells.insert("thickness", value.clone());
             }
             (_, Some(value)) => drop(row.cells.insert("thickness", value.clone())),
@@ -206,7 +203,7 @@ fn fill_gaps(rows: &mut [Row], below: &Below, notes: &mut Vec<Told>) {
                 notes.push((
                     row.line + 1,
                     false,
-                    format!("`{cell}` is no number: the film stands where the lens is focused"),
+                    format!("`{cell}` is not a number: the film is placed where the lens is in focus"),
                 ));
                 row.cells.remove("thickness");
             }
@@ -215,7 +212,7 @@ fn fill_gaps(rows: &mut [Row], below: &Below, notes: &mut Vec<Told>) {
     }
 }
 
-/// The table that is typed, a line of it for each line of the text.
+/// Returns the resulting table, with one line for each line of the text.
 fn written(lines: &[&str], found: &Found, below: &Below, notes: &mut Vec<Told>) -> String {
     let powers = below.powers();
     let mut used = BTreeSet::new();
@@ -245,14 +242,14 @@ fn written(lines: &[&str], found: &Found, below: &Below, notes: &mut Vec<Told>) 
     }
     tell_unused(&used, below, notes);
     match found.rows.first() {
-        // The headings stand somewhere above the first row.
+        // The headings go on a line above the first row.
         Some(first) if first.line == 0 => out.insert(0, head),
         _ => out[found.head] = head,
     }
     out.join("\n") + "\n"
 }
 
-/// A figure as a number, with a decimal point or comma; `None` where it is none.
+/// Parses a number with a decimal point or comma; `None` if it is not one.
 fn value(word: &str) -> Option<f64> {
     let point = if word.contains('.') { word.to_owned() } else { word.replacen(',', ".", 1) };
     number::parse(&figure(&point))

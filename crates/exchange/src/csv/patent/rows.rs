@@ -1,4 +1,4 @@
-//! Tables with a line of headings, their columns separated by tabs, commas, semicolons or blanks.
+//! Reads tables with a line of headings, whose columns are separated by tabs, commas, semicolons or blanks.
 
 use super::words::{figure, is_end, is_other, is_plane, is_stop, is_stop_phrase, is_variable, mark};
 use super::{Found, Row, value};
@@ -13,16 +13,16 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// Reads a line of headings: it names at least a radius and a thickness.
+    /// Reads a line of headings, which must name at least a radius and a thickness.
     pub(super) fn of(line: &str) -> Option<Self> {
         let separator = [';', '\t', ','].into_iter().find(|c| line.contains(*c));
-        // Where headings stand farther apart than one tab, tabs only align.
+        // Ignore tabs as separators if headings are more than one tab apart: the tabs only align.
         let separator = separator.filter(|c| *c != '\t' || !line.trim().contains("\t\t"));
         let mut columns: Vec<Option<Column>> = match separator {
             Some(separator) => line.split(separator).map(|cell| by_name(cell.trim().trim_matches('"'))).collect(),
             None => by_blanks(line),
         };
-        // Numbers stand first, whatever their heading is called.
+        // The first column contains numbers, whatever its heading is called.
         let is_unknown = |word: &str| by_name(word).is_none();
         if separator.is_none()
             && !columns.contains(&Some(Column::Number))
@@ -34,7 +34,7 @@ impl Head {
         (has(Column::Radius) && has(Column::Thickness)).then_some(Self { separator, columns })
     }
 
-    /// A last heading `Effective`, of which the next line says whether it is a radius or a diameter.
+    /// Resolves a last heading `Effective`: the next line says whether it is a radius or a diameter.
     fn with_effective(&self, line: &str, next: &str) -> Self {
         let mut columns = self.columns.clone();
         if self.separator.is_none() && line.trim_end().to_lowercase().ends_with("effective") {
@@ -44,7 +44,7 @@ impl Head {
         Self { separator: self.separator, columns }
     }
 
-    /// Whether it names media besides, so that it heads a table of surfaces.
+    /// Whether the line also names media, so that it is the heading of a table of surfaces.
     pub(super) fn is_of_surfaces(&self) -> bool {
         self.has(Column::Index) || self.has(Column::Glass)
     }
@@ -58,9 +58,9 @@ impl Head {
     }
 }
 
-/// Headings separated by blanks, of which one may have several words: the longest run of words that is a name counts.
+/// Splits headings that are separated by blanks and may have several words: the longest run of words that is a name counts.
 fn by_blanks(line: &str) -> Vec<Option<Column>> {
-    /// Most words of a heading.
+    /// Largest number of words in a heading.
     const LONGEST: usize = 5;
     let words: Vec<&str> = line.split_whitespace().collect();
     let mut columns = Vec::new();
@@ -78,7 +78,7 @@ fn by_blanks(line: &str) -> Vec<Option<Column>> {
     columns
 }
 
-/// The name of a column in the table that is typed.
+/// Returns the name of a column in the resulting table.
 fn name_of(column: Column) -> Option<&'static str> {
     Some(match column {
         Column::Number => "surface",
@@ -95,7 +95,7 @@ fn name_of(column: Column) -> Option<&'static str> {
     })
 }
 
-/// Rows below a line of headings.
+/// Reads the rows below a line of headings.
 pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
     let columns = &columns.with_effective(lines[head], lines.get(head + 1).copied().unwrap_or_default());
     let mut found =
@@ -103,12 +103,12 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
     let mut resumed = head + 1;
     for (at, line) in lines.iter().enumerate().skip(head + 1) {
         let plain = line.trim();
-        // A line of a spreadsheet may hold nothing but separators.
+        // Skip lines of a spreadsheet that contain only separators.
         if !plain.contains(char::is_alphanumeric) || plain.starts_with('#') || at < resumed {
             continue;
         }
         let last = found.rows.last().and_then(|row| row.number);
-        // Numbers of columns at the head of a page.
+        // Skip the column numbers at the head of a page.
         let page: Vec<u32> = plain.split_whitespace().filter_map(|word| word.parse().ok()).collect();
         if columns.separator.is_none()
             && page.len() == 2
@@ -151,7 +151,7 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
                         found.is_needed |= is_marked || is_stop && number.is_some();
                         (row.number, row.is_stop, row.is_marked) = (number, is_stop, is_marked);
                     }
-                    // The object, the image, or words of something else.
+                    // Skip the object, the image, and words about something else.
                     None if is_end(&cell) || columns.separator.is_none() => {
                         found.is_needed |= is_end(&cell);
                         is_row = false;
@@ -159,7 +159,7 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
                     None => drop(row.cells.insert("comment", cell)),
                 },
                 Column::Comment => {
-                    // The object and the image, by their names in a column without a heading.
+                    // Skip the object and the image, named in a column without a heading.
                     is_row &= columns.separator.is_some() || !is_end(&cell);
                     found.is_needed |= is_stop_phrase(&cell) && columns.separator.is_none();
                     row.is_stop |= is_stop_phrase(&cell);
@@ -180,13 +180,13 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
                 }
             }
         }
-        // A line of words among the rows has none of their columns.
+        // Skip a line of words among the rows, which has none of their columns.
         if !is_row || row.cells.is_empty() && row.number.is_none() && !row.is_stop && !plain.contains([',', ';', '\t'])
         {
             found.is_needed |= is_row;
             continue;
         }
-        // A sentence with commas behind the rows.
+        // Stop at a sentence with commas after the rows.
         let has_figures =
             ["radius", "thickness", "nd", "semi-diameter", "diameter"].iter().any(|name| row.cells.contains_key(name));
         if columns.separator.is_some()
@@ -199,7 +199,7 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
             found.end = at;
             break;
         }
-        // Behind the rows something else begins that has no heading of its own.
+        // Stop at something else after the rows that has no heading of its own.
         if columns.separator.is_none() && value_of(&row, "radius").is_none() {
             if found.rows.is_empty() {
                 continue;
@@ -212,12 +212,12 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
             break;
         }
         if columns.separator.is_none() {
-            let told = |pair: String| (at, false, format!("`{pair}` is read as one figure"));
+            let told = |pair: String| (at, false, format!("`{pair}` is read as one number"));
             found.notes.extend(broken(plain).into_iter().map(told).map(|(at, alters, text)| (at + 1, alters, text)));
         }
         found.rows.push(row);
     }
-    // Where every row has a size but the last, which has one figure near the size before, that is its size.
+    // If every row but the last has a size, and the last has one figure near the size of the row before, that figure is its size.
     let size = ["diameter", "semi-diameter"]
         .into_iter()
         .find(|name| found.rows.first().is_some_and(|row| row.cells.contains_key(name)));
@@ -236,14 +236,13 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
     found
 }
 
-/// Whether a row has a radius: a figure, or a word for a plane.
+/// Whether a row has a radius: a number, or a word for a plane.
 fn value_of(row: &Row, name: &str) -> Option<()> {
     let cell = row.cells.get(name)?;
     (is_plane(cell) || cell.eq_ignore_ascii_case("stop") || value(cell).is_some()).then_some(())
 }
 
-/// Whether two words are one figure that a reader of pages has taken apart at its point, with three decimals or more: `1. 84666`,
-/// `82 .788`.
+/// Whether two words are one number, with at least three decimals, that text recognition has split at its point: `1. 84666`, `82 .788`.
 fn is_broken(first: &str, second: &str) -> bool {
     const DECIMALS: usize = 3;
     let is_whole = |text: &str| {
@@ -255,16 +254,16 @@ fn is_broken(first: &str, second: &str) -> bool {
         || is_whole(first) && second.strip_prefix('.').is_some_and(is_part)
 }
 
-/// The figures of a row that [`by_rule`] puts together again, for a word about them.
+/// Returns the numbers of a row that [`by_rule`] joins again, for a note about them.
 fn broken(line: &str) -> Vec<String> {
     let words: Vec<&str> = line.split_whitespace().skip(1).collect();
     words.windows(2).filter(|pair| is_broken(pair[0], pair[1])).map(|pair| pair.join(" ")).collect()
 }
 
-/// Where the rows of a table go on behind a break of the page: the line of the row whose number is the next one, if it is near and nothing
-/// else begins before it.
+/// Finds where the rows continue after a page break. Returns the line of the row with the next number, if it is near and nothing else
+/// begins before it.
 fn goes_on(lines: &[&str], from: usize, last: Option<u32>, columns: &Head) -> Option<usize> {
-    /// Lines that the foot of a page and the head of the next one take at most.
+    /// Largest number of lines that the foot of a page and the head of the next one take.
     const FEW: usize = 14;
     let next = last? + 1;
     if columns.separator.is_some() || !columns.has(Column::Number) {
@@ -289,22 +288,22 @@ fn goes_on(lines: &[&str], from: usize, last: Option<u32>, columns: &Head) -> Op
     None
 }
 
-/// The cells of a row whose columns are separated by blanks, where cells may be empty: surface, type, radius and thickness stand
-/// first, then the index and the Abbe number of a glass in the order of the headings, then a diameter; words that are no glass last.
+/// Splits a row whose columns are separated by blanks, where cells may be empty. Surface, type, radius and thickness come first. The index
+/// and the Abbe number of a glass follow in the order of the headings, then a diameter. Words that are not a glass come last.
 fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
     let mut words: Vec<String> = Vec::new();
     let mut is_marked = false;
     for word in line.split_whitespace() {
         let count = words.len();
         match words.last_mut() {
-            // A sign that stands alone belongs to the figure behind it.
+            // Join a sign that stands alone with the number after it.
             Some(last)
                 if (last == "-" || last == "+") && word.starts_with(|c: char| c.is_ascii_digit() || c == '.')
                     || count > 1 && is_broken(last, word) =>
             {
                 last.push_str(word);
             }
-            // The mark of an asphere behind its radius.
+            // Remove the mark of an asphere after its radius.
             Some(_)
                 if count > 1 && ["(asp)", "(asph)", "asp", "(aspheric)"].contains(&word.to_lowercase().as_str()) =>
             {
@@ -337,9 +336,9 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         cells.push((Column::Number, first));
     }
     let is_word = |word: &String| word.chars().next().is_some_and(char::is_alphabetic) && value(word).is_none();
-    /// A number behind `Lens` up to this one is its own, and no radius.
+    /// Largest number after `Lens` that is read as the number of the lens instead of a radius.
     const MOST_LENSES: u8 = 20;
-    // `Lens 1`, `Ape. Stop`, `IR-cut filter` between the number and the radius, in a column without a heading.
+    // Read words such as `Lens 1`, `Ape. Stop`, `IR-cut filter` between number and radius, in a column without a heading.
     let mut named = String::new();
     while head.has(Column::Number)
         && !head.has(Column::Kind)
@@ -348,7 +347,7 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         let word = words.next().unwrap_or_default();
         let is_lens = word.to_lowercase().starts_with("lens");
         named = format!("{named} {word}").trim().to_owned();
-        // Its number, of which no lens has more than a few.
+        // Skip the number of the lens, since no lens has more than a few elements.
         if is_lens && words.peek().is_some_and(|next| next.parse::<u8>().is_ok_and(|number| number <= MOST_LENSES)) {
             words.next();
         }
@@ -362,14 +361,14 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         cells.push((Column::Kind, kind));
     }
     cells.extend(words.next().map(|radius| (Column::Radius, radius)));
-    // A dash is an empty cell.
+    // Treat a dash as an empty cell.
     cells.extend(words.next().filter(|gap| gap != "-").map(|gap| (Column::Thickness, gap)));
     let mut rest: Vec<String> = words.filter(|word| word != "-").collect();
-    // The mark of a solve.
+    // Remove the mark of a solve.
     if rest.first().is_some_and(|word| word.len() == 3 && word.starts_with('(') && word.ends_with(')')) {
         rest.remove(0);
     }
-    // A word for the kind of medium is no glass.
+    // Remove a word for the kind of medium, which is not a glass.
     if rest.first().is_some_and(|word| ["plastic", "glass"].contains(&word.to_lowercase().as_str())) {
         rest.remove(0);
     }
@@ -397,21 +396,21 @@ fn by_rule(line: &str, head: &Head) -> Vec<(Column, String)> {
         cells.push((Column::Index, figures[0].clone()));
         left = 1;
     } else if at(0) == 1.0 && figures.len() > 1 {
-        // Air with its index.
+        // Skip the index of air.
         left = 1;
     }
-    // Where partial dispersions stand between, they are below 1 and a diameter is not.
+    // Skip partial dispersions before a diameter: they are below 1, and a diameter is not.
     let least = if head.has(Column::Unused) { 1.0 } else { 0.0 };
     if has_size && let Some(size) = (left..figures.len()).find(|i| at(*i) >= least) {
         let column = if head.has(Column::Diameter) { Column::Diameter } else { Column::SemiDiameter };
         cells.push((column, figures[size].clone()));
     }
     if !remark.is_empty() {
-        // A name of a glass in the last column, or words.
+        // Read the rest as a glass name in the last column, or as a comment.
         let is_glass = head.has(Column::Glass) && !head.has(Column::Comment) && left == 2;
         cells.push((if is_glass { Column::Glass } else { Column::Comment }, remark));
     }
-    // The first of two cells of a column counts.
+    // Keep the first of two cells of a column.
     let mut seen = Vec::new();
     cells.retain(|(column, _)| {
         let is_first = !seen.contains(column);

@@ -1,22 +1,22 @@
-//! The sides of the pictures of a TIFF file, before its decoder sees them: it multiplies numbers of tiles and strips without looking whether
-//! the product has room.
+//! Checks the sizes of the pictures of a TIFF file before its decoder sees them. The decoder multiplies the numbers of tiles and strips
+//! without checking for overflow.
 
 use super::super::linear::{Trouble, check_size};
 use std::io::{self, BufRead, Seek, SeekFrom};
 
-/// Pictures of a file that are looked at; the decoder goes no further on its own.
+/// Largest number of pictures of a file that are checked; the decoder goes no further unless asked.
 const MOST: usize = 256;
 const WIDTH: u64 = 256;
 const HEIGHT: u64 = 257;
 
-/// Refuses a file that states a picture larger than any that is read.
+/// Refuses a file that states a picture larger than the limits.
 pub(in crate::read) fn check(reader: impl BufRead + Seek) -> Result<(), Trouble> {
-    // What is wrong with the file otherwise is told where it is read.
+    // Other faults of the file are reported when it is read.
     let all = sides(reader).unwrap_or_default();
     all.into_iter().try_for_each(|[width, height]| check_size(width, height))
 }
 
-/// Numbers of a file in its order of bytes.
+/// A file whose numbers are read in its byte order.
 struct Numbers<R> {
     reader: R,
     is_little: bool,
@@ -33,12 +33,12 @@ impl<R: BufRead + Seek> Numbers<R> {
     }
 }
 
-/// Width and height of each picture, as far as they are stated.
+/// Returns width and height of each picture, as far as the file states them.
 fn sides(mut reader: impl BufRead + Seek) -> io::Result<Vec<[u64; 2]>> {
     let mut order = [0; 2];
     reader.read_exact(&mut order)?;
     let mut file = Numbers { reader, is_little: order == *b"II" };
-    // A file of more than 4 GB has wider numbers.
+    // BigTIFF, for files of more than 4 GB, has wider numbers.
     let is_big = file.number(2)? == 43;
     let [wide, counted] = if is_big { [8, 8] } else { [4, 2] };
     if is_big {
@@ -51,7 +51,7 @@ fn sides(mut reader: impl BufRead + Seek) -> io::Result<Vec<[u64; 2]>> {
         let mut sides = [0; 2];
         for _ in 0..file.number(counted)?.min(1 << 16) {
             let (tag, kind, count) = (file.number(2)?, file.number(2)?, file.number(wide)?);
-            // Bytes, two bytes, four and eight; of other kinds no side is.
+            // Sizes are stored in one, two, four or eight bytes; fields of other types cannot hold a size.
             let bytes =
                 [(1, 1), (3, 2), (4, 4), (16, 8)].iter().find(|(own, _)| *own == kind).map_or(0, |(_, bytes)| *bytes);
             let is_side = [WIDTH, HEIGHT].contains(&tag) && count == 1 && (1..=wide).contains(&bytes);
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
     use std::io::Cursor;
 
-    /// A file of one picture in tiles of one pixel, or in strips of one row, of many planes.
+    /// Builds a file of one picture in tiles of one pixel, or in strips of one row, with many planes.
     fn file(is_big: bool, sides: [u32; 2], is_tiled: bool) -> Vec<u8> {
         let mut bytes = if is_big { b"MM\x00\x2b\x00\x08\x00\x00".to_vec() } else { b"II\x2a\x00".to_vec() };
         let number = |value: u64, size: usize| -> Vec<u8> {
@@ -90,7 +90,7 @@ mod tests {
         bytes.extend(number(entries.len() as u64, if is_big { 8 } else { 2 }));
         for (tag, value) in entries {
             bytes.extend([number(tag, 2), number(4, 2), number(1, wide)].concat());
-            // The value stands at the front of its place.
+            // The value is stored at the start of its field.
             bytes.extend(number(value, 4));
             bytes.extend(vec![0; wide - 4]);
         }
@@ -114,7 +114,7 @@ mod tests {
             }
         }
         assert!(check(Cursor::new(b"II")).is_ok());
-        // A folder that leads to itself ends.
+        // A directory that points to itself does not loop forever.
         let mut bytes = file(false, [16, 16], false);
         let last = bytes.len() - 4;
         bytes[last..].copy_from_slice(&8_u32.to_le_bytes());

@@ -1,5 +1,5 @@
-//! TIFF of samples that the crate `image` does not know: gray and half-precision floating point, and integers of 32 bits that say so.
-//! They are handed on as if each pixel had red, green and blue of 32 bits.
+//! Reads TIFF with samples that the crate `image` does not support: gray floating point, half and double precision, and integers of 32 bits
+//! that are marked as such. Passes on red, green and blue of 32 bits for each pixel.
 
 use super::said;
 use image::metadata::Orientation;
@@ -11,16 +11,16 @@ use tiff::tags::Tag;
 const UNSIGNED: u16 = 1;
 const FLOAT: u16 = 3;
 
-/// A decoder of such a file.
+/// A decoder that widens the samples of such a TIFF file to 32 bits.
 pub(in crate::read) struct Widened<R: BufRead + Seek> {
     decoder: Decoder<R>,
     size: (u32, u32),
-    /// Samples of a pixel, 1, 3 or 4.
+    /// Samples per pixel: 1, 3 or 4.
     samples: usize,
 }
 
 impl<R: BufRead + Seek> Widened<R> {
-    /// `None` where the file is of another kind, or where it is not sound: what is wrong with it is told by its own decoder.
+    /// Opens the decoder; `None` if the file is of another kind or not sound. In the last case its usual decoder reports what is wrong.
     pub(in crate::read) fn new(reader: R) -> Option<Self> {
         let mut decoder = Decoder::new(reader).ok()?;
         let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok()?.unwrap_or_else(|| vec![UNSIGNED]);
@@ -52,7 +52,7 @@ impl<R: BufRead + Seek> ImageDecoder for Widened<R> {
         if self.samples == 4 { ColorType::Rgba32F } else { ColorType::Rgb32F }
     }
 
-    /// Another one where samples are repeated: what is read is not what is handed on.
+    /// Returns another type if gray samples are repeated, to show that the stored pixels differ from the returned ones.
     fn original_color_type(&self) -> ExtendedColorType {
         if self.samples == 1 { ExtendedColorType::L8 } else { self.color_type().into() }
     }
@@ -68,10 +68,10 @@ impl<R: BufRead + Seek> ImageDecoder for Widened<R> {
     }
 
     fn read_image(self, to: &mut [u8]) -> ImageResult<()> {
-        // Samples lie in memory beside what is made of them.
+        // The samples are in memory in addition to the result.
         const MOST_BYTES: usize = 1 << 31;
         let mut limits = Limits::default();
-        // Of at most eight bytes each; the size of the picture was checked against that of its file.
+        // A sample has at most eight bytes; the size of the picture was checked against that of its file.
         limits.decoding_buffer_size =
             (self.size.0 as usize * self.size.1 as usize).saturating_mul(self.samples * 8).min(MOST_BYTES);
         limits.intermediate_buffer_size = limits.decoding_buffer_size.max(1 << 20);
@@ -93,7 +93,7 @@ impl<R: BufRead + Seek> ImageDecoder for Widened<R> {
             DecodingResult::F64(all) => spread(&mut all.iter().map(|v| (*v as f32).to_ne_bytes())),
             DecodingResult::U32(all) => spread(&mut all.iter().map(|v| v.to_ne_bytes())),
             _ => {
-                let kind = image::error::UnsupportedErrorKind::GenericFeature("samples of two kinds".to_owned());
+                let kind = image::error::UnsupportedErrorKind::GenericFeature("samples of different types".to_owned());
                 let format = image::ImageFormat::Tiff.into();
                 return Err(ImageError::Unsupported(image::error::UnsupportedError::from_format_and_kind(
                     format, kind,

@@ -1,10 +1,10 @@
 use super::*;
 use crate::{Shape, find_emission, find_reflectance, find_sensitivity};
 
-/// 380-780 nm by 1 nm.
+/// Grid of 380-780 nm in steps of 1 nm.
 const GRID: Grid = Grid { start_nm: 380.0, step_nm: 1.0, count: 401 };
 
-/// Fits with each number of terms, and holds them to 1.1 times the relative L2 that 60 random starts of another
+/// Fits with each number of terms, and requires at most 1.1 times the relative L2 error that 60 random starts of another
 /// program reached.
 fn reaches(name: &str, values: &[f64], rows: &[(usize, f64)]) {
     for (terms, wanted) in rows {
@@ -49,7 +49,7 @@ fn fit_of_d65() {
     reaches("D65", &values, &[(4, 0.034), (8, 0.0158)]);
 }
 
-/// Its lines are no Gaussians of few terms: they are better taken as lines.
+/// The lines of FL11 cannot be fitted by few Gaussian terms: they are better kept as lines.
 #[test]
 fn fit_of_fl11() {
     let values = find_emission("FL11").expect("bundled").on_grid(&GRID);

@@ -2,8 +2,8 @@ use super::super::drawing::Drawing;
 use super::super::shape::{Rectangle, Ring};
 use super::parts::{BLACK, WHITE};
 
-/// Lines of 2 mm, 50 mm apart, the two through the center twice as wide, a point on each crossing of the
-/// coarse net.
+/// Draws white lines of 2 mm, 50 mm apart; the two through the center are twice as wide. Each crossing of the coarse grid
+/// has a dot.
 pub fn grid(_seed: u64) -> Drawing {
     let mut drawing = Drawing::new(1500.0, 1000.0, BLACK);
     let width = |k: i32| if k == 0 { 4.0 } else { 2.0 };

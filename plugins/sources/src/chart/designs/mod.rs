@@ -1,4 +1,4 @@
-//! The charts themselves, each in the size of its design.
+//! The designs of the charts, each in its own size.
 
 mod color_checker;
 mod grid;

@@ -1,18 +1,18 @@
-//! What several charts have in common.
+//! Parts that several charts share.
 
 use super::super::drawing::{Align, Drawing};
 use super::super::ink::{Ink, PATCHES};
 use super::super::shape::{Rectangle, Ring, SiemensStar, Wedge};
 
-/// Ground of a good print.
+/// The white of a good print.
 pub const WHITE: Ink = Ink::Gray(0.9);
-/// Black of a good print.
+/// The black of a good print.
 pub const BLACK: Ink = Ink::Gray(0.03);
 
 /// Velvet black, darker than the darkest patch that it frames.
 pub const FRAME: Ink = Ink::Gray(0.01);
 
-/// The 24 color patches about `center`: squares of `side` mm, `pitch` mm apart.
+/// Draws the 24 color patches around `center`: squares of `side` mm, at a pitch of `pitch` mm.
 pub fn patch_block(drawing: &mut Drawing, center: [f64; 2], side: f64, pitch: f64) {
     for (i, name) in PATCHES.into_iter().enumerate() {
         let (column, row) = ((i % 6) as f64, (i / 6) as f64);
@@ -22,25 +22,25 @@ pub fn patch_block(drawing: &mut Drawing, center: [f64; 2], side: f64, pitch: f6
     }
 }
 
-/// Siemens star on the ground that is there.
+/// Draws a Siemens star on the existing ground.
 pub fn star(drawing: &mut Drawing, center: [f64; 2], radius: f64, cycles: u32) {
     drawing.add(SiemensStar::new(center, radius, cycles, 0.0), BLACK);
     drawing.mark("siemens star", center, radius);
 }
 
-/// Square turned by `degrees` counter-clockwise.
+/// Draws a square turned by `degrees` counterclockwise.
 pub fn slanted_square(drawing: &mut Drawing, center: [f64; 2], side: f64, degrees: f64, ink: Ink) {
     drawing.add(Rectangle::new(center, side, side).turned(degrees.to_radians()), ink);
     drawing.mark(format!("slanted edge {degrees:+}"), center, 0.75 * side);
 }
 
-/// Frequency, cycles per mm, of `hundreds` x 100 line widths per picture height.
+/// Returns the frequency, cycles per mm, for `hundreds` x 100 line widths per picture height.
 pub fn frequency(hundreds: f64, height: f64) -> f64 {
     50.0 * hundreds / height
 }
 
-/// Target for one place of the field, in a circle of `radius` mm: star, edges slanted both ways, and lines
-/// that run tangentially (on the far side) and radially (on the near side) as seen from the center of the chart.
+/// Draws a target for one point of the field, in a circle of `radius` mm: a star, edges slanted both ways, and lines. As seen
+/// from the center of the chart, the lines on the far side are tangential and those on the near side radial.
 pub fn field_target(drawing: &mut Drawing, center: [f64; 2], radius: f64) {
     let k = radius / 135.0;
     drawing.add(Ring::disk(center, radius), WHITE);
@@ -53,7 +53,7 @@ pub fn field_target(drawing: &mut Drawing, center: [f64; 2], radius: f64) {
     let at = |r: f64, t: f64| {
         [center[0] + r * k * radial[0] + t * k * tangent[0], center[1] + r * k * radial[1] + t * k * tangent[1]]
     };
-    // The square farther up leans one way, the other the other way.
+    // The upper square leans one way, the lower one the other way.
     let up = if radial[0] >= 0.0 { 1.0 } else { -1.0 };
     slanted_square(drawing, at(0.0, 94.0 * up), 46.0 * k, 5.0, BLACK);
     slanted_square(drawing, at(0.0, -94.0 * up), 46.0 * k, -5.0, BLACK);
@@ -66,19 +66,19 @@ pub fn field_target(drawing: &mut Drawing, center: [f64; 2], radius: f64) {
     }
 }
 
-/// Which way a wedge narrows.
+/// Direction in which a wedge narrows.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Narrowing {
-    /// Toward -y, figures on its right.
+    /// The wedge narrows toward -y, with figures on its right.
     Down,
-    /// Toward +x, figures above.
+    /// The wedge narrows toward +x, with figures above.
     Right,
-    /// Toward -x, figures above.
+    /// The wedge narrows toward -x, with figures above.
     Left,
 }
 
-/// Hyperbolic wedge of 9 lines, `length` mm, its wide end at `start`, from the first to the last of `figures`
-/// (hundreds of line widths per picture `height`), with a tick and a number for each.
+/// Draws a hyperbolic wedge of 9 lines, `length` mm long, with its wide end at `start`. It runs from the first to the last of
+/// `figures` (hundreds of line widths per picture `height`), with a tick and a number for each.
 pub fn wedge(drawing: &mut Drawing, start: [f64; 2], length: f64, narrowing: Narrowing, figures: &[u32], height: f64) {
     let [first, last] = [figures[0], figures[figures.len() - 1]].map(f64::from);
     let direction = match narrowing {
@@ -104,9 +104,9 @@ pub fn wedge(drawing: &mut Drawing, start: [f64; 2], length: f64, narrowing: Nar
     }
 }
 
-/// Two square groups of five lines, upright and level, with `hundreds` x 100 line widths per picture
-/// `height`, their tops at `top`. The outer sides of the groups, at `x` and at `x + pitch`, face away from
-/// the center of the chart if `pitch` leads to it.
+/// Draws two square groups of five lines, vertical and horizontal, with `hundreds` x 100 line widths per picture `height` and
+/// their tops at `top`. The outer sides of the groups, at `x` and at `x + pitch`, face away from the center of the chart if
+/// `pitch` points toward it.
 pub fn line_pair(drawing: &mut Drawing, [x, top]: [f64; 2], pitch: f64, hundreds: f64, height: f64) {
     let period = 1.0 / frequency(hundreds, height);
     let side = 4.5 * period;

@@ -3,8 +3,8 @@ use super::super::ink::Ink;
 use super::super::shape::Rectangle;
 use super::parts::FRAME;
 
-/// `count` patches of the user's own, row by row from the top left: squares of 40 mm with gaps of 6 mm, about three wide
-/// for every two high.
+/// Draws `count` patches with the user's reflectances, row by row from the top left: squares of 40 mm with gaps of 6 mm, about
+/// three columns for every two rows.
 pub fn patches(count: u16) -> Drawing {
     let count = count.max(1);
     let columns = (1..=count).find(|c| u32::from(*c) * u32::from(*c) * 2 >= u32::from(count) * 3).unwrap_or(count);

@@ -4,14 +4,14 @@ use super::super::shape::{Polygon, Rectangle};
 use super::parts::{BLACK, FRAME, Narrowing, WHITE, field_target, line_pair, patch_block, slanted_square, star, wedge};
 
 const HEIGHT: f64 = 1000.0;
-/// Pitch of the net behind everything; half of it is the width of the border.
+/// Pitch of the grid in the background, mm; half of it is the width of the border.
 const NET: f64 = 50.0;
 const LINE: f64 = 1.2;
-/// What the numbers at wedges and line groups count.
+/// Unit of the numbers at wedges and line groups.
 const UNIT: &str = "x 100 LW/PH";
 
-/// The photographic test chart, 1500 x 1000: a net within a toothed border, six field targets, and three
-/// panels in the middle.
+/// Draws the photographic test chart, 1500 x 1000: a grid within a border of black and white blocks, six field targets, and
+/// three panels in the middle.
 pub fn resolution(_seed: u64) -> Drawing {
     let mut drawing = Drawing::new(1500.0, HEIGHT, WHITE);
     border(&mut drawing);
@@ -27,7 +27,8 @@ pub fn resolution(_seed: u64) -> Drawing {
     drawing
 }
 
-/// Teeth of one net pitch, black and white in turn, an arrow to the edge in the middle of each side.
+/// Draws the border: alternating black and white blocks as long as the grid pitch, and an arrow to the edge in the middle of each
+/// side.
 fn border(drawing: &mut Drawing) {
     let reach = [750.0, 500.0];
     for (axis, teeth, odd) in [(0, 14, 0), (1, 9, 1)] {
@@ -51,7 +52,7 @@ fn border(drawing: &mut Drawing) {
     }
 }
 
-/// Thin net with a frame.
+/// Draws the thin grid with its frame.
 fn net(drawing: &mut Drawing) {
     for k in -14..=14 {
         drawing.add(Rectangle::new([NET * f64::from(k), 0.0], LINE, 950.0), BLACK);
@@ -65,13 +66,13 @@ fn net(drawing: &mut Drawing) {
     }
 }
 
-/// White ground between two corners, framed by the lines of the net.
+/// Draws a white ground between two corners, framed by the lines of the grid.
 fn panel(drawing: &mut Drawing, low: [f64; 2], high: [f64; 2]) {
     let inset = 0.5 * LINE;
     drawing.add(Rectangle::between([low[0] + inset, low[1] + inset], [high[0] - inset, high[1] - inset]), WHITE);
 }
 
-/// Gray row and wedges.
+/// Draws the upper panel: a row of grays, and wedges.
 fn upper_panel(drawing: &mut Drawing) {
     panel(drawing, [-350.0, 100.0], [350.0, 450.0]);
     drawing.add(Rectangle::new([0.0, 412.5], 14.0 * 45.0 + 2.4, 47.4), BLACK);
@@ -95,7 +96,7 @@ fn upper_panel(drawing: &mut Drawing) {
     }
 }
 
-/// Star between slanted squares of high and of low contrast.
+/// Draws the middle panel: a star between slanted squares of high and of low contrast.
 fn middle_panel(drawing: &mut Drawing) {
     panel(drawing, [-350.0, -100.0], [350.0, 100.0]);
     star(drawing, [0.0, 0.0], 90.0, 72);
@@ -111,7 +112,7 @@ fn middle_panel(drawing: &mut Drawing) {
     }
 }
 
-/// Color patches between groups of lines, and the title.
+/// Draws the lower panel: color patches between groups of lines, and the title.
 fn lower_panel(drawing: &mut Drawing) {
     panel(drawing, [-350.0, -450.0], [350.0, -100.0]);
     let center = [0.0, -252.0];

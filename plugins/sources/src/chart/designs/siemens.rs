@@ -3,8 +3,8 @@ use super::super::ink::Ink;
 use super::super::shape::{Rectangle, Ring, SiemensStar};
 use super::parts::{BLACK, WHITE};
 
-/// Star of 72 cycles, 900 mm across, on a square sheet; black, two grays and white in the corners relate
-/// its tones to reflectance.
+/// Draws a star of 72 cycles, 900 mm across, on a square sheet. Black, two grays and white in the corners relate its tones to
+/// reflectance.
 pub fn siemens(_seed: u64) -> Drawing {
     let mut drawing = Drawing::new(1000.0, 1000.0, WHITE);
     drawing.add(Ring::new([0.0, 0.0], 462.0, 3.0), BLACK);

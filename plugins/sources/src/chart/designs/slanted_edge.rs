@@ -3,9 +3,8 @@ use super::super::ink::Ink;
 use super::super::shape::Rectangle;
 use super::parts::BLACK;
 
-/// Ground of reflectance 0.8, squares of 0.2: the contrast of 4:1 that ISO 12233 (2014 and later) asks
-/// for, which neither clips nor rings in a
-/// picture. The squares lean by +5 and -5 degrees in turn.
+/// Draws squares of reflectance 0.2 on a ground of 0.8: the contrast of 4:1 that ISO 12233 (2014 and later) requires, which
+/// neither clips nor rings in a picture. The squares lean alternately by +5 and -5 degrees.
 pub fn slanted_edge(_seed: u64) -> Drawing {
     let ground = Ink::Gray(0.8);
     let mut drawing = Drawing::new(1500.0, 1000.0, ground);

@@ -3,9 +3,9 @@ use super::super::ink::Ink;
 use super::super::shape::Rectangle;
 use super::parts::{BLACK, WHITE};
 
-/// Steps of a 21-step tablet: density 0.05 and up by 0.15 to 3.05 (the nominal densities of the Stouffer
-/// T2115), as reflectances 10^-density. Two rows in opposite directions: what is the same in
-/// both is tone, what differs is vignetting or flare.
+/// Draws a 21-step tablet: densities from 0.05 to 3.05 in steps of 0.15 (the nominal densities of the Stouffer T2115), as
+/// reflectances 10^-density. Two rows run in opposite directions: what is the same in both is tone, what differs is
+/// vignetting or flare.
 pub fn step_wedge(_seed: u64) -> Drawing {
     let mut drawing = Drawing::new(1500.0, 750.0, Ink::Gray(0.18));
     let pitch = 66.0;

@@ -2,7 +2,7 @@ use super::super::drawing::{Align, Drawing, text_width_mm};
 use super::super::shape::Rectangle;
 use super::parts::{BLACK, WHITE};
 
-/// Every letter several times; the reading goes on from line to line.
+/// Text with every letter several times; it continues from line to line.
 const READING: &str = "SPECTRA 1234567890 Sphinx of black quartz, judge my vow. PACK MY BOX WITH FIVE DOZEN JUGS. \
     The five boxing wizards jump quickly; how vexingly quick daft zebras jump! WALTZ, BAD NYMPH, FOR QUICK JIGS VEX. \
     A quick brown fox jumps over the lazy dog: f/1.4 at 50 mm, 1/125 s. Glib jocks quiz nymph to vex dwarf; \
@@ -10,10 +10,10 @@ const READING: &str = "SPECTRA 1234567890 Sphinx of black quartz, judge my vow. 
     FIVE HEXING WIZARD BOTS JUMP QUICKLY (0 + 1 = 1). Amazingly few discotheques provide jukeboxes. \
     Six big devils from Japan quickly forgot how to waltz.";
 
-/// Longest line, mm.
+/// Largest length of a line, mm.
 const MEASURE_MM: f64 = 645.0;
 
-/// The left half of the sheet is printed black on white, the right half white on black.
+/// Draws lines of text in falling sizes: black on white in the left half of the sheet, white on black in the right half.
 pub fn text(_seed: u64) -> Drawing {
     let mut drawing = Drawing::new(1500.0, 1000.0, WHITE);
     drawing.add(Rectangle::between([0.0, -500.0], [750.0, 500.0]), BLACK);
@@ -27,7 +27,7 @@ pub fn text(_seed: u64) -> Drawing {
     drawing
 }
 
-/// The reading in lines, each with the height of its capitals, mm; three lines halve the height.
+/// Breaks the text into lines, each with the height of its capitals, mm. The height is halved every three lines.
 fn lines() -> Vec<(String, f64)> {
     let mut lines = vec![(String::new(), 100.0)];
     for word in READING.split(' ') {

@@ -1,8 +1,8 @@
 //! Shapes of a chart. Each is exact at a point and conservative over a cell.
 //!
-//! Coordinates are millimetres on the chart: origin at its center, +x to the right as a person sees
-//! the upright chart, +y up; angles run counter-clockwise from +x. Borders belong to the shape,
-//! but for the far sides of wedge lines and star sectors, which are half open.
+//! Coordinates are millimeters on the chart: origin at its center, +x to the right as a person sees the upright chart, +y up.
+//! Angles are measured counterclockwise from +x. Borders belong to the shape, except for the far sides of wedge lines and star
+//! sectors, which are half open.
 
 mod polygon;
 mod rectangle;
@@ -20,26 +20,26 @@ pub use wedge::Wedge;
 
 use super::cell::{Cell, Coverage};
 
-/// One shape.
+/// One shape of a chart.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// Rectangle at any angle: panels, lines, slanted edges.
+    /// A rectangle at any angle: panels, lines, slanted edges.
     Rectangle(Rectangle),
-    /// Disk or ring.
+    /// A disk or a ring.
     Ring(Ring),
-    /// Polygon by its corners.
+    /// A polygon given by its corners.
     Polygon(Polygon),
-    /// Hyperbolic resolution wedge, or parallel lines.
+    /// A hyperbolic resolution wedge, or parallel lines.
     Wedge(Wedge),
-    /// Siemens star.
+    /// A Siemens star.
     SiemensStar(SiemensStar),
-    /// Straight pen stroke.
+    /// A straight pen stroke.
     Stroke(Stroke),
-    /// Pen stroke along an arc.
+    /// A pen stroke along an arc.
     Arc(Arc),
 }
 
-/// Passes a call on to whichever shape it is.
+/// Forwards a call to the variant's shape.
 macro_rules! each {
     ($shape:expr, $inner:ident => $call:expr) => {
         match $shape {
@@ -55,20 +55,20 @@ macro_rules! each {
 }
 
 impl Shape {
-    /// Whether the point lies in the shape.
+    /// Returns whether the point lies in the shape.
     #[inline]
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
         each!(self, shape => shape.contains(x_mm, y_mm))
     }
 
-    /// How much of `cell` the shape covers.
+    /// Returns how much of `cell` the shape covers.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         each!(self, shape => shape.coverage(cell))
     }
 
-    /// The shape `factor` times as large, about the center of the chart.
+    /// Scales the shape by `factor` about the center of the chart.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         match self {
@@ -95,7 +95,7 @@ macro_rules! from_shape {
 
 from_shape!(Rectangle, Ring, Polygon, Wedge, SiemensStar, Stroke, Arc);
 
-/// Point times factor.
+/// Multiplies a point by a factor.
 fn times(point_mm: [f64; 2], factor: f64) -> [f64; 2] {
     [point_mm[0] * factor, point_mm[1] * factor]
 }

@@ -1,14 +1,14 @@
 use super::super::cell::{Cell, Coverage};
 use super::times;
 
-/// Polygon by its corners, in either sense, closed by itself; convex or not (even-odd rule).
+/// A polygon given by its corners in either orientation, closed automatically; convex or not (even-odd rule).
 #[derive(Clone, Debug)]
 pub struct Polygon {
     corners_mm: Box<[[f64; 2]]>,
 }
 
 impl Polygon {
-    /// Polygon with the given corners, mm; fewer than three cover nothing.
+    /// Creates a polygon with the given corners, mm; one with fewer than three covers nothing.
     #[must_use]
     pub fn new(corners_mm: &[[f64; 2]]) -> Self {
         Self { corners_mm: corners_mm.into() }
@@ -19,7 +19,7 @@ impl Polygon {
         (0..n).map(move |i| (self.corners_mm[i], self.corners_mm[(i + 1) % n]))
     }
 
-    /// Whether the point lies in the polygon: a ray toward +x crosses its sides an odd number of times.
+    /// Returns whether the point lies in the polygon, that is, whether a ray toward +x crosses its sides an odd number of times.
     #[inline]
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
@@ -33,7 +33,7 @@ impl Polygon {
         inside
     }
 
-    /// How much of `cell` the polygon covers; exact: a cell that no side touches is all in or all out.
+    /// Returns how much of `cell` the polygon covers. Exact, since a cell that no side touches is all inside or all outside.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         if self.edges().any(|(a, b)| side_touches(a, b, cell)) {
@@ -50,7 +50,7 @@ impl Polygon {
     }
 }
 
-/// Whether the segment from `a` to `b` meets the cell, by separating axes.
+/// Returns whether the segment from `a` to `b` meets the cell, by separating axes.
 fn side_touches(a: [f64; 2], b: [f64; 2], cell: &Cell) -> bool {
     let [cx, cy] = cell.center_mm;
     let [hx, hy] = cell.half_mm;

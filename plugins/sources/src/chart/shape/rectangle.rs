@@ -1,7 +1,7 @@
 use super::super::cell::{Cell, Coverage};
 use super::times;
 
-/// Rectangle at any angle.
+/// A rectangle at any angle.
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle {
     center_mm: [f64; 2],
@@ -11,21 +11,20 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// Upright rectangle about `center_mm`, `width_mm` x `height_mm`.
+    /// Creates an upright rectangle centered on `center_mm`, `width_mm` x `height_mm`.
     #[must_use]
     pub fn new(center_mm: [f64; 2], width_mm: f64, height_mm: f64) -> Self {
         Self { center_mm, half_mm: [0.5 * width_mm, 0.5 * height_mm], cos: 1.0, sin: 0.0 }
     }
 
-    /// Upright rectangle between its lower left and upper right corners, mm.
+    /// Creates an upright rectangle from its lower left and upper right corners, mm.
     #[must_use]
     pub fn between(low_mm: [f64; 2], high_mm: [f64; 2]) -> Self {
         let center_mm = [0.5 * (low_mm[0] + high_mm[0]), 0.5 * (low_mm[1] + high_mm[1])];
         Self::new(center_mm, high_mm[0] - low_mm[0], high_mm[1] - low_mm[1])
     }
 
-    /// The same rectangle, turned about its center so that its width runs at `angle_rad` from +x,
-    /// counter-clockwise.
+    /// Returns this rectangle turned about its center so that its width runs at `angle_rad` from +x, counterclockwise.
     #[must_use]
     pub fn turned(self, angle_rad: f64) -> Self {
         Self { cos: libm::cos(angle_rad), sin: libm::sin(angle_rad), ..self }
@@ -36,7 +35,7 @@ impl Rectangle {
         [dx * self.cos + dy * self.sin, dy * self.cos - dx * self.sin]
     }
 
-    /// Whether the point lies in the rectangle.
+    /// Returns whether the point lies in the rectangle.
     #[inline]
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
@@ -44,7 +43,7 @@ impl Rectangle {
         u.abs() <= self.half_mm[0] && v.abs() <= self.half_mm[1]
     }
 
-    /// How much of `cell` the rectangle covers; exact, by the four separating axes of two rectangles.
+    /// Returns how much of `cell` the rectangle covers; exact, by the four separating axes of two rectangles.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         let [u, v] = self.local(cell.center_mm[0], cell.center_mm[1]).map(f64::abs);

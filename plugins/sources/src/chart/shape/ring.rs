@@ -1,7 +1,7 @@
 use super::super::cell::{Cell, Coverage};
 use super::times;
 
-/// Ring between two radii; a disk if the inner one is 0.
+/// A ring between two radii; a disk if the inner one is 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring {
     center_mm: [f64; 2],
@@ -10,19 +10,19 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Ring line of `width_mm`, its middle at `radius_mm`.
+    /// Creates a ring of width `width_mm` centered on the radius `radius_mm`.
     #[must_use]
     pub fn new(center_mm: [f64; 2], radius_mm: f64, width_mm: f64) -> Self {
         Self { center_mm, inner_mm: (radius_mm - 0.5 * width_mm).max(0.0), outer_mm: radius_mm + 0.5 * width_mm }
     }
 
-    /// Disk of `radius_mm`.
+    /// Creates a disk of radius `radius_mm`.
     #[must_use]
     pub fn disk(center_mm: [f64; 2], radius_mm: f64) -> Self {
         Self { center_mm, inner_mm: 0.0, outer_mm: radius_mm }
     }
 
-    /// Whether the point lies in the ring.
+    /// Returns whether the point lies in the ring.
     #[inline]
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
@@ -31,7 +31,7 @@ impl Ring {
         r2 <= self.outer_mm * self.outer_mm && r2 >= self.inner_mm * self.inner_mm
     }
 
-    /// How much of `cell` the ring covers; exact.
+    /// Returns how much of `cell` the ring covers; exact.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         let [near, far] = cell.distance_squared(self.center_mm);

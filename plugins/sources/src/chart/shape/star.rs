@@ -3,7 +3,7 @@ use std::sync::Arc;
 use super::super::cell::{Cell, Coverage};
 use super::times;
 
-/// Siemens star: filled and empty sectors of equal angle, in turn.
+/// A Siemens star: alternating filled and empty sectors of equal angle.
 #[derive(Clone, Debug)]
 pub struct SiemensStar {
     center_mm: [f64; 2],
@@ -12,14 +12,14 @@ pub struct SiemensStar {
 }
 
 impl SiemensStar {
-    /// Star with `cycles` filled sectors (at least 2) and as many empty ones; the first filled one is
-    /// centered at `angle_rad` from +x, counter-clockwise.
+    /// Creates a star with `cycles` filled sectors (at least 2) and as many empty ones. The first filled one is centered at
+    /// `angle_rad` from +x, counterclockwise.
     #[must_use]
     pub fn new(center_mm: [f64; 2], radius_mm: f64, cycles: u32, angle_rad: f64) -> Self {
         Self { center_mm, radius_mm, sectors: Arc::new(Sectors::new(cycles, angle_rad)) }
     }
 
-    /// Whether the point lies in a filled sector.
+    /// Returns whether the point lies in a filled sector.
     #[inline]
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
@@ -27,7 +27,7 @@ impl SiemensStar {
         dx * dx + dy * dy <= self.radius_mm * self.radius_mm && self.sectors.at(turn(dx, dy)).1
     }
 
-    /// How much of `cell` lies in filled sectors.
+    /// Returns how much of `cell` lies in filled sectors.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         let [near, far] = cell.distance_squared(self.center_mm);
@@ -38,8 +38,8 @@ impl SiemensStar {
         if near == 0.0 {
             return Coverage::Partial;
         }
-        // The center is outside of the cell, so the cell spans less than half a turn, between two of its
-        // corners. Where it reaches over the start of the turn, the low ones are one turn on.
+        // The center is outside the cell, so the cell spans less than half a turn, between two of its corners. If it
+        // crosses the start of the turn, add one turn to the low values.
         let turns = cell.corners().map(|[x, y]| turn(x - self.center_mm[0], y - self.center_mm[1]));
         let over = turns.iter().any(|&t| t > 3.0) && turns.iter().any(|&t| t < 1.0);
         let unwrapped = turns.map(|t| if over && t < 2.0 { t + 4.0 } else { t });
@@ -63,8 +63,8 @@ impl SiemensStar {
     }
 }
 
-/// Direction as a number in [0, 4) that grows with the angle, one unit a quadrant, without an arc tangent:
-/// place on the square |x| + |y| = 1.
+/// Returns a direction as a number in [0, 4) that grows with the angle, one unit per quadrant: the position on the square
+/// |x| + |y| = 1. This needs no arc tangent.
 #[inline]
 fn turn(dx: f64, dy: f64) -> f64 {
     let sum = dx.abs() + dy.abs();
@@ -74,13 +74,13 @@ fn turn(dx: f64, dy: f64) -> f64 {
     if turn >= 4.0 { 0.0 } else { turn }
 }
 
-/// The borders of the sectors in order of [`turn`], found through equal bins.
+/// The borders of the sectors in order of [`turn`], with equal bins for a fast search.
 #[derive(Debug)]
 struct Sectors {
     borders: Vec<f64>,
     /// Whether the sector that begins at each border is filled.
     filled: Vec<bool>,
-    /// For each bin, the last border at or before its start, plus one.
+    /// Index of the last border at or before the start of each bin, plus one.
     bins: Vec<u32>,
     bins_per_unit: f64,
 }
@@ -104,12 +104,12 @@ impl Sectors {
         Self { borders, filled: sectors.iter().map(|s| s.1).collect(), bins, bins_per_unit }
     }
 
-    /// Index of the sector at `turn` in [0, 4), and whether it is filled.
+    /// Returns the index of the sector at `turn` in [0, 4), and whether it is filled.
     #[inline]
     fn at(&self, turn: f64) -> (usize, bool) {
         let bin = ((turn * self.bins_per_unit) as usize).min(self.bins.len() - 1);
         let mut next = self.bins[bin] as usize;
-        // A product that rounds up to the next bin is at most one border too far.
+        // If the product rounds up to the next bin, the search starts at most one border too far.
         while next > 0 && self.borders[next - 1] > turn {
             next -= 1;
         }

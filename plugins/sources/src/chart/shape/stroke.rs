@@ -1,7 +1,7 @@
 use super::super::cell::{Cell, Coverage};
 use super::times;
 
-/// Straight pen stroke with round ends.
+/// A straight pen stroke with round ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
     from_mm: [f64; 2],
@@ -12,7 +12,7 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Stroke of a pen `width_mm` wide between two points, mm; a dot if they are the same.
+    /// Creates a stroke of a pen `width_mm` wide between two points, mm; a dot if they are the same.
     #[must_use]
     pub fn new(from_mm: [f64; 2], to_mm: [f64; 2], width_mm: f64) -> Self {
         let along_mm = [to_mm[0] - from_mm[0], to_mm[1] - from_mm[1]];
@@ -29,14 +29,14 @@ impl Stroke {
         ex * ex + ey * ey
     }
 
-    /// Whether the point lies on the stroke.
+    /// Returns whether the point lies on the stroke.
     #[inline]
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
         self.distance_squared(x_mm, y_mm) <= self.radius_mm * self.radius_mm
     }
 
-    /// How much of `cell` the stroke covers, by its distance from the center of the cell.
+    /// Returns how much of `cell` the stroke covers, from its distance to the center of the cell.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         let distance_mm = self.distance_squared(cell.center_mm[0], cell.center_mm[1]).sqrt();
@@ -53,21 +53,22 @@ impl Stroke {
     }
 }
 
-/// Pen stroke along part of a circle, with round ends.
+/// A pen stroke along part of a circle, with round ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Arc {
     center_mm: [f64; 2],
     radius_mm: f64,
     pen_radius_mm: f64,
-    /// Unit vectors toward the start and the end, counter-clockwise.
+    /// Unit vector toward the start of the arc, which runs counterclockwise.
     start: [f64; 2],
+    /// Unit vector toward the end of the arc.
     end: [f64; 2],
     over_half_turn: bool,
 }
 
 impl Arc {
-    /// Arc of a pen `width_mm` wide about `center_mm`, from `start_rad` (from +x, counter-clockwise)
-    /// through `sweep_rad`, in [-2 pi, 2 pi], counter-clockwise if positive.
+    /// Creates an arc of a pen `width_mm` wide about `center_mm`. It starts at `start_rad` (from +x, counterclockwise) and
+    /// sweeps over `sweep_rad`, in [-2 pi, 2 pi], counterclockwise if positive.
     #[must_use]
     pub fn new(center_mm: [f64; 2], radius_mm: f64, start_rad: f64, sweep_rad: f64, width_mm: f64) -> Self {
         let low_rad = start_rad.min(start_rad + sweep_rad);
@@ -97,14 +98,14 @@ impl Arc {
         from(self.start).min(from(self.end)).sqrt()
     }
 
-    /// Whether the point lies on the stroke.
+    /// Returns whether the point lies on the stroke.
     #[inline]
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
         self.distance_mm(x_mm, y_mm) <= self.pen_radius_mm
     }
 
-    /// How much of `cell` the stroke covers, by its distance from the center of the cell.
+    /// Returns how much of `cell` the stroke covers, from its distance to the center of the cell.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         by_distance(self.distance_mm(cell.center_mm[0], cell.center_mm[1]), self.pen_radius_mm, cell)
@@ -120,7 +121,8 @@ impl Arc {
     }
 }
 
-/// No point of a cell is farther from its center than half the diagonal, so distances differ by no more.
+/// Decides the coverage from the distance of the center of a cell. No point of the cell is farther from the center than half the
+/// diagonal, so distances within the cell differ by no more than that.
 fn by_distance(distance_mm: f64, limit_mm: f64, cell: &Cell) -> Coverage {
     let half_mm = cell.half_diagonal_mm();
     if distance_mm - half_mm > limit_mm {

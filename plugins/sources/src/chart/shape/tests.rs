@@ -1,8 +1,8 @@
-//! Promises of [`Shape::coverage`] against points, on shapes and cells drawn at random.
+//! Checks the guarantees of [`Shape::coverage`] at points, on random shapes and cells.
 
 use super::*;
 
-/// A linear congruential generator is random enough to place shapes.
+/// A linear congruential generator, which is random enough to place shapes.
 struct Dice(u64);
 
 impl Dice {
@@ -61,7 +61,7 @@ fn coverage_keeps_its_promises() {
                 }
             }
         }
-        // The test would be empty if a shape were always in doubt.
+        // The test would prove nothing if a shape always returned `Partial`.
         assert!(seen.iter().all(|&count| count > 100), "kind {kind}: {seen:?}");
     }
 }
@@ -84,8 +84,8 @@ fn coverage_is_seldom_in_doubt_without_need() {
                 needless += usize::from(count == 0 || count == 441);
             }
         }
-        // Distances bound pen strokes by half a diagonal, 1.41 times what a border parallel to a side needs;
-        // the rest of the doubt is corners too small for 21 x 21 points.
+        // Pen strokes use half a diagonal as a bound, 1.41 times as much as a border parallel to a side needs. The other
+        // undecided cells have covered corners that are too small for 21 x 21 points.
         assert!(needless * 3 < doubted, "kind {kind}: {needless} of {doubted}");
     }
 }
@@ -107,7 +107,7 @@ fn scaling_keeps_what_is_inside() {
 
 #[test]
 fn star_sectors_follow_the_angle() {
-    // Against the arc tangent, away from the borders by 1e-9 of a sector.
+    // Compare with the arc tangent, at least 1e-9 of a sector away from the borders.
     let mut dice = Dice(4);
     for cycles in [2, 3, 7, 36, 144] {
         for angle in [0.0, 0.3, -2.0, 5.0] {
@@ -143,7 +143,7 @@ fn star_is_filled_at_its_angle_and_by_half() {
 
 #[test]
 fn wedge_borders_are_hyperbolas() {
-    // Frequencies 1 to 4 cycles per mm over 30 mm, 3 lines: outer border where 2 u f = 5 / 2.
+    // Frequencies from 1 to 4 cycles per mm over 30 mm, 3 lines: the outer border lies where 2 u f = 5 / 2.
     let wedge = Wedge::new([2.0, 1.0], [32.0, 1.0], 3, [1.0, 4.0]);
     for along in [0.0, 3.0, 10.0, 25.0, 30.0] {
         let frequency = 1.0 + 3.0 * along / 30.0;
@@ -161,7 +161,7 @@ fn wedge_borders_are_hyperbolas() {
 
 #[test]
 fn arcs_end_where_they_should() {
-    // From +x through +y to -x, either way round.
+    // The arc from +x through +y to -x, drawn in either direction.
     for (start, sweep) in [(0.0, 180.0_f64), (180.0, -180.0_f64)] {
         let arc = Arc::new([0.0, 0.0], 5.0, f64::to_radians(start), sweep.to_radians(), 1.0);
         assert!(arc.contains(5.4, 0.0) && arc.contains(0.0, 4.6) && arc.contains(-5.4, 0.1));

@@ -1,25 +1,25 @@
 use super::super::cell::{Cell, Coverage};
 use super::times;
 
-/// Hyperbolic resolution wedge: lines whose frequency runs linearly along the wedge, so that each border
-/// is a hyperbola and a reading is linear in position (the wedges of ISO 12233). With the same
-/// frequency at both ends: parallel lines.
+/// A hyperbolic resolution wedge, as in ISO 12233: lines whose frequency changes linearly along the wedge. Each border is a
+/// hyperbola, and a reading is linear in position. The same frequency at both ends gives parallel lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Wedge {
     start_mm: [f64; 2],
     cos: f64,
     sin: f64,
     length_mm: f64,
-    /// Cycles (one line and one gap) per mm at the start, and what it gains per mm.
+    /// Frequency at the start, cycles (one line and one gap) per mm.
     frequency_per_mm: f64,
+    /// Change of the frequency along the wedge, cycles per mm^2.
     gain_per_mm2: f64,
-    /// Lines and the gaps between them, together.
+    /// Total number of lines and of the gaps between them.
     stripes: f64,
 }
 
 impl Wedge {
-    /// Wedge of `lines` filled lines whose axis runs from `start_mm` to `end_mm`, with frequencies, cycles
-    /// per mm, at these two points; both must be positive.
+    /// Creates a wedge of `lines` filled lines whose axis runs from `start_mm` to `end_mm`. The frequencies, cycles per mm, are
+    /// those at these two points; both must be positive.
     #[must_use]
     pub fn new(start_mm: [f64; 2], end_mm: [f64; 2], lines: u32, frequencies_per_mm: [f64; 2]) -> Self {
         let (dx, dy) = (end_mm[0] - start_mm[0], end_mm[1] - start_mm[1]);
@@ -36,34 +36,34 @@ impl Wedge {
         }
     }
 
-    /// Parallel lines, each `pitch_mm` / 2 wide, along the axis from `start_mm` to `end_mm`.
+    /// Creates parallel lines, each `pitch_mm` / 2 wide, along the axis from `start_mm` to `end_mm`.
     #[must_use]
     pub fn lines(start_mm: [f64; 2], end_mm: [f64; 2], lines: u32, pitch_mm: f64) -> Self {
         Self::new(start_mm, end_mm, lines, [1.0 / pitch_mm, 1.0 / pitch_mm])
     }
 
-    /// Along the axis and across it, mm.
+    /// Returns the coordinates of a point along the axis and across it, mm.
     fn local(&self, x_mm: f64, y_mm: f64) -> [f64; 2] {
         let (dx, dy) = (x_mm - self.start_mm[0], y_mm - self.start_mm[1]);
         [dx * self.cos + dy * self.sin, dy * self.cos - dx * self.sin]
     }
 
-    /// Stripe, counted from 0 at one side (even: a line, odd: a gap), at the place `across` from the axis.
+    /// Returns the number of the stripe, with fraction, at a point: counted from 0 at one side, even for lines, odd for gaps.
     fn stripe(&self, along: f64, across: f64) -> f64 {
         2.0 * across * (self.frequency_per_mm + self.gain_per_mm2 * along) + 0.5 * self.stripes
     }
 
-    /// Whether the point lies on a line.
+    /// Returns whether the point lies on a line.
     #[inline]
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
         let [along, across] = self.local(x_mm, y_mm);
         let stripe = self.stripe(along, across);
-        // Toward 0 is down, as the stripe is not negative where it counts.
+        // Truncation rounds down, since the stripe is not negative where it matters.
         along >= 0.0 && along <= self.length_mm && stripe >= 0.0 && stripe < self.stripes && (stripe as i64) & 1 == 0
     }
 
-    /// How much of `cell` lies on lines, by interval arithmetic in the wedge's own axes.
+    /// Returns how much of `cell` lies on lines, by interval arithmetic in the axes of the wedge.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         let [along, across] = self.local(cell.center_mm[0], cell.center_mm[1]);
@@ -75,7 +75,7 @@ impl Wedge {
         let ends = [(along - ea).max(0.0), (along + ea).min(self.length_mm)];
         let mut low = f64::INFINITY;
         let mut high = f64::NEG_INFINITY;
-        // Bilinear in both, so the extremes lie at the corners.
+        // The stripe is bilinear in both coordinates, so its extremes lie at the corners.
         for along in ends {
             for across in [across - ec, across + ec] {
                 let stripe = self.stripe(along, across);

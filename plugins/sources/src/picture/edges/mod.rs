@@ -1,19 +1,22 @@
-//! Edges of a rendered picture with depth, taken apart into what is in front and what is behind.
+//! Separates the edges of a rendered picture with depth into foreground and background.
 //!
-//! A renderer averages color over a pixel, so at the edge of a thing a pixel holds a mixture, `C = a N + (1 - a) F`, of the near
-//! color `N` and the far color `F`. Depth cannot be averaged: it is that of one sample, and the mixture would lie as a whole at one
-//! distance: a bright rim in the blur behind, or a sharp hair before a blurred wall. So the share `a` is taken for what it is, the
-//! part of the pixel that the near thing covers.
+//! A renderer averages color over a pixel, so a pixel at the edge of an object contains a mixture, `C = a N + (1 - a) F`, of the near
+//! color `N` and the far color `F`. Depth cannot be averaged: it is that of one sample, so the whole mixture would lie at one distance,
+//! as a bright rim in the blur behind, or a sharp hair in front of a blurred wall. The share `a` is therefore used as the fraction of the
+//! pixel that the near object covers.
 //!
-//! The data flow, each step a file:
-//! 1. [`steps`]: which depths belong together, and which neighbors are apart.
-//! 2. [`snap`]: depths that the renderer did average come to lie on one of the two sides.
-//! 3. [`sides`]: of each pixel beside a step the pure near and far color, from clean pixels farther in; of what is too thin to have
-//!    any, from the pixel that is most unlike the other side.
-//! 4. [`share`]: the share by least squares in linear light, and the colors in front and behind that make up the pixel exactly.
-//! 5. [`threads`]: a thread goes on where samples of depth fell beside it.
-//! 6. Here: whether the picture has such pixels at all, and [`Mixed`], what lies behind them. In front of it each of them is a pixel of the
-//!    near thing as any other, at its depth and in its color, through which a part of the light from behind comes.
+//! The data flow, with one file per step:
+//! 1. [`steps`]: finds which depths belong together, and where neighbors do not.
+//! 2. [`snap`]: assigns depths that the renderer did average to one of the two sides.
+//! 3. [`sides`]: finds the pure near and far color for each pixel beside a step, from clean pixels farther away. If an object is too thin
+//!    to have any, it uses the pixel that differs most from the other side.
+//! 4. [`share`]: computes the share by least squares in linear light, and the front and back colors that make up the pixel exactly.
+//! 5. [`threads`]: follows a thread where the depth samples missed it.
+//! 6. This file: decides whether the picture has such pixels at all, and makes [`Mixed`], their background. In front, each of them is an
+//!    ordinary pixel of the near object, at its depth and in its color, through which a part of the light from behind passes.
+//!
+//! Whether a picture has mixtures is decided for all of it. If it has none, there is no second height field ([`super::backdrop`]), and
+//! the bits are those of `edges: as-is`.
 
 mod parted;
 mod share;
@@ -27,31 +30,33 @@ use parted::Parted;
 pub(super) use sparse::Sparse;
 use steps::Steps;
 
-/// What lies behind pixels that are covered in part.
+/// The background of pixels that are covered only in part.
 pub(super) struct Mixed {
-    /// Which pixels these are; the rest is in their order.
+    /// Set of these pixels; `behind` is in the same order.
     pub cells: Sparse,
     pub behind: Vec<Behind>,
-    /// How many of them hold a mixture; the others touch one, so that cover is smooth between them.
+    /// Number of pixels that hold a mixture. The others touch one, so that coverage is smooth between them.
     pub parted: usize,
 }
 
-/// What lies behind one.
+/// The background of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Behind {
-    /// The part of the pixel that what is in front covers.
+    /// Fraction of the pixel that the foreground covers, 0 to 1.
     pub opacity: f32,
-    /// The color of what is behind, linear light.
+    /// Color of the background, linear light.
     pub rgb: [f32; 3],
-    /// Its depth, mm.
+    /// Depth of the background, mm.
     pub depth_mm: f32,
 }
 
-/// A picture is taken to hold mixtures where at least this part of the pixels beside steps, of those that can tell, is one.
+/// Smallest fraction of mixtures, among the pixels beside steps that can be judged, from which a picture counts as having mixed
+/// pixels.
 const IS_MIXED: f64 = 0.05;
 
-/// Takes the mixed pixels of a picture apart: what is in front stays in `rgb` and `depth_mm`, what is behind is returned. Neighbors whose
-/// depths differ by more than the part `edge` belong to different things. A picture without mixed pixels stays as it is.
+/// Separates the mixed pixels of a picture: the foreground stays in `rgb` and `depth_mm`, and the background is returned. Neighbors whose
+/// depths differ by more than the fraction `edge` belong to different objects. A picture without mixed pixels does not change; returns
+/// `None`.
 pub(super) fn part(rgb: &mut [[f32; 3]], depth_mm: &mut [f32], width: usize, edge: f64) -> Option<Mixed> {
     let mut steps = Steps::new(depth_mm, width, edge);
     if !steps.any() {
@@ -76,7 +81,7 @@ pub(super) fn part(rgb: &mut [[f32; 3]], depth_mm: &mut [f32], width: usize, edg
             is_thread.push(sides.near.spread.is_none());
         }
     }
-    // Where depth was averaged, color was.
+    // If depth was averaged, color was averaged, too.
     let is_mixed = snapped.is_some() || mixed > 0 && mixed as f64 >= IS_MIXED * tell as f64;
     if all.is_empty() || !is_mixed {
         return None;
@@ -97,8 +102,8 @@ pub(super) fn part(rgb: &mut [[f32; 3]], depth_mm: &mut [f32], width: usize, edg
     Some(Mixed { cells, behind, parted })
 }
 
-/// The mixed pixels and all that touch them, so that cover can be linear between their centers: on the near side whole, with the far
-/// thing behind, on the far side nothing, with the near thing in front.
+/// Adds all pixels that touch mixed ones, so that coverage can be linear between their centers. On the near side they are fully covered,
+/// with the far object behind; on the far side they are not covered, with the near object in front.
 fn around(steps: &Steps, rgb: &[[f32; 3]], depth_mm: &[f32], mut all: Vec<(u32, Parted)>) -> Vec<(u32, Parted)> {
     const NONE: u32 = u32::MAX;
     let mut places = vec![NONE; rgb.len()];

@@ -1,9 +1,9 @@
-//! A mixed pixel, taken apart.
+//! A mixed pixel, separated into foreground and background.
 
-/// A pixel taken apart: what is in front, and what is behind.
+/// A mixed pixel, separated into foreground and background.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parted {
-    /// The part of the pixel that what is in front covers.
+    /// Fraction of the pixel that the foreground covers, 0 to 1.
     pub opacity: f32,
     pub near: [f32; 3],
     pub far: [f32; 3],

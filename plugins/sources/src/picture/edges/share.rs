@@ -1,16 +1,18 @@
-//! The share of the near side in a mixed pixel, and the colors that it is made of.
+//! The share of the near side in a mixed pixel, and its front and back colors.
 
 use super::parted::Parted;
 use super::sides::{OFF, Rgb, Side, Sides, dot, length, minus};
 
-/// A pixel that is as one of its sides within this part of the brighter of the two, or within the spread of the side, is of that side alone.
+/// Largest difference, as a fraction of the brighter color, within which a pixel belongs wholly to one side. Within the spread of its own
+/// side it does, too.
 const PURE: f64 = 0.03;
 
-/// What a pixel between two sides is made of; `None` where it is of the side that its depth says, alone.
+/// Separates a pixel between two sides; `None` if it belongs wholly to the side of its depth.
 ///
-/// The share is that of least squares over the channels. What is off the line between the two colors stays with the side that has more of
-/// the pixel, so that both together give the pixel's color: seen sharp all over, the picture is what it was. A pixel that is far off
-/// the line may be one of another color beside it, such as a lamp that is too small to have clean pixels.
+/// The share is fitted by least squares over the channels. The part of the color that is off the line between the two colors is assigned
+/// to the side with the larger share. Both together then give the pixel's color, so that the picture does not change where all of it is
+/// sharp. If a pixel is far off the line, its true color may be one of the extremes, such as a lamp that is too small to have clean
+/// pixels.
 pub(super) fn part(sides: &Sides, color: [f32; 3]) -> Option<Parted> {
     let (near, far) = (&sides.near, &sides.far);
     let own = color.map(f64::from);
@@ -20,7 +22,7 @@ pub(super) fn part(sides: &Sides, color: [f32; 3]) -> Option<Parted> {
     let pairs =
         [(near.color, far.color), (near.color, far.extreme), (near.extreme, far.color), (near.extreme, far.extreme)];
     let (n, f, share) = pairs.into_iter().find_map(|(n, f)| Some((n, f, fitted(own, n, f)?)))?;
-    // Textures are left alone on the side where the pixel is by its depth.
+    // A texture on the pixel's own side must not be taken for a mixture.
     let is_as = |other: Rgb, side: &Side, is_own: bool| {
         let spread = side.spread.filter(|_| is_own).unwrap_or(0.0).min(OFF * length(minus(n, f)));
         length(minus(own, other)) <= (PURE * length(own).max(length(other))).max(spread)
@@ -43,7 +45,7 @@ pub(super) fn part(sides: &Sides, color: [f32; 3]) -> Option<Parted> {
     Some(Parted { opacity: share as f32, near: n, far: f, near_mm: near.depth_mm, far_mm: far.depth_mm })
 }
 
-/// The share of the near color in a mixture, where it is one.
+/// Fits the share of the near color; `None` if the color is not a mixture of the two.
 fn fitted(own: Rgb, near: Rgb, far: Rgb) -> Option<f64> {
     let (way, from) = (minus(near, far), minus(own, far));
     let long = length(way);

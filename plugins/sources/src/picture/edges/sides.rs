@@ -1,54 +1,56 @@
-//! The two colors that a pixel beside a step is a mixture of.
+//! The near and the far color of which a pixel beside a step is a mixture.
 
 use super::parted::Parted;
 use super::steps::Steps;
 
-/// Pixels within which a clean one is looked for.
+/// Distance, pixels, within which clean pixels are searched for.
 const REACH: usize = 4;
-/// Pixels within which the one is looked for that is most unlike the other side, where there is no clean one.
+/// Distance, pixels, within which the pixel is searched for that differs most from the other side, if there is no clean one.
 const NEARBY: usize = 4;
-/// Two sides can be told apart where their colors differ by this part of the brighter one, and by so many times as much as clean
-/// pixels of a side do among themselves.
+/// Smallest difference between the colors of two sides that can be distinguished, as a fraction of the brighter one.
 const DIFFER: f64 = 0.02;
+/// Smallest difference between the colors of two sides that can be distinguished, in spreads of the clean pixels of a side.
 const SPREADS: f64 = 2.0;
-/// A pixel that differs from its own side by so many spreads, and by this part of its color, is none of it.
+/// Number of spreads by which a pixel must differ from its own side not to belong to it.
 const OUTLIER: f64 = 3.0;
+/// Fraction of the color by which a pixel must differ from its own side not to belong to it.
 const OUTLIER_PART: f64 = 0.05;
-/// Pixels that a spread takes.
+/// Smallest number of pixels for which a spread is computed.
 const FEW: usize = 4;
-/// The spread of a normal law over the median of how far its values are off.
+/// Ratio of the standard deviation of a normal distribution to its median absolute deviation.
 const OF_MEDIAN: f64 = 1.48;
-/// The same for a pixel that tells whether the picture holds mixtures.
+/// Value of [`DIFFER`] for pixels that decide whether the picture has mixtures.
 const TELLS_DIFFER: f64 = 0.1;
+/// Value of [`SPREADS`] for pixels that decide whether the picture has mixtures.
 const TELLS_SPREADS: f64 = 6.0;
-/// What is off the line between the two sides by less than this part of its length is a mixture.
+/// Largest distance of a mixture from the line between the two colors, as a fraction of the length of that line.
 pub(super) const OFF: f64 = 0.15;
 
 pub(super) type Rgb = [f64; 3];
 
-/// The sides of the step beside a pixel.
+/// The near and the far side of the step beside a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sides {
     pub near: Side,
     pub far: Side,
-    /// Whether the pixel's own depth is that of the near side.
+    /// Whether the pixel's own depth belongs to the near side.
     pub is_near: bool,
 }
 
-/// One of them.
+/// One side of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
-    /// Its color, the median of clean pixels, or else of the pixel that is most unlike the other side.
+    /// Color of the side: the median of clean pixels, or else that of the pixel that differs most from the other side.
     pub color: Rgb,
-    /// How much clean pixels differ, by the median; none where there are too few.
+    /// Spread of the colors of clean pixels, from their median deviation; `None` if there are too few.
     pub spread: Option<f64>,
-    /// The pixel of the side close by that is most unlike the other side.
+    /// Color of the nearby pixel of this side that differs most from the other side.
     pub extreme: Rgb,
-    /// Its depth, mm.
+    /// Depth of the side, mm.
     pub depth_mm: f32,
 }
 
-/// The sides of the step beside a pixel; `None` where a color of one of them is not to be had.
+/// Finds the sides of the step beside a pixel; `None` if the neighboring pixels all belong to one object.
 pub(super) fn of(steps: &Steps, rgb: &[[f32; 3]], depth_mm: &[f32], cell: usize) -> Option<Sides> {
     let (mut nearest, mut farthest) = (cell, cell);
     for beside in steps.window(cell, 1) {
@@ -59,7 +61,7 @@ pub(super) fn of(steps: &Steps, rgb: &[[f32; 3]], depth_mm: &[f32], cell: usize)
             farthest = beside;
         }
     }
-    // Between two others it is of the larger step.
+    // A pixel between two other depths belongs to the side whose depth is closer, so that the step is the larger one.
     let is_near = steps.w(nearest) - steps.w(cell) < steps.w(cell) - steps.w(farthest);
     if is_near {
         nearest = cell;
@@ -84,7 +86,7 @@ pub(super) fn of(steps: &Steps, rgb: &[[f32; 3]], depth_mm: &[f32], cell: usize)
     Some(Sides { near: side(near, near_extreme, nearest), far: side(far, far_extreme, farthest), is_near })
 }
 
-/// The sides of a pixel on the far side that touches a mixed one of a thread; `None` where it does not differ from what lies around it.
+/// Finds the sides of a pixel on the far side that touches a mixed pixel of a thread; `None` if it does not differ from its surroundings.
 pub(super) fn behind(steps: &Steps, rgb: &[[f32; 3]], cell: usize, from: &Parted) -> Option<Sides> {
     if !steps.alike(steps.w(cell), 1.0 / from.far_mm) {
         return None;
@@ -101,22 +103,22 @@ pub(super) fn behind(steps: &Steps, rgb: &[[f32; 3]], cell: usize, from: &Parted
     (far_off > (OUTLIER_PART * length(color)).max(least)).then_some(sides)
 }
 
-/// The clean pixels of a side.
+/// Result for the clean pixels of a side.
 struct Clean {
-    /// The median of those that lie closest.
+    /// Median color of the closest clean pixels.
     color: Rgb,
-    /// See [`Side::spread`].
+    /// Spread of their colors, see [`Side::spread`].
     spread: Option<f64>,
-    /// The closest.
+    /// Index of the closest clean pixel.
     place: usize,
 }
 
-/// The clean pixels of a side close by.
+/// Finds the clean pixels of a side nearby; `None` if there are none.
 fn clean(steps: &Steps, rgb: &[[f32; 3]], cell: usize, side: usize) -> Option<Clean> {
     let is_clean = |other: &usize| !steps.is_beside(*other) && steps.together(*other, side);
     let all = || steps.window(cell, REACH).filter(is_clean);
     let closest = all().map(|other| steps.distance(cell, other)).min()?;
-    // The median of each channel: what is taken for clean may hold some of a thread that is thinner than its samples.
+    // Use the median of each channel, since a pixel counted as clean may contain part of a thread thinner than a sample.
     let mut channels = [const { Vec::new() }; 3];
     for other in all().filter(|other| steps.distance(cell, *other) <= closest + 1) {
         channels.iter_mut().zip(rgb[other]).for_each(|(channel, value)| channel.push(value));
@@ -132,7 +134,7 @@ fn clean(steps: &Steps, rgb: &[[f32; 3]], cell: usize, side: usize) -> Option<Cl
     Some(Clean { color, spread: (count >= FEW).then_some(spread), place })
 }
 
-/// The mean of the pixels of a side close by.
+/// Returns the mean color of the nearby pixels of a side.
 fn mean(steps: &Steps, rgb: &[[f32; 3]], cell: usize, side: usize) -> Rgb {
     let (mut sum, mut count) = ([0.0; 3], 0.0);
     for other in steps.window(cell, NEARBY).filter(|other| steps.together(*other, side)) {
@@ -142,7 +144,7 @@ fn mean(steps: &Steps, rgb: &[[f32; 3]], cell: usize, side: usize) -> Rgb {
     sum.map(|s| s / f64::max(count, 1.0))
 }
 
-/// The color of a pixel of a side close by that is most unlike another color.
+/// Returns the color of the nearby pixel of a side that differs most from the color `away`.
 fn extreme(steps: &Steps, rgb: &[[f32; 3]], cell: usize, side: usize, away: Rgb) -> Rgb {
     let mut best = (rgb[side].map(f64::from), -1.0);
     for other in steps.window(cell, NEARBY).filter(|other| steps.together(*other, side)) {
@@ -157,18 +159,19 @@ fn extreme(steps: &Steps, rgb: &[[f32; 3]], cell: usize, side: usize, away: Rgb)
 }
 
 impl Sides {
-    /// How much the two colors have to differ to be told apart.
+    /// Returns by how much the two colors must differ to be distinguished.
     fn room(&self, part: f64, spreads: f64) -> f64 {
         let spread = self.near.spread.unwrap_or(0.0).max(self.far.spread.unwrap_or(0.0));
         (part * length(self.near.color).max(length(self.far.color))).max(spreads * spread)
     }
 
-    /// Whether it can be told which part of a pixel of this color is of which side.
+    /// Returns whether a pixel of this color can be divided between the sides.
     pub(super) fn tell_apart(&self, color: Rgb) -> bool {
         self.is_outlier(color) || length(minus(self.near.color, self.far.color)) > self.room(DIFFER, SPREADS)
     }
 
-    /// Whether a pixel's color is a mixture, where that shows beyond doubt: beside clean sides, or on the far side of a thread.
+    /// Returns whether a pixel's color is a mixture; `None` if that cannot be decided safely. It can be decided beside clean sides, or
+    /// on the far side of a thread.
     pub(super) fn tells(&self, color: &[f32; 3]) -> Option<bool> {
         let can = self.far.spread.is_some() && (self.near.spread.is_some() || !self.is_near);
         let way = minus(self.near.color, self.far.color);
@@ -183,7 +186,7 @@ impl Sides {
         Some(share > 0.1 && share < 0.9 && off < OFF * long && self.is_outlier(color))
     }
 
-    /// Whether a color is none of the side that the depth says.
+    /// Returns whether a color does not belong to the side of the pixel's depth.
     fn is_outlier(&self, color: Rgb) -> bool {
         let own = if self.is_near { &self.near } else { &self.far };
         own.spread.is_some_and(|spread| {

@@ -1,20 +1,20 @@
-//! Depths that the renderer averaged over a pixel: nothing stands there.
+//! Corrects depths that the renderer averaged over a pixel: there is no surface at such a depth.
 //!
-//! On a way across an edge such depths lie between a near and a far side that are each as deep for two pixels. A slope, a floor toward
-//! its horizon, has no such sides. Of threads that are thinner than a pixel there is no near side: a thread has the far side on both
-//! hands, and its own depth is the nearest that is found along it. One rare strip between two things proves nothing, so a picture is
-//! looked at as a whole: where its edges are averaged, most of them are.
+//! Across an edge such a depth lies between a near and a far side, each of which has the same depth for two pixels. A slope, such as a
+//! floor toward its horizon, has no such sides. A thread thinner than a pixel has no near side: the far side lies on both sides of it, and
+//! its own depth is the nearest one found along it. A single strip between two objects proves nothing, so the picture is judged as a
+//! whole: if a renderer averages edges, most of them are averaged.
 
 use super::steps::{Steps, WAYS};
 
-/// Pixels over which an edge may be smeared to one side of a pixel in it.
+/// Number of pixels over which an edge may be smeared on one side of a pixel within it.
 const REACH: isize = 2;
-/// Averaged are the depths of a picture of which at least this part of the edges is.
+/// Smallest fraction of averaged edges from which the depths of a picture count as averaged.
 const IS_AVERAGED: f64 = 0.25;
-/// How far along a thread its depth is looked for, pixels.
+/// Distance along a thread, pixels, within which its depth is searched for.
 const ALONG: usize = 6;
 
-/// The depths with those that were averaged put on a side, by which of them they are closer to; `None` where the picture's are not averaged.
+/// Returns the depths, mm, with averaged ones moved to the side to which they are closer; `None` if the picture's depths are not averaged.
 pub(super) fn averaged(steps: &Steps, depth_mm: &[f32]) -> Option<Vec<f32>> {
     let (mut sharp, mut smeared) = (0_usize, 0_usize);
     let mut moved: Vec<(usize, f32)> = Vec::new();
@@ -48,14 +48,14 @@ pub(super) fn averaged(steps: &Steps, depth_mm: &[f32]) -> Option<Vec<f32>> {
     Some(all)
 }
 
-/// Whether a pixel and the next one are the last of two sides.
+/// Returns whether a sharp edge runs between a pixel and the next one along `way`.
 fn is_sharp(steps: &Steps, cell: usize, way: [isize; 2]) -> bool {
     let at = |k| steps.along(cell, way, k);
     let (Some(before), Some(next), Some(beyond)) = (at(-1), at(1), at(2)) else { return false };
     steps.together(before, cell) && !steps.together(cell, next) && steps.together(next, beyond)
 }
 
-/// The near and the far side of an edge that a pixel lies in.
+/// Returns pixels of the near and of the far side of a smeared edge that contains a pixel; `None` if there is no such edge along `way`.
 fn smeared_along(steps: &Steps, cell: usize, way: [isize; 2]) -> Option<[usize; 2]> {
     let side = |sign: isize| {
         let level = (1..=REACH).find_map(|k| {
@@ -71,7 +71,7 @@ fn smeared_along(steps: &Steps, cell: usize, way: [isize; 2]) -> Option<[usize; 
     (steps.w(near) > own && own > steps.w(far)).then_some([near, far])
 }
 
-/// Whether what is farther lies on both hands of a pixel, the same thing.
+/// Returns whether the same farther object lies on both sides of a pixel along `way`.
 fn is_thread(steps: &Steps, cell: usize, way: [isize; 2]) -> bool {
     let side = |sign: isize| {
         let all = (1..=REACH + 1).filter_map(|k| steps.along(cell, way, sign * k));

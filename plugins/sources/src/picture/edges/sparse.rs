@@ -1,14 +1,14 @@
-//! Some of the pixels of a picture, by a bit each and a count for each 64 of them.
+//! A subset of the pixels of a picture, stored as one bit per pixel and one count per 64 pixels.
 
-/// A set of pixels that knows the place of each among them.
+/// A set of pixels that gives the rank of each of its pixels.
 pub(in super::super) struct Sparse {
     bits: Vec<u64>,
-    /// How many come before each word.
+    /// Number of pixels of the set before each word.
     before: Vec<u32>,
 }
 
 impl Sparse {
-    /// From `len` pixels those in `cells`, in rising order.
+    /// Creates the set of `cells` (in rising order) among `len` pixels.
     pub(super) fn new(len: usize, cells: impl Iterator<Item = usize>) -> Self {
         let mut bits = vec![0_u64; len.div_ceil(64)];
         cells.for_each(|cell| bits[cell / 64] |= 1 << (cell % 64));
@@ -22,13 +22,13 @@ impl Sparse {
         Self { bits, before }
     }
 
-    /// Whether a pixel is one of them.
+    /// Returns whether a pixel belongs to the set.
     #[inline(always)]
     pub(in super::super) fn has(&self, cell: usize) -> bool {
         self.bits[cell / 64] >> (cell % 64) & 1 == 1
     }
 
-    /// The place of a pixel among them.
+    /// Returns the rank of a pixel in the set; `None` if it does not belong to it.
     #[inline(always)]
     pub(in super::super) fn place(&self, cell: usize) -> Option<usize> {
         let word = self.bits[cell / 64];
@@ -36,7 +36,7 @@ impl Sparse {
         (word & bit != 0).then(|| self.before[cell / 64] as usize + (word & (bit - 1)).count_ones() as usize)
     }
 
-    /// All of them, in rising order.
+    /// Returns all pixels of the set, in rising order.
     pub(in super::super) fn cells(&self) -> impl Iterator<Item = usize> {
         (0..64 * self.bits.len()).filter(|cell| self.has(*cell))
     }

@@ -1,22 +1,22 @@
-//! Which depths of neighbors belong to one thing.
+//! Decides which neighboring depths belong to the same object.
 
-/// The depth of a picture, as one over it, and where it has steps.
+/// The inverse depth of a picture, and its steps.
 pub(super) struct Steps {
     pub width: usize,
     pub height: usize,
-    /// 1/mm.
+    /// Inverse depth of each pixel, 1/mm.
     w: Vec<f32>,
-    /// Whether a pixel touches one that is apart from it.
+    /// Whether each pixel touches one of another object.
     beside: Vec<bool>,
     edge: f32,
-    /// Differences of less are none, 1/mm.
+    /// Smallest difference that counts as a step, 1/mm.
     least: f32,
 }
 
-/// Ways across and along a picture, columns and rows.
+/// Directions in a picture (columns and rows): horizontal, vertical and the two diagonals.
 pub(super) const WAYS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 
-/// Steps of w below this part of the largest are none, as for [`super::super::field`].
+/// Smallest step of w that counts, as a fraction of the largest w, as in [`super::super::field`].
 const STEP: f32 = 1e-3;
 
 impl Steps {
@@ -29,37 +29,37 @@ impl Steps {
         own
     }
 
-    /// Whether there is any.
+    /// Returns whether the picture has steps.
     pub(super) fn any(&self) -> bool {
         self.beside.contains(&true)
     }
 
-    /// Whether a pixel touches one that is apart from it.
+    /// Returns whether a pixel touches one of another object.
     pub(super) fn is_beside(&self, cell: usize) -> bool {
         self.beside[cell]
     }
 
-    /// One over the depth of a pixel, 1/mm.
+    /// Inverse depth of a pixel, 1/mm.
     pub(super) fn w(&self, cell: usize) -> f32 {
         self.w[cell]
     }
 
-    /// Whether two places of one over the depth belong to one thing.
+    /// Returns whether two inverse depths, 1/mm, belong to the same object.
     pub(super) fn alike(&self, a: f32, b: f32) -> bool {
         (a - b).abs() <= (self.edge * a.max(b)).max(self.least)
     }
 
-    /// The same of depths, mm.
+    /// Returns whether two depths, mm, belong to the same object.
     pub(super) fn are_together(&self, a_mm: f32, b_mm: f32) -> bool {
         self.alike(1.0 / a_mm, 1.0 / b_mm)
     }
 
-    /// The same of pixels.
+    /// Returns whether two pixels belong to the same object.
     pub(super) fn together(&self, a: usize, b: usize) -> bool {
         self.alike(self.w[a], self.w[b])
     }
 
-    /// The pixels of a square around one that lie in the picture, row by row.
+    /// Returns the pixels of a square around a pixel that lie in the picture, row by row.
     pub(super) fn window(&self, cell: usize, radius: usize) -> impl Iterator<Item = usize> + use<> {
         let (column, row, width) = (cell % self.width, cell / self.width, self.width);
         let columns = column.saturating_sub(radius)..=(column + radius).min(width - 1);
@@ -67,12 +67,12 @@ impl Steps {
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
-    /// How far apart two pixels are, the longer of columns and rows.
+    /// Returns the distance of two pixels: the larger of their distances in columns and in rows.
     pub(super) fn distance(&self, a: usize, b: usize) -> usize {
         (a % self.width).abs_diff(b % self.width).max((a / self.width).abs_diff(b / self.width))
     }
 
-    /// The pixel so many steps away, if it lies in the picture.
+    /// Returns the pixel `steps` steps away along `way`; `None` outside the picture.
     pub(super) fn along(&self, cell: usize, way: [isize; 2], steps: isize) -> Option<usize> {
         let column = (cell % self.width).checked_add_signed(way[0] * steps).filter(|c| *c < self.width)?;
         let row = (cell / self.width).checked_add_signed(way[1] * steps).filter(|r| *r < self.height)?;

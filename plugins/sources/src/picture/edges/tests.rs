@@ -1,4 +1,4 @@
-//! Plates that are drawn with and without mixed pixels.
+//! Tests with pictures that are drawn with and without mixed pixels.
 
 use super::*;
 
@@ -16,15 +16,15 @@ struct Plate {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// Color is antialiased, depth is that of the middle.
+    /// Color is antialiased, depth is that of the pixel's center.
     Sampled,
-    /// Both are antialiased.
+    /// Color and depth are antialiased.
     Averaged,
-    /// Neither is.
+    /// Color and depth are those of the pixel's center.
     Hard,
 }
 
-/// A near thing of a color before a far one.
+/// Draws a near object of one color in front of a far one.
 fn plate(kind: Kind, near: impl Fn(f64, f64) -> bool, front: [f32; 3], back: impl Fn(usize) -> [f32; 3]) -> Plate {
     let cell = |cell: usize| {
         let at = |k: usize, fine: usize| k as f64 + (fine as f64 + 0.5) / FINE as f64;
@@ -55,7 +55,7 @@ fn thread(x: f64, y: f64) -> bool {
     (x - 20.0 - 0.31 * y).abs() < 0.35
 }
 
-/// Takes it apart, and holds what is in front and behind together against what it was, pixel by pixel.
+/// Separates a picture, and checks pixel by pixel that foreground and background together give its colors.
 fn parted(plate: &Plate) -> (Plate, Mixed) {
     let (mut rgb, mut depth_mm) = (plate.rgb.clone(), plate.depth_mm.clone());
     let mixed = part(&mut rgb, &mut depth_mm, WIDTH, 0.05).expect("mixed pixels");
@@ -75,11 +75,11 @@ fn parted(plate: &Plate) -> (Plate, Mixed) {
 fn an_edge_is_two_pure_sides_and_a_share() {
     for kind in [Kind::Sampled, Kind::Averaged] {
         let (front, mixed) = parted(&plate(kind, slanted, WHITE, |_| DARK));
-        // What the renderer averaged by less than the part that makes a step may stay.
+        // Depths that averaging shifted by less than a step may stay.
         let side = |mm: f32| [NEAR_MM, FAR_MM].into_iter().find(|side| (side / mm - 1.0).abs() < 0.06);
         for (cell, share) in front.share.iter().enumerate() {
             let Some(place) = mixed.cells.place(cell) else {
-                // What is alone is whole.
+                // A pixel that is not mixed belongs wholly to one side.
                 let share = &share.round();
                 assert!((share - front.share[cell]).abs() < 0.03, "{cell}: {share}");
                 assert_eq!(side(front.depth_mm[cell]), Some(if *share == 1.0 { NEAR_MM } else { FAR_MM }));
@@ -97,14 +97,14 @@ fn an_edge_is_two_pure_sides_and_a_share() {
     }
 }
 
-/// No pixel at the depth of the wall is darkened by the thread, whatever its depth in the file.
+/// The thread darkens no pixel at the depth of the wall, whatever the pixel's depth in the file.
 #[test]
 fn a_thread_leaves_the_wall() {
     for kind in [Kind::Sampled, Kind::Averaged] {
         let (front, mixed) = parted(&plate(kind, thread, DARK, |_| WHITE));
         for (cell, mm) in front.depth_mm.iter().enumerate() {
             let behind = mixed.cells.place(cell).map(|place| &mixed.behind[place]);
-            // The pixels that are most unlike the wall are taken for the thread as a whole.
+            // The pixels that differ most from the wall count wholly as thread.
             if behind.is_none() && front.share[cell] > 0.6 {
                 continue;
             }
@@ -116,7 +116,7 @@ fn a_thread_leaves_the_wall() {
     }
 }
 
-/// A lamp of two pixels beside the edge is what the mixed pixels there hold, not the dark of the wall around it.
+/// Mixed pixels beside a small lamp contain its light, not the dark wall around it.
 #[test]
 fn a_small_lamp_behind_stays_behind() {
     let lamp = |cell: usize| if (27..31).contains(&(cell % WIDTH)) && cell / WIDTH == 24 { [500.0; 3] } else { DARK };
@@ -126,7 +126,7 @@ fn a_small_lamp_behind_stays_behind() {
     assert!(brightest < 2.0, "{brightest}");
 }
 
-/// Smooth colors, textures, slopes and floors without mixed pixels stay as they are.
+/// Smooth colors, textures, slopes and floors without mixed pixels do not change.
 #[test]
 fn what_is_not_mixed_stays() {
     let noise = |cell: usize| 0.2 + 0.5 * ((cell * 7919 % 613) as f32 / 613.0);

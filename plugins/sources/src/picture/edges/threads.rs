@@ -1,21 +1,21 @@
-//! What of a thread has no depth: samples that fell beside it have that of the wall.
+//! Follows threads where the depth samples missed them. Such pixels have the depth of the wall.
 
 use super::parted::Parted;
 use super::share;
 use super::sides::{self, length, minus};
 use super::steps::{Steps, WAYS};
 
-/// So many pixels on from the last one that a sample fell on, a thread is followed.
+/// Number of pixels for which a thread is followed beyond the last one with its own depth.
 const FOLLOWED: usize = 24;
-/// So many of them also among others; farther on it must be thin by itself.
+/// Number of pixels for which a thread is followed even among other threads. Beyond them it must be thin.
 const AMONG_OTHERS: usize = 4;
-/// What is so many pixels beside a thread has less than half of it.
+/// Distance from a thread, pixels, at which pixels on both sides must contain less than half as much of it.
 const BESIDE: isize = 3;
-/// A thread goes on where it covers more than this part of a pixel.
+/// Smallest coverage of a pixel with which a thread continues.
 const LEAST: f32 = 0.05;
 
-/// Goes on from mixed pixels of threads, which have no clean near side, to those that touch them and are no more beside a step.
-/// `is_thread` says of each of `all` whether it is one of a thread.
+/// Continues from mixed pixels of threads, which have no clean near side, to pixels that touch them and do not lie beside a step. Appends
+/// the pixels found to `all`. `is_thread` says which of `all` belong to a thread.
 pub(super) fn follow(steps: &Steps, rgb: &[[f32; 3]], all: &mut Vec<(u32, Parted)>, is_thread: &[bool]) {
     let mut known = vec![false; rgb.len()];
     all.iter().for_each(|(cell, _)| known[*cell as usize] = true);
@@ -42,7 +42,7 @@ pub(super) fn follow(steps: &Steps, rgb: &[[f32; 3]], all: &mut Vec<(u32, Parted
     }
 }
 
-/// Whether a pixel differs from what is behind more than twice as much as pixels on both hands of it.
+/// Returns whether a pixel differs from the background more than twice as much as pixels on both sides of it.
 fn is_thin(steps: &Steps, rgb: &[[f32; 3]], cell: usize, behind: [f32; 3]) -> bool {
     let off = |cell: usize| length(minus(rgb[cell].map(f64::from), behind.map(f64::from)));
     let own = off(cell);

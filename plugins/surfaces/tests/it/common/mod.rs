@@ -1,4 +1,4 @@
-//! One ray, or many, at one surface.
+//! Traces one ray, or many, to one surface.
 #![allow(dead_code)] // Each test file uses what it needs.
 
 use glam::DVec3;
@@ -9,7 +9,7 @@ use spectra_core::{Isa, Loss, RayBatch};
 /// A ray: point, mm, and unit direction.
 pub type Line = (DVec3, DVec3);
 
-/// What happens to rays of one wavelength at a surface whose vertex is the origin.
+/// Traces rays of one wavelength to a surface whose vertex is the origin.
 pub fn meet_all(
     surface: &dyn Surface,
     rays: &[Line],
@@ -54,12 +54,12 @@ pub fn meet_all(
         .collect()
 }
 
-/// The sense of travel of a direction.
+/// Returns the direction of travel of a ray with direction `d`.
 pub fn sense(d: DVec3) -> Travel {
     if d.z > 0.0 { Travel::Forward } else { Travel::Backward }
 }
 
-/// One ray, 550 nm.
+/// Traces one ray of 550 nm.
 pub fn meet(surface: &dyn Surface, ray: Line, indices: (f64, f64), action: Action) -> Result<Line, Loss> {
     meet_all(surface, &[ray], indices, action, 550.0, sense(ray.1), Isa::detect())[0]
 }
