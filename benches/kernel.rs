@@ -1,21 +1,22 @@
-//! Speed of the sequential trace, as ratio to a careful C++ engineer's (`soa.cpp`), in one run.
+//! Measures the speed of sequential ray tracing relative to code by a careful C++ engineer (`soa.cpp`) in the same run.
 //!
-//! The work is that of `soa.cpp`: its Biotar (ten refractions, stop, image plane: 12 intersections), field 5 degrees,
-//! a random wavelength per ray, a million rays, one thread. The two programs take turns; each figure is the median of
-//! its turns. Last line: JSON.
+//! The workload is that of `soa.cpp`: its Biotar (ten refractions, stop, image plane: 12 intersections), field 5 degrees,
+//! a random wavelength per ray, a million rays, one thread. The two programs take turns, and each figure is the median
+//! over the turns. The last line is JSON.
 
 use spectra_core::isa::{Vectorized, prefetch};
 use spectra_core::surface::{Kernel, Surface};
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::{Category, Formula, Glass, Medium};
-use spectra_lens::{Element, Indices, Lens, LensMedium, Tracer, Travel};
+use spectra_lens::{Element, Lens, LensMedium};
 use spectra_plugin_surfaces::{Conic, EvenAsphere, Plane, Sphere};
+use spectra_tracer::{Indices, Tracer, Travel};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Twice the radius, twice the thickness, index and Abbe number behind (0: air), clear diameter: `soa.cpp`'s table.
+/// Table of `soa.cpp`: twice the radius, twice the thickness, index and Abbe number behind the surface (0: air), clear diameter.
 const BIOTAR: [[f64; 5]; 11] = [
     [83.6, 10.75, 1.64238, 48.0, 37.0],
     [321.0, 1.65, 1.0, 0.0, 37.0],
@@ -36,14 +37,14 @@ const TURNS: usize = 5;
 const REPEATS: usize = 5;
 const FIELD_DEG: f64 = 5.0;
 
-/// The glass as `soa.cpp` has it: n = A + B / L^2 through nd and Vd, L in micrometres.
+/// Returns a glass as `soa.cpp` models it: n = A + B / L^2 through nd and Vd, with L in micrometers.
 fn cauchy(nd: f64, vd: f64) -> Medium {
     let (d, f, c) = (0.587_561_8_f64, 0.486_132_7_f64, 0.656_272_5_f64);
     let b = (nd - 1.0) / vd / (1.0 / (f * f) - 1.0 / (c * c));
     Medium::from(Glass::new("bench", "cauchy", Category::User, Formula::cauchy(&[nd - b / (d * d), b]), (350.0, 830.0)))
 }
 
-/// An asphere with eight terms, none of them zero, that stay below 0.1 mm on the Biotar.
+/// Coefficients of an asphere: eight nonzero terms that stay below 0.1 mm on the Biotar.
 const COEFFICIENTS: [f64; 8] = [1e-6, 1e-8, -1e-10, 1e-13, -1e-15, 1e-18, -1e-21, 1e-24];
 
 fn sphere(radius_mm: f64) -> Arc<dyn Surface> {
@@ -91,7 +92,7 @@ struct Rays {
     wavelength_nm: Vec<f64>,
 }
 
-/// The rays of `soa.cpp`: the same xorshift, the same disk.
+/// Returns the rays of `soa.cpp`: same xorshift generator, same disk.
 fn rays() -> Rays {
     let mut state = 88_172_645_463_325_252_u64;
     let mut uniform = || {
@@ -112,7 +113,7 @@ fn rays() -> Rays {
     rays
 }
 
-/// Sets a batch to the rays from `start` on, 20 mm in front of the lens.
+/// A vectorized step that fills a batch with the rays from index `start` on, 20 mm in front of the lens.
 struct Start<'a> {
     rays: &'a Rays,
     start: usize,
@@ -132,7 +133,7 @@ impl<'a> Vectorized for Start<'a> {
     }
 }
 
-/// One loop over all columns, as `soa.cpp` has it: the three streams from memory come side by side.
+/// Copies all columns in one loop, as `soa.cpp` does, so that the three streams from memory are read side by side.
 #[inline(always)]
 fn start_all(
     [x, y, wavelength_nm]: [&[f64]; 3],
@@ -160,7 +161,7 @@ fn start_all(
     }
 }
 
-/// The image plane: the twelfth intersection.
+/// A vectorized step that computes the intersection with the image plane, the twelfth.
 struct Land<'a> {
     batch: &'a RayBatch,
     image: &'a mut [f64],
@@ -179,7 +180,7 @@ impl Vectorized for Land<'_> {
     }
 }
 
-/// Traces all rays once; returns how many landed and how many were lost.
+/// Traces all rays once. Returns how many reached the image plane and how many were lost.
 fn trace(tracer: &Tracer, rays: &Rays, image: &mut [f64]) -> (usize, u64) {
     let mut batch = RayBatch::new(BATCH);
     let mut work = tracer.work(BATCH);
@@ -188,7 +189,7 @@ fn trace(tracer: &Tracer, rays: &Rays, image: &mut [f64]) -> (usize, u64) {
     for start in (0..RAYS).step_by(BATCH) {
         batch.restart(BATCH.min(RAYS - start));
         isa.run(Start { rays, start, batch: &mut batch });
-        // The next batch's rays, and the place for this one's points, come from memory while this one is traced.
+        // Fetch the next batch's rays, and the memory for this batch's image points, while this batch is traced.
         let next = (start + BATCH).min(RAYS)..(start + 2 * BATCH).min(RAYS);
         for column in [&rays.x, &rays.y, &rays.wavelength_nm] {
             prefetch(&column[next.clone()]);
@@ -207,7 +208,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Builds `soa.cpp` where a compiler is; `None` otherwise.
+/// Compiles `soa.cpp` if a compiler is installed; otherwise returns `None`.
 fn build_soa() -> Option<PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/soa.cpp");
     let target = std::env::temp_dir().join(format!("spectra-soa-{}", std::process::id()));
@@ -228,7 +229,7 @@ fn run_soa(program: &Path) -> Option<f64> {
 }
 
 fn main() {
-    // `cargo test --benches` asks whether it runs, not how fast.
+    // `cargo test --benches` only checks that the benchmark runs, not how fast.
     let quick = !std::env::args().any(|a| a == "--bench");
     let turns = if quick { 1 } else { TURNS };
     let soa = if quick { None } else { build_soa() };
@@ -267,7 +268,7 @@ fn main() {
         let aspheres = make(&biotar(cauchy, even_asphere), band, isa);
         cases.push((format!("spectra {}, ten even aspheres of 8 terms", isa.name()), aspheres, Vec::new()));
     }
-    // The same lens with ten surfaces of another kind.
+    // The same lens with another kind of surface in all ten places.
     for (name, surface) in [("conics", conic as fn(f64) -> _), ("even aspheres of 8 terms", even_asphere)] {
         cases.push((
             format!("spectra {}, ten {name}", best.name()),
@@ -295,7 +296,7 @@ fn main() {
     }
     let (landed, lost) = trace(&cases[0].1, &rays, &mut image);
     let mean_y = image[..landed].iter().sum::<f64>() / landed as f64;
-    // soa.cpp prints the same: same rays, same glass, same lens.
+    // soa.cpp prints the same value: same rays, same glass, same lens.
     assert!((mean_y - 4.354_748).abs() < 2e-6, "mean height {mean_y} mm, soa.cpp has 4.354748");
     let soa_rate = (!soa_rates.is_empty()).then(|| median(soa_rates));
     println!("{:<48} {:>12} {:>8}", "one thread, f64, random wavelength per ray", "M rays/s", "ratio");
@@ -307,18 +308,18 @@ fn main() {
         let ratio = soa_rate.map_or_else(|| "-".to_owned(), |soa| format!("{:.2}", rate / soa));
         println!("{name:<48} {:>12.1} {ratio:>8}", rate / 1e6);
     }
-    // Each turn's rate by that of the spheres in the same turn.
+    // Rate of each turn relative to the rate of the spheres in the same turn.
     let to_spheres = |case: &(String, Tracer, Vec<f64>)| {
         median(case.2.iter().zip(&cases[0].2).map(|(rate, sphere)| rate / sphere).collect())
     };
-    let [.., conics, aspheres] = &cases[..] else { unreachable!("both were put there") };
+    let [.., conics, aspheres] = &cases[..] else { unreachable!("conics and aspheres were pushed last") };
     let (conics, aspheres) = (to_spheres(conics), to_spheres(aspheres));
-    println!("rays a second by those of spheres: conics {conics:.3}, even aspheres of 8 terms {aspheres:.3}");
-    // Of each narrower set, spheres and aspheres stand side by side behind the first two.
+    println!("ray rate relative to spheres: conics {conics:.3}, even aspheres of 8 terms {aspheres:.3}");
+    // For each narrower instruction set, spheres and aspheres are next to each other after the first two cases.
     let mut json = String::new();
     for (isa, pair) in Isa::available().into_iter().filter(|i| *i != best).zip(cases[2..].chunks(2)) {
         let ratio = median(pair[1].2.iter().zip(&pair[0].2).map(|(rate, sphere)| rate / sphere).collect());
-        println!("the same with {}: {ratio:.3}", isa.name());
+        println!("even aspheres of 8 terms relative to spheres, {}: {ratio:.3}", isa.name());
         json.push_str(&format!(",\"even_asphere_to_sphere_{}\":{ratio:.4}", isa.name()));
     }
     let rate = median(cases[0].2.clone());
@@ -329,7 +330,7 @@ fn main() {
         rate * INTERSECTIONS
     );
     if let Some(program) = soa {
-        // A leftover in the temporary folder harms nobody.
+        // A file left behind in the temporary folder does no harm.
         let _ = std::fs::remove_file(program);
     }
 }

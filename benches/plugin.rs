@@ -1,6 +1,6 @@
-//! What a surface of a plugin costs: a lens of twelve surfaces with one sphere written as a plugin writes it, against the
-//! same lens with built-in surfaces only. One thread, a random wavelength per ray; the lenses take turns, and each figure
-//! is the median of the ratios of its turns. Last line: JSON.
+//! Measures the cost of a plugin surface: a lens of twelve surfaces with one sphere written the way a plugin writes it, relative to
+//! the same lens with built-in surfaces only. One thread, a random wavelength per ray. The lenses take turns, and each figure is the
+//! median ratio over the turns. The last line is JSON.
 
 use glam::DVec3;
 use spectra_core::numbers::Numbers;
@@ -8,21 +8,22 @@ use spectra_core::surface::{
     FromSag, Hit, Intersection, Kernel, KernelShape, PerRay, Ray, Real, SagShape, ScalarShape, Surface,
 };
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Indices, Lens, Tracer, Travel};
+use spectra_lens::Lens;
 use spectra_plugins as _;
 use spectra_scene::FileResources;
+use spectra_tracer::{Indices, Tracer, Travel};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 const LENS: &str = "canon-35-f1.8";
-/// The surface that is replaced, from 0: of middle radius, and every ray meets it.
+/// Index of the replaced surface, from 0: its radius is moderate and every ray meets it.
 const REPLACED: usize = 3;
 const RAYS: usize = 1 << 19;
 const BATCH: usize = 256;
 const TURNS: usize = 15;
 
-/// The least that an author writes: a sag.
+/// The least that a plugin author writes: a sag.
 #[derive(Debug)]
 struct Sag(f64);
 
@@ -34,7 +35,7 @@ impl SagShape for Sag {
     }
 }
 
-/// A sag and its slopes.
+/// A sag with its slopes.
 #[derive(Debug)]
 struct SagAndSlope(Sag);
 
@@ -51,7 +52,7 @@ impl SagShape for SagAndSlope {
     }
 }
 
-/// A sag whose rays are searched one after the other.
+/// A sag whose intersections are searched one ray at a time.
 #[derive(Debug)]
 struct OneByOne<S>(FromSag<S>);
 
@@ -69,7 +70,7 @@ impl<S: SagShape> ScalarShape for OneByOne<S> {
     }
 }
 
-/// The scalar tier: where the ray meets the sphere, in a closed form.
+/// A sphere of the scalar tier: the intersection in closed form.
 #[derive(Debug)]
 struct Scalar(f64);
 
@@ -81,7 +82,7 @@ impl ScalarShape for Scalar {
         if discriminant < 0.0 {
             return None;
         }
-        // The root on the half that holds the vertex.
+        // Take the root on the hemisphere that contains the vertex.
         let root = discriminant.sqrt().copysign(self.0 * direction.z);
         let distance_mm = -b - root;
         Some(Intersection { distance_mm, normal: from_center + distance_mm * direction })
@@ -96,7 +97,7 @@ impl ScalarShape for Scalar {
     }
 }
 
-/// The kernel tier: branch-free, for any instruction set.
+/// A sphere of the kernel tier: branch-free, for any instruction set.
 #[derive(Clone, Copy, Debug)]
 struct Vector(f64);
 
@@ -127,7 +128,7 @@ impl KernelShape for Vector {
     }
 }
 
-/// Traces all rays; returns the seconds and the mean height in the image plane.
+/// Traces all rays. Returns the time in seconds and the mean height in the image plane.
 fn trace(tracer: &Tracer, batch: &mut RayBatch) -> (f64, f64) {
     let mut work = tracer.work(BATCH);
     let numbers = Numbers::random(1);
@@ -156,7 +157,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 fn main() {
-    // `cargo test --benches` asks whether it runs, not how fast.
+    // `cargo test --benches` only checks that the benchmark runs, not how fast.
     let quick = !std::env::args().any(|a| a == "--bench");
     let lens = spectra_lens::load(LENS, &FileResources::beside(Path::new("."))).expect("a bundled lens");
     assert_eq!(lens.elements.len(), 12);
@@ -189,11 +190,11 @@ fn main() {
         let results = tracers.each_ref().map(|tracer| trace(tracer, &mut batch));
         for (i, (seconds, mean)) in results.iter().enumerate() {
             ratios[i].push(results[0].0 / seconds);
-            assert!((mean - results[0].1).abs() < 1e-9, "{}: the rays go elsewhere", cases[i].0);
+            assert!((mean - results[0].1).abs() < 1e-9, "{}: the rays land elsewhere", cases[i].0);
         }
         fastest_s = fastest_s.min(results[0].0);
     }
-    println!("{LENS}, {} surfaces, one of a plugin; {}; rays a second by those of built-in surfaces", 12, isa.name());
+    println!("{LENS}, {} surfaces, one from a plugin; {}; ray rate relative to built-in surfaces", 12, isa.name());
     let mut json = String::new();
     for ((name, key, _), ratios) in cases.iter().zip(ratios) {
         let ratio = median(ratios);

@@ -1,4 +1,4 @@
-//! The `spectra` program: the built-in plugins, and the command that runs them.
+//! The `spectra` program: the built-in plugins and the command line that runs them.
 
 use spectra_plugins as _;
 

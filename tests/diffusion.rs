@@ -1,7 +1,7 @@
-//! The diffusion filter of the example plugin: from the source and from the imager it gives the same picture, lit card and halo. A
-//! program of its own, since the plugin is registered in it.
+//! Tests the diffusion filter of the example plugin: card and halo are the same in the picture from the source and from the imager.
+//! This is a separate program, because the plugin is registered in it.
 
-/// The plugin itself, with its tests.
+/// The code of the plugin itself, with its tests.
 #[path = "../plugins/examples/diffusion-filter/src/lib.rs"]
 mod diffusion_filter;
 
@@ -18,12 +18,12 @@ fn card(overrides: &[&str]) -> Renderer {
     ready(statistics::load(&repository("plugins/examples/diffusion-filter/card.yaml"), overrides))
 }
 
-/// Illuminance of each pixel, lx.
+/// Returns the illuminance of each pixel, lx.
 fn estimate(direction: &str, count: &str) -> Vec<Estimate> {
     estimates(&over_seeds(&card(&[direction, count]), 1..1 + SEEDS, pixels))
 }
 
-/// A stage that draws numbers of its own has the same bits in batches of any size.
+/// A stage that draws its own random numbers gives the same bits for any batch size.
 #[test]
 fn batches_of_any_size_have_the_same_bits() {
     for few in [["render.direction=backward", "render.samples=64"], ["render.direction=forward", "render.rays=100000"]]
@@ -33,8 +33,9 @@ fn batches_of_any_size_have_the_same_bits() {
     }
 }
 
-/// The 150 pixels' differences in standard errors have a mean square of 30/28 (Student's t of 30 degrees of freedom; good to 0.13),
-/// none is beyond what t exceeds in one of 370 such pictures, and the sums over card and halo agree within 3 standard errors.
+/// Compares both directions. The differences of the 150 pixels in standard errors have a mean square of 30/28 (Student's t of 30
+/// degrees of freedom; accurate to 0.13). None exceeds what t exceeds in one of 370 such pictures, and the sums over card and halo
+/// agree within 3 standard errors.
 #[test]
 fn both_directions_are_equal() {
     let (backward, forward) = (
@@ -43,7 +44,7 @@ fn both_directions_are_equal() {
     );
     let middle = backward.iter().map(|b| b.mean).fold(0.0, f64::max);
     let (mut squares, mut most) = (0.0, 0.0_f64);
-    // Difference, its variance, and light: card, halo.
+    // Difference, its variance, and light, for card and halo.
     let mut parts = [[0.0; 3]; 2];
     for (backward, forward) in backward.iter().zip(&forward) {
         let (b, f) = (backward.mean, forward.mean);
@@ -66,6 +67,6 @@ fn both_directions_are_equal() {
         );
         assert!(errors.abs() < 3.0 && light > 0.0, "{name}");
     }
-    assert!(parts[1][2] > 0.02 * parts[0][2], "no halo");
+    assert!(parts[1][2] > 0.02 * parts[0][2], "the halo is missing");
     assert!((0.7..1.45).contains(&mean_square) && most < 5.0);
 }

@@ -1,5 +1,5 @@
-//! Picture files beyond the ones that the program knows itself, with and without the feature `oiio`: a program of its own, since
-//! it is built once more with the feature.
+//! Tests picture files in formats that the program does not know itself, with and without the feature `oiio`. This is a separate
+//! program, because it is built again with the feature.
 
 #[path = "it/common/mod.rs"]
 mod common;
@@ -55,7 +55,7 @@ mod without {
             {
                 assert!(message.contains(word), "{word}: {message}");
             }
-            assert!(!folder.path().join("out").exists(), "nothing is rendered");
+            assert!(!folder.path().join("out").exists(), "something was rendered");
         }
     }
 }
@@ -81,7 +81,7 @@ mod with {
     fn the_tiled_file_holds_what_the_plain_one_does() {
         let folder = tempfile::tempdir().expect("a folder");
         let ortho = repository("scenes/biotar-ortho.yaml");
-        // Sizes that no tile divides.
+        // Sizes that are no multiple of the tile size.
         let base = ["run", shown(&ortho), "--set", "imager.resolution=[150, 100]", "--samples", "2", "--set"];
         let run = |output: &str, to: &str| {
             let (output, to) = (format!("output={output}"), folder.path().join(to));
@@ -94,7 +94,7 @@ mod with {
             run("[{kind: exr, tiled: true}]", "tiled"),
             run("[{kind: exr, tiled: true}]", "again"),
         ];
-        assert_eq!(std::fs::read(&paths[1]).unwrap(), std::fs::read(&paths[2]).unwrap(), "the same bits");
+        assert_eq!(std::fs::read(&paths[1]).unwrap(), std::fs::read(&paths[2]).unwrap(), "the bits differ");
         let [plain, tiled] = [image(&paths[0]), image(&paths[1])];
         let [a, b] = [&plain.layer_data[0], &tiled.layer_data[0]];
         assert_eq!(b.encoding.blocks, Blocks::Tiles(Vec2(64, 64)));
@@ -116,7 +116,7 @@ mod with {
         }
         assert!(!a.attributes.other.is_empty());
         for (name, value) in &a.attributes.other {
-            // The scene's own text says what it is written to.
+            // The scene recorded in the file names its output, so it differs.
             if name != "spectra:scene" {
                 assert_eq!(b.attributes.other.get(name), Some(value), "{name}");
             }
@@ -139,8 +139,8 @@ mod with {
         assert!(text(&output.stderr).contains("two outputs write `SCENE.exr`"), "{}", text(&output.stderr));
     }
 
-    /// A portable pixmap, which only the library reads, and a PNG of the same codes give the same light to the bit, where
-    /// both are said to have the same encoding: ITU-R BT.709, which Netpbm's page on the format asks for.
+    /// A portable pixmap, which only the library can read, and a PNG with the same codes give the same light to the bit. Both are
+    /// declared in the same encoding, ITU-R BT.709, which Netpbm's page on the format specifies.
     #[test]
     fn a_scene_is_lit_by_another_format_as_by_its_own() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -172,7 +172,7 @@ mod with {
         let output = in_folder(folder.path(), &["check", "a.yaml"]);
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{message}");
-        for word in ["a.yaml:4:9", "scan.dpx", "OpenImageIO", "is the file whole"] {
+        for word in ["a.yaml:4:9", "scan.dpx", "OpenImageIO", "is the file complete"] {
             assert!(message.contains(word), "{word}: {message}");
         }
     }

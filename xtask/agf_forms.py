@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Writes crates/glass/tests/data/forms.agf: one medium for each formula number of glass catalogue files (AGF).
+"""Writes crates/glass/tests/data/forms.agf: one medium for each formula number of glass catalog files (AGF).
 
 Run from the root of the repository: python3 xtask/agf_forms.py > crates/glass/tests/data/forms.agf
 
-Coefficients are those of the refractiveindex.info database (CC0 1.0), brought to the form by hand; the lines are our
-own. nd and Vd are computed here, independently of the program, or left at 1 and 0 where the medium is none for visible light. Conrady's
-form has no medium there: its three coefficients pass through N-BK7 at the lines h, d and A'.
+The coefficients come from the refractiveindex.info database (CC0 1.0) and were rearranged by hand into the form of each formula. The
+lines of the file are our own. nd and Vd are computed here, independently of the program. Media without an index in visible light
+have nd 1 and Vd 0. No medium of the database uses Conrady's formula, so its three coefficients are fitted here to N-BK7 at the lines
+h, d and A'.
 """
 
 from math import sqrt
@@ -54,7 +55,7 @@ def main():
     zno = [2.81418, 0.87968, 0.3042**2, 0.00711]
     aln = [3.1399, 1.3786, 0.1715**2, 3.861, 15.03**2]
     conrady, conrady_n = conrady_through(sellmeier(BK7), [0.4046561, D, 0.768195])
-    # name, number, coefficients, n (none: not for visible light), range in um
+    # name, formula number, coefficients, n (None: no index in visible light), range in um
     media = [
         ("APL1", 1, apl1, powers(list(zip(apl1, [0, 2, -2, -4, -6, -8]))), (0.334, 2.325)),
         ("N-BK7", 2, BK7, sellmeier(BK7), (0.3, 2.5)),

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Tests, builds in and renders the plugins of plugins/examples, each copied out of the repository first: as a stranger's
-# crates. Needs the program: SPECTRA names it, or it is built. Profile, features and places of our crates are those of this
-# workspace's tests, so that what these were built from is not built again.
+# Tests the plugins of plugins/examples, builds a program with them and renders their scenes. Each plugin is first copied out of the
+# repository, like a crate of somebody else. Uses the program that SPECTRA names, or builds it. Profile, features and paths of our
+# crates are those of this workspace's tests, so that nothing is built twice.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 target=${CARGO_TARGET_DIR:-$root/target}
@@ -12,13 +12,13 @@ trap 'rm -rf "$work"' EXIT
 export CARGO_TARGET_DIR=$target
 with=()
 
-# The tables of a manifest whose head does, or does not, match.
+# Prints the tables of a manifest whose header matches a pattern (1) or does not (0).
 tables() { awk -v wanted="$2" -v head="$3" '/^\[/ { kept = ($0 ~ head) == wanted } kept && !/^#/' "$1"; }
 ours='^\\[(profile|workspace)\\.'
 
-# Lets the crate in a folder find our crates below itself, where this workspace has them below its own root: cargo tells crates
-# apart by their place below the root, their features and how they are compiled. What the workspace's macros and tests ask of
-# num-traits, rand, rustix and proc-macro2 is asked for as well: with other features much would be built again.
+# Lets the crate in a folder find our crates at the same relative paths as this workspace has them below its root: cargo identifies
+# a crate by its path below the root, its features and its compiler settings. Also requests the features of num-traits, rand, rustix
+# and proc-macro2 that the workspace's macros and tests use. With other features, much would be built again.
 beside_ours() {
     ln -sfn "$root/crates" "$1/crates"
     ln -sfn "$root/plugins" "$1/plugins"
@@ -60,7 +60,7 @@ for example in "$root"/plugins/examples/*/; do
     with+=(--with "$work/$name")
 done
 cd "$work"
-# `spectra build` writes a program and calls `$CARGO`: this one puts what is to be built beside our crates first.
+# `spectra build` writes a program and calls `$CARGO`. This cargo first links our crates into the folder to be built.
 cat >beside-cargo <<EOF
 #!/usr/bin/env bash
 set -euo pipefail

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Focal lengths of .zmx files: spectra beside rayoptics and optiland.
+"""Compares the focal lengths of .zmx files: spectra against rayoptics and optiland.
 
-Reads every .zmx below the given folders (unpacked source archives of the Python packages `rayoptics`, BSD-3, and `optiland`,
-MIT, hold some; vendors' files among them may not be passed on, which is why they are not in the repository). For each file:
-the effective focal length (mm, at the file's primary wavelength) of `spectra lens info` and of both packages, the ratio, and
-what the import does not carry.
+Reads every .zmx file below the given folders. The unpacked source archives of the Python packages `rayoptics` (BSD-3) and `optiland`
+(MIT) hold some. They include files of vendors that may not be passed on, so they are not in the repository. Prints for each file the
+effective focal length (mm, at the primary wavelength of the file) by `spectra lens info` and by both packages, the ratio, and what
+the import leaves out.
 
     pip install rayoptics optiland
     xtask/compare_zmx.py --spectra target/release/spectra FOLDER... > table.csv
@@ -20,7 +20,7 @@ import tempfile
 
 
 def text_of(path):
-    """The text of a file, whatever its encoding."""
+    """Returns the text of a file in UTF-16 or an 8-bit encoding."""
     data = path.read_bytes()
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16")
@@ -28,7 +28,7 @@ def text_of(path):
 
 
 def primary_nm(path):
-    """Primary wavelength, nm, as the file states it."""
+    """Returns the primary wavelength that the file states, nm."""
     waves, primary = {}, 1
     for line in text_of(path).splitlines():
         words = line.split()
@@ -71,10 +71,10 @@ def by_spectra(binary, path, nm):
 
 
 def attempt(how, path):
-    """A figure, or the first line of what went wrong."""
+    """Returns the value that `how` computes for a file, or the first line of its error."""
     try:
         return how(path)
-    except Exception as error:  # whatever the packages raise is a result here
+    except Exception as error:  # any error of the packages is a result of the comparison
         return f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"[:60]
 
 

@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Counts lines of code: Rust (and the C++ of the bridge) without tests, comments and blank lines, by folder, and the total.
+"""Counts lines of code by folder, and the total: Rust and the C++ of the bridge, without tests, comments and blank lines.
 
     xtask/count_lines.py                counts the working tree
     xtask/count_lines.py --commit NAME  counts a commit as git has it
-    xtask/count_lines.py --all          a line for every folder below the crates too
+    xtask/count_lines.py --all          also prints a line for every folder below the crates
 
-Counted are the files that git tracks below src/, crates/ and plugins/, plugins/examples apart. Not counted are
+The script counts the files that git tracks below src/, crates/ and plugins/, except plugins/examples. It does not count
 
-- blank lines, and lines that hold nothing but a comment (`//`, `///`, `//!`, `/* */`) or a part of one;
+- blank lines, and lines that hold only a comment (`//`, `///`, `//!`, `/* */`) or a part of one;
 - tests: folders `tests`, `benches` and `examples` of a crate, items under `#[cfg(test)]`, `#[cfg(all(test, ..))]` or `#[test]`,
-  and the files of modules that are declared so (`#[cfg(test)] mod tests;`);
-- texts: what is compiled in by `include_str!` is no Rust.
+  and the files of modules that are declared in this way (`#[cfg(test)] mod tests;`);
+- texts: a file that is compiled in by `include_str!` is not Rust.
 
-A line in a string counts, whatever it looks like.
+Every line inside a string counts, even if it looks like a comment.
 """
 
 import argparse
@@ -34,7 +34,7 @@ TOKEN = re.compile(
 
 
 def end_of_block_comment(text, start):
-    """Rust's comments nest."""
+    """Returns the end of a block comment. Block comments of Rust nest."""
     depth = 0
     for mark in re.finditer(r"/\*|\*/", text[start:]):
         depth += 1 if mark.group() == "/*" else -1
@@ -44,7 +44,7 @@ def end_of_block_comment(text, start):
 
 
 def bare(text):
-    """The text without comments, with an `_` in place of every character of a string that is no line break."""
+    """Returns the text without comments. Every character of a string except line breaks becomes an `_`."""
     out, at = [], 0
     while found := TOKEN.search(text, at):
         out.append(text[at:found.start()])
@@ -73,7 +73,7 @@ def is_for_tests(attribute):
 
 
 def item_end(text, start):
-    """Behind the first block, or the first semicolon outside of all brackets."""
+    """Returns the position behind the first block, or behind the first semicolon outside all brackets."""
     depth = 0
     for i in range(start, len(text)):
         depth += {"{": 1, "(": 1, "[": 1, "}": -1, ")": -1, "]": -1}.get(text[i], 0)
@@ -83,7 +83,7 @@ def item_end(text, start):
 
 
 def without_tests(code):
-    """Code without what is for tests, and the names of the modules that are, in files of their own."""
+    """Returns the code without its test items, and the names of the test modules that have files of their own."""
     out, modules, at = [], [], 0
     while (start := code.find("#[", at)) >= 0:
         end = attribute_end(code, start)
@@ -134,8 +134,8 @@ def counted(commit):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--commit", help="a commit, in place of the working tree")
-    parser.add_argument("--all", action="store_true", help="folders within the crates too")
+    parser.add_argument("--commit", help="count this commit instead of the working tree")
+    parser.add_argument("--all", action="store_true", help="also print the folders within the crates")
     arguments = parser.parse_args()
     sums = Counter()
     for path, number in counted(arguments.commit).items():

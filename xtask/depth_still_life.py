@@ -1,10 +1,10 @@
 """Writes scenes/depth-still-life.exr: a small synthetic picture with depth, by ray casting from a pinhole.
 
-A checkered table runs from 0.6 m to 3.5 m; a red cone stands at 0.95 m on the left, a gray ball at 2 m in the middle, a
-green post at 3 m on the right; behind them a dark wall at 12 m with small lamps. Color is the mean of nine
-samples of a pixel, and depth is that of the one in its middle, as renderers do it. R, G, B (linear, Rec. 709) and Z (m, along the axis)
-as 16-bit floats, of color 8 significant bits, ZIP compressed, as OpenEXR's "File Layout" describes. Needs nothing but Python 3, and takes
-some minutes.
+A checkered table runs from 0.6 m to 3.5 m. A red cone stands at 0.95 m on the left, a gray ball at 2 m in the middle and a green post
+at 3 m on the right. Behind them, at 12 m, is a dark wall with small lamps. The color of a pixel is the mean of nine samples; its depth
+is that of the sample in the middle, as in other renderers. The file holds R, G, B (linear, Rec. 709) and Z (m, along the axis) as
+16-bit floats, the colors rounded to 8 significant bits, ZIP compressed, as OpenEXR's "File Layout" describes. The script needs only
+Python 3 and takes some minutes.
 
     python3 xtask/depth_still_life.py
 """
@@ -17,7 +17,7 @@ import half_exr
 from noise_scenes import eight_bits
 
 WIDTH, HEIGHT = 1440, 960
-SAMPLES = 3  # of a pixel, across and down
+SAMPLES = 3  # samples of a pixel across, and as many down
 PLANE, ACROSS = 2.0, 1.7  # m: the picture is this wide on a plane at this distance
 TABLE = -0.32  # m below the eye
 LIGHT = (0.45, 0.75, 0.48)  # toward the light; +z toward the camera
@@ -49,7 +49,7 @@ LAMPS = list(lamps())
 
 
 def cone(d):
-    """Apex up, axis vertical; radius 0.11 m at the table, 0.42 m high, at (-0.2, -0.95)."""
+    """Intersects a ray with an upright cone: radius 0.11 m at the table, 0.42 m high, at (-0.22, -0.95)."""
     ax, az, high, radius = -0.22, -0.95, 0.42, 0.11
     k = (radius / high) ** 2
     top = TABLE + high
@@ -116,10 +116,10 @@ def wall(d):
 
 
 def sample(column, row):
-    """Depth and color at a place of the picture, in pixels."""
+    """Returns the depth and the color at a point of the picture, given in pixels."""
     x = (column / WIDTH - 0.5) * ACROSS / PLANE
     y = (0.5 * HEIGHT - row) / WIDTH * ACROSS / PLANE
-    d = (x, y, -1.0)  # so that t is the depth
+    d = (x, y, -1.0)  # with -1 along the axis, the ray parameter t is the depth
     near = [hit for hit in (cone(d), ball(d), post(d), table(d)) if hit]
     return min(near, key=lambda hit: hit[0]) if near else wall(d)
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Develops a JPEG of 24 megapixels on some stocks, with all effects, and prints processor time, wall time and memory.
+"""Develops a JPEG file of 24 megapixels on some stocks, with all effects, and prints processor time, wall time and memory.
 
 Run from the root of the repository, with numpy and Pillow, after `cargo build --release`:
 
     VENV/bin/python xtask/develop_time.py [--stocks tri-x 5207] [--frames 1] [--program target/release/spectra] [-- --lens helios-44-58-f2]
 
-Wall time is the machine's: it says something where nothing else runs. What is asked on two cores: 10 s and 1.5 GB a picture, and
-90 s with `--lens` at 1 % noise. With `--frames` as many pictures are developed in one run, which must not need more memory
-than two of them. Arguments after `--` go to `spectra film develop`. The exit code is 1 where memory or wall time is beyond.
+Wall time only means something if nothing else runs on the machine. The limits on two cores are 10 s and 1.5 GB for each picture, and
+90 s with `--lens` at 1 % noise. `--frames` sets the number of pictures that are developed in one run; more than two must not need
+more memory than two. Arguments after `--` go to `spectra film develop`. The exit code is 1 if memory or wall time exceeds its limit.
 """
 
 import argparse
@@ -26,7 +26,7 @@ MOST_MB, MOST_S, MOST_LENS_S = 1500, 10, 90
 
 
 def photograph(path):
-    """Patches of color with fine structure, noise and lamps: what neither a codec nor a table finds easy."""
+    """Writes a picture that is hard for codecs and tables: patches of color with fine structure, noise and lamps."""
     chance = np.random.default_rng(24)
     patches = (chance.random((HEIGHT // 100, WIDTH // 100, 3)) * 200 + 20).astype(np.uint8)
     picture = np.asarray(Image.fromarray(patches).resize((WIDTH, HEIGHT), Image.Resampling.BICUBIC)).astype(np.int16)
@@ -39,7 +39,7 @@ def photograph(path):
 
 
 def developed(program, pictures, stock, more, folder):
-    """Processor seconds, wall seconds and MB of one run."""
+    """Returns the processor time (s), wall time (s) and memory (MB) of one run."""
     out = folder / "out.png" if len(pictures) == 1 else folder / f"out-{stock}"
     begun = time.monotonic()
     child = subprocess.Popen([program, "film", "develop", *pictures, "--stock", stock, "-o", out, *more],

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Holds the colors of the program's raw files against the eye's, by the DNG specification and by LibRaw.
+"""Compares the colors of the program's raw files with those that the eye sees, by the DNG specification and by LibRaw.
 
 Run from the root of the repository:
 
     cargo build && python3 xtask/dng_color.py target/debug/spectra
 
-A ColorChecker is taken by the sensor under D65 and under A, white balanced for each. The DNG file is read here, byte by
-byte, and its numbers become colors as chapter 6 of the specification has it (Adobe, Digital Negative Specification
-1.4.0.0): the white's chromaticity from AsShotNeutral by iteration, matrices interpolated between the two lights by
-inverse correlated color temperature, ForwardMatrix to XYZ under D50; and once more without the forward matrices. Patches
-are compared with what the eye sees of their reflectances in the same light, adapted to D50 (Bradford). CIEDE2000 over 24
-patches must be at most 1.5 on average by the specification's way.
+The program photographs a ColorChecker with the sensor under D65 and under A, white balanced for each. This script reads the DNG file
+byte by byte and computes colors as chapter 6 of the specification says (Adobe, Digital Negative Specification 1.4.0.0): it finds the
+chromaticity of white from AsShotNeutral by iteration, interpolates the matrices between the two lights by inverse correlated color
+temperature, and goes to XYZ under D50 by ForwardMatrix. It does this once more without the forward matrices. The patches are compared
+with what the eye sees of their reflectances in the same light, adapted to D50 (Bradford). By the specification, the mean CIEDE2000 of
+the 24 patches must be at most 1.5.
 
-Where the packages are installed (`pip install rawpy exifread`), LibRaw opens the same file (it reads the matrix for D65
-alone), and an EXIF reader shows exposure and lens. Neither is needed. With LibRaw by way of rawpy 0.28.0 the means are 1.02 (D65) and
-1.27 (A) by the specification, 1.05 and 3.07 by LibRaw.
+If the packages are installed (`pip install rawpy exifread`), LibRaw opens the same file (it uses only the matrix for D65), and an EXIF
+reader shows exposure and lens. Neither is required. With LibRaw through rawpy 0.28.0, the means are 1.02 (D65) and 1.27 (A) by the
+specification, 1.05 and 3.07 by LibRaw.
 """
 
 import csv
@@ -29,11 +29,11 @@ ROOT = Path(__file__).resolve().parent.parent
 LIMIT = 1.5
 D50 = [0.3457 / 0.3585, 1.0, (1 - 0.3457 - 0.3585) / 0.3585]
 BRADFORD = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
-# Kelvin of EXIF light sources.
+# Correlated color temperatures of EXIF light sources, K.
 TEMPERATURES = {17: 2850, 21: 6500}
 WIDTH, HEIGHT = 240, 162
 
-# The lens takes nothing away here, so that nothing but the sensor is judged.
+# The lens of this scene absorbs nothing, so only the sensor is judged.
 SCENE = """spectra: 1
 source: {{kind: chart, chart: color-checker, distance: 4 m, width: 0.4 m, illuminant: {light}, luminance: 1000 cd/m2}}
 lens: {{file: zeiss-biotar-50-f1.4, f-number: f/8, focus: 4 m, coating: ideal, absorption: false}}
@@ -78,14 +78,14 @@ def bradford(start, end):
 
 
 def table(path):
-    """Columns of a CSV file with front matter: wavelengths, and a list of values for each name."""
+    """Reads a CSV file with front matter. Returns its wavelengths, and a list of values for each column name."""
     rows = list(csv.reader(line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")))
     columns = list(zip(*rows[1:]))
     return [float(v) for v in columns[0]], {n: [float(v) for v in c] for n, c in zip(rows[0][1:], columns[1:])}
 
 
 def at(wavelengths, values, nm):
-    """Between the rows by a straight line, beyond them constant."""
+    """Interpolates linearly between the rows. Beyond them the value is constant."""
     if nm <= wavelengths[0]:
         return values[0]
     for i in range(1, len(wavelengths)):
@@ -100,13 +100,13 @@ EYE = [list(v) for v in zip(*list(CMF.values())[:3])]
 
 
 def xyz(power):
-    """XYZ of a function of the wavelength."""
+    """Returns XYZ of a function of the wavelength."""
     seen = [power(nm) for nm in NM]
     return [sum(p * e[i] for p, e in zip(seen, EYE)) for i in range(3)]
 
 
 def seen(light):
-    """XYZ of the 24 patches in a light, of a perfect white Y = 1; and that white."""
+    """Returns XYZ of the 24 patches in a light (a perfect white has Y = 1), and of that white."""
     light_nm, light_columns = table(ROOT / f"spectra/illuminants/{light}.csv")
     patch_nm, patches = table(ROOT / "spectra/reflectances/colorchecker.csv")
     power = {nm: at(light_nm, list(light_columns.values())[0], nm) for nm in NM}
@@ -120,7 +120,7 @@ def uv(x, y):
 
 
 def temperature(x, y):
-    """Correlated color temperature: the nearest blackbody in the uniform diagram of 1960, K."""
+    """Returns the correlated color temperature, K: that of the nearest blackbody in the CIE 1960 uniform diagram."""
     u, v = uv(x, y)
 
     def distance(kelvin):
@@ -129,7 +129,7 @@ def temperature(x, y):
         pu, pv = uv(s[0] / sum(s), s[1] / sum(s))
         return math.hypot(u - pu, v - pv)
 
-    # Golden section over mired.
+    # Golden section search over mired.
     low, high, golden = 20.0, 700.0, (math.sqrt(5) - 1) / 2
     for _ in range(40):
         a, b = high - golden * (high - low), low + golden * (high - low)
@@ -144,7 +144,7 @@ FORMATS = {1: "B", 2: "c", 3: "H", 4: "I", 7: "B", 12: "d"}
 
 
 def directory(data, start):
-    """Tags of a TIFF directory with their values."""
+    """Reads the tags of a TIFF directory with their values."""
     tags = {}
     for i in range(struct.unpack_from("<H", data, start)[0]):
         tag, kind, count = struct.unpack_from("<HHI", data, start + 2 + 12 * i)
@@ -163,7 +163,7 @@ def directory(data, start):
 
 
 class Raw:
-    """A DNG file."""
+    """The contents of a DNG file."""
 
     def __init__(self, path):
         data = path.read_bytes()
@@ -179,7 +179,7 @@ class Raw:
         self.neutral = self.tags[50728]
 
     def mean(self, left, top, right, bottom):
-        """Red, green and blue of an area, 0 to 1."""
+        """Returns the mean red, green and blue of an area, 0 to 1."""
         black, white = self.tags[50714][0], self.tags[50717][0]
         sums, counts = [0.0] * 3, [0] * 3
         for row in range(top, bottom):
@@ -190,7 +190,7 @@ class Raw:
         return [s / n / (white - black) for s, n in zip(sums, counts)]
 
     def share(self, x, y):
-        """Weight of the first light."""
+        """Returns the weight of the first light at a chromaticity."""
         first, second = self.lights
         share = (1 / temperature(x, y) - 1 / second) / (1 / first - 1 / second)
         return min(max(share, 0.0), 1.0)
@@ -199,7 +199,7 @@ class Raw:
         return [[share * a + (1 - share) * b for a, b in zip(*rows)] for rows in zip(*matrices)]
 
     def white(self):
-        """Chromaticity of white, by iteration from D50."""
+        """Returns the chromaticity of white, by iteration from D50."""
         x, y = 0.3457, 0.3585
         for _ in range(30):
             found = apply(inverse(self.between(self.color, self.share(x, y))), self.neutral)
@@ -210,7 +210,7 @@ class Raw:
         return x, y
 
     def to_d50(self, forward=True):
-        """Matrix from the camera's colors to XYZ under D50."""
+        """Returns the matrix from the camera's colors to XYZ under D50."""
         x, y = self.white()
         share = self.share(x, y)
         if forward:
@@ -226,7 +226,7 @@ def lab(color):
 
 
 def ciede2000(one, two):
-    """G. Sharma, W. Wu, E. N. Dalal, Color Res. Appl. 30, 21 (2005)."""
+    """Color difference by G. Sharma, W. Wu, E. N. Dalal, Color Res. Appl. 30, 21 (2005)."""
     (l1, a1, b1), (l2, a2, b2) = one, two
     c7 = ((math.hypot(a1, b1) + math.hypot(a2, b2)) / 2) ** 7
     g = 0.5 * (1 - math.sqrt(c7 / (c7 + 25**7)))
@@ -249,7 +249,8 @@ def ciede2000(one, two):
 
 
 def patches():
-    """The middle of each patch as (left, top, right, bottom): 40 of 46, from 6, on 282 x 190."""
+    """Yields the middle of each patch as (left, top, right, bottom). Patches are 40 wide, 46 apart, from 6 on, in a chart of 282 x
+    190."""
     for row in range(4):
         for column in range(6):
             x, y = 26 + 46 * column, 26 + 46 * row
@@ -260,7 +261,7 @@ def patches():
 
 
 def errors(found, wanted):
-    """CIEDE2000 of each patch, the white patch as bright as it should be."""
+    """Returns CIEDE2000 of each patch, after scaling the white patch to its correct brightness."""
     names = list(wanted)
     scale = wanted["white"][1] / found[names.index("white")][1]
     return {n: ciede2000(lab([scale * v for v in f]), lab(wanted[n])) for n, f in zip(names, found)}
@@ -274,7 +275,7 @@ def report(way, light, each):
 
 
 def by_libraw(path):
-    """XYZ of the patches, as LibRaw makes them: its XYZ are those of D65, linear."""
+    """Returns XYZ of the patches as LibRaw computes them. Its XYZ are relative to D65, and linear."""
     import rawpy
 
     with rawpy.imread(str(path)) as raw:

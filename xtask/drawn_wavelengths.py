@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Holds the wavelengths that each strategy draws to the density of its documented formula.
+"""Tests that each strategy draws wavelengths with the density of its documented formula.
 
 Run from the root of the repository, with numpy and scipy:
 
     cargo build && python3 xtask/drawn_wavelengths.py target/debug/spectra
 
-Each strategy draws 100 000 wavelengths of D65 (`lines` those of FdC) with independent numbers for each of five seeds: the p-value of
-Kolmogorov and Smirnov's test (for `lines` of the chi-square test) must exceed 0.001. With Sobol numbers the largest difference of the
-distributions must stay below 0.005. The mean of weight, light and response multiplied must be the integral within 4 standard errors. A floor
-follows the response, which is flat here: 1/16 of the samples, 5 % of `source-times-response`. `gaussian-terms` draws from the terms that
-`spectrum fit` prints, without their signs, each by its integral over the band.
+Each strategy draws 100 000 wavelengths of D65 (`lines` draws from FdC) with independent numbers for each of five seeds. The p-value of
+the Kolmogorov-Smirnov test (for `lines` of the chi-square test) must exceed 0.001. With Sobol numbers, the largest difference of the
+distributions must stay below 0.005. The mean of weight times light times response must equal the integral within 4 standard errors.
+Each strategy draws a share of its samples from the response, which is flat here: 1/16 of them, 5 % for `source-times-response`.
+`gaussian-terms` draws from the terms that `spectrum fit` prints, without their signs, each with its integral over the band as weight.
 """
 
 import csv
@@ -34,7 +34,7 @@ def draw(program, light, strategy, seed, numbers="random", many=MANY):
 
 
 def of_terms(program):
-    """Distribution of the sum of the fitted terms without their signs, within the band."""
+    """Returns the distribution function of the sum of the fitted terms without their signs, within the band."""
     told = subprocess.run([program, "spectrum", "fit", "D65", "--json"], check=True, capture_output=True, text=True).stdout
     terms = [(term["center_nm"], term["sigma_nm"], abs(term["amplitude"])) for term in json.loads(told)["terms"]]
     within = lambda to, center, sigma: stats.norm.cdf((to - center) / sigma) - stats.norm.cdf((BAND[0] - center) / sigma)

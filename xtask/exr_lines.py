@@ -7,7 +7,7 @@ import numpy as np
 
 
 def read(path):
-    """The channels of a file, uncompressed or ZIP, by their names: rows of float64."""
+    """Reads the channels of a file, uncompressed or ZIP compressed. Returns rows of float64 by channel name."""
     data = path.read_bytes()
     at, header = 8, {}
     while data[at]:

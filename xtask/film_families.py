@@ -1,9 +1,11 @@
-"""What the layers of a color film do to each other while they develop: one matrix for each family of films, one strength for each class.
+"""Interimage effects: how the layers of a color film influence each other in development.
 
-No sheet tells it. That there are such effects, and that makers use them to make up for what dyes absorb beside their color, is published:
+There is one matrix for each family of films and one strength for each class.
+
+No sheet states them. Makers use them to correct the unwanted absorption of the dyes, which is published:
 W. T. Hanson and C. A. Horton, "Subtractive color reproduction: interimage effects", J. Opt. Soc. Am. 42, 663 (1952); C. R. Barr,
 J. R. Thirtle and P. W. Vittum, "Development-inhibitor-releasing couplers and their use in color photography", Photogr. Sci. Eng. 13, 74
-(1969). How strong they are in which film is assumed: xtask/fit_film_families.py finds both for all films at once and writes
+(1969). How strong they are in which film is assumed: xtask/fit_film_families.py fits both for all films at once and writes
 xtask/film_families.json.
 """
 
@@ -12,7 +14,7 @@ import pathlib
 
 NUMBERS = pathlib.Path(__file__).with_name("film_families.json")
 
-# A process and, where it has films of both, the time.
+# Films of each process; the time is named if a process has films of both times.
 FAMILIES = {
     "c-41 to 1999": ("kodak-vericolor-iii", "kodak-portra-800", "fuji-superia-reala-100", "fuji-superia-x-tra-400"),
     "c-41": ("kodak-portra-160", "kodak-portra-400", "kodak-ektar-100", "kodak-gold-200", "kodak-ultramax-400", "fuji-pro-160s",
@@ -25,9 +27,9 @@ FAMILIES = {
 WORDS = {"c-41 to 1999": "color negatives (process C-41) of the years to 1999", "c-41": "color negatives (process C-41) since 2000",
          "ecn-2": "color negatives for cinema (process ECN-2)", "e-6": "slide films (process E-6)", "k-14": "Kodachrome"}
 
-# How saturated films of a class are: CIE 1976 saturation of the 18 chromatic patches of the ColorChecker over the eye's, in the mean. From
-# what their makers promise: "ultra-vivid" (Ektar), "the world's most saturated" (Velvia), "natural" skins (Portra, Pro); consumer films
-# and slides between; cinema and Kodachrome as negatives for portraits.
+# Saturation of the films of a class: CIE 1976 saturation of the 18 chromatic patches of the ColorChecker relative to what the eye
+# sees, as a mean. The values follow what the makers promise: "ultra-vivid" (Ektar), "the world's most saturated" (Velvia), "natural"
+# skins (Portra, Pro). Consumer films and slides lie between; cinema films and Kodachrome are like negatives for portraits.
 CLASSES = {
     "portrait": (0.97, ("kodak-vericolor-iii", "kodak-portra-160", "kodak-portra-400", "kodak-portra-800", "fuji-pro-160s", "fuji-pro-400h")),
     "cinema": (0.97, FAMILIES["ecn-2"]),
@@ -48,7 +50,8 @@ def class_of(slug):
 
 
 def inhibition(slug):
-    """Log10 of exposure that a layer (row) loses per unit of dye in another (column); blue, green, red."""
+    """Returns the matrix of inhibitions: log10 of the exposure that a layer (row) loses per unit of dye in another (column); blue,
+    green, red."""
     numbers = json.loads(NUMBERS.read_text(encoding="utf-8"))
     strength = numbers["strengths"][class_of(slug)]
     return [[round(strength * v, 3) for v in row] for row in numbers["matrices"][family_of(slug)]]

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""What colors do from one light to another, to the eye and to the layers of a film: an independent computation for the test
-`film_lamp_is_that_of_another_program` (tests/it/cli_film.rs), written as tests/data/film-lamp.csv.
+"""Computes how colors change from one light to another, for the eye and for the layers of a film, independently of the program.
 
-Needs numpy, pyyaml and colour-science (BSD-3-Clause), which has the matching functions, CAT16, CIE Lab and CIEDE2000. Spectra are those
-under spectra/, interpolated here: lights in straight lines, surfaces by Sprague's formula, logarithmic sensitivities in
-straight lines of the logarithm.
+Writes tests/data/film-lamp.csv for the test `film_lamp_is_that_of_another_program` (tests/it/cli_film.rs).
+
+Needs numpy, pyyaml and colour-science (BSD-3-Clause), which has the matching functions, CAT16, CIE Lab and CIEDE2000. The spectra are
+those under spectra/, interpolated here: lights linearly, surfaces by Sprague's formula, logarithmic sensitivities linearly in the
+logarithm.
 """
 import pathlib
 
@@ -30,14 +31,14 @@ def table(path):
 def light(name):
     path = next(p for p in (ROOT / "spectra/illuminants").iterdir() if p.stem.lower() == name.lower())
     _, values = table(path)
-    # Constant beyond its ends, as the files say.
+    # The spectrum is constant beyond its ends, as the files say.
     assert "# outside: constant" in path.read_text()
     return np.interp(BAND, values[:, 0], values[:, 1])
 
 
 def chart():
     names, values = table("spectra/reflectances/colorchecker.csv")
-    # By Sprague's formula, constant beyond its ends, as the file says.
+    # Sprague's formula within the data, constant beyond its ends, as the file says.
     within = np.clip(BAND, values[0, 0], values[-1, 0])
     return {
         name: colour.SpragueInterpolator(values[:, 0], values[:, k])(within) for k, name in enumerate(names) if k > 0
@@ -58,7 +59,7 @@ def layers(stock):
 
 
 def seen(power, surfaces, film):
-    """Of each surface what the eye has, adapted to D65, and what the layers got, over white."""
+    """Returns for each surface what the eye sees, adapted to D65, and the exposures of the layers relative to white."""
     white = power @ EYE
     eye, exposed = [], []
     for surface in surfaces.values():
@@ -77,7 +78,7 @@ def main():
     for stock, lamp, reference in CASES:
         film, surfaces = layers(stock), chart()
         (eye, exposed), (eye_0, exposed_0) = (seen(light(name), surfaces, film) for name in (lamp, reference))
-        # Weighted least squares, white by far the most.
+        # Weighted least squares, with by far the largest weight for white.
         weights = np.append(1 / np.maximum(exposed_0.sum(1), 1e-3), 1e4)
         a = np.vstack([exposed_0, np.ones(3)]) * np.sqrt(weights)[:, None]
         b = np.vstack([eye_0, D65]) * np.sqrt(weights)[:, None]

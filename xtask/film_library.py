@@ -5,15 +5,15 @@ Run from the root of the repository, with the wheel that import_film.py names:
 
     VENV/bin/python xtask/film_library.py WHEEL
 
-Like import_film.py it reads tables of spectral-film-lut 0.18.13 (MIT), digitizations of figures in makers' data sheets, and none of
-its code. What it does to them:
-  - exposures, running maxima and minima as in import_film.py;
-  - sheets of still negatives print no spectra of single dyes, only of a midscale neutral and of unexposed film: the dyes of
-    Vision3 250D, each scaled wavelength by wavelength by the same factor, so that together they make the sheet's neutral;
-  - granularity over density, where the sheet has none: that of a film of the same kind, times one factor (see GRAIN);
-  - curves are moved by a few numbers, so that a gray scale is gray: xtask/fit_film_library.py finds them and writes them to
-    xtask/film_library.json. The remark of each curve says by how much it moved;
-  - what layers do to each other is assumed: xtask/film_families.py.
+Like import_film.py, it reads the tables of spectral-film-lut 0.18.13 (MIT), which are digitized figures of makers' data sheets, and
+none of its code. It prepares them as follows:
+  - exposures and running maxima and minima as in import_film.py;
+  - sheets of still negatives show no spectra of single dyes, only of a midscale neutral and of unexposed film. The dyes are then those
+    of Vision3 250D, all scaled wavelength by wavelength by one factor, so that together they make the sheet's neutral;
+  - if the sheet has no granularity over density, it is that of a similar film times one factor (see GRAIN);
+  - curves are corrected by a few numbers so that a gray scale is gray. xtask/fit_film_library.py fits them and writes them to
+    xtask/film_library.json. The remark of each curve says how far it moved;
+  - the influence of the layers on each other is assumed: xtask/film_families.py.
 """
 
 import json
@@ -29,9 +29,9 @@ NUMBERS = pathlib.Path(__file__).with_name("film_library.json")
 DAYLIGHT = "iso-7589-sensitometric-daylight"
 TUNGSTEN = "iso-7589-sensitometric-studio-tungsten"
 
-# slug: (module, name in it, name for people, maker, sheet, year, speed, light, print, backing)
+# slug: (module, variable in it, display name, maker, sheet, year, speed, light, print stock, backing)
 KODAK, FUJI = "Eastman Kodak", "Fujifilm"
-# Papers for optical printing; those for digital printers, which are steeper, are there by name.
+# Papers for optical printing. Those for digital printers are steeper; users select them by name.
 ENDURA, CINE = "kodak-portra-endura", "kodak-vision-2383"
 NEGATIVES = {
     "kodak-portra-160": ("kodak_portra_160", "KODAK_PORTRA_160", "Kodak Portra 160", KODAK,
@@ -78,7 +78,7 @@ SLIDES = {
     "kodachrome-64": ("kodachrome_64", "KODACHROME_64", "Kodachrome 64", KODAK,
                       "Kodachrome 64 Professional Film, technical data E-55", 1974, 64),
 }
-# slug: (module, name in it, name for people, maker, sheet, year, medium, lamp, LAD)
+# slug: (module, variable in it, display name, maker, sheet, year, medium, lamp, LAD)
 PRINTS = {
     "kodak-portra-endura": ("kodak_portra_endura", "KODAK_PORTRA_ENDURA", "Kodak Professional Portra Endura Paper", KODAK,
                             "Kodak Professional Portra Endura Paper, technical data E-4021", 2002, "paper", None),
@@ -93,8 +93,8 @@ PRINTS = {
                               "Fujicolor Positive Film Eterna-CP Type 3513DI, data sheet", 2002, "film", None),
 }
 
-# slug: (name for people, maker, sheet, year, speed, RMS granularity of the sheet or None, Frieser's k in mm, average gradient).
-# No free digitization of these sheets is known: what they state in words is here, all else is of films of their kind.
+# slug: (display name, maker, sheet, year, speed, RMS granularity of the sheet or None, Frieser's k in mm, average gradient). No free
+# digitization of these sheets is known. The numbers that they state in words are here; the rest is taken from similar films.
 SILVER = {
     "kodak-t-max-100": ("Kodak T-Max 100", KODAK, "Kodak Professional T-Max 100 Film, technical data F-4016", 1986, 100, 8, 0.009, 0.58),
     "kodak-t-max-400": ("Kodak T-Max 400", KODAK, "Kodak Professional T-Max 400 Film, technical data F-4043, 2007", 1986, 400, 10,
@@ -105,12 +105,12 @@ SILVER = {
                         0.014, 0.62),
 }
 
-# RMS granularity at density 1 over the minimum, as the makers state it; None where they state an index of prints only (Kodak, still
-# negatives) or where the layers have curves of their own.
+# RMS granularity at density 1 above the minimum, as the makers state it. None if they state only an index of prints (Kodak still
+# negatives) or if the layers have curves of their own.
 GRAIN = {"fuji-pro-160s": 3, "fuji-pro-400h": 4, "fuji-c200": 4, "fuji-superia-reala-100": 4, "fuji-superia-x-tra-400": 4,
          "fuji-natura-1600": 7, "fuji-eterna-500": 3.5,
          "fuji-velvia-50": 9, "fuji-provia-100f": 9, "kodachrome-64": 10}
-# What long exposures lose, by the makers' sheets; the others state none, or no more than that 1 s counts in full.
+# Loss in long exposures, by the makers' sheets. The other sheets state none, or only that 1 s counts in full.
 RECIPROCITY = {
     "kodak-t-max-100": ["# F-4016: a third of a stop more at 1 s, half a stop (15 s) at 10 s, a stop (200 s) at 100 s.",
         "reciprocity: {table: [[1, 1.26], [10, 15], [100, 200]], above: 0.1 s}"],
@@ -125,14 +125,14 @@ RECIPROCITY = {
     "fuji-provia-100f": ["# Fuji's data sheet: in full to 128 s, a third of a stop more at 4 minutes.",
         "reciprocity: {table: [[240, 302]], above: 128 s}"],
 }
-# Parts of red, green and blue in a visual density.
+# Weights of red, green and blue in a visual density.
 VISUAL = {"red": 0.26, "green": 0.57, "blue": 0.17}
-# Visual RMS granularity of Vision3 goes with about this power of its speed: 3.1, 4.7 and 5.5 of 5203, 5213 and 5219.
+# Visual RMS granularity of Vision3 grows with about this power of the speed: 3.1, 4.7 and 5.5 of 5203, 5213 and 5219.
 BY_SPEED = 0.25
 
 
 def between(points, x):
-    """Straight between points, held beyond."""
+    """Interpolates linearly between points. Beyond them the end values are used."""
     if x <= points[0][0]:
         return points[0][1]
     for (x0, y0), (x1, y1) in zip(points, points[1:]):
@@ -147,7 +147,7 @@ def generic_dyes(folder):
 
 
 def solve(matrix, right):
-    """A small system of equations, by Gauss."""
+    """Solves a small system of linear equations by Gaussian elimination."""
     n = len(right)
     rows = [list(m) + [r] for m, r in zip(matrix, right)]
     for i in range(n):
@@ -161,8 +161,8 @@ def solve(matrix, right):
 
 
 def dyes_of_neutral(data, generic):
-    """Dyes that make the sheet's midscale neutral together: the generic ones, amounts by least squares, then all times one factor
-    a wavelength, 0.5 to 2, smoothed over 20 nm. Also by how much the factor differs from 1, root mean square."""
+    """Returns dyes that together make the sheet's midscale neutral: the generic dyes, with amounts by least squares, all times one
+    factor for each wavelength (0.5 to 2, smoothed over 20 nm). Also returns the root mean square difference of the factor from 1."""
     neutral, clear = base.pairs(data.d_ref_sd), base.pairs(data.d_min_sd)
     low, high = max(neutral[0][0], clear[0][0]), min(neutral[-1][0], clear[-1][0])
     grid = [w for w in range(400, 701, 5) if low <= w <= high]
@@ -184,7 +184,7 @@ def dyes_of_neutral(data, generic):
 
 
 def prepared(folder, kind, slug):
-    """The tables of a stock, with the dyes of its layers."""
+    """Returns the tables of a stock, with the dyes of its layers."""
     row = {"negative": NEGATIVES, "slide": SLIDES, "print": PRINTS}[kind][slug]
     package = {"negative": "negative_film", "slide": "reversal_film", "print": "print_film"}[kind]
     data = base.load(folder, f"{package}.{row[0]}", row[1])
@@ -198,16 +198,16 @@ def prepared(folder, kind, slug):
 
 
 def points_of(data, i, iso):
-    """A curve on the axis of log10 lx s."""
+    """Returns a curve over log10 exposure in lx s."""
     points = base.pairs(data.sensiometric_curve[i])
     if data.exposure_base == 2:
         points = [(x * log10(2) + log10(10 / iso), y) for x, y in points]
     return points
 
 
-# How the curves move; numbers as xtask/fit_film_library.py finds them.
+# Correction of the curves, with the numbers that xtask/fit_film_library.py fits.
 def moved(kind, numbers, points, gray):
-    """A curve of blue or red with its correction: see fit_film_library.py."""
+    """Applies the correction to a curve of blue or red: see fit_film_library.py."""
     low = min(y for _, y in points)
     out, most = [], 0.0
     for x, y in points:
@@ -222,7 +222,7 @@ def moved(kind, numbers, points, gray):
     return [(x + shift, y) for x, y in out], most, shift
 
 
-# Densities over the minimum where the corrections of positives are largest.
+# Densities above the minimum at which the corrections of positives are largest.
 BUMPS = {"print": (0.3, 1.0, 2.4), "paper": (0.3, 0.9, 1.9), "slide": (0.4, 1.0, 2.2)}
 
 
@@ -232,7 +232,7 @@ def bump(density, at):
 
 
 def grainy(folder, slug, iso, data, kind):
-    """Granularity of the layers, and the remark on it where it is assumed."""
+    """Returns the granularity of the layers, and the remark about it if it is assumed."""
     own = base.load(folder, "negative_film.kodak_5207", "KODAK_5207")
     tables = [base.granularity(data.rms_curve[i], data.rms_density[i]) for i in range(3)]
     copied = kind == "slide" or data.rms_curve == own.rms_curve
@@ -297,7 +297,7 @@ def layers_of(data, kind, iso, numbers, grain):
 
 
 def assumed(parts):
-    """`assumed:` of a stock: what is chosen in all layers, and why."""
+    """Returns the `assumed:` block of a stock: what is assumed for all layers, and why."""
     said = [f"  {key}: {base.folded(text, '    ')}" for key, text in parts if text]
     return ["assumed:\n" + "\n".join(said)] if said else []
 

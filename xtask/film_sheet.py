@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""Writes docs/films.md and docs/images/films: one photograph on each bundled camera film, as its maker wants it printed or projected.
+"""Writes docs/films.md and docs/images/films: one photograph on each bundled camera film, printed or projected as its maker recommends.
 
 Run from the root of the repository:
 
     VENV/bin/python xtask/film_sheet.py target/release/spectra [NAME...]
 
-With names, only the pictures of these films are made anew; `-` makes none. The page is always of all. Needs numpy where pictures are made.
+With names, the script makes only the pictures of these films; `-` makes none. The page always covers all films. Making pictures needs
+numpy.
 
-The photograph is a still life by a window (xtask/still_life.py), through a lens at f/8, exposed half a stop below its gray card, so that the white jug keeps its shade. All films of one light
-are developed of one trace. Films for tungsten light get it: the scene's illuminant is theirs.
+The photograph is a still life by a window (xtask/still_life.py), through a lens at f/8. It is exposed half a stop below its gray card,
+so that the white jug keeps its detail. All films for one light are developed from one render. Films for tungsten light are
+photographed in tungsten light: the illuminant of the scene is theirs.
 """
 
 import json
@@ -22,7 +24,7 @@ STOCKS = ROOT / "spectra" / "film"
 IMAGES = ROOT / "docs" / "images" / "films"
 SIZE = (360, 240)
 ACROSS = 3
-# Films of one trace; the program takes 16.
+# Films developed from one render; the program takes up to 16.
 TOGETHER = 12
 
 SCENE = """spectra: 1
@@ -37,7 +39,7 @@ output: [png]
 # The middle of the gray card.
 SPOT = "{center: [0.89, 0.635], diameter: 0.12}"
 MADE_FOR = {"iso-7589-sensitometric-daylight": "D55", "iso-7589-sensitometric-studio-tungsten": "iso-7589-studio-tungsten"}
-# What people choose a film for, in a sentence: from what its maker says of it and what it is known for.
+# Why people choose a film, in a sentence: from its maker's description and its reputation.
 CHOSEN_FOR = {
     "cinestill-800t": "Night streets: wide red halos around lamps, cool where light is not tungsten.",
     "fuji-c200": "Plain daylight snapshots, greens that stay fresh.",
@@ -88,7 +90,7 @@ def run(*command):
 
 
 def shoot(program, stocks, wanted):
-    """A picture of every film that is wanted."""
+    """Makes the pictures of the wanted films."""
     import still_life
 
     with tempfile.TemporaryDirectory() as folder:
@@ -108,7 +110,7 @@ def expose(program, picture, stocks, wanted):
 
 
 def develop(program, picture, light, names):
-    """Pictures of a few films, of one trace."""
+    """Makes the pictures of a few films from one render."""
     what = {n: "kind: three-strip" if n == "three-strip" else f"stock: {n}" for n in names}
     films = [f"  - {{name: {n}, {what[n]}, metering: spot, spot: {SPOT}, compensation: -0.5}}" for n in names]
     if films:
@@ -158,10 +160,10 @@ def page(stocks, prints):
         "# The film library", "",
         "One photograph on each bundled film, as its maker wants it printed or projected: black and white on paper of grade 2, color",
         "negatives on the paper or print film that their file names, reversal films projected. The picture is a still life by a window",
-        "(drawn by `xtask/still_life.py`), through the Nikkor 100 mm at f/8, half a stop below what its gray card asks, in the light that the film is",
-        "made for. Films are small here: 360 pixels of a frame of 36 mm, so that grain is that of the whole frame at arm's length.",
-        "Written by `xtask/film_sheet.py`; where the figures come from stands in each file under `spectra/film/`, with what is assumed",
-        "and why (`spectra film info NAME`).", "",
+        "(drawn by `xtask/still_life.py`), photographed through the Nikkor 100 mm at f/8. It is exposed half a stop below what the gray card",
+        "asks for, in the light that the film is made for. Pictures are small here: 360 pixels for a frame 36 mm wide, so grain looks as on the",
+        "whole frame at arm's length. `xtask/film_sheet.py` writes this page. Each file under `spectra/film/` says where its figures come from,",
+        "what is assumed and why; `spectra film info NAME` shows it.", "",
     ]
     for title, belongs in KINDS:
         names = sorted((n for n, s in stocks.items() if belongs(s)), key=lambda n: stocks[n]["name"])

@@ -1,33 +1,33 @@
 #!/usr/bin/env python3
-"""Fits the few numbers by which xtask/import_film.py mends the color of Vision3 250D on 2383 and of Ektachrome 100D.
+"""Fits the few numbers by which xtask/import_film.py corrects the color of Vision3 250D on 2383 and of Ektachrome 100D.
 
 Run from the root of the repository, with the unpacked wheel that import_film.py names, and numpy:
 
     VENV/bin/python xtask/fit_film_color.py WHEEL [NM ...]
 
-It prints the constants INTERLAYER, NEUTRAL, SHIFT and MOVED of import_film.py, and what they do. The model is a second
-writing of the program's, in numpy: exposures of the layers, amounts of dye from the sheet's curves, inhibition between the
-layers, the print, and CIELAB of what is seen, relative to the clear film.
+It prints the constants INTERLAYER, NEUTRAL, SHIFT and MOVED of import_film.py, and their effect. The model is a second implementation
+of the program's, in numpy: exposures of the layers, amounts of dye from the sheet's curves, inhibition between the layers, the print,
+and CIELAB of what is seen, relative to the clear film.
 
 What is fitted:
-  negative       of blue and red against green: p (u + 1) + q (u^2 - 1), density, u = decades from mid gray, held beyond 1
-  print, slide   of blue and red against green: q (d/s) exp(1 - d/s), d the density over the minimum, s where it is largest
-  slide          how far blue and red are moved along log10 exposure
-  both           how far the sensitivities of the layers are moved along the wavelength, READ at most: a figure is read off a
-                 sheet within 2 or 3 nm
-To what:
-  the 18 chromatic patches of the ColorChecker (ISO 17321-1, annex C) in D55, 18 % gray metered, and the skins and leaves among
-  the bundled samples for testing lamps (CIE 13.3 and IES TM-30): the hue that the eye sees, and CHROMA times its chroma,
-  differences weighed as CIE94 does, hue HUE times. What people look at counts more often (COUNTS): paints made after sky, leaf or
-  skin, and still more two skins and a leaf themselves, these also in shade (SHADED). None of them is among those of
-  crates/film/tests/data/unseen.csv, but counts, shades and CHROMA of the negative were chosen by what they do to those: the fit has not
-  seen them, whoever set it up has;
+  negative       curves of blue and red against green: p (u + 1) + q (u^2 - 1), density, u = decades from mid gray, held beyond 1
+  print, slide   curves of blue and red against green: q (d/s) exp(1 - d/s), d the density above the minimum, s the density at which
+                 the correction is largest
+  slide          shift of blue and red along log10 exposure
+  both           shift of the layers' sensitivities along the wavelength, at most READ: a figure on a sheet can be read within 2 or 3 nm
+Targets of the fit:
+  the 18 chromatic patches of the ColorChecker (ISO 17321-1, annex C) in D55, metered on 18 % gray, and the skins and leaves among the
+  bundled samples for testing lamps (CIE 13.3 and IES TM-30). The target is the hue that the eye sees, and CHROMA times its chroma.
+  Differences are weighted as in CIE94, hue HUE times. Familiar colors count more often (COUNTS): paints that imitate sky, leaf or skin,
+  and still more two real skins and a leaf, these also in shade (SHADED). None of them is among those of
+  crates/film/tests/data/unseen.csv. However, counts, shades and CHROMA of the negative were chosen by their effect on those: the fit
+  has not seen them, but the person who set it up has;
   a neutral subject in the film's own light, every half stop: a*, b* within HINGE of 0 from -2.5 to +3.5 stops;
-  every number as near to 0 as that allows: SPREAD is the standard deviation of the curves' corrections. The slide's curves
-  are printed with what its layers do to each other, and need hardly any of it: 0.005 for its inhibitions.
+  every number as near to 0 as these targets allow. SPREAD is the standard deviation of the curves' corrections. The sheet curves of the
+  slide already include its interlayer effects, so its inhibitions have only 0.005.
 
-With NM the fit is made again with this in place of READ, and says how many of the ColorChecker's skies, leaves and skins and of
-those of unseen.csv keep their hue within 8 degrees. 0 leaves the sensitivities as read.
+With NM, the script repeats the fit with this value instead of READ. It then prints how many of the ColorChecker's skies, leaves and
+skins and of those of unseen.csv keep their hue within 8 degrees. 0 leaves the sensitivities as read.
 """
 
 import csv
@@ -41,21 +41,21 @@ SPECTRA = pathlib.Path("spectra")
 BAND = np.arange(350, 831.0)
 CHROMA = {"negative": 1.3, "slide": 1.0}
 HINGE = {"negative": 1.7, "slide": 1.65}
-# What a unit beyond it weighs.
+# Weight of a unit beyond HINGE.
 OVER = {"negative": 20, "slide": 60}
 SPREAD = 0.005
 HUE = 2.5
-# Skin and leaf: the CIE's test colors 13 and 14, and the evaluation samples 15, 18 (skins) and 37 (a leaf: its reflectance rises
-# at 700 nm).
+# Skins and leaf: test colors 13 and 14 of the CIE, and the evaluation samples 15, 18 (skins) and 37 (a leaf: its reflectance rises at
+# 700 nm).
 SAMPLES = {"cie-test-colors": ("tcs13", "tcs14"), "color-evaluation-samples": ("ces15", "ces18", "ces37")}
 SKINS, LEAF = ("ces15", "ces18"), "ces37"
-# What people know the colors of and paints are made after, and how often that counts; then skins and a leaf themselves.
+# How often familiar colors count: first paints that imitate them, then real skins and a leaf.
 FAMILIAR = dict.fromkeys(("dark-skin", "light-skin", "blue-sky", "foliage", *SAMPLES["cie-test-colors"]), 2)
 REAL = {**FAMILIAR, **dict.fromkeys((*SKINS, LEAF), 3.5)}
 COUNTS = {"negative": REAL, "slide": {**REAL, LEAF: 6.5}}
-# What is seen in the sun and in shade, in these shares of the light that is metered.
+# Samples that are seen in the sun and in shade, and their light as fractions of the metered light.
 SHADED, SHARES = {"negative": (*SKINS, LEAF), "slide": (LEAF,)}, (1, 1 / 2, 1 / 4)
-# As far as a figure is read off a sheet along the wavelength, nm.
+# Accuracy of reading a figure on a sheet along the wavelength, nm.
 READ = 3.0
 RAMP = {"negative": 1.0, "slide": 0.3}
 LAYERS = ("blue", "green", "red")
@@ -84,7 +84,7 @@ def blackbody(kelvin):
 
 
 class Curve:
-    """Monotone cubic through points (Fritsch and Butland), held beyond them, flat at both ends."""
+    """Monotone cubic curve through points (Fritsch and Butland), constant beyond them, with slope 0 at both ends."""
 
     def __init__(self, points):
         self.x, self.y = np.array(points, float).T
@@ -123,7 +123,7 @@ class Film:
         self.x = np.linspace(min(c.x[0] for c in self.curves) - 0.1, max(c.x[-1] for c in self.curves) + 0.1, 241)
 
     def move(self, nm):
-        """Moves the sensitivities along the wavelength."""
+        """Shifts the sensitivities along the wavelength."""
         self.sees = np.array([self.sensitivity([(x + d, y) for x, y in s]) for s, d in zip(self.sensitivities, nm)])
         if self.reference is not None:
             self.per_lux = (V * self.reference).sum() / (self.sees * self.reference).sum(1)
@@ -151,7 +151,7 @@ class Film:
         raise ArithmeticError("no such amounts")
 
     def take_apart(self, curves):
-        """Amounts of dye over log10 exposure, from integral densities."""
+        """Computes amounts of dye over log10 exposure from integral densities."""
         over = np.array([c(self.x) - c(self.x).min() for c in curves])
         last, self.amounts = np.array([2.0, 2.0, 2.0]) if over[0, 0] > 1 else np.zeros(3), []
         for k in range(len(self.x)):
@@ -187,7 +187,7 @@ def cielab(relative):
 
 
 class Seen:
-    """CIELAB of what passes a film: its density itself, relative to the clear film."""
+    """Converts the light that passes a film to CIELAB, relative to the clear film."""
 
     def __init__(self, white_passes):
         self.weights = CMF * D55 / (V * D55).sum()
@@ -213,7 +213,7 @@ def inhibition(p):
 
 
 class NegativeAndPrint:
-    """Vision3 250D on 2383; 15 numbers: inhibitions, negative, print, and how far the negative's sensitivities are moved."""
+    """Model of Vision3 250D on 2383 with 15 numbers: inhibitions, negative, print, and shifts of the negative's sensitivities."""
 
     kind, start = "negative", np.array([0.1] * 6 + [0.0] * 9)
 
@@ -263,7 +263,7 @@ class NegativeAndPrint:
 
 
 class Slide:
-    """Ektachrome 100D; 13 numbers: inhibitions, shifts and corrections of blue and red, and how far the sensitivities are moved."""
+    """Model of Ektachrome 100D with 13 numbers: inhibitions, shifts and corrections of blue and red, and shifts of the sensitivities."""
 
     kind, start = "slide", np.array([0.02] * 6 + [0.06] + [0.0] * 6)
 
@@ -274,7 +274,7 @@ class Slide:
         f = self.film
         f.move(p[-3:])
         curves = [lambda x, c=c, s=s: c(x - s) for c, s in zip(f.curves, (p[6], 0, p[7]))]
-        self.k = -inhibition(p)  # the dye of a slide is what did not develop first
+        self.k = -inhibition(p)  # the dye of a slide forms where the first developer left silver halide
         for i, q in ((0, p[8]), (2, p[9])):
             curves[i] = lambda x, c=curves[i], low=f.curves[i].y.min(), q=q: (
                 c(x) + q * (c(x) - low) / TOE["slide"] * np.exp(1 - (c(x) - low) / TOE["slide"]))
@@ -316,7 +316,8 @@ def residuals(model, p, patches):
 
 
 def fit(model, patches):
-    """All numbers at once; of the negative first those of its gray scale, which no inhibition changes, then the inhibitions."""
+    """Fits all numbers at once. For the negative, it first fits the numbers of the gray scale, which no inhibition changes, then the
+    rest."""
     p = model.start.copy()
     if model.kind == "negative":
         p = descend(model, p, range(6, 12), {}, h=1e-3)
@@ -325,14 +326,15 @@ def fit(model, patches):
 
 
 def descend(model, p, free, patches, steps=60, h=1e-4):
-    """Levenberg and Marquardt's least squares over the numbers that are free: inhibitions from 0 on, sensitivities within `read`."""
+    """Minimizes the squares by Levenberg-Marquardt over the free numbers: inhibitions are at least 0, sensitivities stay within
+    `read`."""
     low = np.array([0.0] * 6 + [-np.inf] * (len(p) - 9) + [-model.read] * 3)
     high = np.array([np.inf] * (len(p) - 3) + [model.read] * 3)
     directions, damping = np.eye(len(p))[list(free)], 1e-3
     r = residuals(model, p, patches)
     for _ in range(steps):
         slopes = np.array([(residuals(model, p + h * e, patches) - r) / h for e in directions]).T
-        # What is at its limit and would go beyond stays.
+        # Numbers at a limit that would go beyond it stay where they are.
         down = directions.T @ (slopes.T @ r)
         goes = directions @ (((p > low) | (down < 0)) & ((p < high) | (down > 0))) > 0
         along, slopes = directions[goes], slopes[:, goes]

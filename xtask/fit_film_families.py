@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Finds what the layers of color films do to each other, for all films at once, and writes xtask/film_families.json.
+"""Fits the influence of color film layers on each other, for all films at once, and writes xtask/film_families.json.
 
 Run from the root of the repository, after xtask/fit_film_library.py, with the unpacked wheel that import_film.py names, numpy and scipy:
 
     VENV/bin/python xtask/fit_film_families.py WHEEL
 
 What is fitted: six inhibitions for each family of film_families.py, and a strength for each class in it.
-To what: of each film, printed or projected as usual, in the light that it is made for,
-  the hue that the eye sees of the 18 chromatic patches of the ColorChecker, those of sky, leaf, skins and the two oranges, which are wood,
-  brick and hair in photographs, COUNT times, and beyond WITHIN degrees (oranges 6 more) more, of the films that people compare most
-  (COMPARED) twice as much, and of 5207, whose bound is 3 less, eight times;
-  the mean saturation that film_families.py has for the class;
-  every number as near to 0 as that allows.
+Targets for each film, printed or projected as usual, in the light that it is made for:
+  the hues that the eye sees of the 18 chromatic patches of the ColorChecker. Those of sky, leaf, skins and the two oranges (wood, brick
+  and hair in photographs) count COUNT times. Beyond WITHIN degrees (6 more for oranges) they count additionally: twice as much for the
+  films that people compare most (COMPARED), and eight times for 5207, whose limit is 3 degrees less;
+  the mean saturation that film_families.py states for the class;
+  every number as near to 0 as these targets allow.
 """
 
 import copy
@@ -33,19 +33,19 @@ PLACES = ((0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1))
 FAMILIAR = ("dark-skin", "light-skin", "blue-sky", "foliage", "orange", "orange-yellow")
 COMPARED = ("fuji-velvia-50", "kodak-ektar-100", "kodak-ektachrome-100d", "kodak-gold-200", "kodak-vision3-250d-5207", "kodak-portra-400",
             "fuji-pro-400h", "kodachrome-64")
-# Weights: of a turn of DEGREES, of how often familiar colors count, of a degree beyond WITHIN, of saturation, of a number.
+# Weights: of a hue difference of DEGREES, of familiar colors (count), of a degree beyond WITHIN, of saturation, of a number's size.
 DEGREES, TURNED, COUNT, WITHIN, BEYOND, SATURATED, SPREAD = 8, 0.7, 2, 9, 1, 120, 1
-# Classes whose strength is 1.
+# Classes with strength 1.
 UNIT = ("portrait", "Kodachrome")
 
 
 def uv(xyz):
-    """CIE 1976 u', v'."""
+    """Returns the CIE 1976 coordinates u', v'."""
     return np.array([4 * xyz[0], 9 * xyz[1]]) / (xyz[0] + 15 * xyz[1] + 3 * xyz[2])
 
 
 def relative(lab):
-    """XYZ over white's, of CIELAB."""
+    """Returns XYZ of a CIELAB color, relative to white."""
     fy = (lab[0] + 16) / 116
     f = np.array([fy + lab[1] / 500, fy, fy - lab[2] / 200])
     return np.where(f > 6 / 29, f**3, 3 * (6 / 29) ** 2 * (f - 4 / 29))
@@ -61,7 +61,7 @@ def turn(lab, eye):
 
 
 def moved(film, data, kind):
-    """With the sensitivities that import_film.py moves along the wavelength."""
+    """Returns the film with the shifts of the sensitivities that import_film.py applies."""
     nm = base.MOVED[kind]
     table = [[(x + nm[base.LAYERS[i]], y) for x, y in base.pairs(data.log_sensitivity[i])] for i in grays.ORDER]
     film.sees = np.array([film.sensitivity(t) for t in table])
@@ -70,7 +70,7 @@ def moved(film, data, kind):
 
 
 def films(folder, lights):
-    """All color films for cameras, each with the way it is looked at."""
+    """Returns all color films for cameras, each with its print or projection."""
     numbers = json.loads(library.NUMBERS.read_text(encoding="utf-8"))
     paper = grays.Print(grays.Film(library.prepared(folder, "print", library.ENDURA), "status-a", None, None, True, None), True)
     paper.take_apart(grays.mended(paper.film, "paper", numbers[library.ENDURA]))
@@ -104,7 +104,7 @@ def films(folder, lights):
 
 
 class Colors:
-    """A film and what it makes of the patches."""
+    """A film and how it reproduces the patches."""
 
     def __init__(self, slug, m, patches, white):
         self.slug, self.m, self.patches, self.white = slug, m, patches, white
@@ -116,7 +116,7 @@ class Colors:
         k = np.zeros((3, 3))
         for value, place in zip(numbers, PLACES):
             k[place] = value
-        # The dye of a slide is what did not develop first.
+        # The dye of a slide forms where the first developer left silver halide, so the sign changes.
         k = k if self.m.kind == "negative" else -k
         return [self.m.seen(self.m.film.developed(x, k)) for x in self.exposures]
 

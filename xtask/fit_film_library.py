@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Finds the few numbers by which xtask/film_library.py makes the grays of its stocks gray, and writes xtask/film_library.json.
+"""Fits the few numbers by which xtask/film_library.py makes the grays of its stocks gray, and writes xtask/film_library.json.
 
 Run from the root of the repository, with the wheel that import_film.py names, and numpy:
 
     VENV/bin/python xtask/fit_film_library.py WHEEL [STOCK ...]
 
-The model is that of xtask/fit_film_color.py. What is fitted, of each stock by itself:
-  negative       of blue and red against green
+The model is that of xtask/fit_film_color.py. What is fitted, for each stock separately:
+  negative       curves of blue and red against green:
                  p (u + 1) + q (u^2 - 1) + r (u + 1) u (u - 1.2), density, u = decades from mid gray, -1 to 1.2
-  slide          of blue and red three times q (t exp(1 - t))^2, t = density over the minimum over 0.4, 1.0 and 2.2,
+  slide          three terms q (t exp(1 - t))^2 for blue and red, t = density above the minimum over 0.4, 1.0 and 2.2,
                  and a shift along log10 exposure
-  paper, print   the same without a shift (paper: 0.3, 0.9 and 1.9; film: 0.3, 1.0 and 2.4): so that the negatives that are made
-                 for it, as digitized, print gray on it; Vision3 250D where there are none
-To what: a neutral subject in the film's own light is gray, as fit_film_color.py has it; every number as near to 0 as that allows.
-What layers do to each other leaves a gray scale alone: xtask/fit_film_families.py finds it afterwards.
+  paper, print   the terms of a slide without a shift (paper: 0.3, 0.9 and 1.9; film: 0.3, 1.0 and 2.4), so that the negatives made for
+                 this stock, as digitized, print gray on it; Vision3 250D if there are none
+Targets: a neutral subject in the film's own light is gray, as in fit_film_color.py, and every number is as near to 0 as that allows.
+The influence of the layers on each other does not change a gray scale: xtask/fit_film_families.py fits it afterwards.
 """
 
 import json
@@ -29,9 +29,9 @@ import import_film as base  # noqa: E402
 
 ORDER = (2, 1, 0)
 HINGE, SPREAD, PAPER = 1.7, 0.01, 0.05
-# crates/film/src/look.rs.
+# Stray light of the room, as in crates/film/src/look.rs.
 FLARE = 0.005
-# Where a gray scale is gray within this, the curves stay as digitized.
+# If the gray scale is gray within this CIELAB a*, b*, the curves stay as digitized.
 NEUTRAL = 1.95
 
 
@@ -51,11 +51,11 @@ class Film(model.Film):
         self.reference = reference
         if reference is not None:
             self.per_lux = (model.V * reference).sum() / (self.sees * reference).sum(1)
-        # Of the dyes, only where the status products see.
+        # The dyes matter only where the status products are above 0.
         self.seen = self.status.max(0) > 1e-7
 
     def take_apart(self, curves):
-        """Amounts of dye over log10 exposure, all at once."""
+        """Computes amounts of dye over all log10 exposures at once."""
         wanted = self.clear[:, None] + np.array([c(self.x) - c(self.x).min() for c in curves])
         status, dyes, minimum = self.status[:, self.seen], self.dyes[:, self.seen], self.base[self.seen]
         amounts = np.maximum(wanted - self.clear[:, None], 0)
@@ -77,7 +77,7 @@ class Film(model.Film):
 
 
 class Eye(model.Seen):
-    """What is seen of film, or of paper with FLARE of the room's light on top."""
+    """Converts the light from film, or from paper with FLARE of the room's light added, to CIELAB."""
 
     def __init__(self, clear, paper):
         super().__init__(clear)
@@ -87,7 +87,7 @@ class Eye(model.Seen):
         return model.cielab((self.weights @ passes / self.white + self.flare) / (1 + self.flare))
 
     def gray(self):
-        """Luminance that is shown as mid gray."""
+        """Returns the luminance that shows as mid gray."""
         return (0.18 * (1 + self.flare) - self.flare) * self.white[1]
 
 
@@ -120,7 +120,7 @@ class Print:
 
 
 def mended(film, kind, numbers):
-    """The film's curves, blue and red moved by `numbers`."""
+    """Returns the film's curves, with blue and red corrected by `numbers`."""
     gray = np.log10(10 / film.iso) if film.iso else None
     out = list(film.curves)
     for i, layer in ((0, "blue"), (2, "red")):
@@ -130,7 +130,7 @@ def mended(film, kind, numbers):
 
 
 class Negative:
-    """A negative on a print stock that is done."""
+    """Model of a negative on a print stock that is already fitted."""
 
     kind, hold = "negative", False
 
@@ -180,7 +180,7 @@ class Slide:
 
 
 class Onto:
-    """A print stock under the negatives that are made for it."""
+    """Model of a print stock under the negatives that are made for it."""
 
     def __init__(self, onto, negatives, kind):
         self.onto, self.negatives, self.kind = onto, negatives, kind
@@ -193,7 +193,7 @@ class Onto:
         self.onto.take_apart(mended(self.onto.film, self.kind, {"blue": p[:3], "red": p[3:]}))
 
     def ramps(self):
-        """CIELAB of every half stop, of each negative."""
+        """Yields CIELAB at every half stop, for each negative."""
         for film in self.negatives:
             gray = np.log10(10 / film.iso)
             self.onto.balance(film, gray)
@@ -220,7 +220,7 @@ def residuals(m, p):
 
 
 def fit(m, steps=14, h=1e-3):
-    """Levenberg and Marquardt's least squares."""
+    """Minimizes the squares by Levenberg-Marquardt."""
     p, damping = m.start.copy(), 1e-3
     r = residuals(m, p)
     for _ in range(steps):
@@ -257,7 +257,7 @@ def report(name, m):
 
 
 def fitted_5207(folder, light):
-    """Vision3 250D with the numbers of import_film.py."""
+    """Returns Vision3 250D with the numbers of import_film.py."""
     data = base.load(folder, "negative_film.kodak_5207", "KODAK_5207")
     film = Film(data, "status-m", 250, base.pairs(data.d_min_sd), True, light)
     curves = list(film.curves)
@@ -268,7 +268,7 @@ def fitted_5207(folder, light):
 
 
 def fitted_2383(folder):
-    """2383 with the numbers of import_film.py."""
+    """Returns print film 2383 with the numbers of import_film.py."""
     data = base.load(folder, "print_film.kodak_2383", "KODAK_2383")
     onto = Print(Film(data, "status-a", None, None, True, None), False)
     onto.take_apart([model.Curve(base.mended("print", l, p, None)[0]) for l, p in zip(("blue", "green", "red"), onto.film.points)])
@@ -281,7 +281,7 @@ def keep(numbers):
 
 
 def lights():
-    """Lights and observer of the model."""
+    """Returns the illuminants by name, after setting the model's D55 and standard observer."""
     functions = model.table("cie/cie-1931-2deg.csv")
     model.CMF = np.array([functions[k] for k in "xyz"])
     model.V, model.D55 = model.CMF[1], model.illuminant("D55")

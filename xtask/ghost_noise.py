@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""How smooth ghosts are, and how true: footprints against rays that add to one pixel each, at the defaults of three scenes.
+"""Measures noise and bias of ghosts in three scenes at their defaults: footprints against rays that add to one pixel each.
 
     python3 xtask/ghost_noise.py target/release/spectra [SCENE ...] [--times 30]
 
-Needs numpy. Of each scene the layer of the ghosts alone is rendered with `render.reflections.spread` `footprint` and `none`, and with
-`none` and so many times the samples (the reference, nearly all of the time). Printed, in red, green, blue:
+Needs numpy. For each scene the script renders only the layer of the ghosts, with `render.reflections.spread` `footprint` and `none`, and
+with `none` and `--times` times the samples (the reference, which takes nearly all of the time). It prints, for red, green and blue:
 
-noise      standard deviation about the plane fitted to each block of 16 x 16 pixels, as a part of the block's mean: the median of blocks
+noise      standard deviation about the plane fitted to each block of 16 x 16 pixels, relative to the block's mean: the median of blocks
            over 8 pixels from edges and caustics, and the 90th percentile
-means      block means of footprints over those of the reference, less 1: root of the mean square, and the part of blocks within 2 %;
-           beside it the same of `none` by as many rays
-totals     light of each of the strongest paths with more than 1 % of the ghosts, footprints over `none` by the same rays, less 1
+means      block means of footprints relative to those of the reference, less 1: root mean square, and the part of blocks within 2 %;
+           then the same numbers for `none` with as many rays
+totals     light of each of the strongest paths with more than 1 % of the ghosts, footprints relative to `none` with the same rays, less 1
 edges      blur that best turns the reference into the footprints in blocks with edges: sigma of a Gaussian, pixels
-seconds    of processor time, both ways, without layers of single paths
+seconds    processor time of both ways, without layers of single paths
 """
 
 import argparse
@@ -27,18 +27,19 @@ import numpy as np
 import exr_lines
 
 ROOT = Path(__file__).resolve().parent.parent
-# The part of the frame that is looked at: grass below the sky, sky above the street; the whole of the zoom's frame has grass or sky.
+# Rows of blocks that are compared, as fractions of the frame: grass below the sky, sky above the street. The zoom's whole frame has
+# grass or sky.
 SCENES = {"sun-biotar": (0.55, 1.0), "sun-zoom": (0.55, 1.0), "night-street": (0.0, 0.4)}
 PATHS = 12
 SIDE = 16
 FAR = 8
-# Blocks with less light than this, of the median, are not looked at.
+# Blocks with less light than this fraction of the median are ignored.
 DARK = 0.01
 COLORS = ("red", "green", "blue")
 
 
 def rendered(program, scene, folder, *sets, paths=PATHS):
-    """The layers of a scene, and the processor time."""
+    """Returns the layers of a scene, and the processor time, s."""
     output = f"output=[{{kind: exr, layers: [direct, ghosts]{f', ghost-paths: {paths}' if paths else ''}}}]"
     command = [program, "run", scene, "--set", "sweep=null", "--set", output, "-o", folder]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -49,7 +50,7 @@ def rendered(program, scene, folder, *sets, paths=PATHS):
 
 
 def ghosts(planes):
-    """Light of all ghosts, one plane a color, and that of each path."""
+    """Returns the light of all ghosts, one plane for each color, and the light of each path."""
     paths = sorted({name.rsplit(".", 1)[0] for name in planes if "ghost" in name.lower()})
     each = {path: np.stack([planes[f"{path}.{color}"] for color in COLORS]) for path in paths}
     whole = each.pop("ghosts") if "ghosts" in each else sum(each.values())
@@ -57,7 +58,7 @@ def ghosts(planes):
 
 
 def blocks(image):
-    """Of each whole block of an image, color by color: its pixels."""
+    """Cuts an image into whole blocks. Returns their pixels for each color."""
     colors, height, width = image.shape
     rows, columns = height // SIDE, width // SIDE
     cut = image[:, : rows * SIDE, : columns * SIDE].reshape(colors, rows, SIDE, columns, SIDE)
@@ -65,7 +66,7 @@ def blocks(image):
 
 
 def noise(image):
-    """Standard deviation about a plane over the mean, block by block."""
+    """Returns the standard deviation about a plane relative to the mean, for each block."""
     y, x = np.mgrid[:SIDE, :SIDE] - (SIDE - 1) / 2
     plane, _ = np.linalg.qr(np.stack([np.ones(SIDE * SIDE), x.ravel(), y.ravel()], 1))
     pixels = blocks(image)
@@ -86,7 +87,7 @@ def blurred(image, sigma):
 
 
 def edges(reference):
-    """Blocks that an edge or a caustic runs through or near: the reference, slightly blurred, bends there by more than its noise."""
+    """Marks blocks near an edge or a caustic: the slightly blurred reference changes there by more than its noise."""
     smooth = blurred(reference, 2.0).sum(0)
     step = np.maximum(np.abs(np.gradient(smooth, axis=0)), np.abs(np.gradient(smooth, axis=1)))
     is_edge = step > 0.04 * np.maximum(smooth, 1e-30)
@@ -111,7 +112,7 @@ def report(program, scene, times):
     rows = blocks(many).shape[1]
     part = np.zeros(blocks(many).shape[1:3], bool)
     part[int(low * rows) : int(high * rows)] = True
-    # Where hardly any light comes there is nothing to be a part of.
+    # Blocks with hardly any light have no meaningful relative error.
     light = blocks(many).mean(-1).min(0)
     part &= light > DARK * np.median(light)
     edge = edges(many)

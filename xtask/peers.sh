@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Computes the tables that other programs gave us anew, by those programs, and compares them with the ones the tests hold us to.
+# Computes reference tables again with the programs that they came from, and compares them with the tables that the tests use.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
@@ -10,7 +10,7 @@ same() {
     "$work/python/bin/python" - "$1" "$2" <<'PYTHON'
 import csv, sys
 ours, theirs = (list(csv.reader(open(name, encoding="utf-8"))) for name in sys.argv[1:])
-assert len(ours) == len(theirs), f"{len(ours)} rows, computed anew {len(theirs)}"
+assert len(ours) == len(theirs), f"{len(ours)} rows, but {len(theirs)} when computed again"
 worst = 0.0
 for a, b in zip(ours, theirs):
     for x, y in zip(a, b, strict=True):

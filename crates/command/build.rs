@@ -9,7 +9,7 @@ fn main() {
     println!("cargo::rustc-env=SPECTRA_RUSTC={}", rustc.as_deref().unwrap_or("unknown"));
     let target = std::env::var("TARGET").unwrap_or_else(|_| "unknown".to_owned());
     println!("cargo::rustc-env=SPECTRA_TARGET={target}");
-    // Built from a package there is no repository, and no commit is named.
+    // A build from a package has no repository, so no commit is named.
     if let Some(commit) = commit() {
         println!("cargo::rustc-env=SPECTRA_COMMIT={commit}");
     }
@@ -17,11 +17,11 @@ fn main() {
 
 fn commit() -> Option<String> {
     let top = output("git", &["rev-parse", "--show-toplevel"])?;
-    // The repository that holds this file, not one that a vendored copy happens to lie in.
+    // Only the repository of this file counts, not one that happens to contain a vendored copy.
     if !Path::new(&top).join("crates/command/build.rs").is_file() {
         return None;
     }
-    // Each commit, also on the branch that is out, adds a line to this file.
+    // Each commit, including those on the current branch, adds a line to this file.
     let log = output("git", &["rev-parse", "--git-path", "logs/HEAD"])?;
     if Path::new(&log).is_file() {
         println!("cargo::rerun-if-changed={log}");

@@ -1,4 +1,4 @@
-//! Nothing to do: the manifest's `links` needs a build script.
+//! An empty build script, because `links` in the manifest requires one.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -1,4 +1,4 @@
-//! Nothing to do: the manifest's `links` needs a build script.
+//! Does nothing: the manifest's `links` needs a build script.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

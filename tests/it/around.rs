@@ -1,4 +1,4 @@
-//! Imagers that look where the light of the source lands (`imager: {around: source}`), and points of a color.
+//! Tests imagers placed where the light of the source lands (`imager: {around: source}`), and points with a color.
 
 use spectra_color::{RgbSpace, to_u8};
 use spectra_core::Isa;
@@ -7,8 +7,9 @@ use spectra_plugins as _;
 use spectra_render::{Control, Renderer, Threads};
 use std::path::Path;
 
-/// Focal length of the ideal lens, and the distance that it is focused at, mm.
+/// Focal length of the ideal lens, mm.
 const FOCAL_MM: f64 = 50.0;
+/// Focus distance of the ideal lens, mm.
 const DISTANCE_MM: f64 = 2000.0;
 
 fn scene(folder: &Path, source: &str, imager: &str) -> Result<spectra_scene::Scene, String> {
@@ -28,7 +29,7 @@ fn render(scene: spectra_scene::Scene) -> ExposureFrame {
     renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
 }
 
-/// Column and row of the middle of the light, in pixels, and all of Y.
+/// Returns the column and row of the center of the light, in pixels, and the sum of Y.
 fn middle(frame: &ExposureFrame) -> ([f64; 2], f64) {
     let y = frame.values("Y").expect("of an xyz imager");
     let width = frame.size.width_px as usize;
@@ -41,7 +42,7 @@ fn middle(frame: &ExposureFrame) -> ([f64; 2], f64) {
     (places.map(|v| v / sum), sum)
 }
 
-/// A point far off the axis: its image lies at the magnification times its place, and there the frame of 1 mm stands.
+/// The image of a point far off the axis lies at the magnification times its position, and a frame of 1 mm is placed there.
 #[test]
 fn a_frame_of_a_millimeter_finds_the_spot() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -50,14 +51,14 @@ fn a_frame_of_a_millimeter_finds_the_spot() {
     let around = render(scene(folder.path(), source, &frame(", around: source")).expect("valid"));
     let ([column, row], light) = middle(&around);
     assert!(light > 0.0 && (column - 50.5).abs() < 0.51 && (row - 50.5).abs() < 0.51, "{column} {row}");
-    // Where that is: x and y count against the image, which is upside down.
+    // The position of the image by hand: x and y have the opposite sign, because the image is upside down.
     let magnification = FOCAL_MM / (DISTANCE_MM - FOCAL_MM);
     let [x, y] = [-300.0 * magnification, 120.0 * magnification];
     let by_hand = render(scene(folder.path(), source, &frame(&format!(", shift: [{x} mm, {y} mm]"))).expect("valid"));
     let ([by_column, by_row], by_light) = middle(&by_hand);
     assert!((column - by_column).abs() < 0.51 && (row - by_row).abs() < 0.51, "{by_column} {by_row}");
     assert!((light / by_light - 1.0).abs() < 1e-6, "{light} {by_light}");
-    // A shift counts from there: 0.2 mm along x and y are 20.2 pixels to the right and up.
+    // A shift is relative to that position: 0.2 mm along x and y is 20.2 pixels to the right and up.
     let shifted =
         render(scene(folder.path(), source, &frame(", around: source, shift: [0.2 mm, 0.2 mm]")).expect("valid"));
     let ([shifted_column, shifted_row], _) = middle(&shifted);
@@ -65,11 +66,11 @@ fn a_frame_of_a_millimeter_finds_the_spot() {
         (shifted_column - column - 20.2).abs() < 0.7 && (shifted_row - row + 20.2).abs() < 0.7,
         "{shifted_column} {shifted_row}"
     );
-    // Without either the light falls beside the frame.
+    // Without `around` and `shift` the light misses the frame.
     assert_eq!(middle(&render(scene(folder.path(), source, &frame("")).expect("valid"))).1, 0.0);
 }
 
-/// A lens that bends its light away: a narrow screen on the axis misses a line that a prism sends aside, and finds it around the source.
+/// A narrow screen on the axis misses a line that a prism deflects; placed around the source, it finds the line.
 #[test]
 fn a_screen_finds_the_line_behind_a_prism() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/prism-hydrogen.yaml");
@@ -90,7 +91,8 @@ fn a_screen_finds_the_line_behind_a_prism() {
     assert!(axis.on_frame < 0.1 && source.on_frame > 0.9, "{axis:?} {source:?}");
 }
 
-/// The screens of the bundled prisms catch what they are there for: all Balmer lines, and a continuous spectrum where the eye sees it.
+/// The screens of the bundled prisms catch the light that they are made for: all Balmer lines, and the visible part of a continuous
+/// spectrum.
 #[test]
 fn the_screens_of_the_prisms_catch_every_line() {
     let balmer: &[f64] = &[656.28, 486.13, 434.05, 410.17, 397.01, 388.91, 383.54];
@@ -105,7 +107,7 @@ fn the_screens_of_the_prisms_catch_every_line() {
     }
 }
 
-/// The color of a point is that of its `rgb`, within half a code value, however bright it is.
+/// A point has the color of its `rgb`, within two code values, at any brightness.
 #[test]
 fn a_point_has_the_color_that_it_is_given() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -116,7 +118,7 @@ fn a_point_has_the_color_that_it_is_given() {
         let frame = render(scene(folder.path(), &source, imager).expect("valid"));
         let sum = |name: &str| frame.values(name).expect("of an xyz imager").iter().map(|v| f64::from(*v)).sum::<f64>();
         let linear = RgbSpace::srgb().from_xyz([sum("X"), sum("Y"), sum("Z")]);
-        // Brightness apart: the largest is as large as it is asked to be.
+        // Compares colors without brightness: the largest component is scaled to the requested one.
         let scale = RgbSpace::srgb().decode(rgb.map(|v| f64::from(v) / 255.0)).into_iter().fold(0.0, f64::max)
             / linear.into_iter().fold(0.0, f64::max);
         let found = RgbSpace::srgb().encode(linear.map(|v| v * scale)).map(to_u8);
@@ -134,21 +136,21 @@ fn what_cannot_be_is_refused_with_its_place() {
             imager,
             "`spectrum` and `rgb` exclude each other",
         ),
-        ("{kind: point, distance: 2 m, rgb: [0, 0, 0]}", imager, "black is no light"),
+        ("{kind: point, distance: 2 m, rgb: [0, 0, 0]}", imager, "the color of a light cannot be black"),
         ("{kind: point, distance: 2 m, rgb: [256, 0, 0]}", imager, "256"),
-        ("{kind: point, distance: 2 m, color: {kind: smooth}}", imager, "there is none"),
+        ("{kind: point, distance: 2 m, color: {kind: smooth}}", imager, "there is no `rgb`"),
         (
             "{kind: point, distance: 2 m, field: [80 deg, 0]}",
             "{kind: xyz, width: 1 mm, height: 1 mm, resolution: [9, 9], around: lamp}",
             "around",
         ),
     ] {
-        let faults = scene(folder.path(), source, imager).err().unwrap_or_else(|| panic!("{source} passes"));
+        let faults = scene(folder.path(), source, imager).err().unwrap_or_else(|| panic!("{source} is accepted"));
         assert!(faults.contains(words), "{faults}");
     }
 }
 
-/// Where no surface states its size, what to write is told in the words of the lens's file.
+/// If no surface states its size, the hint uses the terms of the lens's file format.
 #[test]
 fn sizes_are_asked_for_in_the_words_of_the_file() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -156,7 +158,7 @@ fn sizes_are_asked_for_in_the_words_of_the_file() {
     let zmx = "SURF 0\n  DISZ INFINITY\nSURF 1\n  CURV 0.02\n  DISZ 5\n  GLAS N-BK7\nSURF 2\n  CURV -0.02\n  DISZ 47\nSURF 3\n";
     for (name, text, words) in [
         ("bare.yaml", yaml, "state `semi-diameter` in the lens file"),
-        ("bare.zmx", zmx, "in the .zmx, write an aperture"),
+        ("bare.zmx", zmx, "in the .zmx, add an aperture"),
     ] {
         std::fs::write(folder.path().join(name), text).expect("written");
         let path = folder.path().join("scene.yaml");

@@ -1,4 +1,4 @@
-//! Nothing is written over a file that is read.
+//! Tests that no command overwrites a file that it reads.
 
 use crate::common::{run, run_in, shown, text};
 use image::{Rgb, RgbImage};
@@ -36,7 +36,7 @@ fn no_command_writes_over_what_it_reads() {
     ] {
         let (code, said) = run(arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {said}");
-        assert!(said.contains("would be written over"), "{arguments:?}: {said}");
+        assert!(said.contains("would be overwritten"), "{arguments:?}: {said}");
         assert!(before == read(), "{arguments:?}");
     }
     let (code, said) = run(&["run", "plate.yaml", "-o", "out"]);

@@ -1,4 +1,4 @@
-//! `spectra bench`: figures that a program can read, and that are right.
+//! Tests that the figures of `spectra bench` are correct and machine-readable.
 
 use crate::common::{good, repository, run, shown, text as text_of};
 use serde_json::Value;
@@ -8,7 +8,7 @@ fn scene(name: &str) -> String {
     shown(&repository(&format!("scenes/bench/sampling-{name}.yaml"))).to_owned()
 }
 
-/// The report of a benchmark, its files in `folder`.
+/// Returns the report of a benchmark that writes its files to `folder`.
 fn report(folder: &Path, name: &str, more: &[&str]) -> Value {
     let scene = scene(name);
     let arguments = ["bench", &scene, "--json", "--threads", "2", "-o", shown(folder)];
@@ -32,7 +32,7 @@ fn a_tiny_benchmark_writes_what_programs_read() {
     let tiny: Vec<&str> = tiny.into_iter().chain(["--strategies", "source-times-response,uniform"]).collect();
     let report = report(folder.path(), "d65-xyz", &tiny);
     assert_eq!(report["channels"], serde_json::json!(["X", "Y", "Z"]));
-    // Two strategies: the integral with either kind of numbers, and the scene.
+    // Two strategies, each with three series: the integral with both kinds of numbers, and the scene.
     assert_eq!(report["series"].as_array().expect("a list").len(), 6);
 
     let csv = std::fs::read_to_string(folder.path().join("sampling-d65-xyz-sampling.csv")).expect("a table");
@@ -48,7 +48,7 @@ fn a_tiny_benchmark_writes_what_programs_read() {
         assert!(low <= error && error <= high && error > 0.0, "{row:?}");
         assert!(value("seconds") > 0.0 && value("ciede2000") > 0.0, "{row:?}");
     }
-    // Each seed by itself: the root of the mean of their squares is the error of the table.
+    // Errors of the single seeds: their root mean square is the error in the table.
     let seeds = std::fs::read_to_string(folder.path().join("sampling-d65-xyz-sampling-seeds.csv")).expect("a table");
     let of_seeds: Vec<Vec<&str>> = seeds.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(of_seeds[0][5..], ["relative_rms_error", "relative_error X", "relative_error Y", "relative_error Z"]);
@@ -62,11 +62,11 @@ fn a_tiny_benchmark_writes_what_programs_read() {
     assert_eq!(of_first.len().to_string(), rows[0][column("seeds")]);
     assert!((mean.sqrt() / error - 1.0).abs() < 1e-9, "{mean} {error}");
     let svg = std::fs::read_to_string(folder.path().join("sampling-d65-xyz-sampling.svg")).expect("a picture");
-    assert!(svg.starts_with("<svg") && svg.contains("samples a pixel"));
+    assert!(svg.starts_with("<svg") && svg.contains("samples per pixel"));
     assert!(folder.path().join("sampling-d65-xyz-sampling.png").exists());
 }
 
-/// Another base seed draws other numbers; the same one the same.
+/// Another base seed gives other numbers, and the same seed the same numbers.
 #[test]
 fn a_base_seed_is_followed() {
     let of = |seed: &str| {
@@ -78,7 +78,7 @@ fn a_base_seed_is_followed() {
     assert!(of("7") == of("7") && of("7") != of("8"));
 }
 
-/// Independent uniform wavelengths: the error falls with the root of their number, by the central limit theorem.
+/// With independent uniform wavelengths the error falls with the square root of their number, by the central limit theorem.
 #[test]
 fn random_numbers_have_a_slope_of_one_half() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -90,7 +90,7 @@ fn random_numbers_have_a_slope_of_one_half() {
     assert!(even < -0.9, "{even}");
 }
 
-/// The figures that the usual strategy is held to: 64 jittered strata, 1 000 seeds.
+/// The default strategy keeps its promised errors: 64 jittered strata, 1 000 seeds.
 #[test]
 fn the_usual_strategy_is_as_good_as_promised() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -103,7 +103,7 @@ fn the_usual_strategy_is_as_good_as_promised() {
     }
 }
 
-/// A color sensor as three curves in a file: each column is a channel, and the integral is measured alone.
+/// Three curves in a file act as a color sensor: each column is a channel, and only the integral is measured.
 #[test]
 fn responses_of_ones_own_are_measured() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -130,7 +130,7 @@ fn responses_of_ones_own_are_measured() {
     }
 }
 
-/// The third family of numbers, by the scene's own word.
+/// The third kind of numbers, selected with `render.numbers`, is measured.
 #[test]
 fn stratified_numbers_are_measured() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -168,7 +168,7 @@ fn no_strategy_is_biased() {
     }
 }
 
-/// Rendered pixels too: no strategy is off the reference, and all agree on the way their error falls.
+/// No strategy deviates from the reference in rendered pixels, and the errors of all fall at a similar rate.
 #[test]
 fn rendered_pixels_are_not_biased_either() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -207,7 +207,7 @@ fn wrong_requests_are_named() {
     }
 }
 
-/// Noise of one scene by two directions: a table, and the same figures for programs.
+/// Measures the noise of one scene in two directions, as a table and as JSON.
 #[test]
 fn noise_is_measured_between_seeds() {
     let arguments = ["bench", "noise", "gray-card", "--set", "imager.resolution=[48, 32]", "--seconds", "1"];
@@ -219,13 +219,13 @@ fn noise_is_measured_between_seeds() {
         assert_eq!(row["estimators"], serde_json::json!([estimator]));
         let [noise, then, clean] = ["noise", "noise_then", "clean_s"].map(|key| number(&row[key][0]));
         assert!(noise > 0.0 && noise <= number(&row["noise"][1]) && then > 0.0, "{row}");
-        // 1 % takes as much longer as the noise squared is larger.
+        // The time to 1 % noise grows with the square of the noise.
         let want = number(&row["seconds"]) * (noise / 0.01) * (noise / 0.01);
         assert!((clean / want - 1.0).abs() < 1e-9, "{row}");
     }
 }
 
-/// A camera obscura with what `source` says in front of it, on Ortho Plus.
+/// Writes a scene of a pinhole camera on Ortho Plus with the given source, and returns its path.
 fn pinhole(folder: &Path, source: &str) -> String {
     let write = |name: &str, text: &str| {
         let path = folder.join(name);
@@ -250,8 +250,8 @@ const EDGE: &str =
     "{kind: chart, chart: slanted-edge, distance: 1 m, width: 1.2 m, illuminant: D65, luminance: 3000 cd/m2}";
 const EVERY: &str = "one-term-of-every-factor";
 
-/// Through a hole nothing needs a wavelength: one term of every factor has the mean of wavelengths that are drawn, within 3 standard
-/// errors, and scatters as all its choices say.
+/// Through a pinhole no part of the optics needs a wavelength. One term of every factor then has the same mean as drawn wavelengths,
+/// within 3 standard errors, and the scatter that its terms predict.
 #[test]
 fn one_term_of_every_factor_through_a_pinhole() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -267,7 +267,7 @@ fn one_term_of_every_factor_through_a_pinhole() {
         .nth(1)
         .and_then(|rest| rest.split(' ').next())
         .and_then(|number| number.parse().ok())
-        .unwrap_or_else(|| panic!("how far a sample scatters: {told}"));
+        .unwrap_or_else(|| panic!("no scatter of a sample in: {told}"));
     let of_terms = |measure, numbers| {
         let mut all = series(&report, measure, numbers).filter(|s| s["strategy"] == EVERY);
         all.next().unwrap_or_else(|| panic!("no row: {report}")).clone()
@@ -290,7 +290,7 @@ fn one_term_of_every_factor_through_a_pinhole() {
     }
 }
 
-/// One Gaussian each leaves nothing to chance: every sample is the integral, to rounding, as the scene has it.
+/// With one Gaussian per factor nothing is random: every sample equals the integral, up to rounding.
 #[test]
 fn one_gaussian_each_is_exact() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -310,7 +310,7 @@ fn one_gaussian_each_is_exact() {
     assert_eq!(points, 4);
 }
 
-/// Elsewhere it is refused, by the name of what needs a wavelength.
+/// In other scenes the strategy is refused, and the message names what needs a wavelength.
 #[test]
 fn one_term_of_every_factor_says_what_needs_a_wavelength() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -331,5 +331,5 @@ fn one_term_of_every_factor_says_what_needs_a_wavelength() {
     assert!(colors.contains("colors of the source"), "{colors}");
     let wrong =
         run(&["bench", &scene, "--strategies", "one-term-of-every-factor{term: 3}", "-o", shown(folder.path())]);
-    assert!(wrong.status.code() == Some(2) && text_of(&wrong.stderr).contains("its one key is `terms`"));
+    assert!(wrong.status.code() == Some(2) && text_of(&wrong.stderr).contains("its only key is `terms`"));
 }

@@ -1,44 +1,44 @@
-//! A corpus of broken input: what a user is told of each slip, word for word.
+//! Tests what the program says about a corpus of broken input, word for word.
 //!
-//! `tests/broken/NAME.yaml` is a scene with a slip in it; where the slip lies in another file, or on the command line,
-//! `tests/broken/NAME/` holds the files, and `args` the arguments one a line (`check scene.yaml` if absent).
-//! `tests/broken/NAME.txt` is what `spectra` says. `SPECTRA_BLESS=1 cargo test --test it cli_broken` writes these anew.
+//! `tests/broken/NAME.yaml` is a scene with a mistake. If the mistake is in another file or on the command line,
+//! `tests/broken/NAME/` holds the files, and `args` holds the arguments, one per line (`check scene.yaml` if absent).
+//! `tests/broken/NAME.txt` is the output of `spectra`. `SPECTRA_BLESS=1 cargo test --test it cli_broken` writes the texts anew.
 //!
-//! The words alone could be wrong, so each case states in comments what is broken, and these are compared with
-//! the places that the program gives:
+//! A text could be wrong, so each case also states in comments what is broken. These comments are compared with the
+//! places that the program reports:
 //!
-//! - `# broken: TEXT` in a file: one fault of that file starts at this text (`\t` is a tab);
-//! - `# at: FILE:LINE:COLUMN` anywhere: one fault is there, of a file that takes no comment;
+//! - `# broken: TEXT` in a file: one fault in that file starts at this text (`\t` is a tab).
+//! - `# at: FILE:LINE:COLUMN` anywhere: one fault is at this place, in a file that cannot hold a comment.
 //! - `# broken: TEXT` in `args`: one fault names this text and has no place in a file.
 //!
-//! There are as many faults as such comments, each with a hint; the code is 2, and nothing is written.
+//! The number of faults equals the number of such comments, and each fault has a hint. The exit code is 2, and no file is written.
 
 use crate::common::{answer_in, repository, text, together};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Fewer cases than this, and some were lost.
+/// Smallest number of cases; fewer mean that some were lost.
 const LEAST: usize = 40;
 
-/// A case: where it runs, with which arguments, and the files that it may name.
+/// A case: its folder, its arguments and the files that it may name.
 struct Case {
     name: String,
     folder: PathBuf,
     arguments: Vec<String>,
-    /// Whether it is a scene that `run` must refuse as `check` does.
+    /// Whether the case is a scene that `run` must reject like `check`.
     is_scene: bool,
     files: Vec<PathBuf>,
 }
 
-/// What the comments of a case say.
+/// Places of faults that the comments of a case state.
 #[derive(Default)]
 struct Marks {
-    /// Texts at which a fault starts, by file.
+    /// Texts at which a fault starts, each with its file.
     tokens: Vec<(String, String)>,
-    /// Places, as `file:line:column`.
+    /// Places of faults, as `file:line:column`.
     places: Vec<String>,
-    /// Texts of the command line.
+    /// Texts on the command line that a fault names.
     words: Vec<String>,
 }
 
@@ -55,7 +55,7 @@ fn each_slip_is_told_where_it_is_and_what_to_do() {
     assert!(wrong.is_empty(), "{} complaints about {} cases\n\n{}", wrong.len(), cases.len(), wrong.join("\n\n"));
 }
 
-/// No text without its case.
+/// Checks that every text belongs to a case.
 #[test]
 fn every_text_belongs_to_a_case() {
     let root = repository("tests/broken");
@@ -66,7 +66,7 @@ fn every_text_belongs_to_a_case() {
     }
 }
 
-/// What is wrong with the answer to a case.
+/// Returns what is wrong with the program's answer to a case.
 fn judge(case: &Case, root: &Path, bless: bool) -> Vec<String> {
     let before = snapshot(&case.folder);
     let said = answer(case, &case.arguments);
@@ -78,7 +78,7 @@ fn judge(case: &Case, root: &Path, bless: bool) -> Vec<String> {
         let (again, more) = answer(case, &run);
         wrong.extend(more);
         if again != said {
-            wrong.push(format!("`run` says something else than `check`:\n{again}"));
+            wrong.push(format!("`run` and `check` say different things:\n{again}"));
         }
     }
     if snapshot(&case.folder) != before {
@@ -88,13 +88,13 @@ fn judge(case: &Case, root: &Path, bless: bool) -> Vec<String> {
     if bless {
         fs::write(&expected, &said).expect("written");
     } else if fs::read_to_string(&expected).unwrap_or_default() != said {
-        wrong.push(format!("the text is another one (SPECTRA_BLESS=1 writes it anew):\n{said}"));
+        wrong.push(format!("the text differs from the expected one (SPECTRA_BLESS=1 writes it anew):\n{said}"));
     }
     wrong.extend(places_are_right(case, &said));
     wrong
 }
 
-/// What the program says, and what is wrong with how it says it.
+/// Returns the program's output, and what is wrong with the way it was given.
 fn answer(case: &Case, arguments: &[String]) -> (String, Vec<String>) {
     let output = answer_in(&case.folder, &arguments.iter().map(String::as_str).collect::<Vec<_>>());
     let (said, out) = (text(&output.stderr), text(&output.stdout));
@@ -106,19 +106,19 @@ fn answer(case: &Case, arguments: &[String]) -> (String, Vec<String>) {
         wrong.push(format!("writes to standard output:\n{out}"));
     }
     if said.contains("panicked") || said.contains('\u{1b}') {
-        wrong.push(format!("panics, or colors a pipe:\n{said}"));
+        wrong.push(format!("panics, or writes colors to a pipe:\n{said}"));
     }
     (said, wrong)
 }
 
-/// Compares the places that the program gives with the comments of the case.
+/// Compares the places that the program reports with the comments of the case.
 fn places_are_right(case: &Case, said: &str) -> Vec<String> {
     let mut wrong = Vec::new();
     let marks = marks(case);
     let faults: Vec<&str> = said.split("\n\n").map(|fault| fault.split("\nerror: ").next().unwrap_or("")).collect();
     let wanted = marks.tokens.len() + marks.places.len() + marks.words.len();
     if faults.len() != wanted {
-        wrong.push(format!("{} faults, where its comments name {wanted}:\n{said}", faults.len()));
+        wrong.push(format!("{} faults, but the comments state {wanted}:\n{said}", faults.len()));
     }
     let (mut tokens, mut places, mut words) = (marks.tokens, marks.places, marks.words);
     for fault in faults {
@@ -143,18 +143,18 @@ fn places_are_right(case: &Case, said: &str) -> Vec<String> {
             Ok((file, rest)) => {
                 match tokens.iter().position(|(of, token)| *of == file && rest.starts_with(token.as_str())) {
                     Some(at) => drop(tokens.remove(at)),
-                    None => wrong.push(format!("{place} is not what is broken, but `{rest}`:\n{fault}")),
+                    None => wrong.push(format!("{place} is at `{rest}`, which is not marked as broken:\n{fault}")),
                 }
             }
         }
     }
     for left in tokens.iter().map(|(_, token)| token).chain(&places).chain(&words) {
-        wrong.push(format!("nothing is said of `{left}`"));
+        wrong.push(format!("no fault mentions `{left}`"));
     }
     wrong
 }
 
-/// File of a place, and what stands there up to the end of its line.
+/// Returns the file of a place and the rest of its line from that place on.
 fn rest_of_line(case: &Case, place: &str) -> Result<(String, String), String> {
     let mut parts = place.rsplitn(3, ':');
     let (column, line, file) = (parts.next(), parts.next(), parts.next());
@@ -171,7 +171,7 @@ fn rest_of_line(case: &Case, place: &str) -> Result<(String, String), String> {
     Ok((file.to_owned(), line.chars().skip(column).collect()))
 }
 
-/// The comments of all files of a case.
+/// Collects the comments of all files of a case.
 fn marks(case: &Case) -> Marks {
     let mut marks = Marks::default();
     for path in &case.files {
@@ -215,7 +215,7 @@ fn cases(root: &Path) -> Vec<Case> {
     cases
 }
 
-/// A path as the program names it from the folder.
+/// Returns a path as the program names it from the folder.
 fn shown(path: &Path, folder: &Path) -> String {
     path.strip_prefix(folder).expect("within").to_str().expect("plain names").to_owned()
 }
@@ -232,7 +232,7 @@ fn all_files(folder: &Path) -> Vec<PathBuf> {
     entries(folder).into_iter().flat_map(inside).collect()
 }
 
-/// Size and time of every file below a folder; texts that are written anew beside the cases do not count.
+/// Returns size and time of every file below a folder, except the texts, which may be written anew beside the cases.
 fn snapshot(folder: &Path) -> BTreeMap<PathBuf, (u64, std::time::SystemTime)> {
     let files = all_files(folder).into_iter().filter(|path| path.extension().is_none_or(|ending| ending != "txt"));
     let of = |path: PathBuf| {

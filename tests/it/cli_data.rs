@@ -1,11 +1,11 @@
-//! Everything that is data is added by files alone: in an empty folder, with nothing but the program.
+//! Tests that every kind of data can be added with files only, in an empty folder with just the program.
 
 use crate::common::{self, text};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Output;
 
-/// A folder with these files.
+/// Creates a folder with these files.
 fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, content) in files {
@@ -34,14 +34,14 @@ fn json(folder: &tempfile::TempDir, arguments: &[&str]) -> Value {
     serde_json::from_str(&good(folder, arguments)).expect("JSON")
 }
 
-/// What `spectra check` says of a scene that is wrong.
+/// Returns what `spectra check` says about a broken scene.
 fn said(folder: &tempfile::TempDir, scene: &str) -> String {
     let output = run_in(folder, &["check", scene]);
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stdout));
     text(&output.stderr)
 }
 
-/// Mean of a channel of an EXR of the folder.
+/// Returns the mean of a channel of an EXR file in the folder.
 fn mean(folder: &tempfile::TempDir, file: &str, channel: &str) -> f64 {
     let image = exr::prelude::read_all_flat_layers_from_file(folder.path().join(file)).expect("an EXR");
     let of = |c: &&exr::prelude::AnyChannel<exr::prelude::FlatSamples>| c.name.to_string() == channel;
@@ -51,7 +51,7 @@ fn mean(folder: &tempfile::TempDir, file: &str, channel: &str) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// SCHOTT's coefficients of N-BK7: nd 1.51680, Vd 64.17 by its data sheet.
+/// A glass with SCHOTT's coefficients of N-BK7; its data sheet states nd 1.51680 and Vd 64.17.
 const CROWN: &str = "name: MY-CROWN\nformula: sellmeier-1\ncoefficients:\n  [1.03961212, 0.00600069867, 0.231792344, \
     0.0200179144, 1.01046945, 103.560653]\nrange: [310, 2325]\nnd: 1.5168\nvd: 64.17\n\
     internal-transmittance: {thickness: 10 mm, table: [[400, 0.997], [546, 0.998], [700, 0.998]]}\n";
@@ -59,12 +59,12 @@ const CROWN: &str = "name: MY-CROWN\nformula: sellmeier-1\ncoefficients:\n  [1.0
 const SINGLE: &str = "name: single\nsurfaces:\n  - {kind: sphere, radius: 100, thickness: 5, glass: GLASS, semi-diameter: 10}\n  \
     - {kind: sphere, radius: -100, thickness: 95, semi-diameter: 10, stop: true}\n";
 
-/// A white sheet in equal-energy light, through a lens of the folder.
+/// A scene of a white sheet in equal-energy light, through a lens in the folder.
 const SHEET: &str = "spectra: 1\nsource: {kind: chart, chart: white, distance: 1 m, width: 2 m, illuminant: E}\n\
     lens: {file: single.yaml}\nimager: {kind: xyz, width: 4, height: 4, resolution: [8, 8]}\nrender: {samples: 64, seed: 1}\noutput: [exr]\n";
 
-/// By formula, table, CSV, AGF and a page of refractiveindex.info, in the command and in a lens: EFL by the lensmaker's formula
-/// with nd 1.5168, 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)).
+/// Adds a glass as formula, table, CSV, AGF and a page of refractiveindex.info, and uses it in the command and in a lens. The focal
+/// length follows the lensmaker's formula with nd 1.5168: 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)).
 #[test]
 fn a_glass() {
     let n: f64 = 1.5168;
@@ -99,11 +99,11 @@ fn a_glass() {
         assert!((efl - want).abs() < 1e-4, "{name}: {efl} {want}");
     }
     assert!(json(&folder, &["lens", "info", "inline.yaml", "--json"])["efl_mm"].as_f64().expect("a length") > 90.0);
-    // exp(-4 pi k d / lambda): a table's k of 1e-8 over 10 mm at the e line.
+    // exp(-4 pi k d / lambda): a k of 1e-8 in the table, through 10 mm at the e line.
     let tau = json(&folder, &["glass", "info", "table.csv", "--wavelength-nm", "546.074", "--json"]);
     let want = (-4.0 * std::f64::consts::PI * 1e-8 * 1e7 / 546.074_f64).exp();
     assert!((tau["internal_transmittance_10mm_at"].as_f64().expect("known") - want).abs() < 1e-9);
-    // Each fault points into the glass's own file.
+    // Each fault points into the file of the glass.
     write(folder.path(), "single.yaml", &SINGLE.replace("GLASS", "glasses/crown.yaml"));
     write(folder.path(), "s.yaml", SHEET);
     for (broken, place) in [
@@ -121,8 +121,8 @@ fn a_glass() {
     assert!(said(&folder, "s.yaml").contains("table.csv:3:5"));
 }
 
-/// A quarter wave of index 1.38 on index 1.5: R = ((n0 n2 - n1^2) / (n0 n2 + n1^2))^2 a surface at 550 nm; a measured curve of
-/// 2 % a surface. In narrow light of 550 nm, against the same lens without reflections.
+/// Adds coatings. A quarter wave of index 1.38 on index 1.5 has R = ((n0 n2 - n1^2) / (n0 n2 + n1^2))^2 per surface at 550 nm; a
+/// measured curve has 2 % per surface. Compared in narrow light of 550 nm with the same lens without reflections.
 #[test]
 fn a_coating() {
     let folder = folder(&[
@@ -138,7 +138,7 @@ fn a_coating() {
     };
     let all = light("ideal");
     let r = ((1.5 - 1.38 * 1.38) / (1.5 + 1.38 * 1.38_f64)).powi(2);
-    // The rays are the same; angles of incidence up to some degrees change R by its square.
+    // The rays are the same; angles of incidence of a few degrees change R only by their square.
     for (coating, want) in
         [("coatings/quarter.yaml", (1.0 - r) * (1.0 - r)), ("measured.csv", 0.98 * 0.98), ("bare", 0.96 * 0.96)]
     {
@@ -154,7 +154,7 @@ fn a_coating() {
 const TRI_X_MY_WAY: &str = "name: Tri-X, my way\nlike: kodak-tri-x-400\niso: 200\nlayers:\n  - name: panchromatic\n    \
     sensitivity: {file: seen.csv, reading: linear, measured-under: equal-energy}\n";
 
-/// A stock that is like another one but for its speed and what it sees: the rest is the other's.
+/// A stock that is like another one except for its speed and sensitivity inherits everything else.
 #[test]
 fn a_film_stock() {
     let folder = folder(&[
@@ -179,7 +179,7 @@ fn a_film_stock() {
     let peak = |stock: &Value| stock["layers"][0]["peak_nm"].as_f64().expect("a wavelength");
     assert!((400.0..=500.0).contains(&peak(&mine)), "{}", peak(&mine));
     assert!(kodak["layers"][0]["developments"].as_array().is_some_and(|all| all.len() > 1));
-    // A filter that is dark where the stock sees leaves it black; both see the other half.
+    // A filter that is dark where the stock sees leaves the stock black; both stocks see the other half of the band.
     write(folder.path(), "blue.csv", "wavelength_nm,transmittance\n350,1\n540,1\n541,0\n830,0\n");
     write(folder.path(), "red.csv", "wavelength_nm,transmittance\n350,0\n540,0\n541,1\n830,1\n");
     let light = |filter: &str, film: &str| {
@@ -193,7 +193,7 @@ fn a_film_stock() {
     for (broken, said_of_it) in [
         (TRI_X_MY_WAY.replace("iso: 200", "izo: 200"), "mine.yaml:3:1"),
         (TRI_X_MY_WAY.replace("tri-x-400", "try-x-400"), "did you mean `kodak-tri-x-400`?"),
-        (TRI_X_MY_WAY.replace("kodak-tri-x-400", "mine.yaml"), "one on itself"),
+        (TRI_X_MY_WAY.replace("kodak-tri-x-400", "mine.yaml"), "one builds on itself"),
     ] {
         write(folder.path(), "stocks/mine.yaml", &broken);
         let said = said(&folder, "s.yaml");
@@ -204,8 +204,8 @@ fn a_film_stock() {
     assert!(said(&folder, "s.yaml").contains("seen.csv:3:5"));
 }
 
-/// A lamp, a filter, paints: the exposure of a patch is the integral of lamp, filter, reflectance and y-bar. With rectangles
-/// that overlap by a part of the band, against the same sheet without the filter and with a white paint.
+/// Adds a lamp, a filter and paints. The exposure of a patch is the integral of lamp, filter, reflectance and y-bar. Flat curves are
+/// compared with the same sheet without the filter and with a white paint.
 #[test]
 fn a_light_a_filter_and_paints() {
     let chart = "source: {kind: chart, chart: patches, reflectances: paints.csv, distance: 1 m, width: 0.4 m, illuminant: lamp.csv}";
@@ -246,10 +246,10 @@ fn a_light_a_filter_and_paints() {
     assert!(info.is_object());
 }
 
-/// A drawing in the stop: the light that passes is that of its area, here a square of a fifth of the round opening's.
+/// Adds a drawing of the stop: the light is proportional to its area, here a square with a fifth of the area of the round opening.
 #[test]
 fn an_aperture() {
-    // pi 10^2 / 5 = 62.83: a square of 7.9267 mm, in a flat stop that nothing else narrows.
+    // pi 10^2 / 5 = 62.83: a square of 7.9267 mm, in a flat stop, with nothing else limiting the light.
     let lens = "name: single\nsurfaces:\n  - {kind: sphere, radius: 100, thickness: 5, glass: {nd: 1.5}}\n  \
                 - {kind: sphere, radius: -100, thickness: 2}\n  - {kind: stop, thickness: 95, semi-diameter: 10}\n";
     let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="20mm" viewBox="0 0 200 200"><rect x="60.3665" y="60.3665" width="79.267" height="79.267"/></svg>"#;
@@ -266,10 +266,11 @@ fn an_aperture() {
     };
     let open = light("");
     let square = light("{shape: mask, file: stop.svg}") / open;
-    // Light falls on the film with the fourth power of the cosine, (1 + r^2 / 95^2)^-2: its mean over the disk is
-    // 1 / (1 + 10^2 / 95^2), over the square of side a 1 - 2 (a^2 / 6) / 95^2.
+    // Light on the film falls with the fourth power of the cosine, (1 + r^2 / 95^2)^-2. Its mean over the disk is 1 / (1 + 10^2 /
+    // 95^2), and over the square of side a it is 1 - 2 (a^2 / 6) / 95^2.
     let (disk, inner): (f64, f64) = (1.0 / (1.0 + 100.0 / 9025.0), 1.0 - 2.0 * 7.9267 * 7.9267 / 6.0 / 9025.0);
-    // 262 144 samples of which a fifth passes: a standard error of 0.4 % if they were independent, 0.1 % of the other part.
+    // With 262 144 samples, a fifth of which pass, independent samples would have a standard error of 0.4 %; the other part has 0.1
+    // %.
     assert!((square / (0.2 * inner / disk) - 1.0).abs() < 4e-3, "{square}");
     let obscured = light("{shape: mask, file: stop.svg, obscures: true}") / open;
     assert!((square + obscured - 1.0).abs() < 4e-3, "{square} {obscured}");
@@ -282,8 +283,8 @@ fn an_aperture() {
     assert!(said(&folder, "s.yaml").contains("stop.svg:1:"), "{}", said(&folder, "s.yaml"));
 }
 
-/// A detector by its sensitivities, in equal-energy light: a Gaussian of standard deviation 20 nm sees 20 sqrt(2 pi) nm of it,
-/// a rectangle its width, and CIE Y 683 lm/W times 106.857 nm (the sum of y-bar by 1 nm from 360 to 830 nm).
+/// Adds a detector by its sensitivities, in equal-energy light. A Gaussian of standard deviation 20 nm sees 20 sqrt(2 pi) nm of it, a
+/// rectangle its width, and CIE Y 683 lm/W times 106.857 nm (the sum of y-bar from 360 to 830 nm in steps of 1 nm).
 #[test]
 fn a_detector() {
     let folder = folder(&[
@@ -307,7 +308,7 @@ fn a_detector() {
     let per_nm = y / (683.0 * 106.857);
     for (channel, want) in [("bell", 2.0 * 20.0 * std::f64::consts::TAU.sqrt()), ("box", 2.0 * 100.0)] {
         let got = mean(&folder, "out/d.exr", channel) / per_nm;
-        // 65 536 samples, each channel a few per cent by itself: some 2e-4, four times over.
+        // With 65 536 samples, each scattering by a few per cent per channel, the error is about 2e-4; the bound is four times that.
         assert!((got / want - 1.0).abs() < 1e-3, "{channel}: {got} {want}");
     }
     assert!((mean(&folder, "out/p.exr", "photopic") / y - 1.0).abs() < 1e-3);

@@ -1,4 +1,4 @@
-//! `spectra film develop`: pictures on film without a scene file.
+//! Tests `spectra film develop`, which puts pictures on film without a scene file.
 
 use crate::common::{run, run_in, shown, spectra, text};
 use exr::prelude::{ReadChannels, ReadLayers};
@@ -12,7 +12,7 @@ fn in_folder(folder: &Path, arguments: &[&str]) -> Output {
     run_in(folder, &[&["film", "develop"], arguments].concat())
 }
 
-/// What a run that must succeed says on standard error.
+/// Returns the standard error of a run that must succeed.
 fn good(folder: &Path, arguments: &[&str]) -> String {
     let output = in_folder(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
@@ -32,7 +32,7 @@ fn put(path: PathBuf, width: u32, height: u32, color: impl Fn(u32, u32) -> [u8; 
     RgbImage::from_fn(width, height, |x, y| Rgb(color(x, y))).save(path).expect("written");
 }
 
-/// Colors of every kind, and a ramp of gray below.
+/// Returns the color of a pixel: all kinds of color, with a gray ramp in the lower part.
 fn colors(x: u32, y: u32) -> [u8; 3] {
     if y % 40 < 24 { [(x * 4) as u8, (y * 10) as u8, ((x * 7 + y * 3) % 256) as u8] } else { [(x * 4) as u8; 3] }
 }
@@ -41,12 +41,12 @@ fn read(path: PathBuf) -> RgbImage {
     image::open(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).to_rgb8()
 }
 
-/// Mean of all code values.
+/// Returns the mean of all code values.
 fn mean(picture: &RgbImage) -> f64 {
     picture.as_raw().iter().map(|v| f64::from(*v)).sum::<f64>() / picture.as_raw().len() as f64
 }
 
-/// Channels of an EXR by their names.
+/// Returns the channels of an EXR file with their names.
 fn channels(path: PathBuf) -> Vec<(String, Vec<f32>)> {
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
     let image = reader.all_attributes().from_file(path).expect("an EXR");
@@ -67,17 +67,17 @@ fn a_photograph_is_developed_on_every_kind_of_film() {
     for (stock, name) in [("5207", "negative.tiff"), ("ektachrome", "slide.png")] {
         good(folder.path(), &["photo.png", "--stock", stock, "-o", name]);
         let picture = read(at(name));
-        assert!(picture.pixels().any(|p| p[0].abs_diff(p[2]) > 40), "{stock} has colors");
+        assert!(picture.pixels().any(|p| p[0].abs_diff(p[2]) > 40), "{stock} has no colors");
     }
-    // As far as the sheet reaches, the longest time is 1.96 stops.
+    // The longest development time of the data sheet is a push of 1.96 stops.
     good(folder.path(), &["photo.png", "--stock", "tri-x", "--push", "2", "-o", "pushed.png"]);
-    // The settings are those of a scene's film.
+    // The options set the film settings of a scene.
     let plain = mean(&gray);
     for (more, brighter) in [(["--exposure", "+1"], true), (["--exposure", "-1"], false)] {
         good(folder.path(), &[&["photo.png", "--stock", "tri-x", "-o", "other.png"][..], &more].concat());
         assert_eq!(mean(&read(at("other.png"))) > plain, brighter, "{more:?}");
     }
-    // Any shape fills the frame, upright or not.
+    // A picture of any shape fills the frame, upright or not.
     put(at("tall.png"), 30, 60, colors);
     let said = good(folder.path(), &["tall.png", "--stock", "tri-x", "--format", "6x7", "-o", "t.png"]);
     assert!(said.contains("30 x 60 pixels on 34.75 x 69.5 mm"), "{said}");
@@ -85,7 +85,8 @@ fn a_photograph_is_developed_on_every_kind_of_film() {
     assert!(said.contains("10 x 20 pixels") && read(at("t.png")).dimensions() == (10, 20), "{said}");
 }
 
-/// An EXR is the picture, in light, as a scene's is; what somebody sets as `output` is what it holds.
+/// By default an EXR file holds the finished picture as linear light, like that of a scene; an `output` that the user sets is
+/// followed.
 #[test]
 fn an_exr_holds_the_developed_picture() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -95,7 +96,7 @@ fn an_exr_holds_the_developed_picture() {
     let plain = ["photo.png", "--stock", "tri-x", "--grain", "off", "--halation", "off"];
     good(folder.path(), &[&plain[..], &["-o", "normal.exr"]].concat());
     assert_eq!(names("normal.exr"), ["B", "G", "R"]);
-    // What is done to the film shows: paper of grade 5 is white and black where that of grade 0 is gray.
+    // Changes of the film settings are visible: paper of grade 5 is white and black where paper of grade 0 is gray.
     let spread = |file: &str| {
         let all = channels(at(file)).swap_remove(1).1;
         let mean = all.iter().sum::<f32>() / all.len() as f32;
@@ -105,7 +106,7 @@ fn an_exr_holds_the_developed_picture() {
     good(folder.path(), &[&plain[..], &["--grade", "5", "-o", "hard.EXR"]].concat());
     let (soft, hard) = (spread("soft.exr"), spread("hard.EXR"));
     assert!(hard > 1.2 * soft, "{soft} {hard}");
-    // White is that of the print, as in a PNG.
+    // White is the white of the print, as in a PNG.
     good(folder.path(), &[&plain[..], &["-o", "normal.png"]].concat());
     let encoded = |v: f32| 255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
     let png = read(at("normal.png"));
@@ -114,7 +115,7 @@ fn an_exr_holds_the_developed_picture() {
     }
     good(folder.path(), &[&plain[..], &["--set", "output=[exr]", "-o", "light.exr"]].concat());
     assert!(names("light.exr").iter().any(|name| name.contains("meter")), "{:?}", names("light.exr"));
-    // So are files in a folder.
+    // Files in a folder follow the same rule.
     let set = ["--set", "output=[{kind: exr, holds: picture, space: acescg}]"];
     put(at("photos/a.png"), 30, 20, colors);
     good(folder.path(), &[&plain[..], &set, &["photos", "-o", "folder"]].concat());
@@ -127,14 +128,14 @@ fn an_exr_holds_the_developed_picture() {
     }
     let two = ["--set", "output=[exr, png]", "-o", "two/"];
     let said = refused(folder.path(), &[&plain[..], &two].concat(), 2);
-    assert!(said.contains("one file is written of a picture, and these are .exr, .png"), "{said}");
+    assert!(said.contains("one file is written for each picture, but these are .exr, .png"), "{said}");
     let layers = "output=[{kind: exr, holds: picture, layers: [densities]}]";
     good(folder.path(), &[&plain[..], &["--set", layers, "-o", "layers.exr"]].concat());
     assert!(names("layers.exr").iter().any(|name| name.starts_with("density.")), "{:?}", names("layers.exr"));
 }
 
-/// What is doubtful in the pixels is told of the file: nobody wrote a scene that it could stand in. An alpha that is opaque all over
-/// is not worth a word.
+/// A warning about pixels names the picture file, because the user did not write a scene file. An alpha channel that is opaque
+/// everywhere causes no warning.
 #[test]
 fn what_is_not_opaque_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -147,7 +148,7 @@ fn what_is_not_opaque_is_told() {
     assert!(!good(folder.path(), &["whole.png", "--stock", "tri-x"]).contains("opaque"));
 }
 
-/// The scene that a developed picture records is a scene that runs, with the same bits.
+/// The scene recorded in a developed picture can be rendered, with the same bits.
 #[test]
 fn the_recorded_scene_gives_the_same_picture() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -167,7 +168,7 @@ fn the_recorded_scene_gives_the_same_picture() {
     }
 }
 
-/// A mid gray card, by pixels, and by a scene through a lens that has no color of its own.
+/// A mid gray card prints alike when it is developed from its pixels and when a scene renders it through a colorless lens.
 #[test]
 fn a_metered_gray_card_prints_as_in_a_scene() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -190,12 +191,12 @@ fn a_metered_gray_card_prints_as_in_a_scene() {
         let (own, scene) = (read(at("own.png")), read(at("scene.png")));
         let (own, scene) = (own.get_pixel(12, 8).0, scene.get_pixel(12, 8).0);
         println!("{stock}: a gray card is {own:?} by its pixels, {scene:?} by a scene");
-        // Of 255: a step of the file, and one of the rays' noise.
+        // Tolerance in code values of 255: one step of the file and one for the noise of the rays.
         assert!(own.iter().zip(scene).all(|(a, b)| a.abs_diff(b) <= 2), "{stock}: {own:?} {scene:?}");
     }
 }
 
-/// What each layer gets of each color is what rays bring it.
+/// Each layer gets the same exposure from a color directly as from traced rays.
 #[test]
 fn layers_get_of_colors_what_rays_bring_them() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -206,7 +207,7 @@ fn layers_get_of_colors_what_rays_bring_them() {
         let light = ["--set", "output=[exr]"];
         good(folder.path(), &[&plain[..], &light, &["-o", "own.exr"]].concat());
         let through = ["--lens", "helios", "--f-number", "f/8", "--noise", "0.3%", "-o", "lens.exr"];
-        // A lens that has no color of its own.
+        // A colorless lens.
         let clear = ["--set", "lens.coating=ideal", "--set", "lens.absorption=false"];
         good(folder.path(), &[&plain[..], &light, &through, &clear].concat());
         let (own, lens) = (channels(at("own.exr")), channels(at("lens.exr")));
@@ -214,7 +215,7 @@ fn layers_get_of_colors_what_rays_bring_them() {
             let middle = |values: &[f32]| f64::from(values[2 * 6 + 3]);
             let off = middle(own) / middle(lens) - 1.0;
             println!("color {i}, {name}: {:+.3} % off", 100.0 * off);
-            // What is metered is the mean of a small frame, which is as noisy as the pixel.
+            // The metered value is the mean of a small frame, which is as noisy as the pixel.
             assert!(off.abs() < 0.02, "{name}: {off}");
         }
     }
@@ -238,7 +239,7 @@ fn a_jpeg_to_share_is_the_picture() {
     assert!(said.contains("8 bits are too few") && said.contains("`kind: tiff`, which has 16"), "{said}");
 }
 
-/// An EXR in ACEScg of patches 12 pixels wide, side by side, in the shape of 135.
+/// Writes an EXR file in ACEScg with patches 12 pixels wide, side by side, in the shape of the format 135.
 fn put_acescg(path: PathBuf, colors: &[[f32; 3]]) {
     use exr::prelude::{Encoding, Image, IntegerBounds, LayerAttributes, SpecificChannels, Vec2, WritableImage};
     let size = Vec2(12 * colors.len(), 8 * colors.len());
@@ -260,8 +261,8 @@ fn put_acescg(path: PathBuf, colors: &[[f32; 3]]) {
     image.write().to_file(path).expect("an EXR");
 }
 
-/// The primaries of ACEScg, which no light has, keep their luminance over gray, as CIE XYZ adapted by Bradford has it, and are counted;
-/// layers get of such colors what rays bring them.
+/// The primaries of ACEScg are colors that no light has. They keep their luminance relative to gray, as given by CIE XYZ adapted with
+/// Bradford's matrix, and are counted. Layers get the same exposure from such colors as from traced rays.
 #[test]
 fn colors_beyond_srgb_keep_their_light() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -291,7 +292,7 @@ output: [exr]
     for (primary, want) in [0.7446, 1.868, 0.161].into_iter().enumerate() {
         let got = color[primary] / gray[primary];
         println!("primary {primary}: {got:.4} of gray, {want} wanted");
-        // Four standard errors of 24 pixels of 256 samples.
+        // Four standard errors of 24 pixels with 256 samples each.
         assert!((got / want - 1.0).abs() < 0.02, "{primary}: {got} {want}");
     }
     for (i, color) in [[0.0, 0.5, 0.0], [0.1, 0.0, 0.5]].into_iter().enumerate() {
@@ -310,10 +311,10 @@ output: [exr]
             assert!(off.abs() < 0.02, "{name}: {off}");
         }
     }
-    // A model of sRGB's colors keeps luminance and says what to write.
+    // A color model for sRGB only keeps the luminance, and its warning says what to write.
     std::fs::write(at("scene.yaml"), scene.replace("width: fill}", "width: fill, color: primaries}")).expect("written");
     let said = text(&run_in(folder.path(), &["run", "scene.yaml", "-o", "xyz.exr"]).stderr);
-    assert!(said.contains("colors beyond sRGB, of which this color model makes no light"), "{said}");
+    assert!(said.contains("colors outside sRGB, for which this color model has no spectrum"), "{said}");
     assert!(said.contains("write `color: {kind: smooth}`"), "{said}");
 }
 
@@ -327,8 +328,8 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     put(at("plates/plate.0009.png"), 120, 80, |_, _| [60; 3]);
     std::fs::write(at("plates/plate.0010.png"), b"broken").expect("written");
     let said = refused(folder.path(), &["plates", "--stock", "tri-x", "--format", "super-8", "-o", "out/"], 1);
-    assert!(said.contains("exposed as the first is") && said.contains("3 of 4 pictures"), "{said}");
-    assert!(said.contains("`plates/plate.0010.png` is not developed"), "{said}");
+    assert!(said.contains("exposed like the first") && said.contains("3 of 4 pictures"), "{said}");
+    assert!(said.contains("`plates/plate.0010.png` was not developed"), "{said}");
     let frames = [7, 8, 9].map(|n| read(at(&format!("out/plate.{n:04}.png"))));
     let [a, b, dark] = frames.each_ref().map(mean);
     println!("means of the frames: {a:.2} {b:.2} {dark:.2}");
@@ -336,22 +337,22 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     assert!(differ * 2 > frames[0].as_raw().len(), "{differ} values differ");
     assert!((a - b).abs() < 1.0 && dark < a - 20.0, "{a} {b} {dark}");
 
-    // What is there stays, and what is missing is still exposed as the first is.
+    // Existing files stay, and missing ones still get the exposure of the first picture.
     std::fs::remove_file(at("out/plate.0009.png")).expect("removed");
     let rest = ["plates/plate.000#.png", "--stock", "tri-x", "--format", "super-8", "--skip-existing", "-o", "out/"];
-    // An empty file is none.
+    // An empty file does not count as a picture.
     std::fs::write(at("out/plate.0008.png"), "").expect("written");
     let said = good(folder.path(), &rest);
-    assert!(said.contains("out/plate.0007.png is there") && !said.contains("in place of the first"), "{said}");
+    assert!(said.contains("out/plate.0007.png already exists") && !said.contains("instead of the first"), "{said}");
     assert_eq!(read(at("out/plate.0009.png")), frames[2]);
     assert_eq!(read(at("out/plate.0008.png")), frames[1]);
 
-    // Metered each, the dark one is as light; a sequence is named as others are, and numbers stay.
+    // With `--meter each` the dark frame becomes as light. A sequence is named like its inputs, and numbers stay.
     let each = ["plates/plate.000#.png", "--stock", "tri-x", "--format", "super-8", "--meter", "each"];
     good(folder.path(), &[&each[..], &["-o", "each/d.%03d.tiff"]].concat());
     let again = mean(&read(at("each/d.009.tiff")));
     assert!((again - a).abs() < 1.5, "{again} {a}");
-    // A gap is told of, to people and programs; what somebody chooses is none.
+    // A gap is reported to people and programs; pictures that the user lists make no gap.
     put(at("gaps/plate.0003.png"), 6, 4, colors);
     put(at("gaps/plate.0007.png"), 6, 4, colors);
     for pictures in ["gaps", "gaps/plate.####.png"] {
@@ -362,19 +363,19 @@ fn frames_have_grain_of_their_own_and_one_exposure() {
     assert!(text(&output.stdout).lines().any(|l| l.contains("\"note\"") && l.contains("frames 4 to 6 are missing")));
     let chosen = ["gaps/plate.0003.png", "gaps/plate.0007.png", "--stock", "tri-x", "-o", "gap"];
     assert!(!good(folder.path(), &chosen).contains("missing"));
-    // A frame alone has the grain that it has among others, whatever came before.
+    // A single frame has the same grain as within its sequence.
     good(
         folder.path(),
         &["plates/plate.0007.png", "plates/plate.0008.png", "--stock", "tri-x", "--format", "super-8", "-o", "two"],
     );
-    assert!(read(at("two/plate.0008.png")) == frames[1], "the grain of frame 8 is that of frame 8");
-    // What is there is kept where that is asked for.
+    assert!(read(at("two/plate.0008.png")) == frames[1], "frame 8 has other grain than in its sequence");
+    // Existing files are kept with `--skip-existing`.
     put(at("two/plate.0007.png"), 2, 2, |_, _| [1; 3]);
     good(folder.path(), &["plates/plate.000#.png", "--stock", "tri-x", "-o", "two", "--skip-existing"]);
     assert_eq!(read(at("two/plate.0007.png")).dimensions(), (2, 2));
 }
 
-/// Interrupts a run that would take hours once it traces light; what it says from there on.
+/// Interrupts a run that would take hours, after it began to trace light, and returns what it prints from then on.
 #[cfg(unix)]
 fn interrupted(folder: &Path, arguments: &[&str]) -> String {
     let endless = ["--json", "--noise", "0.01%", "--set", "render.samples=4000000"];
@@ -401,7 +402,7 @@ fn interrupted(folder: &Path, arguments: &[&str]) -> String {
     rest
 }
 
-/// Names in a folder.
+/// Returns the sorted names in a folder.
 #[cfg(unix)]
 fn names_in(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("a folder");
@@ -411,7 +412,7 @@ fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A frame alone is that frame of its sequence: its number is in its grain, and in the name of its file.
+/// A single frame equals the frame in its sequence: its number determines its grain and the name of its file.
 #[test]
 fn a_frame_alone_is_that_of_its_sequence() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -422,7 +423,7 @@ fn a_frame_alone_is_that_of_its_sequence() {
     let film = ["--stock", "tri-x", "--format", "super-8", "--meter", "each", "-o"];
     good(folder.path(), &[&["plates"][..], &film, &["all"]].concat());
     let [seven, eight] = ["all/plate.0007.png", "all/plate.0008.png"].map(|name| std::fs::read(at(name)).expect(name));
-    assert!(seven != eight, "one grain for both");
+    assert!(seven != eight, "both frames have the same grain");
     let one = ["plates/plate.0008.png"];
     for (output, file) in
         [("alone/f.####.png", "alone/f.0008.png"), ("folder/", "folder/plate.0008.png"), ("file.png", "file.png")]
@@ -436,7 +437,7 @@ fn a_frame_alone_is_that_of_its_sequence() {
     assert!(said.contains("`photo.png` has no number to put into") && said.contains("-o alone/f.0001.png"), "{said}");
 }
 
-/// Through a lens, too, what is missing gets the exposure that it had: that of the first picture, which is there.
+/// When a sequence through a lens is resumed, missing pictures get the exposure of the first picture, which already exists.
 #[test]
 fn a_resumed_sequence_through_a_lens_is_metered_on_its_first_picture() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -449,11 +450,12 @@ fn a_resumed_sequence_through_a_lens_is_metered_on_its_first_picture() {
     let dark = std::fs::read(at("out/plate.0002.png")).expect("there");
     std::fs::remove_file(at("out/plate.0002.png")).expect("removed");
     let said = good(folder.path(), &[&all[..], &["--skip-existing"]].concat());
-    assert!(said.contains("`plates/plate.0001.png` is traced once more") && !said.contains("in place of"), "{said}");
-    assert!(std::fs::read(at("out/plate.0002.png")).expect("there") == dark, "another exposure");
+    assert!(said.contains("`plates/plate.0001.png` is traced once more") && !said.contains("instead of"), "{said}");
+    assert!(std::fs::read(at("out/plate.0002.png")).expect("there") == dark, "the exposure changed");
 }
 
-/// A frame that is not whole is not written, and of one picture only beside the file that is there.
+/// An incomplete frame of a sequence is not written. A single incomplete picture is written under another name than the existing
+/// file.
 #[cfg(unix)]
 #[test]
 fn an_interrupt_leaves_whole_pictures() {
@@ -468,10 +470,10 @@ fn an_interrupt_leaves_whole_pictures() {
     assert!(said.contains("\"done\":0") && said.contains("\"interrupted\":true"), "{said}");
     assert_eq!(names_in(&at("out")), ["plate.0001.png"]);
     let said = interrupted(folder.path(), &["plates/plate.0001.png", "-o", "out/plate.0001.png"]);
-    assert!(said.contains("out/plate.0001.png` stays as it was"), "{said}");
+    assert!(said.contains("out/plate.0001.png` was not overwritten"), "{said}");
     assert_eq!(names_in(&at("out")), ["plate.0001.partial.png", "plate.0001.png"]);
     assert_eq!(std::fs::read(at("out/plate.0001.png")).expect("there"), b"a good frame");
-    // What is not whole would be skipped the next time.
+    // With `--skip-existing` an incomplete picture would be skipped the next time, so none is written.
     interrupted(folder.path(), &["plates/plate.0002.png", "-o", "out/plate.0002.png", "--skip-existing"]);
     assert_eq!(names_in(&at("out")), ["plate.0001.partial.png", "plate.0001.png"]);
 }
@@ -483,7 +485,7 @@ fn slips_are_told_with_what_to_write() {
     put(at("photo.png"), 6, 4, colors);
     std::fs::write(at("notes.txt"), "no picture").expect("written");
     std::fs::create_dir(at("empty")).expect("made");
-    // A picture of 60 000 x 60 000 pixels, as its header says.
+    // A file whose header claims 60 000 x 60 000 pixels.
     let huge = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n";
     std::fs::write(at("huge.hdr"), huge).expect("written");
     let tri_x = ["--stock", "tri-x"];
@@ -495,11 +497,11 @@ fn slips_are_told_with_what_to_write() {
         (&["notes.txt", "--stock", "tri-x"], &["not an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file"]),
         (&["huge.hdr", "--stock", "tri-x"], &["60000 x 60000"]),
         (&["empty", "--stock", "tri-x"], &["no pictures in `empty`"]),
-        (&["plate.####.png", "--stock", "tri-x"], &["no file is called `plate.####.png`", "plate.0001.png"]),
+        (&["plate.####.png", "--stock", "tri-x"], &["no numbered file matches `plate.####.png`", "plate.0001.png"]),
         (&["photo.png", "--stock", "tri-x", "--grade", "7"], &["--grade 7", "0 (soft) to 5 (hard)"]),
         (
             &["photo.png", "--stock", "tri-x", "--push", "9"],
-            &["--push 9", "from +0 to +2 stops, not +9", "a `push` within"],
+            &["--push 9", "from +0 to +2 stops, not +9", "a smaller `push`"],
         ),
         (&["photo.png", "--stock", "tri-x", "--exposure", "+20"], &["a number from -10 to 10"]),
         (&["photo.png", "--stock", "tri-x", "--format", "6x66"], &["did you mean `6x6`?"]),
@@ -508,9 +510,9 @@ fn slips_are_told_with_what_to_write() {
         (&["photo.png", "--stock", "tri-x", "--set", "film.stok=a"], &["--set film.stok=a", "did you mean `stock`?"]),
         (&["photo.png", "--stock", "tri-x", "--view", "projection"], &["--view projection", "is a negative"]),
         (&["photo.png", "--stock", "tri-x", "--side", "60"], &["or fewer"]),
-        (&["photo.png", "--stock", "tri-x", "-o", "photo.png"], &["over a picture that is read"]),
+        (&["photo.png", "--stock", "tri-x", "-o", "photo.png"], &["is an input picture and would be overwritten"]),
         (&["photo.png", "--stock", "tri-x", "-o", "photo.gif"], &[".png, .jpg, .tiff or .exr"]),
-        (&["photo.png", "photo.png", "--stock", "tri-x", "-o", "a.png"], &["is one picture"]),
+        (&["photo.png", "photo.png", "--stock", "tri-x", "-o", "a.png"], &["names one picture"]),
         (&["photo.png", "photo.png", "--stock", "tri-x", "-o", "out"], &["would both be written as"]),
     ] {
         let said = refused(folder.path(), arguments, 2);
@@ -518,12 +520,12 @@ fn slips_are_told_with_what_to_write() {
             assert!(said.replace("\n        ", "").contains(word), "{arguments:?} lacks `{word}`: {said}");
         }
     }
-    // What is wrong with every picture is said once.
+    // A fault that affects every picture is reported once.
     std::fs::copy(at("photo.png"), at("empty/a.png")).expect("copied");
     std::fs::copy(at("photo.png"), at("empty/b.png")).expect("copied");
     let said = refused(folder.path(), &[&["empty", "--grade", "7"][..], &tri_x].concat(), 2);
     assert_eq!(said.matches("there is no paper of grade").count(), 1, "{said}");
-    // Programs hear it as an event.
+    // Programs get the fault as an event.
     let output = in_folder(folder.path(), &["photo.png", "--stock", "tri-x", "--grade", "7", "--json"]);
     let event: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one line of JSON");
     assert_eq!((event["event"].as_str(), event["faults"].as_array().map(Vec::len)), (Some("error"), Some(1)));
@@ -535,7 +537,7 @@ fn slips_are_told_with_what_to_write() {
     );
 }
 
-/// What a `.cube` file holds, read by its format alone: points along a side, and the points, red running fastest.
+/// Parses a `.cube` file by its format alone. Returns the number of points along a side, and the points, red varying fastest.
 fn cube(path: PathBuf) -> (usize, Vec<[f64; 3]>) {
     let content = std::fs::read_to_string(path).expect("a file");
     let lines = || content.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
@@ -551,8 +553,8 @@ fn cube(path: PathBuf) -> (usize, Vec<[f64; 3]>) {
     (size, rows)
 }
 
-/// A table shows what the film without its spatial effects does: the asked 0.5 on average, and the picture that `develop` makes of
-/// an even color.
+/// A table reproduces the film without its spatial effects: within the requested 0.5 on average, and like the picture that `develop`
+/// makes of a uniform color.
 #[test]
 fn a_table_shows_what_the_film_does() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -572,21 +574,21 @@ fn a_table_shows_what_the_film_does() {
     for word in ["TITLE \"Kodak Vision3 250D 5207", "Left out", "AllocationTransform", "log2(x / 0.18) / 14"] {
         assert!(head.contains(word), "{word}");
     }
-    // Brighter red, which runs fastest, makes red brighter.
+    // Red varies fastest, and more red in the input makes more red in the output.
     let point = |r: usize, g: usize, b: usize| points[(b * size + g) * size + r];
     assert!(point(48, 16, 16)[0] > point(16, 16, 16)[0] + 0.2 && point(16, 16, 48)[2] > point(16, 16, 16)[2] + 0.2);
 
-    // A mid gray is the middle, and is what a gray card is developed to.
+    // Mid gray is the center of the table and equals a developed gray card.
     put(at("gray.png"), 24, 16, |_, _| [118; 3]);
     let off = ["--grain", "off", "--halation", "off", "-o", "gray-5207.png"];
     good(folder.path(), &[&["gray.png", "--stock", "5207"][..], &off].concat());
     let card = read(at("gray-5207.png")).get_pixel(12, 8).0.map(f64::from);
     let middle = point(32, 32, 32).map(|v| 255.0 * v);
     println!("a gray card: {card:?} developed, {middle:.1?} in the table");
-    // 118 of 255 is 0.1812; and a step of the file.
+    // 118 of 255 is 0.1812; the rest of the tolerance is one step of the file.
     assert!(card.iter().zip(middle).all(|(a, b)| (a - b).abs() < 2.0), "{card:?} {middle:?}");
 
-    // Coarser is farther off.
+    // A coarser table deviates more.
     let output = made(&["5207", "--size", "9", "-o", "coarse.cube", "--json"]);
     let coarse: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert!(coarse["random_colors"]["mean_ciede2000"].as_f64().is_some_and(|off| off > 2.0 * mean), "{coarse}");
@@ -604,27 +606,28 @@ fn a_table_shows_what_the_film_does() {
     }
 }
 
-/// A time that leaves the film black or white all over makes a picture, and is told of where it stands, with one that does not.
+/// An exposure that leaves the film black or white everywhere still makes a picture. A warning points to the setting and suggests an
+/// exposure that causes no warning.
 #[test]
 fn an_exposure_beyond_the_film_is_told_of() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     put(folder.join("a.png"), 60, 40, colors);
-    for (time, wanted) in [("80 s", "saturated with light"), ("1/1000000 s", "without light")] {
+    for (time, wanted) in [("80 s", "saturated"), ("1/1000000 s", "unexposed")] {
         let exposure = format!("film.exposure={time}");
         let said = good(folder, &["a.png", "--stock", "tri-x", "--set", &exposure]);
-        assert!(said.contains(&format!("warning: --set {exposure}: the film is {wanted} nearly all over")), "{said}");
+        assert!(said.contains(&format!("warning: --set {exposure}: nearly the whole film is {wanted}")), "{said}");
         assert_eq!(said.matches("warning").count(), 1, "{said}");
         let better = said.split("`exposure: ").nth(1).and_then(|rest| rest.split('`').next()).expect("a time");
         let said = good(folder, &["a.png", "--stock", "tri-x", "--set", &format!("film.exposure={better}")]);
         assert!(!said.contains("warning"), "{said}");
     }
-    // Who asks for both is told that one of them does nothing.
+    // A user who sets both an exposure and metering learns that one of them has no effect.
     let both = ["a.png", "--stock", "tri-x", "--set", "film.exposure=80 s", "--set", "film.metering=average"];
     assert!(good(folder, &both).contains("has no effect"));
 }
 
-/// What has no effect without a lens is refused as its option is, and a time in place of stops is told how to be written.
+/// A setting that has no effect without a lens is refused, and so is a time instead of stops; the message says what to write.
 #[test]
 fn what_does_nothing_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -634,7 +637,7 @@ fn what_does_nothing_is_refused() {
         let said = refused(folder, &["a.png", "--stock", "tri-x", "--set", set], 2);
         assert!(said.contains("without a lens `lens.f") && said.contains(&format!("--set {set}")), "{said}");
     }
-    // Filters need none.
+    // Filters work without a lens.
     good(folder, &["a.png", "--stock", "tri-x", "--set", "lens.filters=[wratten-12]"]);
     for (time, in_seconds) in [("1/60", "1/60 s"), ("1/60 s", "1/60 s"), ("2s", "2 s")] {
         let said = refused(folder, &["a.png", "--stock", "tri-x", "--exposure", time], 2);
@@ -645,7 +648,7 @@ fn what_does_nothing_is_refused() {
     assert!(good(folder, &written).contains("Kodak Tri-X 400 at 1/60 s"));
 }
 
-/// The number of a frame stands before the version of its file: it names the output, and each frame has grain of its own.
+/// The frame number comes before the version in a file name: it names the output, and each frame has its own grain.
 #[test]
 fn a_version_is_no_number() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -655,8 +658,8 @@ fn a_version_is_no_number() {
         good(folder, &[name, "--stock", "tri-x", "-o", "out/film.####.v2.png"]);
     }
     let frames = ["out/film.0007.v2.png", "out/film.0008.v2.png"].map(|name| read(folder.join(name)));
-    assert!(frames[0] != frames[1], "the same grain");
-    // A name of nothing else has that one.
+    assert!(frames[0] != frames[1], "both frames have the same grain");
+    // A version is the frame number if the name has no other number.
     put(folder.join("v3.png"), 60, 40, colors);
     good(folder, &["v3.png", "--stock", "tri-x", "-o", "out/only.##.png"]);
     assert!(folder.join("out/only.03.png").exists());

@@ -1,4 +1,4 @@
-//! What is said when a scene is wrong: everything, with place and hint, in one go.
+//! Tests that all faults of a scene are reported at once, each with place and hint.
 
 use crate::common::{answer_in, run, spectra, text};
 use serde_json::Value;
@@ -13,7 +13,7 @@ surfaces:
   - {kind: sphere, radius: 500, thickness: 48, semi-diameter: 10}
 ";
 
-/// The six faults, spread over the sections.
+/// A scene with six faults, spread over its sections.
 const APART: &str = "\
 spectra: 1
 source:
@@ -37,7 +37,7 @@ const APART_PLACES: [(&str, &str); 6] = [
     ("six.yaml:12:10", "sampels"),
 ];
 
-/// The same six, where a fault in a section could hide what the section names.
+/// A scene with six faults, in which a fault in a section could hide a fault in what the section names.
 const TOGETHER: &str = "\
 spectra: 1
 source:
@@ -76,8 +76,8 @@ fn assert_all_six(scene: &str, places: [(&str, &str); 6]) {
         for (place, word) in places {
             assert!(message.contains(place) && message.contains(word), "{place} {word}: {message}");
         }
-        assert!(!message.contains('\u{1b}'), "no colors in a pipe");
-        assert!(!folder.path().join("out").exists(), "nothing is rendered");
+        assert!(!message.contains('\u{1b}'), "colors in a pipe");
+        assert!(!folder.path().join("out").exists(), "something was rendered");
     }
     let output = answer_in(folder.path(), &["check", "six.yaml", "--json"]);
     assert_eq!(output.status.code(), Some(2));
@@ -173,7 +173,7 @@ fn an_unknown_instruction_set_is_told() {
     assert!(message.contains("SPECTRA_ISA") && message.contains("baseline"), "{message}");
 }
 
-/// `null` takes a key away wherever it is written, as the guide says; a key that is not there is still a slip.
+/// `null` removes a key wherever it is written, as the guide says; removing a key that does not exist is a fault.
 #[test]
 fn null_takes_a_key_away() {
     let check = |set: &[&str]| {

@@ -1,11 +1,12 @@
-//! `spectra lens import` and `export`, and lens files of other programs wherever a lens is asked for.
+//! Tests `spectra lens import` and `export`, and lens files of other programs wherever a lens can be named.
 
 use crate::common::{good, repository, run, shown, spectra, text};
 use serde_json::Value;
+use spectra_optics::Optics;
 use spectra_scene::FileResources;
 use std::path::{Path, PathBuf};
 
-/// All lens files of the repository.
+/// Returns all lens files of the repository.
 fn lenses() -> Vec<PathBuf> {
     let files = |folder: &str| {
         let entries = std::fs::read_dir(repository(folder)).expect("a folder");
@@ -19,11 +20,11 @@ fn lenses() -> Vec<PathBuf> {
 fn efl(lens: &str, light: &[&str]) -> f64 {
     let arguments: Vec<&str> = ["lens", "info", lens, "--json"].into_iter().chain(light.iter().copied()).collect();
     let info: Value = serde_json::from_str(&good(&arguments)).expect("JSON");
-    // A prism has none.
+    // A prism has no focal length.
     info["efl_mm"].as_f64().unwrap_or(30.0)
 }
 
-/// Rays over a square in front of a lens, in three directions.
+/// Writes a table of rays over a square in front of a lens, in three directions, and returns its path.
 fn rays(folder: &Path, half_mm: f64) -> PathBuf {
     let mut table = "x_mm,y_mm,z_mm,l,m,n\n".to_owned();
     for slope in [0.0_f64, 0.05, -0.12] {
@@ -39,7 +40,7 @@ fn rays(folder: &Path, half_mm: f64) -> PathBuf {
     path
 }
 
-/// The entrance pupil that a file goes out with is the real one, by the marginal ray: the glass in front of it is far wider.
+/// An exported file states the real entrance pupil, by the marginal ray, although the front glass is much wider.
 #[test]
 fn exported_pupils_are_the_real_ones() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -57,7 +58,7 @@ fn exported_pupils_are_the_real_ones() {
     }
 }
 
-/// A surface that names no kind is a sphere, as everywhere.
+/// A surface without `kind` is a sphere here too.
 #[test]
 fn a_surface_without_a_kind_keeps_its_curvature() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -74,8 +75,8 @@ fn a_surface_without_a_kind_keeps_its_curvature() {
     assert_eq!(curvatures, [0.02, -0.04], "{zmx}");
 }
 
-/// Every lens goes out and comes back as the same lens: rays meet the image plane within 1e-12 mm (relative to a
-/// focal length of 100 mm), and end for the same cause at the same surface. Of the bundled ones nothing is left out that bends light.
+/// Every lens survives export and import. Rays meet the image plane within 1e-12 mm (relative to a focal length of 100 mm), and end
+/// for the same reason at the same surface. For the bundled lenses, nothing that bends light is left out.
 #[test]
 fn export_and_import_keep_every_ray() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -98,7 +99,7 @@ fn export_and_import_keep_every_ray() {
         let rays = rays(folder.path(), 0.35 * efl);
         for light in [&["--nd"][..], &["--line", "g"], &["--line", "C"]] {
             let trace = |lens: &str| {
-                // No format holds coatings, nor the year by which a glass borrows its transmittance.
+                // No format holds coatings, or the year by which a glass borrows its transmittance.
                 let losses = ["--coating", "ideal", "--absorption", "false"];
                 let arguments = [&["lens", "trace", lens, "--rays", shown(&rays)][..], &losses].concat();
                 good(&arguments.into_iter().chain(light.iter().copied()).collect::<Vec<_>>())
@@ -121,14 +122,15 @@ fn export_and_import_keep_every_ray() {
     assert!(hits > 10_000, "{hits}");
 }
 
-/// Where a ray along the axis through (x, y) meets a plane, in the unit of the file: refracted at a surface of this sag, from air into
-/// a medium of index `n`, `gap` before the plane. The slopes of the sag come from differences of four points (error of the fourth order).
+/// Returns where a ray parallel to the axis through (x, y) meets a plane, in the unit of the file. The ray is refracted at a surface
+/// with this sag, from air into a medium of index `n`, at the distance `gap` from the plane. Slopes of the sag are fourth-order
+/// differences of four points.
 fn refracted(sag: &dyn Fn(f64, f64) -> f64, [x, y]: [f64; 2], n: f64, gap: f64) -> [f64; 2] {
     const STEP: f64 = 1e-3;
     let slope =
         |f: &dyn Fn(f64) -> f64| (8.0 * (f(STEP) - f(-STEP)) - (f(2.0 * STEP) - f(-2.0 * STEP))) / (12.0 * STEP);
     let (zx, zy) = (slope(&|h| sag(x + h, y)), slope(&|h| sag(x, y + h)));
-    // Snell's law as a vector, the normal toward the light's way.
+    // Snell's law in vector form; the normal points in the direction of the light.
     let length = (1.0 + zx * zx + zy * zy).sqrt();
     let normal = [-zx / length, -zy / length, 1.0 / length];
     let cosine = normal[2];
@@ -138,8 +140,8 @@ fn refracted(sag: &dyn Fn(f64, f64) -> f64, [x, y]: [f64; 2], n: f64, gap: f64) 
     [x + along * way[0], y + along * way[1]]
 }
 
-/// Each type of surface in a `.zmx` bends rays as its formula says (OpticStudio user manual, Sequential Surfaces), each of its numbers used,
-/// in inches, so that what is not a length shows.
+/// Each surface type of a `.zmx` file bends rays by its formula (OpticStudio user manual, Sequential Surfaces). All its numbers are
+/// used, and lengths are in inches, which exposes any number wrongly treated as a length.
 #[test]
 fn types_of_surfaces_keep_their_formulas() {
     const N: f64 = 1.6;
@@ -205,7 +207,7 @@ fn types_of_surfaces_keep_their_formulas() {
         ),
         ("TILTSURF", list("PARM", 1, &[0.1, -0.2]), Box::new(|x, y| 0.1 * x - 0.2 * y)),
         (
-            // Noll's order, angles from x.
+            // Noll's order, with angles measured from x.
             "SZERNSAG",
             format!("{head}  XDAT 1 11\n  XDAT 2 2\n{}", list("XDAT", 3, &TERMS)),
             Box::new(move |x, y| {
@@ -271,13 +273,13 @@ fn types_of_surfaces_keep_their_formulas() {
     close("PARAXIAL", found("PARAXIAL", "  PARM 1 5\n  PARM 2 1\n", 1.0), &|point| {
         point.map(|v| v * (1.0 - GAP / 5.0))
     });
-    // n' sin' - n sin = order x wavelength x lines, lines along x.
+    // n' sin' - n sin = order x wavelength x lines, with lines along x.
     let sine = -(0.587_561_8 * 0.4);
     let shift = GAP * sine / (1.0 - sine * sine).sqrt();
     close("DGRATING", found("DGRATING", "  PARM 1 0.4\n  PARM 2 -1\n", 1.0), &|[x, y]| [x, y + shift]);
 }
 
-/// Where rays along the axis through these points meet the image plane of a file in inches, at d.
+/// Returns where rays parallel to the axis through these points meet the image plane of a lens in inches, at the d line.
 fn traced(zmx: &str, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let folder = tempfile::tempdir().expect("a folder");
     let (lens, rays) = (folder.path().join("x.zmx"), folder.path().join("rays.csv"));
@@ -292,7 +294,7 @@ fn traced(zmx: &str, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     lines.map(|line| [number(&line, "x_mm"), number(&line, "y_mm")]).collect()
 }
 
-/// A glass that nobody bundles comes from a catalogue file, which the lens file then names by the way from its own folder.
+/// A glass that is not bundled comes from a catalog file, which the imported lens file names by its relative path.
 #[test]
 fn glasses_come_from_a_catalogue_of_ones_own() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -318,10 +320,10 @@ fn glasses_come_from_a_catalogue_of_ones_own() {
         let info = good(&["glass", "info", "OWN-7", "--agf", shown(&agf), "--json"]);
         serde_json::from_str::<Value>(&info).expect("JSON")["n"]["g"].as_f64().expect("a number")
     };
-    // The lens maker's formula of a lens of equal radii.
+    // Lensmaker's formula for a lens of equal radii.
     let wanted = 1.0 / ((n - 1.0) * (0.04 - 5.0 * (n - 1.0) * 0.0004 / n));
     assert!((efl(shown(&out), &["--line", "g"]) - wanted).abs() < 1e-9);
-    // Without it the command says how to hand one over.
+    // Without the catalog, the command says how to supply one.
     let output = run(&["lens", "import", shown(&at("b.zmx")), "-o", shown(&at("b.yaml"))]);
     assert!(text(&output.stderr).contains("spectra lens import --agf FILE"), "{}", text(&output.stderr));
     let output =
@@ -329,7 +331,7 @@ fn glasses_come_from_a_catalogue_of_ones_own() {
     assert!(output.status.success() && !text(&output.stderr).contains("must be completed"), "{}", text(&output.stderr));
 }
 
-/// A tilde behind `=`, which shells leave alone, is the folder of the user.
+/// A tilde after `=`, which shells do not expand, means the home folder.
 #[test]
 #[cfg(unix)]
 fn a_tilde_behind_an_equals_sign_is_the_home_folder() {
@@ -342,7 +344,7 @@ fn a_tilde_behind_an_equals_sign_is_the_home_folder() {
         command.args(["lens", "export", "zeiss-biotar-50-f1.4", "--output=~/biotar.zmx"]).output().expect("starts");
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(home.join("biotar.zmx").is_file() && !folder.path().join("~").exists());
-    // In a scene, too, whose files no shell sees.
+    // The same is true in a scene, whose file names no shell expands.
     image::RgbImage::new(6, 4).save(home.join("photo.png")).expect("written");
     let scene = "spectra: 1\nsource: {kind: picture, file: ~/photo.png, distance: 2 m, width: fill}\n\
                  lens: {file: ~/biotar.zmx}\nimager: {kind: xyz, format: 135, resolution: [6, 4]}\n";
@@ -361,7 +363,7 @@ fn other_files_stand_for_lenses_everywhere() {
         std::fs::write(&path, text).expect("written");
         path
     };
-    // The same lens in three languages: N-BK7, R = 50, 5 mm thick; focal length 49.21300 mm at d in closed form.
+    // The same lens in three formats: N-BK7, R = 50, 5 mm thick. Its focal length at d is 49.21300 mm in closed form.
     let zmx = file(
         "a.zmx",
         "MODE SEQ\nUNIT MM\nGCAT SCHOTT\nSURF 0\n  DISZ INFINITY\nSURF 1\n  STOP\n  CURV 0.02\n  DISZ 5\n  GLAS N-BK7 0 0 1.5 40\n  \
@@ -406,7 +408,7 @@ fn what_is_left_out_is_told_and_nothing_is_written_over() {
     assert!(good(&["lens", "import", shown(&zmx)]).contains("surfaces:"), "without -o it goes to standard output");
     assert!(good(&["lens", "export", "zeiss-biotar-50-f1.4"]).contains("GLAS BAF9 0 0 1.64329 47.72"));
 
-    // What is stated at other lines is written as nd and Vd, which is all that the format has.
+    // Indices stated at other lines are converted to nd and Vd, which are all that the format has.
     for (head, glass) in [
         ("reference-line: e\n", "nd: 1.518722, vd: 63.96"),
         ("reference-line: [F', e, C']\n", "nd: 1.518722, vd: 63.96"),
@@ -425,7 +427,7 @@ fn what_is_left_out_is_told_and_nothing_is_written_over() {
         let figures: Vec<f64> = line.split_whitespace().skip(4).take(2).map(|v| v.parse().expect("a number")).collect();
         assert!((figures[0] - 1.5168).abs() < 2e-4 && (figures[1] - 64.17).abs() < 2.0, "{head}{glass}: {line}");
         if !glass.contains("formula") {
-            // Vd from Ve by the normal lines of partial dispersion: N-BK7 itself lies 0.02 off them.
+            // Vd is computed from Ve with the normal lines of partial dispersion; N-BK7 itself deviates by 0.02.
             assert!((figures[0] - 1.5168).abs() < 3e-6 && (figures[1] - 64.17).abs() < 0.03, "{head}{glass}: {line}");
         }
     }
@@ -443,7 +445,7 @@ fn what_is_left_out_is_told_and_nothing_is_written_over() {
     }
 }
 
-/// At another size a lens has another focal length, and the same f-number.
+/// A scaled lens has another focal length and the same f-number.
 #[test]
 fn a_lens_is_scaled() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -455,12 +457,12 @@ fn a_lens_is_scaled() {
     let (before, after) = (load("zeiss-biotar-100-f1.4"), load(shown(&file)));
     let efl = |lens: &spectra_lens::Lens| lens.first_order(lens.reference_nm).efl_mm;
     assert!((efl(&after) - 58.0).abs() < 1e-6, "{}", efl(&after));
-    // Where its rims come from is kept.
+    // The source of its semi-diameters (`rims`) is kept.
     let written = std::fs::read_to_string(&file).expect("a file");
     let rims = |text: &str| text.lines().find(|line| line.starts_with("rims:")).map(str::to_owned);
     let own = std::fs::read_to_string(repository("lenses/zeiss-biotar-100-f1.4.yaml")).expect("a file");
     assert_eq!(rims(&written), rims(&own));
-    let f_number = |lens: &spectra_lens::Lens| lens.marginal_ray().expect("open").f_number();
+    let f_number = |lens: &spectra_lens::Lens| Optics::new(lens.clone()).marginal_ray().expect("open").f_number();
     assert!((f_number(&after) / f_number(&before) - 1.0).abs() < 1e-9);
     for (arguments, word) in [
         (&["lens", "scale", "zeiss-biotar-50-f1.4", "--by", "0"][..], "a factor of 0"),

@@ -1,4 +1,4 @@
-//! `spectra film`: stocks in figures and pictures.
+//! Tests `spectra film`: figures and plots of stocks.
 
 use crate::common::{good, rows, run, shown, text};
 use serde_json::Value;
@@ -53,8 +53,8 @@ fn what_is_wrong_is_said() {
     }
 }
 
-/// What colors do from one light to another, to the eye and to the layers of three films: as an independent computation has it
-/// (xtask/film_lamp.py, by colour-science), within 0.02 CIEDE2000.
+/// The effect of a change of lamp on colors, for the eye and for the layers of three films, agrees with an independent computation
+/// (xtask/film_lamp.py, with colour-science) within 0.02 CIEDE2000.
 #[test]
 fn film_lamp_is_that_of_another_program() {
     let rows = rows("film-lamp.csv");
@@ -78,8 +78,9 @@ fn film_lamp_is_that_of_another_program() {
     }
 }
 
-/// A lamp against itself parts nothing, brighter or not; a lamp that parts colors does so in the picture, too, and a film of more contrast
-/// drives them further. What is named as parting does.
+/// A lamp compared with itself, brighter or not, separates no colors. A lamp that separates colors does so in the finished picture
+/// too, and a film of higher contrast drives them further apart. The patches listed under `parting` are indeed separated more by the
+/// film.
 #[test]
 fn film_lamp_judges_the_finished_picture() {
     let lamp = |arguments: &[&str]| -> Value {
@@ -103,12 +104,12 @@ fn film_lamp_judges_the_finished_picture() {
             found["ciede2000"].as_array().and_then(|all| all.iter().find(|p| p["name"] == *name)).expect("a patch");
         assert!(patch["film"].as_f64() > patch["eye"].as_f64(), "{patch}");
     }
-    // Another print is another picture of the same exposures.
+    // Another print stock makes another picture of the same exposures.
     let print = lamp(&["kodak-vision3-250d-5207", "FL2", "--reference", "D50", "--print", "kodak-vision-premier-2393"]);
     let usual = lamp(&["kodak-vision3-250d-5207", "FL2", "--reference", "D50", "--print", "kodak-vision-2383"]);
     assert_eq!(print["mean_layers"], usual["mean_layers"]);
     assert!(mean(&print) != mean(&usual), "{} {}", mean(&print), mean(&usual));
-    // The table says the same as the figures, and the figure is drawn.
+    // The table shows the same figures, and the plot is written.
     let folder = tempfile::tempdir().expect("a folder");
     let figure = folder.path().join("lamp.svg");
     let table = good(&["film", "lamp", "kodak-portra-400", "FL2", "--reference", "D50", "-o", shown(&figure)]);

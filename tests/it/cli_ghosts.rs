@@ -1,10 +1,10 @@
-//! `spectra lens ghosts`, and `spectra lens trace --path`.
+//! Tests `spectra lens ghosts` and `spectra lens trace --path`.
 
 use crate::common::{run, shown, text};
 use serde_json::Value;
 use std::path::Path;
 
-/// A lens of spheres: radius, thickness, and index behind (1 is air), with its file.
+/// Writes a lens of spherical surfaces from rows of radius, thickness and index behind the surface (1 is air), and returns its path.
 fn lens(folder: &Path, rows: &[[f64; 3]]) -> std::path::PathBuf {
     let mut file = String::from("name: by hand\nreference-line: d\ncoating: bare\nsurfaces:\n");
     for [radius, thickness, index] in rows {
@@ -16,14 +16,14 @@ fn lens(folder: &Path, rows: &[[f64; 3]]) -> std::path::PathBuf {
     path
 }
 
-/// Paraxial height and slope in the image plane of light that comes in at height 1: refraction and reflection by n'u' = n u - y c
-/// (n' - n), where a reflection turns the signs of index and way.
+/// Returns the paraxial height and slope in the image plane of light that arrives at height 1. Refraction and reflection follow n'u'
+/// = n u - y c (n' - n), where a reflection changes the signs of index and direction.
 fn paraxial(rows: &[[f64; 3]], turns: [usize; 2]) -> [f64; 2] {
     let index = |gap: usize| if gap == 0 { 1.0 } else { rows[gap - 1][2] };
     let (mut y, mut u, mut sign, mut at, mut left) = (1.0, 0.0, 1.0, 0_isize, turns.to_vec());
     loop {
         let here = at as usize;
-        // The gaps before and behind a surface have its number and the next one.
+        // The gap in front of a surface has the number of the surface, and the gap behind it the next number.
         let (from, through) = if sign > 0.0 { (here, here + 1) } else { (here + 1, here) };
         let is_turn = left.first() == Some(&(here + 1));
         let (n, m) = (sign * index(from), if is_turn { -sign * index(from) } else { sign * index(through) });
@@ -41,7 +41,8 @@ fn paraxial(rows: &[[f64; 3]], turns: [usize; 2]) -> [f64; 2] {
     }
 }
 
-/// Foci and focal lengths of all ghosts of a singlet and a cemented doublet, and energies near the product of Fresnel's factors.
+/// Foci and focal lengths of all ghosts of a singlet and a cemented doublet agree with paraxial optics, and energies with Fresnel's
+/// factors.
 #[test]
 fn ghosts_are_where_paraxial_optics_has_them() {
     let singlet = [[50.0, 5.0, 1.5168], [-50.0, 47.536, 1.0]];
@@ -67,14 +68,14 @@ fn ghosts_are_where_paraxial_optics_has_them() {
         }
         assert!((sum / report["energy"].as_f64().expect("a number") - 1.0).abs() < 1e-12);
         if rows.len() == 2 {
-            // (0.5168 / 2.5168)^4, at these small angles.
+            // (0.5168 / 2.5168)^4, valid at these small angles.
             assert!((sum / 0.001778 - 1.0).abs() < 0.05, "{sum}");
         }
     }
 }
 
-/// A window in front of a mirror, which light meets along the normals: of the light that the mirror sends to the film the window's ghost
-/// has R^2, with R = ((n - 1) / (n + 1))^2, and the table says so in per cent.
+/// A window in front of a mirror, which light meets along the normals. Relative to the light that the mirror sends to the film, the
+/// ghost of the window has R^2 with R = ((n - 1) / (n + 1))^2, and the table shows it in per cent.
 #[test]
 fn ghosts_in_front_of_a_mirror_have_their_share() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -91,13 +92,13 @@ fn ghosts_in_front_of_a_mirror_have_their_share() {
     assert!(text(&table.stdout).contains("together 0.178 % of the straight light"), "{}", text(&table.stdout));
 }
 
-/// A singlet has one path of four reflections, with some of the fourth power of its reflectance; asked for no more than that begins
-/// with, it is cut, and what it would have had is said to be left.
+/// A singlet has one path of four reflections, with about the fourth power of its reflectance. With a threshold above the light that
+/// the path starts with, the path is cut and its light is reported as not traced.
 #[test]
 fn paths_of_four_are_cut_where_little_begins() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = lens(folder.path(), &[[50.0, 5.0, 1.5168], [-50.0, 47.536, 1.0]]);
-    // So narrow that all light stays near the normals.
+    // Narrow enough that all light stays near the normals.
     let narrow = std::fs::read_to_string(&file).expect("written").replace("semi-diameter: 8", "semi-diameter: 1");
     std::fs::write(&file, narrow).expect("written");
     let found = |more: &[&str]| -> Value {
@@ -116,13 +117,13 @@ fn paths_of_four_are_cut_where_little_begins() {
     assert_eq!(surfaces(&cut), surfaces(&two));
     let energy = four["paths"][1]["energy"].as_f64().expect("a number");
     assert!((energy / r.powi(4) - 1.0).abs() < 0.05, "{energy}");
-    // What leaves a pair inside is a third reflection; what leaves four, a fifth.
+    // Light that remains after a pair of reflections comes from a third reflection; after four, from a fifth.
     assert!((0.85..1.05).contains(&(left(&two) / r.powi(3))), "{}", left(&two));
     assert!((0.85..1.05).contains(&(left(&four) / r.powi(5))), "{}", left(&four));
     assert!((left(&cut) / left(&two) - 1.0).abs() < 1e-9);
 }
 
-/// The books in the report of a picture say how many reflections they follow.
+/// The ledger in a picture's report states the number of reflections that it covers.
 #[test]
 fn a_report_says_the_order_of_its_books() {
     let scene = "spectra: 1\n\
@@ -143,7 +144,7 @@ fn a_report_says_the_order_of_its_books() {
     }
 }
 
-/// The drawing has the rays that were asked for, of the ghost that was asked for.
+/// The drawing shows the requested number of rays of the requested ghost.
 #[test]
 fn a_ghost_is_drawn() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -157,7 +158,7 @@ fn a_ghost_is_drawn() {
     let (few, said) = size("few.svg", &["--rays", "1", "--path", "9,5"]);
     assert!(said.contains("surfaces 9, 5"), "{said}");
     let (many, _) = size("many.svg", &["--rays", "8", "--path", "9,5"]);
-    // The bar of the scale may be another one.
+    // The scale bar may differ.
     assert!(many >= few + 7, "{few} {many}");
     let (_, worst) = size("worst.svg", &["--field", "15"]);
     assert!(worst.contains("the ghost of surfaces"), "{worst}");
@@ -173,7 +174,7 @@ fn the_table_is_for_people() {
     assert!(text(&ideal.stdout).contains("0 ghosts"), "{}", text(&ideal.stdout));
 }
 
-/// A path asked for is the one that is traced: a ray of `tests/data/ghost-rays.csv`.
+/// A requested path is the one that is traced, compared with a ray of `tests/data/ghost-rays.csv`.
 #[test]
 fn rays_follow_a_path() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");

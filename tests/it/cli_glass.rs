@@ -1,4 +1,4 @@
-//! `spectra glass`: what is known of a glass, pictures, nearest glasses, fits.
+//! Tests `spectra glass`: data of a glass, plots, nearest glasses, fits.
 
 use crate::common::{good, lens, repository, run, shown, text};
 use serde_json::Value;
@@ -13,14 +13,14 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("no number: {value}"))
 }
 
-/// The message of a run that must be refused as bad input.
+/// Returns the message of a run that must be refused as bad input.
 fn refused(arguments: &[&str]) -> String {
     let output = run(&[&["glass"][..], arguments].concat());
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     text(&output.stderr)
 }
 
-/// Schott's data sheets: nd, nF, nC, ng, ne, Vd, Ve.
+/// The values of Schott's data sheets are shown: nd, nF, nC, ng, ne, Vd, Ve.
 #[test]
 fn makers_values_are_shown() {
     let info = json(&["info", "N-BK7", "--wavelength-nm", "632.8"]);
@@ -32,7 +32,7 @@ fn makers_values_are_shown() {
         (&info["n"]["F"], 1.522376, 1e-6),
         (&info["n"]["C"], 1.514322, 1e-6),
         (&info["n"]["g"], 1.526685, 1e-6),
-        // n at 632.8 nm, in the data sheet; internal transmittance of 10 mm at 400 nm and above: 0.997.
+        // n at 632.8 nm from the data sheet, and an internal transmittance of 10 mm of 0.997 at 400 nm and above.
         (&info["n_at"], 1.515089, 1e-5),
         (&info["internal_transmittance_10mm"]["h"], 0.997, 1e-3),
         (&info["reflectance"], 0.0421646, 1e-7),
@@ -51,14 +51,14 @@ fn makers_values_are_shown() {
 
 #[test]
 fn temperature_and_vacuum() {
-    // Schott's data sheet of SF6: 1e6 dn/dT at e, 20 to 40 C: 11.1 relative, 9.5 absolute.
+    // Schott's data sheet of SF6 states 1e6 dn/dT at e from 20 to 40 C: 11.1 relative, 9.5 absolute.
     let at = |more: &[&str]| number(&json(&[&["info", "SCHOTT/SF6"], more].concat())["ne"]);
     let slope = |more: &[&str]| {
         let hot = at(&[more, &["--temperature-c", "40"]].concat());
         (hot - at(&[more, &["--temperature-c", "20"]].concat())) / 20.0 * 1e6
     };
     assert!((slope(&[]) - 11.1).abs() < 0.1 && (slope(&["--absolute"]) - 9.5).abs() < 0.1);
-    // Air at 20 C: n - 1 of standard air (15 C: 277.8e-6 at 550 nm, Ciddor) thinned by 288.15 / 293.15.
+    // Air at 20 C: n - 1 of standard air (15 C: 277.8e-6 at 550 nm, Ciddor), thinned by 288.15 / 293.15.
     let air = json(&["info", "air", "--absolute", "--wavelength-nm", "550"]);
     assert!((number(&air["n_at"]) - 1.0 - 277.8e-6 * 288.15 / 293.15).abs() < 1e-7, "{air}");
     assert_eq!(number(&json(&["info", "air"])["nd"]), 1.0);
@@ -72,35 +72,32 @@ fn melts_and_glasses_of_figures_alone() {
     assert_eq!(melt["status"], "melt");
     let model = json(&["info", "--nd", "1.5168", "--vd", "64.17"]);
     assert!((number(&model["vd"]) - 64.17).abs() < 1e-9 && model["maker"].is_null());
-    // By nd and Vd alone: the partial dispersion of an ordinary glass, 0.6438 - 0.001682 Vd.
+    // With only nd and Vd, the partial dispersion is that of a normal glass: 0.6438 - 0.001682 Vd.
     for vd in [25.4, 36.4, 60.2] {
         let model = json(&["info", "--nd", "1.62", "--vd", &vd.to_string()]);
         let n = |line: &str| number(&model["n"][line]);
         let partial = (n("g") - n("F")) / (n("F") - n("C"));
         assert!((partial - (0.6438 - 0.001_682 * vd)).abs() < 2e-4, "{vd}: {partial}");
     }
-    // N-BK7 by ne and Ve.
+    // N-BK7 from ne and Ve.
     let e = json(&["info", "--nd", "1.518722", "--vd", "63.96", "--line", "e"]);
     assert!((number(&e["nd"]) - 1.5168).abs() < 2e-6 && (number(&e["vd"]) - 64.17).abs() < 0.03, "{e}");
     assert!(refused(&["info", "--nd", "9", "--vd", "64"]).contains("no glass has nd 9"));
     assert!(refused(&["info", "--nd", "1.5"]).contains("--vd"));
 }
 
-/// Where stated figures choose one of several data sets, that is said.
+/// If stated figures select one of several data sets, a message says so.
 #[test]
 fn a_melt_of_a_substance_says_which_data_it_is_of() {
     let of = |nd: &str| text(&run(&["glass", "info", "CaF2", "--nd", nd, "--vd", "96.4"]).stderr);
-    assert!(
-        of("1.43391").contains("CRYSTRAN/CaF2 is taken, the nearest to the stated nd 1.43391"),
-        "{}",
-        of("1.43391")
-    );
+    assert!(of("1.43391").contains("CRYSTRAN/CaF2 is used, the nearest to the stated nd 1.43391"), "{}", of("1.43391"));
     assert_eq!(of("1.43385"), "");
 }
 
 #[test]
 fn ambiguous_and_unknown_names_are_refused_with_candidates() {
-    // Of several glasses of a name the usual maker's is taken, and the others are told; measurements are not guessed at.
+    // Of several glasses with one name the default maker's is used, and the others are named. Among measurements the program does not
+    // guess.
     let output = run(&["glass", "info", "F2"]);
     assert!(output.status.success() && text(&output.stdout).starts_with("SCHOTT/F2"));
     for candidate in ["SCHOTT/F2", "HOYA/F2", "CDGM/F2"] {
@@ -140,7 +137,7 @@ fn a_catalogue_of_ones_own() {
     assert!(refused(&["info", "GOOD", "--catalogue", "no-such.agf"]).contains("no-such.agf"));
 }
 
-/// The dense barium crown of the Biotar of 1927, by the patent's nd and Vd.
+/// Finds the dense barium crown of the Biotar of 1927, from the patent's nd and Vd.
 #[test]
 fn nearest_glasses() {
     let found = json(&["match", "--nd", "1.64329", "--vd", "48", "--era", "1927", "--limit", "4"]);
@@ -149,18 +146,18 @@ fn nearest_glasses() {
     assert_eq!(matches[0]["name"], "SCHOTT/BAF9");
     assert!(matches.windows(2).all(|m| number(&m[0]["distance"]) <= number(&m[1]["distance"])));
     assert!(matches.iter().all(|m| !m["name"].as_str().expect("a name").contains("/LA")));
-    // The same glass by its values at the e line.
+    // The same glass from its values at the e line.
     let e =
         json(&["match", "--nd", "1.518722", "--vd", "63.96", "--line", "e", "--maker", "SCHOTT", "--era", "modern"]);
     assert_eq!([&e["matches"][0]["name"], &e["line"]], ["SCHOTT/N-BK7", "e"]);
-    // Each medium of a lens, in the order of the light.
+    // Every medium of a lens, in the order in which light meets them.
     let of_lens = json(&["match", "--lens", &lens("helios-44-58-f2")]);
     let media = of_lens.as_array().expect("a list");
     assert_eq!(media.len(), 3);
     assert_eq!(media[0]["surfaces"], serde_json::json!([1, 3, 8]));
     let best: Vec<&str> = media.iter().filter_map(|m| m["matches"][0]["name"].as_str()).collect();
     assert_eq!(best.len(), 3);
-    // The lens is of LZOS glass: LF7 and TK14 by name in other transcriptions.
+    // The lens is made of LZOS glass: other transcriptions name LF7 and TK14.
     assert!(media.iter().all(|m| number(&m["matches"][0]["distance"]) < 1.0), "{best:?}");
     assert!(good(&["glass", "match", "--lens", "zeiss-biotar-50-f1.4"]).contains("behind surface 1, 8, 10"));
 }
@@ -187,7 +184,7 @@ fn pictures_of_both_kinds() {
     assert!(refused(&["plot", "air", "--abbe", "-o", "x.svg"]).contains("no Abbe number"));
 }
 
-/// CRC Handbook (1990): Cauchy's A and B by neighboring rows and means, in nm^2.
+/// Cauchy's A and B (in nm^2) of tables of the CRC Handbook (1990), from adjacent rows and averaged.
 #[test]
 fn fits_of_seven_materials() {
     let tables = repository("crates/glass/tests/data/cauchy-tables.csv");
@@ -207,12 +204,12 @@ fn fits_of_seven_materials() {
         assert_eq!([&rows["model"], &squares["model"]], ["cauchy", "cauchy-ls"]);
         assert!((number(&rows["coefficients"]["a"]) - a).abs() <= a_unit, "{material}");
         assert!((number(&rows["coefficients"]["b_nm2"]) - b).abs() <= b_unit, "{material}");
-        // Nothing of this form is nearer than least squares.
+        // No curve of this form fits better than least squares.
         assert!(number(&squares["rms_deviation"]) <= number(&rows["rms_deviation"]), "{material}");
     }
     let table = good(&["glass", "fit", shown(&tables), "--model", "cauchy,conrady"]);
     assert!(table.contains("3689.68") && table.contains("conrady") && table.contains("deviation: mean"));
-    // Three rows determine no Sellmeier: the others are shown, and the code tells.
+    // Three rows do not determine a Sellmeier formula: the other fits are shown, and the exit code reports the failure.
     let output = run(&["glass", "fit", shown(&tables), "--model", "sellmeier"]);
     assert!(output.status.code() == Some(2) && text(&output.stderr).contains("water-20c"));
     assert!(text(&output.stdout).contains("fused-quartz"));
@@ -222,14 +219,14 @@ fn fits_of_seven_materials() {
     assert!(refused(&["fit", shown(&bad)]).contains("bad.csv:3: `x` is not a valid index"));
 }
 
-/// What `fit` reads, `info` and `plot` read too: a material of a file with several.
+/// `info` and `plot` read the same tables as `fit`, including one material of a file with several.
 #[test]
 fn one_reader_of_tables() {
     let tables = repository("crates/glass/tests/data/cauchy-tables.csv");
     let named = |material: &str| format!("{}#{material}", shown(&tables));
     let info = json(&["info", &named("zinc-crown"), "--wavelength-nm", "589"]);
     assert_eq!(number(&info["n_at"]), 1.517);
-    // The same table stands in the catalogue, with its source.
+    // The catalog contains the same table, with its source.
     let bundled = json(&["info", "dispersion-study/zinc-crown", "--wavelength-nm", "589"]);
     assert!(
         number(&bundled["n_at"]) == 1.517 && bundled["source"].as_str().is_some_and(|s| s.contains("CRC Handbook"))
@@ -240,7 +237,7 @@ fn one_reader_of_tables() {
     assert!(std::fs::read_to_string(&svg).expect("written").contains("heavy-flint"));
     assert!(refused(&["info", shown(&tables)]).contains("7 materials"));
     assert!(refused(&["plot", &named("zink-crown")]).contains("zinc-crown"));
-    // And what `plot` reads, k and all, `fit` reads.
+    // Conversely, `fit` reads what `plot` reads, including a column of k.
     let own = folder.path().join("own.csv");
     std::fs::write(&own, "wavelength_um;n;k\n0.486;1.522;1e-8\n0.588;1.517;1e-8\n0.656;1.514;1e-8\n").expect("written");
     assert!(json(&["fit", shown(&own)])[0]["samples"] == 3 && number(&json(&["info", shown(&own)])["nd"]) > 1.516);
@@ -263,7 +260,7 @@ fn lists_by_fragment_and_category() {
     assert!(none.status.success() && text(&none.stderr).contains("glass match"));
 }
 
-/// At least 99 % of what makers list comes out of their coefficients; the others are named.
+/// At least 99 % of the makers' listed values follow from their coefficients; the rest are named.
 #[test]
 fn the_catalogue_is_checked() {
     let check = json(&["check"]);
@@ -272,8 +269,8 @@ fn the_catalogue_is_checked() {
     assert!(good(&["glass", "check"]).contains("SCHOTT/BOROFLOAT33"));
 }
 
-/// A catalogue of more than 3000 glasses costs less than 5 ms at the start: the quickest of some cold starts each, taken in
-/// turns, as many as it takes on a busy machine.
+/// A catalog of more than 3000 glasses adds less than 5 ms to the start. The test compares the fastest of several cold starts, taken
+/// in turns, with more starts on a busy machine.
 #[test]
 fn a_look_up_starts_fast() {
     let time = |arguments: &[&str]| {
@@ -295,7 +292,7 @@ fn a_look_up_starts_fast() {
     assert!(look_up.saturating_sub(idle) < limit, "{idle:?} {look_up:?}");
 }
 
-/// A table of Cauchy's own: the glass file, its rows and its figure, and the glass goes back in by its name.
+/// Fits a table that follows Cauchy's formula, writes the glass file, the rows and the figure, and reads the glass back by its name.
 #[test]
 fn a_fit_is_written_shown_and_read_back() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -320,7 +317,8 @@ fn a_fit_is_written_shown_and_read_back() {
     assert!(figure.contains("crown: fitted dispersion") && figure.contains("formula minus row"));
     let info = json(&["info", shown(&yaml), "--wavelength-nm", "589.3"]);
     assert!((number(&info["n_at"]) - (a + b / (589.3 * 589.3))).abs() < 1e-9, "{info}");
-    // Every other model reads back, too: at a row the glass has the index of the formula, which is the row's and its deviation.
+    // Every other model can be read back too: at a row, the glass has the index of the formula, which is the row's index plus its
+    // deviation.
     for model in ["cauchy-ls", "sellmeier", "conrady", "schott", "herzberger"] {
         let fits = json(&["fit", &one, "--model", model, "-o", shown(&yaml)]);
         let wanted = a + b / (546.07 * 546.07) + number(&fits[0]["fits"][0]["deviations"][3]);
@@ -331,7 +329,7 @@ fn a_fit_is_written_shown_and_read_back() {
     let wanted = a + b / (546.07 * 546.07) + number(&fits[0]["fits"][0]["deviations"][3]);
     let info = json(&["info", shown(&yaml), "--wavelength-nm", "546.07"]);
     assert!((number(&info["n_at"]) - wanted).abs() < 1e-9, "{info}");
-    // Several materials, an unknown one, a wrong ending: each is told apart.
+    // Several materials, an unknown material and a wrong file extension each have their own message.
     let all = shown(&at("melts.csv")).to_owned();
     for (options, words) in [
         (&["fit", &all, "-o", "x.yaml"][..], "#crown"),
@@ -343,7 +341,7 @@ fn a_fit_is_written_shown_and_read_back() {
     }
 }
 
-/// B in nm^2, as tables of dispersion have it, is the same glass as in um^2; other formulas say that they have no other unit.
+/// B may be stated in nm^2, as in dispersion tables, instead of um^2. Other formulas reject the unit.
 #[test]
 fn coefficients_may_be_in_nanometers() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -362,7 +360,7 @@ fn coefficients_may_be_in_nanometers() {
     assert!(refused(&["info", shown(&path)]).contains("the unit of which formula?"));
 }
 
-/// Abbe numbers of any three lines, by their names and by wavelengths: V = (n_middle - 1) / (n_blue - n_red).
+/// Computes Abbe numbers of any three lines, given by name or wavelength: V = (n_middle - 1) / (n_blue - n_red).
 #[test]
 fn abbe_numbers_of_any_three_lines() {
     let at = |nm: &str| number(&json(&["info", "N-BK7", "--wavelength-nm", nm])["n_at"]);
@@ -370,20 +368,20 @@ fn abbe_numbers_of_any_three_lines() {
     let info = json(&["info", "N-BK7", "--lines", "450,580,680"]);
     assert!((number(&info["v_lines"]) - wanted).abs() < 1e-9, "{info}");
     assert_eq!(info["lines_nm"], serde_json::json!([450.0, 580.0, 680.0]));
-    // The usual ones are the usual numbers.
+    // The usual lines give the usual Abbe number.
     let info = json(&["info", "N-BK7", "--lines", "F',e,C'"]);
     assert!((number(&info["v_lines"]) - number(&info["ve"])).abs() < 1e-12, "{info}");
     assert!(good(&["glass", "info", "N-BK7", "--lines", "450,580,680"]).contains("V 450 580 680 nm"));
     for wrong in ["680,580,450", "450,580", "F,x,C"] {
         assert!(refused(&["info", "N-BK7", "--lines", wrong]).contains("from blue to red"), "{wrong}");
     }
-    // Plastics by their category.
+    // Plastics by category.
     let plastics = json(&["list", "--category", "plastic"]);
     let plastics = plastics.as_array().expect("a list");
     assert!(plastics.len() > 10 && plastics.iter().all(|glass| glass["category"] == "plastic"));
 }
 
-/// Indices and Abbe numbers at e of glass files and lens files.
+/// Indices and Abbe numbers at e are accepted in glass files and lens files.
 #[test]
 fn figures_at_e_are_taken_as_stated() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -398,7 +396,7 @@ fn figures_at_e_are_taken_as_stated() {
     assert!(info.to_string().contains("1.6242"), "{info}");
 }
 
-/// Nearest glasses and the Abbe diagram for any three lines.
+/// Nearest glasses and the Abbe diagram accept any three lines.
 #[test]
 fn glasses_by_any_three_lines() {
     let info = json(&["info", "SCHOTT/F2", "--lines", "450,580,680", "--wavelength-nm", "580"]);
@@ -407,7 +405,7 @@ fn glasses_by_any_three_lines() {
     assert_eq!((&found["matches"][0]["name"], &found["line"]), (&"SCHOTT/F2".into(), &"580 nm".into()), "{found}");
     assert_eq!(found["lines_nm"], serde_json::json!([450.0, 580.0, 680.0]));
     assert!(number(&found["matches"][0]["distance"]) < 1e-6, "{found}");
-    // Taken for nd and Vd, the same figures are another glass's.
+    // Read as nd and Vd, the same figures belong to another glass.
     let other = json(&["match", "--nd", &n, "--vd", &v, "--maker", "SCHOTT", "--limit", "1"]);
     assert!(number(&other["matches"][0]["distance"]) > 1.0, "{other}");
     let table = good(&["glass", "match", "--nd", &n, "--vd", &v, "--line", "450,580,680", "--limit", "2"]);
@@ -418,7 +416,7 @@ fn glasses_by_any_three_lines() {
     let figure = folder.path().join("abbe.svg");
     good(&["glass", "plot", "SCHOTT/F2", "--abbe", "--lines", "F',e,C'", "--makers", "SCHOTT", "-o", shown(&figure)]);
     let svg = std::fs::read_to_string(&figure).expect("written");
-    assert!(svg.contains("V_{e}") || svg.contains("Abbe number"), "axes are named");
+    assert!(svg.contains("V_{e}") || svg.contains("Abbe number"), "an axis has no name");
     for wrong in ["C,d,F", "q", "F,d"] {
         assert!(
             refused(&["match", "--nd", "1.6", "--vd", "40", "--line", wrong]).contains("from blue to red"),

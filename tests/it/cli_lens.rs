@@ -1,16 +1,16 @@
-//! `spectra lens info`, against first-order values computed by others.
+//! Tests `spectra lens info` with first-order values computed by others.
 
 use crate::common::{good, lens, repository, rows, run, shown, text};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// What the program says of a lens. Of a lens that is bundled, which several tests ask for, it is asked once.
+/// Returns the program's report on a lens. The report on a bundled lens is computed once, because several tests need it.
 fn info(lens: &str, options: &[&str]) -> Value {
     static KNOWN: Mutex<BTreeMap<String, Value>> = Mutex::new(BTreeMap::new());
     let arguments: Vec<&str> = ["lens", "info", lens, "--json"].into_iter().chain(options.iter().copied()).collect();
     let ask = || serde_json::from_str(&good(&arguments)).expect("JSON");
-    // A name with a point in it has no ending to replace.
+    // A lens name can contain a point, so the extension is appended, not replaced.
     if !repository("lenses").join(format!("{lens}.yaml")).is_file() {
         return ask();
     }
@@ -27,7 +27,7 @@ fn figure(info: &Value, key: &str) -> f64 {
     info[key].as_f64().unwrap_or_else(|| panic!("`{key}` is no number: {}", info[key]))
 }
 
-/// An index that nobody measured is told of, each medium once.
+/// Every medium with an extrapolated index is reported once.
 #[test]
 fn extrapolated_indices_are_told() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -44,10 +44,10 @@ fn extrapolated_indices_are_told() {
     assert_eq!(told("550"), [""; 0]);
     let far = told("1550");
     assert!(far.len() == 2 && far[0].starts_with("SCHOTT/BK7 was measured from 400 to 700 nm"), "{far:?}");
-    assert!(far[1].contains("by an index and an Abbe number only"), "{far:?}");
+    assert!(far[1].contains("only by an index and an Abbe number"), "{far:?}");
 }
 
-/// An assumed absorption that takes a stop is told of, with whose it is.
+/// A note reports an assumed absorption that costs a stop, and names the glass that it is borrowed from.
 #[test]
 fn a_stop_of_assumed_absorption_is_told() {
     let rod = repository("tests/warned/own/rod.yaml");
@@ -61,7 +61,7 @@ fn a_stop_of_assumed_absorption_is_told() {
     assert!(!said(&["--absorption", "false"]).contains("darkens"));
 }
 
-/// Values computed twice, independently; printed with seven decimals.
+/// Focal lengths were computed twice, independently, and are printed with seven decimals.
 #[test]
 fn focal_lengths_of_thirteen_lenses() {
     let wanted = rows("first-order.csv");
@@ -75,7 +75,7 @@ fn focal_lengths_of_thirteen_lenses() {
     }
 }
 
-/// Exit pupil over entrance pupil diameter, paraxial, within 0.01.
+/// The paraxial pupil magnification, exit over entrance pupil diameter, agrees within 0.01.
 #[test]
 fn pupil_magnification_of_nine_lenses() {
     for (name, wanted) in [
@@ -94,7 +94,7 @@ fn pupil_magnification_of_nine_lenses() {
     }
 }
 
-/// The thick lens in closed form; the index of N-BK7 at d is the maker's.
+/// A thick lens follows its closed form; the index of N-BK7 at d is the maker's.
 #[test]
 fn equiconvex_lens_has_its_closed_form() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -105,13 +105,13 @@ fn equiconvex_lens_has_its_closed_form() {
     let info = info(shown(&file), &["--line", "d"]);
     assert!((figure(&info, "efl_mm") - 49.21300).abs() < 5e-6, "{info}");
     assert!((figure(&info, "bfl_mm") - 47.53622).abs() < 5e-6, "{info}");
-    // Symmetric: the front mirrors the rear.
+    // The lens is symmetric, so its front mirrors its rear.
     assert!((figure(&info, "ffl_mm") + figure(&info, "bfl_mm")).abs() < 1e-9);
     let (front, rear) = (figure(&info, "front_principal_z_mm"), figure(&info, "rear_principal_z_mm"));
     assert!((front + rear - 5.0).abs() < 1e-9 && front < rear);
     assert_eq!(figure(&info, "total_track_mm"), 52.0);
     assert_eq!(figure(&info, "image_distance_mm"), 47.0);
-    assert_eq!(info["entrance_pupil_z_mm"], Value::Null, "no stop, no pupil");
+    assert_eq!(info["entrance_pupil_z_mm"], Value::Null, "a lens without a stop has no pupil");
     assert_eq!(info["surfaces"].as_array().map(Vec::len), Some(2));
     assert_eq!(info["line"], "d");
 }
@@ -122,17 +122,17 @@ fn f_number_and_focus_are_set() {
     let wide = info(name, &[]);
     let set = info(name, &["--f-number", "f/4", "--focus", "2 m"]);
     assert!((figure(&set, "f_number") - 4.0).abs() < 1e-9);
-    // In air the sine condition of a well corrected lens holds to some per cent: D = f / N.
+    // In air, the sine condition of a well corrected lens holds to a few per cent: D = f / N.
     assert!((figure(&set, "entrance_pupil_diameter_mm") * 4.0 / figure(&set, "efl_mm") - 1.0).abs() < 0.02);
     assert!(figure(&set, "image_distance_mm") > figure(&wide, "image_distance_mm") + 1.0);
     assert_eq!(figure(&set, "efl_mm"), figure(&wide, "efl_mm"));
-    // Blue light bends more in every single glass, and the lens is corrected: less than a per cent is left.
+    // Blue light bends more in every glass, but the lens is corrected: less than one per cent of difference is left.
     let (blue, red) =
         (figure(&info(name, &["--line", "F"]), "efl_mm"), figure(&info(name, &["--line", "C"]), "efl_mm"));
     assert!(blue != red && (blue / red - 1.0).abs() < 0.01, "{blue} {red}");
 }
 
-/// Coatings, focus shifts, field, chief rays and mounts are there, and fit each other.
+/// The report contains coatings, focus shifts, field, chief rays and mounts, and they are consistent.
 #[test]
 fn the_report_is_whole() {
     let biotar = info("zeiss-biotar-50-f1.4", &[]);
@@ -160,7 +160,7 @@ fn the_report_is_whole() {
     ] {
         figure(&biotar, key);
     }
-    // Nodal points are the principal ones in air; nothing is anamorphic.
+    // In air the nodal points are the principal points, and this lens is not anamorphic.
     assert!((figure(&biotar, "front_nodal_z_mm") - figure(&biotar, "front_principal_z_mm")).abs() < 1e-9);
     assert!((figure(&biotar, "rear_nodal_z_mm") - figure(&biotar, "rear_principal_z_mm")).abs() < 1e-9);
     assert!(biotar.get("efl_x_mm").is_none());
@@ -168,10 +168,10 @@ fn the_report_is_whole() {
     let rays = biotar["chief_ray_exit_angle_deg"].as_array().expect("a list");
     assert_eq!(rays.len(), 11);
     assert_eq!((figure(&rays[0], "field_deg"), figure(&rays[0], "angle_deg")), (0.0, 0.0));
-    // f tan(field), but for some per cent of distortion.
+    // f tan(field), except for a few per cent of distortion.
     let (field, height) = (figure(&rays[5], "field_deg"), figure(&rays[5], "image_height_mm"));
     assert!((height / (figure(&biotar, "efl_mm") * field.to_radians().tan()) - 1.0).abs() < 0.03, "{field} {height}");
-    // 32.4 mm behind the glass: room for Leica's 27.80, none for a mirror.
+    // There are 32.4 mm behind the glass: enough for Leica's 27.80, too little for a mirror.
     let mounts = biotar["mounts"].as_array().expect("a list");
     let clearance = |name: &str| mounts.iter().find(|m| m["name"] == name).map(|m| figure(m, "clearance_mm"));
     assert!((clearance("Leica M").expect("it fits") - (figure(&biotar, "image_distance_mm") - 27.8)).abs() < 1e-9);
@@ -180,7 +180,7 @@ fn the_report_is_whole() {
     assert!(retrofocus["mounts"].as_array().is_some_and(|m| m.iter().any(|m| m["name"] == "Nikon F")));
 }
 
-/// The same distance in both forms; m = f / (distance - front focus) at a distance.
+/// The focus distance can be given with or without a unit; the magnification is m = f / (distance - front focus).
 #[test]
 fn focus_is_given_in_either_form() {
     let unit = info("zeiss-biotar-50-f1.4", &["--focus", "2 m"]);
@@ -193,7 +193,8 @@ fn focus_is_given_in_either_form() {
     assert_eq!(both.status.code(), Some(2));
 }
 
-/// The Biotar of 1927, line d: f/1.438 and T/1.836, by a tracer of its own (`xtask/t_number.py`, figures kept beside the test).
+/// The Biotar of 1927 at line d has f/1.438 and T/1.836, by an independent ray tracer (`xtask/t_number.py`; its figures are kept in a
+/// table).
 #[test]
 fn t_number_of_the_biotar_is_that_of_an_independent_script() {
     for row in rows("t-numbers.csv") {
@@ -202,7 +203,8 @@ fn t_number_of_the_biotar_is_that_of_an_independent_script() {
         for (key, want) in [("f_number", number(1)), ("transmittance", number(2)), ("t_number", number(3))] {
             assert!((figure(&found, key) / want - 1.0).abs() < 0.003, "{} {key}: {} {want}", row[0], found[key]);
         }
-        // With the glass's own transmittance, or the one that it borrows; not by the script where figures alone name a glass.
+        // Includes the transmittance of the glass, its own or borrowed. The script has no value for glasses that are known by figures
+        // only.
         if let Ok(want) = row[4].parse::<f64>() {
             let found = info(&row[0], &["--coating", "bare", "--line", "d"]);
             assert!(
@@ -224,7 +226,8 @@ fn t_number_of_the_biotar_is_that_of_an_independent_script() {
     assert_eq!(ideal["losses"], "no reflections, no absorption");
 }
 
-/// Bare before 1940 and where no year is known, one layer before 1970, then three; the T-number says so.
+/// Assumed coatings are bare before 1940 and without a year, one layer before 1970, then three layers, and the T-number's remark says
+/// so.
 #[test]
 fn coatings_are_those_of_the_time() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -257,7 +260,7 @@ fn coatings_are_those_of_the_time() {
     }
 }
 
-/// A lens fits its own mount, whose mirror box its rear glass may enter; what it does not fit is not listed.
+/// A lens fits its own mount, whose mirror box its rear glass may enter. Mounts that it does not fit are not listed.
 #[test]
 fn lenses_fit_their_own_mounts() {
     let mounts = |name: &str| -> Vec<String> {
@@ -266,12 +269,12 @@ fn lenses_fit_their_own_mounts() {
         all.map(|m| m["name"].as_str().expect("a name").to_owned()).collect()
     };
     for (lens, own, other) in [
-        // 32.7 mm of back focus: behind the flange of FD, and too near the film for any deeper mirror.
+        // The back focus is 32.7 mm: behind the flange of FD, and too close to the film for a deeper mirror.
         ("canon-fd-50-f1.8", "Canon FD", "Canon EF"),
         ("helios-44-58-f2", "M42", "Leica R"),
         ("minolta-fisheye-16-f2.7", "Minolta SR", "M42"),
         ("canon-ef-70-200-f2.8-at-72", "Canon EF", "T2"),
-        // Made for rangefinders: no mirror swings behind them.
+        // Lenses for rangefinders: no mirror swings behind them.
         ("canon-35-f1.8", "C-mount", "Canon FD"),
         ("zeiss-biotar-50-f1.4", "Leica M", "M42"),
         ("zeiss-biotar-50-f1.4", "Leica M", "Minolta SR"),
@@ -280,7 +283,7 @@ fn lenses_fit_their_own_mounts() {
         assert!(found.iter().any(|m| m == own), "{lens}: {found:?}");
         assert!(!found.iter().any(|m| m == other), "{lens}: {found:?}");
     }
-    // People get the common ones, and the others on request.
+    // The table shows the common mounts, and the others on request.
     let told = |arguments: &[&str]| {
         let table = good(&[&["lens", "info", "canon-fd-50-f1.8"][..], arguments].concat());
         table.lines().find(|line| line.starts_with("fits these mounts")).expect("a line").to_owned()
@@ -292,7 +295,7 @@ fn lenses_fit_their_own_mounts() {
     assert_eq!(every.matches(", ").count() + 1, mounts("canon-fd-50-f1.8").len());
 }
 
-/// The number in a lens's name is its full aperture, on every bundled lens that has one; a note says where that is rounded.
+/// The number in a lens's name means its full aperture, for every bundled lens that has one. A note says if the name is rounded.
 #[test]
 fn nominal_f_numbers_mean_wide_open() {
     let mut noted = 0;
@@ -314,7 +317,7 @@ fn nominal_f_numbers_mean_wide_open() {
     assert!(told.contains("the rim of surface") && told.contains("would need r ="), "{told}");
 }
 
-/// A digit copied wrong, a sign: said in words that name the surfaces. No bundled lens is doubted.
+/// A mistyped digit or sign is noticed in the shape, and the warning names the surfaces. No bundled lens causes such a warning.
 #[test]
 fn slips_of_typing_are_seen_in_the_shape() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -326,7 +329,7 @@ fn slips_of_typing_are_seen_in_the_shape() {
         info(shown(&file), &[])["warnings"].to_string()
     };
     assert_eq!(doubts("name: Zeiss", "name: Z"), "[]");
-    // 4 mm behind the stop, of 19.25 mm of radius: 0.4 mm are missing a digit.
+    // The stop is 4 mm in front of a surface with a radius of 19.25 mm; a wrong thickness makes the surfaces meet.
     let meet = doubts("{kind: stop, thickness: 4}", "{kind: stop, thickness: -1}");
     assert!(meet.contains("surfaces 5 and 7 meet"), "{meet}");
     let thin = doubts("radius: -26.6, thickness: 0.485", "radius: 26.6, thickness: 0.485");
@@ -345,7 +348,7 @@ fn slips_of_typing_are_seen_in_the_shape() {
     }
 }
 
-/// Side by side; what one lens cannot reach does not stop the other.
+/// Lenses are compared side by side; a setting that one lens cannot reach does not stop the other.
 #[test]
 fn lenses_are_compared() {
     let table = good(&["lens", "compare", "zeiss-biotar-50-f1.4", "helios-44-58-f2", "--f-number", "f/1.4"]);
@@ -372,7 +375,7 @@ fn lenses_are_compared() {
     assert_eq!(run(&["lens", "compare", "cooke-triplet-50-f5"]).status.code(), Some(2));
 }
 
-/// The T-number of a bare singlet, small aperture: N / T^(1/2), T = (1 - R)^2, R = ((n - 1) / (n + 1))^2.
+/// The T-number of an uncoated singlet at a small aperture is N / T^(1/2) with T = (1 - R)^2 and R = ((n - 1) / (n + 1))^2.
 #[test]
 fn t_number_counts_reflections() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -396,7 +399,7 @@ fn t_number_counts_reflections() {
     }
 }
 
-/// Where the axis is folded, or bends behind the last surface, lengths go along it.
+/// If the axis is folded or bends behind the last surface, lengths are measured along it.
 #[test]
 fn a_folded_lens_is_as_long_as_its_axis() {
     for (name, length_mm, image_mm) in [
@@ -451,7 +454,7 @@ fn wrong_settings_are_told() {
     }
 }
 
-/// Veiling glare: a figure with its error, for people and programs, and a reason where there is none.
+/// Veiling glare is reported on request, with its error, in the table and in JSON; if it cannot be computed, a reason is given.
 #[test]
 fn veiling_glare_is_said_where_asked() {
     let name = "zeiss-biotar-50-f1.4";
@@ -466,7 +469,7 @@ fn veiling_glare_is_said_where_asked() {
     let table = good(&["lens", "info", name, "--glare"]);
     assert!(table.contains("veiling glare") && table.contains("by glass alone"), "{table}");
     for (arguments, word) in [
-        (vec!["prism-60-sf11", "--glare"], "surface 1 is turned aside"),
+        (vec!["prism-60-sf11", "--glare"], "surface 1 is tilted"),
         (vec![name, "--paint", "4 %"], "--glare"),
         (vec![name, "--glare", "--paint", "120 %"], "from 0 to 100 %"),
     ] {
@@ -475,7 +478,7 @@ fn veiling_glare_is_said_where_asked() {
     }
 }
 
-/// The field by points: curvature, astigmatism, distortion and light, at the image heights that are asked for.
+/// The field is reported point by point, at the requested image heights: curvature, astigmatism, distortion and relative illuminance.
 #[test]
 fn the_field_is_told_point_by_point() {
     let name = "zeiss-biotar-50-f1.4";
@@ -484,7 +487,8 @@ fn the_field_is_told_point_by_point() {
     assert_eq!(points.len(), 4);
     for (point, part) in points.iter().zip([0.0, 0.5, 0.7, 1.0]) {
         assert!((figure(point, "image_height_mm") - part * 21.6).abs() < 1e-6, "{point}");
-        // Nothing is cut off at f/4 but near the corner: the light falls about by the fourth power of the cosine, less where the pupil grows.
+        // At f/4 only the corner is vignetted: light falls roughly with the fourth power of the cosine, and less where the pupil
+        // grows.
         let angle = figure(point, "angle_deg").to_radians();
         let light = figure(point, "relative_illuminance");
         assert!(light < 1.0 + 1e-9 && light > 0.5 * angle.cos().powi(4), "{point}");
@@ -494,11 +498,11 @@ fn the_field_is_told_point_by_point() {
     assert!(
         (sagittal - tangential).abs() < 1e-6 && (sagittal - figure(&stopped, "paraxial_focus_shift_mm")).abs() < 1e-5
     );
-    // Wide open the rims cut more off.
+    // Wide open, the rims cut off more light.
     let open = info(name, &["--image-height", "21.6mm"]);
     let corner = |info: &Value| figure(&info["chief_ray_exit_angle_deg"][3], "relative_illuminance");
     assert!(corner(&open) < 0.7 * corner(&stopped), "{} {}", corner(&open), corner(&stopped));
-    // Without a height it goes on to where nothing comes any more.
+    // Without an image height, the field continues to the point where no light arrives.
     let all = info(name, &[]);
     let last = &all["chief_ray_exit_angle_deg"][10];
     assert!(figure(last, "relative_illuminance") < 0.02 && figure(last, "distortion").abs() < 0.2, "{last}");
@@ -515,7 +519,8 @@ fn the_field_is_told_point_by_point() {
     );
 }
 
-/// A lens of one element sees 90 degrees, and nobody uses them: its field is listed and drawn to the corner of 135 film. A fisheye is shown whole.
+/// A single element accepts up to 90 degrees, but nobody uses such a field, so it is listed and drawn to the corner of 135 film. A
+/// fisheye is shown whole.
 #[test]
 fn a_field_that_no_rim_limits_ends_at_the_corner() {
     let last = |name: &str| {
@@ -530,7 +535,7 @@ fn a_field_that_no_rim_limits_ends_at_the_corner() {
     assert!(good(&["lens", "info", "surfaces/conic-singlet"]).contains("to the corner of 135 film"));
     let (largest, field, _) = last("minolta-fisheye-16-f2.7");
     assert!(largest > 100.0 && field > 90.0, "{largest} {field}");
-    // Drawn to the same field, so the figure is not all beam: the height of the beam at the lens's front stays within ten of its radii.
+    // The drawing stops at the same field. Otherwise oblique beams would fill it: the figure must be lower than 1.5 times its width.
     let folder = tempfile::tempdir().expect("a folder");
     for name in ["surfaces/conic-singlet", "surfaces/axicon"] {
         let drawn = folder.path().join("drawn.svg");
@@ -544,14 +549,14 @@ fn a_field_that_no_rim_limits_ends_at_the_corner() {
     }
 }
 
-/// The same distortion in both commands, and none of a pinhole.
+/// Both commands report the same distortion, and none for a pinhole.
 #[test]
 fn distortion_is_told_alike() {
     let (biotar, triplet) = ("zeiss-biotar-50-f1.4", "cooke-triplet-50-f5");
     let both: Value = serde_json::from_str(&good(&["lens", "compare", biotar, triplet, "--json"])).expect("JSON");
     let (field, distortion) = (figure(&both, "field_deg"), figure(&both["lenses"][0], "distortion"));
     let points = info(biotar, &[])["chief_ray_exit_angle_deg"].clone();
-    // Between the points on both sides of it, which it is monotone between.
+    // The distortion lies between the values of the points on both sides, because it is monotone there.
     let beside: Vec<(f64, f64)> = points.as_array().expect("a list")[1..]
         .iter()
         .map(|point| (figure(point, "field_deg"), figure(point, "distortion")))
@@ -565,8 +570,9 @@ fn distortion_is_told_alike() {
     }
 }
 
-/// Light of an even field through a round hole, without any glass: the disk of radius r, D in front of the film, gives at h beside the axis
-/// E = pi L / 2 (1 - (D^2 + h^2 - r^2) / ((D^2 + h^2 + r^2)^2 - 4 r^2 h^2)^(1/2)) (e.g. P. Foote, Bull. Bur. Stand. 12 (1915), 583).
+/// Light of a uniform field through a round hole without glass: a disk of radius r, D in front of the film, gives at height h off the
+/// axis E = pi L / 2 (1 - (D^2 + h^2 - r^2) / ((D^2 + h^2 + r^2)^2 - 4 r^2 h^2)^(1/2)) (e.g. P. Foote, Bull. Bur. Stand. 12 (1915),
+/// 583).
 #[test]
 fn light_over_the_field_is_that_of_a_hole() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -587,7 +593,8 @@ fn light_over_the_field_is_that_of_a_hole() {
     }
 }
 
-/// Without a stop: what the f-number goes by, and what to write, in the words of the file's format; what is written helps.
+/// For a lens without a stop, a note says which rim sets the f-number and what to write, in the terms of the file format. Writing it
+/// solves the problem.
 #[test]
 fn a_lens_without_a_stop_says_what_is_assumed() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -602,7 +609,7 @@ fn a_lens_without_a_stop_says_what_is_assumed() {
         let file = folder.path().join(name);
         std::fs::write(&file, plain).expect("written");
         let notes = info(shown(&file), &[])["notes"].to_string();
-        assert!(notes.contains("by the rim of surface 1 (r = 8.00 mm)") && notes.contains(words), "{notes}");
+        assert!(notes.contains("that of the rim of surface 1 (r = 8.00 mm)") && notes.contains(words), "{notes}");
         let refused = run(&["lens", "info", shown(&file), "--f-number", "8"]);
         assert!(text(&refused.stderr).contains(words), "{}", text(&refused.stderr));
         std::fs::write(&file, marked).expect("written");
@@ -610,6 +617,6 @@ fn a_lens_without_a_stop_says_what_is_assumed() {
         assert!(!helped["notes"].to_string().contains("stop"), "{helped}");
         assert!((figure(&helped, "f_number") - 8.0).abs() < 1e-6);
     }
-    // What has no power needs none.
+    // A prism, which has no power, needs no stop.
     assert_eq!(info("prism-60-sf11", &[])["notes"], serde_json::json!([]));
 }

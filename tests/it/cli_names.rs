@@ -1,6 +1,6 @@
-//! Names, lists and hints: what the program tells a person to write works when it is written.
+//! Tests names, lists and hints: what the program tells a person to write works when it is written.
 //!
-//! Examples of `--help` and hints are run in an empty folder, where somebody with an installed program meets them.
+//! Examples of `--help` and hints are run in an empty folder, like that of a person with an installed program.
 
 use crate::common::{answer_in, good, repository, run, run_in, shown, spectra, text, together};
 use serde_json::Value;
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// What a run that must fail says.
+/// Returns the standard error of a run that must fail.
 fn refused(arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let output = answer_in(folder.path(), arguments);
@@ -33,7 +33,7 @@ fn bundled_scenes_run_from_anywhere_under_every_name() {
     assert!(refused(&["check", "kodak-tri-x-400"]).contains("is a film stock"));
 }
 
-/// A hint never repeats what was typed.
+/// A hint never repeats what the user typed.
 #[test]
 fn no_hint_suggests_what_was_typed() {
     for typed in
@@ -81,7 +81,7 @@ fn parts_of_names_are_enough() {
     }
 }
 
-/// A color temperature is a black body below 5000 K and daylight from there on: CIE 13.3.
+/// A color temperature means a black body below 5000 K and daylight from 5000 K on: CIE 13.3.
 #[test]
 fn color_temperatures_are_lights() {
     let of = |name: &str| {
@@ -112,7 +112,7 @@ fn lists_have_the_words_that_one_chooses_by() {
     let lenses = good(&["list", "lens", "50"]);
     assert!(!lenses.contains("helios"), "{lenses}");
     let stocks = good(&["list", "stock"]);
-    let (camera, print) = stocks.split_once("print stock\n").expect("print stocks stand apart");
+    let (camera, print) = stocks.split_once("print stock\n").expect("print stocks form a group of their own");
     assert!(print.contains("kodak-vision-2383") && !camera.contains("kodak-vision-2383"), "{stocks}");
     let stocks: Value = serde_json::from_str(&good(&["list", "stock", "--json"])).expect("JSON");
     let tri_x = stocks.as_array().expect("a list").iter().find(|s| s["name"] == "kodak-tri-x-400").expect("there");
@@ -148,12 +148,12 @@ fn any_key_has_its_page() {
     assert!(json["found"].as_array().is_some_and(|found| !found.is_empty()), "{json}");
 }
 
-/// What is said of a key is said once on a page.
+/// A page describes each key only once.
 #[test]
 fn pages_do_not_repeat_themselves() {
     for page in ["scene", "lens", "surface", "stock", "film/stock"] {
         let said = good(&["doc", page]);
-        // Examples write keys out again.
+        // Examples contain keys again.
         let said = said.split("\nExample\n").next().unwrap_or_default();
         let keys =
             said.lines().filter(|l| l.starts_with("  ") && !l.starts_with("   ")).filter_map(|l| l.split_once(": "));
@@ -168,12 +168,12 @@ fn pages_do_not_repeat_themselves() {
     }
 }
 
-/// Every column of every bundled spectrum has figures and a picture.
+/// Every column of every bundled spectrum can be listed and plotted.
 #[test]
 fn every_bundled_spectrum_can_be_shown() {
     let list: Value = serde_json::from_str(&good(&["list", "spectrum", "--json"])).expect("JSON");
     let mut names: Vec<String> = Vec::new();
-    // Beside the files there are the kinds, with their documentation.
+    // The list also has the kinds of spectra, which have documentation.
     for item in list.as_array().expect("a list").iter().filter(|item| item["documentation"].is_null()) {
         let name = item["name"].as_str().expect("a name");
         match item["columns"].as_array().expect("a list").as_slice() {
@@ -253,7 +253,7 @@ fn words_that_are_no_commands_have_one_behind_them() {
     }
 }
 
-/// Words that have no page lead to a command that tells of them.
+/// A word that has no page leads to a command that explains it.
 #[test]
 fn words_of_photographers_lead_somewhere() {
     let words = "tri-x helios D55 gray-card bokeh dof fov sequence overscan alpha z-depth ghosts starburst vignetting \
@@ -267,7 +267,7 @@ fn words_of_photographers_lead_somewhere() {
     assert!(refused(&["doc", "BK7"]).contains("`spectra list glass BK7`"));
 }
 
-/// The list begins with what there is, and how many.
+/// The list begins with the kinds of entries and their numbers.
 #[test]
 fn the_list_begins_with_kinds_and_counts() {
     let list = good(&["list"]);
@@ -281,7 +281,7 @@ fn the_list_begins_with_kinds_and_counts() {
     assert!(!good(&["list", "lens"]).contains("spectra list"));
 }
 
-/// What is asked of a command in the words of another one is answered with what to write.
+/// A request that belongs to another command, or is written wrongly, is answered with what to write.
 #[test]
 fn slips_of_the_command_line_are_told_with_what_to_write() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -320,7 +320,7 @@ fn completions_and_man_page_know_every_command() {
     }
 }
 
-/// Figures go to NAME.svg where no file is given.
+/// A figure is written to NAME.svg if no file is given.
 #[test]
 fn figures_have_a_name_of_their_own() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -335,7 +335,7 @@ fn figures_have_a_name_of_their_own() {
     }
 }
 
-/// All commands, each as the words behind `spectra`.
+/// Collects all commands, each as the words after `spectra`.
 fn commands(of: &[String], found: &mut Vec<Vec<String>>) {
     let arguments: Vec<&str> = of.iter().map(String::as_str).chain(["--help"]).collect();
     let help = good(&arguments);
@@ -350,13 +350,13 @@ fn commands(of: &[String], found: &mut Vec<Vec<String>>) {
     }
 }
 
-/// Examples that are no part of this test, and why.
+/// Examples that this test leaves out, and why.
 const LEFT_OUT: [(&str, &str); 2] = [
-    ("spectra build ", "compiles for minutes; the guide's test builds"),
-    ("./spectra-mine ", "what `spectra build` made"),
+    ("spectra build ", "compiles for minutes; the test of the guide covers it"),
+    ("./spectra-mine ", "the program that `spectra build` makes"),
 ];
 
-/// A picture of a person's own: channels with their units, brighter to the right and from channel to channel.
+/// Writes an EXR like one of a user: channels with units, brighter to the right and from channel to channel.
 fn own_picture(path: &Path, [width_px, height_px]: [u32; 2], channels: Vec<(String, &str)>) {
     let size = FrameSize { width_px, height_px, width_mm: 36.0, height_mm: 24.0 };
     let values = |at: usize| (0..size.pixels()).map(|i| (at + 1) as f32 + (i as u32 % width_px) as f32).collect();
@@ -369,7 +369,7 @@ fn own_picture(path: &Path, [width_px, height_px]: [u32; 2], channels: Vec<(Stri
     spectra_pictures::write::write_exr(path, &ExposureFrame { size, channels }, &[]).expect("written");
 }
 
-/// Every example of every `--help`, in two parts.
+/// Runs the examples of every `--help`, in two parts.
 #[test]
 #[cfg(unix)]
 fn every_example_of_the_help_of_films_and_spectra_works() {
@@ -388,7 +388,8 @@ fn is_of_films_and_spectra(example: &str) -> bool {
     ["spectra film ", "spectra spectrum "].iter().any(|start| example.starts_with(start))
 }
 
-/// Runs examples of the help by a shell in one empty folder, with the files that examples name as a person's own; how many.
+/// Runs examples of the help with a shell in one empty folder that contains the files that the examples name. Returns how many were
+/// run.
 #[cfg(unix)]
 fn examples_work(is_asked: impl Fn(&str) -> bool) -> usize {
     let folder = tempfile::tempdir().expect("a folder");
@@ -403,7 +404,7 @@ fn examples_work(is_asked: impl Fn(&str) -> bool) -> usize {
             let started =
                 lines.clone().filter_map(|l| l.strip_prefix("Start with: ")).map(|l| l.split(" (").next().unwrap_or(l));
             for line in lines.filter(|l| l.starts_with("spectra ") || l.starts_with("./spectra")).chain(started) {
-                // A usage line is none.
+                // Skip usage lines.
                 if !line.contains("...") && !line.contains("<COMMAND>") && !examples.iter().any(|known| known == line) {
                     examples.push(line.to_owned());
                 }
@@ -442,10 +443,10 @@ fn examples_work(is_asked: impl Fn(&str) -> bool) -> usize {
             done += 1;
             continue;
         }
-        // A picture in full takes a minute: that it begins is enough.
+        // A full picture takes a minute, so it is enough that rendering starts.
         let short = match example {
             run if run.starts_with("spectra run ") => format!("{run} --time-limit 1s"),
-            // One scene of those that it names, small.
+            // Only one of the named scenes, and small.
             noise if noise.starts_with("spectra bench noise ") => {
                 let scenes = |word: &str| word.starts_with("bench/noise-") && word != "bench/noise-flat";
                 let words: Vec<&str> = noise.split(' ').filter(|word| !scenes(word)).collect();
@@ -455,7 +456,7 @@ fn examples_work(is_asked: impl Fn(&str) -> bool) -> usize {
             terms if terms.starts_with("spectra spectrum ") => {
                 terms.replace("--terms 6", "--terms 3").replace("--terms 8", "--terms 3")
             }
-            // As many rays as a small picture needs.
+            // Few pixels need few rays.
             ghosts if ghosts.starts_with("spectra bench ghosts ") => {
                 format!("{ghosts} --set imager.resolution=[96,64]")
             }
@@ -473,7 +474,7 @@ fn examples_work(is_asked: impl Fn(&str) -> bool) -> usize {
     done
 }
 
-/// Starts the viewer with these arguments, and ends it once it has said where it is.
+/// Starts the viewer with these arguments, and stops it once it has printed its address.
 #[cfg(unix)]
 fn viewed(folder: &Path, arguments: &str) {
     let all = ["view"].into_iter().chain(arguments.split(' ').filter(|word| *word != "--no-open")).chain(["--no-open"]);
@@ -489,7 +490,7 @@ fn viewed(folder: &Path, arguments: &str) {
     assert!(line.starts_with("http://127.0.0.1:") && line.contains("/?token="), "{arguments}: {}", text(&ended.stderr));
 }
 
-/// A fault or a warning: what it says, where, how many letters are underlined, and its hint.
+/// A fault or a warning: its message, its place, the number of underlined letters, and its hint.
 #[derive(Clone)]
 struct Told {
     message: String,
@@ -499,7 +500,7 @@ struct Told {
 }
 
 impl Told {
-    /// What is between backquotes behind "did you mean".
+    /// Returns the quoted text after "did you mean".
     fn meant(&self) -> Option<&str> {
         self.hint.split_once("did you mean `")?.1.split('`').next()
     }
@@ -512,7 +513,7 @@ fn place(text: &str) -> Option<(String, usize, usize)> {
     Some((parts.next()?.to_owned(), line, column))
 }
 
-/// A fault as `tests/broken` records it.
+/// Parses a fault as `tests/broken` records it.
 fn told(said: &str) -> Option<Told> {
     let message = said.lines().find_map(|l| l.trim_start().strip_prefix("\u{d7} "))?.to_owned();
     let place = place(said.lines().find_map(|l| l.trim_start().strip_prefix("\u{256d}\u{2500}["))?.strip_suffix(']')?)?;
@@ -524,7 +525,7 @@ fn told(said: &str) -> Option<Told> {
     Some(Told { message, place, letters, hint: hint.join(" ") })
 }
 
-/// The warnings that `tests/warned` records.
+/// Parses the warnings that `tests/warned` records.
 fn warned(said: &str) -> Vec<Told> {
     let of = |text: &str| {
         let (line, hint) = text.split_once("\n  help: ")?;
@@ -534,7 +535,7 @@ fn warned(said: &str) -> Vec<Told> {
     said.split("warning: ").filter_map(of).collect()
 }
 
-/// The recorded texts of a folder, each with its name, its own copy of the case, and the arguments.
+/// Returns the recorded texts of a folder with their names.
 fn recorded(root: &Path) -> Vec<(String, String)> {
     let mut texts: Vec<PathBuf> = fs::read_dir(root).expect("a folder").map(|e| e.expect("readable").path()).collect();
     texts.retain(|path| path.extension().is_some_and(|ending| ending == "txt"));
@@ -546,7 +547,7 @@ fn recorded(root: &Path) -> Vec<(String, String)> {
     texts.into_iter().map(named).collect()
 }
 
-/// A copy of a case, and the arguments that it is run with.
+/// Copies a case to a temporary folder; returns the folder and the arguments of the case.
 fn copied(root: &Path, name: &str) -> (tempfile::TempDir, Vec<String>) {
     let folder = tempfile::tempdir().expect("a folder");
     let case = root.join(name);
@@ -573,26 +574,26 @@ fn said_in(folder: &Path, arguments: &[String]) -> String {
     text(&answer_in(folder, &words).stderr)
 }
 
-/// A file with one line changed.
+/// Returns a file with one line changed.
 fn with_line(content: &str, number: usize, change: impl Fn(&str) -> String) -> String {
     let line = |(i, text): (usize, &str)| if i + 1 == number { change(text) } else { text.to_owned() };
     content.lines().enumerate().map(line).collect::<Vec<_>>().join("\n") + "\n"
 }
 
-/// A line with `letters` characters from a column on replaced.
+/// Returns a line with `letters` characters from a column on replaced.
 fn replaced(line: &str, column: usize, letters: usize, by: &str) -> String {
     let head: String = line.chars().take(column - 1).collect();
     let tail: String = line.chars().skip(column - 1 + letters).collect();
     format!("{head}{by}{tail}")
 }
 
-/// Each "did you mean" that is recorded is written in place of what is underlined, and the fault is gone.
+/// Every recorded "did you mean" works: written in place of the underlined text, it removes the fault.
 #[test]
 fn every_recorded_did_you_mean_works() {
     let root = repository("tests/broken");
     let mut done = 0;
     for (name, said) in recorded(&root) {
-        // Of several faults each has its own; one is enough to see that the word can be written.
+        // Of several faults only the first with such a hint is tried, which shows that the word can be written.
         let mut all = said.split("\n\n").filter_map(told);
         let Some(told) = all.find(|told| told.meant().is_some()).filter(|told| !told.place.0.starts_with("--")) else {
             continue;
@@ -612,7 +613,7 @@ fn every_recorded_did_you_mean_works() {
     println!("{done} recorded hints `did you mean` work");
 }
 
-/// What a hint proposes to do with the text between its backquotes.
+/// A change that a hint proposes for the text between its backquotes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Change {
     /// Add this key, or this bracket.
@@ -625,7 +626,7 @@ enum Change {
     Run,
 }
 
-/// The first change of a file that a hint proposes, and all commands in it.
+/// Returns the first change of a file that a hint proposes, and all commands in the hint.
 fn proposed(hint: &str) -> Vec<(Change, &str)> {
     let mut found: Vec<(Change, &str)> = Vec::new();
     let parts: Vec<&str> = hint.split('`').collect();
@@ -638,7 +639,9 @@ fn proposed(hint: &str) -> Vec<(Change, &str)> {
         let change = match () {
             () if quoted.starts_with("spectra ") => Change::Run,
             () if before.ends_with("add ") => Change::Add,
-            () if before.ends_with("leave ") && after.starts_with(" out") => Change::Remove,
+            () if before.ends_with("leave out ") || (before.ends_with("leave ") && after.starts_with(" out")) => {
+                Change::Remove
+            }
             () if is_pair && !before.ends_with("scene: ") && !before.ends_with("under ") => Change::Write,
             () if ["write ", "as in ", "brackets: ", "mean "].iter().any(|word| before.ends_with(word)) => {
                 Change::Write
@@ -656,7 +659,7 @@ fn is_key(word: &str) -> bool {
     !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c == '-' || c.is_ascii_digit())
 }
 
-/// Where the value that starts at a character of a line ends: at its bracket, or before what ends a plain one.
+/// Returns where the value that starts at a character of a line ends: at its closing bracket, or before the end of a plain value.
 fn value_end(line: &[char], start: usize) -> usize {
     let mut depth = 0_usize;
     for (at, c) in line.iter().enumerate().skip(start) {
@@ -672,7 +675,7 @@ fn value_end(line: &[char], start: usize) -> usize {
     line.len()
 }
 
-/// Start of a key in a line, and start and end of its value, in characters.
+/// Returns the start of a key in a line, and the start and end of its value, in characters.
 fn entry(line: &[char], key: &str) -> Option<(usize, usize, usize)> {
     let wanted: Vec<char> = format!("{key}:").chars().collect();
     let is_start = |at: usize| at == 0 || matches!(line[at - 1], ' ' | '{' | ',');
@@ -684,7 +687,7 @@ fn entry(line: &[char], key: &str) -> Option<(usize, usize, usize)> {
     Some((at, start, value_end(line, start)))
 }
 
-/// The file with the change in it; `None` where it has no place for it.
+/// Returns the file with the proposed change, or `None` if the change has no place in it.
 fn changed(content: &str, told: &Told, change: Change, text: &str) -> Option<String> {
     let (_, number, column) = &told.place;
     let line: Vec<char> = content.lines().nth(number - 1)?.chars().collect();
@@ -707,7 +710,7 @@ fn changed(content: &str, told: &Told, change: Change, text: &str) -> Option<Str
         let end = if told.letters > 0 { at + told.letters } else { value_end(&line, at) };
         return put(joined(&[&line[..at], &letters, &line[end.min(line.len())..]]));
     };
-    // A section of the scene: in place of the one that is there, or a line of its own.
+    // A section of the scene replaces the existing one, or becomes a new line.
     if ["spectra", "source", "lens", "imager", "film", "output"].contains(&key) && !line.starts_with(&[' ']) {
         let head = format!("{key}:");
         if content.lines().any(|line| line.starts_with(&head)) {
@@ -723,7 +726,7 @@ fn changed(content: &str, told: &Told, change: Change, text: &str) -> Option<Str
     if told.letters > 0 && told.message.contains("unknown key") {
         return put(joined(&[&line[..at], &letters, &line[(at + told.letters).min(line.len())..]]));
     }
-    // Into the map of one line that is there, or before the line.
+    // Into the map on this line, or else before the line.
     match line[..(at + 1).min(line.len())].iter().rposition(|c| *c == '{') {
         Some(brace) => put(joined(&[&line[..=brace], &letters, &[',', ' '], &line[brace + 1..]]).replace(", }", "}")),
         None => {
@@ -733,16 +736,16 @@ fn changed(content: &str, told: &Told, change: Change, text: &str) -> Option<Str
     }
 }
 
-/// Recorded hints that this test cannot write by itself, and why.
+/// Recorded hints that this test cannot apply, and why.
 const BY_HAND: [(&str, &str); 5] = [
-    ("dng-from-film", "`dng` is left out of a list, not of a map"),
-    ("empty-file", "an empty file is no scene with its first line alone"),
-    ("lens-index-as-glass", "`nd` is written in place of another key, `glass`"),
-    ("picture-sequence", "the pictures of the sequence are not there"),
-    ("width-without-a-unit", "the width that is meant leaves a narrow border, and a warning of it"),
+    ("dng-from-film", "`dng` is removed from a list, not from a map"),
+    ("empty-file", "an empty file does not become a scene with its first line only"),
+    ("lens-index-as-glass", "`nd` replaces another key, `glass`"),
+    ("picture-sequence", "the pictures of the sequence do not exist"),
+    ("width-without-a-unit", "the intended width leaves a narrow border, which causes a warning"),
 ];
 
-/// What the other hints propose is written, and the fault or the warning is gone; commands in them are run.
+/// Every other recorded proposal works: applied to the file, it removes the fault or warning, and commands in it run.
 #[test]
 fn every_recorded_proposal_works() {
     let (mut changes, mut commands): (Vec<Proposal>, Vec<(String, String)>) = (Vec::new(), Vec::new());
@@ -784,7 +787,7 @@ fn every_recorded_proposal_works() {
     let (files, commands) = (changes.len(), commands.len());
     println!("{files} recorded proposals work, and {commands} commands; by hand: {BY_HAND:?}");
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
-    assert!(left.is_empty(), "nothing is proposed by {left:?}");
+    assert!(left.is_empty(), "no proposal in {left:?}");
     assert!(files >= 40, "{files} proposals");
 }
 
@@ -799,7 +802,7 @@ struct Proposal {
 }
 
 impl Proposal {
-    /// Why it does not help.
+    /// Returns why the proposal does not help, or `None` if it helps.
     fn fails(&self) -> Option<String> {
         let Self { folder, name, said, told, change, text } = self;
         let (copy, arguments) = copied(&repository("tests").join(folder), name);
@@ -807,7 +810,7 @@ impl Proposal {
         let content = fs::read(&file).unwrap_or_default();
         let content = String::from_utf8_lossy(&content).into_owned();
         let Some(new) = changed(&content, told, *change, text) else {
-            return Some(format!("{name}: no place for `{text}` ({change:?}): {}", told.hint));
+            return Some(format!("{name}: `{text}` has no place ({change:?}): {}", told.hint));
         };
         fs::write(&file, &new).expect("written");
         let now = said_in(copy.path(), &arguments);
@@ -823,7 +826,7 @@ impl Proposal {
     }
 }
 
-/// What is no scene and no photograph is refused in words, and not by printing what is in it.
+/// The viewer refuses a file that is neither a scene nor a photograph with a short message, without printing the file's contents.
 #[test]
 fn the_viewer_says_what_it_cannot_open() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -840,7 +843,7 @@ fn the_viewer_says_what_it_cannot_open() {
     }
 }
 
-/// The README's paths of scenes are names of scenes that are there.
+/// The scene paths in the README name existing scenes.
 #[test]
 fn scenes_of_the_readme_are_there() {
     let readme = fs::read_to_string(repository("README.md")).expect("there");

@@ -1,4 +1,4 @@
-//! A stranger's own stages: `spectra new` and `spectra build`.
+//! Tests stages written by others: `spectra new` and `spectra build`.
 
 use crate::common::{repository, shown, spectra, text};
 use std::path::Path;
@@ -13,7 +13,7 @@ const STAGES: [(&str, &str); 6] = [
     ("response", "response"),
 ];
 
-/// `spectra` in a folder, with the sources of this checkout and a cache of its own there.
+/// Runs `spectra` in a folder, with the sources of this checkout and a cache inside the folder.
 fn in_folder(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = spectra();
     command.current_dir(folder).env("SPECTRA_CACHE", folder.join("cache")).args(arguments);
@@ -26,12 +26,12 @@ fn good(folder: &Path, arguments: &[&str]) -> String {
     text(&output.stdout)
 }
 
-/// What is said of arguments that are wrong, with code 2.
+/// Returns the message about wrong arguments, which must have exit code 2.
 fn refused(folder: &Path, arguments: &[&str]) -> String {
     let output = in_folder(folder, arguments);
     let said = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-    // As one line: messages are broken at the width of the terminal.
+    // Joins the lines, because messages are wrapped at the width of the terminal.
     said.split_whitespace().filter(|word| *word != "\u{2502}").collect::<Vec<_>>().join(" ")
 }
 
@@ -77,7 +77,7 @@ fn plugins_of_every_stage_are_whole() {
             assert!(!text.contains("my-stage") && !text.contains("MyStage") && !text.contains("{{"), "{text}");
         }
         assert_eq!(read(&plugin.join("Cargo.lock")), read(&repository("Cargo.lock")));
-        // The tests of a plugin and `spectra build` compile with the same settings, in the same folder.
+        // The tests of a plugin and `spectra build` compile with the same settings into the same folder.
         let manifest = read(&plugin.join("Cargo.toml"));
         let (_, profile) = manifest.split_once("[profile.release]\n").expect("a profile");
         let ours = read(&repository("Cargo.toml"));
@@ -88,10 +88,10 @@ fn plugins_of_every_stage_are_whole() {
         assert!(config.contains(&format!("target-dir = {:?}", shown(&target))), "{config}");
         assert!(read(&plugin.join(".gitignore")).contains("/.cargo\n"));
     }
-    assert_eq!(names(folder.path()).len(), STAGES.len(), "something is left beside them");
+    assert_eq!(names(folder.path()).len(), STAGES.len(), "other files were left");
 }
 
-/// A film with as many layers as were asked for; nothing else has layers.
+/// A film starts with the requested number of layers; other stages have no layers.
 #[test]
 fn films_start_with_as_many_layers_as_are_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -114,7 +114,7 @@ fn films_start_with_as_many_layers_as_are_asked_for() {
     assert_eq!(names(at), ["stack-1", "stack-16", "stack-3"]);
 }
 
-/// How long the code is that a stranger starts with, without its tests.
+/// The code that an author starts with is short, not counting its tests.
 #[test]
 fn sources_are_short() {
     for (stage, most) in [
@@ -147,7 +147,7 @@ fn scenes_and_lenses_work_as_they_are() {
     assert!(at.join("out/first-light.png").is_file());
 }
 
-/// A film like another one develops at once, of silver or of three dyes, and says of what it was made.
+/// A film based on another one can be developed at once, whether of silver or of three dyes, and states its origin.
 #[test]
 fn films_start_from_another_one() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -161,7 +161,7 @@ fn films_start_from_another_one() {
         assert!(json["warnings"].as_array().is_some_and(Vec::is_empty), "{info}");
         assert!(json["source"].as_str().is_some_and(|source| source.contains("changed: ")), "{info}");
     }
-    // A sheet with a relative axis: all curves 3 to the right, slid back to the speed.
+    // A data sheet with a relative axis: all curves are moved by 3 to the right, and the program slides them back to the speed.
     let text = read(&at.join("my-pan.yaml")).replace("# exposure: relative ", "exposure: relative ");
     let (head, points) = text.split_once("        points:\n").expect("a curve");
     let moved: String = points
@@ -200,17 +200,17 @@ fn names_that_cannot_be_are_refused() {
         let said = said(name);
         assert!(said.contains(why) && said.contains("help:"), "{name}: {said}");
     }
-    // A name is taken in its stage only.
+    // A name must be unique only within its stage.
     good(at, &["new", "plugin", "sphere", "--stage", "source", "--core", &core]);
     let elsewhere = refused(at, &["new", "plugin", "x", "--stage", "film", "--core", &core, "--path", "no/such"]);
     assert!(elsewhere.contains("there is no such folder"), "{elsewhere}");
     let core = refused(at, &["new", "plugin", "x", "--stage", "film", "--core", "there"]);
     assert!(core.contains("no sources of spectra"), "{core}");
     assert!(refused(at, &["new", "scene", "a b"]).contains("is not allowed in it"));
-    assert_eq!(names(at), ["sphere", "there"], "something is left");
+    assert_eq!(names(at), ["sphere", "there"], "other files were left");
 }
 
-/// A crate of one file, as `--with` sees it.
+/// Writes a crate with one file, as `--with` expects it, and returns its path.
 fn krate(folder: &Path, name: &str, manifest: &str, source: &str, file: &str) -> String {
     let path = folder.join(name);
     std::fs::create_dir_all(path.join("src")).expect("made");
@@ -248,7 +248,7 @@ fn plugins_that_cannot_be_built_in_are_refused_at_once() {
         let said = said(with);
         assert!(said.contains(why) && said.contains("help:") && said.contains(hint), "{with}: {said}");
     }
-    // All that is wrong in one go.
+    // All faults are reported at once.
     let both = refused(at, &["build", "--with", "none", "--with", &later, "--core", &core, "--offline"]);
     assert!(both.contains("no such folder") && both.contains("^77") && both.contains("2 faults"), "{both}");
     let mut command = spectra();
@@ -257,7 +257,7 @@ fn plugins_that_cannot_be_built_in_are_refused_at_once() {
     assert!(text(&output.stderr).contains("https://rustup.rs"), "{}", text(&output.stderr));
     let taken = refused(at, &["build", "--with", &program, "--core", &core, "-o", "empty"]);
     assert!(taken.contains("that is a folder"), "{taken}");
-    // What is no program of ours stays as it is; the program of these tests is one.
+    // A file that is not one of our programs stays unchanged. The program under test is one of ours.
     let manifest = at.join("program/Cargo.toml");
     let before = read(&manifest);
     let taken = refused(at, &["build", "--with", &program, "--core", &core, "-o", shown(&manifest)]);
@@ -270,8 +270,8 @@ fn plugins_that_cannot_be_built_in_are_refused_at_once() {
     assert!(!at.join("spectra-mine").exists());
 }
 
-/// Builds a program with a surface and a film as they are generated, asks it, renders with it; then breaks each in turn.
-/// It compiles the whole engine once more, which takes minutes: `cargo test --test it cli_new -- --ignored`.
+/// Builds a program with a generated surface and a generated film, queries it and renders with it, then breaks each plugin in turn.
+/// This compiles the whole engine again, which takes minutes: `cargo test --test it cli_new -- --ignored`.
 #[test]
 #[ignore = "compiles the whole engine once more: minutes"]
 fn a_program_with_plugins_renders_their_scenes() {
@@ -287,7 +287,7 @@ fn a_program_with_plugins_renders_their_scenes() {
     };
     good(at, &["new", "plugin", "far-surface", "--stage", "surface", "--core", &core]);
     good(at, &["new", "plugin", "far-film", "--stage", "film", "--layers", "3", "--core", &core]);
-    // What a plugin's tests have compiled with the same features is not compiled again for the program.
+    // Crates that the plugin's tests compiled with the same features are not compiled again for the program.
     let mut tests = Command::new("cargo");
     tests
         .args(["test", "--offline", "--profile", "dev"])
@@ -330,13 +330,13 @@ fn a_program_with_plugins_renders_their_scenes() {
     {
         assert!(licenses.contains(line), "{line}");
     }
-    // It is a whole spectra: it makes and builds plugins itself, out of its own sources.
+    // The program is complete: it creates and builds plugins itself, from its own sources.
     let output = run(&["new", "plugin", "third", "--stage", "source"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let output = run(&["new", "plugin", "far-film", "--stage", "film", "--path", "cache"]);
     assert!(text(&output.stderr).contains("in crate far-film"), "{}", text(&output.stderr));
 
-    // What goes wrong while building leaves the program as it was.
+    // A failed build leaves the program unchanged.
     let before = std::fs::read(&mine).expect("the program");
     let source = at.join("far-surface/src/lib.rs");
     let good_source = read(&source);
@@ -345,7 +345,7 @@ fn a_program_with_plugins_renders_their_scenes() {
         let output = build(&both);
         let said = text(&output.stderr);
         assert!(!output.status.success() && said.contains(why), "{why}: {said}");
-        assert!(std::fs::read(&mine).expect("the program") == before, "{why}: the program is another one");
+        assert!(std::fs::read(&mine).expect("the program") == before, "{why}: the program was changed");
     };
     failing(good_source.replace("\"far-surface\":", "\"sphere\":"), "`sphere` is registered twice");
     failing(good_source.replace("x * x * x", "x * x * z"), "`far-surface` does not compile");

@@ -1,4 +1,5 @@
-//! `spectra picture`: figures, views, cuts, spectra and differences of what was rendered, against closed forms and another program.
+//! Tests `spectra picture` with closed forms and with another program: figures, plots, cuts, spectra and comparisons of rendered
+//! pictures.
 
 use crate::common::{good, rows, run, shown, text};
 use serde_json::Value;
@@ -7,15 +8,18 @@ use spectra_pictures::write::write_exr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Luminance of the card, cd/m2; focal length and radius of the ideal lens, mm.
+/// Luminance of the card, cd/m2.
 const LUMINANCE: f64 = 300.0;
+/// Focal length of the ideal lens, mm.
 const FOCAL_MM: f64 = 50.0;
+/// Radius of the ideal lens, mm.
 const RADIUS_MM: f64 = 6.25;
-/// Frame, mm and pixels.
+/// Size of the frame, mm.
 const FRAME_MM: [f64; 2] = [18.0, 12.0];
+/// Size of the frame, pixels.
 const FRAME_PX: [u32; 2] = [48, 32];
 
-/// A white card, large and far away, through an ideal lens.
+/// Writes a scene of a large and distant white card through an ideal lens, and returns its path.
 fn scene(folder: &Path, name: &str, source: &str, imager: &str, samples: u32) -> PathBuf {
     let lens = folder.join("ideal.yaml");
     let text = format!(
@@ -48,8 +52,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// A file that ends too early is refused with what to do, as where it is developed; long names of the report stand apart from
-/// their values.
+/// A truncated file is refused with a hint, as it is when it is developed. Long names in the report are separated from their values.
 #[test]
 fn a_file_cut_short_and_a_long_name_are_told_whole() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -63,13 +66,14 @@ fn a_file_cut_short_and_a_long_name_are_told_whole() {
     assert!(!refused.status.success() && text(&refused.stderr).contains("is the file complete?"));
 }
 
-/// Projected solid angle of a disk of radius a at the distance d, seen `r` off its axis from a place that looks along the axis, sr.
+/// Returns the projected solid angle, sr, of a disk of radius a at distance d, seen `r` off its axis by an observer who looks along
+/// the axis.
 fn projected_solid_angle_sr(d: f64, a: f64, r: f64) -> f64 {
     let sum = d * d + r * r + a * a;
     0.5 * std::f64::consts::PI * (1.0 - (sum - 2.0 * a * a) / (sum * sum - 4.0 * r * r * a * a).sqrt())
 }
 
-/// Flux on the frame of light of one unit a steradian and m2, by that formula at 8 x 8 places of each pixel, m2 sr.
+/// Returns the etendue of the frame, m2 sr: the flux of unit radiance, from that formula at 8 x 8 points of each pixel.
 fn etendue_m2_sr() -> f64 {
     let steps = FRAME_PX.map(|px| 8 * px);
     let place = |i: u32, k: usize| (f64::from(i) + 0.5) / f64::from(steps[k]) * FRAME_MM[k] - 0.5 * FRAME_MM[k];
@@ -82,12 +86,12 @@ fn etendue_m2_sr() -> f64 {
     sum / f64::from(steps[0] * steps[1]) * FRAME_MM[0] * FRAME_MM[1] * 1e-6
 }
 
-/// Lumens and watts of a card of known luminance through an ideal lens: within 0.1 % of the camera equation.
+/// Lumens and watts of a card of known luminance through an ideal lens agree with the camera equation within 0.1 %.
 #[test]
 fn lumens_and_watts_are_those_of_the_camera_equation() {
     let folder = tempfile::tempdir().expect("a folder");
     let wanted_lm = LUMINANCE * etendue_m2_sr();
-    // On the axis that is pi L / (4 N^2 + 1).
+    // On the axis this is pi L / (4 N^2 + 1).
     let axis = LUMINANCE * projected_solid_angle_sr(FOCAL_MM, RADIUS_MM, 0.0);
     let n = FOCAL_MM / (2.0 * RADIUS_MM);
     assert!((axis / (std::f64::consts::PI * LUMINANCE / (4.0 * n * n + 1.0)) - 1.0).abs() < 1e-12);
@@ -100,17 +104,17 @@ fn lumens_and_watts_are_those_of_the_camera_equation() {
     let off = |found: &Value, wanted: f64| (number(found) / wanted - 1.0).abs();
     assert!(off(&info["luminous_flux_lm"], wanted_lm) < 1e-3, "{info}");
     assert!(off(&lux["mean"], wanted_lm / (FRAME_MM[0] * FRAME_MM[1] * 1e-6)) < 1e-3, "{info}");
-    // Darkest in a corner, by the same formula at the middle of its pixel; brightest about the axis.
+    // The maximum is on the axis. The minimum is in a corner and follows the same formula at the center of the pixel.
     assert!(off(&lux["maximum"], axis) < 0.02 && number(&lux["minimum"]) < 0.97 * axis, "{info}");
     assert!(info["radiant_power_w"].is_null() && info["out_of_gamut"][0]["share"] == 0.0, "{info}");
 
-    // With an exposure time the file is in lx s, and says how long.
+    // With an exposure time the file is in lx s and states the time.
     let path = scene(folder.path(), "timed", &source, "kind: xyz, exposure: 1/60 s", 1024);
     let info = json(&["picture", "info", shown(&render(&path, folder.path())), "--json"]);
     assert_eq!(info["unit"], "lx s");
     assert!(off(&info["luminous_flux_lm"], wanted_lm) < 1e-3, "{info}");
 
-    // Equal energy from 350 to 830 nm: 300 cd/m2 are 300 / (683 * 106.857) W m-2 sr-1 nm-1 (CIE 1931, 1 nm sums).
+    // Equal energy from 350 to 830 nm: 300 cd/m2 is 300 / (683 * 106.857) W m-2 sr-1 nm-1 (CIE 1931, sums over 1 nm).
     let spectral = "kind: spectral, bands: 240, range: [350 nm, 830 nm]";
     let path = scene(folder.path(), "watt", &source, spectral, 1024);
     let info = json(&["picture", "info", shown(&render(&path, folder.path())), "--json"]);
@@ -120,7 +124,7 @@ fn lumens_and_watts_are_those_of_the_camera_equation() {
     assert_eq!(info["band_nm"], serde_json::json!([350.0, 830.0]));
 }
 
-/// The spectrum of an area goes back in as a light, and makes the same picture within noise.
+/// The measured spectrum of an area can be used as a light, and makes the same picture within noise.
 #[test]
 fn a_measured_histogram_is_a_light() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -150,7 +154,7 @@ fn a_measured_histogram_is_a_light() {
     let first = render(&scene(folder.path(), "first", &light("D55"), "kind: xyz", 256), folder.path());
     let second = scene(folder.path(), "second", &light("measured.yaml"), "kind: xyz", 256);
     good(&["run", shown(&second), "-q", "--seed", "2", "-o", shown(folder.path())]);
-    // As far apart as the same light is from itself with other numbers, and no farther.
+    // The difference must be as large as between two renders of the same light with other random numbers, and no larger.
     let again = scene(folder.path(), "again", &light("D55"), "kind: xyz", 256);
     good(&["run", shown(&again), "-q", "--seed", "2", "-o", shown(folder.path())]);
     let compared = |other: &str| json(&["picture", "compare", shown(&first), shown(&at(other)), "--json"]);
@@ -160,17 +164,17 @@ fn a_measured_histogram_is_a_light() {
     assert!((delta_e(&by_histogram) / delta_e(&by_noise) - 1.0).abs() < 0.05, "{by_histogram} {by_noise}");
     for channel in by_histogram["channels"].as_array().expect("channels") {
         let [mean, error] = [number(&channel["relative_mean"]), number(&channel["relative_standard_error"])];
-        // The second part is what 2048 samples a pixel left in the spectrum itself.
+        // The second term is the noise that 2048 samples per pixel leave in the spectrum itself.
         assert!(mean.abs() < 4.0 * error + 5e-4, "{channel}");
         assert!(number(&channel["blocks_beyond_3"]) <= 1.0 / 6.0, "{channel}");
     }
-    // Another light is told apart.
+    // A different light gives a clear difference.
     let other = render(&scene(folder.path(), "other", &light("A"), "kind: xyz", 256), folder.path());
     let apart = json(&["picture", "compare", shown(&first), shown(&other), "--json"]);
     assert!(number(&apart["delta_e_2000"]["mean"]) > 10.0, "{apart}");
 }
 
-/// A picture of these XYZ, 24 pixels wide.
+/// Writes a picture with these XYZ values, 24 pixels wide.
 fn picture(path: &Path, xyz: &[[f32; 3]], unit: &str) {
     let height_px = (xyz.len() / 24) as u32;
     let size = FrameSize { width_px: 24, height_px, width_mm: 24.0, height_mm: f64::from(height_px) };
@@ -184,7 +188,7 @@ fn picture(path: &Path, xyz: &[[f32; 3]], unit: &str) {
     write_exr(path, &ExposureFrame { size, channels }, &said).expect("written");
 }
 
-/// The pixels of `picture-differences.csv`, whose differences are by colour-science: mean and largest to 1e-6.
+/// Differences of the pixels in `picture-differences.csv` agree with colour-science: mean and maximum within 1e-6.
 #[test]
 fn delta_e_is_that_of_colour_science() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -209,18 +213,19 @@ fn delta_e_is_that_of_colour_science() {
     let at = table.iter().position(|row| row[6] == largest).expect("there");
     assert_eq!(e["maximum_at"], serde_json::json!([at % 24, at / 24]));
     assert!(fs::read_to_string(figure).expect("written").contains("CIEDE2000"));
-    // Equal pictures do not differ.
+    // Equal pictures have no difference.
     let same = json(&["picture", "compare", shown(&a), shown(&a), "--json"]);
     assert_eq!(number(&same["delta_e_2000"]["maximum"]), 0.0);
     assert_eq!(number(&same["channels"][0]["relative_rms"]), 0.0);
 }
 
-/// Pictures of one mean and noise of 1 % and 3 %: the noise of one is told from their differences.
+/// The noise of one picture is computed from the difference of two pictures with equal mean and noise.
 #[test]
 fn noise_is_told_from_differences() {
     let folder = tempfile::tempdir().expect("a folder");
     let (a, b) = (folder.path().join("a.exr"), folder.path().join("b.exr"));
-    // The sum of 12 uniform numbers has the variance 1 (an additive recurrence per term would repeat: a generator of Lehmer's).
+    // The sum of 12 uniform numbers has variance 1. They come from one Lehmer generator, because an additive recurrence per term
+    // would repeat.
     let mut state: u64 = 48_271;
     let mut uniform = || {
         state = state * 48_271 % 2_147_483_647;
@@ -240,12 +245,12 @@ fn noise_is_told_from_differences() {
     assert!(number(&y["relative_mean"]).abs() < 4.0 * error, "{y}");
 }
 
-/// A ramp: rows, columns and lines have the values of its pixels, and places in mm.
+/// Rows, columns and lines through a ramp contain the values of its pixels, and positions in mm.
 #[test]
 fn cuts_hold_the_values_of_the_picture() {
     let folder = tempfile::tempdir().expect("a folder");
     let (file, table) = (folder.path().join("ramp.exr"), folder.path().join("cut.csv"));
-    // 24 x 10 pixels of 1 mm: Y is column + 100 * row.
+    // A picture of 24 x 10 pixels of 1 mm in which Y is column + 100 * row.
     let xyz: Vec<[f32; 3]> = (0..240).map(|i| [0.5, (i % 24 + 100 * (i / 24)) as f32, 0.25]).collect();
     picture(&file, &xyz, "lx");
     let cut = |options: &[&str]| -> Vec<Vec<f64>> {
@@ -264,7 +269,7 @@ fn cuts_hold_the_values_of_the_picture() {
     let line = cut(&["--line", "0.5,0.5,6.5,8.5"]);
     assert_eq!(line.len(), 11);
     for point in &line {
-        // Linear in between, so linear all along.
+        // Interpolation between pixels is linear, so the whole line is.
         assert!((point[4] - (point[0] - 0.5 + 100.0 * (point[1] - 0.5))).abs() < 1e-9, "{point:?}");
     }
     assert!((line[10][2] - 10.0).abs() < 1e-12 && (line[10][3] - 10.0).abs() < 1e-12);
@@ -273,13 +278,13 @@ fn cuts_hold_the_values_of_the_picture() {
     assert!(fs::read_to_string(figure).expect("written").contains("distance on the film / mm"));
 }
 
-/// A picture in its colors, and as eyes without one kind of cones have it: the published matrices (Machado, Oliveira and Fernandes 2009,
-/// severity 1) on linear sRGB, worked out here for red, green and a gray.
+/// A picture in its own colors and as seen without one kind of cones. The published matrices (Machado, Oliveira and Fernandes 2009,
+/// severity 1) act on linear sRGB; the values for red, green and a gray are computed here.
 #[test]
 fn a_picture_as_other_eyes_have_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("colors.exr");
-    // Full red, full green and half a gray in linear sRGB, as XYZ of IEC 61966-2-1.
+    // Full red, full green and half gray in linear sRGB, as XYZ of IEC 61966-2-1.
     let colors = [[0.412_4, 0.212_6, 0.019_3], [0.357_6, 0.715_2, 0.119_2], [0.475_25, 0.5, 0.544_5]];
     let xyz: Vec<[f32; 3]> = (0..72).map(|i| colors[i % 24 / 8].map(|v| v as f32)).collect();
     picture(&file, &xyz, "lx");
@@ -297,7 +302,7 @@ fn a_picture_as_other_eyes_have_it() {
         let figure = folder.path().join("seen.png");
         let mut arguments = vec!["picture", "plot", shown(&file), "--white", "1", "-o", shown(&figure)];
         match eye {
-            // Without another quantity an eye is asked about the colors.
+            // Without `--quantity`, `--seen-by` shows the colors.
             Some(eye) => arguments.extend(["--seen-by", eye]),
             None => arguments.extend(["--quantity", "color"]),
         }
@@ -311,14 +316,14 @@ fn a_picture_as_other_eyes_have_it() {
             assert!(share > 0.05, "{eye:?} {name}: {wanted:?} is {share} of the sheet");
         }
     }
-    // A scale in false color as such an eye has it.
+    // A false-color scale can be shown as seen by such an eye too.
     let [own, seen] = ["own.png", "seen.png"].map(|name| folder.path().join(name));
     good(&["picture", "plot", shown(&file), "--quantity", "hue", "-o", shown(&own)]);
     good(&["picture", "plot", shown(&file), "--quantity", "hue", "--seen-by", "deutan", "-o", shown(&seen)]);
     assert_ne!(fs::read(own).expect("written"), fs::read(seen).expect("written"));
 }
 
-/// Every quantity that a picture knows has a view; what it does not know is refused with a reason.
+/// Every quantity that a picture contains can be plotted; others are refused with a reason.
 #[test]
 fn views_show_what_a_picture_knows() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -344,7 +349,7 @@ fn views_show_what_a_picture_knows() {
     fails(&["plot", file, "--quantity", "irradiance"], &["power by wavelength", "kind: spectral"]);
     fails(&["plot", file, "--quantity", "illuminence"], &["`illuminence`", "did you mean `illuminance`?"]);
     fails(&["plot", file, "-o", "view.jpg"], &["view.jpg"]);
-    fails(&["plot", file, "--range", "3,1"], &["3,1", "rise"]);
+    fails(&["plot", file, "--range", "3,1"], &["3,1", "two increasing numbers"]);
     fails(&["plot", "nothing.exr"], &["nothing.exr: no such file", "spectra run"]);
     fails(&["cut", file, "--row", "32"], &["row 32", "rows 0 to 31"]);
     fails(&["cut", file], &["--row"]);
@@ -358,7 +363,7 @@ fn views_show_what_a_picture_knows() {
     fails(&["compare", file, shown(&small)], &["48 x 32 and 24 x 2", "resolution"]);
     let lux = at("lux.exr");
     picture(&lux, &[[1.0; 3]; 48], "lx");
-    fails(&["compare", shown(&lux), shown(&small)], &["the first picture is in lx", "one kind of imager"]);
+    fails(&["compare", shown(&lux), shown(&small)], &["the first picture is in lx", "same kind of imager"]);
     fs::write(at("torn.exr"), &fs::read(&xyz).expect("there")[..700]).expect("written");
     let torn = run(&["picture", "info", shown(&at("torn.exr"))]);
     assert_eq!(torn.status.code(), Some(2), "{}", text(&torn.stderr));

@@ -1,4 +1,4 @@
-//! `spectra run`, from a scene to files, events and exit codes.
+//! Tests `spectra run`, from a scene to files, events and exit codes.
 
 use crate::common::{good, repository, run, shown, spectra, text};
 use exr::prelude::{ReadChannels, ReadLayers};
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// The main scene, small and noisy.
+/// Options that make the main scene small and noisy.
 const TINY: [&str; 4] = ["--set", "imager.resolution=[48, 32]", "--samples", "4"];
 
 fn ortho() -> String {
@@ -27,7 +27,7 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
 }
 
-/// Text attributes of an EXR.
+/// Returns the text attributes of an EXR file.
 fn attributes(path: &Path) -> BTreeMap<String, String> {
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
     let image = reader.all_attributes().from_file(path).expect("an EXR");
@@ -78,7 +78,7 @@ fn three_files_are_written_and_say_what_they_are() {
     assert_eq!((size(16), size(20)), (48, 32));
 }
 
-/// One EXR, whatever the number of threads, the batch and the instruction set; in both directions of light.
+/// The EXR is the same for any number of threads, batch size and instruction set, in both directions of light.
 #[test]
 fn bits_do_not_depend_on_how_the_work_is_done() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -98,7 +98,7 @@ fn bits_do_not_depend_on_how_the_work_is_done() {
         for batch in ["render.batch=64", "render.batch=1000"] {
             assert!(render("batch", &["--threads", "2", "--set", batch], "") == wanted, "{direction}: {batch}");
         }
-        // And that the comparison can tell.
+        // The comparison can fail: another seed gives another file.
         assert!(render("seed", &["--threads", "1", "--seed", "2"], "baseline") != wanted, "{direction}");
     }
 }
@@ -139,7 +139,7 @@ fn pipes_get_plain_lines() {
     assert!(text(&output.stderr).contains("rays/s"));
 }
 
-/// A command that has said how far it is; `None` where it ended before.
+/// Starts a command and waits until it reports progress. Returns `None` if it ends before.
 fn begun(command: &mut Command) -> Option<(Child, BufReader<std::process::ChildStdout>)> {
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
     let mut events = BufReader::new(child.stdout.take().expect("piped"));
@@ -154,19 +154,19 @@ fn begun(command: &mut Command) -> Option<(Child, BufReader<std::process::ChildS
     Some((child, events))
 }
 
-/// A render that would take hours.
+/// Returns a command for a render that would take hours.
 fn hours(output: &Path) -> Command {
     let mut command = spectra();
     command.args(["run", &ortho(), "--output", shown(output), "--json", "--samples", "4000000"]);
     command
 }
 
-/// A render that would take hours, once it has begun.
+/// Starts a render that would take hours and waits until it traces light.
 fn endless(output: &Path, more: &[&str]) -> (Child, BufReader<std::process::ChildStdout>) {
     begun(hours(output).args(more)).expect("progress is told before it ends")
 }
 
-/// The same with a limit of time, s, the shortest of some within which this machine comes to tracing.
+/// Starts a command with a time limit, s, and returns the limit: the shortest of a few within which this machine begins to trace.
 fn limited(mut with: impl FnMut() -> Command) -> (Child, BufReader<std::process::ChildStdout>, f64) {
     let mut within = |limit_s: f64| {
         let (child, events) = begun(with().args(["--time-limit", &format!("{limit_s} s")]))?;
@@ -181,7 +181,7 @@ fn signal(child: &Child, name: &str) {
     assert!(killed.expect("a shell").success());
 }
 
-/// What runs left that were killed goes with the next one into the folder, whatever they wrote; what others left stays.
+/// Temporary files of killed runs are removed by the next run into the folder, whichever files they were writing; other files stay.
 #[test]
 fn what_killed_runs_left_is_swept() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -198,7 +198,7 @@ fn what_killed_runs_left_is_swept() {
     assert!(!left.exists() && !other.exists() && stays.exists());
 }
 
-/// 128 + the number of the signal, as shells and batch systems have it; what there is, is kept by all of them.
+/// The exit code is 128 plus the number of the signal, as shells and batch systems do it. Every signal keeps the light traced so far.
 #[cfg(unix)]
 #[test]
 fn exit_codes_tell_signals_apart() {
@@ -213,7 +213,7 @@ fn exit_codes_tell_signals_apart() {
     }
 }
 
-/// A second on each of two threads is enough to keep what there is, however long others hold the processors.
+/// A second on each of two threads is enough to save the light traced so far, however long other programs occupy the processors.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_what_there_is_within_a_second() {
@@ -223,7 +223,8 @@ fn ctrl_c_keeps_what_there_is_within_a_second() {
     signal(&child, "INT");
     let mut rest = String::new();
     events.read_to_string(&mut rest).expect("UTF-8");
-    // How long it worked, not how long it waited for a processor that others have; where that is not told, a minute is long.
+    // Measures how long the process worked, without waiting for occupied processors. If the system does not tell, a minute is the
+    // limit.
     let worked = processor_s(child.id()).zip(begun.1).map(|(end, begin)| end - begin);
     let status = child.wait().expect("it ends");
     assert_eq!(status.code(), Some(130));
@@ -237,11 +238,11 @@ fn ctrl_c_keeps_what_there_is_within_a_second() {
     assert!(folder.path().join("biotar-ortho.png").is_file());
 }
 
-/// What a process has worked so far, s, by all of its threads, also once it has ended and nobody has waited for it; `None` where the
+/// Returns the processor time of all threads of a process so far, s, even if it ended and was not waited for. Returns `None` if the
 /// system does not tell.
 #[cfg(unix)]
 fn processor_s(process: u32) -> Option<f64> {
-    /// Linux counts in hundredths of a second for its users (`man 5 proc`).
+    /// Linux reports times to programs in hundredths of a second (`man 5 proc`).
     const TICKS_PER_S: f64 = 100.0;
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let figures: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
@@ -249,7 +250,7 @@ fn processor_s(process: u32) -> Option<f64> {
     Some((ticks(11)? + ticks(12)?) / TICKS_PER_S)
 }
 
-/// A picture that is not whole takes no name of one that may be.
+/// An incomplete picture does not take the name of a file that may be complete.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_leaves_files_that_are_there() {
@@ -261,7 +262,7 @@ fn ctrl_c_leaves_files_that_are_there() {
     let mut rest = String::new();
     events.read_to_string(&mut rest).expect("UTF-8");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
-    assert!(rest.contains("biotar-ortho.png` stays as it was"), "{rest}");
+    assert!(rest.contains("biotar-ortho.png` was not overwritten"), "{rest}");
     assert_eq!(std::fs::read(at("biotar-ortho.png")).expect("there"), b"an hour's work");
     for name in ["biotar-ortho.partial.exr", "biotar-ortho.partial.png", "biotar-ortho.partial.json"] {
         assert!(at(name).is_file() && rest.contains(name), "{name}: {rest}");
@@ -283,7 +284,7 @@ fn a_time_limit_ends_in_a_partial_picture_and_no_error() {
     assert!((0.2..limit_s + 0.1).contains(&seconds), "{seconds}");
 }
 
-/// Before light is traced there is nothing to write: said, and no folder is left behind.
+/// Before light is traced there is nothing to write: the program says so and leaves no folder behind.
 #[test]
 fn a_time_limit_that_is_over_before_light_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -294,7 +295,7 @@ fn a_time_limit_that_is_over_before_light_says_so() {
     assert!(!out.exists());
 }
 
-/// The folder goes while light is traced: it is made again.
+/// A folder that is removed while light is traced is created again.
 #[test]
 fn a_folder_that_vanishes_is_made_again() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -309,7 +310,7 @@ fn a_folder_that_vanishes_is_made_again() {
     }
 }
 
-/// Where nothing can be written any more, the light is kept in the folder for temporary files, and the failure says where.
+/// If the output cannot be written any more, the light is saved in the folder for temporary files, and the error says where.
 #[test]
 fn light_that_cannot_be_written_is_kept_elsewhere() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -321,7 +322,7 @@ fn light_that_cannot_be_written_is_kept_elsewhere() {
         command.env("TMPDIR", &kept).env("TEMP", &kept).env("TMP", &kept);
         command
     });
-    // A file in the way of the folder: it cannot be made again.
+    // A file takes the place of the folder, so the folder cannot be created again.
     std::fs::remove_dir_all(&out).expect("removed");
     std::fs::write(&out, "").expect("written");
     let mut rest = String::new();
@@ -333,8 +334,8 @@ fn light_that_cannot_be_written_is_kept_elsewhere() {
     assert!(attributes(file).contains_key("spectra:partial"));
 }
 
-/// A disk that is full, as a limit of the size of files stands for it: what fits in half floats is kept so at its own place; what
-/// does not fit at all ends with a word, and no part of a file stays.
+/// A limit on file sizes stands for a full disk. Light that fits as half floats is saved in this form at its own place. If it does
+/// not fit at all, the run ends with a message, and no partial file stays.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_leaves_half_floats_or_nothing() {
@@ -345,7 +346,7 @@ fn a_full_disk_leaves_half_floats_or_nothing() {
     let more = ["--samples", "4", "--set", "imager.resolution=[192, 128]", "--set", "output=[exr]"];
     let run = |name: &str, blocks: Option<u64>| {
         let out = folder.path().join(name);
-        // Blocks of 512 bytes.
+        // The unit is blocks of 512 bytes.
         let limit = blocks.map_or_else(String::new, |blocks| format!("ulimit -f {blocks}; "));
         let output = std::process::Command::new("sh")
             .args(["-c", &format!("{limit}exec \"$@\""), "sh", env!("CARGO_BIN_EXE_spectra"), "run", &scene])
@@ -382,8 +383,7 @@ fn a_full_disk_leaves_half_floats_or_nothing() {
     assert_eq!((names(&out), names(&elsewhere)), (vec![], vec![]));
 }
 
-/// What is worth knowing of a scene is said by `check` and by a series, too: once, and in one line where several films or lamps
-/// have it.
+/// Notes about a scene appear in `check`, `run` and series alike: once, and on one line if several films or lamps share them.
 #[test]
 fn notes_are_said_once_by_check_run_and_series() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -417,7 +417,7 @@ output: [exr]
     assert_eq!(report["scenes"][0]["notes"].as_array().expect("a list").len(), 2, "{report}");
 }
 
-/// Two scenes, one folder, no mixing; and a picture by its name, and nothing else.
+/// Two scenes in one folder keep their files apart. An output named as a file writes that file only.
 #[test]
 fn outputs_bear_the_name_of_their_scene_or_their_own() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -458,7 +458,7 @@ fn outputs_bear_the_name_of_their_scene_or_their_own() {
     assert_eq!(std::fs::read(at.join("a.yaml")).expect("there"), std::fs::read(ortho()).expect("there"));
 }
 
-/// Planes of an EXR by their names.
+/// Returns the channels of an EXR file by their names.
 fn planes(path: &Path) -> BTreeMap<String, Vec<f32>> {
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
     let image = reader.all_attributes().from_file(path).expect("an EXR");
@@ -466,8 +466,8 @@ fn planes(path: &Path) -> BTreeMap<String, Vec<f32>> {
     all.map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
 }
 
-/// What a metered scene writes is what the film got: the same light, sample by sample, as with that time stated and without a
-/// meter, on plates that see no red, on panchromatic film and on color film.
+/// A metered scene writes the exposure that the film got: sample by sample the same light as with that time stated and without a
+/// meter. Checked for a plate that sees no red, for panchromatic film and for color film.
 #[test]
 fn a_metered_scene_is_that_of_the_metered_time() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -488,7 +488,7 @@ fn a_metered_scene_is_that_of_the_metered_time() {
         let (report, metered, header, said) = render(&[]);
         let time_s = report["metered_time_s"].as_f64().expect("a number");
         assert_eq!(report["exposure_time_s"].as_f64(), Some(time_s));
-        // As the report is written: read back, its last digit may be another one.
+        // Compares with the text of the report: parsing it could change the last digit.
         let written = std::fs::read_to_string(folder.path().join(name).join(format!("{name}.json"))).expect("a report");
         let exact = header["spectra:exposure time"].clone();
         assert!(
@@ -497,14 +497,14 @@ fn a_metered_scene_is_that_of_the_metered_time() {
         );
         let words = spectra_core::shutter::words(time_s);
         assert!(said.contains(&format!("at {words} (metered, average)")), "{words}: {said}");
-        // The meter's mean is the 10/S lx s of a mid gray.
+        // The mean of the meter is 10/S lx s, that of a mid gray.
         let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;
         assert!(lx_s.is_none_or(|lx_s| (mean / lx_s - 1.0).abs() < 1e-6), "{mean}");
         let exposure = format!("film.exposure={exact}");
         for film in [&[exposure.as_str(), "film.metering=manual"][..], &[exposure.as_str()]] {
             let (_, stated, header, said) = render(film);
             assert_eq!(header["spectra:exposure time"], exact);
-            // Beside a meter an exposure time has no effect, and that is said.
+            // With a meter, an exposure time has no effect, and a warning says so.
             assert_eq!(said.contains("`exposure` has no effect"), film.len() == 1, "{said}");
             assert_eq!(stated.len() + film.len() - 1, metered.len());
             for (name, plane) in &stated {
@@ -516,8 +516,8 @@ fn a_metered_scene_is_that_of_the_metered_time() {
     }
 }
 
-/// The meter reads the same whatever the threads, the batch and the instructions, and is right to 1/50 stop in the smallest
-/// picture of the fewest samples: both of the whole frame and of a spot, backward and forward.
+/// The meter reads the same for any number of threads, batch size and instruction set. It is correct to 1/50 stop in the smallest
+/// picture with the fewest samples, for the whole frame and for a spot, backward and forward.
 #[test]
 fn a_meter_needs_no_samples_of_the_picture() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -538,13 +538,13 @@ fn a_meter_needs_no_samples_of_the_picture() {
         let stops = (few / many).log2().abs();
         assert!(stops < 0.02, "{film:?}: {stops} stops apart");
     }
-    // A spot between the middles of pixels sees nothing, and that is said.
+    // A spot between the centers of pixels sees nothing, and a warning says so.
     let nowhere = ["--set", "film.metering=spot", "--set", "film.spot={diameter: 0.001}", "-o", shown(folder.path())];
     let output = spectra().args(["run", &scene]).args(TINY).args(nowhere).output().expect("the program starts");
     assert!(text(&output.stderr).contains("meter sees no light where it looks, so the film is exposed for 1 s"));
 }
 
-/// A meter that the sun leads astray says so, and what to write: with that time the sky around it is a mid gray.
+/// A meter that the sun misleads causes a warning with the exposure to write; with it, the sky around the sun becomes a mid gray.
 #[test]
 fn a_meter_that_a_light_dazzles_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -554,19 +554,19 @@ fn a_meter_that_a_light_dazzles_says_so() {
     let output = spectra().args(common).args(one).output().expect("the program starts");
     let told = text(&output.stderr);
     assert!(told.contains("the brightest hundredth of what the camera's meter sees sets the exposure"), "{told}");
-    let (_, rest) = told.split_once("in place of `metering`, `exposure: ").expect("what to write");
-    let (time, _) = rest.split_once("` is the time without it").expect("what to write");
+    let (_, rest) = told.split_once("too dark; write `exposure: ").expect("what to write");
+    let (time, _) = rest.split_once("` instead of `metering`").expect("what to write");
     let spot = ["--set", "sweep=null", "--set", "film.metering=spot", "--set", "film.exposure=null", "-q", "-q"];
     let output = spectra().args(common).args(spot).output().expect("the program starts");
     assert!(output.status.success() && text(&output.stderr).is_empty(), "{}", text(&output.stderr));
     let spot_s = json(&folder.path().join("sun-biotar.json"))["metered_time_s"].as_f64().expect("a number");
     let below: f64 =
         time.strip_prefix("1/").and_then(|t| t.strip_suffix(" s")).and_then(|n| n.parse().ok()).expect("1/N s");
-    // The picture's sky is half as bright in places, and twice elsewhere.
+    // Parts of the picture's sky are half as bright, and others twice as bright.
     assert!((spot_s * below).log2().abs() < 1.0, "{time} {spot_s}");
 }
 
-/// Several films in one light: each one's planes are of its own time.
+/// Several films in one light: the channels of each film have its own exposure time.
 #[test]
 fn each_film_gets_its_own_time() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -582,7 +582,7 @@ fn each_film_gets_its_own_time() {
         let mean = meter.iter().map(|v| f64::from(*v)).sum::<f64>() / meter.len() as f64;
         assert!((mean / (10.0 / speed) - 1.0).abs() < 1e-5, "{name}: {mean}");
     }
-    // The meter sees the same light for all of them: times are as one over speeds.
+    // The meter sees the same light for all films, so times are inversely proportional to speeds.
     let time = |name: &str| times[name].as_f64().expect("a number");
     assert!((time("panchromatic") / time("color") - 250.0 / 400.0).abs() < 1e-5, "{times:?}");
 }

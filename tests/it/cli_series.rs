@@ -1,4 +1,4 @@
-//! `include`, `variables`, `sweep` and `animation`: several pictures of one scene, and one scene of several files.
+//! Tests `include`, `variables`, `sweep` and `animation`: several pictures of one scene, and one scene from several files.
 
 use crate::common::{good, repository, run, shown, spectra, text};
 use exr::prelude::{ReadChannels, ReadLayers};
@@ -12,10 +12,10 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// A small scene on top of the main one: 48 x 32 pixels, 4 samples each.
+/// A small variant of the main scene: 48 x 32 pixels, 4 samples each.
 const SMALL: &str = "include: biotar-ortho\nimager: {resolution: [48, 32]}\nrender: {samples: 4}\n";
 
-/// Writes files into a folder of their own.
+/// Writes files into a new temporary folder.
 fn files(all: &[(&str, &str)]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, text) in all {
@@ -26,7 +26,7 @@ fn files(all: &[(&str, &str)]) -> tempfile::TempDir {
     folder
 }
 
-/// Renders `scene.yaml` of a folder into another folder in it.
+/// Renders `scene.yaml` of a folder into another folder inside it.
 fn rendered(folder: &Path, out: &str, more: &[&str]) -> PathBuf {
     let out = folder.join(out);
     let scene = folder.join("scene.yaml");
@@ -43,7 +43,8 @@ fn bytes(path: &Path) -> Vec<u8> {
     std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// One lens that does not reach the f-number of a sweep over lenses is taken wide open, with a warning; alone it is refused.
+/// In a sweep over lenses, a lens that does not reach the f-number is used wide open, with a warning; outside of a sweep it is
+/// refused.
 #[test]
 fn a_sweep_over_lenses_goes_on_wide_open() {
     let sweep =
@@ -61,7 +62,7 @@ fn a_sweep_over_lenses_goes_on_wide_open() {
     assert!(alone.scene(0).is_err_and(|faults| faults.to_string().contains("is faster than the lens")));
 }
 
-/// Bits of all channels of an EXR, and its text attributes.
+/// Returns the bits of all channels of an EXR file, and its text attributes.
 fn exr(path: &Path) -> (BTreeMap<String, Vec<u32>>, BTreeMap<String, String>) {
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
     let image = reader.all_attributes().from_file(path).expect("an EXR");
@@ -78,7 +79,7 @@ fn rgb(path: &Path) -> image::RgbImage {
     image::open(path).expect("a picture").into_rgb8()
 }
 
-/// Where a picture lies in another one, pixel by pixel the same.
+/// Returns where one picture lies inside another with identical pixels.
 fn found_in(sheet: &image::RgbImage, picture: &image::RgbImage) -> Option<(u32, u32)> {
     let (width, height) = picture.dimensions();
     let row = |of: &image::RgbImage, x: u32, y: u32| (0..width).map(|i| of.get_pixel(x + i, y).0).collect::<Vec<_>>();
@@ -127,14 +128,14 @@ fn a_picture_of_a_sweep_is_that_of_the_scene_with_its_values_set() {
                 .iter()
                 .all(|f| Path::new(f.as_str().expect("a path")).is_file())
         );
-        // So small a picture is in its cell as it is.
+        // A picture this small appears unchanged in its cell.
         places.push(found_in(&sheet, &rgb(&png)).unwrap_or_else(|| panic!("{name} is not on the sheet")));
     }
     let [a, b, c, d] = places[..] else { panic!("four") };
     assert!(a.1 == b.1 && c.1 == d.1 && a.0 == c.0 && b.0 == d.0 && a.0 < b.0 && a.1 < c.1, "{places:?}");
 }
 
-/// Evenly in one over the distance from 1 m to 3 m: half way it is 2 / (1/1 + 1/3) = 1.5 m.
+/// The focus moves evenly in reciprocal distance from 1 m to 3 m: half way it is 2 / (1/1 + 1/3) = 1.5 m.
 #[test]
 fn a_focus_pull_records_each_frames_focus_and_a_frame_alone_is_the_same() {
     let animation = "animation:\n  frames: 3\n  rate: 23.976\n  animate:\n    lens.focus: {1: 1 m, 3: 3 m, interpolation: reciprocal}\n";
@@ -165,7 +166,7 @@ fn a_focus_pull_records_each_frames_focus_and_a_frame_alone_is_the_same() {
     }
 }
 
-/// A shot in which the light grows fourfold: the camera meters its first frame for all, whichever frames are asked for.
+/// In a shot whose light grows fourfold, the camera meters the first frame for all frames, whichever frames are requested.
 #[test]
 fn an_animation_is_metered_on_its_first_frame() {
     let film = "film: {exposure: null, metering: average}\n";
@@ -183,25 +184,25 @@ fn an_animation_is_metered_on_its_first_frame() {
     let own = times(&each, "exposure_time_s");
     assert!((own[0] / own[2] - 4.0).abs() < 0.1, "{own:?}");
     assert!((own[0] / first[0] - 1.0).abs() < 0.01, "{own:?} {first:?}");
-    // Alone it is as in the shot.
+    // A single frame is exposed as in the shot.
     let alone = rendered(folder.path(), "alone", &["--frames", "3"]);
     let name = "scene.0003.png";
     assert_eq!(bytes(&alone.join(name)), bytes(&locked.join(name)));
-    // A film by a variable is locked as well, and an animated variable that its meter uses meters each frame.
+    // A film set by a variable is locked to the first frame as well.
     let shared =
         format!("{SMALL}variables: {{own: {{stock: ilford-ortho-plus, metering: average}}}}\nfilm: $own\n{animation}");
     let folder = files(&[("scene.yaml", &shared)]);
     let shared = times(&rendered(folder.path(), "out", &[]), "exposure_time_s");
     assert!(shared.iter().all(|t| *t == first[0]), "{shared:?} {first:?}");
-    // A meter that is itself animated meters each frame.
+    // If the meter itself is animated, each frame is metered.
     let pulled = format!("{SMALL}{film}animation: {{frames: 2, animate: {{film.compensation: {{1: 0, 2: 1}}}}}}\n");
     let folder = files(&[("scene.yaml", &pulled)]);
     let two = times(&rendered(folder.path(), "out", &[]), "exposure_time_s");
     assert!((two[1] / two[0] - 2.0).abs() < 0.05, "{two:?}");
 }
 
-/// Whether a picture with depth has been read already changes nothing: its lens was focused in the mean light of the picture where it
-/// had been, and in white light else.
+/// A frame is the same whether or not its picture with depth was read before. The lens was once focused in the mean light of the
+/// picture if it had been read, and in white light otherwise.
 #[test]
 fn a_frame_of_a_picture_with_depth_alone_is_the_same() {
     let small = "include: focus-pull\nimager: {resolution: [36, 24]}\nrender: {samples: 4, reflections: {order: 0}}\n";
@@ -212,7 +213,7 @@ fn a_frame_of_a_picture_with_depth_alone_is_the_same() {
     }
 }
 
-/// What an EXR says that it was made of is a scene, and makes the same picture.
+/// The scene recorded in an EXR file is a valid scene and makes the same picture.
 #[test]
 fn the_record_of_a_frame_makes_it_again() {
     let folder = files(&[(
@@ -233,10 +234,10 @@ fn the_record_of_a_frame_makes_it_again() {
     assert!(bytes(&again.join("again.png")) == bytes(&out.join("scene.0004.png")));
 }
 
-/// Light and grain of each frame are its own, or all the same; and those of the sensor.
+/// Each frame has its own noise and grain, or the same for all frames if the seed is fixed; this includes the noise of a sensor.
 #[test]
 fn frames_have_noise_and_grain_of_their_own() {
-    // Pixels of 0.75 mm gather much light: so dim that no well is full.
+    // Pixels of 0.75 mm collect much light, so the light is dim enough to fill no well.
     let sensor = "include: biotar-ortho\nsource: {luminance: 0.02 cd/m2}\nfilm: null\nimager: {kind: sensor, format: 135, resolution: [48, 32], exposure: 1/60 s}\nrender: {samples: 4}\n";
     for (scene, name) in [(SMALL, "film"), (sensor, "sensor")] {
         let folder = files(&[("scene.yaml", &format!("{scene}animation: {{frames: 2}}\n"))]);
@@ -247,7 +248,7 @@ fn frames_have_noise_and_grain_of_their_own() {
         assert!(bits(&each, 1) != bits(&each, 2) && png(&each, 1) != png(&each, 2), "{name}");
         assert!(bits(&fixed, 1) == bits(&fixed, 2) && png(&fixed, 1) == png(&fixed, 2), "{name}");
     }
-    // The grain alone, on the same light.
+    // Only the grain, for constant light.
     let light = |set: &[String]| {
         let path = repository("scenes/biotar-trix.yaml");
         let set = [&["imager.resolution=[48, 32]".to_owned()], set].concat();
@@ -271,7 +272,7 @@ fn frames_have_noise_and_grain_of_their_own() {
     assert!(shown[0] != shown[1] && shown[1] != shown[2] && shown[0] != shown[2]);
 }
 
-/// Seeds of neighboring frames and seeds have nothing in common: no two alike, half of their bits differ.
+/// Seeds derived from neighboring frames and seeds are independent: all differ, and on average by half of their bits.
 #[test]
 fn seeds_of_frames_are_far_from_each_other() {
     let all: Vec<u64> = (0..40).flat_map(|seed| (0..250).map(move |frame| seed_of_frame(seed, frame))).collect();
@@ -281,12 +282,12 @@ fn seeds_of_frames_are_far_from_each_other() {
     assert_eq!(sorted.len(), all.len());
     let differing: u32 = all.windows(2).map(|w| (w[0] ^ w[1]).count_ones()).sum();
     let pairs = (all.len() - 1) as f64;
-    // 64 fair bits a pair: 32 of them, with a standard deviation of 4. Within 4 standard errors.
+    // Of 64 fair bits, 32 differ on average with a standard deviation of 4. The bound is 4 standard errors.
     assert!((f64::from(differing) / pairs - 32.0).abs() < 4.0 * 4.0 / pairs.sqrt(), "{differing}");
     assert_ne!(seed_of_frame(1, 2), seed_of_frame(2, 1));
 }
 
-/// All faults of `scene.yaml`: where each is, what it says, and the hint.
+/// Returns all faults of `scene.yaml`: place, message and hint.
 fn faults(all: &[(&str, &str)], more: &[&str]) -> Vec<String> {
     let folder = files(all);
     let scene = folder.path().join("scene.yaml");
@@ -317,7 +318,7 @@ fn faults_are_told_where_the_value_was_written() {
         assert!(found.iter().any(|f| f.starts_with(wanted)), "{wanted}: {found:?}");
     }
     assert!(found.iter().any(|f| f.contains("the value of `$stop`, used at /scene.yaml:2:18")), "{found:?}");
-    // An override of the included variable heals that fault, and only that.
+    // Overriding the included variable removes that fault and no other.
     let healed = faults(
         &[("scene.yaml", "include: base.yaml\nlens: {f-number: $stop}\nvariables: {stop: f/4}\n"), ("base.yaml", base)],
         &["--set", "render.samples=4"],
@@ -343,14 +344,14 @@ fn every_member_is_checked_before_any_light_is_traced() {
     assert!(found.iter().any(|f| f.contains("f/0.1") && f.contains("picture 5")), "{found:?}");
     assert!(found.iter().any(|f| f.contains("`nothing`") && f.contains("picture 2")), "{found:?}");
     assert_eq!(found.len(), 3, "{found:?}");
-    // What is wrong with all of them is told once, and `run` says the same and renders nothing.
+    // A fault shared by all members is reported once, and `run` reports the same and renders nothing.
     let folder =
         files(&[("scene.yaml", &format!("{SMALL}film: {{exposure: 2 m}}\nsweep: {{lens.f-number: [f/2, f/4]}}\n"))]);
     let out = folder.path().join("out");
     let output = run(&["run", shown(&folder.path().join("scene.yaml")), "--json", "-o", shown(&out)]);
     assert_eq!((output.status.code(), out.exists()), (Some(2), false));
     let events = text(&output.stdout);
-    // On a busy machine the check takes long enough to say how far it is.
+    // On a busy machine the check takes long enough to report its progress.
     let faulty: Vec<&str> = events.lines().filter(|line| !line.contains("\"event\":\"check\"")).collect();
     assert_eq!(faulty.len(), 1, "{events}");
     let event: Value = serde_json::from_str(faulty[0]).expect("JSON");
@@ -361,7 +362,7 @@ fn every_member_is_checked_before_any_light_is_traced() {
 fn limits_and_what_does_not_go_together_are_told() {
     let sweep = "sweep: {render.seed: {from: 0, to: 50, steps: 51}, lens.f-number: {from: 2, to: 4, steps: 20}}\n";
     for (more, arguments, said) in [
-        (sweep, &[][..], "the sweep has 1020 pictures, at most 1000 are made"),
+        (sweep, &[][..], "the sweep has 1020 pictures, but at most 1000 can be made"),
         ("sweep: {a: [1]}\nanimation: {frames: 2}\n", &[], "a scene has a sweep or an animation, not both"),
         ("animation: {frames: 100000}\n", &[], "found 100000, which is out of range"),
         ("animation: {frames: 3}\n", &["--frames", "2-9"], "there is no frame 9; the animation has the frames 1 to 3"),
@@ -408,17 +409,17 @@ fn warnings_name_what_has_no_effect() {
     assert!(!stderr.contains("`stop`"), "{stderr}");
 }
 
-/// A kind takes nothing over from another one, also where one of them goes without saying.
+/// When a scene includes another, a stage of one kind takes nothing over from another kind, even if one kind is the unnamed default.
 #[test]
 fn included_stages_merge_by_kind() {
     let base = "include: biotar-ortho\nimager: {resolution: [48, 32]}\n";
     for (over, is_good) in [
-        // `stock` is the kind that goes without saying.
+        // `stock` is the default kind.
         ("film: {kind: stock, exposure: 1/30 s}\n", true),
         ("film: {exposure: 1/30 s}\n", true),
         ("film: {kind: three-strip, exposure: 1/4 s}\n", true),
         ("film: null\nimager: {kind: xyz, format: 135, resolution: [48, 32]}\n", true),
-        // Nothing is left of the included one, the format neither.
+        // Nothing remains of the included imager, not even its format.
         ("film: null\nimager: {kind: xyz}\n", false),
         ("imager: {kind: film}\n", true),
     ] {
@@ -427,7 +428,7 @@ fn included_stages_merge_by_kind() {
     }
 }
 
-/// Files are looked for beside the scene, then beside what it includes, in order.
+/// Files are searched next to the scene, then next to the files that it includes, in order.
 #[test]
 fn files_lie_beside_the_scene_or_beside_what_it_includes() {
     let copy = |folder: &Path| {
@@ -451,7 +452,7 @@ fn files_lie_beside_the_scene_or_beside_what_it_includes() {
     assert!(missing.contains("still.yaml") && missing.contains("`own.exr`"), "{missing}");
     copy(&folder.path().join("sub/deep"));
     load().unwrap_or_else(|faults| panic!("{faults}"));
-    // Beside the scene it comes first, and may be broken there.
+    // A file next to the scene comes first, even if it is broken.
     std::fs::write(folder.path().join("own.exr"), "no picture").expect("written");
     assert!(load().is_err());
     let stock = load_series(
@@ -493,7 +494,7 @@ fn finished_frames_are_left_out_only_when_asked() {
     assert!(wanted[2] == bytes(&out.join("scene.0003.exr")) && wanted[1] == bytes(&out.join("scene.0002.exr")));
 }
 
-/// Stages that are the same in many frames are made once, and each frame is looked at all the same.
+/// Stages that many frames share are built once, but every frame is checked.
 #[test]
 fn a_fault_in_one_frame_of_a_hundred_is_found() {
     let film = format!("{SMALL}film: {{stock: kodak-tri-x-400, exposure: null, metering: average}}\n");

@@ -1,4 +1,4 @@
-//! `spectra spectrum`: color in figures and pictures.
+//! Tests `spectra spectrum`: color in figures and plots.
 
 use crate::common::{good, run, shown, text};
 use serde_json::Value;
@@ -19,15 +19,15 @@ fn close(found: &Value, wanted: &[f64], tolerance: f64) {
     assert!(found.len() == wanted.len() && found.iter().zip(wanted).all(near), "{found:?} is not {wanted:?}");
 }
 
-/// The message of a run that must be refused as bad input.
+/// Returns the message of a run that must be refused as bad input.
 fn refused(arguments: &[&str]) -> String {
     let output = run(&[&["spectrum"][..], arguments].concat());
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     text(&output.stderr)
 }
 
-/// CIE 15:2004: x 0.31272, y 0.32903, XYZ 95.04 100 108.88. 6503.6 K: 6500 K times 1.438777 / 1.438, the constant of
-/// Planck's law by which it was defined.
+/// CIE 15:2004 states x 0.31272, y 0.32903 and XYZ 95.04 100 108.88. The color temperature, 6503.6 K, is 6500 K times 1.438777 /
+/// 1.438, the constant of Planck's law when D65 was defined.
 #[test]
 fn d65() {
     let d65 = info(&["D65"]);
@@ -42,7 +42,7 @@ fn d65() {
     close(&d65["range_nm"], &[300.0, 780.0], 0.0);
     assert_eq!([&d65["name"], &d65["kind"]], ["D65", "emission"]);
     assert!(d65["source"].is_string() && d65["license"].is_string() && d65["luminance"].as_f64() > Some(0.0));
-    // CIE 15:2004: 10 degrees, x 0.31382, y 0.33100.
+    // CIE 15:2004 for 10 degrees: x 0.31382, y 0.33100.
     close(&info(&["d65", "--observer", "1964"])["xy"], &[0.31382, 0.33100], 3e-5);
     for observer in ["2015-2", "2015-10"] {
         let seen = info(&["D65", "--observer", observer]);
@@ -51,8 +51,8 @@ fn d65() {
     }
 }
 
-/// CIE 15:2004: illuminant A has x 0.44758, y 0.40745. Its formula, summed by 1 nm, has XYZ 109.850 100 35.585; straight
-/// lines between the 5 nm of its table, which the CIE asks for, raise Z by 0.006.
+/// CIE 15:2004 states x 0.44758, y 0.40745 for illuminant A. Its formula, summed in steps of 1 nm, has XYZ 109.850 100 35.585. Linear
+/// interpolation of the 5 nm table, which the CIE prescribes, raises Z by 0.006.
 #[test]
 fn illuminant_a() {
     let a = info(&["A"]);
@@ -65,7 +65,7 @@ fn illuminant_a() {
     assert!(body["source"].is_null() && body["range_nm"].is_null() && body["title"].is_null());
 }
 
-/// A line is its own dominant wavelength.
+/// The dominant wavelength of a line is its own wavelength.
 #[test]
 fn a_line() {
     let line = info(&["line:C'"]);
@@ -73,7 +73,7 @@ fn a_line() {
     close(&line["purity"], &[1.0], 2e-3);
     assert!(line["cct_k"].is_null() && line["complementary_wavelength_nm"].is_null());
     let green = info(&["line:555"]);
-    // 1 at 555 nm, where V is 1: 683 lm/W.
+    // 1 at 555 nm, where V is 1, has 683 lm/W.
     close(&green["luminance"], &[683.0], 0.01);
     close(&green["peak_nm"], &[555.0], 0.0);
     let dark = info(&["line:t"]);
@@ -93,7 +93,7 @@ fn matter_is_seen_in_a_light() {
     assert!(lab[1].abs() < 2.0 && lab[2].abs() < 2.0, "{lab:?}");
     let srgb = numbers(&grey["srgb"]);
     assert!(srgb.iter().all(|v| (v - srgb[1]).abs() <= 6.0), "{srgb:?}");
-    // Grey stays grey in another light, whose color it takes on.
+    // A gray stays gray in another light, and takes on its color.
     let in_a = info(&["colorchecker#neutral-5", "--illuminant", "A"]);
     close(&in_a["xy"], &[0.448, 0.407], 0.005);
     let srgb = numbers(&in_a["srgb"]);
@@ -173,7 +173,7 @@ fn pictures_of_both_kinds() {
             let start = svg.find(&format!("{name}=\"")).expect("a size") + name.len() + 2;
             svg[start..].split('"').next().and_then(|n| n.parse::<f64>().ok()).expect("a number")
         };
-        // The signature of PNG, then the size in the first chunk: two pixels a unit.
+        // The PNG signature, then the size in the first chunk: two pixels per unit.
         let png = std::fs::read(png).expect("written");
         assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
         let word = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().expect("four bytes"));
@@ -186,7 +186,7 @@ fn pictures_of_both_kinds() {
     assert_eq!(output.status.code(), Some(1));
 }
 
-/// A fit is written, read again, and stands for the spectrum as well as it said.
+/// A fit is written and read back, and represents the spectrum as closely as reported.
 #[test]
 fn fitted_terms_are_a_spectrum_like_any_other() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -194,7 +194,7 @@ fn fitted_terms_are_a_spectrum_like_any_other() {
     let arguments = ["spectrum", "fit", "ilford-ortho-plus", "--terms", "4", "--band", "380,780", "--json", "-o"];
     let fit: Value = serde_json::from_str(&good(&[&arguments[..], &[shown(&path)]].concat())).expect("JSON");
     assert_eq!(fit["terms"].as_array().expect("a list").len(), 4);
-    // Four terms reach a relative L2 of 0.0227, by 60 random starts of another program.
+    // Four terms reach a relative L2 of 0.0227, according to 60 random starts of another program.
     let l2 = fit["relative_l2"].as_f64().expect("a number");
     assert!(l2 > 0.0 && l2 <= 1.1 * 0.0227, "{l2}");
     assert!(fit["kappa"].as_f64() >= Some(1.0) && fit["integral"].as_f64().map(f64::abs) < Some(0.02));
@@ -203,7 +203,7 @@ fn fitted_terms_are_a_spectrum_like_any_other() {
     assert_eq!(again["kind"], "sensitivity");
     assert_eq!(again["title"], "ilford-ortho-plus, 4 Gaussian terms");
     close(&again["peak_nm"], &[info(&["ilford-ortho-plus"])["peak_nm"].as_f64().expect("a number")], 12.0);
-    // The terms of the file are those of the JSON, to the last digits (whose reading may be one off).
+    // The terms in the file equal those in the JSON up to the last digit, which reading may change.
     let text = std::fs::read_to_string(&path).expect("written");
     let of_file: Vec<f64> = text
         .split("center: ")
@@ -213,14 +213,14 @@ fn fitted_terms_are_a_spectrum_like_any_other() {
     let terms = fit["terms"].as_array().expect("a list");
     let of_json: Vec<f64> = terms.iter().map(|t| t["center_nm"].as_f64().expect("a number")).collect();
     assert!(of_file.len() == 4 && of_file.iter().zip(&of_json).all(|(a, b)| (a / b - 1.0).abs() < 1e-14), "{text}");
-    // Lines stay lines.
+    // Spectral lines stay lines.
     let path = folder.path().join("lamp.yaml");
     good(&["spectrum", "fit", "0.01 * D65 + line:e", "--terms", "2", "-o", shown(&path)]);
     let text = std::fs::read_to_string(&path).expect("written");
     assert!(text.contains("kind: sum") && text.contains("{wavelength: 546.07, power: 1}"), "{text}");
     assert_eq!(info(&[shown(&path)])["kind"], "emission");
     for (arguments, word) in [
-        (&["fit", "mercury"][..], "lines only"),
+        (&["fit", "mercury"][..], "only spectral lines"),
         (&["fit", "D65", "--terms", "0"], "0"),
         (&["fit", "D65", "--terms", "33"], "33"),
         (&["fit", "D65", "-o", "x.csv"], ".yaml"),
@@ -233,7 +233,7 @@ fn fitted_terms_are_a_spectrum_like_any_other() {
     }
 }
 
-/// Bad files end in an error that names file, line and column.
+/// A bad file causes an error that names file, line and column.
 #[test]
 fn bad_files_are_refused_with_their_place() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -266,7 +266,7 @@ fn bad_files_are_refused_with_their_place() {
     assert!(refused(&["info", shown(&path)]).contains("bad.yaml"));
 }
 
-/// Spectral colors, linear and encoded, each by its name: the table of the dispersion study.
+/// Spectral colors are correct in linear and encoded values, which are labeled: the table of the dispersion study.
 #[test]
 fn spectral_colors_linear_and_encoded() {
     for (nm, linear, encoded) in [
@@ -285,7 +285,7 @@ fn spectral_colors_linear_and_encoded() {
     assert!(text.contains("sRGB") && text.contains("linear 1.0000"), "{text}");
 }
 
-/// The models that may be the default bring every color back; the others do not, and say by how much.
+/// The models that may be the default reproduce every color; the others do not, and the report says how large the error is.
 #[test]
 fn colors_through_each_model() {
     let report: Value = serde_json::from_str(&good(&[
@@ -310,7 +310,7 @@ fn colors_through_each_model() {
         assert!(number(name, "largest") <= most && number(name, "phantom_green") <= green, "{name}");
     }
     assert!(number("gaussians", "largest") > 20.0 && number("fraunhofer", "largest") > 20.0);
-    // A yellow line beside the red one: green that was never there.
+    // A yellow line next to the red one adds green that the color does not contain.
     assert!(number("fraunhofer{secondary: [F, D]}", "phantom_green") > 30.0);
 
     let color: Value = serde_json::from_str(&good(&["spectrum", "color", "255", "128", "64", "--json"])).expect("JSON");
@@ -341,7 +341,7 @@ fn colors_through_each_model() {
     }
 }
 
-/// Figures beyond color: a Gaussian's closed forms, the CIE's and TM-30's indices of FL2, and values at wavelengths.
+/// Figures other than color: closed forms of a Gaussian, the CIE and TM-30 indices of FL2, and values at wavelengths.
 #[test]
 fn figures_of_a_lamp() {
     let bell = info(&["gaussian:550,20", "--wavelength-nm", "550,e,570"]);
@@ -366,7 +366,7 @@ fn figures_of_a_lamp() {
     }
 }
 
-/// The chain of light, surface, filter and film: as many terms as choices, exact, in every form that it is written in.
+/// The product of light, surface, filter and film has as many terms as there are combinations, and is exact in all output formats.
 #[test]
 fn a_product_of_terms() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -390,7 +390,8 @@ fn a_product_of_terms() {
     assert!(refused(&["product", "D65", "-o", "x.jpg"]).contains(".csv"));
 }
 
-/// The Gaussian that touches a spectrum: of a Gaussian itself, of a black body none where its logarithm bends up.
+/// The osculating Gaussian of a spectrum: for a Gaussian it is the Gaussian itself, and it does not exist where the logarithm is
+/// convex.
 #[test]
 fn a_local_gaussian_or_none() {
     let at = |name: &str, nm: &str| -> Value {
@@ -404,14 +405,15 @@ fn a_local_gaussian_or_none() {
     assert!(
         none["center_nm"].is_null() && none["none_because"].as_str().expect("a reason").contains("does not bend down")
     );
-    // A table bends from one of its points to the next: 5 nm of D65.
+    // A table has curvature only between its points, which for D65 are 5 nm apart.
     let day: Value = serde_json::from_str(&good(&["spectrum", "fit", "D65", "--at", "550", "--json"])).expect("JSON");
     close(&day["step_nm"], &[5.0], 0.0);
-    assert!(refused(&["fit", "mercury", "--at", "550"]).contains("lines only"));
+    assert!(refused(&["fit", "mercury", "--at", "550"]).contains("only spectral lines"));
     assert!(refused(&["fit", "D65", "--at", "-5"]).contains("--at"));
 }
 
-/// Diagrams of both years and fields, points of one's own, matching functions with their negative lobes, and sixteen curves that differ.
+/// Draws diagrams of both years and fields, the user's own points, matching functions with their negative lobes, and sixteen distinct
+/// curves.
 #[test]
 fn figures_of_spectra() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -429,19 +431,19 @@ fn figures_of_spectra() {
     assert!(cones.contains("cone-fundamentals-2deg#s"));
     let matching = draw("matching.svg", &["srgb-1931-2deg"]);
     assert!(matching.contains("srgb-1931-2deg#g") && !matching.contains("NaN"));
-    // The red that has to be added to blue-green lights: as deep as 0.93 at 520 nm.
+    // Blue-green lights need added red: the negative lobe reaches -0.93 at 520 nm.
     close(&info(&["srgb-1931-2deg#r"])["lowest"], &[-0.9255], 1e-3);
     let many: Vec<String> = (0..16).map(|i| format!("gaussian:{},15", 400 + 25 * i)).collect();
     let names: Vec<&str> = many.iter().map(String::as_str).collect();
     let svg = draw("many.svg", &names);
-    assert!(svg.matches("stroke-dasharray").count() >= 2 * 9, "the second seven are dashed");
+    assert!(svg.matches("stroke-dasharray").count() >= 2 * 9, "the second seven curves are not dashed");
     assert_ne!(draw("deutan.svg", &[&names[..], &["--seen-by", "deutan"]].concat()), svg);
     let much = vec!["A"; 29];
-    assert!(refused(&[&["plot"][..], &much].concat()).contains("28 at most"));
-    assert!(refused(&["plot", "xy:0.9,0.9", "--chromaticity", "-o", "x.svg"]).contains("no chromaticity"));
+    assert!(refused(&[&["plot"][..], &much].concat()).contains("at most 28"));
+    assert!(refused(&["plot", "xy:0.9,0.9", "--chromaticity", "-o", "x.svg"]).contains("is not a chromaticity"));
 }
 
-/// Files of many columns take one line, unless every column is asked for.
+/// A file with many columns takes one line, unless all columns are requested.
 #[test]
 fn the_list_folds_files_of_many_columns() {
     let short = good(&["spectrum", "list"]);
@@ -453,7 +455,7 @@ fn the_list_folds_files_of_many_columns() {
     assert!(all.contains("#ces01, #ces02") && all.contains("#ces50"), "{all}");
 }
 
-/// Three lines that are white together, and of the hues of sRGB's primaries.
+/// Three lines with the hues of sRGB's primaries add up to white.
 #[test]
 fn lines_that_make_white() {
     let light = info(&["rgb-lines"]);

@@ -1,4 +1,4 @@
-//! `spectra lens trace`, against rays that were traced with 40 digits and against closed forms.
+//! Tests `spectra lens trace` with rays computed to 40 digits and with closed forms.
 
 use crate::common::{good, lens, rows, run, shown, spectra, text};
 use std::io::Write;
@@ -6,7 +6,7 @@ use std::process::Stdio;
 
 const HEADER: &str = "status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm";
 
-/// Rows of the result as text fields.
+/// Splits the rows of the result into text fields.
 fn table(output: &str) -> Vec<Vec<&str>> {
     let mut lines = output.lines();
     assert_eq!(lines.next(), Some(HEADER));
@@ -42,8 +42,8 @@ fn traced(lens: &str, rays: &str, options: &[&str]) -> String {
     text(&output.stdout)
 }
 
-/// All 1 540 rays of the reference through eleven lenses, every medium at its stated nd: the same end, hit points
-/// within 1e-9 mm, directions within 1e-12.
+/// All 1 540 reference rays through eleven lenses, with every medium at its stated nd, end in the same way. Hit points agree within
+/// 1e-9 mm, directions within 1e-12.
 #[test]
 fn reference_rays_end_where_the_reference_says() {
     let reference = rows("reference-rays.csv");
@@ -98,8 +98,8 @@ fn a_hit_lies_on_the_image_plane_in_the_frame_of_the_lens() {
         let [l, m, n] = [5, 6, 7].map(|at| number(row[at]));
         assert!((l * l + m * m + n * n - 1.0).abs() < 1e-14);
     }
-    // By first order, focusing at 2 m moves the image plane away by about f^2 / (2 m - f) from where infinity is sharp; wide
-    // open the sharpest plane moves less, by the spherical aberration of f/1.4.
+    // In first order, focusing at 2 m moves the image plane by about f^2 / (2 m - f) from the plane that is sharp for infinity. Wide
+    // open, the plane of best focus moves less, because of the spherical aberration at f/1.4.
     let [near, far] = ["2m", "inf"].map(|distance| {
         let options = ["--nd", "--focus", distance, "--focus-by", "paraxial"];
         number(table(&traced(&name, "x_mm,y_mm,z_mm,l,m,n\n0,0,-10,0,0,1\n", &options))[0][4])
@@ -108,7 +108,7 @@ fn a_hit_lies_on_the_image_plane_in_the_frame_of_the_lens() {
     assert!((1.2..1.3).contains(&extension), "{extension}");
 }
 
-/// A ray in the plane of the axis through one plane surface: Snell's law in closed form.
+/// A meridional ray through one plane surface follows Snell's law in closed form.
 #[test]
 fn a_plane_follows_snell() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -128,8 +128,8 @@ fn a_plane_follows_snell() {
     }
 }
 
-/// A wavelength per ray gives what the same wavelength for all does, inside and outside of the band that is fitted,
-/// whatever stands beside it in the batch.
+/// One wavelength per ray gives the same result as that wavelength for all rays, inside and outside the fitted band, for any
+/// neighbors in the batch.
 #[test]
 fn wavelengths_per_ray_agree_with_one_for_all() {
     let name = "zeiss-biotar-50-f1.4";
@@ -146,16 +146,16 @@ fn wavelengths_per_ray_agree_with_one_for_all() {
     for (row, alone) in together.iter().zip(&alone) {
         let alone = table(alone);
         for at in 2..8 {
-            // n is fitted to 1e-9: over some 50 mm of glass and air that is less than 1e-6 mm.
+            // n is fitted to 1e-9, which over about 50 mm of glass and air is less than 1e-6 mm.
             assert!((number(row[at]) - number(alone[0][at])).abs() < 1e-6, "{row:?} {alone:?}");
         }
         heights.push(number(row[3]));
     }
-    // Lateral color is there: the colors do not meet.
+    // Lateral color is present: the colors do not meet.
     assert!(heights.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-4), "{heights:?}");
 }
 
-/// Wavelengths in micrometers under a heading of nanometers are refused, with the row and what to write.
+/// Micrometers under a heading in nanometers are refused; the message names the row and says what to write.
 #[test]
 fn micrometers_are_no_nanometers() {
     let output = trace("zeiss-biotar-50-f1.4", "x_mm,y_mm,z_mm,l,m,n,wavelength_nm\n0,1,-5,0,0,1,0.55\n", &[]);
@@ -176,7 +176,7 @@ fn an_f_number_clips_at_its_marginal_ray() {
     let found = table(&result);
     assert_eq!(found[0][0], "hit");
     assert_eq!(found[1][..2], ["vignetted", "6"]);
-    // Wide open both pass.
+    // Wide open, both rays pass.
     let open = traced(name, &rays, &["--line", "d"]);
     assert!(table(&open).iter().all(|row| row[0] == "hit"));
 }
@@ -230,9 +230,9 @@ fn faults_in_the_table_name_file_row_and_column() {
         let message = text(&result.stderr);
         assert_eq!(result.status.code(), Some(2), "{rays}: {message}");
         assert!(message.contains(&format!("{}{place}", shown(&input))) && message.contains(word), "{rays}: {message}");
-        assert!(!output.exists(), "no half a result");
+        assert!(!output.exists(), "a partial result was written");
     }
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "no temporary file is left");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "a temporary file was left");
 }
 
 #[test]
@@ -255,7 +255,7 @@ fn a_ray_along_the_image_plane_misses_it() {
     assert_eq!(table(&result)[0][..2], ["missed", "1"]);
 }
 
-/// More rays than a batch holds, through a pipe: as many rows come out, in order.
+/// More rays than a batch holds, sent through a pipe, come out in the same number and order.
 #[test]
 fn many_rays_keep_their_order() {
     let name = lens("cooke-triplet-50-f5");
@@ -267,11 +267,12 @@ fn many_rays_keep_their_order() {
     let result = traced(&name, &rays, &["--nd"]);
     let found = table(&result);
     assert_eq!(found.len(), count as usize);
-    // Toward the axis, the more the higher they came in.
+    // The rays turn toward the axis, more strongly the higher they entered.
     assert!(found.windows(2).all(|pair| number(pair[0][6]) > number(pair[1][6])));
 }
 
-/// A plate of index 1.5, bare: Fresnel's transmittance at both faces, and index times length, in closed form; every surface has its row.
+/// An uncoated plate of index 1.5 has Fresnel's transmittance at both faces and the optical path index times length, in closed form.
+/// Every surface has its row.
 #[test]
 fn transmittance_and_optical_path_are_those_of_a_plate() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -286,7 +287,7 @@ fn transmittance_and_optical_path_are_those_of_a_plate() {
         let result = traced(shown(&file), &rays, &["--nd"]);
         let row = &table(&result)[0];
         let [s, p] = [(cosine, n * inside), (n * cosine, inside)].map(|(a, b)| 1.0 - ((a - b) / (a + b)).powi(2));
-        // Unpolarized light on each face: means of both states.
+        // Unpolarized light at each face: the mean of both polarizations.
         let transmittance = (0.5 * (s + p)).powi(2);
         let path = 5.0 / cosine + n * 10.0 / inside + 20.0 / cosine;
         assert!((number(row[9]) - transmittance).abs() < 1e-9, "{row:?} {transmittance}");
@@ -302,13 +303,13 @@ fn transmittance_and_optical_path_are_those_of_a_plate() {
         for (row, (z, y)) in every[1..3].iter().zip([0.0, 10.0].into_iter().zip(heights)) {
             assert!((number(row[5]) - z).abs() < 1e-12 && (number(row[4]) - y).abs() < 1e-9, "{row:?}");
         }
-        // In the glass, after one face.
+        // Inside the glass, after one face.
         assert!((number(every[1][10]) - 0.5 * (s + p)).abs() < 1e-9 && (number(every[1][7]) - sine / n).abs() < 1e-12);
         assert!((number(every[1][11]) - 5.0 / cosine).abs() < 1e-12);
     }
 }
 
-/// A ray that ends has rows for the surfaces before; a wavelength beyond the band is traced with the same columns.
+/// A ray that ends has rows for the surfaces up to that point; a wavelength outside the band is traced with the same columns.
 #[test]
 fn every_surface_is_told_up_to_the_end() {
     let name = "zeiss-biotar-50-f1.4";
@@ -321,7 +322,7 @@ fn every_surface_is_told_up_to_the_end() {
     let (last, before) = second.split_last().expect("rows");
     assert!(last[1] == "vignetted" && last[2] == (before.len() + 1).to_string(), "{second:?}");
     assert!(third.iter().all(|row| row[9] == "1000.0") && first.iter().all(|row| row[9] == "546.1"));
-    // Light is lost at each surface, never won.
+    // Each surface can only reduce the light.
     assert!(first.windows(2).all(|pair| number(pair[1][10]) <= number(pair[0][10])) && number(first[0][10]) < 1.0);
     assert!(first.windows(2).all(|pair| number(pair[1][11]) > number(pair[0][11])));
 }

@@ -1,17 +1,17 @@
-//! A corpus of slips that make a picture, only not the one that was meant: what a user is told of each, word for word.
+//! Tests what the program says about a corpus of mistakes that still make a picture, but not the intended one, word for word.
 //!
-//! `tests/warned/NAME.yaml` is a scene that can be rendered and should not be believed; `tests/warned/NAME.txt` is what
-//! `spectra check` says. `SPECTRA_BLESS=1 cargo test --test it cli_warned` writes these anew. As in `tests/broken`, each case
-//! states in comments what is doubtful, `# doubtful: TEXT`, and one warning starts at this text, with a hint; there are no
-//! others.
+//! `tests/warned/NAME.yaml` is a scene that can be rendered but should not be trusted. `tests/warned/NAME.txt` is what
+//! `spectra check` says. `SPECTRA_BLESS=1 cargo test --test it cli_warned` writes the texts anew. As in `tests/broken`, each case
+//! states in a comment what is doubtful, `# doubtful: TEXT`. Exactly one warning with a hint starts at this text, and there are no
+//! other warnings.
 //!
-//! The bundled scenes are the counter-examples: no word about any of them, see `bundled`.
+//! The bundled scenes are the counterexamples: no warning appears for any of them, see `bundled`.
 
 use crate::common::{answer_in, repository, run, text};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Fewer cases than this, and some were lost.
+/// Smallest number of cases; fewer mean that some were lost.
 const LEAST: usize = 12;
 
 fn yaml(folder: &Path) -> Vec<PathBuf> {
@@ -43,7 +43,9 @@ fn each_doubt_is_told_where_it_is_and_what_to_do() {
         if bless {
             fs::write(&expected, &said).expect("written");
         } else if fs::read_to_string(&expected).unwrap_or_default() != said {
-            wrong.push(format!("{name}: the text is another one (SPECTRA_BLESS=1 writes it anew):\n{said}"));
+            wrong.push(format!(
+                "{name}: the text differs from the expected one (SPECTRA_BLESS=1 writes it anew):\n{said}"
+            ));
         }
         let mut wanted: Vec<&str> =
             scene.lines().filter_map(|line| line.split_once("# doubtful: ")).map(|l| l.1).collect();
@@ -60,17 +62,17 @@ fn each_doubt_is_told_where_it_is_and_what_to_do() {
             let rest: String = scene.lines().nth(line - 1).unwrap_or("").chars().skip(column - 1).collect();
             match wanted.iter().position(|token| rest.starts_with(token)) {
                 Some(at) => drop(wanted.remove(at)),
-                None => {
-                    wrong.push(format!("{name}: {line}:{column} is not what is doubtful, but `{rest}`:\n{warning}"))
-                }
+                None => wrong.push(format!(
+                    "{name}: {line}:{column} is at `{rest}`, which is not marked as doubtful:\n{warning}"
+                )),
             }
         }
-        wrong.extend(wanted.iter().map(|token| format!("{name}: nothing is said about `{token}`:\n{said}")));
+        wrong.extend(wanted.iter().map(|token| format!("{name}: no warning about `{token}`:\n{said}")));
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
-/// What is known of the glass of a bundled lens stands in its file, whatever part of its name calls it.
+/// A bundled lens whose odd glass is explained in its own file causes no warning, whatever part of its name is given.
 #[test]
 fn a_bundled_lens_is_itself_by_a_part_of_its_name() {
     for name in ["canon-fd-50-f1.8", "canon-fd-50", "Canon FD 50 f1.8"] {

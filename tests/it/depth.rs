@@ -1,4 +1,4 @@
-//! Pictures with depth and layers: occlusion at edges, against the area of the pupil's part that sees each.
+//! Tests pictures with depth and layers: occlusion at edges compared with the area of the pupil that sees each side.
 
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use spectra_core::Isa;
@@ -9,7 +9,7 @@ use std::path::Path;
 const SEMI_DIAMETER: f64 = 6.25;
 const NEAR: f64 = 1000.0;
 const FAR: f64 = 2000.0;
-/// Luminance of the foreground, the background's being 1.
+/// Luminance of the foreground relative to the background.
 const DIM: f64 = 0.2;
 const COLUMNS: usize = 40;
 const FRAME: f64 = 0.8;
@@ -20,7 +20,7 @@ fn exr_file(path: &Path, size: (usize, usize), planes: &[(&str, Vec<f32>)]) {
     Image::from_layer(layer).write().to_file(path).expect("written");
 }
 
-/// Half of the picture is a dim foreground, the other a background.
+/// Writes a picture whose left half is a dim foreground and whose right half is a background.
 fn halves(path: &Path, with: impl Fn(bool) -> Vec<(&'static str, f32)>) {
     let (width, height) = (64, 32);
     let sides = [with(true), with(false)];
@@ -29,7 +29,7 @@ fn halves(path: &Path, with: impl Fn(bool) -> Vec<(&'static str, f32)>) {
     exr_file(path, (width, height), &planes);
 }
 
-/// Y of each column of the frame.
+/// Returns the mean Y of each column of the frame.
 fn columns(scene: &Path, set: &[&str]) -> Vec<f64> {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let scene = spectra_scene::load(scene, &set).unwrap_or_else(|faults| panic!("{faults}"));
@@ -103,15 +103,15 @@ impl Files {
     }
 }
 
-/// Part of a disk of radius 1 on the side x > u.
+/// Returns the share of a unit disk on the side x > u.
 fn segment(u: f64) -> f64 {
     let u = u.clamp(-1.0, 1.0);
     (u.acos() - u * (1.0 - u * u).sqrt()) / std::f64::consts::PI
 }
 
-/// What each column sees relative to the background alone, an edge at x = 0 being at `NEAR` and the lens being
-/// focused on `focus`: a ray from the pupil's px to X on the plane in focus passes the edge's plane at
-/// px (1 - NEAR / focus) + X NEAR / focus.
+/// Returns the light of each column relative to the background alone. The edge is at x = 0 at `NEAR`, and the lens is focused at
+/// `focus`. A ray from px in the pupil to X on the plane in focus crosses the plane of the edge at px (1 - NEAR / focus) + X NEAR /
+/// focus.
 fn closed_form(focus: f64) -> Vec<f64> {
     let magnification = 50.0 / (focus - 50.0);
     (0..COLUMNS)
@@ -151,13 +151,13 @@ fn a_blurred_edge_of_a_layer_is_the_segment_of_the_pupil() {
     compare(&Files::new(), "layers");
 }
 
-/// The same by rays from what shines: what stands in front shadows what lies behind it, and what is guessed there shines, too.
+/// Rays traced from the source give the same edge: the foreground shadows what lies behind it, and what is guessed there shines too.
 #[test]
 fn a_blurred_edge_is_the_same_from_the_source() {
     let files = Files::new();
-    // Two columns are taken together, since few of the rays come to a dim one.
+    // Averages pairs of columns, because few rays reach a dim one.
     let pairs = |columns: Vec<f64>| columns.chunks(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect::<Vec<_>>();
-    // Little more than the frame sees: rays that start elsewhere are lost.
+    // The source is little wider than what the frame sees; rays that start elsewhere are lost.
     let many = ["render.direction=forward", "render.rays=10000000"];
     let forward = |name: &str, width| pairs(files.columns(name, &[&many[..], &[width]].concat()));
     let open = forward("white", "source.width=48 mm");
@@ -174,8 +174,8 @@ fn a_blurred_edge_is_the_same_from_the_source() {
     }
 }
 
-/// With the foreground in focus its edge is sharp: no background inside of it, and no foreground beside it although much
-/// of what is seen there is hidden from the picture's own point of view.
+/// With the foreground in focus its edge is sharp. No background leaks into it, and no foreground appears beside it, although much of
+/// what is seen there is hidden from the picture's own viewpoint.
 #[test]
 fn an_edge_in_focus_leaks_nothing_either_way() {
     let files = Files::new();
@@ -186,7 +186,7 @@ fn an_edge_in_focus_leaks_nothing_either_way() {
         for column in 0..COLUMNS {
             let got = seen[column] / open[column];
             let want = if column < COLUMNS / 2 { DIM } else { 1.0 };
-            // A layer's cover falls over one of its pixels, 0.5 mm: 1.3 columns around the edge.
+            // The cover of a layer falls off over one of its pixels, 0.5 mm: 1.3 columns around the edge.
             if name == "deep" || !(COLUMNS / 2 - 2..COLUMNS / 2 + 2).contains(&column) {
                 assert!((got / want - 1.0).abs() < 1e-4, "{name} column {column}: {got}");
             }
@@ -215,7 +215,7 @@ fn faults_of_depth_say_where_and_what_to_do() {
              lens: {{file: zeiss-biotar-50-f1.4}}\nimager: {{kind: xyz, format: 135, resolution: [6, 4]}}\n"
         );
         std::fs::write(&scene, text).expect("written");
-        // Numbers of the scene are judged when it is loaded, pixels when light is traced.
+        // Numbers in the scene are checked when it is loaded, pixels when light is traced.
         spectra_scene::load(&scene, &[]).and_then(|scene| scene.source.prepare()).map_err(|faults| faults.to_string())
     };
     for (file, depth, words) in [
@@ -224,7 +224,7 @@ fn faults_of_depth_say_where_and_what_to_do() {
         ("nan.exr", "{unit: m}", ["not a number at column 0, row 1", "`far`"]),
         ("sky.exr", "{unit: m}", ["infinite at column 1, row 1", "far: 1 km"]),
         ("sky.exr", "{unit: yard}", ["unknown value `yard` for `unit`", "known: mm"]),
-        ("sky.exr", "{scale: 0}", ["all depths would be 0", "-1 where depth counts against the view"]),
+        ("sky.exr", "{scale: 0}", ["all depths would be 0", "-1 if depth is negative in front of the camera"]),
         ("flat.exr", "{file: small.exr}", ["2 x 1 pixels, the picture 2 x 2", "same size"]),
         ("sky.exr", "{kind: radial}", ["unknown value `radial` for `kind`", "known: z, ray, inverse"]),
         ("sky.exr", "{far: 1 m, near: 2 m}", ["farther than `near`", "2:80"]),
@@ -235,13 +235,12 @@ fn faults_of_depth_say_where_and_what_to_do() {
     load("sky.exr", "{unit: m, far: 100 m}").expect("a backdrop");
 }
 
-/// Depth that was read wrongly is asked about with what to write, in OpenEXR, PNG and TIFF; with that written, nothing is asked, and the
-/// depth is the same.
+/// Overscan, the pixels beyond the display window of an OpenEXR file, continues the picture beside it, with and without depth.
 #[test]
 fn overscan_lies_beside_the_picture() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
-    // 60 x 50 pixels that differ, of which the display window is the middle 40 x 30.
+    // 60 x 50 different pixels; the display window is the middle 40 x 30.
     let (data, shown, margin) = ((60, 50), (40, 30), 10);
     let values = |f: &dyn Fn(usize, usize) -> f32| (0..data.0 * data.1).map(|i| f(i % data.0, i / data.0)).collect();
     let planes: Vec<(&str, Vec<f32>)> = vec![
@@ -275,30 +274,31 @@ fn overscan_lies_beside_the_picture() {
         (frame.channel("Y").expect("an XYZ imager").values.clone(), told.join("\n"))
     };
     for depth in ["", ", depth: {unit: m}"] {
-        // The display window alone leaves the frame's border black; with overscan it is as the whole picture at its width.
+        // The display window alone would leave the border black; with overscan the frame equals that of the whole picture at its
+        // width.
         let (over, told) = exposure(&format!("file: overscan.exr, width: 1.2 m{depth}"));
         assert_eq!(told, "", "{depth}");
         let (whole, _) = exposure(&format!("file: plain.exr, width: 1.8 m{depth}"));
         assert_eq!(over, whole, "{depth}");
         assert!(over.iter().all(|v| *v > 0.0), "the frame is filled {depth}");
-        // `fill` is the width of the display window.
+        // `fill` sets the width of the display window.
         let (fill, _) = exposure(&format!("file: overscan.exr, width: fill{depth}"));
         assert!(fill.iter().all(|v| *v > 0.0));
     }
-    // On one side only there is nothing to use, and that is said.
+    // Overscan on one side only cannot be used, and a warning says so.
     let (_, told) = exposure("file: uneven.exr, width: fill");
     assert!(told.contains("20 pixels beyond the display window on the left, 0 on the right"), "{told}");
 }
 
-/// A room whose depth counts along the ray, read as along the axis, and the other way round; things nearer than two focal lengths. In
-/// OpenEXR, and in TIFF and PNG of 16 bits.
+/// A room whose depth is measured along the ray but read as along the axis, or the other way round, causes a question; so do things
+/// nearer than two focal lengths. Checked in OpenEXR and in 16-bit TIFF and PNG.
 #[test]
 fn kinds_of_depth_and_near_things_are_asked_about() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     let (width, height) = (96_usize, 54_usize);
     let gray: Vec<f32> = vec![0.5; width * height];
-    // A wall at 4 m, a floor 1 m below; the plane of the picture, 2 m wide, is at 2 m.
+    // A wall at 4 m and a floor 1 m below the camera. The plane of the picture, 2 m wide, is at 2 m.
     let depth = |ray: bool, near_mm: f32| -> Vec<f32> {
         let place = |i: usize, n: usize| (i as f64 + 0.5 - 0.5 * n as f64) / width as f64;
         let pixel = |i: usize| {
@@ -355,11 +355,13 @@ fn kinds_of_depth_and_near_things_are_asked_about() {
     }
 }
 
+/// Depth that was probably read in a wrong way causes a question that says what to write, in OpenEXR, PNG and TIFF. With that
+/// written there is no question.
 #[test]
 fn mistaken_depths_are_asked_about() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
-    // A thing at 1.5 m, some at 2 m, the wall at 4 m; the plane is at 2 m.
+    // One pixel at 1.5 m, two at 2 m, and the wall at 4 m. The plane of the picture is at 2 m.
     let meters = [1.5_f32, 2.0, 2.0, 4.0];
     let gray: Vec<f32> = vec![0.5; 4];
     let file = |name: &str, of: &dyn Fn(f32) -> f32| {
@@ -377,7 +379,7 @@ fn mistaken_depths_are_asked_about() {
     let deep = image::ImageBuffer::<image::Luma<u16>, _>::from_vec(2, 2, codes).expect("four");
     deep.save(at("deep.png")).expect("written");
     deep.save(at("deep.tif")).expect("written");
-    // Cover is no part of depth.
+    // An alpha channel is not part of the depth.
     let covered = image::ImageBuffer::<image::LumaA<u16>, _>::from_fn(2, 2, |x, y| {
         image::LumaA([deep.get_pixel(x, y).0[0], 30_000])
     });
@@ -392,16 +394,16 @@ fn mistaken_depths_are_asked_about() {
         scene.source.prepare().map_err(|faults| faults.to_string())?;
         Ok::<String, String>(scene.source.doubts().iter().map(|doubt| format!("{doubt}\n")).collect())
     };
-    // The file, what was written of it, what is said, and what to write.
+    // Each case: the file, the depth settings as written, the words of the question, and the settings to write.
     for (file, wrong, words, right) in [
         ("m.exr", "{}", "did you mean `unit: m`?", "{unit: m}"),
         ("m.exr", "{unit: cm}", "did you mean `unit: m`?", "{unit: m}"),
         ("cm.exr", "{unit: m}", "did you mean `unit: cm`?", "{unit: cm}"),
         ("mm.exr", "{unit: m}", "did you mean `unit: mm`?", "{}"),
-        ("negative.exr", "{unit: m}", "counts against the view, so write `scale: -1`", "{unit: m, scale: -1}"),
+        ("negative.exr", "{unit: m}", "measured against the view: write `scale: -1`", "{unit: m, scale: -1}"),
         ("inverse.exr", "{}", "did you mean `unit: m, kind: inverse`?", "{unit: m, kind: inverse}"),
-        ("normalised.exr", "{}", "normalised depth has to be written anew in meters", ""),
-        ("mask.exr", "{}", "another `channel` where it is alpha", ""),
+        ("normalised.exr", "{}", "if this is normalized depth, export it in meters", ""),
+        ("mask.exr", "{}", "if it is alpha, another `channel`", ""),
         (
             "m.exr",
             "{file: deep.png}",
@@ -430,8 +432,8 @@ fn mistaken_depths_are_asked_about() {
     }
 }
 
-/// A bright card at 1 m before a dark wall at 8 m, its edge slanted and antialiased, as a renderer writes it: with the depth of one sample
-/// a pixel, with averaged depth, and as two layers.
+/// Writes a bright card at 1 m in front of a dark wall at 8 m, with a slanted, antialiased edge like that of a renderer: with depth
+/// sampled once per pixel, with averaged depth, and as two layers.
 fn card(folder: &Path) {
     const SIZE: (usize, usize) = (64, 32);
     let share: Vec<f32> = (0..SIZE.0 * SIZE.1)
@@ -466,14 +468,14 @@ fn card(folder: &Path) {
     }
 }
 
-/// A renderer averages color over a pixel, and cannot average depth: what the pixels on the edge of a card in focus hold of it is not
-/// blurred with the wall behind.
+/// A renderer averages color over a pixel but cannot average depth. The light of a card in focus that pixels on its edge contain must
+/// not be blurred with the wall behind.
 #[test]
 fn mixed_pixels_of_a_plate_leave_no_rim() {
     let files = Files::new();
     card(files.folder.path());
     let layers = files.columns("card-layers", &[]);
-    // The edge goes over some three pixels of the plate in the frame, and each of these over 1.6 columns; the rim over three more.
+    // The edge covers about three pixels of the plate in the frame, each 1.6 columns wide; the rim would cover three more.
     let first = COLUMNS / 2 + 4;
     for name in ["sampled", "averaged"] {
         let ratio = |set: &[&str]| {
@@ -481,9 +483,11 @@ fn mixed_pixels_of_a_plate_leave_no_rim() {
             (first..COLUMNS).map(|c| seen[c] / layers[c]).fold(0.0, f64::max)
         };
         let (clean, as_is) = (ratio(&[]), ratio(&["source.depth.edges=as-is"]));
-        println!("{name}: light beside the card at most {clean:.3} of that of layers, {as_is:.3} as it is");
+        println!(
+            "{name}: light beside the card at most {clean:.3} times that of layers, {as_is:.3} with `edges: as-is`"
+        );
         assert!(clean < 1.02 && as_is > 1.1, "{name}: {clean} {as_is}");
-        // In the card and on its edge it is as in layers, too.
+        // Inside the card and on its edge the light equals that of layers too.
         let seen = files.columns(name, &[]);
         for column in 4..COLUMNS {
             let off = seen[column] - layers[column];
@@ -492,7 +496,7 @@ fn mixed_pixels_of_a_plate_leave_no_rim() {
     }
 }
 
-/// The same light by rays from what shines, through pixels that are covered in part, with either side in focus.
+/// Rays from the source give the same light through partly covered pixels, with either side in focus.
 #[test]
 fn mixed_pixels_are_the_same_from_the_source() {
     let files = Files::new();
@@ -502,7 +506,7 @@ fn mixed_pixels_are_the_same_from_the_source() {
         let backward = fours(files.columns("sampled", &[focus]));
         let many = ["render.direction=forward", "render.rays=3000000", focus];
         let forward = fours(files.columns("sampled", &many));
-        // The first ones see what starts beside the plate's border.
+        // The first columns see light that starts beyond the plate's border.
         for (k, (forward, backward)) in forward.iter().zip(&backward).enumerate() {
             assert!((forward / backward - 1.0).abs() < 0.03, "{focus}, {k}: {forward} {backward}");
         }

@@ -1,12 +1,14 @@
-//! Diffraction in pictures: the opening that the film sees, stars of lamps, and nothing at all where it is off.
+//! Tests diffraction in pictures: the pupil that the film sees, stars of lamps, and unchanged pictures if it is off.
 
 use glam::DVec3;
 use spectra_core::{Isa, RayBatch};
 use spectra_diffraction::{Light, PixelSpread, Pupil, Waves};
-use spectra_lens::{Criterion, FocusSearch, Indices, Lens, Tracer, Travel};
+use spectra_lens::Lens;
+use spectra_optics::{Criterion, FocusSearch, Optics};
 use spectra_plugins as _;
 use spectra_render::{Control, Light as Sums, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
+use spectra_tracer::{Indices, Tracer, Travel};
 
 fn scene(lens: &str, set: &[&str]) -> Scene {
     let text = format!(
@@ -25,7 +27,7 @@ fn scene(lens: &str, set: &[&str]) -> Scene {
 
 const SEVEN: &str = "{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 16, aperture: {shape: iris, blades: 7}}";
 
-/// A scene whose light is traced once, and looked at with diffraction and without.
+/// A scene whose light is traced once and viewed with and without diffraction.
 struct Traced {
     renderer: Renderer,
     light: Sums,
@@ -40,7 +42,7 @@ impl Traced {
         Self { renderer, light }
     }
 
-    /// The picture with `diffraction` as asked for; `None` leaves it to the picture.
+    /// Returns the picture with the given `diffraction`; `None` lets the scene decide.
     fn look(&self, diffraction: Option<bool>) -> Rendering {
         let mut scene = Scene::clone(self.renderer.scene());
         scene.render.diffraction = diffraction;
@@ -48,7 +50,7 @@ impl Traced {
     }
 }
 
-/// Area in direction cosines of what a point of the film sees, by rays on a grid through the lens as it is.
+/// Returns the area, in direction cosines, that a point of the film sees through the real lens, from rays on a grid.
 fn counted(lens: &Lens, point: DVec3) -> f64 {
     let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::detect()).expect("indices");
     let (n, reach) = (700, 0.75);
@@ -73,7 +75,7 @@ fn counted(lens: &Lens, point: DVec3) -> f64 {
     seen as f64 * cell * cell
 }
 
-/// The polygon has the area that rays find: blades on the axis and beside it, and the cat's eye of a lens wide open.
+/// The pupil polygon has the area that rays find: blades on and off the axis, and the cat's eye of a lens wide open.
 #[test]
 fn the_opening_is_what_rays_pass() {
     let blades = "{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 2.8, aperture: {shape: iris, blades: 7}}";
@@ -104,15 +106,15 @@ fn without_it_the_bits_are_as_they_were() {
     let [absent, off, on] = [None, Some(false), Some(true)].map(|asked| traced.look(asked));
     assert!(absent.exposure == off.exposure && absent.diffraction.is_none());
     assert!(on.exposure != off.exposure);
-    // A scene that asks for it is traced alike.
+    // A scene that sets the key itself is traced in the same way.
     let asked = scene(SEVEN, &["render.diffraction=true"]);
     assert_eq!(asked.render.diffraction, Some(true));
     assert!(Traced::new(asked).look(Some(false)).exposure == off.exposure);
     assert_eq!((on.rays, on.detected), (off.rays, off.detected));
 }
 
-/// Where lights are rendered apart and their stars would be seen, diffraction is there unless it is refused; where no star would be seen
-/// it is not.
+/// Diffraction is on by default if lights are rendered separately and their stars would be visible, unless it is refused. If no star
+/// would be visible it is off.
 #[test]
 fn it_comes_where_stars_are_seen() {
     let sky = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/sun-sky.exr");
@@ -132,14 +134,14 @@ fn it_comes_where_stars_are_seen() {
     assert_eq!(itself.estimators, ["backward", "forward"]);
     assert!(off.diffraction.is_none() && itself.diffraction == on.diffraction && on.diffraction.is_some());
     assert!(itself.exposure == on.exposure && itself.exposure != off.exposure);
-    // A star so much dimmer is not seen: the same light, and none of it is moved.
+    // A star this dim is not visible: the light is the same, and none of it is moved.
     let dim = shown("1 lx", &["render.direction=both"]);
     let itself = dim.look(None);
     assert_eq!(itself.estimators, ["backward", "forward"]);
     assert!(itself.diffraction.is_none() && itself.exposure == dim.look(Some(false)).exposure);
 }
 
-/// All light of a lamp is in its frame or booked as beside it, and a lamp has the stars of its blades.
+/// All light of a lamp is in its frame or accounted for as outside, and the lamp has a star with the right number of spikes.
 #[test]
 fn a_lamp_gets_its_star() {
     for (blades, spikes) in [(7, 14), (8, 8)] {
@@ -156,7 +158,7 @@ fn a_lamp_gets_its_star() {
         let left = booked.iter().find(|d| d.channel == "Y").expect("Y").left;
         assert!((sum(&after) / sum(&before) + left - 1.0).abs() < 1e-6, "{left}");
         assert!(left > 0.0 && left < 0.05, "{left}");
-        // On a circle of 50 pixels about the lamp.
+        // Samples a circle of 50 pixels around the lamp.
         let lamp = (0..before.len()).max_by(|a, b| before[*a].total_cmp(&before[*b])).expect("pixels");
         let (column, row) = ((lamp % 300) as f64, (lamp / 300) as f64);
         let around: Vec<f64> = (0..720)
@@ -172,7 +174,7 @@ fn a_lamp_gets_its_star() {
             .collect();
         let high = 0.3 * around.iter().fold(0.0_f64, |a, b| a.max(*b));
         let begins: Vec<usize> = (0..720).filter(|i| around[*i] > high && around[(*i + 719) % 720] <= high).collect();
-        // Steps of pixels may part a spike in two.
+        // Pixel steps may split a spike in two.
         let apart = begins.iter().enumerate().filter(|(k, i)| *k == 0 || **i - begins[k - 1] > 20).count();
         assert_eq!(apart, spikes, "{blades} blades: {begins:?}");
     }
@@ -194,10 +196,10 @@ fn a_picture_as_a_mask_is_refused() {
     let scene = std::sync::Arc::new(spectra_scene::load(&path, &[]).unwrap_or_else(|faults| panic!("{faults}")));
     let error = Renderer::check(&scene, Isa::detect()).expect_err("it has no edge");
     let faults = error.faults(&scene).expect("a fault of the scene").to_string();
-    assert!(faults.contains("picture as a mask") && faults.contains("`diffraction: false`"), "{faults}");
+    assert!(faults.contains("picture used as a mask") && faults.contains("`diffraction: false`"), "{faults}");
 }
 
-/// Rays land where the wavefront's slope says.
+/// Rays land where the slope of the wavefront predicts.
 #[test]
 fn the_slope_of_the_wavefront_is_where_rays_land() {
     let scene = scene("{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 2.8}", &[]);
@@ -209,7 +211,7 @@ fn the_slope_of_the_wavefront_is_where_rays_land() {
         let opening = pupil.seen_from(point, axes).expect("it sees the opening");
         let wave = waves.seen_from(point, axes, &opening).expect("a wavefront");
         let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::detect()).expect("indices");
-        // The way of the light that the middle of the opening brings to the point.
+        // The path of the light that reaches the point through the middle of the pupil.
         let middle = opening.center();
         let mut back = RayBatch::new(1);
         back.restart(1);
@@ -221,7 +223,7 @@ fn the_slope_of_the_wavefront_is_where_rays_land() {
         let [x, y, z] = back.positions().map(|c| c[0]);
         let from = DVec3::new(x, y, z);
         let way = -DVec3::from_array(back.directions().map(|c| c[0]));
-        // Others beside it.
+        // Rays parallel to that path.
         let n = 41;
         let mut rays = RayBatch::new(n * n);
         rays.restart(n * n);
@@ -254,28 +256,28 @@ fn the_slope_of_the_wavefront_is_where_rays_land() {
     }
 }
 
-/// What lines across or along a kernel hold.
+/// Returns the sums over the lines of a kernel, across or along.
 fn lines(kernel: &PixelSpread, across: bool) -> Vec<f64> {
     let r = kernel.radius() as isize;
     let weight = |k: isize, n: isize| if across { kernel.weight(k, n) } else { kernel.weight(n, k) };
     (-r..r + 1).map(|k| (-r..r + 1).map(|n| weight(k, n)).sum()).collect()
 }
 
-/// Rays and kernel together have the contrast of light, which an independent script has from traced wavefronts: every fourth lens, stop and
-/// height of its table.
+/// Rays spread by the kernel have the contrast of light. The reference is an independent script that uses traced wavefronts: every
+/// fourth combination of lens, stop and height of its table.
 #[test]
 fn rays_spread_by_the_wavefront_have_its_contrast() {
     assert_eq!(contrasts_agree(4), 64);
 }
 
-/// All of the table.
+/// Compares the whole table of contrasts.
 #[test]
 #[ignore = "a minute: a long step of .ci/run"]
 fn rays_spread_by_the_wavefront_have_its_contrast_everywhere() {
     assert_eq!(contrasts_agree(1), 240);
 }
 
-/// Compares every so many groups of the table; how many contrasts.
+/// Compares every so many groups of the table, and returns the number of contrasts compared.
 fn contrasts_agree(every: usize) -> u32 {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/diffraction/tests/data/wave-contrast.csv");
     let text = std::fs::read_to_string(path).expect("a table");
@@ -291,12 +293,11 @@ fn contrasts_agree(every: usize) -> u32 {
             continue;
         }
         let lens = scene(&format!("{{file: {lens}, focus: infinity, f-number: {stop}}}"), &[]).lens;
-        // As `spectra lens trace` focuses.
+        // Focuses like `spectra lens trace`.
         let criterion = Criterion::Contrast { per_mm: 30.0 };
         let light = vec![(lens.reference_nm, 1.0)];
-        let lens =
-            Lens::clone(&lens).focused_by(&FocusSearch { object_mm: f64::INFINITY, field_rad: 0.0, criterion, light });
-        let lens = lens.expect("focused");
+        let search = FocusSearch { object_mm: f64::INFINITY, field_rad: 0.0, criterion, light };
+        let lens = Optics::new(search.focus(Lens::clone(&lens)).expect("focused"));
         let point = DVec3::new(0.0, film_y.parse().expect("mm"), 0.0);
         let axes = [DVec3::X, DVec3::Y];
         let opening = Pupil::new(&lens).unwrap().seen_from(point, axes).expect("it sees the opening");
@@ -314,8 +315,8 @@ fn contrasts_agree(every: usize) -> u32 {
                 rays * line.iter().enumerate().map(|(k, v)| v * (std::f64::consts::TAU * turns(k)).cos()).sum::<f64>()
             };
             let (found, without) = (contrast(&light), contrast(&edge));
-            println!("{row}: {found:.3}, of a perfect lens {without:.3}");
-            // What rays have lost cannot be given back.
+            println!("{row}: {found:.3}, {without:.3} for a perfect lens");
+            // Contrast that rays have lost cannot be restored.
             let least = if rays > 0.15 { 0.05 } else { 0.1 };
             wrong += u32::from((found - want).abs() > least);
             worst = worst.max((found - want).abs());
@@ -326,7 +327,7 @@ fn contrasts_agree(every: usize) -> u32 {
     }
     let mean = sum / f64::from(count);
     println!(
-        "{count} contrasts within {worst:.3}, on average {mean:.4}; by a perfect lens's pattern within {perfect:.3}"
+        "{count} contrasts within {worst:.3}, on average {mean:.4}; with a perfect lens's pattern within {perfect:.3}"
     );
     assert!(wrong == 0 && mean < 0.01, "{count}, {wrong} wrong, {mean}");
     count

@@ -1,4 +1,4 @@
-//! Forward and backward estimate the same exposure (P8).
+//! Tests that forward and backward tracing estimate the same exposure (P8).
 
 use crate::common::repository;
 use crate::common::statistics::{self, Estimate, estimates, over_seeds, ready, regions, rendered};
@@ -11,13 +11,13 @@ fn card(overrides: &[&str]) -> Renderer {
     ready(statistics::load(&repository("scenes/gray-card.yaml"), overrides))
 }
 
-/// Mean illuminance of each region of the frame, so many columns by so many rows of them.
+/// Returns the mean illuminance of each region of the frame, for the given number of columns and rows.
 fn estimate(overrides: &[&str], [columns, rows]: [usize; 2]) -> Vec<Estimate> {
     estimates(&over_seeds(&card(overrides), 11..11 + SEEDS, |rendering| regions(rendering, columns, rows)))
 }
 
-/// Student's t with 5 + 5 degrees of freedom at the 3-sigma level for 20 regions together: a factor of
-/// 1.6 on three standard errors that are themselves estimated from six seeds.
+/// Factor for Student's t with 5 + 5 degrees of freedom, at the 3-sigma level for 20 regions together. Three standard errors are
+/// multiplied by 1.6, because they are estimated from six seeds.
 const STUDENT: f64 = 1.6;
 
 fn compare(common: &[&str], samples: &str, rays: &str) {
@@ -35,12 +35,12 @@ fn compare_in(parts: [usize; 2], common: &[&str], samples: &str, rays: &str) {
     }
 }
 
-/// The path of a lens of the test data, as an override.
+/// Returns the path of a lens of the test data as an override.
 fn lens(name: &str) -> String {
     format!("lens.file={}/tests/data/lenses/{name}.yaml", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A card close to a lens of 1 mm: the frame's edges see it at 80 degrees from the axis.
+/// A card close to a lens of 1 mm: the edges of the frame see it at 80 degrees from the axis.
 #[test]
 fn a_fisheye_out_to_80_degrees() {
     let lens = lens("minolta-fisheye-1-f2.7");
@@ -68,14 +68,14 @@ fn gray_card_wide_open() {
 
 #[test]
 fn gray_card_stopped_down_with_independent_numbers_and_rings() {
-    // Independent numbers converge with the square root only, so the whole frame stands for its regions: 1 % of it is known better by
-    // these rays than 1 % of a twentieth of it by eight times as many.
+    // Independent numbers converge only with the square root, so the whole frame is compared instead of its regions. These rays
+    // determine 1 % of it better than eight times as many would determine 1 % of a twentieth of it.
     let common = ["imager.resolution=[60, 40]", "lens.f-number=f/2.8", "render.numbers=random", "render.cone=rings"];
     compare_in([1, 1], &common, "render.samples=256", "render.rays=3000000");
 }
 
-/// On the axis the illuminance is pi L tau / (4 N^2 (1 + m/P)^2), with N of the real marginal ray at infinity, m the
-/// magnification and P the pupil magnification (1.32 for this lens); nothing is reflected or absorbed.
+/// The illuminance on the axis is pi L tau / (4 N^2 (1 + m/P)^2). N is that of the real marginal ray at infinity, m the magnification
+/// and P the pupil magnification (1.32 for this lens). Nothing is reflected or absorbed.
 #[test]
 fn gray_card_has_the_illuminance_of_the_camera_equation() {
     let lossless = ["lens.f-number=f/4", "lens.coating=ideal", "lens.absorption=false"];

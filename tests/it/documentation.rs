@@ -1,4 +1,4 @@
-//! What a person reads about stages and files: it is there, it is true of the schema, and every example works as it stands.
+//! Tests the documentation of stages and files: it exists, agrees with the schema, and every example works as written.
 
 use crate::common::{good, repository};
 use spectra_core::params::Params;
@@ -8,7 +8,7 @@ use spectra_plugins as _;
 use spectra_scene::{FileKind, FileResources, file_documentation, shared_documentation};
 use std::path::Path;
 
-/// Names of quantities as documentation has them, without those that have no unit.
+/// Names of quantities in documentation, except those without a unit.
 const WITH_UNIT: [&str; 12] = [
     "length",
     "wavelength",
@@ -24,14 +24,14 @@ const WITH_UNIT: [&str; 12] = [
     "angle",
 ];
 
-/// Columns of a terminal that pages are made for.
+/// Width of the terminal, in columns, that pages are made for.
 const COLUMNS: usize = 100;
 
 fn name(stage: &Listed) -> String {
     format!("{}/{}", stage.stage, stage.name)
 }
 
-/// What everything that is documented has to say.
+/// Checks that the documentation of an item is complete.
 fn complete(name: &str, doc: &Documentation, faults: &mut Vec<String>) {
     let mut must = |good: bool, what: &str| {
         if !good {
@@ -41,8 +41,8 @@ fn complete(name: &str, doc: &Documentation, faults: &mut Vec<String>) {
     let summary = &doc.summary;
     must(summary.ends_with('.') && !summary.contains(". "), "the summary is one sentence with a period");
     must(summary.chars().count() <= 110, "the summary has 110 characters at most");
-    must(doc.text.len() >= 60, "a text tells what it does, and when one takes it");
-    must(!doc.examples.is_empty(), "an example stands there");
+    must(doc.text.len() >= 60, "a text says what it does and when to use it");
+    must(!doc.examples.is_empty(), "there is an example");
     for p in &doc.parameters {
         must(p.description.len() >= 4, &format!("`{}` is described", p.key));
         must(p.kind != "anything" && !p.kind.is_empty(), &format!("`{}` has a type", p.key));
@@ -67,7 +67,7 @@ fn every_stage_and_file_is_documented() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// A year in parentheses, or before one that closes: how papers are cited.
+/// Returns whether code cites a paper: by a year in parentheses, or a year before a closing parenthesis.
 fn cites(code: &str) -> bool {
     let comments = code.lines().map(str::trim_start).filter(|line| line.starts_with("//"));
     let mut years = comments.flat_map(|line| {
@@ -77,7 +77,7 @@ fn cites(code: &str) -> bool {
     years.any(|year| (1600..2100).contains(&String::from_utf8_lossy(&year).parse::<u32>().unwrap_or(0)))
 }
 
-/// Where the code of a stage cites a paper, a reader of its page is told too.
+/// If the code of a stage cites a paper, its page names the reference too.
 #[test]
 fn what_the_code_cites_the_page_cites() {
     let mut looked_at = 0;
@@ -93,24 +93,28 @@ fn what_the_code_cites_the_page_cites() {
                 let code = std::fs::read_to_string(&path).expect("text");
                 for line in code.lines().filter_map(|line| line.strip_prefix("spectra_core::register!(")) {
                     let (stage, rest) = line.split_once(' ').expect("register!(stage \"name\"");
-                    // A kind of stage that another crate declares is named by its entry.
+                    // A kind of stage that another crate declares is named by its entry type.
                     let entry = stage.rsplit("::").next().and_then(|entry| entry.strip_suffix("Entry,"));
                     let stage = entry.map_or_else(|| stage.to_owned(), str::to_lowercase);
                     let name = rest.split('"').nth(1).expect("a name");
                     let listed = list().into_iter().find(|l| l.stage == stage && l.name == name);
                     let Some(listed) = listed else { panic!("{stage}/{name} is registered but not linked") };
                     let references = listed.documentation().references;
-                    assert!(!cites(&code) || !references.is_empty(), "{stage}/{name}: {} cites", path.display());
+                    assert!(
+                        !cites(&code) || !references.is_empty(),
+                        "{stage}/{name}: {} cites a paper",
+                        path.display()
+                    );
                     looked_at += 1;
                 }
             }
         }
     }
     let of_plugins = list().iter().filter(|listed| listed.package.starts_with("spectra-plugin-")).count();
-    assert_eq!(looked_at, of_plugins, "stages that are registered beside those of the folder `plugins`");
+    assert_eq!(looked_at, of_plugins, "the folder `plugins` and the registry have different stages");
 }
 
-/// A folder with the files that examples name.
+/// Creates a folder with the files that examples name.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let put = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).expect("written");
@@ -127,7 +131,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// One gray pixel.
+/// A PNG file of one gray pixel.
 const PNG: &[u8] = &[
     0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00, 0x00,
     0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0x3a, 0x7e, 0x9b, 0x55, 0x00, 0x00, 0x00, 0x0a, 0x49,
@@ -135,7 +139,7 @@ const PNG: &[u8] = &[
     0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82,
 ];
 
-/// The text as the value of a key.
+/// Returns the text as the value of a key.
 fn section(key: &str, value: &str) -> String {
     let lines: Vec<String> = value.lines().map(|line| format!("  {line}\n")).collect();
     format!("{key}:\n{}", lines.concat())
@@ -158,7 +162,7 @@ fn scene(folder: &Path, text: &str) -> Result<(), String> {
     spectra_scene::load(&path, &[]).map(|_| ()).map_err(|faults| format!("{faults}\n{text}"))
 }
 
-/// A small scene in which the sections that are given replace the usual ones.
+/// Loads a small scene in which the given sections replace the usual ones.
 fn scene_with(folder: &Path, given: &[(&str, &str)]) -> Result<(), String> {
     let usual = [
         ("source", "{kind: chart, chart: white, distance: 2 m, width: 1.5 m}"),
@@ -173,7 +177,7 @@ fn scene_with(folder: &Path, given: &[(&str, &str)]) -> Result<(), String> {
 /// A surface with a size, to which keys can be added.
 const SURFACE: &str = "surfaces:\n  - kind: sphere\n    radius: 50\n    glass: SCHOTT/N-BK7\n    semi-diameter: 10\n";
 
-/// Builds an example where a stage of its kind stands.
+/// Builds an example in the place where a stage of its kind belongs.
 fn build(stage: &str, example: &str, folder: &Path) -> Result<(), String> {
     match stage {
         "surface" => {
@@ -219,7 +223,7 @@ fn build(stage: &str, example: &str, folder: &Path) -> Result<(), String> {
             let glass = spectra_glass::file::load("example.yaml", &FileResources::beside(folder));
             glass.map(|_| ()).map_err(|faults| faults.to_string())
         }
-        // A stage that stands in another: its YAML is read, and its own tests build it.
+        // A nested stage: its YAML is read, and its own tests build it.
         _ => parsed(folder, "example.yaml", example).map(|_| ()),
     }
 }
@@ -231,7 +235,7 @@ fn every_example_of_a_stage_builds() {
     for stage in list() {
         for example in &stage.documentation().examples {
             let other = match parsed(folder.path(), "example.yaml", example) {
-                // What names no kind is of the default one.
+                // An example that names no kind is of the default kind.
                 Ok(params) => params.get(stage.key).map_or(!stage.default, |k| k.as_str() != Some(stage.name)),
                 Err(fault) => {
                     faults.push(format!("{}: {fault}", name(&stage)));
@@ -239,10 +243,10 @@ fn every_example_of_a_stage_builds() {
                 }
             };
             if other {
-                faults.push(format!("{}: this is another kind:\n{example}", name(&stage)));
+                faults.push(format!("{}: this example is of another kind:\n{example}", name(&stage)));
             }
             faults.extend(build(stage.stage, example, folder.path()).err().map(|f| format!("{}: {f}", name(&stage))));
-            // That it builds means something: the builder sees the example's own keys.
+            // Building proves something only if the builder reads the example's own keys, so an unknown key must fail.
             let wrong = match example
                 .strip_suffix('}')
                 .filter(|_| example.lines().any(|line| line.starts_with('{')) || !example.contains('\n'))
@@ -251,7 +255,7 @@ fn every_example_of_a_stage_builds() {
                 None => format!("{example}\nno-such-key: 1"),
             };
             if let Ok(()) = build(stage.stage, &wrong, folder.path()) {
-                faults.push(format!("{}: whatever stands there is taken:\n{wrong}", name(&stage)));
+                faults.push(format!("{}: an unknown key is accepted:\n{wrong}", name(&stage)));
             }
         }
     }
@@ -283,7 +287,7 @@ fn every_example_of_a_file_is_one() {
     }
 }
 
-/// Pages as the command prints them, for a terminal of 100 columns; blocks of code stay as they are.
+/// Pages of the command fit a terminal of 100 columns, except blocks of code, which are not wrapped.
 #[test]
 fn pages_fit_a_terminal() {
     let stages = list();

@@ -1,5 +1,5 @@
-//! What the engine owes a person whatever the scene: numbers taken as written, memory asked for before it is used, a broken
-//! stage named at once, every ray accounted for, and a word where a picture is empty or infinite.
+//! Tests guarantees of the engine for any scene: numbers are taken as written, memory is checked before it is used, a broken stage is
+//! named at once, every ray is accounted for, and an empty or infinite picture causes a warning.
 
 use crate::common::statistics::{bits, ready, rendered};
 use crate::common::{repository, run, shown, text};
@@ -29,7 +29,7 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
 }
 
-/// The gray card with these settings, its report and what was said on standard error.
+/// Renders the gray card with these settings. Returns its report and the standard error.
 fn card(overrides: &[&str]) -> (Value, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = repository("scenes/gray-card.yaml");
@@ -53,7 +53,7 @@ fn a_seed_is_taken_to_its_last_digit() {
         assert_eq!(report["seed"].as_u64(), seed.parse().ok());
         std::fs::read(folder.path().join("gray-card.png")).expect("a picture")
     };
-    // One above 2^53, where an f64 holds even numbers only.
+    // One above 2^53, where an f64 can represent only even numbers.
     assert_ne!(light("9007199254740993"), light("9007199254740992"));
     light("18446744073709551615");
 }
@@ -75,7 +75,7 @@ fn memory_is_asked_for_before_it_is_used() {
     assert_eq!(report["scenes"][0]["memory_bytes"], 300 * 200 * 36);
 }
 
-/// Where the shell can limit the addresses of a process.
+/// Runs only where the shell can limit the address space of a process.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_limit_of_memory_is_a_sentence_and_no_abort() {
@@ -97,10 +97,10 @@ fn a_limit_of_memory_is_a_sentence_and_no_abort() {
     assert!(limited("[60, 40]").status.success());
 }
 
-/// A source that behaves until it is told not to.
+/// A source that works until it is broken by a factor.
 struct Broken {
     sound: Arc<dyn Source>,
-    /// Bits of what the radiance above 700 nm is multiplied by.
+    /// Bits of the factor for the radiance above 700 nm.
     factor: Arc<AtomicU64>,
 }
 
@@ -132,8 +132,8 @@ impl Radiance for Broken {
     }
 }
 
-/// The gray card, lit by a source that is broken by this factor: at once, or only after the pilot run. What becomes of it, and
-/// the light before.
+/// Renders the gray card with a source that is broken by this factor, either from the start or only after the pilot run. Returns the
+/// result, and the light traced before.
 fn broken(factor: f64, at_once: bool) -> (Result<(), RenderError>, Option<Rendering>) {
     let mut scene = load("gray-card.yaml", &["imager.resolution=[96, 64]", "render.samples=4096"]);
     let bits = Arc::new(AtomicU64::new(if at_once { factor } else { 1.0 }.to_bits()));
@@ -157,11 +157,11 @@ fn a_number_that_is_none_is_found_at_once_and_its_stage_named() {
             let (error, rays) = (traced.expect_err("a broken source"), light.map_or(0, |light| light.rays));
             let said = error.to_string();
             assert!(said.starts_with(&format!("source `chart` gave a radiance that is {what}, at 7")), "{said}");
-            // Of 25 million.
+            // The whole render has 25 million rays.
             assert!(rays < 20_000, "{rays} rays");
         }
     }
-    // Where it belongs: in the section of the source.
+    // The fault points to the section of the source.
     let scene = load("gray-card.yaml", &[]);
     let error = broken(f64::NAN, false).0.expect_err("a broken source");
     let fault = error.faults(&scene).expect("a fault of the scene").to_string();
@@ -179,14 +179,14 @@ fn an_overflow_stops_at_once_and_keeps_the_light_before_it() {
     assert!(error.to_string().contains("times as bright as the brightest"), "{error}");
 }
 
-/// Forward and backward: a ray is detected, or lost for a cause.
+/// Forward and backward, every ray is detected, or lost with a recorded cause.
 #[test]
 fn every_ray_is_detected_or_lost() {
     for overrides in [
-        // A card of 20 cm at 2 m: most of the frame sees past it.
+        // A card of 20 cm at 2 m: most of the frame looks past it.
         &["source.width=0.2 m", "render.direction=backward"][..],
         &["source.width=0.2 m", "render.direction=forward", "render.rays=200000"],
-        // The card is larger than what the frame sees.
+        // A card larger than what the frame sees.
         &["source.width=6 m", "render.direction=backward"],
         &["source.width=6 m", "render.direction=forward", "render.rays=200000"],
     ] {
@@ -196,7 +196,7 @@ fn every_ray_is_detected_or_lost() {
         assert_eq!(rendering.detected + lost, rendering.rays, "{overrides:?}");
         assert!(rendering.detected > 0 && lost > 0, "{overrides:?}");
         if overrides == ["source.width=0.2 m", "render.direction=backward"] {
-            // Of 36 x 24 mm the card covers about 4.9 x 3.3: what is beside it is dark, but for some blur.
+            // The card covers about 4.9 x 3.3 of 36 x 24 mm. The rest is dark, apart from some blur.
             let unlit = rendering.losses.of_cause(Loss::Unlit) as f64;
             let passed = rendering.rays as f64 - (lost as f64 - unlit);
             let covered = 1.0 - unlit / passed;
@@ -224,7 +224,8 @@ fn empty_and_infinite_pictures_are_said_so() {
     }
 }
 
-/// A point off the axis whose light lands beside a small frame: the warning says where, and what it says is right.
+/// For a point off the axis whose light misses a small frame, the warning says where the light lands. A frame at that place receives
+/// it.
 #[test]
 fn light_beside_the_frame_is_said_where_it_lands() {
     let small = "imager={kind: xyz, width: 2 mm, height: 2 mm, resolution: [32, 32]}";
@@ -239,8 +240,8 @@ fn light_beside_the_frame_is_said_where_it_lands() {
     assert!(seen.detected > 1000 && seen.warnings.is_empty(), "{shift}: {} {:?}", seen.detected, seen.warnings);
 }
 
-/// A renderer for another seed, which searches nothing, has the bits of one that is made for that seed: both directions, halves by which noise
-/// is judged, meters, lights with their ghosts, and veiling glare.
+/// A renderer reseeded for another seed, without a new search, has the same bits as a renderer made for that seed. Checked for both
+/// directions, for the halves that judge noise, for meters, for lights with ghosts, and for veiling glare.
 #[test]
 fn a_reseeded_renderer_has_the_bits_of_a_new_one() {
     let sun = "source={kind: sun, field: [9 deg, 5 deg], illuminance: 60000 lx}";
@@ -264,11 +265,11 @@ fn a_reseeded_renderer_has_the_bits_of_a_new_one() {
         assert!(bits(&again) == bits(&want), "{scene} {settings:?}");
         assert_eq!((again.rays, &again.estimators), (want.rays, &want.estimators));
         assert_eq!(first.reseeded(3).scene().render.seed, 3);
-        assert!(bits(&rendered(&first)) != bits(&want), "{scene} {settings:?}: the seed changes nothing");
+        assert!(bits(&rendered(&first)) != bits(&want), "{scene} {settings:?}: the seed has no effect");
     }
 }
 
-/// Film under a few rays: empty pixels among others are a bias, not a picture.
+/// Film with few rays causes a warning: empty pixels among others are a bias, not a picture.
 #[test]
 fn film_with_too_few_rays_is_said_so() {
     let sparse = |rays: &str| {
@@ -280,7 +281,8 @@ fn film_with_too_few_rays_is_said_so() {
     assert_eq!(sparse("2e6"), Vec::<String>::new());
 }
 
-/// A lamp in focus lights one pixel with all its rays, and ghosts around it have theirs by `samples`: more `render.rays` fill nothing.
+/// A lamp in focus lights one pixel with all its rays, and its ghosts get their rays by `samples`: more `render.rays` would fill no
+/// pixel, so there is no warning.
 #[test]
 fn a_lamp_in_the_dark_needs_no_more_rays() {
     let of = |order: &str, rays: &str| {
@@ -294,7 +296,7 @@ fn a_lamp_in_the_dark_needs_no_more_rays() {
     }
 }
 
-/// What the integral alone is measured with is what was asked for.
+/// A benchmark of the integral alone uses the requested number of seeds.
 #[test]
 fn seeds_of_a_benchmark_are_those_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,11 +1,12 @@
-//! Exposure in absolute units: the camera equation on the axis, the solid angle of the exit pupil in the corners.
+//! Tests exposure in absolute units: the camera equation on the axis, the solid angle of the exit pupil in the corners.
 
 use spectra_core::frame::ExposureFrame;
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Indices, Lens, Tracer, Travel};
+use spectra_lens::Lens;
 use spectra_plugins as _;
 use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::Scene;
+use spectra_tracer::{Indices, Tracer, Travel};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -13,12 +14,12 @@ use std::path::Path;
 const LUMINANCE: f64 = 300.0;
 const WIDTH: usize = 45;
 const HEIGHT: usize = 30;
-/// Photopic light is much like light of this wavelength, nm.
+/// Wavelength that represents photopic light, nm.
 const PHOTOPIC_NM: f64 = 555.0;
 
 fn scene(lens: &str, f_number: &str, object: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gray-card.yaml");
-    // The card reaches well beyond the field in either case.
+    // The card extends well beyond the field in both cases.
     let (distance, width) = if object == "infinity" { ("10 km", "16 km") } else { (object, "3.4 m") };
     let overrides = [
         format!("lens={{file: {lens}, f-number: {f_number}, focus: {object}, coating: ideal, absorption: false}}"),
@@ -37,8 +38,8 @@ fn render(scene: &Scene) -> ExposureFrame {
         .exposure
 }
 
-/// Illuminance over luminance at a point of the film: the projected solid angle of all directions from which light comes
-/// through the lens, by brute force over a plane in front of the film, sr.
+/// Returns illuminance over luminance at a point of the film, sr: the projected solid angle of all directions from which light
+/// arrives through the lens. It is computed by brute force over a plane in front of the film.
 fn projected_solid_angle_sr(lens: &Lens, x_mm: f64, y_mm: f64) -> f64 {
     const N: usize = 500;
     let tracer = Tracer::new(lens, Indices::At(PHOTOPIC_NM), Isa::detect()).expect("media");
@@ -70,8 +71,8 @@ fn projected_solid_angle_sr(lens: &Lens, x_mm: f64, y_mm: f64) -> f64 {
     sum
 }
 
-/// E = pi L / (4 N^2 (1 + m/P)^2) on the axis within 1 %, N by the real marginal ray at infinity, m the magnification, P the
-/// pupil magnification; L times the projected solid angle of the traced exit pupil in the corners within 2 %.
+/// On the axis E = pi L / (4 N^2 (1 + m/P)^2) within 1 %, with N of the real marginal ray at infinity, m the magnification and P the
+/// pupil magnification. In the corners E is L times the projected solid angle of the traced exit pupil, within 2 %.
 #[test]
 fn a_gray_card_is_exposed_as_optics_says() {
     for lens in ["zeiss-biotar-50-f1.4", "canon-fd-50-f1.8"] {
@@ -93,7 +94,7 @@ fn a_gray_card_is_exposed_as_optics_says() {
                 let n = scene.lens.clone().marginal_ray().expect("a stop").f_number();
                 let want = PI * LUMINANCE / (4.0 * n * n * (1.0 + m / p) * (1.0 + m / p));
                 let axial = axis / want;
-                // The middle of the pixel in the picture's upper left corner.
+                // The center of the pixel in the upper left corner of the picture.
                 let (x, y_mm) = scene.imager.size().point_of(0, 0.5, 0.5);
                 let corner = at(0, 0) / (LUMINANCE * projected_solid_angle_sr(&scene.lens, x, y_mm));
                 println!(

@@ -1,4 +1,4 @@
-//! What film makes of a scene, through the whole camera.
+//! Tests how film records a scene, through the whole camera.
 
 use spectra_core::Isa;
 use spectra_core::frame::{ExposureFrame, FrameSize};
@@ -23,8 +23,8 @@ fn render(scene: &Scene) -> ExposureFrame {
     renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
 }
 
-/// Mean over the middle of a patch of the ColorChecker of `biotar-trix.yaml` and its like: 0.6 m wide, 282 units of which
-/// patches are 46 apart, at 1 m, where the frame of 36 mm sees 685 mm within a percent or two.
+/// Returns the mean over the middle of a patch of the ColorChecker in scenes like `biotar-trix.yaml`. The chart is 0.6 m wide at 1 m,
+/// 282 units with patches 46 apart, and the frame of 36 mm sees 685 mm, known to one or two per cent.
 fn patch(plane: &[f32], size: FrameSize, column: usize, row: usize) -> f64 {
     let (width, height) = (size.width_px as usize, size.height_px as usize);
     let apart = 46.0 / 282.0 * 600.0;
@@ -35,7 +35,7 @@ fn patch(plane: &[f32], size: FrameSize, column: usize, row: usize) -> f64 {
     (0..5).flat_map(around).sum::<f64>() / 25.0
 }
 
-/// `grade: auto` on a chart through the whole camera: the darkest and the lightest 0.5 % lie at the ends of what the paper prints.
+/// `grade: auto` on a chart through the whole camera puts the darkest and the lightest 0.5 % at the ends of the paper's range.
 #[test]
 fn an_automatic_print_of_a_chart_has_black_and_white() {
     for name in ["biotar-trix.yaml", "biotar-ortho.yaml"] {
@@ -50,14 +50,14 @@ fn an_automatic_print_of_a_chart_has_black_and_white() {
         let lightness = |y: f64| spectra_color::lab([y; 3], [1.0; 3])[0];
         let (black, white) = (lightness(mean(&shown[..few])), lightness(mean(&shown[shown.len() - few..])));
         println!("{name}: {black:.2} {white:.2}");
-        // The ends of the paper's range of exposures by ISO 6846: nine tenths of its density of 2.1, under flare of 0.5 %, and 0.04.
+        // The ends of the paper's exposure range by ISO 6846: nine tenths of its density of 2.1, under a flare of 0.5 %, and 0.04.
         let [dark, light] = [0.9 * 2.1, 0.04].map(|d| lightness((libm::pow(10.0, -d) + 0.005) / 1.005));
         assert!(black <= dark && white >= light - 0.5, "{name}: {black} {dark}, {white} {light}");
     }
 }
 
-/// Orthochromatic against panchromatic film through lens, film and development, read back from the densities: in
-/// daylight the ColorChecker's red is at least a stop darker and its blue at least 0.2 lighter; in tungsten light 1.6 and 0.4.
+/// Compares orthochromatic with panchromatic film through lens, film and development, using densities. In daylight the ColorChecker's
+/// red is at least a stop darker and its blue at least 0.2 lighter; in tungsten light, 1.6 and 0.4.
 #[test]
 fn orthochromatic_negatives_have_dark_reds_and_light_blues() {
     let stops = |stock: &str, illuminant: &str| -> [f64; 2] {
@@ -75,7 +75,7 @@ fn orthochromatic_negatives_have_dark_reds_and_light_blues() {
         let film = Stock::load(stock, &FileResources::beside(root())).expect("bundled");
         let emulsion = Emulsion::new(&film, film.developments().next().expect("has one")).expect("sound");
         let mut plane = frame.channel(&film.layers[0].name).expect("its channel").values.clone();
-        // As the meter of the scene has it, and no more: densities on the straight part.
+        // The scene's metered exposure puts the densities on the straight part of the curve.
         let factor = scene.films.first().expect("a film").film.metered_time_s(&frame) / scene.exposure_time_s();
         emulsion.develop(0, &mut plane, factor);
         let exposure = |column, row| {
@@ -95,8 +95,8 @@ fn orthochromatic_negatives_have_dark_reds_and_light_blues() {
     }
 }
 
-/// A photograph of dark leaves keeps its hue on film within 8 degrees: by default pictures are smooth reflectances. As sums of
-/// the screen's primaries they turn brown: by 21 degrees on Ektachrome.
+/// Dark leaves in a photograph keep their hue on film within 8 degrees, because the default model makes smooth reflectances. As sums
+/// of the screen's primaries they turn brown, by 21 degrees on Ektachrome.
 #[test]
 fn leaves_of_a_photograph_stay_green() {
     let leaf = [72_u8, 80, 38];
@@ -132,8 +132,8 @@ fn leaves_of_a_photograph_stay_green() {
     assert!(brown < -15.0, "{brown:+.1}");
 }
 
-/// A metered gray card is shown as 18 % on every film that makes a picture: its light is the balance of the film, so it is neutral
-/// too, behind a lens that colors nothing; and what the scene's own exposure time is does not matter.
+/// A metered gray card is shown as 18 % on every film that makes a picture, whatever the exposure time in the scene. Its light is
+/// what the film is balanced for, so behind a colorless lens it is neutral too.
 #[test]
 fn a_metered_gray_card_is_a_mid_gray() {
     for (film, mid, most) in [
@@ -155,7 +155,7 @@ fn a_metered_gray_card_is_a_mid_gray() {
         );
         let frame = render(&scene);
         let picture = scene.films.first().expect("a film").film.develop(&frame).expect("complete");
-        // The middle of the frame, which the spot meters.
+        // The middle of the frame, which the spot meter sees.
         let middle: Vec<[f32; 3]> =
             [9 * 30 + 14, 9 * 30 + 15, 10 * 30 + 14, 10 * 30 + 15].map(|i| picture.rgb[i]).into();
         for c in 0..3 {
@@ -165,8 +165,8 @@ fn a_metered_gray_card_is_a_mid_gray() {
     }
 }
 
-/// A film that is printed in another way is not developed again, one that develops otherwise is, and either way the picture is that of
-/// a film developed from nothing.
+/// A film that is only printed in another way is not developed again, and a film that is developed differently is. In both cases the
+/// picture equals that of a film developed from scratch.
 #[test]
 fn negatives_are_kept_while_they_are_printed_otherwise() {
     const SMALL: [&str; 2] = ["imager.resolution=[60, 40]", "render.samples=4"];
@@ -205,7 +205,7 @@ fn negatives_are_kept_while_they_are_printed_otherwise() {
     }
 }
 
-/// What a sheet does not say of long exposures is said, once the meter's time is known; a film with a law of its own is silent.
+/// A warning reports that the data sheet does not cover a long exposure; a film with its own reciprocity law causes none.
 #[test]
 fn long_exposures_beyond_the_sheet_are_doubted() {
     for (stock, doubted) in [("kodak-portra-400", true), ("ilford-hp5-plus", false)] {
@@ -216,7 +216,8 @@ fn long_exposures_beyond_the_sheet_are_doubted() {
     }
 }
 
-/// The cast of tungsten film in daylight is told with the filter that mends it, on top of one that is there; a colored filter is meant.
+/// The warning about tungsten film in daylight names the filter that corrects the cast, in addition to one that is already there. A
+/// strongly colored filter is taken as intended.
 #[test]
 fn casts_are_mended_by_the_filter_that_is_named() {
     let said = |filters: &str| {
@@ -232,7 +233,7 @@ fn casts_are_mended_by_the_filter_that_is_named() {
         .expect("a filter")
         .parse()
         .expect("mired");
-    // The light of D55 is 182 mired, that of 3200 K 312.
+    // The light of D55 is 182 mired, that of 3200 K is 312.
     assert!((mired - 130.0).abs() < 20.0, "{alone}");
     let added = said("[{mired: 40}]").expect("a cast still");
     assert!(added.contains("add `{mired: ") && !added.contains(&format!("mired: {mired:.0}}}")), "{added}");

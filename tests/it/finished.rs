@@ -1,4 +1,4 @@
-//! The finished picture in files for compositing and grading: OpenEXR, PNG and TIFF that say their colors.
+//! Tests files of the finished picture for compositing and grading: OpenEXR, PNG and TIFF that state their colors.
 
 use crate::common::{good, run, shown, text};
 use exr::prelude::{AnyChannels, FlatSamples, Image, Layer, ReadChannels, ReadLayers};
@@ -11,9 +11,9 @@ use std::io::Cursor;
 use std::path::Path;
 use std::process::Command;
 
-/// Of the ColorChecker (ISO 17321-1) under D55, ACEScg where the perfect white is 1, white to white by CAT02: colour-science 0.4.7,
-/// `XYZ_to_RGB(sd_to_XYZ(SDS_COLOURCHECKERS["ISO 17321-1"][...], illuminant=SDS_ILLUMINANTS["D55"]), "ACEScg", illuminant=<xy of D55>,
-/// chromatic_adaptation_transform="CAT02")`.
+/// ACEScg values of the ColorChecker (ISO 17321-1) under D55, with the perfect white at 1 and white adapted by CAT02. From
+/// colour-science 0.4.7, `XYZ_to_RGB(sd_to_XYZ(SDS_COLOURCHECKERS["ISO 17321-1"][...], illuminant=SDS_ILLUMINANTS["D55"]), "ACEScg",
+/// illuminant=<xy of D55>, chromatic_adaptation_transform="CAT02")`.
 const ACES_CG: [(&str, [f64; 3]); 24] = [
     ("dark-skin", [0.13920, 0.08510, 0.05599]),
     ("light-skin", [0.46563, 0.32490, 0.24095]),
@@ -41,7 +41,7 @@ const ACES_CG: [(&str, [f64; 3]); 24] = [
     ("black", [0.03310, 0.03360, 0.03501]),
 ];
 
-/// An EXR, in memory.
+/// Reads an EXR file from memory.
 fn read(bytes: &[u8]) -> Image<Layer<AnyChannels<FlatSamples>>> {
     let read = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels();
     read.first_valid_layer().all_attributes().from_buffered(Cursor::new(bytes)).expect("an EXR")
@@ -61,7 +61,7 @@ fn said(image: &Image<Layer<AnyChannels<FlatSamples>>>, name: &str) -> String {
     }
 }
 
-/// From light to the file: what the imager recorded of the patches under D55 comes out as colour-science has it.
+/// The patches under D55, as an imager records them, are written with the values of colour-science.
 #[test]
 fn a_color_chart_in_aces_cg() {
     let light = find_emission("D55").expect("bundled");
@@ -72,7 +72,7 @@ fn a_color_chart_in_aces_cg() {
         xyz_of_reflectance(&patch, &light, observer).expect("light").map(|v| v / white[1])
     });
     let size = FrameSize { width_px: 24, height_px: 1, width_mm: 24.0, height_mm: 1.0 };
-    // 40 lx of white.
+    // White has 40 lx.
     let channel = |(k, name): (usize, &str)| ExposureChannel {
         name: name.into(),
         unit: "lx".into(),
@@ -106,7 +106,7 @@ fn a_color_chart_in_aces_cg() {
     }
 }
 
-/// Every space holds the same light: taken back to XYZ by the primaries of the file's own header.
+/// Every color space holds the same light: converted to XYZ with the primaries in the file's own header.
 #[test]
 fn every_space_holds_the_same_light() {
     let rgb = vec![[0.9_f32, 0.2, 0.05], [0.0, 1.0, 0.0], [-0.1, 0.4, 3.0], [1.0, 1.0, 1.0]];
@@ -118,7 +118,7 @@ fn every_space_holds_the_same_light() {
         assert_eq!(image.attributes.pixel_aspect, 1.9);
         let own = image.attributes.chromaticities.expect("chromaticities");
         let xy = [own.red, own.green, own.blue].map(|v| [f64::from(v.0), f64::from(v.1)]);
-        // X, Y and Z have no matrix of their own.
+        // X, Y and Z need no matrix.
         let space = (space != LinearSpace::Xyz)
             .then(|| RgbSpace::new("own", xy, [own.white.0, own.white.1].map(f64::from), Transfer::Linear));
         let planes = ["R", "G", "B"].map(|name| plane(&image, name));
@@ -131,7 +131,7 @@ fn every_space_holds_the_same_light() {
     }
 }
 
-/// A scene in a folder of its own, rendered.
+/// Renders a scene in the given folder.
 fn rendered(folder: &Path, scene: &str) {
     std::fs::write(folder.join("s.yaml"), scene).expect("a folder");
     good(&["run", shown(&folder.join("s.yaml")), "-o", shown(folder)]);
@@ -145,7 +145,7 @@ imager: {kind: film, format: 135, resolution: [48, 32]}
 render: {samples: 4, seed: 1}
 ";
 
-/// The chunks of a PNG by their names, up to the pixels.
+/// Returns the chunks of a PNG with their names, up to the pixels.
 fn chunks(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     let mut at = 8;
@@ -188,7 +188,7 @@ fn a_print_in_every_file() {
     assert_eq!(names, wanted);
     assert_eq!(said(&image, "spectra:image state"), "display-referred");
     assert_eq!(said(&image, "unit exposure.red"), "lx s");
-    // A metered gray gets 10 / 250 lx s; the densities of a negative rise with it from a base of its own.
+    // A metered gray gets 10 / 250 lx s; the densities of a negative rise from a base above zero.
     let exposure = plane(&image, "exposure.green");
     let mean = exposure.iter().map(|v| f64::from(*v)).sum::<f64>() / exposure.len() as f64;
     assert!((mean / 0.04 - 1.0).abs() < 0.1, "{mean}");
@@ -198,15 +198,15 @@ fn a_print_in_every_file() {
     };
     let (dark, light) = (at(&|a, b| a < b), at(&|a, b| a > b));
     assert!(density[dark] > 0.4 && density[light] > density[dark] + 0.4, "{} {}", density[dark], density[light]);
-    // A print is the denser the thinner its negative; a metered gray has Kodak's aim densities for 2383 in a dark room, 1.09, 1.06 and 1.03: within
-    // 0.05, and the chart's patch of 0.18 is nearly that gray.
+    // A print is denser where its negative is thinner. A metered gray has Kodak's aim densities for 2383 in a dark room, 1.09, 1.06
+    // and 1.03, within 0.05, and the chart's patch of 0.18 is close to that gray.
     let printed = plane(&image, "print.green");
     assert!(printed[dark] > printed[light] + 1.0, "{} {}", printed[dark], printed[light]);
     let gray = at(&|a, b| (a - 0.04).abs() < (b - 0.04).abs());
     let printed = ["red", "green", "blue"].map(|layer| plane(&image, &format!("print.{layer}"))[gray]);
     println!("a metered gray prints at {printed:?}");
     assert!((printed[1] - 1.06).abs() < 0.15, "{printed:?}");
-    // The same picture under another encoding.
+    // The same picture in another encoding.
     let png = file("s.png");
     let found = chunks(&png);
     let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
@@ -224,13 +224,13 @@ fn a_print_in_every_file() {
             assert!((0..3).all(|k| (light[k] - rgb[k]).abs() < 2e-4), "{light:?} {rgb:?}");
         }
     }
-    // The chart's border is blacker than the print's black, and left out.
+    // The border of the chart is blacker than the black of the print and is left out.
     assert!(compared > 200, "{compared}");
-    // ACEScct holds the white of the print, 1, at 0.5548.
+    // ACEScct encodes the white of the print, 1, as 0.5548.
     let codes = image::load_from_memory(&file("s.tiff")).expect("a TIFF").into_rgb16();
     let most = codes.pixels().flat_map(|p| p.0).max().expect("pixels");
     assert!((0.5..0.57).contains(&(f64::from(most) / 65_535.0)), "{most}");
-    // One file by its name.
+    // A single file with a given name.
     let one = folder.path().join("one.exr");
     good(&[
         "run",
@@ -244,7 +244,7 @@ fn a_print_in_every_file() {
     opens_in_openimageio(&one);
 }
 
-/// Where its tools are installed.
+/// Checks the file with OpenImageIO if its tools are installed.
 fn opens_in_openimageio(file: &Path) {
     let Ok(found) = Command::new("iinfo").arg("-v").arg(file).output() else {
         eprintln!("skipped: `iinfo` of OpenImageIO is not installed");
@@ -255,7 +255,7 @@ fn opens_in_openimageio(file: &Path) {
     assert!(told.contains("chromaticities: 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329"), "{told}");
 }
 
-/// A PNG in sRGB says so for new and old programs; what is no color says nothing.
+/// A PNG in sRGB states its color space for new and old programs; a picture that is not color states none.
 #[test]
 fn pictures_say_their_colors_and_densities_none() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -272,7 +272,8 @@ fn pictures_say_their_colors_and_densities_none() {
         assert_eq!(said(&image, "spectra:image state"), if is_data { "data" } else { "display-referred" });
         assert_eq!(image.attributes.chromaticities.is_none(), is_data);
         if is_data {
-            // ADX16: 1520 at unexposed film, 8000 a unit of density; the scanner's lens blurs what the layer has sharp.
+            // ADX16 has 1520 at unexposed film and 8000 per unit of density. The lens of the scanner blurs the density of the layer,
+            // which is sharp.
             let (value, density) = (plane(&image, "R"), plane(&image, "density.red"));
             let mean = |values: &[f32]| values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len() as f64;
             let clear = mean(&density) - (mean(&value) * 65_535.0 - 1520.0) / 8000.0;
@@ -285,7 +286,7 @@ fn pictures_say_their_colors_and_densities_none() {
     }
 }
 
-/// Another program's color management reads the profile, and takes a color of it where the tables say.
+/// The color management of another program reads the profile and converts a color as the tables say.
 #[test]
 fn littlecms_reads_the_profiles() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -328,8 +329,8 @@ print(list(ImageCms.applyTransform(image, transform).getdata()))
     }
 }
 
-/// What a white balance is for: a gray card under tungsten is gray, by the lamp's name, its temperature, and the frame itself; the
-/// channels stay.
+/// White balance makes a gray card under tungsten light gray, given the lamp's name, its color temperature or the frame itself; the
+/// exposure channels do not change.
 #[test]
 fn white_balance_makes_gray_gray() {
     let light = find_emission("A").expect("bundled");
@@ -357,7 +358,7 @@ fn white_balance_makes_gray_gray() {
     }
 }
 
-/// Slips, each with what to write instead.
+/// Each mistake causes a message that says what to write.
 #[test]
 fn slips_are_said() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Focus as a camera has it: through the plates before the frame, and by default where the picture is sharpest.
+//! Tests focus as on a camera: through the plates in front of the frame, and by default where the picture is sharpest.
 
 use glam::DVec3;
 use spectra_analysis::Light;
@@ -6,7 +6,7 @@ use spectra_analysis::focus::conjugate;
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::spectral::SystemResponse;
-use spectra_lens::{Beam, ObjectPoint};
+use spectra_optics::{Beam, ObjectPoint};
 use spectra_plugins as _;
 use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::{FocusBy, Scene};
@@ -27,7 +27,7 @@ fn render(overrides: &[&str]) -> ExposureFrame {
         .exposure
 }
 
-/// The light of each column, and where it lies, mm.
+/// Returns the position, mm, and the light of each column.
 fn columns(frame: &ExposureFrame) -> Vec<(f64, f64)> {
     let (width, size) = (frame.size.width_px as usize, frame.size.width_mm);
     let y = &frame.channel("Y").expect("XYZ").values;
@@ -35,7 +35,7 @@ fn columns(frame: &ExposureFrame) -> Vec<(f64, f64)> {
     (0..width).map(|c| (((c as f64 + 0.5) / width as f64 - 0.5) * size, sum(c))).collect()
 }
 
-/// Width between the places that 1 % of the light lies beyond on each side, mm.
+/// Returns the width, mm, that excludes 1 % of the light on each side.
 fn width_of_98_percent(frame: &ExposureFrame) -> f64 {
     let columns = columns(frame);
     let total: f64 = columns.iter().map(|c| c.1).sum();
@@ -53,7 +53,7 @@ fn width_of_98_percent(frame: &ExposureFrame) -> f64 {
     within(0.99) - within(0.01)
 }
 
-/// Root mean square distance of the light from its middle along x, mm.
+/// Returns the RMS distance of the light from its center along x, mm.
 fn rms(frame: &ExposureFrame) -> f64 {
     let columns = columns(frame);
     let mean = |of: &dyn Fn(f64) -> f64| {
@@ -69,8 +69,8 @@ const COVER: &str = "imager.cover=[{glass: SCHOTT/N-BK7, thickness: 0.5 mm, gap:
 const LOW_PASS: &str = "imager.low-pass=[{thickness: 0.85 mm}, {thickness: 0.85 mm, azimuth: 90 deg}]";
 const FORWARD: [&str; 3] = ["render.direction=forward", "render.rays=200000", "lens.f-number=f/5.6"];
 
-/// A point through cover glass and low-pass plates is as sharp as without them, whatever focuses: 98 % of its light lie
-/// within 8 um more than without (5 um are the low-pass itself), where plates that focus does not see cost 110 um.
+/// A point through cover glass and low-pass plates is as sharp as without them, for every way to focus. The width with 98 % of its
+/// light grows by less than 8 um, of which the low-pass itself makes 5 um; plates that focusing ignores would cost 110 um.
 #[test]
 fn a_point_is_sharp_through_plates() {
     for focus in [
@@ -90,7 +90,7 @@ fn a_point_is_sharp_through_plates() {
     }
 }
 
-/// The same backward: a patch too small to see, its image 4 um wide.
+/// Backward tracing agrees: a patch too small to be resolved has an image 4 um wide.
 #[test]
 fn plates_are_in_focus_in_both_directions() {
     let patch = "source={kind: chart, chart: white, distance: 1 m, width: 0.08 mm, illuminant: 'line:d', color: {kind: smooth}}";
@@ -103,8 +103,8 @@ fn plates_are_in_focus_in_both_directions() {
     assert!(forward < 0.018 && (forward - backward).abs() < 0.001, "{forward} {backward}");
 }
 
-/// What a lens focused by the smallest spot at 1 m is sharp for, through 1.5 mm of glass: 1 m within 1 %, by the light
-/// that an imager gets of points around there, and by rays traced back from the middle of the frame.
+/// A lens focused at 1 m for the smallest spot, through 1.5 mm of glass, is sharpest for 1 m within 1 %. Checked with the light from
+/// points around that distance, and with rays traced back from the middle of the frame.
 #[test]
 fn the_sharpest_distance_is_the_one_asked_for() {
     let cover = "imager.cover=[{glass: SCHOTT/N-BK7, thickness: 1.5 mm}]";
@@ -114,7 +114,7 @@ fn the_sharpest_distance_is_the_one_asked_for() {
         let source = format!("source={{kind: point, distance: {m} m, spectrum: 'line:d'}}");
         rms(&render(&[&[source.as_str(), IMAGER, focus, cover], &FORWARD[..]].concat()))
     });
-    // The square of the spot is a parabola over one over the distance.
+    // The squared spot size is a parabola in reciprocal distance.
     let (mut squares, mut moments) = (glam::DMat3::ZERO, DVec3::ZERO);
     for (m, spot) in distances.iter().zip(spots) {
         let v = 1.0 / m - 1.0;
@@ -131,7 +131,7 @@ fn the_sharpest_distance_is_the_one_asked_for() {
     assert!((found.distance_mm - 1000.0).abs() < 10.0, "{} mm", found.distance_mm);
 }
 
-/// The frame stands as much farther back as the plates set the image back, focused or not: t (1 - 1/n) of N-BK7 at d.
+/// The frame moves back as much as the plates move the image, focused or not: t (1 - 1/n) of N-BK7 at d.
 #[test]
 fn the_frame_stands_where_the_plates_put_the_image() {
     let cover = "imager.cover=[{glass: SCHOTT/N-BK7, thickness: 2 mm}]";
@@ -141,14 +141,14 @@ fn the_frame_stands_where_the_plates_put_the_image() {
             load("gray-card.yaml", &[&["lens.f-number=f/8", focus.as_str()], set].concat()).expect("a scene")
         });
         let back = through.lens.image_z_mm() - plain.lens.image_z_mm();
-        // By contrast the aberration of the plate counts too.
+        // Focusing by contrast also takes the aberration of the plate into account.
         let tolerance = if focus.contains("infinity") { 0.01 } else { 1e-4 };
         assert!((back - 2.0 * (1.0 - 1.0 / 1.5168)).abs() < tolerance, "{focus}: {back}");
     }
 }
 
-/// Contrast at the default focus against contrast on planes around it, in the whole light by many rays over the whole
-/// pupil: nowhere is it higher by more than a plane 1 um away would have it.
+/// The contrast at the default focus is compared with that on planes around it, for the whole light with many rays over the whole
+/// pupil. No plane has more contrast than an error of 1 um in focus would explain.
 #[test]
 fn the_default_focus_is_where_contrast_is_highest() {
     let nikkor = "lens.file=nikkor-100-f1.4";
@@ -186,7 +186,7 @@ fn the_default_focus_is_where_contrast_is_highest() {
             .collect();
         let object_mm = scene.focus.distance_mm.expect("focused");
         let point = ObjectPoint::on_plane(&scene.lens, object_mm, 0.0);
-        let beam = Beam::of(&scene.lens, point, &light, 64).expect("media").expect("light");
+        let beam = Beam::trace(&scene.lens, point, &light, 64).expect("media").expect("light");
         let best = beam.best_contrast_z_mm(per_mm).expect("a plane");
         let (here, there) = (beam.contrast(0.0, per_mm), beam.contrast(best, per_mm));
         println!("{name} {set:?}: {} contrast {here:.4}, at {:+.2} um {there:.4}", scene.focus, best * 1e3);
@@ -194,7 +194,7 @@ fn the_default_focus_is_where_contrast_is_highest() {
     }
 }
 
-/// On another format the frequency goes with the diagonal; a frame cut out of a picture is focused no finer than super 8.
+/// On other formats the frequency scales with the diagonal; for a frame cut out of a picture, it is at most that of super 8.
 #[test]
 fn frequency_goes_with_the_format() {
     for (format, want) in [
@@ -210,7 +210,7 @@ fn frequency_goes_with_the_format() {
     }
 }
 
-/// Light and response count: behind a red filter the lens is focused for red, and a meter beside the film changes nothing.
+/// Light and response matter: behind a red filter the lens is focused for red, and a meter beside the film changes nothing.
 #[test]
 fn the_light_of_the_scene_is_focused() {
     let z = |name: &str, set: &[&str]| load(name, set).expect("a scene").lens.image_z_mm();
@@ -221,19 +221,20 @@ fn the_light_of_the_scene_is_focused() {
     assert_eq!(open.to_bits(), timed.to_bits());
 }
 
-/// Where contrast cannot be had the lens is focused by first order, and that is said; asked for by name it is an error.
+/// If contrast cannot be computed, the lens is focused in first order, with a warning; if contrast is requested by name, it is an
+/// error.
 #[test]
 fn what_cannot_be_focused_by_contrast_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("blocked.yaml");
-    // What passes the ring of the stop misses the glass.
+    // Light that passes the ring of the stop misses the glass.
     let text = "name: blocked\nsurfaces:\n  \
         - {kind: stop, thickness: 1, semi-diameter: 5, aperture: {shape: ring, inner: 4.9}}\n  \
         - {kind: sphere, radius: 50, thickness: 3, glass: SCHOTT/N-BK7, semi-diameter: 3}\n  \
         - {kind: sphere, radius: -50, thickness: 46, semi-diameter: 3}\n";
     std::fs::write(&file, text).expect("written");
     let lens = format!("lens={{file: {}, focus: 2 m}}", file.display());
-    // Nothing is seen through it, so nothing fills the frame.
+    // No light is seen through it, so no width fills the frame.
     let width = "source.width=1.5 m";
     match load("biotar-color.yaml", &[&lens, width]) {
         Ok(scene) => {
@@ -246,14 +247,14 @@ fn what_cannot_be_focused_by_contrast_is_said() {
     let asked = format!("lens={{file: {}, focus: {{distance: 2 m, by: contrast}}}}", file.display());
     let faults = load("biotar-color.yaml", &[&asked, width]).err().expect("no light");
     assert!(faults.contains("no light"), "{faults}");
-    // An anamorphic lens near by that is moved as a whole: no plane is sharp in both sections.
+    // A close anamorphic lens that moves as a whole: no plane is sharp in both sections.
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/lenses/schneider-anamorphic-60.yaml"))
         .expect("bundled");
     std::fs::write(&file, text.split("focus:\n").next().expect("a lens")).expect("a folder");
     let whole = format!("lens={{file: {}, focus: 1.5 m}}", file.display());
     let near = load("biotar-color.yaml", &[&whole]).expect("a scene");
     assert!(near.warnings.iter().any(|w| w.0.message.contains("mm apart")), "{:?}", near.warnings);
-    // Its front follows the section across: both are sharp.
+    // With its front group moving separately, both sections are sharp.
     let near = load("biotar-color.yaml", &["lens={file: schneider-anamorphic-60, focus: 1.5 m}"]).expect("a scene");
     assert!(!near.warnings.iter().any(|w| w.0.message.contains("mm apart")), "{:?}", near.warnings);
 }

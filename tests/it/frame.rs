@@ -1,4 +1,4 @@
-//! A source that is to fill the frame fills it, and no more than that; what is beyond its border is as it says.
+//! Tests that a source with `width: fill` fills the frame and is not much larger, and what lies beyond its border.
 
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
@@ -22,8 +22,8 @@ fn render(scene: &Scene) -> ExposureFrame {
         .exposure
 }
 
-/// A card that fills the frame makes the same picture as one that is far larger, bit for bit: nothing of its border is seen,
-/// whatever the aperture, out of focus, on a tilted frame, by a wide angle. One tenth narrower, and a warning names it.
+/// A card that fills the frame makes the same picture as a far larger one, bit for bit. No border is seen at any aperture, out of
+/// focus, on a tilted frame or through a wide-angle lens. A card one tenth narrower causes a warning.
 #[test]
 fn what_fills_the_frame_shows_no_border_and_is_not_much_larger() {
     for set in [
@@ -47,7 +47,7 @@ fn what_fills_the_frame_shows_no_border_and_is_not_much_larger() {
     }
 }
 
-/// A chart of one color goes on beyond its border with `clamp` and `mirror`; with `black` it ends.
+/// A chart of one color continues beyond its border with `clamp` and `mirror`, and ends with `black`.
 #[test]
 fn beyond_the_border_is_what_the_edge_says() {
     let large = render(&load(&["source.width=500 m"]));
@@ -58,7 +58,7 @@ fn beyond_the_border_is_what_the_edge_says() {
     }
 }
 
-/// `null` takes a key away, on the command line as in a file.
+/// `null` removes a section on the command line as in a file.
 #[test]
 fn null_takes_a_section_away() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/biotar-ortho.yaml");
@@ -68,7 +68,7 @@ fn null_takes_a_section_away() {
     assert_eq!((scene.imager.size().width_px, scene.imager.size().height_px), (36, 24));
 }
 
-/// `resolution` of one number makes square pixels, also of a part of the frame.
+/// A `resolution` of one number makes square pixels, for a part of the frame too.
 #[test]
 fn a_crop_has_the_shape_that_is_asked() {
     let scene = load(&["imager.crop=16:9", "imager.resolution=1920"]);

@@ -1,4 +1,4 @@
-//! What stands in front of the lens: filters and the matte box.
+//! Tests filters and the matte box in front of the lens.
 
 use crate::common::statistics::{drafted, rendered};
 use spectra_core::frame::ExposureFrame;
@@ -25,7 +25,7 @@ fn mean(frame: &ExposureFrame, channel: &str) -> f64 {
 
 const SMALL: &str = "imager={kind: xyz, width: 6, height: 4, resolution: [24, 16]}";
 
-/// A gray filter halves whatever comes, in both directions, and leaves the choice of wavelengths as it was.
+/// A gray filter halves all light in both directions, and does not change the choice of wavelengths.
 #[test]
 fn a_gray_filter_halves_everything() {
     for direction in ["render.direction=backward", "render.direction=forward"] {
@@ -40,7 +40,7 @@ fn a_gray_filter_halves_everything() {
     }
 }
 
-/// Wratten 25 (red) and 58 (green), by the integral of daylight, filter and observer; two gray ones beside it.
+/// Wratten 25 (red) and 58 (green), each used twice and with a gray filter, follow the integral of daylight, filter and observer.
 #[test]
 fn a_color_filter_does_what_its_table_says() {
     let light = find_emission("D65").expect("bundled");
@@ -74,7 +74,7 @@ fn thin_lens(folder: &Path) -> String {
     format!("lens={{file: {}, focus: 2 m}}", file.display())
 }
 
-/// A slit 100 mm in front of an ideal lens leaves of the pupil, seen from 2 m, the strip of 4 mm * 2000 / 1900.
+/// A slit 100 mm in front of an ideal lens cuts the pupil, seen from 2 m, to a strip of 4 mm * 2000 / 1900.
 #[test]
 fn a_matte_box_cuts_the_pupil() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -124,7 +124,7 @@ fn faults_in_front_of_the_lens() {
         ("lens.matte-box={distance: 0, width: 1, height: 1}", "expected a positive length"),
         ("lens.matte-box={distance: 3 m, width: 100, height: 100}", "between the matte box and the lens"),
     ] {
-        let faults = load(&[set]).err().unwrap_or_else(|| panic!("{set} is taken"));
+        let faults = load(&[set]).err().unwrap_or_else(|| panic!("{set} is accepted"));
         assert!(faults.contains(word), "{set}: {faults}");
     }
 }

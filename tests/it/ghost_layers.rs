@@ -1,5 +1,5 @@
-//! Ghosts by paths: the strongest as layers of their own, the rest as one; together they are all ghosts, whatever is asked for and however
-//! the work is done.
+//! Tests ghosts by path: the strongest paths have their own layers and the rest shares one. Together they are all ghosts, whichever
+//! layers are requested and however the work is done.
 
 use crate::common::statistics::{Estimate, drafted};
 use crate::common::{run, shown, text};
@@ -9,14 +9,14 @@ use spectra_plugins as _;
 use spectra_render::{Control, Light, Renderer, Rendering, Threads};
 use spectra_scene::{GhostPaths, LightKind, LightLayer, Scene};
 
-/// The sun beside the axis of a bare lens, with all that glass, paint and blades make of it.
+/// The sun beside the axis of an uncoated lens, with ghosts, veiling glare and the star of the blades.
 const SUN: &str = "spectra: 1\n\
     source: {kind: sun, field: [9 deg, 5 deg], illuminance: 60000 lx}\n\
     lens: {file: cooke-triplet-50-f5, f-number: f/8, focus: infinity, coating: bare, aperture: {shape: iris, blades: 6}}\n\
     imager: {kind: xyz, width: 36, height: 24, resolution: [72, 48]}\n\
     render: {direction: forward, samples: 2, rays: 20000, reflections: {order: 2}, glare: true, diffraction: true}\n";
 
-/// A point far away on the axis, of one line, and a frame that all its ghosts land on.
+/// A far point on the axis in one spectral line, with a frame on which all its ghosts land.
 const AXIS: &str = "spectra: 1\n\
     source: {kind: point, distance: 1 km, spectrum: he-ne, intensity: 1e6}\n\
     lens: {file: zeiss-biotar-50-f1.4, f-number: f/4, focus: infinity, coating: bare, absorption: false}\n\
@@ -41,7 +41,7 @@ fn rendered(output: &str, set: &[&str]) -> Rendering {
 }
 
 const BY_PATH: &str = "[{kind: exr, layers: [direct, star], ghost-paths: 5}]";
-/// Walks for the veil take most of the time.
+/// Random walks for the veil take most of the time, so most tests do without them.
 const CLEAR: &str = "render.glare=false";
 
 fn all_bits(rendering: &Rendering) -> Vec<u32> {
@@ -50,7 +50,7 @@ fn all_bits(rendering: &Rendering) -> Vec<u32> {
     channels.flat_map(|c| c.values.iter().map(|v| v.to_bits())).collect()
 }
 
-/// Of each pixel of each channel, layers are the whole up to the rounding of each to 32 bits.
+/// Checks that in each pixel of each channel the layers add up to the whole, up to the rounding of each to 32 bits.
 fn add_up(layers: &[&LightLayer], whole: &[spectra_core::frame::ExposureChannel]) {
     for (at, channel) in whole.iter().enumerate() {
         for (pixel, whole) in channel.values.iter().enumerate() {
@@ -73,7 +73,7 @@ fn paths_and_the_rest_are_the_ghosts_and_with_the_other_kinds_the_picture() {
         add_up(&paths, &kinds[1].channels);
         let but_ghosts = of(|layer| layer.kind != LightKind::Ghosts);
         add_up(&[but_ghosts, paths.clone()].concat(), &rendering.exposure.channels);
-        // Named by the strongest of the books, in that order; each of them has light.
+        // Layers are named after the strongest paths of the ledger, in its order, and each has light.
         let ledger = rendering.ledger.as_ref().expect("ghosts are traced");
         for (layer, path) in paths[..5].iter().zip(&ledger.paths) {
             assert_eq!(layer.paths, GhostPaths::One(path.surfaces.clone()));
@@ -96,10 +96,10 @@ fn asking_for_paths_changes_no_bit() {
     assert!(plain.layers.is_empty() && few.layers.len() == 2);
     assert_eq!(bits(&plain), bits(&many));
     assert_eq!(bits(&plain), bits(&few));
-    // A path has the same light, however many others have a layer.
+    // A path has the same light, whatever the number of layers.
     let strongest = many.layers.iter().find(|layer| layer.kind == LightKind::Ghosts).expect("a path");
     assert_eq!(few.layers[0], *strongest);
-    // Without ghosts there is the layer of the rest, and nothing in it.
+    // Without ghosts the layer of the rest exists, and it is empty.
     let none = rendered(BY_PATH, &[CLEAR, "render.reflections.order=0"]);
     let ghosts: Vec<&LightLayer> = none.layers.iter().filter(|layer| layer.kind == LightKind::Ghosts).collect();
     assert!(ghosts.len() == 1 && ghosts[0].paths == GhostPaths::Others);
@@ -112,7 +112,7 @@ fn threads_batches_and_saved_light_change_no_bit_of_a_path() {
     let want = all_bits(&whole.run(&Threads(1), &Control::new()).expect("rendered"));
     assert_eq!(all_bits(&whole.run(&Threads(3), &Control::new()).expect("rendered")), want);
     assert_eq!(all_bits(&rendered(BY_PATH, &[CLEAR, "render.batch=40"])), want);
-    // One sample, saved, loaded, and the other one.
+    // Traces one sample, saves and loads the light, then traces the other sample.
     let (threads, control) = (Threads(2), Control::new());
     let mut light = whole.begin().expect("memory");
     whole.advance(&mut light, 1, &threads, &control).expect("rendered");
@@ -121,23 +121,23 @@ fn threads_batches_and_saved_light_change_no_bit_of_a_path() {
     let mut light = Light::load(&whole, &mut &file[..]).expect("of this scene");
     whole.advance(&mut light, 2, &threads, &control).expect("rendered");
     assert_eq!(all_bits(&whole.look(whole.scene(), &light).expect("memory")), want);
-    // With other paths by themselves it is refused, and what is wrong is said.
+    // Light saved with other ghost paths is refused, and the message says why.
     for (output, has) in [("[exr]", 0), ("[{kind: exr, ghost-paths: 3}]", 3)] {
         let error = Light::load(&renderer(output, &[CLEAR]), &mut &file[..]).err().expect("other sums").to_string();
-        let words = format!("sums of 5 paths of ghosts by themselves, and this scene has {has}: set `ghost-paths`");
+        let words = format!("separate sums for 5 ghost paths, but this scene has {has}; set `ghost-paths`");
         assert!(error.contains(&words), "{error}");
     }
 }
 
-/// On the axis, paths have the energies of `lens ghosts`, within 4 standard errors over eight seeds and the 1 % of its 4096 rays; the
-/// strongest is the same.
+/// On the axis, paths have the energies that `lens ghosts` reports, within 4 standard errors over eight seeds plus the 1 % of its
+/// 4096 rays. The strongest path is the same.
 #[test]
 fn the_strongest_path_is_that_of_lens_ghosts() {
     let output = "[{kind: exr, layers: [direct], ghost-paths: 6}]";
     let scene = scene_of(AXIS, output, &[]);
     let search = GhostSearch { wavelength_nm: HE_NE_NM, order: 2, share: 1e-8 };
-    let known = ghosts(&scene.lens, search, Isa::detect()).expect("indices").paths;
-    // All of it lands on the frame.
+    let known = ghosts(&scene.lens, search).expect("indices").paths;
+    // All light lands on the frame.
     assert!(known.iter().all(|ghost| ghost.size_mm < 600.0), "{known:?}");
     let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
     let by_seed: Vec<Vec<(GhostPaths, f64)>> = (1..=8)
@@ -156,7 +156,7 @@ fn the_strongest_path_is_that_of_lens_ghosts() {
         let Estimate { mean, error } = Estimate::of(&energies);
         let want = known.iter().find(|ghost| ghost.surfaces == *surfaces).expect("the same paths").energy;
         assert!((mean - want).abs() < 4.0 * error + 0.01 * want, "{surfaces:?}: {mean} +- {error}, {want}");
-        // So few that the comparison tells one from another.
+        // The errors are small enough to tell one path from another.
         assert!(error < 0.02 * want, "{surfaces:?}: {mean} +- {error}");
         found.push((mean, surfaces.clone()));
     }
@@ -188,28 +188,28 @@ fn a_file_has_a_layer_for_each_path() {
     want.extend(layers.iter().flat_map(|layer| ["X", "Y", "Z"].map(|channel| format!("{layer}.{channel}"))));
     want.sort();
     assert_eq!(names, want);
-    // The picture itself is read as before, layers or not.
+    // The picture itself is read as before, with or without layers.
     let said = run(&["picture", "info", shown(&folder.path().join("sun.exr"))]);
     assert!(said.status.success(), "{}", text(&said.stderr));
 }
 
-/// Sums and layers of paths are counted before they are made, and where they are too many, how many fit is said.
+/// Sums and layers of paths are counted before they are allocated. If there are too many, the message says how many fit.
 #[test]
 fn memory_is_counted() {
     let needed = |output: &str, set: &[&str]| spectra_render::memory_needed(&scene_of(SUN, output, set));
     let (pixels, channels) = (72 * 48, 3);
     let step = needed("[{kind: exr, ghost-paths: 8}]", &[]) - needed("[{kind: exr, ghost-paths: 7}]", &[]);
-    // A sum of eight bytes and a value of four, or in the file's own copy two values of four.
+    // A sum of eight bytes and a value of four, or two values of four in the copy for the file.
     assert_eq!(step, pixels * channels * 12);
-    // A veil has a sum, too, and knows eight bytes of each pixel.
+    // A veil has a sum too, and eight more bytes per pixel.
     assert_eq!(needed("[exr]", &[]) - needed("[exr]", &["render.glare=false"]), pixels * (channels * 8 + 8));
     let scene = scene_of(SUN, "[png, {kind: exr, ghost-paths: 32}]", &[]);
     let fits = needed("[png, {kind: exr, ghost-paths: 20}]", &[]);
     assert!(spectra_render::fits(&scene, spectra_render::memory_needed(&scene)).is_ok());
     let said = spectra_render::fits(&scene, fits).expect_err("too many").to_string();
-    assert!(said.contains("layers of 32 paths of ghosts, 72 x 48 pixels of 3 channels each"), "{said}");
+    assert!(said.contains("layers of 32 ghost paths, 72 x 48 pixels of 3 channels each"), "{said}");
     assert!(said.contains("scene.yaml:6:40") && said.contains("`ghost-paths: 20`"), "{said}");
-    // Where the picture itself is too large, it is told of that.
+    // If the picture itself is too large, the message is about the picture.
     let said = spectra_render::fits(&scene, 1000).expect_err("too large").to_string();
     assert!(said.contains("72 x 48 pixels of 3 channels need"), "{said}");
 }

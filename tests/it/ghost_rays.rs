@@ -1,5 +1,5 @@
-//! Where rays of ghosts are sent changes their noise, and nothing else: as much light comes to each part of the frame as by rays all over
-//! the front; and no block of the frame is left with much more noise than the others.
+//! Tests that sending rays of ghosts to selected places changes only their noise. Each part of the frame gets as much light as from
+//! rays all over the front, and no block of the frame has much more noise than the others.
 
 use crate::common::statistics::{estimates, rendered};
 use spectra_core::Isa;
@@ -8,13 +8,13 @@ use spectra_render::{GhostRays, Renderer, Threads};
 use spectra_scene::Scene;
 use std::sync::Arc;
 
-/// The sun near the edge of the frame through a bare Biotar. The light of a ray stays in its pixel: footprints of few samples are as wide as
-/// the parts of the frame that these tests look at.
+/// Returns a scene of the sun near the edge of the frame through an uncoated Biotar. The light of a ray stays in its pixel, because
+/// footprints of few samples are as wide as the parts of the frame that these tests compare.
 fn scene(pixels: [u32; 2], samples: u32) -> Scene {
     spread_scene(pixels, samples, "none")
 }
 
-/// The same with the light of rays spread in a way.
+/// Returns that scene with the light of rays spread in the given way.
 fn spread_scene(pixels: [u32; 2], samples: u32, spread: &str) -> Scene {
     let [width, height] = pixels;
     let text = format!(
@@ -30,7 +30,7 @@ fn spread_scene(pixels: [u32; 2], samples: u32, spread: &str) -> Scene {
     spectra_scene::load(&path, &[]).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// Ghosts alone, the light of each block of so many pixels a side, for each seed.
+/// Renders only ghosts. Returns the light of each block of `side` pixels, for each seed.
 fn blocks(scene: Scene, rays: GhostRays, side: usize, seeds: impl Iterator<Item = u64>) -> Vec<Vec<f64>> {
     let renderer = Renderer::of_ghosts(Arc::new(scene), Isa::detect(), rays, &Threads(2)).expect("ready");
     let renderer = renderer.expect("it reflects");
@@ -48,7 +48,7 @@ fn of(frame: &ExposureFrame, side: usize) -> Vec<f64> {
     sums
 }
 
-/// Of 24 parts of the frame and of all of it, by seeds of both kinds.
+/// Compares 24 parts of the frame and the whole frame, over seeds of both kinds of rays.
 #[test]
 fn rays_that_are_sent_have_the_light_of_rays_all_over_the_front() {
     const SIDE: usize = 32;
@@ -67,8 +67,8 @@ fn rays_that_are_sent_have_the_light_of_rays_all_over_the_front() {
     assert!(a.error < 0.002 * a.mean && b.error < 0.02 * b.mean, "known to {a:?} and {b:?}");
 }
 
-/// The worst of the blocks that have more than 1e-4 of the brightest one. 1.5 %; it was 5.9 % when dim blocks weighed no more than
-/// others, and cells of the front were all of one size.
+/// Checks the worst of the blocks with more than 1e-4 of the brightest one's light. It has 1.5 %. It had 5.9 % when dim blocks had
+/// the weight of others and all cells of the front had one size.
 #[test]
 fn no_block_is_left_with_much_more_noise_than_others() {
     const SEEDS: u64 = 12;
@@ -82,8 +82,8 @@ fn no_block_is_left_with_much_more_noise_than_others() {
     assert!(noise.len() > 140 && worst < 0.03, "{} blocks, {worst}", noise.len());
 }
 
-/// Spread over footprints, the light of the same rays is as much in all, and pixels differ from the mean of their two neighbors in the row a tenth as
-/// much: where the noise of independent pixels is, smooth light has none.
+/// Spread over footprints, the light of the same rays has the same sum. Pixels differ from the mean of their two neighbors in the row
+/// a tenth as much: independent pixels have noise there, and smooth light has none.
 #[test]
 fn footprints_keep_all_light_and_smooth_it() {
     const PIXELS: [u32; 2] = [480, 320];
@@ -94,7 +94,7 @@ fn footprints_keep_all_light_and_smooth_it() {
     let [plain, spread] = ["none", "footprint"].map(of);
     let sum = |values: &[f64]| values.iter().sum::<f64>();
     let (before, after) = (sum(&plain), sum(&spread));
-    // To the last bit of the sums; exposures are rounded to single precision.
+    // Equal up to the last bits of the sums; exposures are rounded to single precision.
     assert!((after / before - 1.0).abs() < 1e-6, "{before} {after}");
     let rough = |values: &[f64]| {
         let rows = values.chunks_exact(PIXELS[0] as usize);

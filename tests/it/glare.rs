@@ -1,16 +1,16 @@
-//! Veiling glare in pictures: as much as walks bring in from a white field; the same from the source and from the imager; added to
-//! ghosts without counting light twice; and the same bits however the work is done.
+//! Tests veiling glare in pictures: its amount agrees with random walks to a white field and is the same from the source and from the
+//! imager. Added to ghosts, no light is counted twice, and the bits do not depend on how the work is done.
 
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
-use spectra_lens::{Chance, Interior, StrayMatter, Walker};
 use spectra_plugins as _;
 use spectra_render::{Control, Light, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
+use spectra_tracer::{Chance, Interior, StrayMatter, Walker};
 
 const HE_NE_NM: f64 = 632.816;
 
-/// A source of one line before a bare Biotar.
+/// Returns a scene of a source with one spectral line in front of an uncoated Biotar.
 fn scene(source: &str, set: &[&str]) -> Result<Scene, String> {
     let text = format!(
         "spectra: 1\n\
@@ -35,18 +35,18 @@ fn render(source: &str, set: &[&str]) -> Rendering {
 const WHITE: &str = "{kind: chart, chart: gray-card, distance: 1 m, width: 300 m, illuminant: he-ne, luminance: 100}";
 const POINT: &str = "{kind: point, distance: 20 m, field: [11 deg, 6 deg], spectrum: he-ne, intensity: 1000}";
 
-/// Mean of Y over the frame.
+/// Returns the mean of Y over the frame.
 fn mean(frame: &ExposureFrame) -> f64 {
     let y = &frame.channel("Y").expect("an XYZ imager").values;
     y.iter().map(|v| f64::from(*v)).sum::<f64>() / y.len() as f64
 }
 
-/// The veil alone: with glare less without.
+/// Returns the veil alone: the mean with glare minus the mean without.
 fn veil(source: &str, set: &[&str]) -> f64 {
     mean(&render(source, &[set, &["render.glare=true"]].concat()).exposure) - mean(&render(source, set).exposure)
 }
 
-/// A white wall that fills all that the lens sees: the veil over the straight light is that of walks from the imager to a white field.
+/// A white wall fills the field of the lens. Its veil relative to direct light agrees with walks from the imager to a white field.
 #[test]
 fn the_veil_of_a_white_wall_is_that_of_a_white_field() {
     let rendering = render(WHITE, &["render.glare={paint: 20 %, imager: 30 %}"]);
@@ -71,7 +71,7 @@ fn the_veil_of_a_white_wall_is_that_of_a_white_field() {
     assert!(want > 0.02 && error < 0.03 * want && (share - want).abs() < 4.0 * error, "{share} {want} {error}");
 }
 
-/// A small bright plate seen from both sides.
+/// A small bright plate has the same veil in both directions.
 #[test]
 fn both_directions_have_the_same_veil() {
     let plate = "{kind: chart, chart: gray-card, distance: 1 m, width: 500 mm, illuminant: he-ne, luminance: 100}";
@@ -83,11 +83,11 @@ fn both_directions_have_the_same_veil() {
     };
     let ((a, ea), (b, eb)) = (each("forward"), each("backward"));
     println!("forward {a:.6} +- {ea:.6}, backward {b:.6} +- {eb:.6}");
-    // Three seeds know their own error to a factor.
+    // Three seeds determine their own error only up to a factor.
     assert!((a / b - 1.0).abs() < 0.05 && (a - b).abs() < 8.0 * f64::hypot(ea, eb).max(1e-3 * a), "{a} {b}");
 }
 
-/// What glass reflects twice is the ghosts' where they are traced, and the veil's where they are not: together the same light.
+/// Light that glass reflects twice belongs to the ghosts if they are traced, and otherwise to the veil: the sum is the same.
 #[test]
 fn ghosts_are_not_counted_twice() {
     let own = |set: &[&str]| mean(&render(POINT, &[set, &["render.glare=true"]].concat()).exposure);
@@ -97,13 +97,13 @@ fn ghosts_are_not_counted_twice() {
     let (apart, together) = (mean(&with_ghosts.exposure) - straight, own(&[]) - straight);
     let ghosts = mean(&render(POINT, &["render.reflections.order=2"]).exposure) - straight;
     println!("straight {straight:.4e}, ghosts {ghosts:.4e}, ghosts and veil {apart:.4e}, veil alone {together:.4e}");
-    assert!(ghosts > 0.3 * together, "most of it is reflected twice");
+    assert!(ghosts > 0.3 * together, "less than a third is reflected twice");
     assert!((apart / together - 1.0).abs() < 0.03, "{apart} {together}");
-    // Counted twice it would be this much.
+    // Counted twice, the light would exceed this.
     assert!((together + ghosts) / apart > 1.2);
 }
 
-/// Nothing reflects where nothing can; and `false` is as if nothing were said.
+/// There is no veil if nothing reflects, and `false` equals leaving the key out.
 #[test]
 fn no_veil_without_reflections() {
     let dark = render(WHITE, &["render.glare.paint=0", "lens.coating=ideal"]);
@@ -145,7 +145,7 @@ fn threads_batches_and_steps_change_no_bit() {
 fn what_cannot_be_is_told() {
     let told = |set: &[&str]| scene(WHITE, set).map(|_| ()).expect_err("refused");
     let message = told(&["render.glare.imager=0.8", "render.reflections.imager=0.5"]);
-    assert!(message.contains("sends back more light than comes to it"), "{message}");
+    assert!(message.contains("sends back more light than reaches it"), "{message}");
     assert!(told(&["render.glare.paint=1.5"]).contains("out of range"));
     let prism = scene(
         POINT,
@@ -156,5 +156,5 @@ fn what_cannot_be_is_told() {
         ],
     );
     let error = Renderer::new(prism.expect("a scene"), Isa::detect()).map(|_| ()).expect_err("refused");
-    assert!(error.to_string().contains("surface 1 is turned aside"), "{error}");
+    assert!(error.to_string().contains("surface 1 is tilted"), "{error}");
 }

@@ -1,9 +1,11 @@
-//! Lenses of which only nd and Vd are known, and what glass takes from the light.
+//! Tests lenses whose glasses are known only by nd and Vd, and the absorption of glass.
 
 use spectra_glass::lines;
-use spectra_lens::{Coating, Indices, Lens};
+use spectra_lens::{Coating, Lens};
+use spectra_optics::Optics;
 use spectra_plugins as _;
 use spectra_scene::FileResources;
+use spectra_tracer::Indices;
 use std::path::Path;
 
 fn text(lens: &str) -> String {
@@ -19,13 +21,13 @@ fn parse(text: &str) -> Lens {
         .unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Paraxial focus at h against that at d, um: in brackets that of the real glasses.
+/// Returns the paraxial focus at h minus that at d, um. The table states the value with real glasses.
 fn violet_focus_um(lens: &Lens) -> f64 {
     let bfl = |line: lines::Line| lens.first_order(line.wavelength_nm).bfl_mm;
     (bfl(lines::H) - bfl(lines::D)) * 1e3
 }
 
-/// The file with its glasses struck out: nd and Vd are left.
+/// Returns the lens file with the glass names removed, so that nd and Vd remain.
 fn without_names(text: &str) -> String {
     let strike = |line: &str| match (line.split_once("glass: "), line.contains("nd:")) {
         (Some((before, after)), true) => {
@@ -56,7 +58,7 @@ fn the_secondary_spectrum_is_that_of_real_glass() {
     }
 }
 
-/// A patent that states e for all it states, or more lines beside d.
+/// A patent may state all values at the e line, or more lines in addition to d.
 #[test]
 fn more_lines_of_a_patent() {
     let plate = |head: &str, glass: &str| {
@@ -65,13 +67,13 @@ fn more_lines_of_a_patent() {
         ))
     };
     let index = |lens: &Lens, line: lines::Line| lens.index(1, line.wavelength_nm);
-    // N-BK7 by ne and Ve, both ways of saying so.
+    // N-BK7 from ne and Ve, in both notations.
     for lens in [plate("reference-line: e\n", "nd: 1.518722, vd: 63.96"), plate("", "glass: {ne: 1.518722, ve: 63.96}")]
     {
         assert!((index(&lens, lines::D) - 1.5168).abs() < 2e-6 && (index(&lens, lines::E) - 1.518_722).abs() < 1e-12);
         assert!((index(&lens, lines::G) - 1.526_685).abs() < 5e-5);
     }
-    // SF6: nd and Vd alone miss h by 8e-4; with ng they do not.
+    // SF6: with only nd and Vd the index at h is wrong by 8e-4; with ng it is right.
     let plain = plate("", "glass: {nd: 1.80518, vd: 25.43}");
     let more = plate("", "glass: {nd: 1.80518, vd: 25.43, ng: 1.847073}");
     let lines_alone = plate("", "glass: {nd: 1.80518, nF: 1.827752, nC: 1.796092, ng: 1.847073}");
@@ -82,7 +84,7 @@ fn more_lines_of_a_patent() {
     assert_eq!(more.media[1].label, "nd = 1.80518, ng = 1.847073, vd = 25.43");
 }
 
-/// Schott's formula of N-BK7 (data sheet, 2014), apart from the program.
+/// Returns the index of N-BK7 by Schott's formula (data sheet, 2014), independently of the program.
 fn n_bk7(nm: f64) -> f64 {
     let square = nm * nm * 1e-6;
     let term = |b: f64, c: f64| b * square / (square - c);
@@ -90,8 +92,8 @@ fn n_bk7(nm: f64) -> f64 {
     (1.0 + sum + term(1.010_469_45, 103.560_653)).sqrt()
 }
 
-/// Index and Abbe number for any three lines, by name or wavelength: in a lens file by its `reference-line` or beside a surface, in a glass
-/// by `abbe`. Each way gives the glass back whose figures were stated.
+/// Index and Abbe number can be stated for any three lines, by name or wavelength: in a lens file by `reference-line` or at a
+/// surface, in a glass by `abbe`. Each notation reproduces the glass with the stated figures.
 #[test]
 fn any_three_lines() {
     let plate = |head: &str, glass: &str| {
@@ -107,7 +109,7 @@ fn any_three_lines() {
         let (n, v) = (n_bk7(mid), (n_bk7(mid) - 1.0) / (n_bk7(short) - n_bk7(long)));
         let by_lines = plate(&format!("reference-line: {lines}\n"), &format!("nd: {n:.6}, vd: {v:.3}"));
         let by_glass = plate("", &format!("glass: {{abbe: {{lines: {lines}, n: {n:.6}, v: {v:.3}}}}}"));
-        // The index at d, and only the Abbe number for these lines.
+        // The index at d, with only the Abbe number for these lines.
         let mixed = plate("", &format!("glass: {{nd: {:.6}, abbe: {{lines: {lines}, v: {v:.3}}}}}", n_bk7(587.5618)));
         for lens in [&by_lines, &by_glass, &mixed] {
             for nm in [435.8343, 486.1327, 587.5618, 656.2725, 706.5188] {
@@ -119,12 +121,12 @@ fn any_three_lines() {
         }
         assert_eq!(by_lines.abbe_lines, lens_lines(short, mid, long));
         assert_eq!((by_lines.reference_nm, by_lines.media[1].stated_nd), (mid, Some((n * 1e6).round() / 1e6)));
-        // A glass of that name is held against the index at that line.
+        // A named glass is compared with the index at that line.
         let named = |n: f64| plate(&format!("reference-line: {lines}\n"), &format!("glass: SCHOTT/N-BK7, nd: {n:.5}"));
         assert!(named(n).warnings.is_empty(), "{:?}", named(n).warnings);
         assert!(named(n + 0.01).warnings[0].contains("the prescription states"), "{lines}");
     }
-    // `ne` and `ve` of a surface, whatever the reference line.
+    // `ne` and `ve` of a surface work with any reference line.
     let (ne, ve) = (n_bk7(546.074), 63.96);
     for head in ["", "reference-line: e\n", "reference-line: D\n"] {
         let lens = plate(head, &format!("ne: {ne:.6}, ve: {ve}"));
@@ -138,7 +140,8 @@ fn lens_lines(short: f64, mid: f64, long: f64) -> spectra_glass::LineTriple {
     spectra_glass::LineTriple::rising(short, mid, long).expect("rising")
 }
 
-/// D6: the exact name first; where several have it the maker or the time of the lens; else the usual one, and a note.
+/// Glass names follow one rule (D6): an exact name comes first; if several glasses have it, the maker or the year of the lens
+/// decides, otherwise the default maker, with a note.
 #[test]
 fn one_rule_for_names() {
     let plate = |head: &str, glass: &str| {
@@ -157,7 +160,7 @@ fn one_rule_for_names() {
     assert!(name == "SCHOTT/F2" && notes[0].contains("HOYA/F2"), "{name} {notes:?}");
 }
 
-/// Lenses whose glasses have no published transmittance absorb by that of near ones, and say of which.
+/// Glasses without published transmittance absorb like the nearest glasses, and the lens reports which ones.
 #[test]
 fn absorption_counts_in_every_lens() {
     for name in [
@@ -168,9 +171,11 @@ fn absorption_counts_in_every_lens() {
         "schneider-anamorphic-60",
     ] {
         let mut lens = parse(&text(name)).with_coating(Coating::Ideal);
-        let marginal = lens.marginal_ray().ok();
-        let passed = |lens: &Lens, nm: f64| lens.axial_transmittance(Indices::At(nm), marginal).expect("light");
-        // Against the same lens without absorption: rims cut the beam alike.
+        let marginal = Optics::new(lens.clone()).marginal_ray().ok();
+        let passed = |lens: &Lens, nm: f64| {
+            Optics::new(lens.clone()).axial_transmittance(Indices::At(nm), marginal).expect("light")
+        };
+        // Compared with the same lens without absorption, because the rims cut the beam in both cases.
         let mut share = |nm: f64| {
             lens.absorption = false;
             let clear = passed(&lens, nm);

@@ -1,23 +1,23 @@
-//! Every command of the guide is run, in order, each chapter in an empty folder with only the program on the path.
+//! Runs every command of the guide in order, each chapter in an empty folder with only the program on the path.
 //!
-//! A block ```` ```console ```` holds commands (lines that start with `$ `), each followed by what it prints if that matters; `...` stands for
-//! any lines, and within a line for anything. A block of any language with `file=NAME` is written to that file; `same-as=PATH`
-//! says that it is the same as a file of the repository. `console fails`
-//! says that its last command must fail.
+//! A block ```` ```console ```` holds commands (lines that start with `$ `), each followed by its output if that matters. In the
+//! output, `...` stands for any number of lines, or for any text within a line. A block in any language with `file=NAME` is written
+//! to that file; `same-as=PATH` states that it equals a file of the repository. `console fails` states that the last command of the
+//! block must fail.
 
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Chapters that build a program: minutes, not seconds.
+/// Chapters that build a program, which takes minutes.
 const WITH_RUST: [&str; 2] = ["add-a-surface.md", "add-a-film-process.md"];
 
 fn source() -> PathBuf {
     crate::common::repository("docs/guide/src")
 }
 
-/// The chapters, as the summary lists them.
+/// Returns the chapters in the order of the summary.
 fn chapters() -> Vec<String> {
     let summary = fs::read_to_string(source().join("SUMMARY.md")).expect("the guide has a summary");
     let names: Vec<String> =
@@ -26,7 +26,7 @@ fn chapters() -> Vec<String> {
     names
 }
 
-/// A fenced block: its info string, its text, and the line that it starts at.
+/// A fenced block: its info string, its text, and the line on which it starts.
 struct Block {
     info: String,
     text: String,
@@ -51,7 +51,7 @@ fn blocks(text: &str) -> Vec<Block> {
     found
 }
 
-/// The commands of a block, each with what it should print.
+/// Returns the commands of a block, each with its expected output.
 fn commands(block: &Block) -> Vec<(String, Vec<String>)> {
     let mut all: Vec<(String, Vec<String>)> = Vec::new();
     for line in block.text.lines() {
@@ -66,7 +66,7 @@ fn commands(block: &Block) -> Vec<(String, Vec<String>)> {
     all
 }
 
-/// Whether the lines are what is expected, with `...` for any lines or any part of a line.
+/// Returns whether lines match the expected ones, in which `...` stands for any lines or any part of a line.
 fn matches(expected: &[String], lines: &[&str]) -> bool {
     match expected.split_first() {
         None => lines.is_empty(),
@@ -90,7 +90,7 @@ fn line_matches(expected: &str, line: &str) -> bool {
     parts.all(|part| at.find(part).map(|found| at = &at[found + part.len()..]).is_some())
 }
 
-/// Runs a chapter in an empty folder.
+/// Runs the commands of a chapter in an empty folder.
 fn run(chapter: &str, folder: &Path) {
     let text = fs::read_to_string(source().join(chapter)).unwrap_or_else(|e| panic!("{chapter}: {e}"));
     let program = Path::new(env!("CARGO_BIN_EXE_spectra"));
@@ -129,7 +129,7 @@ fn run(chapter: &str, folder: &Path) {
             let lines: Vec<&str> = said.lines().collect();
             assert!(
                 expected.is_empty() || matches(expected, &lines),
-                "{}: `{command}` printed\n{said}\nand the guide has\n{}",
+                "{}: `{command}` printed\n{said}\nbut the guide has\n{}",
                 place(block.line),
                 expected.join("\n")
             );
@@ -137,7 +137,7 @@ fn run(chapter: &str, folder: &Path) {
     }
 }
 
-/// Chapters whose commands are run as they are written, each in a test of its own.
+/// Makes a test for each chapter whose commands are run as written.
 macro_rules! chapters_as_written {
     ($($test:ident $chapter:literal),* $(,)?) => {
         const AS_WRITTEN: &[&str] = &[$($chapter),*];
@@ -158,13 +158,16 @@ chapters_as_written! {
     first_picture "first-picture.md",
     view "view.md",
     lens_from_patent "lens-from-patent.md",
+    examine_a_lens "examine-a-lens.md",
     add_a_film "add-a-film.md",
     data "data.md",
     scene_language "scene-language.md",
+    light "light.md",
     choose_a_sampler "choose-a-sampler.md",
     finishing "finishing.md",
     measure "measure.md",
     editor "editor.md",
+    what_it_does "what-it-does.md",
 }
 
 #[test]
@@ -173,14 +176,14 @@ fn every_chapter_is_run() {
     let mut all = chapters();
     known.sort_unstable();
     all.sort_unstable();
-    assert_eq!(all, known, "chapters_as_written! lists those that compile nothing");
+    assert_eq!(all, known, "chapters_as_written! must list every chapter that compiles nothing");
     let of = |chapter: &&str| fs::read_to_string(source().join(chapter)).expect("a chapter");
     let commands_run =
         AS_WRITTEN.iter().flat_map(|chapter| blocks(&of(chapter))).filter(|b| b.info.starts_with("console"));
     assert!(commands_run.count() >= 10);
 }
 
-/// The chapters that make a plugin and a program with it; minutes of compiling. `.ci/run` asks for it.
+/// Runs the chapters that make a plugin and build a program with it, which takes minutes. `.ci/run` runs this test.
 #[test]
 #[ignore = "compiles programs for minutes: cargo test --test it guide -- --ignored"]
 fn plugins_are_made_as_written() {

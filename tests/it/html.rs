@@ -1,4 +1,4 @@
-//! `output: [html]`: a page on a picture or a sweep in one file that needs no network.
+//! Tests `output: [html]`: a page about a picture or a sweep, in one file that needs no network.
 
 use crate::common::{good, shown};
 use std::fs;
@@ -16,7 +16,7 @@ fn written(folder: &Path, text: &str) -> String {
     shown(&path).to_owned()
 }
 
-/// Nothing is fetched, nothing runs, and every tag is closed.
+/// Checks that a page loads nothing, runs no script and closes every tag.
 fn stands_alone(html: &str) {
     assert!(html.starts_with("<!doctype html>") && html.trim_end().ends_with("</html>"));
     for word in ["src=\"http", "src='", "<script", "<link", "@import", "url(", "onload", "<iframe"] {
@@ -54,13 +54,13 @@ fn a_page_shows_picture_lens_film_light_time_and_scene() {
     ] {
         assert!(html.contains(words), "{words}");
     }
-    // Alone by its name, as other pictures are.
+    // A page can be the only output, under its own name, like other pictures.
     let alone = folder.path().join("alone.html");
     good(&["run", &scene, "-q", "-o", shown(&alone)]);
     stands_alone(&fs::read_to_string(&alone).expect("written"));
 }
 
-/// Films side by side stand on one page; an imager without pictures has one, too.
+/// Several films share a page.
 #[test]
 fn films_share_a_page() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -75,7 +75,7 @@ fn films_share_a_page() {
     assert!(html.contains("<figcaption>pan</figcaption>") && html.contains("<figcaption>ortho</figcaption>"));
 }
 
-/// A sweep has a page for each picture and one of all, with the contact sheet, the values and links.
+/// A sweep has a page for each picture and one for all, with the contact sheet, the values and links.
 #[test]
 fn a_sweep_has_a_page_of_all() {
     let folder = tempfile::tempdir().expect("a folder");

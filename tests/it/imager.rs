@@ -1,4 +1,4 @@
-//! Imagers in a camera: sensors behind lenses, both directions, films side by side.
+//! Tests imagers in a camera: sensors behind lenses, both directions, several films.
 
 use crate::common::repository;
 use crate::common::statistics::{self, Estimate, estimates, over_seeds, ready, rendered};
@@ -12,7 +12,7 @@ fn render(scene: &spectra_scene::Scene) -> ExposureFrame {
     rendered(&ready(scene.clone())).exposure
 }
 
-/// Mean of the wells under red, green and blue filters (rggb) in a square of the frame, electrons.
+/// Returns the mean electrons of the wells under red, green and blue filters (rggb) in a square of the frame.
 fn colors(frame: &ExposureFrame, left: usize, top: usize, side: usize) -> [f64; 3] {
     let width = frame.size.width_px as usize;
     let (mut sums, mut counts) = ([0.0; 3], [0.0; 3]);
@@ -26,12 +26,12 @@ fn colors(frame: &ExposureFrame, left: usize, top: usize, side: usize) -> [f64; 
     [0, 1, 2].map(|i| sums[i] / counts[i])
 }
 
-/// Red over green and blue over green, relative to the middle of the frame, in stops: at half the way to the corner and
-/// at the corner.
+/// Returns red over green and blue over green, relative to the middle of the frame, in stops: half way to the corner and in the
+/// corner.
 fn casts(frame: &ExposureFrame) -> [[f64; 2]; 2] {
     let (width, height) = (frame.size.width_px as usize, frame.size.height_px as usize);
     let side = 16;
-    // The same square of all four quarters: the fall of the light from filter to filter cancels.
+    // Adds the same square of all four quadrants, so that the falloff of light between neighboring filters cancels.
     let at = |share: f64| {
         let near = |pixels: usize| ((1.0 - share) * (pixels - side) as f64 / 2.0) as usize / 2 * 2;
         let (left, top) = (near(width), near(height));
@@ -45,12 +45,12 @@ fn casts(frame: &ExposureFrame) -> [[f64; 2]; 2] {
 }
 
 const PHOTOSITE: &str = "imager.photosite={stack: 3 um, microlens: 60 %, well: 3 um}";
-/// The sensor's cast alone: glass and coatings color oblique light, too.
+/// Settings that leave only the cast of the sensor: glass and coatings color oblique light too.
 const COMMON: [&str; 5] =
     ["imager.resolution=[120, 80]", "render.samples=256", PHOTOSITE, "lens.coating=ideal", "lens.absorption=false"];
 
-/// The slant of the light makes colors mix: behind the symmetric Hologon, whose corners see 55 degrees, the cast rises
-/// toward the corner; behind a retrofocus lens, and on the Hologon without a stack, there is none.
+/// Oblique light mixes colors. Behind the symmetric Hologon, whose corners see 55 degrees, the color cast increases toward the
+/// corner. Behind a retrofocus lens, and behind the Hologon without a stack, there is no cast.
 #[test]
 fn a_symmetric_wide_angle_lens_casts_color_and_a_retrofocus_does_not() {
     let hologon = casts(&render(&load("sensor-wide-angle.yaml", &COMMON)));
@@ -59,7 +59,7 @@ fn a_symmetric_wide_angle_lens_casts_color_and_a_retrofocus_does_not() {
     let shallow = casts(&render(&load("sensor-wide-angle.yaml", &[&COMMON[..], &shallow].concat())));
     println!("without stack {shallow:.3?}");
     let lens = format!("lens.file={}/tests/data/lenses/nikon-retrofocus-100-f2.8.yaml", env!("CARGO_MANIFEST_DIR"));
-    // The frame that a lens of 100 mm needs for the field of 28 mm on 36 x 24.
+    // Frame size for which a lens of 100 mm has the field of a 28 mm lens on 36 x 24 mm.
     let retrofocus = [&lens, "lens.f-number=f/8", "imager.format=null", "imager.width=128 mm", "imager.height=85 mm"];
     let retrofocus = casts(&render(&load("sensor-wide-angle.yaml", &[&COMMON[..], &retrofocus].concat())));
     println!("retrofocus {retrofocus:.3?}");
@@ -69,12 +69,12 @@ fn a_symmetric_wide_angle_lens_casts_color_and_a_retrofocus_does_not() {
     }
 }
 
-/// The figures of a picture, over seeds.
+/// Returns estimates of the figures of a picture, over seeds.
 fn estimate(scene: &str, overrides: &[&str], of: impl Fn(&ExposureFrame) -> Vec<f64>) -> Vec<Estimate> {
     estimates(&over_seeds(&ready(load(scene, overrides)), 3..8, |rendering| of(&rendering.exposure)))
 }
 
-/// Student's t with 4 + 4 degrees of freedom where the normal has 3 standard errors, for a dozen figures together.
+/// Factor for Student's t with 4 + 4 degrees of freedom at the level of 3 normal standard errors, for a dozen figures together.
 const STUDENT: f64 = 2.0;
 
 fn compare(scene: &str, common: &[&str], samples: &str, rays: &str, of: impl Fn(&ExposureFrame) -> Vec<f64>) {
@@ -83,12 +83,12 @@ fn compare(scene: &str, common: &[&str], samples: &str, rays: &str, of: impl Fn(
     for (at, (backward, forward)) in backward.iter().zip(&forward).enumerate() {
         let (b, f, error) = (backward.mean, forward.mean, backward.error.hypot(forward.error));
         println!("{at}: {backward:?}, {forward:?}, ratio {:.5}", f / b);
-        assert!(error < 0.005 * b, "{at}: {b} is known to {error} only");
+        assert!(error < 0.005 * b, "{at}: {b} is known only to {error}");
         assert!((f - b).abs() < 3.0 * STUDENT * error && (f / b - 1.0).abs() < 0.03, "{at}: {f} and {b}, {error}");
     }
 }
 
-/// A shifted, tilted sensor with walls, wells and microlenses records the same from both sides.
+/// A shifted and tilted sensor with walls, wells and microlenses records the same light in both directions.
 #[test]
 fn forward_and_backward_agree_on_a_sensor() {
     let stands = "imager={kind: sensor, format: 135, resolution: [40, 28], pitch: 5 um, fill-factor: 70 %, tilt: [5, -8], \
@@ -99,7 +99,7 @@ fn forward_and_backward_agree_on_a_sensor() {
     compare("sensor-wide-angle.yaml", &[stands], "render.samples=512", "render.rays=1200000", squares);
 }
 
-/// The same behind a thick cover glass, which moves steep rays aside by a good part of this lens's small pupil.
+/// Behind a thick cover glass, which displaces steep rays by much of this lens's small pupil, both directions agree too.
 #[test]
 fn forward_and_backward_agree_behind_plates() {
     let stands = "imager={kind: sensor, format: 135, resolution: [40, 28], pitch: 5 um, exposure: 1 s, \
@@ -110,7 +110,7 @@ fn forward_and_backward_agree_behind_plates() {
     compare("sensor-wide-angle.yaml", &[stands], "render.samples=512", "render.rays=1200000", squares);
 }
 
-/// The same for a curved, tilted colorimeter, wide open.
+/// On a curved, tilted colorimeter, wide open, both directions agree too.
 #[test]
 fn forward_and_backward_agree_on_a_curved_frame() {
     let stands = "imager={kind: xyz, format: 135, resolution: [48, 32], tilt: [-6, 4], shift: [1, -2], \
@@ -122,8 +122,8 @@ fn forward_and_backward_agree_on_a_curved_frame() {
     compare("gray-card.yaml", &[stands], "render.samples=64", "render.rays=400000", mean);
 }
 
-/// Three films in the light of one trace record what each records alone: the same mean exposure, within the noise of
-/// different wavelengths (half a percent), the exposure times told apart.
+/// Several films in the light of one trace record what each records alone, with their own exposure times. The mean exposures agree
+/// within the noise of different wavelengths (half a percent).
 #[test]
 fn films_side_by_side_record_what_each_records_alone() {
     let small = ["imager.resolution=[48, 32]", "render.samples=256"];

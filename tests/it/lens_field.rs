@@ -1,11 +1,13 @@
-//! The field of a lens: how far it reaches, chief rays, telecentricity.
+//! Tests the field of a lens: its limit, chief rays, telecentricity.
 
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Indices, Lens, Tracer, Travel};
+use spectra_lens::Lens;
+use spectra_optics::{Optics, stop_down};
 use spectra_plugins as _;
 use spectra_scene::FileResources;
+use spectra_tracer::{Indices, Tracer, Travel};
 use std::path::Path;
 
 fn lens(path: &str) -> Lens {
@@ -13,8 +15,8 @@ fn lens(path: &str) -> Lens {
     spectra_lens::load(&path.to_string_lossy(), &FileResources::beside(Path::new("."))).expect("a lens")
 }
 
-/// Rays of a field angle (degrees) that pass, of a dense square grid over a disk of radius `reach_mm` about a point on the
-/// axis: brute force.
+/// Returns by brute force how many rays of a field angle (degrees) pass, from a dense square grid over a disk of radius `reach_mm`
+/// around a point on the axis.
 fn brute(lens: &Lens, field_deg: f64, middle_z_mm: f64, reach_mm: f64, cells: usize) -> usize {
     let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::detect()).expect("media");
     let (s, c) = field_deg.to_radians().sin_cos();
@@ -38,7 +40,7 @@ fn brute(lens: &Lens, field_deg: f64, middle_z_mm: f64, reach_mm: f64, cells: us
     passed
 }
 
-/// Inside of the limit light passes, and outside of it a million rays do not.
+/// Inside the limit light passes, and outside it a million rays do not.
 #[test]
 fn the_largest_field_is_the_largest() {
     for path in [
@@ -50,7 +52,7 @@ fn the_largest_field_is_the_largest() {
         let first = &lens.elements[0];
         let rim_mm = first.semi_diameter_mm.expect("a rim");
         let (middle_z_mm, reach_mm) = (first.surface.sag_mm(rim_mm, 0.0).expect("a rim") / 2.0, 1.2 * rim_mm);
-        let found = lens.field_limit(f64::INFINITY).expect("media").expect("it has a field");
+        let found = Optics::new(lens.clone()).field_limit(f64::INFINITY).expect("media").expect("it has a field");
         let deg = found.field_rad.to_degrees();
         println!("{path}: {deg} {:?}", found.limit);
         assert!(found.limit.is_some(), "{found:?}");
@@ -59,29 +61,34 @@ fn the_largest_field_is_the_largest() {
     }
 }
 
-/// A fisheye sees behind itself.
+/// A fisheye sees more than 90 degrees from its axis.
 #[test]
 fn a_fisheye_sees_more_than_the_half_space() {
     let fisheye = lens("tests/data/lenses/minolta-fisheye-1-f2.7.yaml");
-    let limit = fisheye.field_limit(f64::INFINITY).expect("media").expect("a field").field_rad.to_degrees();
+    let limit = Optics::new(fisheye.clone())
+        .field_limit(f64::INFINITY)
+        .expect("media")
+        .expect("a field")
+        .field_rad
+        .to_degrees();
     assert!((85.0..115.0).contains(&limit), "{limit}");
     let fields: Vec<f64> = (0..=90).step_by(10).map(|deg| f64::from(deg).to_radians()).collect();
-    let rays = fisheye.chief_rays(f64::INFINITY, &fields).expect("media");
+    let rays = Optics::new(fisheye.clone()).chief_rays(f64::INFINITY, &fields).expect("media");
     let heights: Vec<f64> = rays.iter().map(|r| r.expect("a chief ray").image_mm[1]).collect();
     assert!(heights.windows(2).all(|w| w[1] > w[0]), "{heights:?}");
-    // Equidistant near the axis: height = focal length x angle.
+    // Near the axis it is equidistant: height = focal length x angle.
     let efl = fisheye.first_order(fisheye.reference_nm).efl_mm;
     assert!((heights[1] / (efl * fields[1]) - 1.0).abs() < 0.01, "{}", heights[1]);
 }
 
-/// The chief ray goes through the center of the stop, and near the axis as paraxial optics has it: it leaves as if from
-/// the middle of the exit pupil.
+/// The chief ray passes through the center of the stop. Near the axis it follows paraxial optics and leaves as if from the center of
+/// the exit pupil.
 #[test]
 fn chief_rays_pass_the_center_of_the_stop() {
     for path in ["lenses/zeiss-biotar-50-f1.4.yaml", "tests/data/lenses/nikon-retrofocus-100-f2.8.yaml"] {
         let lens = lens(path);
         let fields = [0.0, 0.001, 0.2, 0.35];
-        let rays = lens.chief_rays(f64::INFINITY, &fields).expect("media");
+        let rays = Optics::new(lens.clone()).chief_rays(f64::INFINITY, &fields).expect("media");
         let mut open = lens.clone();
         open.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
         let tracer = Tracer::new(&open, Indices::At(lens.reference_nm), Isa::Baseline).expect("media");
@@ -100,26 +107,26 @@ fn chief_rays_pass_the_center_of_the_stop() {
     }
 }
 
-/// Without any sizes there is no limit to the field, but there are chief rays.
+/// Without any sizes the field has no limit, but there are chief rays.
 #[test]
 fn chief_rays_need_no_rims() {
     let full = lens("lenses/zeiss-biotar-50-f1.4.yaml");
     let mut open = full.clone();
     open.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
-    assert_eq!(open.field_limit(f64::INFINITY).expect("media"), None);
+    assert_eq!(Optics::new(open.clone()).field_limit(f64::INFINITY).expect("media"), None);
     let fields = [0.0, 0.1, 0.3];
-    let rays = |lens: &Lens| lens.chief_rays(f64::INFINITY, &fields).expect("media");
+    let rays = |lens: &Lens| Optics::new(lens.clone()).chief_rays(f64::INFINITY, &fields).expect("media");
     for (a, b) in rays(&full).iter().zip(rays(&open)) {
         let (a, b) = (a.expect("a chief ray"), b.expect("a chief ray"));
         assert!((a.image_mm[1] - b.image_mm[1]).abs() < 1e-8);
     }
-    // With a stop alone the field reaches on, and the whole beam is found.
-    let stopped = open.at_f_number(5.6).expect("f/5.6");
-    let limit = stopped.field_limit(f64::INFINITY).expect("media").expect("a stop");
+    // With the stop as the only limit the field is larger, and the whole beam is found.
+    let stopped = stop_down(open, 5.6).expect("f/5.6");
+    let limit = Optics::new(stopped.clone()).field_limit(f64::INFINITY).expect("media").expect("a stop");
     assert!(limit.field_rad > 0.5, "{limit:?}");
 }
 
-/// With its stop in the front focal plane a lens is telecentric behind: near the axis all chief rays leave along it.
+/// A lens with its stop in the front focal plane is image-space telecentric: near the axis all chief rays leave parallel to it.
 #[test]
 fn a_stop_in_the_front_focus_is_telecentric() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -135,19 +142,21 @@ fn a_stop_in_the_front_focus_is_telecentric() {
     };
     let ffl = write(10.0).first_order(587.5618).ffl_mm;
     let lens = write(10.0 - ffl);
-    let angles: Vec<f64> = lens
+    let angles: Vec<f64> = Optics::new(lens)
         .chief_rays(f64::INFINITY, &[0.0, 0.001, 0.002])
         .expect("media")
         .iter()
         .map(|r| r.expect("a chief ray").exit_angle_rad())
         .collect();
     assert!(angles.iter().all(|a| a.abs() < 1e-7), "{angles:?}");
-    let entocentric = write(30.0).chief_rays(f64::INFINITY, &[0.001]).expect("media")[0].expect("a chief ray");
+    let entocentric =
+        Optics::new(write(30.0)).chief_rays(f64::INFINITY, &[0.001]).expect("media")[0].expect("a chief ray");
     assert!(entocentric.exit_angle_rad().abs() > 1e-4);
 }
 
-/// Sagittal and tangential focus along a chief ray by Coddington's equations (H. Coddington, 1829), from surface to surface of spheres
-/// and planes: n' cos^2 I' / t' - n cos^2 I / t = n' / s' - n / s = (n' cos I' - n cos I) / R. How far behind the image plane, mm along the axis.
+/// Returns how far the sagittal and the tangential focus along a chief ray lie behind the image plane, mm along the axis.
+/// Coddington's equations (H. Coddington, 1829) are applied to each sphere or plane: n' cos^2 I' / t' - n cos^2 I / t = n' / s' - n /
+/// s = (n' cos I' - n cos I) / R.
 fn coddington(lens: &Lens, start: DVec3, direction: DVec3) -> [f64; 2] {
     let mut open = lens.clone();
     open.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
@@ -155,7 +164,7 @@ fn coddington(lens: &Lens, start: DVec3, direction: DVec3) -> [f64; 2] {
     let path = tracer.path(start, direction, lens.reference_nm);
     assert!(path.end.is_none());
     let index = |medium: usize| lens.index(medium, lens.reference_nm);
-    // Of light from infinity: no vergence. Distances from the last point along the ray, sagittal and tangential.
+    // Light from infinity has no vergence. Distances are measured from the last point along the ray, sagittal and tangential.
     let (mut toward, mut foci) = (direction, [f64::INFINITY; 2]);
     for (at, e) in lens.elements.iter().enumerate() {
         let here = path.points[at + 1];
@@ -180,13 +189,13 @@ fn coddington(lens: &Lens, start: DVec3, direction: DVec3) -> [f64; 2] {
     foci.map(|f| last + f * toward.z - lens.image_z_mm())
 }
 
-/// Close rays meet where Coddington's equations say.
+/// Close rays meet at the foci of Coddington's equations.
 #[test]
 fn foci_are_those_of_coddington() {
     for path in ["lenses/zeiss-biotar-50-f1.4.yaml", "lenses/cooke-triplet-50-f5.yaml"] {
         let lens = lens(path);
         let fields = [0.0, 0.1, 0.2, 0.3];
-        let rays = lens.chief_rays(f64::INFINITY, &fields).expect("media");
+        let rays = Optics::new(lens.clone()).chief_rays(f64::INFINITY, &fields).expect("media");
         for ray in rays {
             let ray = ray.expect("a chief ray");
             let wanted = coddington(&lens, ray.start_mm, ray.direction);
@@ -195,15 +204,15 @@ fn foci_are_those_of_coddington() {
                 assert!((found - wanted).abs() < 1e-6, "{path}, {}: {found} {wanted}", ray.field_rad);
             }
         }
-        // On the axis both are the paraxial image.
-        let axis = lens.chief_rays(f64::INFINITY, &[0.0]).expect("media")[0].expect("a chief ray");
+        // On the axis both foci are the paraxial image.
+        let axis = Optics::new(lens.clone()).chief_rays(f64::INFINITY, &[0.0]).expect("media")[0].expect("a chief ray");
         let paraxial = lens.paraxial_defocus_mm(f64::INFINITY);
         assert!(axis.foci_mm.iter().all(|z| (z.expect("a focus") - paraxial).abs() < 1e-6), "{axis:?} {paraxial}");
     }
 }
 
-/// A spherical mirror with its stop at the center of curvature has no axis: no astigmatism, and its image lies on a sphere of half of its
-/// radius about the stop. Behind the image plane is where the light runs.
+/// A spherical mirror with its stop at the center of curvature has no preferred axis: it has no astigmatism, and its image lies on a
+/// sphere of half its radius around the stop. Distances behind the image plane are measured along the light.
 #[test]
 fn a_mirror_about_its_stop_has_a_curved_field_without_astigmatism() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -213,7 +222,7 @@ fn a_mirror_about_its_stop_has_a_curved_field_without_astigmatism() {
     std::fs::write(&file, text).expect("written");
     let mirror = spectra_lens::load(&file.to_string_lossy(), &FileResources::beside(Path::new("."))).expect("a lens");
     let fields = [0.0, 0.1, 0.3, 0.6];
-    for ray in mirror.chief_rays(f64::INFINITY, &fields).expect("media") {
+    for ray in Optics::new(mirror.clone()).chief_rays(f64::INFINITY, &fields).expect("media") {
         let ray = ray.expect("a chief ray");
         let wanted = 100.0 * (1.0 - ray.field_rad.cos());
         for found in ray.foci_mm {
@@ -222,7 +231,7 @@ fn a_mirror_about_its_stop_has_a_curved_field_without_astigmatism() {
     }
 }
 
-/// Across a cylinder light stays parallel; along it there is a focus.
+/// In one section of a cylinder light stays parallel; in the other one it has a focus.
 #[test]
 fn a_cylinder_has_one_focus() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -231,7 +240,7 @@ fn a_cylinder_has_one_focus() {
                 - {kind: cylinder, radius: 50, axis: x, thickness: 0, glass: {nd: 1.5}}\n  - {kind: plane, thickness: 90}\n";
     std::fs::write(&file, text).expect("written");
     let lens = spectra_lens::load(&file.to_string_lossy(), &FileResources::beside(Path::new("."))).expect("a lens");
-    for ray in lens.chief_rays(f64::INFINITY, &[0.0, 0.2]).expect("media") {
+    for ray in Optics::new(lens.clone()).chief_rays(f64::INFINITY, &[0.0, 0.2]).expect("media") {
         let [sagittal, tangential] = ray.expect("a chief ray").foci_mm;
         assert!(sagittal.is_none() && tangential.is_some_and(|z| z.abs() < 20.0), "{sagittal:?} {tangential:?}");
     }

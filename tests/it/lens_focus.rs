@@ -1,13 +1,13 @@
-//! Focusing by laws and by real rays; groups out of place; a lens turned round.
+//! Tests focusing by laws and by real rays, misaligned groups, and reversed lenses.
 
 use glam::DVec3;
 use spectra_core::math::j0;
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{
-    Beam, Criterion, FocusError, FocusSearch, Indices, Lens, Misalignment, ObjectPoint, Section, Tracer, Travel,
-};
+use spectra_lens::{FocusError, Lens, Misalignment, Section};
+use spectra_optics::{Beam, Criterion, FocusSearch, ObjectPoint, Optics, stop_down};
 use spectra_plugins as _;
 use spectra_scene::FileResources;
+use spectra_tracer::{Indices, Tracer, Travel};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -26,7 +26,7 @@ fn written(text: &str) -> Result<Lens, String> {
     load(&path)
 }
 
-/// Two thin-ish groups, and laws.
+/// Returns a lens of two nearly thin groups with the given focusing laws.
 fn two_groups(laws: &str) -> Result<Lens, String> {
     written(&format!(
         "name: two groups\nsurfaces:\n\
@@ -52,28 +52,28 @@ fn contrast(object_mm: f64, field_deg: f64, per_mm: f64) -> FocusSearch {
     FocusSearch { criterion: Criterion::Contrast { per_mm }, ..rms(object_mm, field_deg) }
 }
 
-/// Floating groups: the image plane stays, each group travels in proportion, and the image is as far from the plane as it
-/// was at infinity.
+/// Floating groups: the image plane stays fixed and each group travels in proportion to its factor. The image keeps the distance from
+/// the plane that it has at infinity.
 #[test]
 fn groups_float_by_their_factors() {
     let lens = two_groups("focus: [{group: front, factor: 1}, {group: rear, factor: 0.6}]\n").expect("good");
     for object_mm in [5000.0, 1000.0, 400.0] {
         let near = lens.clone().focused_at(object_mm).expect("focused");
         assert!((paraxial_miss(&near, object_mm) - paraxial_miss(&lens, f64::INFINITY)).abs() < 1e-9);
-        // From the image plane, which stays.
+        // Distances from the image plane, which stays fixed.
         let place = |lens: &Lens, at: usize| lens.image_z_mm() - lens.elements[at].vertex_z_mm();
         let travel = |at: usize| place(&near, at) - place(&lens, at);
         assert!(travel(0) > 0.0 && (travel(0) - travel(1)).abs() < 1e-12);
         assert!((travel(3) / travel(0) - 0.6).abs() < 1e-9 && (travel(3) - travel(4)).abs() < 1e-12);
-        assert!(travel(2).abs() < 1e-12, "the stop belongs to no group");
+        assert!(travel(2).abs() < 1e-12, "the stop moved without belonging to a group");
         assert_eq!(near.focused_mm, object_mm);
     }
     assert_eq!(lens.clone().focused_at(f64::INFINITY).expect("as it is").image_z_mm(), lens.image_z_mm());
-    // So near that the groups would have to pass through each other, or nothing helps.
+    // At this distance the groups would have to pass through each other, or no travel is enough.
     assert!(lens.focused_at(20.0).is_err());
 }
 
-/// One law that moves everything is the helicoid.
+/// One law that moves all surfaces equals focusing with the whole lens.
 #[test]
 fn a_law_for_all_is_the_whole_lens() {
     let text = |laws: &str| {
@@ -101,8 +101,8 @@ fn groups_follow_their_tables() {
     assert!(matches!(far.focused_at(500.0), Err(FocusError::Collision { surface: 3, .. })));
 }
 
-/// A group that follows the section across: both sections stay as far apart as they are at infinity, and the lens that moves as a
-/// whole pulls them apart by f^2 / distance, whose f differ by the squeeze: by 60.5^2 / 1500 - 31.5^2 / 1500 = 1.8 mm.
+/// A group follows the section across, so both sections keep the separation that they have at infinity. Focusing with the whole lens
+/// separates them by f^2 / distance, where f differs by the squeeze: 60.5^2 / 1500 - 31.5^2 / 1500 = 1.8 mm.
 #[test]
 fn both_sections_of_an_anamorphic_lens_are_focused() {
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/lenses/schneider-anamorphic-60.yaml"));
@@ -120,7 +120,7 @@ fn both_sections_of_an_anamorphic_lens_are_focused() {
         let near = both.clone().focused_at(object_mm).expect("focused");
         let found = apart(&near, object_mm);
         assert!((found.0 - far.0).abs() < 1e-6 && (found.1 - far.1).abs() < 1e-6, "{object_mm}: {found:?} {far:?}");
-        // The front travels a way that a mount has.
+        // The front group travels a distance that a mount can provide.
         let travel = near.elements[2].thickness_mm - both.elements[2].thickness_mm;
         assert!(travel.abs() < 30.0, "{object_mm}: {travel}");
     }
@@ -147,8 +147,8 @@ fn faults_of_laws_say_what_to_do() {
     }
 }
 
-/// Light of a far point on the axis: radii at the image plane, their change along z, and shares of the light (sum 1), by
-/// Simpson's rule over the area of the front of the lens, with many more rays than a search uses.
+/// Light of a far point on the axis: radii in the image plane, their change along z, and shares of the light (sum 1). Simpson's rule
+/// is applied over the area of the front of the lens, with many more rays than a search uses.
 struct AxialLight(Vec<[f64; 3]>);
 
 impl AxialLight {
@@ -194,12 +194,12 @@ impl AxialLight {
         self.mean(|r| r * r, z_mm).sqrt()
     }
 
-    /// A ring of radius r has the contrast J0(2 pi f r).
+    /// Returns the contrast: that of a ring of radius r is J0(2 pi f r).
     fn contrast(&self, z_mm: f64, per_mm: f64) -> f64 {
         self.mean(|r| j0(TAU * per_mm * r), z_mm)
     }
 
-    /// Where contrast is highest: the best of a scan, then ever finer ones about it.
+    /// Returns the position of the highest contrast, from a scan that is repeated ever more finely around its best position.
     fn sharpest_mm(&self, per_mm: f64) -> f64 {
         let (mut middle, mut step) = (0.0, 0.01);
         let mut steps = 200;
@@ -212,8 +212,8 @@ impl AxialLight {
     }
 }
 
-/// The smallest spot and the best contrast differ on a fast lens, and each is the best by its own measure against a scan: on
-/// the axis by rays of this test, beside it by the grid that the search uses.
+/// On a fast lens the smallest spot and the best contrast differ, and each is the best by its own measure in a scan. On the axis the
+/// scan uses rays of this test, off the axis the grid of the search.
 #[test]
 fn spot_and_contrast_differ_on_fast_lenses() {
     for (path, least_mm) in
@@ -222,10 +222,12 @@ fn spot_and_contrast_differ_on_fast_lenses() {
         let lens = bundled(path);
         let axial = AxialLight::of(&lens);
         for field_deg in [0.0, 10.0] {
-            let small = lens.best_focus_shift_mm(&rms(f64::INFINITY, field_deg)).expect("light");
-            let sharp = lens.best_focus_shift_mm(&contrast(f64::INFINITY, field_deg, 30.0)).expect("light");
+            let small = rms(f64::INFINITY, field_deg).shift_mm(&Optics::new(lens.clone())).expect("light");
+            let sharp = contrast(f64::INFINITY, field_deg, 30.0).shift_mm(&Optics::new(lens.clone())).expect("light");
             let point = ObjectPoint::on_plane(&lens, f64::INFINITY, f64::to_radians(field_deg));
-            let beam = Beam::of(&lens, point, &[(lens.reference_nm, 1.0)], 96).expect("media").expect("light");
+            let beam = Beam::trace(&Optics::new(lens.clone()), point, &[(lens.reference_nm, 1.0)], 96)
+                .expect("media")
+                .expect("light");
             let on_axis = field_deg == 0.0;
             let spot = |z: f64| if on_axis { axial.rms_mm(z) } else { beam.rms_mm(z) };
             let sharpness = |z: f64| if on_axis { axial.contrast(z, 30.0) } else { beam.contrast(z, 30.0) };
@@ -238,14 +240,14 @@ fn spot_and_contrast_differ_on_fast_lenses() {
                 assert!((small - sharp).abs() > least_mm, "{path}: {small} {sharp}");
             }
         }
-        // Stopped down they meet, and meet the paraxial focus.
-        let slow = lens.at_f_number(22.0).expect("f/22");
-        let small = slow.best_focus_shift_mm(&rms(f64::INFINITY, 0.0)).expect("light");
+        // Stopped down, both agree with each other and with the paraxial focus.
+        let slow = stop_down(lens, 22.0).expect("f/22");
+        let small = rms(f64::INFINITY, 0.0).shift_mm(&Optics::new(slow.clone())).expect("light");
         assert!((small - paraxial_miss(&slow, f64::INFINITY)).abs() < 0.02, "{small}");
     }
 }
 
-/// On the axis the highest contrast is found to 1 um wide open, by the rings of the search against 8000 rays of this test.
+/// On the axis the highest contrast is found to 1 um wide open: the rings of the search are compared with 8000 rays of this test.
 #[test]
 fn the_sharpest_plane_is_found_to_a_micrometer() {
     for path in [
@@ -256,15 +258,15 @@ fn the_sharpest_plane_is_found_to_a_micrometer() {
         let lens = bundled(path);
         let axial = AxialLight::of(&lens);
         for per_mm in [10.0, 30.0, 60.0] {
-            let found = lens.best_focus_shift_mm(&contrast(f64::INFINITY, 0.0, per_mm)).expect("light");
+            let found = contrast(f64::INFINITY, 0.0, per_mm).shift_mm(&Optics::new(lens.clone())).expect("light");
             let want = axial.sharpest_mm(per_mm);
             assert!((found - want).abs() < 1e-3, "{path} at {per_mm}/mm: {found} {want}");
         }
     }
 }
 
-/// Primary spherical aberration: the smallest root-mean-square spot lies two thirds of the way from the paraxial focus to
-/// the marginal one (W. T. Welford, Aberrations of Optical Systems, section 8.2), here of a singlet at f/10.
+/// With primary spherical aberration, the smallest RMS spot lies two thirds of the way from the paraxial to the marginal focus (W. T.
+/// Welford, Aberrations of Optical Systems, section 8.2). Checked for a singlet at f/10.
 #[test]
 fn the_smallest_spot_is_where_theory_has_it() {
     let lens = written(
@@ -278,31 +280,31 @@ fn the_smallest_spot_is_where_theory_has_it() {
     let last = path.points.last().expect("points");
     let marginal = last.z - last.y * path.direction.z / path.direction.y - lens.image_z_mm();
     let paraxial = paraxial_miss(&lens, f64::INFINITY);
-    let small = lens.best_focus_shift_mm(&rms(f64::INFINITY, 0.0)).expect("light");
+    let small = rms(f64::INFINITY, 0.0).shift_mm(&Optics::new(lens.clone())).expect("light");
     let part = (small - paraxial) / (marginal - paraxial);
-    // Higher orders and the edge of a grid of 96 rays across leave half a per cent.
+    // Higher orders and the edge of a grid with 96 rays across account for half a per cent.
     assert!((part - 2.0 / 3.0).abs() < 0.005, "{part}");
 }
 
-/// Moving the lens to the best focus puts the best focus on the image plane; by groups too.
+/// Moving the lens to the best focus, also by groups, puts the best focus on the image plane.
 #[test]
 fn the_lens_moves_to_its_best_focus() {
     let biotar = bundled("lenses/zeiss-biotar-50-f1.4.yaml");
     for search in [rms(2000.0, 0.0), contrast(2000.0, 0.0, 30.0), rms(2000.0, 12.0)] {
         let start = biotar.clone().focused_at(2000.0).expect("focused");
-        let found = start.clone().focused_by(&search).expect("light");
-        assert!(found.best_focus_shift_mm(&search).expect("light").abs() < 1e-5);
+        let found = search.focus(start.clone()).expect("light");
+        assert!(search.shift_mm(&Optics::new(found.clone())).expect("light").abs() < 1e-5);
         assert!((found.image_gap_mm() - start.image_gap_mm()).abs() > 1e-4);
     }
     let floating = two_groups("focus: [{group: front, factor: 1}, {group: rear, factor: 0.6}]\n").expect("good");
     let start = floating.focused_at(800.0).expect("focused");
-    let found = start.clone().focused_by(&rms(800.0, 0.0)).expect("light");
+    let found = rms(800.0, 0.0).focus(start.clone()).expect("light");
     assert!((found.image_gap_mm() - start.image_gap_mm()).abs() > 1e-3);
-    let shift = found.best_focus_shift_mm(&rms(800.0, 0.0)).expect("light");
+    let shift = rms(800.0, 0.0).shift_mm(&Optics::new(found.clone())).expect("light");
     assert!(shift.abs() < 1e-3, "{shift}");
 }
 
-/// A shifted group is the same lens with other gaps; a group decentered by hand is what the file would state.
+/// Shifting a group equals changing the gaps of the lens, and decentering a group equals stating it in the file.
 #[test]
 fn groups_go_out_of_place() {
     let lens = two_groups("").expect("good");
@@ -326,7 +328,7 @@ fn trace(lens: &Lens, rays: &[(DVec3, DVec3)], travel: Travel) -> Vec<Option<(DV
     trace_weighed(lens, rays, travel).into_iter().map(|ray| ray.map(|(p, d, _)| (p, d))).collect()
 }
 
-/// The same, with what is left of the light.
+/// Traces rays; returns positions, directions and the remaining weights.
 fn trace_weighed(lens: &Lens, rays: &[(DVec3, DVec3)], travel: Travel) -> Vec<Option<(DVec3, DVec3, f64)>> {
     let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::Baseline).expect("media");
     let mut batch = RayBatch::new(rays.len());
@@ -347,7 +349,7 @@ fn trace_weighed(lens: &Lens, rays: &[(DVec3, DVec3)], travel: Travel) -> Vec<Op
         .collect()
 }
 
-/// A lens turned round, with surfaces tilted, the axis bent and a group out of place, is the lens traced backward.
+/// A reversed lens, with tilted surfaces, a bent axis and a misaligned group, equals the lens traced backward.
 #[test]
 fn a_reversed_lens_is_the_lens_from_behind() {
     let crooked = written(
@@ -372,11 +374,11 @@ fn a_reversed_lens_is_the_lens_from_behind() {
                 (DVec3::new(5.0 * (3.0 * k).cos(), 5.0 * (2.0 * k).sin(), -10.0), d)
             })
             .collect();
-        // Half a turn about y, then onto the last vertex of the lens as it was.
+        // Rotates by half a turn about y, then to the last vertex of the original lens.
         let last = lens.elements.last().expect("surfaces");
         let group = lens.groups.first();
         let axis = match group {
-            // Where the last vertex would stand without the group's misalignment.
+            // Pose of the last vertex without the misalignment of the group.
             Some(_) => {
                 let mut straight = lens.clone();
                 straight.groups.clear();

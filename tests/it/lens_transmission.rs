@@ -1,11 +1,12 @@
-//! What surfaces reflect and glass absorbs, ray by ray.
+//! Tests the reflection of surfaces and the absorption of glass, ray by ray.
 
 use glam::DVec3;
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::Catalogue;
-use spectra_lens::{Coating, Indices, Lens, Tracer, Travel};
+use spectra_lens::{Coating, Lens};
 use spectra_plugins as _;
 use spectra_scene::FileResources;
+use spectra_tracer::{Indices, Tracer, Travel};
 use std::path::Path;
 
 fn load(path: &Path) -> Lens {
@@ -23,10 +24,10 @@ fn biotar() -> Lens {
     load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("lenses/zeiss-biotar-50-f1.4.yaml"))
 }
 
-/// Position, direction, wavelength in nm.
+/// A ray: its position, direction and wavelength in nm.
 type Ray = (DVec3, DVec3, f64);
 
-/// Rays with their weights where they leave, `None` where they end.
+/// Returns rays with their weights where they leave the lens, or `None` for rays that end.
 fn trace(lens: &Lens, rays: &[Ray], travel: Travel, isa: Isa) -> Vec<Option<(DVec3, DVec3, f64)>> {
     let tracer = Tracer::new(lens, Indices::Band { min_nm: 350.0, max_nm: 830.0 }, isa).expect("media");
     let mut batch = RayBatch::new(rays.len());
@@ -56,7 +57,7 @@ fn fan(count: usize) -> Vec<Ray> {
     (0..count).map(ray).collect()
 }
 
-/// One plane into n = 1.5: textbook reflectances of unpolarized light, six decimals in s and p.
+/// One plane into n = 1.5 has textbook reflectances of unpolarized light, checked to six decimals from s and p.
 #[test]
 fn a_plane_reflects_by_the_textbook() {
     let plane = written("name: p\ncoating: bare\nsurfaces:\n  - {kind: plane, thickness: 5, glass: {nd: 1.5}}\n");
@@ -68,7 +69,7 @@ fn a_plane_reflects_by_the_textbook() {
     }
 }
 
-/// N-BK7 at 550 nm, bare and under 99.6 nm of magnesium fluoride; the catalogue's index.
+/// N-BK7 at 550 nm, uncoated and under 99.6 nm of magnesium fluoride, with the catalog's index.
 #[test]
 fn a_layer_reflects_less() {
     for (coating, want) in [("bare", 0.042_388), ("{layer: 1.38, thickness: 99.6 nm}", 0.012_708_8)] {
@@ -80,7 +81,7 @@ fn a_layer_reflects_less() {
     }
 }
 
-/// The whole lens is the product of its surfaces, each at the angle to its own normal.
+/// The transmittance of the whole lens is the product of its surfaces, each at the angle to its own normal.
 #[test]
 fn surfaces_multiply() {
     let lens = Lens { absorption: false, ..biotar() };
@@ -94,12 +95,12 @@ fn surfaces_multiply() {
             let path = Tracer::new(&lens, Indices::At(ray.2), Isa::Baseline).expect("media").path(ray.0, ray.1, ray.2);
             let mut want = 1.0;
             for (at, e) in lens.elements.iter().enumerate().filter(|(_, e)| e.medium_before != e.medium_after) {
-                // Spheres: the normal points to the center.
+                // For a sphere the normal points to the center.
                 let center = DVec3::new(0.0, 0.0, e.vertex_z_mm() + 1.0 / e.vertex_curvature_per_mm().0);
                 let (before, here) = (path.points[at], path.points[at + 1]);
                 let cos = (here - before).normalize().dot((center - here).normalize()).abs();
                 let (n, m) = (lens.index(e.medium_before, ray.2), lens.index(e.medium_after, ray.2));
-                // Cement has no coating.
+                // Cemented surfaces have no coating.
                 let here = if n > 1.1 && m > 1.1 { Coating::Bare } else { coating.clone() };
                 want *= here.transmittance(n, m, cos, ray.2).mean();
             }
@@ -110,8 +111,8 @@ fn surfaces_multiply() {
     }
 }
 
-/// Backward along the same rays, the same part passes; every instruction set gives the same bits; a lens without coating
-/// keeps every weight as it was.
+/// The same share passes backward along the same rays, and every instruction set gives the same bits. A lens with an ideal coating
+/// keeps every weight.
 #[test]
 fn both_ways_and_all_tiers_alike() {
     let rays = fan(300);
@@ -133,7 +134,7 @@ fn both_ways_and_all_tiers_alike() {
     }
 }
 
-/// A thick plate of a glass whose absorption is known, at an angle: exp(-alpha path) by the catalogue itself.
+/// A thick plate of a glass with known absorption, met obliquely, follows exp(-alpha path) of the catalog.
 #[test]
 fn glass_absorbs_along_the_path() {
     let plate = |absorption: bool| {
@@ -150,7 +151,8 @@ fn glass_absorbs_along_the_path() {
             let inside = sin / glass.index(nm);
             let path_mm = 40.0 / (1.0 - inside * inside).sqrt();
             let want = glass.internal_transmittance(nm, path_mm).expect("known");
-            // The table of half nanometers against the logarithmic interpolation of the catalogue.
+            // The tolerance is the difference between the table in steps of half a nanometer and the catalog's logarithmic
+            // interpolation.
             assert!((weight / want - 1.0).abs() < 1e-3, "{nm} {sin}: {weight} {want}");
             assert!(want < 1.0);
             let (.., clear) = trace(&plate(false), &[ray], Travel::Forward, Isa::Baseline)[0].expect("it passes");
@@ -159,7 +161,7 @@ fn glass_absorbs_along_the_path() {
     }
 }
 
-/// A mirror reflects what it states; a surface's own coating goes before the lens's.
+/// A mirror has its stated reflectance, and the coating of a surface has priority over that of the lens.
 #[test]
 fn surfaces_have_their_own() {
     let mirror = written(

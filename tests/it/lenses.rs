@@ -1,8 +1,9 @@
-//! The lens library: every lens of `lenses/` is what its patent says, draws and renders.
+//! Tests the lens library: every lens of `lenses/` agrees with its patent, can be drawn and renders.
 
 use crate::common::{good, run, shown, text};
 use spectra_core::Isa;
 use spectra_lens::{Lens, Section};
+use spectra_optics::Optics;
 use spectra_plugins as _;
 use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::FileResources;
@@ -13,17 +14,17 @@ fn load(name: &str) -> Lens {
     spectra_lens::load(name, &FileResources::beside(&root.join("tests"))).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// The lenses that are bundled, but prisms and the like: what has a stop takes pictures.
+/// Returns the bundled lenses that take pictures, which are those with a stop; prisms and the like have none.
 fn library() -> Vec<(String, Lens)> {
     let names = spectra_data::list("lenses/")
         .filter_map(|path| path.strip_prefix("lenses/").and_then(|name| name.strip_suffix(".yaml")).map(str::to_owned));
-    // Those in folders are studies of surfaces.
+    // Lenses in subfolders are studies of surfaces.
     let names = names.filter(|name| !name.contains('/'));
     names.map(|name| (name.clone(), load(&name))).filter(|(_, lens)| lens.stop().is_some()).collect()
 }
 
-/// Effective and back focal length at the stated nd, mm, computed twice independently of this program (the library's
-/// scale beside them).
+/// Effective and back focal length at the stated nd, mm, computed twice independently of this program, after the scale of the
+/// library.
 const FIRST_ORDER: [(&str, f64, f64, f64); 12] = [
     ("zeiss-biotar-50-f1.4", 1.0, 49.7840216, 32.4742387),
     ("nikkor-100-f1.4", 1.0, 99.7587028, 73.8850697),
@@ -43,22 +44,22 @@ const FIRST_ORDER: [(&str, f64, f64, f64); 12] = [
 fn first_order_is_that_of_the_prescriptions() {
     for (name, scale, efl_mm, bfl_mm) in FIRST_ORDER {
         let found = load(name).first_order_at_stated_nd();
-        // One unit of the last digit, scaled.
+        // One unit of the last digit, times the scale.
         let tolerance = scale * 1.5e-7;
         assert!((found.efl_mm - scale * efl_mm).abs() < tolerance, "{name}: {}", found.efl_mm);
         assert!((found.bfl_mm - scale * bfl_mm).abs() < tolerance, "{name}: {}", found.bfl_mm);
     }
 }
 
-/// What the patents state: focal length (mm, with the tolerance of their digits in per cent) and f-number; and how far,
-/// mm, the last distance is from the paraxial focus. `None`: the stop's size is not stated, or nothing is said.
+/// Values that the patents state: focal length (mm, with the tolerance of its digits in per cent) and f-number; then the largest
+/// distance, mm, of the image plane from the paraxial focus. `None`: the stop has no stated size, or no f-number is stated.
 const STATED: [(&str, f64, f64, Option<f64>, f64); 17] = [
     ("zeiss-biotar-50-f1.4", 50.0, 0.5, None, 0.2),
     ("zeiss-biotar-100-f1.4", 100.0, 0.5, Some(1.4), 0.2),
     ("nikkor-100-f1.4", 100.0, 0.5, Some(1.4), 0.2),
     ("angenieux-100-f1.1", 100.0, 0.5, Some(1.11), 0.3),
     ("meyer-primoplan-100-f1.5", 100.0, 0.5, Some(1.5), 0.2),
-    // No patent; the name on the ring.
+    // No patent; the name on the lens barrel.
     ("helios-44-58-f2", 58.0, 1.5, None, 0.1),
     ("canon-fd-50-f1.8", 50.0, 2.5, None, 0.2),
     ("canon-35-f1.8", 35.0, 0.5, Some(1.84), 0.2),
@@ -82,19 +83,19 @@ fn focal_lengths_and_f_numbers_are_the_stated_ones() {
         assert!(off.abs() <= percent, "{name}: {} mm, {off:.2} %", first_order.efl_mm);
         let gap = lens.image_gap_mm() - first_order.bfl_mm;
         assert!(gap.abs() <= gap_mm, "{name}: the image plane is {gap:.3} mm behind the focus");
-        // The catalogue glasses change the focal length by less than their tolerance in the index.
+        // The catalog glasses change the focal length by less than their index tolerance implies.
         let own = lens.first_order(lens.reference_nm);
         assert!((own.efl_mm / first_order.efl_mm - 1.0).abs() < 2e-3, "{name}: {} mm by its glasses", own.efl_mm);
         assert!(lens.warnings.is_empty(), "{name}: {:?}", lens.warnings);
         let Some(f_number) = f_number else { continue };
-        let found = lens.marginal_ray().unwrap_or_else(|e| panic!("{name}: {e}")).f_number();
+        let found = Optics::new(lens.clone()).marginal_ray().unwrap_or_else(|e| panic!("{name}: {e}")).f_number();
         println!("{name}: EFL {:.3} mm, f/{found:.3}, stated f/{f_number}", first_order.efl_mm);
-        // The hologon is stopped by its middle planes, of one digit: f/7.4.
+        // The Hologon is stopped by its middle planes, whose size has one digit: f/7.4.
         assert!((found / f_number - 1.0).abs() < 0.07, "{name}: f/{found:.3}, stated f/{f_number}");
     }
 }
 
-/// Every lens says where it comes from, and every surface how large it is (but stops whose size nobody states).
+/// Every lens states its source, and every surface its size, except stops without a published size.
 #[test]
 fn every_lens_is_documented() {
     let library = library();
@@ -110,27 +111,30 @@ fn every_lens_is_documented() {
             let excused = element.stop && unsized_stops.contains(&name.as_str());
             assert!(known || excused, "{name}: surface {} has no size", i + 1);
         }
-        assert!(STATED.iter().any(|row| row.0 == name) || name.contains("anamorphic"), "{name} is held to nothing");
+        assert!(
+            STATED.iter().any(|row| row.0 == name) || name.contains("anamorphic"),
+            "{name} is compared with nothing"
+        );
     }
 }
 
-/// Lenses whose glasses are doubted, and what for: the reason why the figures stand.
+/// Lenses whose glasses look misread, the figure in the warning, and the reason why the figures are kept.
 const DOUBTED: [(&str, &str, &str); 4] = [
-    ("zeiss-hologon-15-f8", "0.40 % of the focal length", "0.06 mm, little beside the depth of focus at f/8"),
+    ("zeiss-hologon-15-f8", "0.40 % of the focal length", "0.06 mm, small compared with the depth of focus at f/8"),
     (
         "canon-fd-50-f1.8",
         "0.56 % of the focal length",
-        "very likely misread, and the patent was not seen: its remark says so",
+        "very likely misread, and the patent was not seen, as the remark says",
     ),
     ("nikon-retrofocus-100-f2.8", "0.47 % of the focal length", "as the patent prints it"),
     (
         "minolta-fisheye-16-f2.7",
         "1.03 % of the focal length",
-        "0.17 mm, as a normal lens of 1927 has: much only for its short focal length",
+        "0.17 mm, like a normal lens of 1927: large only relative to its short focal length",
     ),
 ];
 
-/// No lens of the library has a glass that looks misread, but those that are known by name; `lens info` says it of these.
+/// No lens of the library has a glass that looks misread, except the listed ones, for which `lens info` warns.
 #[test]
 fn glasses_are_plausible() {
     for (name, lens) in library() {
@@ -147,15 +151,15 @@ fn glasses_are_plausible() {
     assert!(said.contains("A glass is very likely misread"), "{said}");
 }
 
-/// The retrofocus as it was transcribed: an Abbe number of 46.2 was read as that of the line below, 27.5. An imported lens is doubted as well, a
-/// singlet and glasses of one index that all exist are not.
+/// The retrofocus lens in its original transcription has a misread glass: the Abbe number 46.2 was read as the 27.5 of the line
+/// below. Imported lenses are checked as well. A singlet, and glasses of one index that all exist, cause no warning.
 #[test]
 fn misread_glasses_are_doubted() {
     let transcribed = load("data/lenses/nikon-retrofocus-100-f2.8.yaml").glass_doubts();
     assert_eq!(transcribed.len(), 2, "{transcribed:?}");
     assert!(transcribed[0].contains("0.83 % of the focal length"), "{transcribed:?}");
-    let twins = "the media behind surfaces 5 and 7 have one index, 1.76684, and Abbe numbers of 46.2 and 27.5, and no glass of the catalogue is near \
-                 that of 46.2, nor near that of 27.5";
+    let twins = "the media behind surfaces 5 and 7 have the same index, 1.76684, but Abbe numbers of 46.2 and 27.5, and no glass of the \
+                 catalogue is near that of 46.2, nor near that of 27.5";
     assert!(transcribed[1].contains(twins), "{transcribed:?}");
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
@@ -172,7 +176,7 @@ fn misread_glasses_are_doubted() {
         text(&done.stderr)
     };
     let said = zmx("1.76684 46.2", "1.76684 27.5");
-    assert!(said.contains("warning: the media behind surfaces 1 and 3 have one index"), "{said}");
+    assert!(said.contains("warning: the media behind surfaces 1 and 3 have the same index"), "{said}");
     assert!(said.contains("warning: the foci of F and C lie"), "{said}");
     let written = std::fs::read_to_string(at("lens.yaml")).expect("written");
     assert!(written.contains("\nrims: stated\n"), "{written}");
@@ -183,11 +187,11 @@ fn misread_glasses_are_doubted() {
     assert!(load(shown(&at("singlet.yaml"))).glass_doubts().is_empty());
 }
 
-/// Each lens says where its semi-diameters come from, in the file and in `lens info`.
+/// Each lens states the origin of its semi-diameters, in the file and in `lens info`.
 #[test]
 fn rims_have_an_origin() {
     for (name, words) in [
-        ("tessar-50-f4.5", "rims: computed by rays that were to pass"),
+        ("tessar-50-f4.5", "rims: computed from rays that were meant to pass"),
         ("zeiss-biotar-50-f1.4", "rims: guessed"),
         ("meyer-primoplan-100-f1.5", "rims: stated by the source"),
         ("helios-44-58-f2", "rims: fitted to the light of a Helios-44 58 mm f/2 at f/2 and f/2.8"),
@@ -201,8 +205,8 @@ fn rims_have_an_origin() {
     assert!(json["rims"]["fitted"].as_str().is_some_and(|text| text.contains("Lensfun")), "{said}");
 }
 
-/// Light over the middle's at 5.4, 10.8, 16.2 and 21.6 mm, as Lensfun (CC BY-SA 3.0) measured a Helios-44 and an EF 70-200 mm f/2.8L (interpolated to
-/// 72 mm), with what was measured at f/2.8 and f/8; `xtask/measured_light.py` holds more stops to the tables themselves.
+/// Relative illuminance at 5.4, 10.8, 16.2 and 21.6 mm agrees with Lensfun's measurements (CC BY-SA 3.0) of a Helios-44 at f/2.8 and
+/// of an EF 70-200 mm f/2.8L at f/8, interpolated to 72 mm. `xtask/measured_light.py` compares more stops with the original tables.
 #[test]
 fn measured_lenses_have_their_light() {
     for (name, f_number, measured) in [
@@ -233,13 +237,14 @@ fn measured_lenses_have_their_light() {
     }
 }
 
-/// Afocal cylinders in front of a prime: the focal length across is shorter by the squeeze, and both sections' images
-/// lie in one plane.
+/// Afocal cylinders in front of a prime lens shorten the focal length across by the squeeze, and the images of both sections lie in
+/// one plane.
 #[test]
 fn the_anamorphic_squeezes() {
     let lens = load("schneider-anamorphic-60");
     let [x, y] = [Section::X, Section::Y].map(|section| lens.first_order_in(section, lens.reference_nm));
-    // The ray-transfer matrices at the stated indices, multiplied apart: 31.4876 and 60.5546 mm; back 43.3304 and 43.3545.
+    // From ray-transfer matrices at the stated indices, multiplied independently: 31.4876 and 60.5546 mm; back focus 43.3304 and
+    // 43.3545 mm.
     for (found, wanted) in [(x.efl_mm, 31.4876), (y.efl_mm, 60.5546), (x.bfl_mm, 43.3304), (y.bfl_mm, 43.3545)] {
         assert!((found / wanted - 1.0).abs() < 2e-3, "{found} {wanted}");
     }
@@ -258,13 +263,13 @@ fn every_lens_draws() {
     }
 }
 
-/// The illuminance on the axis behind a lens at f/8, without losses, in parts of pi L / (4 N^2).
+/// Returns the illuminance on the axis behind a lens at f/8, without losses, relative to pi L / (4 N^2).
 fn of_the_camera_equation(lens: &str) -> f64 {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let overrides = [
         &format!("lens.file={lens}"),
-        // As for a 135 frame, of which the small one below is the middle: for a frame of its own size a lens with
-        // spherical aberration is focused far behind the marginal rays that its f-number is stated by.
+        // Focus as for a 135 frame, of which this small frame is the middle. Focused for its own size, a lens with spherical
+        // aberration would be far behind the focus of the marginal rays that define its f-number.
         "lens.focus={distance: infinity, frequency: 30 lp/mm}",
         "lens.f-number=f/8",
         "lens.coating=ideal",
@@ -283,14 +288,14 @@ fn of_the_camera_equation(lens: &str) -> f64 {
     let frame = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
     let y = &frame.channel("Y").expect("XYZ").values;
     let mean = y.iter().map(|v| f64::from(*v)).sum::<f64>() / y.len() as f64;
-    // The card is of 18 % and its white of 300 cd/m2.
+    // The card has 18 % and its white 300 cd/m2.
     let part = mean / (std::f64::consts::PI * 300.0 * 0.18 / (4.0 * 64.0));
     println!("{lens}: {part:.4} of the camera equation");
     part
 }
 
-/// A gray card behind every lens at f/8: the camera equation within 2 % (the rim of the exit pupil as it is seen from the film, instead of
-/// the marginal ray of a lens with spherical aberration, over all wavelengths).
+/// A gray card behind every lens at f/8 has the illuminance of the camera equation within 2 %. The remaining difference is that of
+/// the exit pupil seen from the film from the marginal ray of a lens with spherical aberration, over all wavelengths.
 #[test]
 fn every_lens_renders_the_illuminance_of_its_f_number() {
     for (name, _) in library() {
@@ -299,8 +304,9 @@ fn every_lens_renders_the_illuminance_of_its_f_number() {
     }
 }
 
-/// A lens and its mirror images have one f-number: that of the cone's area, 2.743 by another program's rays where the first surface is decentered by
-/// 2 mm and 2.761 where it is not. By the marginal ray upward they were f/3.90, f/2.10 and f/2.65, and gray cards differed by a factor of five.
+/// A lens and its mirror images have one f-number, by the solid angle of the cone: 2.743 by another program's rays if the first
+/// surface is decentered by 2 mm, and 2.761 if not. By the upper marginal ray alone they would be f/3.90, f/2.10 and f/2.65, and gray
+/// cards would differ by a factor of five.
 #[test]
 fn a_decentered_lens_has_the_f_number_of_its_cone() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -317,15 +323,15 @@ fn a_decentered_lens_has_the_f_number_of_its_cone() {
     };
     for (decenter, wanted) in [([0, 2], 2.743), ([0, -2], 2.743), ([2, 0], 2.743), ([0, 0], 2.761)] {
         let path = lens(decenter);
-        let found = load(shown(&path)).marginal_ray().expect("open").f_number();
+        let found = Optics::new(load(shown(&path))).marginal_ray().expect("open").f_number();
         assert!((found - wanted).abs() < 1e-3, "{decenter:?}: f/{found}");
         let part = of_the_camera_equation(shown(&path));
         assert!((part - 1.0).abs() < 0.02, "{decenter:?}: {part}");
     }
 }
 
-/// Slips that a first look at the numbers shows: the signs of another convention, a thickness behind a mirror that light runs away from; and,
-/// where somebody looks at the prescription, a sign lost.
+/// Sign errors are noticed: signs of another convention, or a thickness after a mirror on the side away from the light. `lens info`
+/// also notices a lost sign in the prescription.
 #[test]
 fn slips_of_signs_are_doubted() {
     let folder = tempfile::tempdir().expect("a folder");

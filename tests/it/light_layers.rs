@@ -1,4 +1,5 @@
-//! Light by its kinds: direct, ghosts, glare and star are the picture, in the renderer and in a file; asking for them changes no bit.
+//! Tests layers of light: direct, ghosts, glare and star add up to the picture, in the renderer and in a file. Requesting them
+//! changes no bit.
 
 use crate::common::statistics::{self, drafted, ready};
 use crate::common::{run, shown, text};
@@ -8,7 +9,7 @@ use spectra_plugins as _;
 use spectra_render::{Renderer, Rendering};
 use spectra_scene::{LightKind, Scene};
 
-/// The sun beside the axis of a bare lens, with all that glass, paint and blades make of it.
+/// The sun beside the axis of an uncoated lens, with ghosts, veiling glare and the star of the blades.
 const SUN: &str = "spectra: 1\n\
     source: {kind: sun, field: [9 deg, 5 deg], illuminance: 60000 lx}\n\
     lens: {file: zeiss-biotar-50-f1.4, f-number: f/8, focus: infinity, coating: bare, aperture: {shape: iris, blades: 6}}\n\
@@ -45,7 +46,7 @@ fn kinds_of_light_are_the_whole() {
             assert!((sum - f64::from(*whole)).abs() <= 3e-7 * size, "{}: {sum} {whole}", channel.name);
         }
     }
-    // What diffraction brings beside the frame is missing in all.
+    // Light that diffraction moves out of the frame is missing from the sum.
     let star: f64 = rendering.layers[3].channels[1].values.iter().map(|v| f64::from(*v)).sum();
     assert!(star < 0.0, "{star}");
 }
@@ -59,7 +60,7 @@ fn asking_for_them_changes_no_bit() {
     assert!(plain.layers.is_empty());
     let layered = rendered(ALL, &[]);
     assert_eq!(bits(&plain), bits(&layered));
-    // A layer is what the picture has of its estimator: without ghosts and glare the rest is direct.
+    // A layer holds the light of its estimator: without ghosts and glare everything else is direct.
     let bare = ["render.reflections.order=0", "render.glare=false", "render.diffraction=false"];
     let direct = rendered(ALL, &bare);
     assert_eq!(direct.exposure.channels[1].values, layered.layers[0].channels[1].values);
@@ -81,7 +82,7 @@ fn a_file_has_them_beside_the_exposure() {
     let want = rendered_by(ready, ALL, &[]);
     let FlatSamples::F32(values) = &channels[4].sample_data else { panic!("32-bit floats") };
     assert_eq!(values, &want.layers[1].channels[1].values);
-    // The picture itself is read as before, layers or not.
+    // The picture itself is read as before, with or without layers.
     let said = run(&["picture", "info", shown(&folder.path().join("sun.exr"))]);
     assert!(said.status.success(), "{}", text(&said.stderr));
 }
@@ -92,7 +93,7 @@ fn layers_of_the_picture_are_told_from_those_of_light() {
     let path = folder.path().join("sun.yaml");
     for (layers, words) in [
         ("layers: [ghosts, densities]", "`holds: picture`"),
-        ("layers: [ghosts, ghosts]", "there twice"),
+        ("layers: [ghosts, ghosts]", "listed twice"),
         ("holds: picture, layers: [ghosts]", "layers of the exposure"),
     ] {
         std::fs::write(&path, format!("{SUN}output: [{{kind: exr, {layers}}}]\n")).expect("written");

@@ -1,5 +1,5 @@
-//! Bright parts of a source forward, the rest backward: the same exposure as by one direction alone, of flat pictures, pictures
-//! with depth and layers.
+//! Tests tracing bright parts of a source forward and the rest backward: the exposure equals that of one direction alone, for flat
+//! pictures, pictures with depth and layers.
 
 use crate::common::statistics::{self, Estimate, bits, estimates, over_seeds, ready, rendered};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
@@ -12,7 +12,7 @@ const ROWS: usize = 4;
 const SEEDS: u64 = 12;
 const SIZE: (usize, usize) = (48, 32);
 
-/// Lamps: column, row, radius, brightness. The second and third stand at the edge of what is in front.
+/// Lamps: column, row, radius and brightness. The second and third are at the edge of the foreground.
 const LAMPS: [(f64, f64, f64, f32); 5] = [
     (8.0, 8.0, 1.5, 60.0),
     (24.5, 12.5, 1.2, 90.0),
@@ -27,12 +27,12 @@ fn brightness(column: usize, row: usize) -> f32 {
     lamp.map_or(0.1 + 0.01 * ((column * 7 + row * 3) % 11) as f32, |lamp| lamp.3)
 }
 
-/// What is in front: a post, m away. Its light is dim, but for a lamp of its own.
+/// Returns whether a pixel belongs to the foreground, a dim post with a lamp of its own.
 fn is_in_front(column: usize, row: usize) -> bool {
     (12..24).contains(&column) && row >= 6
 }
 
-/// Depth: the post, before a wall that recedes to the right in small steps.
+/// Returns the depth, m: the post in front of a wall that recedes to the right in small steps.
 fn depth(column: usize, row: usize) -> f32 {
     if is_in_front(column, row) { 0.9 } else { 1.8 + 0.006 * (column as f32) }
 }
@@ -82,7 +82,7 @@ fn made(path: &Path, set: &[&str]) -> Renderer {
     ready(statistics::load(path, set))
 }
 
-/// Mean illuminance of the whole frame and each of its 20 regions.
+/// Returns the mean illuminance of the whole frame and of each of its 20 regions.
 fn regions(rendering: &Rendering) -> Vec<f64> {
     let parts = statistics::regions(rendering, COLUMNS, ROWS);
     let whole = parts.iter().sum::<f64>() / parts.len() as f64;
@@ -93,8 +93,8 @@ fn estimate(path: &Path, set: &[&str]) -> Vec<Estimate> {
     estimates(&over_seeds(&made(path, set), 5..5 + SEEDS, regions))
 }
 
-/// As in `tests/it/directions.rs`: three standard errors, of 21 figures. They are known from twelve seeds; by six of them, one in a hundred
-/// is taken for a third of what it is.
+/// Largest difference in standard errors: three, as in `tests/it/directions.rs`, for 21 figures. The errors come from twelve seeds;
+/// from six seeds, one error in a hundred would be underestimated to a third.
 const ERRORS: f64 = 3.0 * 1.6;
 
 fn agree(source: &str) {
@@ -113,7 +113,7 @@ fn agree_by(source: &str, others: &[(&str, &str)]) {
         for (region, (backward, other)) in backward.iter().zip(&other).enumerate() {
             let (b, o, error) = (backward.mean, other.mean, backward.error.hypot(other.error));
             println!("{direction} {region}: backward {backward:?}, {other:?}, {:.2}", (o - b) / error);
-            assert!(error < 0.01 * b, "region {region}: {b} is known to {error} only");
+            assert!(error < 0.01 * b, "region {region}: {b} is known only to {error}");
             assert!((o - b).abs() < ERRORS * error, "{direction}, region {region}: {o} and {b}, +- {error}");
         }
     }
@@ -134,7 +134,7 @@ fn lights_of_layers() {
     agree(LAYERS);
 }
 
-/// A sun over a chart: as the film sees both, and from itself.
+/// A sun over a chart, traced from the film and from the source.
 #[test]
 fn a_sun_over_a_chart() {
     let sun = "{kind: sun, field: [3 deg, 2 deg], diameter: 2 deg, illuminance: 1 lx, \
@@ -142,7 +142,7 @@ fn a_sun_over_a_chart() {
     agree_by(sun, &[("both", "render.samples=64")]);
 }
 
-/// What stands in front of a lamp takes light from it and adds none: a lamp at its edge does not go on behind it.
+/// A post in front of a lamp takes light from it and adds none: a lamp at its edge does not continue behind it.
 #[test]
 fn a_lamp_at_an_edge_is_no_brighter_for_it() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -151,11 +151,11 @@ fn a_lamp_at_an_edge_is_no_brighter_for_it() {
     let seen = regions(&rendered(&made(&path, &sharp)));
     let open = regions(&rendered(&made(&path, &[&sharp[..], &["source.file=open.exr"]].concat())));
     println!("{seen:?} {open:?}");
-    // The post is brighter by its own lamp, which is sharp now; what is hidden of the others is more.
+    // The post is brighter because of its own lamp, which is now in focus; more light of the other lamps is hidden.
     assert!(seen[0] < open[0], "{} {}", seen[0], open[0]);
 }
 
-/// By itself both directions are taken where a picture has lights, and the noise of what they shine on falls.
+/// By default both directions are used if a picture has lights, and the noise of the areas that they light decreases.
 #[test]
 fn lights_are_seen_without_being_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -177,7 +177,7 @@ fn lights_are_seen_without_being_asked_for() {
     assert!(both < 0.25 * backward, "{both} {backward}");
 }
 
-/// The bits of both directions do not depend on threads, batches and instruction sets.
+/// The bits with both directions do not depend on threads, batches and instruction sets.
 #[test]
 fn bits_are_the_same_however_it_runs() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -193,8 +193,8 @@ fn bits_are_the_same_however_it_runs() {
     }
 }
 
-/// Lamps of one pixel on black, far out of focus: each ray's light is spread over the image of its lamp. The disk is the one of rays that
-/// start anywhere in the lamp, and noise between two seeds is at most that of six times as many of those.
+/// Lamps of one pixel on black, far out of focus: the light of each ray is spread over the image of its lamp. The disk equals that of
+/// rays from anywhere in the lamp, and the noise between two seeds is at most that of six times as many such rays.
 #[test]
 fn lamps_of_one_pixel_are_spread_over_their_images() {
     let common = [

@@ -1,4 +1,4 @@
-//! What a user can see, and what crates do together: one program, so that the engine is linked once.
+//! Tests of what a user can see and of crates together, as one program, so that the engine is linked only once.
 
 mod around;
 mod bundled;
@@ -59,3 +59,4 @@ mod scatter;
 mod scene_lens;
 mod scenes;
 mod session;
+mod words;

@@ -1,4 +1,4 @@
-//! A camera's meter sees all light that falls on the film: what came straight, ghosts, and the veil.
+//! Tests that a camera's meter sees all light on the film: direct light, ghosts and the veil.
 
 use spectra_core::Isa;
 use spectra_plugins as _;
@@ -9,7 +9,7 @@ const FILM: &str = "imager: {kind: film, width: 36, height: 24, resolution: [48,
                     film: {stock: kodak-tri-x-400, metering: average, grain: false}\n";
 const EYE: &str = "imager: {kind: xyz, width: 36, height: 24, resolution: [48, 32]}\n";
 
-/// A source before a bare Biotar.
+/// Returns a scene of a source in front of an uncoated Biotar.
 fn scene(source: &str, imager: &str, set: &[&str]) -> Scene {
     let text = format!(
         "spectra: 1\n\
@@ -30,25 +30,25 @@ fn render(scene: Scene) -> Rendering {
     renderer.run(&Threads(2), &Control::new()).expect("rendered")
 }
 
-/// The light that the meter of a film saw, but for a factor: the time is its inverse.
+/// Returns the light that the meter of a film saw, up to a factor: the inverse of the exposure time.
 fn metered(source: &str, set: &[&str]) -> f64 {
     let times = scene(source, FILM, set).film_times(&render(scene(source, FILM, set)).exposure);
     assert!(times[0].is_metered);
     1.0 / times[0].time_s
 }
 
-/// The light that a photometer in place of the film sees.
+/// Returns the light that a photometer in place of the film sees.
 fn seen(source: &str, set: &[&str]) -> f64 {
     let exposure = render(scene(source, EYE, set)).exposure;
     exposure.channel("Y").expect("an XYZ imager").values.iter().map(|v| f64::from(*v)).sum()
 }
 
-/// How much more light there is with all of it than with the straight light alone, as the meter has it and as it is.
+/// Checks that the meter reports the same relative increase of light over direct light alone as the photometer.
 fn agree(source: &str, all: &[&str], base: &[&str], least: f64) {
     let all = [base, all].concat();
     let more = |light: fn(&str, &[&str]) -> f64| light(source, &all) / light(source, base) - 1.0;
     let (meter, is) = (more(metered), more(seen));
-    println!("more by {is:.5}, as the meter has it {meter:.5}");
+    println!("increase {is:.5}, by the meter {meter:.5}");
     assert!(is > least, "{is}");
     assert!((meter / is - 1.0).abs() < 0.05, "{meter} {is}");
 }
@@ -68,7 +68,7 @@ fn a_meter_sees_ghosts() {
     agree(POINT, &["render.reflections.order=2", "render.glare=true"], &[], 0.01);
 }
 
-/// And the same however the work is done.
+/// The metered time does not depend on the number of threads.
 #[test]
 fn threads_change_no_time() {
     let set = ["render.reflections.order=2", "render.glare=true", "render.samples=8"];

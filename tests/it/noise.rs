@@ -1,4 +1,4 @@
-//! Stopping where it is clean: what is promised of the noise, without bias, with the same bits on any number of threads.
+//! Tests stopping at a noise level: the promised noise is reached without bias, with the same bits on any number of threads.
 
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
@@ -9,7 +9,7 @@ use std::path::Path;
 
 const WIDTH: usize = 48;
 const HEIGHT: usize = 32;
-/// Side of the blocks that are judged.
+/// Side of the blocks whose noise is judged, in pixels.
 const BLOCK: usize = 16;
 
 fn settings(more: &[&str]) -> Vec<String> {
@@ -30,7 +30,7 @@ fn bits(exposure: &ExposureFrame) -> Vec<u32> {
     exposure.channels.iter().flat_map(|c| c.values.iter().map(|v| v.to_bits())).collect()
 }
 
-/// Mean and variance between seeds of each pixel, luminance or the only layer.
+/// Returns the mean and the variance between seeds of each pixel, of the luminance or the only layer.
 fn over_seeds(scene: &str, more: &[&str], seeds: u64) -> Vec<(f64, f64)> {
     let mut sums = vec![(0.0, 0.0); WIDTH * HEIGHT];
     let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));
@@ -47,8 +47,8 @@ fn over_seeds(scene: &str, more: &[&str], seeds: u64) -> Vec<(f64, f64)> {
     sums.into_iter().map(|(sum, square)| (sum / n, (square - sum * sum / n) / (n - 1.0))).collect()
 }
 
-/// The noise between seeds is what was asked for: at most 5 % of the blocks end above 1.2 times of it, and none is much cleaner
-/// than a round makes it. The mean of many pictures that stopped is the mean of pictures that did not: within 4 standard errors.
+/// The noise between seeds is the requested one: at most 5 % of the blocks end above 1.2 times of it, and none is much cleaner than
+/// one round can explain. The mean of many stopped pictures equals that of pictures that did not stop, within 4 standard errors.
 #[test]
 fn noise_is_what_was_asked_for() {
     let set = ["render.batch=256", "lens.f-number=2"];
@@ -63,7 +63,7 @@ fn noise_is_what_was_asked_for() {
             let variance = pixels.iter().map(|p| stopped[*p].1).sum::<f64>() / pixels.len() as f64;
             let noise = variance.sqrt() / mean;
             println!("block {row}, {column}: {noise}");
-            // A round more halves the variance at most.
+            // Another round at most halves the variance.
             assert!(noise > 0.018 && noise < 0.045, "block {row}, {column}: {noise}");
             above += usize::from(noise > 1.2 * 0.03);
             blocks += 1;
@@ -80,7 +80,7 @@ fn noise_is_what_was_asked_for() {
     assert!((a - b).abs() < 4.0 * (va + vb).sqrt(), "{a} {b} +- {}", (va + vb).sqrt());
 }
 
-/// Even light in one color, which leaves no noise but that of rays that end.
+/// Settings for uniform light of one color, whose only noise comes from rays that are lost.
 const EVEN: [&str; 4] = [
     "source={kind: chart, chart: white, width: fill, distance: 3 m}",
     "lens.file=helios-44-58-f2",
@@ -88,8 +88,8 @@ const EVEN: [&str; 4] = [
     "render.noise=null",
 ];
 
-/// Rays that end at the rims are no noise: of even light in one color, through a lens wide open and at f/8, a pixel differs
-/// between seeds by half of what it did when some 0.7 % of the rays ended at random, which was 0.36 % with 256 samples.
+/// Rays lost at the rims add no noise. In uniform light of one color, wide open and at f/8, the spread of a pixel between seeds is at
+/// most half of what it was when about 0.7 % of the rays were lost at random: 0.36 % with 256 samples.
 #[test]
 fn rays_that_end_leave_no_noise() {
     for stop in ["lens.f-number=f/2", "lens.f-number=f/8"] {
@@ -100,8 +100,8 @@ fn rays_that_end_leave_no_noise() {
     }
 }
 
-/// Few samples, of which not every one brings a ray to the rim of the pupil along, are as bright as many: within 4 standard errors, which are a
-/// tenth of the light of the rim. Batches of any size are cut alike.
+/// Pictures of few samples are as bright as those of many, although not every sample brings a ray to the rim of the pupil. They agree
+/// within 4 standard errors, a tenth of the light at the rim. The result does not depend on the batch size.
 #[test]
 fn few_samples_are_as_bright_as_many() {
     let even = |more: &[&'static str]| [&EVEN[..], &["lens.f-number=f/2"], more].concat();
@@ -123,7 +123,7 @@ fn few_samples_are_as_bright_as_many() {
     }
 }
 
-/// Luminance, or the only layer, of pictures of a scene by these seeds; each traced on one thread, two at a time.
+/// Returns the luminance, or the only layer, of pictures of a scene with these seeds, each traced on one thread, two at a time.
 fn pictures(scene: &str, more: &[&str], seeds: std::ops::Range<u64>) -> Vec<Vec<f32>> {
     let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));
     let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
@@ -141,8 +141,8 @@ fn pictures(scene: &str, more: &[&str], seeds: std::ops::Range<u64>) -> Vec<Vec<
     })
 }
 
-/// What stops at 1 % is biased by less than 0.1 %, the frame for sure and its blocks within their errors, and at most 5 % of its blocks are off by more than 1.2 %: each
-/// picture against the mean of all, root mean square over the pixels of a block.
+/// Pictures that stop at 1 % are biased by less than 0.1 %, the frame certainly and its blocks within their errors. At most 5 % of
+/// the blocks deviate by more than 1.2 %: each picture from the mean of all, RMS over the pixels of a block.
 #[test]
 #[ignore = "minutes in a release build: see benches/README.md"]
 fn a_thousand_seeds_have_no_bias() {
@@ -150,7 +150,7 @@ fn a_thousand_seeds_have_no_bias() {
     let scene = "bench/noise-flat";
     let set = ["imager.crop=\"3:2\"", "render.noise=1 %", "render.samples=8192"];
     let stopped = pictures(scene, &set, 0..seeds);
-    // As many as give the mean of the others' accuracy, or nearly.
+    // Enough pictures for a mean about as accurate as that of the others.
     let fixed = [&set[..1], &["render.noise=null", "render.samples=2048"]].concat();
     let all = pictures(scene, &fixed, 1 << 40..(1 << 40) + seeds.div_ceil(4));
     let mean_of = |pictures: &[Vec<f32>], pixel: usize| {
@@ -158,7 +158,8 @@ fn a_thousand_seeds_have_no_bias() {
     };
     let truth: Vec<f64> = (0..WIDTH * HEIGHT).map(|pixel| mean_of(&all, pixel)).collect();
     let stopped_mean: Vec<f64> = (0..WIDTH * HEIGHT).map(|pixel| mean_of(&stopped, pixel)).collect();
-    // Mean over some pixels, relative to the truth there, and its standard error by the scatter between pictures.
+    // Returns the mean over some pixels relative to the truth there, minus 1, and its standard error from the scatter between
+    // pictures.
     let bias = |pixels: &[usize]| {
         let over = |values: &dyn Fn(usize) -> f64| pixels.iter().map(|p| values(*p)).sum::<f64>() / pixels.len() as f64;
         let truth = over(&|p| truth[p]);
@@ -202,23 +203,23 @@ fn a_thousand_seeds_have_no_bias() {
     assert!(above * 20 <= judged, "{above} of {judged}");
 }
 
-/// Parts of a picture end after different numbers of samples, and what was reached is said.
+/// Parts of a picture stop after different numbers of samples, and the reached noise is reported.
 #[test]
 fn dark_and_busy_parts_get_more_samples() {
     let picture =
         render("biotar-ortho", &["render.noise=2 %", "render.samples=4096", "lens.f-number=f/4"], &Threads(2));
     let noise = picture.noise.expect("asked for");
     assert!(!picture.partial && noise.worst <= noise.asked && noise.clean == 1.0, "{noise:?}");
-    // All blocks have 64 samples at least; if all had as many as the worst, it would be a multiple of the frame.
+    // Every block has at least 64 samples. If all had as many as the worst one, the number of rays would be a multiple of the frame.
     let frame = (WIDTH * HEIGHT) as u64;
     assert!(picture.rays > 64 * frame && !picture.rays.is_multiple_of(64 * frame), "{}", picture.rays);
-    // More are not allowed: it says so.
+    // If the sample limit is reached, a warning says so.
     let few = render("biotar-ortho", &["render.samples=64"], &Threads(2));
     assert!(few.rays == 64 * frame && few.noise.is_some_and(|noise| noise.clean < 0.99));
     assert!(few.warnings.iter().any(|warning| warning.contains("`render.samples` (now 64)")), "{:?}", few.warnings);
 }
 
-/// The same bits on any number of threads and batch sizes; stopped in between, saved and taken up again.
+/// The bits are the same on any number of threads and with any batch size, also if the light is saved and loaded in between.
 #[test]
 fn the_same_bits_however_the_work_is_done() {
     for scene in ["biotar-ortho", "gray-card"] {
@@ -246,8 +247,8 @@ fn strata_cannot_stop() {
     );
 }
 
-/// A gray card in even light at 64 samples a pixel: every layer of a color negative is known to 1.8 %, by neighbors' differences. Of
-/// 15 000 of them that is known to 1 %.
+/// A gray card in uniform light at 64 samples per pixel: the noise of every layer of a color negative is below 1.8 %, from the
+/// differences of neighbors. From 15 000 differences that figure is accurate to 1 %.
 #[test]
 fn a_gray_card_is_even_at_64_samples() {
     let set = [

@@ -1,4 +1,4 @@
-//! A parameter is said once: its type, range and words stand in its declaration, which is what is checked.
+//! Tests that a parameter is declared once: its type, range and words are in its declaration, which is what is checked.
 
 use crate::common::repository;
 use serde_json::{Map, Value, json};
@@ -15,16 +15,16 @@ use spectra_scene::{FileResources, Output};
 use spectra_spectrum::SpectrumKind;
 use std::path::{Path, PathBuf};
 
-/// A value just outside of what a schema allows, and where it stands.
+/// A value just outside of what a schema allows, and its place.
 #[derive(Clone, Debug)]
 struct Outside {
     /// Path of the key, such as `photosite.index` or `tilt[0]`.
     path: String,
-    /// The tree that holds it.
+    /// The tree that contains the value.
     tree: Value,
 }
 
-/// Values just outside of the limits of a schema.
+/// Returns values just outside the limits of a schema.
 fn outside(schema: &Value) -> Vec<Value> {
     let number = |key: &str| schema.get(key).and_then(Value::as_f64);
     let is_whole = schema.get("type").is_some_and(|t| t == "integer" || t == &json!(["integer", "null"]));
@@ -39,9 +39,9 @@ fn outside(schema: &Value) -> Vec<Value> {
     bare.chain(with_unit).collect()
 }
 
-/// All values just outside in a schema of a map.
+/// Returns all values just outside the limits in the schema of a map.
 fn all_outside(schema: &Value, definitions: &Map<String, Value>) -> Vec<Outside> {
-    // A part is read later, and by others.
+    // Parts are read later by other code.
     if schema.get("x-part").is_some() {
         return Vec::new();
     }
@@ -70,7 +70,7 @@ fn all_outside(schema: &Value, definitions: &Map<String, Value>) -> Vec<Outside>
         found.push(here(json!(vec![Value::Null; least - 1])));
     }
     for way in ["anyOf", "oneOf"].iter().filter_map(|key| schema.get(key)?.as_array()).flatten() {
-        // Of several ways another one may allow it.
+        // With several alternatives, another one may allow the value.
         if ways(schema) == 1 {
             found.extend(all_outside(way, definitions));
         }
@@ -78,7 +78,7 @@ fn all_outside(schema: &Value, definitions: &Map<String, Value>) -> Vec<Outside>
     found
 }
 
-/// How many ways there are beside null.
+/// Returns the number of alternatives other than null.
 fn ways(schema: &Value) -> usize {
     let all = ["anyOf", "oneOf"].iter().filter_map(|key| schema.get(key)?.as_array()).flatten();
     all.filter(|way| way.get("type").is_none_or(|t| t != "null")).count()
@@ -103,7 +103,7 @@ fn built(stage: &str, params: &Params, context: &Context<'_>) -> Vec<Fault> {
     faults.map(|faults| faults.0).unwrap_or_default()
 }
 
-/// Every range and length that a schema states is what is checked, at its own place and with what is allowed as a hint.
+/// Every range and length that a schema states is checked, reported at its own place with a hint that says what is allowed.
 #[test]
 fn what_a_schema_allows_is_what_is_checked() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -148,7 +148,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The words of each enum whose schema is derived.
+/// Returns the words of each enum with a derived schema.
 fn words_of_enums(code: &str) -> Vec<Vec<String>> {
     let mut enums = Vec::new();
     for part in code.split("#[derive(").skip(1) {
@@ -170,7 +170,7 @@ fn kebab(variant: &str) -> String {
     variant.char_indices().map(dash).collect::<String>().to_lowercase()
 }
 
-/// The numbers of `range(min = A, max = B)` and of `"exclusiveMinimum" = A, "maximum" = B`.
+/// Returns the numbers of `range(min = A, max = B)` and of `"exclusiveMinimum" = A, "maximum" = B`.
 fn ranges(code: &str) -> Vec<[String; 2]> {
     let mut found = Vec::new();
     for attribute in code.split("#[schemars(").skip(1).map(|rest| rest.split(")]").next().unwrap_or_default()) {
@@ -186,7 +186,7 @@ fn ranges(code: &str) -> Vec<[String; 2]> {
     found
 }
 
-/// No range and no list of words stands a second time beside the declaration that is checked.
+/// No range and no list of words is repeated outside the declaration that is checked.
 #[test]
 fn nothing_is_said_twice() {
     let mut files = Vec::new();
@@ -219,7 +219,7 @@ fn nothing_is_said_twice() {
             limits += 1;
             let number =
                 |text: &str| text.replace('_', "").parse::<f64>().map_or(text.to_owned(), |v| format!("{v:?}"));
-            // A constant with a name is said once, wherever it is used.
+            // A named constant is declared once, wherever it is used.
             let named = |text: &str| text.starts_with(char::is_uppercase);
             if named(&least) || named(&most) {
                 continue;

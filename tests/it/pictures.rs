@@ -1,4 +1,4 @@
-//! What a person sees in the pictures, in numbers.
+//! Tests visible properties of pictures by numbers.
 
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
@@ -15,7 +15,7 @@ fn render(scene: &str, overrides: &[&str]) -> Rendering {
     renderer.run(&Threads(2), &Control::new()).expect("rendered")
 }
 
-/// Centroid of a channel: column and row in parts of the frame, from the upper left.
+/// Returns the centroid of a channel: column and row as fractions of the frame, from the upper left.
 fn centroid(frame: &ExposureFrame, channel: &str) -> (f64, f64) {
     let width = frame.size.width_px as usize;
     let (mut sum, mut column, mut row) = (0.0, 0.0, 0.0);
@@ -28,26 +28,26 @@ fn centroid(frame: &ExposureFrame, channel: &str) -> (f64, f64) {
     (column / sum / f64::from(frame.size.width_px), row / sum / f64::from(frame.size.height_px))
 }
 
-/// A point to the right and above is drawn to the right and above, where the paraxial image distance puts it:
-/// tangent of the field times the image distance, within the distortion and coma of the lens (5 %).
+/// A point to the right and above is imaged to the right and above, where the paraxial image distance predicts it: tangent of the
+/// field times the image distance, within the distortion and coma of the lens (5 %).
 #[test]
 fn a_point_lands_upright_and_unmirrored() {
     let small = ["imager={kind: xyz, format: 135, resolution: [240, 160]}", "render.rays=400000"];
     let frame = render("biotar-spot.yaml", &small).exposure;
     let (column, row) = centroid(&frame, "Y");
     let (x, y) = ((column - 0.5) * 36.0, (0.5 - row) * 24.0);
-    // The entrance pupil of the Biotar lies about 30 mm behind its first vertex; the field is stated from the vertex.
+    // The entrance pupil of the Biotar lies about 30 mm behind its first vertex, from which the field is measured.
     let expected = |degrees: f64| 49.8 * libm::tan(degrees.to_radians());
     assert!((x / expected(12.0) - 1.0).abs() < 0.06, "{x} {}", expected(12.0));
     assert!((y / expected(8.0) - 1.0).abs() < 0.06, "{y} {}", expected(8.0));
 }
 
-/// Mean exposure of a patch of the 6 x 4 ColorChecker that fills the frame.
+/// Returns the mean exposure of a patch of the 6 x 4 ColorChecker that fills the frame.
 fn patch(frame: &ExposureFrame, channel: &str, column: usize, row: usize) -> f64 {
     let (width, height) = (frame.size.width_px as usize, frame.size.height_px as usize);
     let values = &frame.channel(channel).expect("the channel").values;
     let (cx, cy) = ((column as f64 + 0.5) / 6.0, (row as f64 + 0.5) / 4.0);
-    // The chart fills four fifths of the width of the frame.
+    // The chart covers four fifths of the width of the frame.
     let (x, y) = (0.5 + (cx - 0.5) * 0.8, 0.5 + (cy - 0.5) * 0.8);
     let (x, y) = ((x * width as f64) as usize, (y * height as f64) as usize);
     let mut sum = 0.0;
@@ -59,7 +59,7 @@ fn patch(frame: &ExposureFrame, channel: &str, column: usize, row: usize) -> f64
     sum / 25.0
 }
 
-/// Stops of a patch under the white one, from the measured spectra alone: light times reflectance times response.
+/// Returns a patch relative to the white one in stops, from measured spectra alone: light times reflectance times response.
 fn stops_by_spectra(patch: &str, channel: &Channel) -> f64 {
     let light = spectra_spectrum::find_emission("D65").expect("bundled").to_power(&BAND);
     let seen = |patch: &str| {
@@ -70,9 +70,9 @@ fn stops_by_spectra(patch: &str, channel: &Channel) -> f64 {
     libm::log2(seen(patch) / seen("white"))
 }
 
-/// Orthochromatic film sees no red: through the whole camera the ColorChecker's red is nearly four stops under its
-/// white, and darker than the blue, which to the eye is the darker of the two; each as its spectrum says, within
-/// 0.02 stop, beside an even card in its place, which the lens vignettes as much (its glass and coatings color nothing here).
+/// Orthochromatic film sees no red. Through the whole camera the ColorChecker's red is nearly four stops below its white and darker
+/// than its blue, which to the eye is the darker one. Both follow from their spectra within 0.02 stop, relative to a uniform card in
+/// the same place, which has the same vignetting (glass and coatings are colorless here).
 #[test]
 fn red_is_black_and_blue_is_light_on_orthochromatic_film() {
     let common = [
@@ -102,7 +102,7 @@ fn red_is_black_and_blue_is_light_on_orthochromatic_film() {
     assert!(ortho_red < ortho_blue - 1.5 && eye_red > eye_blue + 0.5, "{measured:?}");
 }
 
-/// A lens wide open darkens the corners, stopped down less: the same gray card.
+/// Corners are darker wide open than stopped down, for the same gray card.
 #[test]
 fn corners_are_darker_wide_open() {
     let corner_over_center = |f_number: &str| {

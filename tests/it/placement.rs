@@ -1,10 +1,12 @@
-//! Surfaces that are tilted, shifted, folded and turned round, against closed forms.
+//! Tests tilted, shifted, folded and reversed surfaces against closed forms.
 
 use glam::{DMat3, DVec3};
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Indices, Lens, Section, Tracer, Travel};
+use spectra_lens::{Lens, Section};
+use spectra_optics::{Optics, stop_down};
 use spectra_plugins as _;
 use spectra_scene::FileResources;
+use spectra_tracer::{Indices, Tracer, Travel};
 use std::path::Path;
 
 fn lens(text: &str) -> Lens {
@@ -23,7 +25,7 @@ fn tracer(lens: &Lens) -> Tracer {
     Tracer::new(lens, Indices::At(lens.reference_nm), Isa::Baseline).expect("media")
 }
 
-/// Where rays leave a lens, and whereto, in the frame of the lens.
+/// Returns positions and directions of rays where they leave a lens, in the frame of the lens.
 fn trace(lens: &Lens, rays: &[(DVec3, DVec3)]) -> Vec<Option<(DVec3, DVec3)>> {
     let tracer = tracer(lens);
     let mut batch = RayBatch::new(rays.len());
@@ -40,7 +42,7 @@ fn trace(lens: &Lens, rays: &[(DVec3, DVec3)]) -> Vec<Option<(DVec3, DVec3)>> {
         .map(|i| {
             batch.loss(i).is_none().then(|| {
                 let (p, d) = (DVec3::new(p[0][i], p[1][i], p[2][i]), DVec3::new(d[0][i], d[1][i], d[2][i]));
-                // In the frame of the image plane z = 0 is the plane itself.
+                // In the frame of the image plane, z = 0 is the plane itself.
                 let p = p - p.z / d.z * d;
                 (lens.image_pose.point(p), lens.image_pose.direction(d))
             })
@@ -48,7 +50,7 @@ fn trace(lens: &Lens, rays: &[(DVec3, DVec3)]) -> Vec<Option<(DVec3, DVec3)>> {
         .collect()
 }
 
-/// A mirror at 45 degrees sends the axis straight up; the image plane stands across the new axis.
+/// A mirror at 45 degrees sends the axis straight up, and the image plane is perpendicular to the new axis.
 #[test]
 fn a_fold_mirror_folds() {
     let folded = lens(
@@ -65,7 +67,7 @@ fn a_fold_mirror_folds() {
     assert!(!folded.has_axis_of_revolution());
 }
 
-/// Deviation of a prism of apex angle A and index n at minimum deviation: 2 asin(n sin(A/2)) - A.
+/// A prism with apex angle A and index n has the minimum deviation 2 asin(n sin(A/2)) - A.
 #[test]
 fn a_prism_deviates_by_the_textbook() {
     let (apex, n): (f64, f64) = (60.0, 1.5);
@@ -83,8 +85,8 @@ fn a_prism_deviates_by_the_textbook() {
     assert!((deviation - (2.0 * incidence - apex)).abs() < 1e-10, "{deviation}");
 }
 
-/// A lens whose every surface is shifted is the lens seen by shifted rays; so is a group of all of them, and a tilted
-/// group by tilted rays.
+/// A lens with every surface shifted equals the lens with shifted rays. A shifted group of all surfaces gives the same, and a tilted
+/// group equals tilted rays.
 #[test]
 fn moving_the_lens_is_moving_the_rays() {
     let surfaces = |more: &str| {
@@ -122,14 +124,14 @@ fn moving_the_lens_is_moving_the_rays() {
     let turned: Vec<_> = rays.iter().map(|(p, d)| (pose.point(*p), pose.direction(*d))).collect();
     for (a, b) in trace(&still, &rays).iter().zip(trace(&tilted, &turned)) {
         let ((p, d), (q, e)) = (a.expect("hits"), b.expect("hits"));
-        // The image plane did not turn with the group: compare the lines, not where they end.
+        // The image plane did not rotate with the group, so lines are compared instead of end points.
         let (p, d) = (pose.point(p), pose.direction(d));
         assert!((d - e).length() < 1e-14);
         assert!((q - p).cross(d).length() < 1e-11, "{p} {q}");
     }
 }
 
-/// The Biotar turned round, surface by surface, is the Biotar traced backward.
+/// The Biotar, reversed surface by surface, equals the Biotar traced backward.
 #[test]
 fn a_reversed_lens_is_the_lens_traced_backward() {
     let there = load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("lenses/zeiss-biotar-50-f1.4.yaml"));
@@ -153,7 +155,7 @@ fn a_reversed_lens_is_the_lens_traced_backward() {
         })
         .collect();
     let reversed = trace(&back, &rays);
-    // Half a turn about y through the middle of the lens takes one into the other.
+    // Half a turn about y through the middle of the lens transforms one into the other.
     let turned = |p: DVec3| DVec3::new(-p.x, p.y, length - p.z);
     let t = tracer(&there);
     let mut batch = RayBatch::new(n as usize);
@@ -181,15 +183,15 @@ fn a_reversed_lens_is_the_lens_traced_backward() {
     assert!((a.efl_mm - b.efl_mm).abs() < 1e-10 && (a.ffl_mm + b.bfl_mm).abs() < 1e-10, "{a:?} {b:?}");
 }
 
-/// A concave mirror of radius R has the focal length R/2 in front of it; light that went through and comes back along
-/// its path ends where it began (a mirror with a lens, both ways).
+/// A concave mirror of radius R has the focal length R/2 in front of it. Light that is sent back along its path ends where it began,
+/// through a mirror with a lens in both directions.
 #[test]
 fn mirrors_focus_and_light_is_reversible() {
     let mirror = lens("  - {kind: sphere, radius: -100, mirror: true, thickness: -50, semi-diameter: 10}\n");
     let f = mirror.first_order(587.56);
     assert!((f.efl_mm - 50.0).abs() < 1e-12 && (f.bfl_mm + 50.0).abs() < 1e-12, "{f:?}");
     assert!((f.rear_principal_z_mm).abs() < 1e-12);
-    // The image plane faces the light, and keeps left and right.
+    // The image plane faces the light and keeps left and right.
     assert_eq!(mirror.image_pose.rotation, DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)));
     assert!(mirror.has_axis_of_revolution());
     let (p, _) = trace(&mirror, &[(DVec3::new(0.0, 0.01, -200.0), DVec3::Z)])[0].expect("it comes back");
@@ -233,8 +235,7 @@ fn mirrors_focus_and_light_is_reversible() {
     }
 }
 
-/// An ideal lens has its focal length, whichever way it stands and wherever light comes from; a cylinder has power in one
-/// section.
+/// An ideal lens has its focal length in either orientation and for light from either side; a cylinder has power in one section.
 #[test]
 fn power_by_the_surface_itself() {
     for more in ["", ", reversed: true"] {
@@ -253,8 +254,8 @@ fn power_by_the_surface_itself() {
     assert!((y - 100.0).abs() < 1e-9 && x.is_infinite(), "{x} {y}");
 }
 
-/// A stop with blades passes the light of the circle of the same area; the f-number does not change; light outside of
-/// the polygon ends at the stop.
+/// A stop with blades passes the light of the circle of equal area, and the f-number does not change. Light outside the polygon ends
+/// at the stop.
 #[test]
 fn blades_keep_the_f_number() {
     let surfaces = |aperture: &str| {
@@ -264,9 +265,9 @@ fn blades_keep_the_f_number() {
              \x20 - {{kind: stop, thickness: 40{aperture}}}\n"
         )
     };
-    let round = lens(&surfaces("")).at_f_number(4.0).expect("f/4");
-    let blades = lens(&surfaces(", aperture: {shape: iris, blades: 5, rotation: 20}")).at_f_number(4.0).expect("f/4");
-    let f = |lens: &Lens| lens.marginal_ray().expect("limited").f_number();
+    let round = stop_down(lens(&surfaces("")), 4.0).expect("f/4");
+    let blades = stop_down(lens(&surfaces(", aperture: {shape: iris, blades: 5, rotation: 20}")), 4.0).expect("f/4");
+    let f = |lens: &Lens| Optics::new(lens.clone()).marginal_ray().expect("limited").f_number();
     assert!((f(&round) - 4.0).abs() < 1e-9 && (f(&blades) - 4.0).abs() < 1e-9);
     let n = 200;
     let rays: Vec<_> = (0..n * n)
@@ -281,7 +282,7 @@ fn blades_keep_the_f_number() {
     assert!(round.has_axis_of_revolution() && !blades.has_axis_of_revolution());
 }
 
-/// Faults have places and hints.
+/// Faults of placement have places and hints.
 #[test]
 fn faults_of_placement_say_what_to_do() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,13 +1,15 @@
-//! Rays are aimed at real pupils: few are wasted, none that could pass is forgotten, and light is counted equally per
-//! solid angle. The reference is brute force: rays over all that the lens could take, aimed at nothing.
+//! Tests aiming rays at real pupils: few rays are wasted, every ray that could pass can be aimed, and light is equal per solid angle.
+//! The reference is brute force: rays over everything that the lens could accept, without aiming.
 
 use glam::DVec3;
 use spectra_core::numbers::Numbers;
 use spectra_core::surface::Travel;
 use spectra_core::{Isa, RayBatch, loss::ALIVE};
-use spectra_lens::{AimPattern, Displacement, FrontPupil, Indices, Iris, Lens, RearPupil, Shape, Tracer};
+use spectra_lens::{Displacement, Iris, Lens, Shape};
+use spectra_optics::{AimPattern, FrontPupil, RearPupil, stop_down};
 use spectra_plugins as _;
 use spectra_scene::FileResources;
+use spectra_tracer::{Indices, Tracer};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -21,13 +23,13 @@ fn lens(name: &str) -> Lens {
         .unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// At 1.4 as it is.
+/// Returns the Biotar at this f-number; 1.4 is wide open.
 fn biotar(f_number: f64) -> Lens {
     let open = lens("zeiss-biotar-50-f1.4");
     if f_number == 1.4 {
         return open;
     }
-    open.at_f_number(f_number).expect("it can be stopped down")
+    stop_down(open, f_number).expect("it can be stopped down")
 }
 
 fn fisheye() -> Lens {
@@ -42,24 +44,24 @@ fn front(lens: &Lens, tracer: &Tracer, points: &[DVec3]) -> FrontPupil {
     FrontPupil::search(lens, tracer, points, MIN_NM, MAX_NM).expect("the lens has an aperture")
 }
 
-/// `n` numbers of a dimension.
+/// Returns `n` random numbers of a dimension.
 fn numbers(seed: u64, dimension: u32, n: usize) -> Vec<f64> {
     let mut column = vec![0.0; n];
     Numbers::random(seed).fill(Isa::Baseline, 0, 0, dimension, &mut column);
     column
 }
 
-/// A point at a field angle from the axis (degrees), an azimuth and a distance from the first vertex.
+/// Returns a point at a field angle from the axis (degrees), an azimuth and a distance from the first vertex.
 fn at(angle_deg: f64, azimuth_deg: f64, distance_mm: f64) -> DVec3 {
     let (s, c) = (libm::sin(angle_deg.to_radians()), libm::cos(angle_deg.to_radians()));
     let (t, u) = (libm::sin(azimuth_deg.to_radians()), libm::cos(azimuth_deg.to_radians()));
     DVec3::new(s * u, s * t, -c) * distance_mm
 }
 
-/// A ray, and its weight in sr.
+/// A ray: its position, direction and weight in sr.
 type Ray = (DVec3, DVec3, f64);
 
-/// Traces rays forward; says for each whether it arrives.
+/// Traces rays in a direction of travel and returns for each whether it arrives.
 fn arrive(tracer: &Tracer, rays: &[Ray], travel: Travel) -> Vec<bool> {
     let mut batch = RayBatch::new(BATCH);
     let mut work = tracer.work_in_place(BATCH);
@@ -79,7 +81,7 @@ fn arrive(tracer: &Tracer, rays: &[Ray], travel: Travel) -> Vec<bool> {
     all
 }
 
-/// Rays from a point over a disk across the way to `center`, evenly over its area, as rays with their solid angle.
+/// Returns rays from a point, uniform over a disk perpendicular to the direction of `center`, with their solid angles.
 fn everywhere(point: DVec3, center: DVec3, radius_mm: f64, n: usize, seed: u64) -> Vec<Ray> {
     let axis = (center - point).normalize();
     let (a, b) = axis.any_orthonormal_pair();
@@ -95,10 +97,10 @@ fn everywhere(point: DVec3, center: DVec3, radius_mm: f64, n: usize, seed: u64) 
         .collect()
 }
 
-/// Aims `n` rays from `points` in turn by the pupil; the rays of weight 0 keep it.
+/// Aims `n` rays from `points` in turn at the pupil; rays of weight 0 are kept.
 fn aimed(points: &[DVec3], n: usize, seed: u64, aim: impl Fn(&mut RayBatch, &[f64], &[f64]) -> usize) -> Vec<Ray> {
     let (u, v) = (numbers(seed, 3, n), numbers(seed, 4, n));
-    // Where a ray goes depends on its wavelength: it gets the one with which it is traced.
+    // The direction of an aimed ray depends on its wavelength, so it is aimed with the wavelength with which it is traced.
     let colors = numbers(5, 0, BATCH);
     let mut batch = RayBatch::new(BATCH);
     let mut rays = Vec::with_capacity(n);
@@ -122,7 +124,7 @@ fn aimed(points: &[DVec3], n: usize, seed: u64, aim: impl Fn(&mut RayBatch, &[f6
     rays
 }
 
-/// Mean and standard error of the solid angle that arrives.
+/// Returns the mean and the standard error of the solid angle that arrives.
 fn estimate(tracer: &Tracer, rays: &[Ray], travel: Travel) -> (f64, f64) {
     let arrived = arrive(tracer, rays, travel);
     let values = || rays.iter().zip(&arrived).map(|(r, a)| if *a { r.2 } else { 0.0 });
@@ -132,14 +134,14 @@ fn estimate(tracer: &Tracer, rays: &[Ray], travel: Travel) -> (f64, f64) {
     (mean, (variance / n).sqrt())
 }
 
-/// Of the aimed rays that have any weight, the share that arrives.
+/// Returns the share of the aimed rays with nonzero weight that arrives.
 fn share(tracer: &Tracer, rays: &[Ray]) -> f64 {
     let arrived = arrive(tracer, rays, Travel::Forward);
     let aimed: Vec<bool> = rays.iter().zip(arrived).filter(|(r, _)| r.2 > 0.0).map(|(_, a)| a).collect();
     aimed.iter().filter(|a| **a).count() as f64 / aimed.len() as f64
 }
 
-/// The share that arrives when all rays are aimed at the disk of the first surface's rim instead.
+/// Returns the share that arrives if all rays are aimed at the disk of the first surface's rim instead.
 fn share_by_rim(tracer: &Tracer, lens: &Lens, points: &[DVec3], n: usize) -> f64 {
     let rim = lens.elements[0].semi_diameter_mm.expect("stated");
     let z = lens.elements[0].surface.sag_mm(rim, 0.0).expect("reaches its rim");
@@ -154,7 +156,7 @@ fn share_by_rim(tracer: &Tracer, lens: &Lens, points: &[DVec3], n: usize) -> f64
     share(tracer, &rays)
 }
 
-/// Points of a flat card at 2 m, as wide as the field of 135 film behind 50 mm.
+/// Returns points of a flat card at 2 m, as wide as the field of 135 film behind a 50 mm lens.
 fn card() -> Vec<DVec3> {
     let n = 50_000;
     let (u, v) = (numbers(9, 1, n), numbers(9, 2, n));
@@ -185,7 +187,7 @@ fn at_least_half_of_the_aimed_rays_arrive() {
     }
 }
 
-/// Every ray of the brute force that arrives crosses the region of its point, and both find the same light.
+/// Checks that every brute-force ray that arrives crosses the region of its point, and that both methods find the same light.
 fn nothing_is_lost(name: &str, lens: &Lens, points: &[DVec3], rays: usize) {
     let tracer = tracer(lens);
     let pupil = front(lens, &tracer, points);
@@ -215,7 +217,7 @@ const ANGLES: [f64; 5] = [0.0, 30.0, 60.0, 80.0, 85.0];
 fn a_fisheye_loses_nothing_out_to_85_degrees() {
     let points: Vec<DVec3> = ANGLES.iter().map(|a| at(*a, 40.0 + a, 1e4)).collect();
     nothing_is_lost("fisheye", &fisheye(), &points, 1 << 20);
-    // Beside and behind the first vertex, and not in one of the table's nodes.
+    // Points beside and behind the first vertex, away from the nodes of the table.
     let beside: Vec<DVec3> = [87.3, 91.0].iter().map(|a| at(*a, 10.0, 300.0)).collect();
     nothing_is_lost("fisheye, beside it", &fisheye(), &beside, 1 << 20);
 }
@@ -223,15 +225,15 @@ fn a_fisheye_loses_nothing_out_to_85_degrees() {
 #[test]
 fn a_stopped_down_fisheye_loses_nothing() {
     let points: Vec<DVec3> = ANGLES.iter().map(|a| at(*a, 100.0, 500.0)).collect();
-    nothing_is_lost("fisheye f/16", &fisheye().at_f_number(16.0).expect("stopped down"), &points, 1 << 19);
+    nothing_is_lost("fisheye f/16", &stop_down(fisheye(), 16.0).expect("stopped down"), &points, 1 << 19);
 }
 
-/// The same with eight times as many rays all over the front.
+/// Repeats the test of the stopped-down fisheye with eight times as many rays all over the front.
 #[test]
 #[ignore = "half a minute: `.ci/run --all thorough`"]
 fn a_stopped_down_fisheye_loses_nothing_thoroughly() {
     let points: Vec<DVec3> = ANGLES.iter().map(|a| at(*a, 100.0, 500.0)).collect();
-    nothing_is_lost("fisheye f/16", &fisheye().at_f_number(16.0).expect("stopped down"), &points, 1 << 22);
+    nothing_is_lost("fisheye f/16", &stop_down(fisheye(), 16.0).expect("stopped down"), &points, 1 << 22);
 }
 
 #[test]
@@ -276,7 +278,7 @@ fn an_iris_of_three_blades_loses_nothing() {
     nothing_is_lost("three blades", &lens, &points, 1 << 18);
 }
 
-/// The search was told of a far source; a point at a tenth of a focal length is aimed at another way, without bias.
+/// A point at a tenth of a focal length, much closer than the source of the search, is aimed at in another way and without bias.
 #[test]
 fn a_point_nearer_than_searched_has_no_bias() {
     let lens = biotar(1.4);
@@ -287,7 +289,7 @@ fn a_point_nearer_than_searched_has_no_bias() {
         let aims = aimed(&[point], 400_000, 50, |b, u, v| pupil.aim(b, u, v, AimPattern::Rings, Isa::detect()));
         let (got, got_error) = estimate(&tracer, &aims, Travel::Forward);
         let n = 400_000;
-        // Evenly over the half of all directions that points into the lens.
+        // Uniform over the hemisphere of directions into the lens.
         let (u, v) = (numbers(60 + k as u64, 1, n), numbers(60 + k as u64, 2, n));
         let brute: Vec<Ray> = (0..n)
             .map(|i| {
@@ -303,7 +305,7 @@ fn a_point_nearer_than_searched_has_no_bias() {
     }
 }
 
-/// Whether the rear pupil of a lens is looked at for an imager of a shape.
+/// Returns whether the rear pupil of a lens is tested with a shape of imager.
 type Chosen = fn(&str, &str) -> bool;
 
 #[test]
@@ -313,14 +315,14 @@ fn the_rear_pupil_loses_nothing_for_any_shape_of_imager() {
     });
 }
 
-/// The same for each lens and each shape.
+/// Tests every lens with every shape.
 #[test]
 #[ignore = "half a minute: `.ci/run --all thorough`"]
 fn the_rear_pupil_loses_nothing_for_any_shape_of_imager_thoroughly() {
     the_rear_pupil_loses_nothing(|_, _| true);
 }
 
-/// From the film: points on the plane, on a tilted one, and on a bowl.
+/// Tests aiming from the film: from points on a plane, on a tilted plane and on a bowl.
 fn the_rear_pupil_loses_nothing(is_chosen: Chosen) {
     let bowl = |x: f64, y: f64| DVec3::new(x, y, 0.002 * (x * x + y * y) - 0.3);
     let tilted = |x: f64, y: f64| DVec3::new(x, y, 0.1 * y + 0.05 * x);
@@ -352,7 +354,7 @@ fn the_rear_pupil_loses_nothing(is_chosen: Chosen) {
                 let region = pupil.region(point).expect("a depth that was searched");
                 let beside = brute.iter().zip(&arrived).filter(|(r, a)| **a && !region.holds(r.0, r.1)).count();
                 assert_eq!(beside, 0, "{what}, {name}, {point}");
-                // The imager's normal in the place of the direction is (0, 0, -1): weigh the brute force alike.
+                // The projection uses the normal of the imager, (0, 0, -1), so the brute force is weighted in the same way.
                 let brute: Vec<Ray> = brute.iter().map(|r| (r.0, r.1, r.2 * -r.1.z)).collect();
                 let (want, want_error) = estimate(&tracer, &brute, Travel::Backward);
                 let aims = aimed(&[point], 30_000, 30 + k as u64, |b, u, v| pupil.aim(b, u, v, Isa::detect()));
@@ -365,8 +367,8 @@ fn the_rear_pupil_loses_nothing(is_chosen: Chosen) {
     }
 }
 
-/// Density of the aimed light per solid angle, from a near point beside the axis: equal in all cells, with weights. In the
-/// whole region without outlines, with them in what passes.
+/// The aimed light from a near point off the axis has the same density per solid angle in all cells, including its weights. This
+/// holds in the whole region without outlines, and in the part that passes with outlines.
 #[test]
 fn light_is_equal_per_solid_angle() {
     let lens = biotar(1.4);
@@ -381,12 +383,12 @@ fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outl
     let region = pupil.region(point).expect("searched");
     let axis = (region.center - point).normalize();
     let (a, b) = axis.any_orthonormal_pair();
-    // The cap around the middle of the region that lies all inside of it, in rings and sectors of equal solid angle.
+    // The largest cap around the middle of the region that lies entirely inside it, in rings and sectors of equal solid angle.
     let edge = |cos: f64| {
         (0..360).all(|k| {
             let (s, c) = spectra_core::math::sin_cos_turns(f64::from(k) / 360.0);
             let way = axis * cos + (a * c + b * s) * (1.0 - cos * cos).sqrt();
-            // At all wavelengths.
+            // Checked at many wavelengths.
             let ray = (point + way * (region.center - point).length(), way, 1.0);
             region.holds(point, way) && (!outlines || arrive(tracer, &[ray; 16], Travel::Forward).iter().all(|a| *a))
         })
@@ -417,8 +419,8 @@ fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outl
             let error = ((square - mean * mean) / n).sqrt();
             let sigma = (mean - cell_sr) / error;
             chi2 += sigma * sigma;
-            // 160 cells are looked at: beyond 3 lies one of them in every third run, beyond 4 in every hundredth. Of so many rays that
-            // is a deviation of 1.3 %; chi-square tells a smaller one of all.
+            // With 160 cells, one exceeds 3 standard errors in every third run and 4 in every hundredth. With this many rays 4
+            // standard errors is a deviation of 1.3 %; chi-square detects a smaller one common to all.
             assert!(
                 sigma.abs() < 4.0,
                 "{pattern:?}, cell {cell}: {mean} sr, it has {cell_sr}; {sigma} standard errors"
@@ -430,7 +432,7 @@ fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outl
     }
 }
 
-/// Points from which nothing passes cost nothing.
+/// Points from which no light passes cost no rays.
 #[test]
 fn rays_that_cannot_pass_end_at_once() {
     let lens = biotar(1.4);
@@ -447,7 +449,7 @@ fn rays_that_cannot_pass_end_at_once() {
     assert_eq!(dark, 1000);
 }
 
-/// Every instruction set aims alike, to the bit.
+/// Every instruction set aims with the same bits.
 #[test]
 fn every_tier_aims_alike() {
     let lens = biotar(1.4);

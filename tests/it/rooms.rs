@@ -1,9 +1,9 @@
-//! The rooms of the house, as `ARCHITECTURE.md` has them: what stands on what, who touches disk, clock and terminal,
-//! and that files of a room import each other in no circle.
+//! Tests the structure of the workspace that `ARCHITECTURE.md` states: which room (crate) depends on which, who touches disk, clock
+//! and terminal, and that the files of a room do not import each other in circles.
 //!
-//! Two tables of that page are read and held against the manifests and the sources: an arrow that is not in the table fails,
-//! and so does one in it that nothing uses. Tests are no arrows: neither `[dev-dependencies]` nor what is compiled for tests.
-//! Of imports, those count that lead from file to file, through all that only hands a name on.
+//! Two tables of that page are compared with the manifests and the sources. A dependency that is missing from the table fails, and so
+//! does one in the table that nothing uses. Tests do not count: neither `[dev-dependencies]` nor code compiled for tests. Imports are
+//! followed from file to file, through modules that only pass a name on.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -15,7 +15,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Cells of the table of `ARCHITECTURE.md` whose head has these words.
+/// Returns the cells of the table in `ARCHITECTURE.md` with these column heads.
 fn table(head: &[&str]) -> Vec<Vec<String>> {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("the page is there");
     let cells =
@@ -25,12 +25,12 @@ fn table(head: &[&str]) -> Vec<Vec<String>> {
     lines.skip(1).take_while(|line| line.starts_with('|')).map(cells).collect()
 }
 
-/// `a`, `b` as names; `-` is none.
+/// Parses `a`, `b` as names; `-` means none.
 fn names(cell: &str) -> BTreeSet<String> {
     cell.split(',').map(|name| name.trim().trim_matches('`').to_owned()).filter(|name| name != "-").collect()
 }
 
-/// Folder of each room: of the program itself, and of the members of the workspace.
+/// Returns the folder of each room: of the program itself and of the members of the workspace.
 fn folders() -> BTreeMap<String, PathBuf> {
     let mut all = BTreeMap::from([("src".to_owned(), root().to_owned())]);
     for (parent, prefix) in [("crates", ""), ("plugins", "plugins/")] {
@@ -43,7 +43,7 @@ fn folders() -> BTreeMap<String, PathBuf> {
     all
 }
 
-/// The room that a package or crate of ours is: `spectra-plugin-sources` and `spectra_plugin_sources` are `plugins/sources`.
+/// Returns the room of one of our packages or crates: `spectra-plugin-sources` and `spectra_plugin_sources` are `plugins/sources`.
 fn room(name: &str) -> Option<String> {
     let own = name.strip_prefix("spectra-").or_else(|| name.strip_prefix("spectra_"))?;
     Some(match own.strip_prefix("plugin").and_then(|rest| rest.strip_prefix(['-', '_'])) {
@@ -53,7 +53,7 @@ fn room(name: &str) -> Option<String> {
     })
 }
 
-/// What a manifest names outside of `[dev-dependencies]`.
+/// Returns our crates that a manifest names outside of `[dev-dependencies]`.
 fn manifest(folder: &Path) -> BTreeSet<String> {
     let text = fs::read_to_string(folder.join("Cargo.toml")).expect("a manifest");
     let mut counts = false;
@@ -86,7 +86,7 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Rust without comments and without what stands in strings and characters.
+/// Returns Rust code without comments and without the contents of strings and characters.
 fn bare(text: &str) -> String {
     let chars: Vec<char> = text.chars().collect();
     let mut out = String::new();
@@ -138,7 +138,7 @@ fn bare(text: &str) -> String {
             i += 1;
             out.push_str("\"\"");
         } else if chars[i] == '\'' && (chars.get(i + 1) == Some(&'\\') || chars.get(i + 2) == Some(&'\'')) {
-            // A character, and no lifetime.
+            // A character, not a lifetime.
             i += if chars[i + 1] == '\\' { 3 } else { 2 };
             while i < chars.len() && chars[i] != '\'' {
                 i += 1;
@@ -153,7 +153,7 @@ fn bare(text: &str) -> String {
     out
 }
 
-/// Whether an attribute keeps what follows it for tests: `#[cfg(test)]`, `#[cfg(all(test, ...))]`, `#[test]`.
+/// Returns whether an attribute restricts the next item to tests: `#[cfg(test)]`, `#[cfg(all(test, ...))]`, `#[test]`.
 fn is_for_tests(attribute: &str) -> bool {
     let words: Vec<&str> =
         attribute.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|w| !w.is_empty()).collect();
@@ -164,7 +164,7 @@ fn is_for_tests(attribute: &str) -> bool {
     }
 }
 
-/// [`bare`] Rust without items for tests, and the names of modules in files of their own that are for tests.
+/// Returns [`bare`] Rust code without items for tests, and the names of modules for tests that have their own files.
 fn without_tests(bare: &str) -> (String, Vec<String>) {
     let (mut out, mut modules) = (String::new(), Vec::new());
     let mut rest = bare;
@@ -184,7 +184,7 @@ fn without_tests(bare: &str) -> (String, Vec<String>) {
             rest = after;
             continue;
         }
-        // The item ends with its first block, or with a semicolon outside of all brackets.
+        // The item ends with its first block, or with a semicolon outside all brackets.
         let mut depth = 0;
         let end = after.char_indices().find_map(|(i, c)| {
             depth += i32::from("{([".contains(c)) - i32::from("})]".contains(c));
@@ -200,7 +200,7 @@ fn without_tests(bare: &str) -> (String, Vec<String>) {
     (out, modules)
 }
 
-/// What of a room's sources is compiled into the program: path and code.
+/// Returns the sources of a room that are compiled into the program: path and code.
 fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
     let mut skipped: Vec<PathBuf> = Vec::new();
     let mut found = Vec::new();
@@ -219,7 +219,7 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// Names of our crates in code.
+/// Returns the rooms of our crates that code names.
 fn crates_named(code: &str) -> BTreeSet<String> {
     let words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
     words.filter(|word| word.starts_with("spectra_")).filter_map(room).collect()
@@ -238,11 +238,11 @@ fn rooms_stand_on_what_the_table_says() {
     let folders = folders();
     let mut faults = Vec::new();
     for name in folders.keys().filter(|name| !rooms.contains_key(*name)) {
-        faults.push(format!("`{name}` is not in the table"));
+        faults.push(format!("`{name}` is missing from the table"));
     }
     for (i, name) in order.iter().enumerate() {
         let Some(folder) = folders.get(name) else {
-            faults.push(format!("`{name}` is in the table and not in the house"));
+            faults.push(format!("`{name}` is in the table, but there is no such folder"));
             continue;
         };
         let stated = &rooms[name];
@@ -250,28 +250,28 @@ fn rooms_stand_on_what_the_table_says() {
         let used: BTreeSet<String> = sources(folder).iter().flat_map(|(_, code)| crates_named(code)).collect();
         for other in stated {
             if !order[..i].contains(other) {
-                faults.push(format!("`{name}` stands on `{other}`, which does not stand above it in the table"));
+                faults.push(format!("`{name}` stands on `{other}`, which is not above it in the table"));
             }
             if !declared.contains(other) {
-                faults.push(format!("`{name}` stands on `{other}` by the table, and not by its manifest"));
+                faults.push(format!("`{name}` stands on `{other}` by the table, but not by its manifest"));
             }
             if !used.contains(other) {
-                faults.push(format!("`{name}` stands on `{other}` by the table, and no source of it names that"));
+                faults.push(format!("`{name}` stands on `{other}` by the table, but no source of it names that crate"));
             }
         }
         for other in declared.difference(stated) {
-            faults.push(format!("`{name}` stands on `{other}` by its manifest, and not by the table"));
+            faults.push(format!("`{name}` stands on `{other}` by its manifest, but not by the table"));
         }
         for other in
             used.iter().filter(|other| folders.contains_key(*other) && *other != name && !stated.contains(*other))
         {
-            faults.push(format!("a source of `{name}` names `{other}`, which the table does not let it stand on"));
+            faults.push(format!("a source of `{name}` names `{other}`, which the table does not allow"));
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// What only some rooms touch, and how it is told in code.
+/// Resources that only some rooms may touch, and the code that reveals it.
 const TOUCHED: [(&str, &[&str]); 5] = [
     ("disk", &["std::fs", "fs::"]),
     ("environment", &["std::env", "env::"]),
@@ -280,7 +280,7 @@ const TOUCHED: [(&str, &[&str]); 5] = [
     ("threads", &["ThreadPoolBuilder"]),
 ];
 
-/// Whether the code has it, and not as the end of a longer name.
+/// Returns whether the code contains a word, other than as the end of a longer name.
 fn has(code: &str, what: &str) -> bool {
     code.match_indices(what).any(|(at, _)| {
         let before = code[..at].chars().next_back();
@@ -313,7 +313,7 @@ fn disk_clock_and_terminal_are_touched_where_the_table_says() {
             }
         }
         for touched in stated.difference(&found) {
-            faults.push(format!("`{name}` touches no {touched}: strike it from the table"));
+            faults.push(format!("`{name}` touches no {touched}: remove it from the table"));
         }
     }
     for name in stated.keys().filter(|name| !folders().contains_key(*name)) {
@@ -322,21 +322,21 @@ fn disk_clock_and_terminal_are_touched_where_the_table_says() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// A file of a room as a module: its path, and what it imports, each with the name that it has here (`*`: all names).
+/// A file of a room as a module: its path and its imports, each with its local name (`*`: all names).
 struct Module {
     file: PathBuf,
     code: String,
     imports: Vec<(Vec<String>, String)>,
 }
 
-/// The modules of a room.
+/// All modules of a room, by their paths.
 type House = BTreeMap<Vec<String>, Module>;
 
 fn is_of_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// The texts of `use` items, from the word to the semicolon.
+/// Returns the texts of `use` items, from after the keyword to the semicolon.
 fn use_items(code: &str) -> impl Iterator<Item = &str> {
     code.match_indices("use ").filter_map(|(at, word)| {
         let is_word = !code[..at].chars().next_back().is_some_and(is_of_word);
@@ -344,7 +344,7 @@ fn use_items(code: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The leaves of a tree such as `a::{b, c::*, d as e}`.
+/// Collects the leaves of a tree such as `a::{b, c::*, d as e}`.
 fn leaves(tree: &str, before: &[String], found: &mut Vec<(Vec<String>, String)>) {
     let steps = |text: &str| -> Vec<String> {
         let own = text.split("::").map(str::trim).filter(|step| !step.is_empty());
@@ -382,7 +382,7 @@ fn house(files: Vec<(PathBuf, String)>, src: &Path) -> House {
     files.into_iter().map(module).collect()
 }
 
-/// A path as it stands in a module, from the root of the room; `None` where it leads out.
+/// Returns a path written in a module relative to the root of the room, or `None` if it leads out of the room.
 fn from_root(house: &House, at: &[String], path: &[String]) -> Option<Vec<String>> {
     let (mut whole, mut rest) = (at.to_vec(), path);
     match path.first()?.as_str() {
@@ -409,8 +409,8 @@ fn has_item(code: &str, name: &str) -> bool {
     words.windows(2).any(|pair| items.contains(&pair[0]) && pair[1] == name)
 }
 
-/// The module whose file has what a path from the root of the room names, through all that only hands it on; `None` where that is
-/// of another crate.
+/// Returns the module whose file defines what a path from the root of the room names, through modules that only pass it on. Returns
+/// `None` if it belongs to another crate.
 fn home(house: &House, path: &[String], steps_left: usize) -> Option<Vec<String>> {
     let known = (0..=path.len()).rev().find(|len| house.contains_key(&path[..*len]))?;
     let (at, rest) = path.split_at(known);
@@ -431,14 +431,15 @@ fn home(house: &House, path: &[String], steps_left: usize) -> Option<Vec<String>
     found.or(Some(at.to_vec()))
 }
 
-/// Where a path in a file leads, if that counts: not within the file, and not from a folder's own file to what is in the folder.
+/// Returns where a path in a file leads, if that counts. Paths within the file, and from a folder's own file into the folder, do not
+/// count.
 fn leads_to(house: &House, at: &[String], path: &[String]) -> Option<Vec<String>> {
     let path = path.strip_suffix(&["*".to_owned()]).unwrap_or(path);
     let found = home(house, &from_root(house, at, path)?, 16)?;
     (!found.starts_with(at)).then_some(found)
 }
 
-/// What each module of a room imports or names by a path.
+/// Returns what each module of a room imports or names by a path.
 fn edges(house: &House) -> BTreeMap<Vec<String>, BTreeSet<Vec<String>>> {
     let of = |(at, module): (&Vec<String>, &Module)| {
         let code = module.code.replace("::<", "<");
@@ -451,7 +452,7 @@ fn edges(house: &House) -> BTreeMap<Vec<String>, BTreeSet<Vec<String>>> {
     house.iter().map(of).collect()
 }
 
-/// The modules of a circle, if there is one.
+/// Returns the modules of a circle, if there is one.
 fn circle(edges: &BTreeMap<Vec<String>, BTreeSet<Vec<String>>>) -> Option<Vec<Vec<String>>> {
     let mut left: BTreeSet<&Vec<String>> = edges.keys().collect();
     loop {
@@ -471,7 +472,7 @@ fn circle(edges: &BTreeMap<Vec<String>, BTreeSet<Vec<String>>>) -> Option<Vec<Ve
     }
 }
 
-/// Takes what comments in a file defend out of the edges, or says what is wrong with them.
+/// Removes the edges that comments in a file justify, and returns what is wrong with these comments.
 fn defended(
     house: &House,
     at: &[String],
@@ -516,7 +517,7 @@ fn files_import_each_other_in_no_circle_but_those_that_a_comment_defends() {
             faults
                 .extend(defended(&house, at, &text, &mut edges).iter().map(|fault| format!("{}: {fault}", shown(at))));
             for to in before[at].difference(&edges[at]) {
-                // What leads back is a part of the circle: else there is none any more.
+                // The import must be part of a circle; otherwise the comment is outdated.
                 let (mut reached, mut open) = (BTreeSet::new(), vec![to]);
                 while let Some(next) = open.pop() {
                     if reached.insert(next) {
@@ -537,7 +538,7 @@ fn files_import_each_other_in_no_circle_but_those_that_a_comment_defends() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// A manifest that leaves out the tests of examples (`doctest = false`) is of a crate whose documentation has none.
+/// A manifest with `doctest = false` belongs to a crate without examples in its documentation.
 #[test]
 fn examples_of_the_documentation_are_run() {
     for (name, folder) in folders() {

@@ -1,12 +1,12 @@
-//! Haze, dust and scratches on a lens: the same picture from the source and from the imager, lit card and halo; clean lenses keep
-//! their bits; the books of a scene with ghosts close.
+//! Tests haze, dust and scratches on a lens: card and halo are the same from the source and from the imager, clean lenses keep their
+//! bits, and the ledger of a scene with ghosts balances.
 
 use crate::common::repository;
 use crate::common::statistics::{self, Estimate, estimates, over_seeds, pixels as y, ready, rendered};
 use spectra_render::{Renderer, Rendering};
 
 const SEEDS: u64 = 24;
-/// Of the halo few rays bring most of the light: fewer seeds do not know the error of a pixel.
+/// Number of seeds for comparing pixels: few rays carry most of the halo's light, so fewer seeds underestimate the error of a pixel.
 const SEEDS_OF_PIXELS: u64 = 48;
 
 fn card(overrides: &[&str]) -> Renderer {
@@ -15,7 +15,7 @@ fn card(overrides: &[&str]) -> Renderer {
         "lens.focus={distance: 1 m, by: paraxial}",
         "lens.f-number=f/4",
         "imager={kind: xyz, width: 15, height: 10, resolution: [15, 10]}",
-        // Unbiased pixel by pixel, which footprints are not.
+        // Spread `none` is unbiased in every pixel, unlike footprints.
         "render.reflections.spread=none",
     ];
     ready(statistics::load(&repository("scenes/gray-card.yaml"), &[&common[..], overrides].concat()))
@@ -31,7 +31,7 @@ const SOILED: [&str; 3] = [
     "lens.scratches={coverage: 1 %, width: 6 um, direction: 30 deg, where: {shape: ring, inner: 2, outer: 12}}",
 ];
 
-/// Illuminance of each pixel.
+/// Returns the illuminance of each pixel.
 fn estimate(seeds: u64, overrides: &[&str]) -> Vec<Estimate> {
     estimates(&over_seeds(&card(&[&SOILED[..], overrides].concat()), 1..1 + seeds, y))
 }
@@ -41,21 +41,21 @@ fn both_directions_are_equal() {
     are_equal(SEEDS);
 }
 
-/// The same with more seeds, pixel by pixel.
+/// Compares both directions pixel by pixel, with more seeds.
 #[test]
 #[ignore = "half a minute: `.ci/run --all thorough`"]
 fn both_directions_are_equal_thoroughly() {
     are_equal(SEEDS_OF_PIXELS);
 }
 
-/// Sums over card and halo agree within 3 standard errors; of many seeds, the pixels' differences have the spread of their errors
-/// (Student's t of 94 degrees of freedom: a mean square of 94/92).
+/// Checks that sums over card and halo agree within 3 standard errors. With many seeds, the differences of pixels must also scatter
+/// as their errors predict (Student's t of 94 degrees of freedom: a mean square of 94/92).
 fn are_equal(seeds: u64) {
     let backward = estimate(seeds, &["render.direction=backward", "render.samples=512"]);
     let forward = estimate(seeds, &["render.direction=forward", "render.rays=400000"]);
     let middle = backward.iter().map(|b| b.mean).fold(0.0, f64::max);
     let (mut squares, mut most) = (0.0, 0.0_f64);
-    // Difference, its variance, and light: card, halo.
+    // Difference, its variance, and light, for card and halo.
     let mut parts = [[0.0; 3]; 2];
     for (backward, forward) in backward.iter().zip(&forward) {
         let (b, f) = (backward.mean, forward.mean);
@@ -75,12 +75,12 @@ fn are_equal(seeds: u64) {
         println!("{name}: {part:+.5} of the light, {errors:+.2} standard errors of {:.5}", variance.sqrt() / light);
         assert!(errors.abs() < 3.0 && light > 0.0, "{name}");
     }
-    assert!(parts[1][2] > 0.02 * parts[0][2], "no halo");
+    assert!(parts[1][2] > 0.02 * parts[0][2], "the halo is missing");
     assert!(seeds < SEEDS_OF_PIXELS || (0.7..1.6).contains(&mean_square) && most < 5.5);
 }
 
-/// Of nothing that lies there the bits are those of a clean lens; what lies there is another estimator, and has the same bits in
-/// batches of any size.
+/// With no haze the bits are those of a clean lens. A soiled lens has one more estimator, and its bits do not depend on the batch
+/// size.
 #[test]
 fn bits_stay() {
     let of = |set: &[&str]| render(&[&["render.samples=32"], set].concat());
@@ -93,13 +93,13 @@ fn bits_stay() {
     assert_eq!(y(&soiled), y(&cut));
 }
 
-/// The middle of a card through dust on the eight outer surfaces of the lens.
+/// Dust on the eight outer surfaces of the lens dims the middle of a card by its coverage.
 #[test]
 fn dust_takes_what_it_covers() {
     let of = |set: &[&str]| render(&[&["render.samples=2048"], set].concat());
     let dust = of(&["lens.dust={coverage: 2 %, diameter: 5 mm, spread: 0}"]);
     let clean = of(&[]);
-    // Grains this large scatter by less than a pixel: the light that they stop is gone, the light that they diffract stays.
+    // Grains this large scatter by less than a pixel: the light that they stop is lost, and the light that they diffract stays.
     let middle = |of: &Rendering| {
         (3..6).flat_map(|row| (6..9).map(move |column| row * 15 + column)).map(|p| y(of)[p]).sum::<f64>()
     };
@@ -107,7 +107,7 @@ fn dust_takes_what_it_covers() {
     assert!((got / want - 1.0).abs() < 0.01, "{got} {want}");
 }
 
-/// Of a sun whose ghosts are traced every watt is booked once, what is scattered apart.
+/// For a sun with ghosts, the ledger books every watt once, with scattered light in an entry of its own.
 #[test]
 fn the_books_of_a_sun_close() {
     let sun = "source={kind: sun, field: [5 deg, 3 deg], illuminance: 60000 lx, spectrum: \"blackbody:5400\"}";
@@ -120,8 +120,8 @@ fn the_books_of_a_sun_close() {
     assert!(ledger.scattered_w > 0.05 * ledger.emitted_w && ledger.absorbed_w > 0.0, "{ledger:?}");
 }
 
-/// The glow of the sun through haze: spread over footprints it has as much light, its neighbors differ by a fifth of what they did at most, and
-/// parts of the frame have the light of unspread rays within a hundredth, and 4 standard errors of both.
+/// The glow of the sun through haze has as much light when it is spread over footprints. Its neighboring pixels differ by at most a
+/// fifth as much, and parts of the frame have the light of unspread rays within a hundredth plus 4 standard errors of both.
 #[test]
 fn glow_is_smooth_and_true() {
     const PIXELS: usize = 120;
@@ -145,7 +145,7 @@ fn glow_is_smooth_and_true() {
     let [a, b] = [&spread, &plain].map(|renderer| y(&rendered(renderer)));
     let sum = |values: &[f64]| values.iter().sum::<f64>();
     assert!((sum(&a) / sum(&b) - 1.0).abs() < 1e-6, "{} {}", sum(&a), sum(&b));
-    // Away from the sun's own image: the lower half.
+    // The lower half of the frame is away from the image of the sun.
     let rough = |values: &[f64]| {
         let rows = values[values.len() / 2..].chunks_exact(PIXELS);
         rows.flat_map(|row| row.windows(3).map(|at| (at[1] - 0.5 * (at[0] + at[2])).abs())).sum::<f64>()

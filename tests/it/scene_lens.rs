@@ -1,10 +1,12 @@
-//! The `lens` section of a scene.
+//! Tests the `lens` section of a scene.
 
 use spectra_core::Isa;
-use spectra_lens::{Coating, Indices, Lens};
+use spectra_lens::{Coating, Lens};
+use spectra_optics::Optics;
 use spectra_plugins as _;
 use spectra_render::{Control, Renderer, Threads};
 use spectra_scene::load;
+use spectra_tracer::Indices;
 use std::path::Path;
 
 fn lens(set: &[&str]) -> Result<Lens, String> {
@@ -43,13 +45,13 @@ fn a_lens_may_be_turned_coated_and_bent() {
     assert!((turned.first_order(587.56).ffl_mm + plain.first_order(587.56).bfl_mm).abs() < 1e-9);
     let bare = lens(&["lens.coating=bare", "lens.absorption=true"]).expect("good");
     assert_eq!((bare.coating, bare.absorption), (Coating::Bare, true));
-    // The lens is of 1927.
+    // The lens dates from 1927.
     assert_eq!((plain.coating, plain.absorption), (Coating::Bare, true));
     let ideal = lens(&["lens.coating=ideal", "lens.absorption=false"]).expect("good");
     assert!(ideal.is_lossless() && !lens(&["lens.coating=ideal"]).expect("good").is_lossless());
 }
 
-/// What coatings let pass is what arrives, in both directions: the middle of a gray card, with the same numbers.
+/// The light that coatings transmit arrives, in both directions: compares the middle of a gray card with the same random numbers.
 #[test]
 fn coatings_dim_the_picture() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gray-card.yaml");
@@ -76,7 +78,7 @@ fn coatings_dim_the_picture() {
         for coating in ["bare", "{layer: 1.38, quarter-wave-at: 550 nm}"] {
             let (coated, same) = middle(&[direction, &format!("lens.coating={coating}")]);
             let marginal = lens.marginal_ray().ok();
-            // At the peak of Y; over the band the transmittance of this lens varies by less than a per cent there.
+            // At the peak of Y. Around it, the transmittance of this lens varies by less than a per cent.
             let want = same.axial_transmittance(Indices::At(555.0), marginal).expect("media");
             assert!((coated / ideal / want - 1.0).abs() < 0.01, "{direction} {coating}: {} {want}", coated / ideal);
             assert!(want < 0.99);
@@ -114,7 +116,7 @@ fn faults_of_the_lens_come_at_once() {
     }
 }
 
-/// A lens file scaled by a scene is a lens of that focal length, with the same f-number, field and light.
+/// A scene that scales a lens gets a lens of that focal length, with the same f-number, field and light.
 #[test]
 fn a_scene_scales_a_lens_to_a_focal_length() {
     let load = |lens: &str| {
@@ -135,7 +137,7 @@ fn a_scene_scales_a_lens_to_a_focal_length() {
         let factor = 120.0 / a.efl_mm;
         assert!((b.efl_mm - 120.0).abs() < 1e-9, "{name}: {}", b.efl_mm);
         assert!((b.bfl_mm - a.bfl_mm * factor).abs() < 1e-9 * factor, "{name}");
-        let f_number = |lens: &spectra_lens::Lens| lens.marginal_ray().expect("a ray").f_number();
+        let f_number = |lens: &spectra_lens::Lens| Optics::new(lens.clone()).marginal_ray().expect("a ray").f_number();
         assert!((f_number(lens) / f_number(&own) - 1.0).abs() < 1e-6, "{name}");
         assert!((lens.image_along_axis_mm / own.image_along_axis_mm / factor - 1.0).abs() < 1e-9, "{name}");
         assert!(scene.all_notes().any(|note| note.contains("scaled from")), "{name}");

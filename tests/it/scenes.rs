@@ -1,4 +1,4 @@
-//! Every lens of the repository loads; the registry is sound and complete.
+//! Tests that every lens of the repository loads, and that the registry is sound and complete.
 
 use spectra_plugins as _;
 use spectra_scene::FileResources;
@@ -30,13 +30,13 @@ fn every_lens_loads_and_names_its_source() {
         let name = path.to_string_lossy();
         let lens =
             spectra_lens::load(&name, &FileResources::beside(root())).unwrap_or_else(|faults| panic!("{faults}"));
-        // A textbook's design has no year; its remark says so.
+        // A textbook design has no year, and its remark says so.
         assert!(lens.source.is_some() && (lens.year.is_some() || lens.remark.is_some()), "{name}");
     }
 }
 
-/// First order of the bundled Biotar at its stated indices, EFL and BFL in mm: computed independently from the
-/// prescription of US 1786916, example 2, halved.
+/// EFL and BFL in mm of the bundled Biotar at its stated indices, computed independently from the prescription of US 1786916, example
+/// 2, halved.
 #[test]
 fn the_bundled_biotar_is_the_patents() {
     let lens = spectra_lens::load("zeiss-biotar-50-f1.4", &FileResources::beside(root())).expect("bundled");

@@ -1,4 +1,4 @@
-//! A session: what it does to the bits of a picture, and what it makes again.
+//! Tests sessions: the bits of a picture after changes, and what is computed again.
 
 use spectra_core::params::Faults;
 use spectra_core::resources::{Found, Resource, ResourceError, Resources};
@@ -12,7 +12,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Small pictures, each with one more thing that could go wrong: a film that meters, colors, an imager by itself, forward light.
+/// Small pictures that each cover another case: a film with a meter, colors, an imager by itself, forward light.
 const SCENES: [(&str, &[&str]); 3] = [
     ("biotar-ortho", &["imager.resolution=[24, 16]"]),
     ("gray-card", &["imager.resolution=[24, 16]"]),
@@ -25,13 +25,13 @@ fn session(scene: &str, set: &[&str]) -> Session {
     Session::open(&path, &set, Isa::detect()).unwrap_or_else(|error| panic!("{scene}: {error}"))
 }
 
-/// Bits of the exposure, channel after channel.
+/// Returns the bits of the exposure, channel after channel.
 fn bits(session: &mut Session) -> Vec<u32> {
     let exposure = session.look().expect("there is memory").exposure;
     exposure.channels.iter().flat_map(|c| c.values.iter().map(|v| v.to_bits())).collect()
 }
 
-/// Bits of the pictures.
+/// Returns the bits of the pictures.
 fn picture(session: &mut Session) -> Vec<u32> {
     let all = session.develop().expect("a picture");
     all.iter().flat_map(|(_, p)| p.rgb.as_flattened().iter().map(|v| v.to_bits())).collect()
@@ -41,7 +41,7 @@ fn go(session: &mut Session, samples: u64) {
     session.advance(samples, &Threads(2), &Control::new()).expect("rendered");
 }
 
-/// The picture after some steps is that of a run of so many samples.
+/// The picture after several steps equals that of one run with the same number of samples.
 #[test]
 fn steps_are_a_run_of_their_sum() {
     for (scene, set) in SCENES {
@@ -66,7 +66,7 @@ fn numbers_that_do_not_extend_refuse_to_step() {
     go(&mut session, 16);
 }
 
-/// Stopped in the midst of the work, saved, taken up by another session, ended: the bits of a run.
+/// Light that is stopped in the middle of the work, saved, loaded by another session and finished has the bits of one run.
 #[test]
 fn light_is_saved_and_taken_up() {
     for (scene, set) in SCENES {
@@ -79,29 +79,29 @@ fn light_is_saved_and_taken_up() {
         first.save(&mut file).expect("saved");
         let mut second = session(scene, &set);
         second.load(&mut file.as_slice()).expect("taken up");
-        assert_eq!(bits(&mut first), bits(&mut second), "{scene}: as far as it was");
+        assert_eq!(bits(&mut first), bits(&mut second), "{scene}: the loaded light differs");
         go(&mut second, 96);
         assert_eq!(bits(&mut second), bits(&mut whole), "{scene} {set:?}");
-        // What is damaged, or of another scene, leaves all as it was.
+        // Damaged light, or light of another scene, is refused and changes nothing.
         let last = file.len() - 20;
         file[last] ^= 1;
         assert!(matches!(second.load(&mut file.as_slice()), Err(SessionError::Light(_))));
         let mut other = session(scene, &[&set[..], &["render.seed=5"]].concat());
         assert!(other.load(&mut file.as_slice()).is_err());
         assert_eq!(bits(&mut second), bits(&mut whole));
-        // A surface that no lens has is seen before room is made for all up to it.
+        // A surface number that the lens does not have is rejected before memory is allocated for all surfaces up to it.
         file[last] ^= 1;
         let magic = b"spectra light 5\n";
         let state = file.windows(16).position(|w| w == magic).expect("light") + 16 + 8;
         if file[state - 8..state] != [0; 8] {
             file[state + 3] = 0xf0;
             let error = second.load(&mut file.as_slice()).expect_err("no such surface").to_string();
-            assert!(error.contains("of another scene"), "{error}");
+            assert!(error.contains("belongs to another scene"), "{error}");
         }
     }
 }
 
-/// Goes on until about a third is done.
+/// Renders until about a third of the work is done.
 fn stopped(session: &mut Session, samples: u64) {
     struct Tired<'a>(&'a Control);
     impl Workers for Tired<'_> {
@@ -115,13 +115,13 @@ fn stopped(session: &mut Session, samples: u64) {
             });
         }
     }
-    // Those who stop by rays would wait for ever where none is traced: while pupils are searched.
+    // The wait for rays would never end while pupils are searched and no ray is traced, so the search is done first.
     session.prepare(&Alone).expect("ready");
     let control = Control::new();
     session.advance(samples, &Tired(&control), &control).expect("stopped");
 }
 
-/// Two estimators of unequal work in one scene: the light of both is one picture, whenever it was stopped.
+/// Two estimators of unequal work in one scene add up to one picture, whenever they were stopped.
 #[test]
 fn estimators_of_one_scene_add() {
     let session = session("gray-card", &["imager.resolution=[16, 12]", "render.samples=64", "render.rays=300000"]);
@@ -135,7 +135,7 @@ fn estimators_of_one_scene_add() {
     let whole = renderer(&both);
     let mut light = whole.begin().expect("memory");
     whole.advance(&mut light, 64, &Threads(2), &Control::new()).expect("rendered");
-    // Ended before the second estimator began, within it, and anywhere.
+    // Stops before the second estimator begins, within it, and elsewhere.
     for rays in [1, 250_000, 301_000, 305_000] {
         let mut part = whole.begin().expect("memory");
         let control = Control::new();
@@ -161,7 +161,7 @@ fn estimators_of_one_scene_add() {
         again.advance(&mut part, 64, &Alone, &Control::new()).expect("ended");
         assert_eq!(look(&again, &part), look(&whole, &light), "{rays}");
     }
-    // Each alone gives the whole picture, so both give twice of it: their sums add.
+    // Each estimator gives the whole picture, so both together give twice the light: their sums add.
     let sum = |which: &[Direction]| {
         let one = renderer(which);
         let mut light = one.begin().expect("memory");
@@ -173,7 +173,7 @@ fn estimators_of_one_scene_add() {
     assert!((both / apart - 1.0).abs() < 1e-6, "{both} {apart}");
 }
 
-/// What comes after the light traces nothing, and gives the picture of a fresh run.
+/// A change that only affects development traces no ray, and gives the picture of a fresh run.
 #[test]
 fn development_traces_no_ray() {
     for (scene, set, changes) in [
@@ -217,7 +217,7 @@ fn development_traces_no_ray() {
     }
 }
 
-/// Files that are read from disk, counted.
+/// Resources that count how often a file is read from disk.
 struct Counting(FileResources, Arc<AtomicUsize>);
 
 impl Resources for Counting {
@@ -235,12 +235,12 @@ impl Resources for Counting {
     }
 }
 
-/// Another stop is focused anew and traced anew, and that is all; another stock sees other light.
+/// Another stop causes new focusing and tracing, and nothing else; another stock causes a new wavelength density.
 #[test]
 fn a_change_makes_again_what_rests_on_it() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(root.join("scenes/biotar-ortho.yaml")).expect("there");
-    // A source that fills the frame rests on the lens; this one does not.
+    // A source that fills the frame depends on the lens; this one does not.
     let small = ["imager.resolution=[24, 16]", "render.samples=8", "source.width=1.5 m"];
     let reads = Arc::new(AtomicUsize::new(0));
     let files = Arc::new(Counting(FileResources::beside(&root.join("scenes")), Arc::clone(&reads)));
@@ -254,8 +254,8 @@ fn a_change_makes_again_what_rests_on_it() {
     let old = density(&changed);
     let kept = changed.change("lens.f-number=f/8").expect("a stop");
     assert!(!kept.light && kept.density && !kept.lens && kept.source, "{kept:?}");
-    assert!(Arc::ptr_eq(&old, &density(&changed)), "the density is the one of before");
-    assert_eq!(reads.load(Relaxed), before, "no file is read for another stop");
+    assert!(Arc::ptr_eq(&old, &density(&changed)), "the density was computed again");
+    assert_eq!(reads.load(Relaxed), before, "a file was read for another stop");
     go(&mut changed, 8);
     let mut fresh = session("biotar-ortho", &[&small[..], &["lens.f-number=f/8"]].concat());
     go(&mut fresh, 8);
@@ -267,19 +267,19 @@ fn a_change_makes_again_what_rests_on_it() {
         session("biotar-ortho", &[&small[..], &["lens.f-number=f/8", "film.stock=kodak-tri-x-400"]].concat());
     go(&mut fresh, 8);
     assert_eq!(bits(&mut changed), bits(&mut fresh));
-    // A slip leaves all as it was.
+    // A faulty change leaves everything as it was.
     assert!(changed.change("lens.f-number=f/0.1").is_err() && changed.change("film.stock=none-such").is_err());
     assert_eq!(bits(&mut changed), bits(&mut fresh));
 }
 
-/// One thread, no disk, no clock: files in memory, and the same bits.
+/// A session works on one thread, without disk or clock: its files are in memory and have the same bits.
 #[test]
 fn it_works_without_threads_and_disk() {
     let text = "spectra: 1\nsource: {kind: chart, chart: gray-card, distance: 2 m, width: 3 m, illuminant: D65, luminance: 300 cd/m2}\n\
                 lens: {file: zeiss-biotar-50-f1.4, focus: 2 m, f-number: f/4}\n\
                 imager: {kind: film, format: '135', resolution: [24, 16]}\n\
                 film: {stock: kodak-tri-x-400, exposure: 1/125 s}\nrender: {samples: 4}\noutput: [exr, png, tiff]\n";
-    /// Knows nothing but what is bundled.
+    /// Resources that contain only bundled files.
     struct Bundled;
     impl Resources for Bundled {
         fn read(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Resource, ResourceError> {
@@ -307,7 +307,7 @@ fn it_works_without_threads_and_disk() {
     }
 }
 
-/// Nobody waits for what it does.
+/// Workers that were asked to stop.
 struct Stopped;
 
 impl Workers for Stopped {
@@ -319,11 +319,12 @@ impl Workers for Stopped {
     }
 }
 
-/// Stopped down so far that a corner of the frame sees nothing through the paraxial pupil, what the frame sees is searched as closely as
-/// for a picture: on any workers the same, not at all where they are to stop, and in a draft by less effort.
+/// Stopped down so far that a corner of the frame sees nothing through the paraxial pupil, the view of the frame is searched as
+/// closely as for a picture. The given workers do the search with the same result on any number of threads. Workers that stop do not
+/// search, and a draft uses less effort.
 #[test]
 fn what_a_frame_sees_is_searched_by_those_who_are_asked() {
-    /// Works, and counts how often it is asked to.
+    /// Workers that count how often they are called.
     struct Counting(AtomicUsize);
     impl Workers for Counting {
         fn each(&self, work: &(dyn Fn() + Sync)) {
@@ -338,17 +339,17 @@ fn what_a_frame_sees_is_searched_by_those_who_are_asked() {
     let before = bits(&mut whole);
     let draft = whole.draft(&["imager.resolution=[12, 8]".to_owned()]).expect("the same scene");
     assert!(whole.change_after(f15, &draft, &Stopped).is_err());
-    assert_eq!(bits(&mut whole), before, "all is as it was");
+    assert_eq!(bits(&mut whole), before, "the refused change had an effect");
     let counting = Counting(AtomicUsize::new(0));
     whole.change_after(f15, &draft, &counting).expect("it stops down");
-    assert!(counting.0.load(Relaxed) > 0, "the search was theirs");
+    assert!(counting.0.load(Relaxed) > 0, "the given workers did no search");
     go(&mut whole, 4);
     let mut fresh = session("biotar-ortho", &[&small[..], &[f15]].concat());
     go(&mut fresh, 4);
     assert_eq!(bits(&mut whole), bits(&mut fresh));
 }
 
-/// What a change asks to be made ready waits until light is asked for, and can be stopped; then the bits are those of a run.
+/// A change can be prepared later, when light is requested, and preparation can be stopped. The bits are then those of one run.
 #[test]
 fn a_change_can_be_made_ready_later() {
     let small = ["imager.resolution=[24, 16]", "render.samples=4"];
@@ -356,7 +357,7 @@ fn a_change_can_be_made_ready_later() {
     go(&mut later, 4);
     let kept = later.change_later("lens.f-number=f/8").expect("it stops down");
     assert!(!kept.light && kept.density && !kept.lens, "{kept:?}");
-    // A second one before the first was made ready.
+    // A second change before the first was prepared.
     later.change_later("imager.tilt=[3 deg, 0 deg]").expect("it tilts");
     later.advance(4, &Stopped, &Control::new()).expect("nobody waits for it");
     assert_eq!((later.samples(), later.has_light()), (0, false));
@@ -365,12 +366,12 @@ fn a_change_can_be_made_ready_later() {
         session("biotar-ortho", &[&small[..], &["lens.f-number=f/8", "imager.tilt=[3 deg, 0 deg]"]].concat());
     go(&mut whole, 4);
     assert_eq!(bits(&mut later), bits(&mut whole));
-    // Development alone keeps it.
+    // A change that only affects development keeps the light.
     assert!(later.change_later("film.grain=false").expect("it has no grain").light);
     assert_eq!(bits(&mut later), bits(&mut whole));
 }
 
-/// Who has drafted a change has focused the lens; a frame that turns leaves it as it is. The picture is that of a run.
+/// A lens that a draft has focused is not focused again, and tilting the frame keeps the focus. The picture equals that of one run.
 #[test]
 fn a_lens_is_focused_once() {
     let small = ["imager.resolution=[24, 16]", "render.samples=4"];
@@ -390,12 +391,12 @@ fn a_lens_is_focused_once() {
         session("biotar-ortho", &[&small[..], &["lens.focus=1.5 m", "imager.tilt=[3 deg, 0 deg]"]].concat());
     go(&mut fresh, 4);
     assert_eq!(bits(&mut whole), bits(&mut fresh));
-    // Other light is focused anew, whatever was drafted.
+    // Another kind of light requires new focusing, whatever was drafted.
     whole.change_after("film.stock=kodak-tri-x-400", &draft, &Alone).expect("it can be");
     assert!(!Arc::ptr_eq(&whole.scene().lens, &focused));
 }
 
-/// A first look shows the same light, exposed as long, by less effort: its mean is known to 0.3 %.
+/// A draft shows the same light with the same exposure, at less effort: its mean is known to 0.3 %.
 #[test]
 fn a_draft_is_as_bright_as_the_whole() {
     for set in [

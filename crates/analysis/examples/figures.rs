@@ -1,4 +1,4 @@
-//! Writes a spectrum plot and a chromaticity diagram into the folder given (here if none is).
+//! Writes spectrum plots and a chromaticity diagram to the given folder (default: the current one).
 
 use spectra_analysis::figure;
 use spectra_color::{chromaticity, xyz_of_light};

@@ -1,35 +1,38 @@
-//! The ghosts of a lens one by one: light from infinity on the axis that two surfaces reflect, or four.
+//! The ghosts of a lens one by one: axial light from infinity that two or four surfaces reflect.
 
 use crate::draw::{DrawnRay, View};
 use glam::DVec3;
 use serde::Serialize;
+use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::{cos, sin, sin_cos_turns};
-use spectra_core::{Isa, RayBatch};
 use spectra_glass::{DispersionError, lines};
-use spectra_lens::{Branches, FrontOpening, Indices, Ledger, Lens, Path, Route, Section, Tracer, Travel};
+use spectra_lens::Section;
+use spectra_optics::{FrontOpening, Optics};
+use spectra_tracer::{Branches, Indices, Ledger, Path, Route, Tracer, Travel};
+use std::sync::Arc;
 
-/// What one path by reflections does with light from infinity on the axis.
+/// A ghost: axial light from infinity along one path of reflections.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ghost {
-    /// The surfaces that reflect, in the order of the light, counted from 1.
+    /// Reflecting surfaces in the order of the light, counted from 1.
     pub surfaces: Vec<usize>,
-    /// What comes to the image plane, as a part of what comes there straight.
+    /// Light that reaches the image plane along this path, divided by that of the straight path.
     pub energy: f64,
-    /// Where the ghost is in focus: distance of its paraxial image of infinity from the image plane, mm, positive beyond it; none
-    /// where it leaves parallel.
+    /// Focus of the ghost: distance of its paraxial image of infinity from the image plane, mm, positive behind the plane. `None` if the
+    /// light leaves parallel.
     pub focus_mm: Option<f64>,
-    /// Its paraxial focal length, mm: an object's image in that focus is so much larger or smaller than the lens's own; negative is
-    /// the other way up.
+    /// Paraxial focal length of the path, mm. Its ratio to the focal length of the lens is the size of the ghost image relative to the
+    /// regular image. Negative means upside down relative to a positive one.
     pub focal_length_mm: Option<f64>,
-    /// Diameter of the disk that it makes of a point at infinity on the image plane, mm.
+    /// Diameter of the disk that a point at infinity makes on the image plane, mm.
     pub size_mm: f64,
-    /// `energy` at the lines C', e and F', over that at e: red, green, blue.
+    /// Color: `energy` at the lines C', e and F' (red, green, blue), each divided by the value at e.
     pub color: [f64; 3],
 }
 
 impl Ghost {
-    /// How bright it is on the image plane: its energy over the area of its disk, as if none were smaller than a tenth of a mm.
+    /// Returns the relative brightness on the image plane: energy over the area of the disk, whose diameter counts as at least 0.1 mm.
     #[must_use]
     pub fn density(&self) -> f64 {
         let size = self.size_mm.max(0.1);
@@ -40,38 +43,40 @@ impl Ghost {
 /// The ghosts of a lens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ghosts {
-    /// Brightest first.
+    /// The ghosts, brightest first (by energy).
     pub paths: Vec<Ghost>,
-    /// What is reflected more often, or begins a path with too little, and is not followed: a part of the light that enters the lens.
+    /// Light that is reflected more often, or starts a path with too little to follow, as a part of the light that enters the lens.
     pub not_traced: f64,
 }
 
-/// Which ghosts are looked for.
+/// Settings of a search for ghosts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GhostSearch {
-    /// For this wavelength, nm.
+    /// Wavelength, nm.
     pub wavelength_nm: f64,
-    /// Reflections at most: 2 or 4.
+    /// Largest number of reflections: 2 or 4.
     pub order: usize,
-    /// Paths of four reflections are left out where less than this part of the straight light begins them.
+    /// Paths of four reflections are skipped if they start with less than this part of the straight light.
     pub share: f64,
 }
 
-/// Rays across the front, and the height of the paraxial one, mm.
+/// Number of rays across the front, for two and for four reflections.
 const RAYS: usize = 4096;
 const RAYS_OF_FOUR: usize = 1024;
-/// Rays that are tried to find those of a ghost that come.
+/// Number of test rays that find the part of the beam that reaches the image along a ghost path.
 const TRIED: usize = 1001;
+// Height of the paraxial ray, mm.
 const PARAXIAL_MM: f64 = 1e-3;
-/// A slope below which light is parallel.
+/// Slopes below this count as parallel.
 const PARALLEL: f64 = 1e-12;
 
-/// The ghosts of a lens as it is set, brightest first; figures but color are for the search's wavelength. None where nothing reflects.
+/// Finds the ghosts of a lens as it is set, brightest first. All figures except the color are at the wavelength of the search. The list is
+/// empty if no surface reflects.
 ///
 /// # Errors
-/// A medium has no index there or at a line.
-pub fn ghosts(lens: &Lens, search: GhostSearch, isa: Isa) -> Result<Ghosts, DispersionError> {
-    let tracer = |nm: f64| Tracer::new(lens, Indices::At(nm), isa).map(|tracer| (nm, tracer));
+/// A medium has no index at this wavelength or at one of the lines C', e and F'.
+pub fn ghosts(lens: &Optics, search: GhostSearch) -> Result<Ghosts, DispersionError> {
+    let tracer = |nm: f64| lens.tracer(Indices::At(nm)).map(|tracer| (nm, tracer));
     let main = tracer(search.wavelength_nm)?;
     let colors = [lines::C_PRIME, lines::E, lines::F_PRIME].map(|line| tracer(line.wavelength_nm));
     let [red, green, blue] = colors;
@@ -79,7 +84,7 @@ pub fn ghosts(lens: &Lens, search: GhostSearch, isa: Isa) -> Result<Ghosts, Disp
     let radius_mm = FrontOpening::of(lens).map_or(0.0, |opening| opening.radius_mm());
     let elements = main.1.surfaces();
     let straight = Path::through(elements, Travel::Forward);
-    let light = |(nm, tracer): &(f64, Tracer), path: &Path, rays: usize| {
+    let light = |(nm, tracer): &(f64, Arc<Tracer>), path: &Path, rays: usize| {
         disk(tracer, &tracer.route(path), *nm, radius_mm, rays)
     };
     let first = light(&main, &straight, RAYS);
@@ -98,7 +103,7 @@ pub fn ghosts(lens: &Lens, search: GhostSearch, isa: Isa) -> Result<Ghosts, Disp
     let branches = Branches { elements, surfaces: &surfaces, order: search.order, least };
     let left = branches.follow(&mut Vec::new(), 0.0, &mut visit);
     let entered = first.ledger.launched - first.ledger.steps.first().map_or(0.0, |step| step.missed + step.vignetted);
-    // Of so many paths of four the colors are told by fewer rays.
+    // Paths of four reflections are many, so fewer rays measure their colors.
     let own_colors = [RAYS, RAYS_OF_FOUR].map(|rays| colors.each_ref().map(|c| light(c, &straight, rays).energy));
     let mut paths: Vec<Ghost> = found
         .into_iter()
@@ -123,22 +128,22 @@ pub fn ghosts(lens: &Lens, search: GhostSearch, isa: Isa) -> Result<Ghosts, Disp
     Ok(Ghosts { paths, not_traced: if entered > 0.0 { left / entered } else { 0.0 } })
 }
 
-/// What parallel light across the front does along a path.
+/// Parallel light across the front after it followed a path.
 struct Disk {
-    /// What arrives of it.
+    /// Light that reaches the image plane.
     energy: f64,
-    /// The diameter of the disk that it makes on the image plane, mm.
+    /// Diameter of its disk on the image plane, mm.
     size_mm: f64,
     ledger: Ledger,
 }
 
-/// Follows parallel light across the front.
+/// Traces `many` parallel rays over the front along a route.
 fn disk(tracer: &Tracer, route: &Route, wavelength_nm: f64, radius_mm: f64, many: usize) -> Disk {
     let mut rays = RayBatch::new(many);
     rays.restart(many);
     let c = rays.columns_mut();
     for i in 0..many {
-        // Of equal areas, turned on by the golden section (H. Vogel, 1979).
+        // Cells of equal area, turned by the golden section from ray to ray (H. Vogel, 1979).
         let r = radius_mm * ((i as f64 + 0.5) / many as f64).sqrt();
         let turns = i as f64 * 0.618_033_988_749_894_9;
         let (sin, cos) = sin_cos_turns(turns - turns.floor());
@@ -158,23 +163,23 @@ fn disk(tracer: &Tracer, route: &Route, wavelength_nm: f64, radius_mm: f64, many
     Disk { energy, size_mm: 2.0 * farthest, ledger: work.take_ledger().unwrap_or_default() }
 }
 
-/// Rays of a ghost, to be drawn: parallel light at an angle to the axis, evenly over what of it comes to the image plane by these
-/// reflections (counted from 0). Fewer where fewer come.
+/// Traces rays of a ghost for a drawing: parallel light at an angle to the axis, rad, evenly over the part of it that reaches the image
+/// plane by these reflections (surfaces counted from 0). Returns fewer than `many` rays if fewer reach the image.
 ///
 /// # Errors
-/// A medium has no index there.
+/// A medium has no index at this wavelength.
 ///
 /// # Panics
 /// The reflections do not follow from one another.
 pub fn ghost_rays(
-    lens: &Lens,
+    lens: &Optics,
     reflections: &[usize],
     wavelength_nm: f64,
     field_rad: f64,
     section: Section,
     many: usize,
 ) -> Result<Vec<DrawnRay>, DispersionError> {
-    let tracer = Tracer::new(lens, Indices::At(wavelength_nm), Isa::Baseline)?;
+    let tracer = lens.tracer(Indices::At(wavelength_nm))?;
     let path = Path::reflected(tracer.surfaces(), Travel::Forward, reflections).expect("surfaces in their order");
     let route = tracer.route(&path);
     let Some(opening) = FrontOpening::of(lens) else { return Ok(Vec::new()) };
@@ -196,7 +201,7 @@ pub fn ghost_rays(
     Ok((0..many).map(|k| DrawnRay { path: came[at(k)].clone(), wavelength_nm, strength: 1.0 }).collect())
 }
 
-/// Paraxial focus behind the image plane, mm, and focal length, mm.
+/// Returns the paraxial focus behind the image plane, mm, and the focal length, mm; both `None` if the light is lost or parallel.
 fn focus(tracer: &Tracer, route: &Route, wavelength_nm: f64) -> (Option<f64>, Option<f64>) {
     let mut rays = RayBatch::new(1);
     rays.restart(1);

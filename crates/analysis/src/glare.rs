@@ -1,40 +1,41 @@
-//! Veiling glare: how much of an extended white field a lens spreads over what should be black.
+//! Veiling glare: the part of an extended white field that a lens spreads over what should be black.
 //!
-//! The integral method of ISO 9358:1994: a black disk at the middle of a field of uniform radiance that fills and exceeds the lens's
-//! own. The veiling glare index is the irradiance at the middle of the disk's image over the irradiance there without the disk. Light
-//! is followed from the image back to the field, by walks that know no order of surfaces ([`spectra_lens::Interior`]).
+//! Integral method of ISO 9358:1994: a black disk stands at the center of a field of uniform radiance that fills and exceeds the field of
+//! the lens. The veiling glare index is the irradiance at the center of the disk's image divided by the irradiance there without the disk.
+//! Light is followed from the image back to the field by random walks that assume no sequence of surfaces ([`spectra_tracer::Interior`]).
 
 use serde::Serialize;
 use spectra_core::workers::{Workers, each_of};
 use spectra_glass::lines;
-use spectra_lens::{Chance, Interior, Lens, Particle, StrayError, StrayLedger, StrayMatter, Walker};
+use spectra_lens::Lens;
+use spectra_tracer::{Chance, Interior, Particle, StrayError, StrayLedger, StrayMatter, Walker};
 use std::convert::Infallible;
 
-/// Walks of one piece of work.
+/// Number of walks in one piece of work.
 const PIECE: usize = 4096;
-/// Numbers of walks are drawn by this seed.
+/// Seed of the random numbers of the walks.
 const SEED: u64 = 0x0067_6c61_7265;
 
-/// What veiling glare is measured with.
+/// Settings of a veiling glare measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlareTask {
-    /// Width and height of the imager, mm: the camera behind the lens is as wide.
+    /// Width and height of the imager, mm. The camera behind the lens is as wide as the imager.
     pub frame_mm: [f64; 2],
     /// Diameter of the image of the black disk, mm.
     pub disk_mm: f64,
-    /// Diameter of the place in its middle where light is measured, mm.
+    /// Diameter of the area at the center of that image where light is measured, mm.
     pub detector_mm: f64,
-    /// What reflects light beside glass.
+    /// Reflectances of everything inside that is not glass: paint and imager.
     pub matter: StrayMatter,
     /// Wavelength, nm.
     pub wavelength_nm: f64,
-    /// How many walks.
+    /// Number of walks.
     pub walks: usize,
 }
 
 impl GlareTask {
-    /// Behind a lens on a 135 camera: a disk a tenth as large as the frame's diagonal, measured over the middle half of its image,
-    /// a lens with black paint and an imager that reflects nothing.
+    /// Returns the settings for a lens on a 135 camera (36 x 24 mm) at this wavelength, nm. The image of the disk is a tenth of the frame's
+    /// diagonal wide, and light is measured over the middle half of it. The lens is painted black, and the imager reflects nothing.
     #[must_use]
     pub fn new(wavelength_nm: f64) -> Self {
         let frame_mm: [f64; 2] = [36.0, 24.0];
@@ -53,11 +54,11 @@ impl GlareTask {
 /// The veiling glare of a lens.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Glare {
-    /// Veiling glare index: irradiance at the middle of the black disk's image over that without the disk.
+    /// Veiling glare index: irradiance at the center of the black disk's image divided by the irradiance there without the disk.
     pub index: f64,
-    /// Its standard error.
+    /// Standard error of the index.
     pub standard_error: f64,
-    /// Of the index: light that paint or imager scattered at least once; what is left was reflected by glass alone.
+    /// Part of the index due to light that paint or imager scattered at least once. The remainder was reflected by glass alone.
     pub scattered: f64,
     /// Diffuse reflectance of the paint.
     pub paint: f64,
@@ -69,45 +70,45 @@ pub struct Glare {
     pub frame_mm: [f64; 2],
     /// Wavelength, nm.
     pub wavelength_nm: f64,
-    /// Walks that were made.
+    /// Number of walks made.
     pub walks: usize,
-    /// Where they ended, as parts of what set out.
+    /// Destinations of the walks, as parts of the launched light.
     pub ledger: GlareLedger,
 }
 
-/// Where walks ended that set out from the middle of the black disk's image, as parts of them; `front` and the others add up to 1 but
-/// for `aimed`, which is noise.
+/// Destinations of the walks from the center of the black disk's image, as parts of the launched light. All other fields add up to 1 +
+/// `aimed`, where `aimed` is noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GlareLedger {
-    /// Came to the white field.
+    /// Light that reached the white field.
     pub white: f64,
-    /// Came to the black disk.
+    /// Light that reached the black disk.
     pub black: f64,
-    /// Absorbed by paint.
+    /// Light absorbed by paint.
     pub paint: f64,
-    /// Absorbed by glass.
+    /// Light absorbed by glass.
     pub glass: f64,
-    /// Absorbed by coatings.
+    /// Light absorbed by coatings.
     pub coatings: f64,
-    /// Absorbed by the imager.
+    /// Light absorbed by the imager.
     pub imager: f64,
-    /// Not followed to the end.
+    /// Light that was not followed to its end.
     pub not_traced: f64,
-    /// Sum of the weights of directions that were chosen, over that of even ones, less 1.
+    /// Sum of the weights of aimed directions divided by that of evenly distributed ones, less 1. Its expected value is 0.
     pub aimed: f64,
 }
 
 /// The black disk in front of a lens.
 #[derive(Clone, Copy, Debug)]
 pub struct BlackDisk {
-    /// Distance from the first vertex, mm; infinite.
+    /// Distance from the first vertex, mm; may be infinite.
     distance_mm: f64,
-    /// Its radius, mm; at infinity the tangent of the angle.
+    /// Radius of the disk, mm; for a disk at infinity the tangent of its angular radius.
     radius: f64,
 }
 
 impl BlackDisk {
-    /// The disk whose image has this diameter, mm, by first order. `None` where the lens has no image.
+    /// Returns the disk whose paraxial image has this diameter, mm. `None` if the lens forms no image.
     #[must_use]
     pub fn of(lens: &Lens, image_mm: f64) -> Option<Self> {
         let distance_mm = lens.focused_mm;
@@ -120,7 +121,7 @@ impl BlackDisk {
         (radius.is_finite() && radius > 0.0).then_some(Self { distance_mm, radius })
     }
 
-    /// Whether light along this line, either way, is the disk's.
+    /// Whether a ray along this line, in either direction, meets the disk.
     #[must_use]
     pub fn holds(&self, ray: &Particle) -> bool {
         let (p, d) = (ray.position, ray.direction);
@@ -137,7 +138,7 @@ impl BlackDisk {
     }
 }
 
-/// Sums over walks, each of which brings `black` (light of the field beside the disk) and `all`.
+/// Sums over walks. Each walk adds to `black` (light of the field outside the disk) and to `all`.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     black: f64,
@@ -147,24 +148,24 @@ struct Sums {
     ledger: StrayLedger,
 }
 
-/// Why there is no figure.
+/// Why the veiling glare could not be measured.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GlareError {
-    /// The lens is not one whose stray light is known.
+    /// The stray light of this lens cannot be computed.
     #[error(transparent)]
     Stray(#[from] StrayError),
-    /// The lens has no image of the black disk.
+    /// The lens forms no image of the black disk.
     #[error("the lens makes no image of distant objects, so no black disk has one")]
     NoImage,
-    /// No light came through.
+    /// No light came through the lens.
     #[error("no light comes from the field to the middle of the image")]
     Dark,
 }
 
-/// The veiling glare index of a lens as it is set: the same bits on any workers.
+/// Measures the veiling glare index of a lens as it is set. The result is the same to the bit for any number of workers.
 ///
 /// # Errors
-/// [`GlareError`]
+/// [`GlareError`].
 pub fn glare(lens: &Lens, task: &GlareTask, workers: &dyn Workers) -> Result<Glare, GlareError> {
     let interior = Interior::new(lens, task.frame_mm, [task.wavelength_nm; 2], task.matter)?;
     let disk = BlackDisk::of(lens, task.disk_mm).ok_or(GlareError::NoImage)?;
@@ -202,7 +203,7 @@ pub fn glare(lens: &Lens, task: &GlareTask, workers: &dyn Workers) -> Result<Gla
         return Err(GlareError::Dark);
     }
     let index = sums.black / sums.all;
-    // Of a ratio: the spread of black - index all, which is 0 on average.
+    // Standard error of a ratio: the spread of black - index * all, whose mean is 0.
     let [bb, ba, aa] = sums.squares;
     let spread = (bb - 2.0 * index * ba + index * index * aa).max(0.0).sqrt();
     let part = |of: f64| of / sums.ledger.launched;
@@ -229,7 +230,7 @@ pub fn glare(lens: &Lens, task: &GlareTask, workers: &dyn Workers) -> Result<Gla
     })
 }
 
-/// The wavelength that glare is measured at where none is asked for, nm: near the peak of the eye's sensitivity.
+/// Default wavelength of a veiling glare measurement, nm: line e, near the peak of the eye's sensitivity.
 #[must_use]
 pub fn usual_wavelength_nm() -> f64 {
     lines::E.wavelength_nm

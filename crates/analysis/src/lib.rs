@@ -1,15 +1,15 @@
-//! What an optical engineer asks of a lens: rays in, figures out.
+//! Analysis of lenses and pictures: traced rays, first-order figures, ghosts, veiling glare, drawings and measurements.
 //!
-//! - [`trace`]: rays as CSV through a lens, the door through which any other program can be compared
-//!   with this one;
-//! - [`info`]: first-order figures, pupils and prescription, for a program and for a person;
-//! - [`focus`]: what an image point is sharp for;
-//! - [`fan`]: the rays of a field that pass, as a drawing shows them;
-//! - [`ghosts`]: light that two surfaces reflect, path by path;
-//! - [`glare`]: how much of an extended white field a lens spreads over what should be black;
-//! - [`draw`]: a lens as a figure, with rays in the colors of their wavelengths;
-//! - [`figure`]: spectra, their colors, and glasses as figures;
-//! - [`picture`]: a rendered picture measured: light, colors, views, cuts, differences.
+//! - [`trace`]: traces rays given as CSV through a lens, so that any other program can be compared with this one;
+//! - [`info`]: first-order figures, pupils and prescription, for programs and for people;
+//! - [`focus`]: the object point that is in focus at a given image point;
+//! - [`fan`]: the rays of a field point that pass the lens, as a drawing shows them;
+//! - [`ghosts`]: light that two or four surfaces reflect, path by path;
+//! - [`glare`]: veiling glare, the part of an extended white field that a lens spreads over a black object;
+//! - [`draw`]: a section of a lens as a figure, with rays in the colors of their wavelengths;
+//! - [`figure`]: figures of spectra, their colors and glasses;
+//! - [`picture`]: measurements on a rendered picture: light, colors, views, cuts, differences;
+//! - [`terms`]: products of spectra as sums of Gaussian terms.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -1,21 +1,22 @@
-//! Which refractive indices a lens is looked at with.
+//! The light that an analysis uses, which selects the refractive indices.
 
 use spectra_glass::{Medium, lines};
 use spectra_lens::Lens;
 
-/// One light for a whole analysis.
+/// The light of a whole analysis: one wavelength, or the stated indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
-    /// A wavelength in air, nm: every medium at its formula's index there.
+    /// A wavelength in air, nm. Every medium has the index of its formula there.
     Wavelength(f64),
-    /// Every medium at the index that the prescription states, where it does.
+    /// The indices stated in the prescription. A medium without one uses its formula at the reference wavelength.
     Stated,
 }
 
 impl Light {
-    /// The lens with every medium held at its index in this light, whatever the wavelength.
+    /// Returns the lens with every medium (and the cover plates) fixed at its index in this light, whatever the wavelength.
     #[must_use]
-    pub fn hold(self, mut lens: Lens) -> Lens {
+    pub fn hold(self, lens: &Lens) -> Lens {
+        let mut lens = lens.clone();
         let reference_nm = lens.reference_nm;
         for medium in &mut lens.media {
             let index = match self {
@@ -29,7 +30,7 @@ impl Light {
         lens
     }
 
-    /// The wavelength, nm, if it is one.
+    /// The wavelength in air, nm; `None` for the stated indices.
     #[must_use]
     pub fn wavelength_nm(self) -> Option<f64> {
         match self {
@@ -38,14 +39,14 @@ impl Light {
         }
     }
 
-    /// The name of the spectral line that lies exactly there, if one does.
+    /// Name of the spectral line at exactly this wavelength; `None` if there is none.
     #[must_use]
     pub fn line(self) -> Option<&'static str> {
         let nm = self.wavelength_nm()?;
         lines::ALL.into_iter().find(|line| line.wavelength_nm == nm).map(|line| line.name)
     }
 
-    /// In words: `587.5618 nm (d)`, or `the stated indices`.
+    /// Describes this light in words: `587.5618 nm (d)`, or `the stated indices`.
     #[must_use]
     pub fn describe(self) -> String {
         match (self.wavelength_nm(), self.line()) {

@@ -1,18 +1,21 @@
-//! The veiling glare index: of a bare and a coated lens, of one that is black inside, and against light that walks the other way.
+//! Tests of the veiling glare index: a bare and a coated lens, a lens that is black inside, and a comparison with light traced in the other
+//! direction.
 
 use glam::DVec3;
 use spectra_analysis::glare::{BlackDisk, Glare, GlareTask, glare};
 use spectra_core::workers::{Alone, Workers};
-use spectra_lens::{Chance, Coating, Interior, Lens, Particle, Walker};
+use spectra_lens::{Coating, Lens};
+use spectra_optics::stop_down;
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
+use spectra_tracer::{Chance, Interior, Particle, Walker};
 
 const NM: f64 = 546.074;
 
 fn biotar(f_number: f64, coating: Coating) -> Lens {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../lenses/zeiss-biotar-50-f1.4.yaml");
     let lens = spectra_lens::load(file, &FileResources::beside(std::path::Path::new(""))).expect("a lens");
-    lens.at_f_number(f_number).expect("open enough").with_coating(coating)
+    stop_down(lens, f_number).expect("open enough").with_coating(coating)
 }
 
 fn task(walks: usize) -> GlareTask {
@@ -39,7 +42,7 @@ fn a_coating_halves_the_veil_of_a_double_gauss() {
     }
 }
 
-/// Nothing reflects where no coating, no paint and no imager does. Light that glass reflects totally goes to black walls.
+/// No surface reflects with an ideal coating, black paint and a black imager. Light that glass reflects totally ends at black walls.
 #[test]
 fn a_lens_that_is_black_inside_has_no_veil() {
     let mut task = task(300_000);
@@ -48,18 +51,18 @@ fn a_lens_that_is_black_inside_has_no_veil() {
     assert!(glare.index < 1e-6, "{glare:?}");
 }
 
-/// Light of the field that comes to the middle of the black disk, followed from the field in: within three standard errors.
+/// Traces light of the field from the front to the center of the black disk's image: the index agrees within three standard errors.
 #[test]
 fn the_index_is_the_share_of_the_light_in_the_black_disk() {
     let lens = biotar(2.0, Coating::Bare);
-    // A large disk, so that the field's light finds its image.
+    // The disk is large, so that enough of the field's light reaches its image.
     let task = GlareTask { disk_mm: 16.0, detector_mm: 11.0, ..task(100_000) };
     let glare = found(&lens, &task);
     let disk = BlackDisk::of(&lens, task.disk_mm).expect("an image");
     let interior = Interior::new(&lens, task.frame_mm, [NM; 2], task.matter).expect("straight");
     let mut walker = Walker::new(&interior);
     walker.set_wavelength(NM);
-    // Evenly over the cap of the first surface, with the cosine to its normal: r = 41.8 mm, clear to 18 mm.
+    // Start evenly over the cap of the first surface, with a cosine distribution about its normal: r = 41.8 mm, clear to 18 mm.
     let (r, clear) = (41.8_f64, 18.0_f64);
     let height = r - (r * r - clear * clear).sqrt();
     let [mut veil, mut all, mut squares] = [0.0_f64, 0.0, 0.0];
@@ -101,7 +104,7 @@ fn the_index_is_the_share_of_the_light_in_the_black_disk() {
     assert!((share - glare.index).abs() < 3.0 * sigma && sigma < 0.08 * share, "{share} {} {sigma}", glare.index);
 }
 
-/// Threads that take turns as they like.
+/// Threads that take pieces of work in any order.
 struct Threads(usize);
 
 impl Workers for Threads {

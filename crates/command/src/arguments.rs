@@ -1,4 +1,4 @@
-//! What can be written after `spectra`.
+//! Command-line arguments of `spectra`. The doc comments of the fields are the help texts.
 
 use crate::build::BuildArguments;
 use crate::film::FilmArguments;
@@ -23,7 +23,7 @@ use std::path::PathBuf;
     long_version = version::long(),
     arg_required_else_help = true,
     after_help = "Start with: spectra run biotar-ortho (`spectra list scene` lists the other bundled scenes); \
-        of a photograph: spectra film develop photo.jpg --stock tri-x",
+        to develop a photograph: spectra film develop photo.jpg --stock tri-x",
     after_long_help = "Start with:\n  spectra run biotar-ortho\n  spectra list scene\n  \
         spectra film develop photo.jpg --stock tri-x\n\n\
         Exit codes: 0 success, or stopped by --time-limit; 1 failure (a full disk, a render error); \
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     pub verbose: bool,
 }
 
-/// The commands.
+/// The commands of `spectra`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Render a scene to a picture and to linear exposure data.
@@ -60,7 +60,7 @@ pub(crate) enum Command {
     Schema(SchemaOf),
     /// Analyze, compare, draw, trace, import and export lenses.
     Lens(LensArguments),
-    /// Develop photographs on film (`film develop`), and inspect film stocks: sensitivities, curves, dyes.
+    /// Develop photographs on film (`film develop`) and inspect film stocks: sensitivities, curves, dyes.
     Film(FilmArguments),
     /// Compare wavelength sampling strategies: error against samples and time.
     Bench(Bench),
@@ -80,7 +80,7 @@ pub(crate) enum Command {
     Man,
 }
 
-/// `spectra completions`.
+/// Arguments of `spectra completions`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Write a shell completion script for the commands and options to standard output.",
@@ -95,7 +95,7 @@ pub(crate) struct Completions {
     pub shell: clap_complete::Shell,
 }
 
-/// `spectra run`.
+/// Arguments of `spectra run`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Render a scene to a picture and to linear exposure data.\n\n\
@@ -103,8 +103,8 @@ pub(crate) struct Completions {
         imager or film, 32-bit float) and SCENE.png or SCENE.tiff (the picture for viewing), named after the scene \
         file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng, .html) writes \
         only that picture. A file appears under its final name only once it is complete.\n\n\
-        Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130), beside a \
-        file that is there as NAME.partial.png; a second Ctrl-C quits immediately.\n\n\
+        Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130). If a complete file \
+        exists, it is kept and the partial one is named NAME.partial.png. A second Ctrl-C quits immediately.\n\n\
         A scene with a `sweep` produces numbered pictures SCENE-001.png ... and a contact sheet SCENE-contact.png; a \
         scene with an `animation` produces frames SCENE.0001.exr ...; SCENE-series.json describes each of them. All \
         are checked before rendering starts. In a sweep or an animation only complete pictures are written, even if \
@@ -133,21 +133,21 @@ pub(crate) struct Run {
     #[arg(short, long, value_name = "N", value_parser = samples)]
     pub samples: Option<u32>,
     /// Stop when the picture is clean: relative noise of a pixel (1%), of its luminance or of the noisiest film layer,
-    /// overriding the scene's. --samples is then the most that a pixel gets.
+    /// overriding the scene's. --samples is then the largest number of samples that a pixel gets.
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub noise: Option<String>,
     /// Stop at 5 % noise or 256 samples per pixel (`preview`), or at 1 % or 8192 (`final`), whichever comes first; --noise and
     /// --samples override these.
     #[arg(long, value_name = "QUALITY")]
     pub quality: Option<Quality>,
-    /// Trace no more light after this time (30s, 5min), counted from the start of the program, then develop and write the
-    /// picture so far, which takes some seconds more; nothing is written if the scene is not ready to render by then.
+    /// Stop tracing light after this time (30s, 5min) from the start of the program, then develop and write the picture so far,
+    /// which takes some seconds more. Nothing is written if the scene is not ready to render by then.
     #[arg(long, value_name = "TIME", value_parser = parse::<Positive<Time>>)]
     pub time_limit: Option<Positive<Time>>,
     /// Render only these frames of an animation: 17, 10-20, 10-, or several of these separated by commas.
     #[arg(long, value_name = "FRAMES", value_parser = <Frames as std::str::FromStr>::from_str)]
     pub frames: Option<Frames>,
-    /// Skip pictures of a sweep or an animation whose files all exist, none of them empty, without checking what they were made from.
+    /// Skip pictures of a sweep or an animation whose files all exist and are not empty. What they were made from is not checked.
     #[arg(long)]
     pub skip_existing: bool,
     /// Write one JSON object per line to standard output for each event: start, progress, warning, written, done,
@@ -159,7 +159,7 @@ pub(crate) struct Run {
     pub quiet: bool,
 }
 
-/// The word of `--quality`.
+/// Quality preset chosen with `--quality`.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub(crate) enum Quality {
     Preview,
@@ -167,7 +167,7 @@ pub(crate) enum Quality {
 }
 
 impl Quality {
-    /// Noise, and the most samples a pixel.
+    /// Returns the noise target and the largest number of samples per pixel.
     pub fn figures(self) -> (&'static str, u32) {
         match self {
             Self::Preview => ("5 %", 256),
@@ -176,10 +176,10 @@ impl Quality {
     }
 }
 
-/// One of the numbers of `spectra bench --samples`.
+/// Parses one of the numbers of `spectra bench --samples`.
 fn sample_count(text: &str) -> Result<u32, String> {
     const MOST: u32 = 1_048_576;
-    let wanted = "expected whole numbers with commas between them, such as 1,4,16,64";
+    let wanted = "expected whole numbers separated by commas, such as 1,4,16,64";
     let number = text.trim().parse::<u32>().ok().filter(|n| (1..=MOST).contains(n));
     number.ok_or_else(|| match text.parse::<f64>() {
         Ok(_) => format!("expected whole numbers from 1 to {MOST}, such as 1,4,16,64"),
@@ -187,7 +187,7 @@ fn sample_count(text: &str) -> Result<u32, String> {
     })
 }
 
-/// The number of `--samples`.
+/// Parses the number of `--samples`.
 fn samples(text: &str) -> Result<u32, String> {
     let wanted = "expected a whole number from 1 to 4194304, such as 64";
     match text.trim().parse::<u32>() {
@@ -196,19 +196,19 @@ fn samples(text: &str) -> Result<u32, String> {
     }
 }
 
-/// `spectra view`.
+/// Arguments of `spectra view`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "View a scene, or a photograph on film, in the browser: the picture follows every change.\n\n\
-        A page opens with the picture, which grows as light is traced, the lens with its rays, and a control for each number and \
-        choice of the scene. What changes development alone (print, push, grain) traces no light again. `Save to the scene` \
-        writes what was changed into the scene file, where it stands, and leaves the rest of the file as it is.\n\n\
+        A page opens with the picture, which becomes cleaner as light is traced, the lens with its rays, and a control for each number \
+        and choice of the scene. Changes that affect only the development (print, push, grain) do not trace light again. \
+        `Save to the scene` writes the changed values into the scene file and leaves the rest of the file as it is.\n\n\
         A photograph (OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR) is developed as `spectra film develop` would, on the film \
-        of --stock; turn the lens to see it through one.\n\n\
-        The address is printed to standard output. It opens once, in one browser, and only on this machine. Ctrl-C ends the \
+        of --stock; choose a lens on the page to see the photograph through it.\n\n\
+        The address is printed to standard output. It works only once, in one browser, and only on this machine. Ctrl-C ends the \
         viewer.",
-    after_long_help = "Examples: a bundled scene; a photograph of yours; another film, and the address alone; wavelengths as a screen \
-        shows them\n  \
+    after_long_help = "Examples: a bundled scene; a photograph of yours; another film, without opening a browser; wavelengths as a \
+        screen shows them\n  \
         spectra view biotar-ortho\n  \
         spectra view photo.jpg --stock tri-x\n  \
         spectra view biotar-ortho --set film.stock=tri-x --no-open\n  \
@@ -218,14 +218,14 @@ pub(crate) struct View {
     /// A scene file, the name of a bundled scene (see `spectra list scene`), or a photograph.
     #[arg(value_name = "SCENE|PICTURE", required_unless_present = "color_tester")]
     pub scene: Option<PathBuf>,
-    /// The film of a photograph: a bundled one (see `spectra list stock`), a part of its name, or a YAML file;
-    /// kodak-portra-400 if not given.
+    /// Film for a photograph: a bundled stock (see `spectra list stock`), a part of its name, or a YAML file; kodak-portra-400 if
+    /// not given.
     #[arg(long, value_name = "NAME", conflicts_with = "color_tester")]
     pub stock: Option<String>,
-    /// In place of a scene: light of one wavelength or a narrow band, as a screen can show it.
+    /// Show light of one wavelength or a narrow band, as a screen can show it, instead of a scene.
     #[arg(long, conflicts_with_all = ["scene", "overrides", "threads"])]
     pub color_tester: bool,
-    /// Port of this machine to serve the page at; 0 takes a free one.
+    /// Port on this machine that serves the page; 0 chooses a free one.
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     pub port: u16,
     /// Print the address without opening a browser.
@@ -238,7 +238,7 @@ pub(crate) struct View {
     pub threads: Option<u16>,
 }
 
-/// `spectra check`.
+/// Arguments of `spectra check`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Check scenes for errors without rendering them.\n\n\
@@ -256,11 +256,11 @@ pub(crate) struct Check {
     pub json: bool,
 }
 
-/// `spectra doc`.
+/// Arguments of `spectra doc`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show what a stage does and which parameters it takes, with types, units, ranges and defaults, \
-        examples, references.",
+    long_about = "Show what a stage does and which parameters it takes, with types, units, ranges, defaults, \
+        examples and references.",
     after_long_help = "Examples:\n  spectra doc surface/even-asphere\n  spectra doc surface\n  spectra doc scene\n  \
         spectra doc render\n  spectra doc film.exposure\n  spectra doc f-number\n  spectra doc --search halo"
 )]
@@ -277,7 +277,7 @@ pub(crate) struct Doc {
     pub json: bool,
 }
 
-/// `spectra schema`.
+/// Arguments of `spectra schema`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Write the JSON Schema (2020-12) of scenes, lenses, stocks or spectra to standard output.\n\n\
@@ -288,30 +288,31 @@ pub(crate) struct Doc {
         # yaml-language-server: $schema=spectra-scene.json"
 )]
 pub(crate) struct SchemaOf {
-    /// The kind of file.
+    /// The kind of file to describe.
     #[arg(value_name = "KIND", default_value = "scene", value_parser = ["scene", "lens", "stock", "spectrum"])]
     pub kind: String,
 }
 
-/// `spectra bench`.
+/// Arguments of `spectra bench`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Compare wavelength sampling strategies: error against samples and time.\n\n\
         Each strategy samples wavelengths for the scene's source, channels and lens. Two things are measured: the \
         spectral integral alone (the exposure of each channel, against exact quadrature; with 50 times as many seeds, \
         unless only the integral is measured) and the scene itself (every pixel, against a reference with 16 times \
-        the largest number of samples). Errors are relative RMS errors of linear exposure over seeds, with 95 % \
-        intervals by bootstrap over the seeds. `= samples` and `= time` compare a strategy with the first one at the \
-        largest number of samples; `bias/se` is the largest deviation of the mean from the true value, in standard \
-        errors.\n\n\
-        Writes SCENE-sampling.csv, .svg and .png, and SCENE-sampling-seeds.csv with the errors of each seed; the table goes to standard output.",
+        the largest number of samples). Errors are relative RMS errors of linear exposure over the seeds, with 95 % \
+        confidence intervals from a bootstrap over the seeds. `= samples` and `= time` compare a strategy with the first \
+        one at the largest number of samples; `bias/se` is the largest deviation of the mean from the true value, in \
+        standard errors.\n\n\
+        Writes SCENE-sampling.csv, .svg and .png, and SCENE-sampling-seeds.csv with the errors of each seed; the table \
+        goes to standard output.",
     after_long_help = "Example: three strategies under a fluorescent lamp\n  \
         spectra bench bench/sampling-fl11-ortho --seeds 4 --samples 1,4,16 --integral-only --strategies \
         'source-times-response, uniform, truncated-gaussian{center: 500, sigma: 60}'"
 )]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct Bench {
-    /// Something else to measure.
+    /// Another kind of measurement.
     #[command(subcommand)]
     pub other: Option<OtherBench>,
     /// A scene file, or the name of a bundled scene.
@@ -319,19 +320,18 @@ pub(crate) struct Bench {
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub set: Set,
-    /// Number of seeds per render, 20 if not given; if only the integral is measured, seeds for that, 1000 if not
-    /// given.
+    /// Number of seeds per render, 20 if not given. If only the integral is measured, the number of seeds for it, 1000 if not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=10_000))]
     pub seeds: Option<u16>,
-    /// The seed that those of all renders and integrals follow from; that of the scene if not given.
+    /// Base seed for all renders and integrals; the scene's seed if not given.
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Numbers of samples to test, from 1 to 1048576: for the integral, and per pixel for the scene.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "1,4,16,64,256",
         value_parser = sample_count)]
     pub samples: Vec<u32>,
-    /// Strategies, as NAME or NAME{key: value, ...}; the first is the baseline for the others. If not given, all
-    /// registered ones; the scene's own strategy keeps its keys.
+    /// Strategies, as NAME or NAME{key: value, ...}; the first is the baseline for the others. If not given, all registered strategies;
+    /// the scene's strategy keeps the keys it has there.
     #[arg(long, value_name = "A,B,...")]
     pub strategies: Option<String>,
     /// Record with this sensitivity instead of the scene's imager, and measure only the integral: a bundled spectrum, a
@@ -352,25 +352,25 @@ pub(crate) struct Bench {
     pub json: bool,
 }
 
-/// What else `spectra bench` measures.
+/// Other measurements of `spectra bench`, each a subcommand.
 #[derive(Debug, Subcommand)]
 pub(crate) enum OtherBench {
-    /// Measure how long scenes take until they are clean: time to 1 % noise.
+    /// Measure how long scenes take to become clean: time to 1 % noise.
     Noise(BenchNoise),
-    /// Measure how clean ghosts are after how much time, and what the search for their rays gains.
+    /// Measure the noise of ghosts over time, and how much the search for their rays gains.
     Ghosts(BenchGhosts),
 }
 
-/// `spectra bench ghosts`.
+/// Arguments of `spectra bench ghosts`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Measure how clean ghosts are after how much time, and what the search for their rays gains.\n\n\
-        Of each scene nothing but the ghosts is rendered, several times with different seeds: as its pictures have them, and with \
-        as many rays for each path all over the front of the lens. Noise is the standard deviation between the seeds of blocks of \
-        32 x 32 pixels, relative to their mean, where ghosts have more than 1e-4 of the brightest block; and that of single pixels. \
-        The gain is how many times longer the even rays take to the same noise.\n\n\
+    long_about = "Measure the noise of ghosts over time, and how much the search for their rays gains.\n\n\
+        Only the ghosts of each scene are rendered, several times with different seeds: once as in a normal picture, and once with \
+        the same number of rays for each path spread evenly over the front of the lens. Noise is the standard deviation between the \
+        seeds, relative to the mean. It is measured in blocks of 32 x 32 pixels where ghosts have more than 1e-4 of the brightest \
+        block, and for single pixels. The gain is how many times longer the evenly spread rays take to reach the same noise.\n\n\
         The table (Markdown) goes to standard output.",
-    after_long_help = "Example: one sun through a bare lens of 1927\n  spectra bench ghosts bench/ghosts-sun --seeds 8"
+    after_long_help = "Example: one sun through an uncoated lens of 1927\n  spectra bench ghosts bench/ghosts-sun --seeds 8"
 )]
 pub(crate) struct BenchGhosts {
     /// Scene files, or names of bundled scenes.
@@ -389,17 +389,16 @@ pub(crate) struct BenchGhosts {
     pub json: bool,
 }
 
-/// `spectra bench noise`.
+/// Arguments of `spectra bench noise`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Measure how long scenes take until they are clean: time to 1 % noise, and noise after some time.\n\n\
-        Each scene is rendered several times with different seeds, in each direction that is possible, with as many samples \
-        as the time allows. Noise is the standard deviation between the seeds, relative to the mean, of luminance (or of the \
-        first channel of an imager without luminance) in squares of 8 x 8 pixels. The table has the median of the squares \
-        and the value that 95 % of them stay below. Times to other noise levels are extrapolated: noise falls with the \
-        square root of the time.\n\n\
+    long_about = "Measure how long scenes take to become clean: time to 1 % noise, and noise after some time.\n\n\
+        Each scene is rendered several times with different seeds, in each possible direction, with as many samples as the time \
+        allows. Noise is the standard deviation between the seeds, relative to the mean, of luminance (or of the first channel of \
+        an imager without luminance) in squares of 8 x 8 pixels. The table has the median of the squares and their 95th \
+        percentile. Times to other noise levels are extrapolated: noise falls with the square root of the time.\n\n\
         The table (Markdown) goes to standard output.",
-    after_long_help = "Example: the bundled scenes for this measurement, with the direction that the program chooses\n  \
+    after_long_help = "Example: the bundled scenes for this measurement, in the direction that the program chooses\n  \
         spectra bench noise bench/noise-flat bench/noise-portrait bench/noise-lights bench/noise-night --directions auto"
 )]
 pub(crate) struct BenchNoise {
@@ -411,7 +410,7 @@ pub(crate) struct BenchNoise {
     /// Number of seeds, at least 2.
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(2..=1000))]
     pub seeds: u16,
-    /// Seconds of tracing for each seed at most.
+    /// Longest time to trace for each seed, in seconds.
     #[arg(long, value_name = "S", default_value = "10", value_parser = clap::value_parser!(u16).range(1..=36000))]
     pub seconds: u16,
     /// Values of `render.direction` to try.
@@ -426,15 +425,14 @@ pub(crate) struct BenchNoise {
     pub json: bool,
 }
 
-/// `spectra list`.
+/// Arguments of `spectra list`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "List the names that can be used: the registered stages and the bundled data.\n\n\
         Lenses are listed with focal length, f-number, half field angle and year; film stocks with speed, process and \
         the year of their data sheet, print stocks separately; spectra with kind and range; glasses with nd and Vd; \
-        formats with their size. Wherever a name is expected, any part of it that is unique is enough: `tri-x`, \
-        `helios`.",
-    after_long_help = "Examples: all light sources; lenses with 50 and glasses with BK7 in their names\n  \
+        formats with their size. Wherever a name is expected, any unique part of it is enough: `tri-x`, `helios`.",
+    after_long_help = "Examples: all light sources; lenses with 50 in their names; glasses with BK7 in their names\n  \
         spectra list source\n  spectra list lens 50\n  spectra list glass BK7"
 )]
 pub(crate) struct List {

@@ -1,4 +1,4 @@
-//! `spectra bench`: wavelength strategies against each other.
+//! `spectra bench`: compares wavelength strategies, and measures the noise of scenes and ghosts.
 
 use crate::arguments::{Bench, BenchGhosts, BenchNoise, OtherBench};
 use crate::console;
@@ -13,12 +13,12 @@ use spectra_spectrum::{SpectrumError, find_sensitivity_in};
 use std::io::Write as _;
 use std::path::Path;
 
-/// Seeds of each render, where none are asked for.
+/// Default number of seeds per render.
 const SEEDS: usize = 20;
-/// Seeds of the integral a seed of the render: it costs next to nothing.
+/// Number of seeds for the integral per seed of the render. The integral costs almost nothing.
 const INTEGRAL_SEEDS: usize = 50;
 
-/// Measures, writes the files, and shows the table, or JSON in its place.
+/// Measures wavelength strategies, writes the files, and prints the table or JSON. With a subcommand, measures noise or ghosts.
 pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
     match &arguments.other {
         Some(OtherBench::Noise(arguments)) => return noise(arguments, isa),
@@ -34,7 +34,7 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
     };
     let asked = arguments.seeds.map(usize::from);
     let seeds = asked.unwrap_or(SEEDS);
-    // Where nothing else is measured, the seeds that are asked for are those of the integral.
+    // If only the integral is measured, the requested number of seeds applies to it.
     let integral_only = arguments.integral_only || !arguments.response.is_empty();
     let integral_seeds = asked.filter(|_| integral_only).unwrap_or(seeds * INTEGRAL_SEEDS);
     let threads = arguments.threads.map(usize::from);
@@ -49,7 +49,7 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
         threads: threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
         isa,
     };
-    // Before anything is measured: an hour's figures must not end without a place to go.
+    // The folder is created before measuring, so that an hour of work cannot end without a place to write the results.
     let folder = &arguments.output;
     std::fs::create_dir_all(folder).map_err(|e| Failure::Input(format!("{}: {e}", folder.display())))?;
     let mut tell = |line: &str| console::note(line);
@@ -70,7 +70,7 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
     Ok(DONE)
 }
 
-/// Measures how long scenes take until they are clean.
+/// Measures how long scenes take to become clean.
 fn noise(arguments: &BenchNoise, isa: Isa) -> Outcome {
     let threads = arguments.threads.map(usize::from);
     let settings = NoiseSettings {
@@ -95,7 +95,7 @@ fn noise(arguments: &BenchNoise, isa: Isa) -> Outcome {
     Ok(DONE)
 }
 
-/// Measures how clean ghosts are.
+/// Measures the noise of ghosts.
 fn ghosts(arguments: &BenchGhosts, isa: Isa) -> Outcome {
     let threads = arguments.threads.map(usize::from);
     let settings = GhostSettings {
@@ -119,23 +119,24 @@ fn ghosts(arguments: &BenchGhosts, isa: Isa) -> Outcome {
     Ok(DONE)
 }
 
-/// Seconds that processors have spent on this program, where the system says (proc(5): `utime`, `stime`, in hundredths on Linux).
+/// Returns the processor time of this program in seconds, if the system reports it (proc(5): `utime` and `stime`, in hundredths of
+/// a second on Linux).
 fn processor_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name, in parentheses, may hold anything.
+    // The process name, in parentheses, may contain any character.
     let mut fields = text.rsplit_once(')')?.1.split_whitespace().skip(11);
     let mut ticks = || fields.next()?.parse::<f64>().ok();
     Some((ticks()? + ticks()?) / 100.0)
 }
 
-/// What the system calls its processor; on a system that does not say, the architecture.
+/// Returns the name of the processor, or its architecture if the system does not report a name.
 fn processor() -> String {
     let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let named = known.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     named.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
 }
 
-/// Channels by name; `None` where none is asked for.
+/// Loads the channels of `--response` by name, on the wavelength grid of the scene; `None` if no names are given.
 fn response(names: &[String], scene: &Path, overrides: &[String]) -> Result<Option<Vec<Channel>>, Failure> {
     if names.is_empty() {
         return Ok(None);
@@ -144,7 +145,7 @@ fn response(names: &[String], scene: &Path, overrides: &[String]) -> Result<Opti
     let files = FileResources::beside(Path::new(""));
     let mut channels = Vec::new();
     for name in names {
-        // A file of several spectra is asked for its columns.
+        // A file of several spectra gives one channel per column.
         let columns = match find_sensitivity_in(name, &files) {
             Err(SpectrumError::Ambiguous { columns, .. }) => columns.iter().map(|c| format!("{name}#{c}")).collect(),
             _ => vec![name.clone()],

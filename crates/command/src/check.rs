@@ -1,4 +1,4 @@
-//! `spectra check`: every fault of scenes, nothing rendered.
+//! `spectra check`: finds every fault of scenes without rendering them.
 
 use crate::arguments::Check;
 use crate::console;
@@ -15,7 +15,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Checks all scenes; a faulty one does not keep the others from being looked at.
+/// Checks all scenes. A faulty scene does not stop the check of the others.
 pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
     let mut results = Vec::new();
     let mut faulty = 0_usize;
@@ -62,17 +62,17 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
     Ok(if faulty > 0 { BAD_INPUT } else { DONE })
 }
 
-/// A scene in which nothing is wrong.
+/// Result of checking a scene without faults.
 struct Good {
     warnings: Vec<Warning>,
     notes: Vec<String>,
-    /// How many pictures a sweep or an animation has.
+    /// Number of pictures of a sweep or an animation; `None` for a single picture.
     pictures: Option<usize>,
-    /// What the largest picture takes beyond the scene itself.
+    /// Memory that the largest picture takes in addition to the scene itself, bytes.
     memory_bytes: u64,
 }
 
-/// The warnings of a good scene, or all faults.
+/// Checks one scene. Returns its warnings and notes if it is good, or else all its faults.
 fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Result<Good, Faults> {
     let series = spectra_scene::load_series(path, overrides)?;
     let shown = Mutex::new(Shown::new(is_shown));
@@ -82,23 +82,23 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
     shown.lock().unwrap_or_else(PoisonError::into_inner).end();
     let Checked { warnings, notes, memory_bytes } = found.map_err(|error| match error {
         SessionError::Faults(faults) => faults,
-        // What shows only once the stages are put together, such as a lens without any aperture.
+        // Errors that appear only once the stages are assembled, such as a lens without any aperture.
         other => Fault::new(format!("{}: {other}", path.display())).into(),
     })?;
     let pictures = (series.kind() != SeriesKind::Single).then(|| series.count());
     Ok(Good { warnings, notes, pictures, memory_bytes })
 }
 
-/// How far the check of a long series is, on standard error: a line that moves at a terminal, else one now and then.
+/// Progress of the check of a long series, on standard error: a moving bar at a terminal, otherwise a line now and then.
 struct Shown {
     bar: Option<ProgressBar>,
     is_shown: bool,
     said: Instant,
 }
 
-/// What takes less than this needs no words.
+/// Time before the progress bar appears.
 const SHOWN_AFTER: Duration = Duration::from_secs(1);
-/// One plain line in this time.
+/// Time between plain progress lines.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 
 impl Shown {

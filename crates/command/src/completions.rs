@@ -5,7 +5,7 @@ use crate::console;
 use crate::outcome::{DONE, Outcome};
 use clap::CommandFactory;
 
-/// Writes the completions for a shell.
+/// Writes the completion script for a shell to standard output.
 pub(crate) fn completions(arguments: &Completions) -> Outcome {
     let mut bytes = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::command(), "spectra", &mut bytes);
@@ -13,14 +13,14 @@ pub(crate) fn completions(arguments: &Completions) -> Outcome {
     Ok(DONE)
 }
 
-/// Writes the man page: the program, and each command behind it.
+/// Writes the man page to standard output: the program, then a section for each command.
 pub(crate) fn man() -> Outcome {
     let mut command = Arguments::command();
     command.build();
     let mut bytes = Vec::new();
     clap_mangen::Man::new(command.clone()).render(&mut bytes)?;
     for of in command.get_subcommands().filter(|of| of.get_name() != "help") {
-        // What each takes, as a section of the one page.
+        // The options of each command become a section of this one page.
         let man = clap_mangen::Man::new(of.clone());
         bytes.extend(format!(".SH \"SPECTRA {}\"\n", of.get_name().to_uppercase()).into_bytes());
         man.render_description_section(&mut bytes)?;

@@ -1,7 +1,7 @@
-//! The two streams to a person or a program. Nothing here panics when the other end is closed.
+//! Standard output and standard error. Nothing here panics when the other end is closed.
 //!
-//! They are the process's, or memory where a program calls the command in its own process ([`crate::call`]). A command writes
-//! from the thread that it was called on, so the choice belongs to the thread.
+//! The streams are those of the process, or buffers in memory if a program calls the command in its own process
+//! ([`crate::call`]). A command writes only from the thread it was called on, so the choice is made per thread.
 
 use spectra_core::params::{Fault, Faults, Warning};
 use spectra_scene::diagnostics;
@@ -10,26 +10,26 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::thread::ThreadId;
 
-/// What a command wrote while its streams were kept in memory.
+/// Output of a command whose streams were captured in memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Kept {
-    /// Standard output.
+    /// Bytes written to standard output.
     pub out: Vec<u8>,
-    /// Standard error.
+    /// Bytes written to standard error.
     pub err: Vec<u8>,
 }
 
-/// What threads that keep their streams have written so far: few at a time.
+/// Output so far of each thread whose streams are captured. There are only a few such threads at a time.
 static KEPT: Mutex<Vec<(ThreadId, Kept)>> = Mutex::new(Vec::new());
 
-/// Does something with what this thread keeps; `None` where it writes to the process's streams.
+/// Calls `then` with the captured output of this thread, or with `None` if the thread writes to the streams of the process.
 fn with_kept<T>(then: impl FnOnce(Option<&mut Kept>) -> T) -> T {
     let own = std::thread::current().id();
     let mut all = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     then(all.iter_mut().find(|(thread, _)| *thread == own).map(|(_, kept)| kept))
 }
 
-/// Runs `work` with the streams of this thread kept in memory; returns its result and what it wrote.
+/// Runs `work` with the streams of this thread captured in memory; returns its result and its output.
 pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Kept) {
     let own = std::thread::current().id();
     let all = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -40,12 +40,12 @@ pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Kept) {
     (done, at.map(|at| all.swap_remove(at).1).unwrap_or_default())
 }
 
-/// Whether the streams of this thread are kept in memory: then the process belongs to somebody else.
+/// Whether the streams of this thread are captured in memory. The process then belongs to another program.
 pub(crate) fn is_kept() -> bool {
     with_kept(|kept| kept.is_some())
 }
 
-/// Standard output, as something to write to.
+/// Standard output of the command, as a writer.
 pub(crate) struct Out;
 
 impl Write for Out {
@@ -64,15 +64,15 @@ impl Write for Out {
 /// Writes a text to standard output.
 ///
 /// # Errors
-/// Also where the reader has gone away: the caller decides whether that matters.
+/// Fails if the text cannot be written, including when the reader has gone away. The caller decides whether that matters.
 pub(crate) fn out(text: &str) -> io::Result<()> {
     Out.write_all(text.as_bytes())?;
     Out.flush()
 }
 
-/// Help and version, on standard output, or what the parser of arguments says about a mistake, on standard error.
+/// Writes a message of the argument parser: help and version to standard output, errors to standard error.
 pub(crate) fn parsed(said: &clap::Error) {
-    // A reader that has gone away is no failure.
+    // It is not an error if the reader has gone away.
     if !is_kept() {
         drop(said.print());
     } else if said.use_stderr() {
@@ -85,21 +85,21 @@ pub(crate) fn parsed(said: &clap::Error) {
 /// Writes a value as one line of JSON to standard output.
 ///
 /// # Errors
-/// As [`out`].
+/// Fails like [`out`].
 pub(crate) fn json(value: &serde_json::Value) -> io::Result<()> {
     out(&format!("{value}\n"))
 }
 
-/// Writes a value as JSON for a program that a person may look at too.
+/// Writes a value as indented JSON to standard output, readable by programs and people.
 ///
 /// # Errors
-/// As [`out`].
+/// Fails like [`out`], and if the value has no JSON form.
 pub(crate) fn pretty_json(value: &impl serde::Serialize) -> io::Result<()> {
     let text = serde_json::to_string_pretty(value).map_err(io::Error::other)?;
     out(&format!("{text}\n"))
 }
 
-/// Writes a line to standard error; there is nobody to tell where that fails.
+/// Writes a line to standard error. A failure is ignored, because there is nowhere left to report it.
 pub(crate) fn note(line: &str) {
     let _ = with_kept(|kept| match kept {
         Some(kept) => writeln!(kept.err, "{line}"),
@@ -107,12 +107,12 @@ pub(crate) fn note(line: &str) {
     });
 }
 
-/// A warning, on standard error.
+/// Writes a warning to standard error.
 pub(crate) fn warning(text: &str) {
     note(&format!("warning: {text}"));
 }
 
-/// A warning about a scene, on standard error: its place (or else the scene) and the text, then what to do about it.
+/// Writes a warning about a scene to standard error: its place in the file (or else the scene file), the text, then the hint.
 pub(crate) fn said(warning: &Warning, scene: Option<&Path>) {
     let Fault { message, hint, .. } = &warning.0;
     let place = warning.0.place_text().or_else(|| scene.map(|path| path.display().to_string()));
@@ -121,12 +121,12 @@ pub(crate) fn said(warning: &Warning, scene: Option<&Path>) {
     crate::console::warning(&format!("{place}{message}{hint}"));
 }
 
-/// An error, on standard error.
+/// Writes an error to standard error.
 pub(crate) fn error(text: &str) {
     note(&format!("error: {text}"));
 }
 
-/// All that is wrong with a file, on standard error.
+/// Writes all faults of a file to standard error, with their count if there are several.
 pub(crate) fn faults(faults: &Faults) {
     let text = diagnostics::render(faults, stderr_is_colored());
     note(text.trim_end());
@@ -135,7 +135,7 @@ pub(crate) fn faults(faults: &Faults) {
     }
 }
 
-/// Whether standard error shows a moving progress bar.
+/// Whether standard error can show a moving progress bar.
 pub(crate) fn stderr_moves() -> bool {
     !is_kept() && io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }

@@ -1,4 +1,4 @@
-//! `spectra doc`: what a stage does, and what is written in it.
+//! `spectra doc`: shows what a stage does and which parameters it takes.
 
 use crate::arguments::Doc;
 use crate::console;
@@ -11,10 +11,10 @@ use spectra_scene::bundled::{self, Bundled};
 use spectra_scene::{FileKind, file_documentation, shared_documentation};
 use std::fmt::Write;
 
-/// Columns of a page.
+/// Width of a page, characters.
 const WIDTH: usize = 100;
 
-/// Shows a page.
+/// Writes a documentation page, or the results of `--search`, to standard output.
 pub(crate) fn doc(arguments: &Doc) -> Outcome {
     if let Some(word) = &arguments.search {
         let hits = search(word)?;
@@ -34,29 +34,29 @@ pub(crate) fn doc(arguments: &Doc) -> Outcome {
     Ok(DONE)
 }
 
-/// What can be read about.
+/// A documentation page.
 enum Page {
-    /// A stage.
+    /// One stage, such as `surface/sphere`.
     Stage(Listed),
-    /// A kind of stage: which there are, and what all of them take.
+    /// A kind of stage: its members and the parameters that they share.
     Kind(&'static str, Vec<Listed>),
-    /// A file.
+    /// A kind of file.
     File(FileKind),
-    /// A key by its name or its path, on every page that has it; with it the keys below.
+    /// A key given by name or path. For each page that has it: the name of the page, then the key and the keys below it.
     Keys(String, Vec<(String, Vec<Parameter>)>),
 }
 
-/// Parameters of a page under the paths that a scene has them at.
+/// Parameters of a page, with their paths in a scene.
 struct Keys {
-    /// What `spectra doc` calls the page.
+    /// Name of the page for `spectra doc`.
     page: String,
-    /// Where the parameters stand: `film.` in a scene.
+    /// Prefix of the parameters' paths in a scene, such as `film.`.
     at: &'static str,
     summary: String,
     parameters: Vec<Parameter>,
 }
 
-/// All pages with their keys: files, then stages, each kind's shared keys before its members.
+/// Returns all pages with their keys: files first, then stages. The shared keys of each kind of stage come before its members.
 fn pages() -> Vec<Keys> {
     let mut all: Vec<Keys> = Vec::new();
     for kind in FileKind::ALL {
@@ -86,7 +86,7 @@ fn pages() -> Vec<Keys> {
             }
         }
         let Documentation { summary, mut parameters, .. } = stage.documentation();
-        // The page of the file has them.
+        // The page of the file lists these parameters already.
         if FileKind::ALL.iter().any(|kind| kind.name() == stage.stage) {
             parameters.clear();
         }
@@ -95,7 +95,7 @@ fn pages() -> Vec<Keys> {
     all
 }
 
-/// A path without what tells kinds and lists apart: `output(rays)[].size` is `output.size`.
+/// Returns a path in lower case without the marks of kinds and lists: `output(rays)[].size` becomes `output.size`.
 fn plain_path(path: &str) -> String {
     let mut out = String::new();
     let mut inside = false;
@@ -112,7 +112,8 @@ fn plain_path(path: &str) -> String {
     out
 }
 
-/// The key of that path or name on all pages: by the first of whole path, name or end of a path, part of one key's name.
+/// Finds a key on all pages. Tries the whole path first, then a name or the end of a path, then a part of a key's name.
+/// The error holds the keys that come nearest, if any.
 fn keys(name: &str) -> Result<Page, Vec<String>> {
     let pages = pages();
     let wanted = plain_path(name);
@@ -137,7 +138,7 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
         }
         found
     };
-    // A path is the whole one where there is such; a bare name is meant wherever it stands.
+    // A path with a dot is first matched as a whole; a bare name matches at the end of any path.
     let found = if wanted.contains('.') { collect(&|path| path == wanted) } else { Vec::new() };
     let found = if found.is_empty() { collect(&|path| path == wanted || path.ends_with(&end)) } else { found };
     if !found.is_empty() {
@@ -152,7 +153,7 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
         }
     }
     match names::find(&wanted, last.iter().map(String::as_str)) {
-        // What is bundled under this name, or a word of photographers, is meant before a part of a key: `tri-x` is no `matrix`.
+        // A bundled name or a glossary word takes precedence over a part of a key: `tri-x` does not mean `matrix`.
         Match::One(key) if names::normalized(key) == names::normalized(&wanted) || elsewhere(name).is_none() => {
             keys(key)
         }
@@ -164,7 +165,7 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
     }
 }
 
-/// Where something is shown that has no page: a lens, a film, a spectrum, a word of photographers. What it is, and the command.
+/// Looks up a name without a page: a lens, a film, a spectrum or a term of photography. Returns what it is and the command that shows it.
 fn elsewhere(name: &str) -> Option<(String, String)> {
     if let Some((what, command)) = crate::glossary::meant(name) {
         return Some((what.to_owned(), command.to_owned()));
@@ -180,7 +181,7 @@ fn elsewhere(name: &str) -> Option<(String, String)> {
     Some((kind.noun().to_owned(), format!("spectra {command} {name}")))
 }
 
-/// The unit of a bare number at a path of a scene, where all pages agree on it.
+/// Returns the unit of a bare number at a path of a scene, if all pages agree on it.
 pub(crate) fn unit_of(path: &str) -> Option<String> {
     let wanted = plain_path(path);
     let mut units: Vec<String> = Vec::new();
@@ -195,10 +196,10 @@ pub(crate) fn unit_of(path: &str) -> Option<String> {
     }
 }
 
-/// A stage or a key that a search has found.
+/// A stage or a key found by `--search`.
 struct Hit {
     page: String,
-    /// Empty for the page itself.
+    /// Path of the key; empty if the page itself matched.
     key: String,
     text: String,
 }
@@ -216,7 +217,7 @@ impl Hit {
     }
 }
 
-/// Every page and key whose name or text holds the word.
+/// Finds every page and key whose name or text contains the word. Fails if there is none.
 fn search(word: &str) -> Result<Vec<Hit>, Failure> {
     let wanted = word.trim().to_lowercase();
     let holds = |text: &str| !wanted.is_empty() && text.to_lowercase().contains(&wanted);
@@ -231,18 +232,18 @@ fn search(word: &str) -> Result<Vec<Hit>, Failure> {
     }
     if hits.is_empty() {
         let fault = Fault::new(format!("no stage or key mentions `{word}`"));
-        return Err(fault.hint("try a shorter word; `spectra list` shows what there is").into());
+        return Err(fault.hint("try a shorter word; `spectra list` shows all names").into());
     }
     Ok(hits)
 }
 
-/// A stage as `surface/sphere`, or by its name alone where only one has it; a kind of stage; a kind of file.
+/// Finds the page of a name: a stage (`surface/sphere`, or `sphere` if unique), a kind of stage, a kind of file, or a key.
 fn find(name: &str) -> Result<Page, Failure> {
     let all = registry::list();
     let wanted: Vec<&Listed> = match name.split_once('/') {
         Some((stage, kind)) => all.iter().filter(|l| l.stage == stage && l.name == kind).collect(),
         None => {
-            // What names both is a file: `spectra doc lens`.
+            // A name of both a file and a stage means the file: `spectra doc lens`.
             if let Some(kind) = FileKind::ALL.into_iter().find(|kind| kind.name() == name) {
                 return Ok(Page::File(kind));
             }
@@ -283,18 +284,20 @@ fn find(name: &str) -> Result<Page, Failure> {
                 (Some(near), _) => format!("did you mean `{near}`?"),
                 (None, [one]) => format!("did you mean `{one}`?"),
                 (None, [_, ..]) => format!("which one? {}", near_keys.join(", ")),
-                (None, []) => "`spectra list` shows what there is, `spectra doc --search WORD` finds a word".to_owned(),
+                (None, []) => {
+                    "`spectra list` shows all names, `spectra doc --search WORD` searches the descriptions".to_owned()
+                }
             };
             Err(fault.hint(hint).into())
         }
         _ => {
             let names: Vec<String> = wanted.into_iter().map(full).collect();
-            Err(Failure::Input(format!("`{name}` could be several: {}", names.join(", "))))
+            Err(Failure::Input(format!("`{name}` is ambiguous: {}", names.join(", "))))
         }
     }
 }
 
-/// A stage as a program reads it.
+/// Returns the documentation of a stage as JSON.
 pub(crate) fn stage_json(stage: &Listed) -> Value {
     let documentation = stage.documentation();
     json!({
@@ -335,7 +338,7 @@ impl Page {
                     writeln!(out, "{}/{} ({} {}{default})\n", stage.stage, stage.name, stage.package, stage.version);
                 body(&mut out, &doc);
                 if shared_documentation(stage.stage).is_some() {
-                    let _ = writeln!(out, "\nWhat every {0} takes beside these: `spectra doc {0}`.", stage.stage);
+                    let _ = writeln!(out, "\nParameters that every {0} has: `spectra doc {0}`.", stage.stage);
                 }
             }
             Self::Kind(kind, all) => {
@@ -349,7 +352,7 @@ impl Page {
                     out.push_str(&line);
                 }
                 if let Some(shared) = shared_documentation(kind) {
-                    let _ = writeln!(out, "\nEvery {kind} takes, beside its own:");
+                    let _ = writeln!(out, "\nParameters of every {kind}:");
                     parameters(&mut out, &shared.parameters);
                 }
                 let _ = writeln!(out, "\nMore: `spectra doc {kind}/NAME`.");
@@ -396,20 +399,20 @@ fn body(out: &mut String, doc: &Documentation) {
     }
 }
 
-/// Fewer keys than these are written out again.
+/// Smallest number of keys that a reference replaces; fewer keys are written out again.
 const WORTH_A_REFERENCE: usize = 3;
 
-/// The keys below the one at `at`, by their paths from there.
+/// Returns the keys below the key at index `at`, with their paths relative to it.
 fn below(all: &[Parameter], at: usize) -> Vec<(&str, &Parameter)> {
     let head = all[at].key.as_str();
     let inside = all[at + 1..].iter().map_while(|p| Some((p.key.strip_prefix(head)?, p)));
     let inside = inside.take_while(|(rest, _)| rest.starts_with(['.', '[', '(']));
-    // Of a list and of a single map the keys are the same.
+    // A list of maps has the same keys as a single map.
     inside.map(|(rest, p)| (rest.trim_start_matches("[]"), p)).collect()
 }
 
-/// Parameters in the order of their declaration: a key that several kinds share is said once, and so are the keys of a map
-/// that stands in several places.
+/// Writes parameters in the order of their declaration. A key shared by several kinds is described once, and so are the keys of a
+/// map that occurs in several places.
 fn parameters(out: &mut String, all: &[Parameter]) {
     let mut told: Vec<usize> = Vec::new();
     let mut skip = 0;
@@ -418,7 +421,7 @@ fn parameters(out: &mut String, all: &[Parameter]) {
             skip -= 1;
             continue;
         }
-        // A key that several forms of a map have was said with the first of them.
+        // A key that occurs in several forms of a map was described with the first of them.
         if all[..at].iter().any(|other| other.key == p.key) {
             continue;
         }
@@ -432,7 +435,7 @@ fn parameters(out: &mut String, all: &[Parameter]) {
         let before = told.iter().copied().find(|other| own.len() >= WORTH_A_REFERENCE && equal(other));
         told.push(at);
         skip = if before.is_some() { own.len() } else { 0 };
-        let reference = before.map(|other| format!(" Its keys are those of `{}`, above.", all[other].key));
+        let reference = before.map(|other| format!(" Its keys are the same as those of `{}` above.", all[other].key));
         let mut words = vec![p.kind.clone()];
         if !p.unit.is_empty() && p.unit != "f/" && !p.description.contains("if bare") {
             words.push(format!("in {} if bare", p.unit));
@@ -447,11 +450,11 @@ fn parameters(out: &mut String, all: &[Parameter]) {
         }
         wrapped(out, &format!("{}: {}", p.key, words.join(", ")), 2, 10);
         let mut said = p.description.clone();
-        // The usual example of a quantity shows how it is written; where the unit is told it would only mislead.
+        // The usual example of a quantity shows how to write its unit. For a parameter whose unit is stated it would only mislead.
         if let (Some(example), false) =
             (p.examples.first(), matches!(p.kind.as_str(), "number" | "ratio") || said.contains("if bare"))
         {
-            let _ = write!(said, " Such as {}.", plain(example));
+            let _ = write!(said, " Example: {}.", plain(example));
         }
         for form in &forms[1..] {
             if !said.contains(&form.description) {
@@ -463,7 +466,7 @@ fn parameters(out: &mut String, all: &[Parameter]) {
     }
 }
 
-/// A value as a scene has it.
+/// Formats a value as it is written in a scene.
 fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -471,7 +474,7 @@ fn plain(value: &Value) -> String {
     }
 }
 
-/// Markdown: paragraphs and lists are wrapped, blocks of code stay as they are.
+/// Writes Markdown text: wraps paragraphs and lists, and leaves blocks of code as they are.
 fn markdown(out: &mut String, text: &str) {
     let mut paragraph = String::new();
     let end = |out: &mut String, paragraph: &mut String| {
@@ -500,7 +503,7 @@ fn markdown(out: &mut String, text: &str) {
     end(out, &mut paragraph);
 }
 
-/// A paragraph in lines of [`WIDTH`], the first one and the others indented.
+/// Writes a paragraph wrapped at [`WIDTH`], with the first line indented by `first` and the others by `others`.
 fn wrapped(out: &mut String, text: &str, first: usize, others: usize) {
     let (mut column, mut indent) = (0, first);
     for word in text.split_whitespace() {

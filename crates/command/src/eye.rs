@@ -1,17 +1,17 @@
-//! `--seen-by`: a figure as an eye without one kind of cones has it.
+//! `--seen-by`: draws a figure as an eye without one kind of cones sees it.
 
 use clap::ValueEnum;
 use spectra_color::Deficiency;
 use spectra_plot::Canvas;
 
-/// An eye without one kind of cones.
+/// An eye that lacks one kind of cones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum EyeName {
-    /// Without the long ones: red is dark.
+    /// No long-wavelength (L) cones: red looks dark.
     Protan,
-    /// Without the medium ones: red and green look alike.
+    /// No medium-wavelength (M) cones: red and green look alike.
     Deutan,
-    /// Without the short ones: blue and green look alike.
+    /// No short-wavelength (S) cones: blue and green look alike.
     Tritan,
 }
 
@@ -24,7 +24,7 @@ impl EyeName {
         }
     }
 
-    /// As it is written.
+    /// Returns the word for this eye as written on the command line.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Protan => "protan",
@@ -33,12 +33,12 @@ impl EyeName {
         }
     }
 
-    /// The eye, with its article.
+    /// Returns the eye with its article, for a sentence: `a protan eye`.
     pub(crate) fn eye(self) -> String {
         format!("a {} eye", self.word())
     }
 
-    /// A figure with all its colors as the eye has them.
+    /// Returns a figure with all its colors converted to what this eye sees.
     pub(crate) fn sees(self, canvas: Canvas) -> Canvas {
         canvas.with_colors(|code| self.deficiency().seen_srgb8(code))
     }

@@ -1,4 +1,4 @@
-//! Where results go: a folder, or one picture in it.
+//! Where results are written: a folder, or a single picture file.
 
 use crate::outcome::Failure;
 use spectra_core::params::Fault;
@@ -11,23 +11,23 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-/// What `--output` names.
+/// Output target named by `--output`: a folder, or a single picture.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
-    /// The folder of everything.
+    /// Folder that all files are written to.
     pub folder: PathBuf,
-    /// What the files in it are called.
+    /// Names of the files in the folder.
     pub names: Names,
 }
 
 impl Target {
-    /// A name that ends as a picture does is that picture, any other one a folder.
+    /// Interprets `--output`: a name with the ending of a picture is a single picture, any other name is a folder.
     ///
     /// # Errors
-    /// A file stands there that is no picture, or it means the standard output.
+    /// Fails if a file exists there whose name is not that of a picture, or if `output` is `-` (standard output).
     pub(crate) fn of(output: &Path) -> Result<Self, Failure> {
         if output == Path::new("-") {
-            let text = "--output: pictures are not written to the standard output";
+            let text = "--output: pictures cannot be written to standard output";
             return Err(Fault::new(text).hint("name a picture, such as out.png, or a folder").into());
         }
         let whole = Self { folder: output.to_owned(), names: Names::of_scene() };
@@ -40,7 +40,7 @@ impl Target {
         }
         if output.is_file() {
             return Err(Failure::Failed(format!(
-                "cannot write to `{}`: that is a file; name a folder, or a picture with its ending: .png, .tiff, .exr or .dng",
+                "cannot write to `{}`: that is a file; name a folder, or a picture that ends in .png, .tiff, .exr or .dng",
                 output.display()
             )));
         }
@@ -50,7 +50,7 @@ impl Target {
 
 impl Sink for Target {
     fn file(&self, name: &str, content: Content<'_>) -> Result<(), WriteFault> {
-        // A folder that was there when the render began, and has gone since; where it cannot be made, the file says so.
+        // The folder may have been deleted since the render began. If it cannot be created, writing the file reports the error.
         let _ = std::fs::create_dir_all(&self.folder);
         files::Folder(self.folder.clone()).file(name, content)
     }
@@ -62,16 +62,16 @@ impl Folder for Target {
         if let Some(path) = files.iter().map(|file| self.folder.join(file)).find(|path| path.is_dir()) {
             return Err(refused(&path, &"a folder of that name exists"));
         }
-        // Rights, read-only disks, quotas: only the attempt tells.
-        // Several pictures of a series try at the same time.
+        // Permissions, read-only disks and quotas show only in an attempt to write.
+        // Several pictures of a series may try at the same time, so each attempt has a number.
         static ATTEMPTS: AtomicU64 = AtomicU64::new(0);
         let number = ATTEMPTS.fetch_add(1, Relaxed);
         let attempt = self.folder.join(format!(".spectra-{}-{number}.tmp", std::process::id()));
         let written = std::fs::write(&attempt, b"spectra");
-        // Also where the disk is full, the name is there.
+        // Even on a full disk the file name was created, so it is always removed.
         let removed = std::fs::remove_file(&attempt);
         written.and(removed).map_err(|error| refused(&self.folder, &error))?;
-        // Once, however many pictures come into it.
+        // Leftovers are removed once per folder, however many pictures are written to it.
         static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
         if SWEPT.lock().unwrap_or_else(PoisonError::into_inner).insert(self.folder.clone()) {
             leftover::sweep(&self.folder);
@@ -98,25 +98,25 @@ impl Folder for Target {
     }
 }
 
-/// Whether a file with content is there: an empty one is what is left of a copy or a full disk.
+/// Whether a file exists and is not empty. An empty file is usually left over from a failed copy or a full disk.
 fn has(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|data| data.is_file() && data.len() > 0)
 }
 
-/// Whether both paths lead to one file that is there.
+/// Whether both paths lead to the same existing file.
 pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     real(one).is_some_and(|one| Some(one) == real(other))
 }
 
-/// Nothing is written over a file that is read.
+/// Checks that the output does not overwrite an input file.
 ///
 /// # Errors
-/// `output` is one of the files that are `read`.
+/// Fails if `output` is one of the files in `read`.
 pub(crate) fn apart(output: &Path, read: &[&Path]) -> Result<(), Failure> {
     if read.iter().any(|path| is_same(path, output)) {
-        let text = format!("`{}` would be written over the file that is read", output.display());
-        return Err(Fault::new(text).hint("another name at `--output`").into());
+        let text = format!("`{}` is an input file and would be overwritten", output.display());
+        return Err(Fault::new(text).hint("choose another name with `--output`").into());
     }
     Ok(())
 }
@@ -126,7 +126,7 @@ fn refused(path: &Path, reason: &dyn Display) -> String {
     format!("cannot write to `{path}`: {reason} (nothing was rendered; choose another folder with --output)")
 }
 
-/// The system's folder for temporary files: names there bear the number of this process.
+/// The system's folder for temporary files. File names there contain the ID of this process.
 pub(crate) struct Temporary;
 
 impl Temporary {

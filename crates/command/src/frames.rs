@@ -5,7 +5,7 @@ use spectra_scene::{Series, SeriesKind};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// Frames by their numbers: `17`, `10-20`, `10-`, or several of them with commas.
+/// Frame numbers and ranges: `17`, `10-20`, `10-`, or several of these separated by commas.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Frames(Vec<(u32, Option<u32>)>);
 
@@ -20,7 +20,11 @@ impl FromStr for Frames {
             Some((first, "")) => Ok((number(first)?, None)),
             Some((first, last)) => {
                 let (first, last) = (number(first)?, number(last)?);
-                if first <= last { Ok((first, Some(last))) } else { Err(format!("from frame {first} back to {last}")) }
+                if first <= last {
+                    Ok((first, Some(last)))
+                } else {
+                    Err(format!("the range {first}-{last} runs backward"))
+                }
             }
         };
         text.split(',').map(part).collect::<Result<_, _>>().map(Self)
@@ -28,12 +32,12 @@ impl FromStr for Frames {
 }
 
 impl Frames {
-    /// Whether a frame is among them.
+    /// Whether a frame is selected.
     pub(crate) fn contains(&self, frame: u32) -> bool {
         self.0.iter().any(|(first, last)| *first <= frame && last.is_none_or(|last| frame <= last))
     }
 
-    /// Refuses frames that an animation does not have.
+    /// Fails if a selected frame is not among those of the animation, `all`.
     pub(crate) fn check(&self, all: &RangeInclusive<u32>) -> Result<(), Failure> {
         let beyond =
             |&(first, last): &(u32, Option<u32>)| [Some(first), last].into_iter().flatten().find(|f| !all.contains(f));
@@ -48,7 +52,8 @@ impl Frames {
     }
 }
 
-/// Places in the series of the pictures that are asked for; `skips` is whether those that exist are left out.
+/// Returns the indices, in the series, of the requested pictures. `skips` says whether `--skip-existing` was given; it and `frames`
+/// are errors for a single picture.
 pub(crate) fn chosen(series: &Series, frames: Option<&Frames>, skips: bool) -> Result<Vec<usize>, Failure> {
     let all = 0..series.count();
     if series.kind() == SeriesKind::Single {

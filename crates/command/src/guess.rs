@@ -1,4 +1,4 @@
-//! What was meant by a word that is no command: `spectra scene.yaml`, `spectra render scene.yaml`.
+//! Guesses what was meant by a word that is not a command: `spectra scene.yaml`, `spectra render scene.yaml`.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use spectra_core::params::Fault;
@@ -6,7 +6,7 @@ use spectra_scene::bundled::{self, Bundled};
 use std::ffi::OsString;
 use std::path::Path;
 
-/// Words that people write for a command of ours.
+/// Words that users may type, with the command that does what they mean.
 const OTHERS: [(&str, &str); 18] = [
     ("render", "run SCENE"),
     ("open", "run SCENE"),
@@ -28,18 +28,18 @@ const OTHERS: [(&str, &str); 18] = [
     ("scenes", "list scene"),
 ];
 
-/// Arguments that people write for what is done in another way.
+/// Arguments that users may give to `film develop`, with a hint how to do what they mean.
 const OTHER_ARGUMENTS: [(&str, &str); 6] = [
-    ("--frames", "frames are named by their files: `plate.000[1-8].exr`, or `'plate.####.exr'` for all"),
-    ("--filter", "a filter stands before a lens: `--lens helios --set lens.filters=[wratten-12]`"),
-    ("--filters", "a filter stands before a lens: `--lens helios --set lens.filters=[wratten-12]`"),
-    ("--iso", "a stock has its speed: `--push 1` develops it longer, `--exposure=+1` exposes it more"),
+    ("--frames", "select frames by file name: `plate.000[1-8].exr`, or `'plate.####.exr'` for all"),
+    ("--filter", "a filter goes in front of a lens: `--lens helios --set lens.filters=[wratten-12]`"),
+    ("--filters", "a filter goes in front of a lens: `--lens helios --set lens.filters=[wratten-12]`"),
+    ("--iso", "each stock has a fixed speed: `--push 1` develops it longer, `--exposure=+1` exposes it more"),
     ("--film", "write `--stock tri-x`"),
     ("--aperture", "write `--lens helios --f-number f/2`"),
 ];
 
-/// What to write in place of an unknown command or argument of the command line `line`, whose first word is the program; `None` for
-/// other errors, and where nothing comes to mind.
+/// Returns an error with a hint for an unknown command or argument of the command line `line`, whose first word is the program.
+/// Returns `None` for other errors, and if no better command is known.
 pub(crate) fn meant(error: &clap::Error, line: &[OsString]) -> Option<Fault> {
     if error.kind() == ErrorKind::UnknownArgument && holds(line, &["film", "develop"]) {
         let Some(ContextValue::String(typed)) = error.get(ContextKind::InvalidArg) else { return None };
@@ -56,13 +56,13 @@ pub(crate) fn meant(error: &clap::Error, line: &[OsString]) -> Option<Fault> {
     Some(Fault::new(format!("`{typed}` is not a command")).hint(format!("did you mean `spectra {command}`?")))
 }
 
-/// Whether the line calls this command.
+/// Whether the command line calls this command.
 fn holds(line: &[OsString], command: &[&str]) -> bool {
     let words = line.iter().skip(1).filter_map(|word| word.to_str()).filter(|word| !word.starts_with('-'));
     words.take(command.len()).eq(command.iter().copied())
 }
 
-/// `--set film.stock tri-x`: the value stands behind a space.
+/// Returns the error for `--set film.stock tri-x`, where a space stands instead of `=`; `None` if the line has no such mistake.
 pub(crate) fn set_without_equals(line: &[OsString]) -> Option<Fault> {
     let words: Vec<&str> = line.iter().map(|word| word.to_str().unwrap_or_default()).collect();
     let at = words.iter().take_while(|word| **word != "--").position(|word| *word == "--set")?;
@@ -77,7 +77,7 @@ pub(crate) fn set_without_equals(line: &[OsString]) -> Option<Fault> {
     })
 }
 
-/// Takes away the tip to write `-- -1` or `-- --sample`, which makes the name of a file of what was meant as an option or a number.
+/// Removes the tip to write `-- -1` or `-- --sample`, which would turn an intended option or number into a file name.
 pub(crate) fn without_false_tips(mut error: clap::Error) -> clap::Error {
     if error.kind() == ErrorKind::UnknownArgument
         && let Some(ContextValue::StyledStrs(tips)) = error.remove(ContextKind::Suggested)
@@ -90,7 +90,7 @@ pub(crate) fn without_false_tips(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// The command, without `spectra`, for a word and what stands `behind` it.
+/// Returns the command, without `spectra`, that a word means; `behind` is the next word of the line.
 fn of_word(typed: &str, behind: Option<&str>) -> Option<String> {
     let typed = typed.trim();
     if let Some((_, command)) = OTHERS.iter().find(|(word, _)| word.eq_ignore_ascii_case(typed)) {
@@ -175,7 +175,7 @@ mod tests {
             let text = without_false_tips(error).to_string();
             assert!(text.contains("unexpected argument") && !text.contains("-- "), "{text}");
         }
-        // The parser's own hint is as good: `spectra lst`.
+        // The parser's hint for `spectra lst` is good enough.
         let error = Arguments::try_parse_from(["spectra", "lst"]).expect_err("no command");
         assert!(meant(&error, &[]).is_none() && error.to_string().contains("list"), "{error}");
     }

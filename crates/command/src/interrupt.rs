@@ -1,4 +1,4 @@
-//! Ctrl-C: once to stop and keep what there is, twice to give it up.
+//! Ctrl-C: the first stops and keeps the picture so far, the second discards it.
 
 use crate::console;
 use spectra_files::leftover;
@@ -7,40 +7,41 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// SIGINT, as Ctrl-C sends it.
+/// Number of SIGINT, the signal of Ctrl-C.
 const CTRL_C: u8 = 2;
 
-/// How often the person at the keyboard (or the system, by SIGTERM or SIGHUP) asked for an end.
+/// Record of requests to stop, by Ctrl-C or by the system (SIGTERM, SIGHUP).
 pub(crate) struct Interrupt {
     count: Arc<AtomicU32>,
-    /// The signal that asked first.
+    /// Number of the signal that came first.
     signal: Arc<AtomicU8>,
-    /// The render that goes on.
+    /// Control of the current render.
     control: Arc<Mutex<Arc<Control>>>,
 }
 
 impl Interrupt {
-    /// From now on it is this render that is to stop.
+    /// Makes `control` the render that a signal stops. Stops it at once if a signal has already arrived.
     pub(crate) fn stops(&self, control: &Arc<Control>) {
         *self.control.lock().unwrap_or_else(PoisonError::into_inner) = Arc::clone(control);
-        // Who asked while nothing could hear it asked all the same.
+        // A signal may have arrived while no render was registered.
         if self.happened() {
             control.stop();
         }
     }
 
-    /// Whether an end was asked for.
+    /// Whether a request to stop has arrived.
     pub(crate) fn happened(&self) -> bool {
         self.count.load(SeqCst) > 0
     }
 
-    /// The exit code of what was interrupted: 128 + the signal, as shells have it.
+    /// Exit code of an interrupted command: 128 + the number of the signal, the convention of shells.
     pub(crate) fn code(&self) -> u8 {
         128 + self.signal.load(SeqCst)
     }
 }
 
-/// Listens from now on. Given up, nothing half written stays in `folder`.
+/// Starts listening for signals. The first signal stops the render; a second one removes partly written files from `folder` and ends
+/// the process.
 pub(crate) fn listen(control: &Arc<Control>, folder: &Path) -> Interrupt {
     let (count, first) = (Arc::new(AtomicU32::new(0)), Arc::new(AtomicU8::new(CTRL_C)));
     let control = Arc::new(Mutex::new(Arc::clone(control)));
@@ -61,12 +62,12 @@ pub(crate) fn listen(control: &Arc<Control>, folder: &Path) -> Interrupt {
         }
     });
     if let Err(error) = listening {
-        console::warning(&format!("Ctrl-C will not keep what was rendered: {error}"));
+        console::warning(&format!("Ctrl-C will discard the picture so far instead of saving it: {error}"));
     }
     Interrupt { count, signal: first, control }
 }
 
-/// Calls `heard` with the number of each signal that asks for an end, on a thread of its own.
+/// Calls `heard` with the number of each signal that requests a stop (SIGINT, SIGTERM, SIGHUP), on a separate thread.
 #[cfg(unix)]
 fn on_signal(mut heard: impl FnMut(u8) + Send + 'static) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -75,7 +76,7 @@ fn on_signal(mut heard: impl FnMut(u8) + Send + 'static) -> std::io::Result<()> 
     std::thread::Builder::new().name("signals".to_owned()).spawn(listen).map(drop)
 }
 
-/// Calls `heard` where the person at the keyboard asks for an end, on a thread of its own.
+/// Calls `heard` on each Ctrl-C, on a separate thread.
 #[cfg(not(unix))]
 fn on_signal(mut heard: impl FnMut(u8) + Send + 'static) -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(move || heard(CTRL_C))

@@ -1,8 +1,8 @@
 //! The `spectra` command: arguments in, pictures and figures out.
 //!
 //! Exit codes: 0 done (or stopped by `--time-limit`); 1 something failed on the way, such as a full disk;
-//! 2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP. What a person asked for goes to standard output, what is
-//! said about it (progress, warnings, errors) to standard error.
+//! 2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP. Requested results go to standard output;
+//! progress, warnings and errors go to standard error.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -49,39 +49,42 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Runs the program with the arguments of the process; `unpack` unpacks its sources (`spectra_workspace::unpack`).
+/// Runs the program with the arguments of this process and returns its exit code. `unpack` unpacks the program's own sources
+/// (`spectra_workspace::unpack`).
 pub fn main(unpack: Unpack) -> ExitCode {
     main_with_notices(unpack, "")
 }
 
-/// The same, for a program that `spectra build` makes: `notices` are the licenses of its plugins and of the crates that they
-/// bring, which `--licenses` shows after its own.
+/// Runs a program made by `spectra build` and returns its exit code. `notices` holds the licenses of its plugins and of the
+/// crates they depend on; `--licenses` shows them after the program's own. See [`main`] for `unpack`.
 pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
     limits::report_large_files();
     spectra_session::make_threads();
     ExitCode::from(answer(std::env::args_os(), unpack, notices))
 }
 
-/// What a command line that was called in this process came to.
+/// Result of a command line that ran in this process.
 #[derive(Clone, Debug)]
 pub struct Called {
-    /// The exit code.
+    /// Exit code of the command line.
     pub code: u8,
-    /// What it wrote to standard output.
+    /// Bytes that the command wrote to standard output.
     pub out: Vec<u8>,
-    /// What it wrote to standard error.
+    /// Bytes that the command wrote to standard error.
     pub err: Vec<u8>,
 }
 
-/// Runs a command line in this process, `arguments` without the name of the program: what a process of its own would do, but for what
-/// belongs to a process. Signals and `--time-limit` before the first ray are left to the caller, and no stream is a terminal.
+/// Runs a command line in this process; `arguments` excludes the name of the program. The result is that of a separate process,
+/// with three exceptions. Signals are left to the caller, `--time-limit` does not end the process before the first ray, and no
+/// stream counts as a terminal.
 pub fn call(arguments: impl IntoIterator<Item = OsString>, unpack: Unpack) -> Called {
     let line = std::iter::once(OsString::from("spectra")).chain(arguments);
     let (code, kept) = console::kept(|| answer(line, unpack, ""));
     Called { code, out: kept.out, err: kept.err }
 }
 
-/// `--output=~/picture.png` with the folder of the user: shells put it in at the beginning of a word only.
+/// Replaces `~` in an argument like `--output=~/picture.png` with the user's home folder. Shells do this only at the beginning of
+/// a word.
 fn at_home(argument: OsString) -> OsString {
     let Some((name, path)) = argument.to_str().and_then(|text| text.split_once("=~/")) else { return argument };
     match std::env::home_dir().filter(|home| name.starts_with("--") && !home.as_os_str().is_empty()) {
@@ -105,7 +108,7 @@ fn answer(line: impl Iterator<Item = OsString>, unpack: Unpack, notices: &str) -
     let arguments = match Arguments::try_parse_from(&line).map_err(guess::without_false_tips) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version come this way too, with code 0.
+            // clap also reports help and version as errors, with exit code 0.
             match guess::meant(&error, &line) {
                 Some(hint) => console::faults(&hint.into()),
                 None => console::parsed(&error),
@@ -134,7 +137,7 @@ fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Insta
         Some(Command::List(list)) => list::list(list),
         Some(Command::Doc(arguments)) => doc::doc(arguments),
         Some(Command::Schema(arguments)) => schema::schema(arguments),
-        Some(Command::Lens(lens)) => lens::lens(&lens.command, isa),
+        Some(Command::Lens(lens)) => lens::lens(&lens.command),
         Some(Command::Film(arguments)) => film::film(&arguments.command, isa, started),
         Some(Command::Bench(bench)) => bench::bench(bench, isa),
         Some(Command::Spectrum(spectrum)) => spectrum::spectrum(&spectrum.command),
@@ -144,18 +147,18 @@ fn dispatch(arguments: &Arguments, unpack: Unpack, notices: &str, started: Insta
         Some(Command::Build(arguments)) => build::build(arguments, unpack, started),
         Some(Command::Completions(arguments)) => completions::completions(arguments),
         Some(Command::Man) => completions::man(),
-        // The parser shows help where neither a command nor a flag stands.
+        // Without a command or a flag, the parser has already shown the help.
         None => Ok(outcome::DONE),
     }
 }
 
-/// The tier that `SPECTRA_ISA` names, or the widest of this machine.
+/// Returns the instruction set that `SPECTRA_ISA` names, or else the widest one of this machine.
 fn instruction_set() -> Result<Isa, Failure> {
     match std::env::var_os("SPECTRA_ISA") {
         Some(name) if !name.is_empty() => {
             let isa = Isa::by_name(&name.to_string_lossy())
                 .map_err(|error| Failure::Input(format!("SPECTRA_ISA: {error}")))?;
-            // Also what is not handed a tier obeys: film, searches, plugins.
+            // Code that is not passed an `Isa` must respect it too: film, searches, plugins.
             isa.limit();
             Ok(isa)
         }
@@ -165,6 +168,6 @@ fn instruction_set() -> Result<Isa, Failure> {
 
 fn log_to_stderr() {
     let format = tracing_subscriber::fmt().with_writer(std::io::stderr).with_max_level(tracing::Level::DEBUG);
-    // Fails only where a log is set up already: then that one goes on.
+    // This fails only if a logger is already installed; that one stays in use.
     let _ = format.with_ansi(console::stderr_is_colored()).try_init();
 }

@@ -1,19 +1,19 @@
-//! Terms of the program and of what is bundled in it.
+//! Licenses of the program, its crates and its bundled data.
 
 use crate::console;
 use crate::outcome::{DONE, Outcome};
 use std::fmt::Write;
 
-/// The crates that are linked in, and their licenses; written by `xtask/notices.py`.
+/// Licenses of the crates linked into the program; the file is written by `xtask/notices.py`.
 const NOTICES: &str = include_str!("notices.txt");
 
-/// Whether this version of a crate is among those that are linked into every program.
+/// Whether this version of a crate is linked into every build of the program.
 pub(crate) fn has(name: &str, version: &str) -> bool {
     let head = format!("{name} {version}:");
     NOTICES.lines().take_while(|line| !line.starts_with("----")).any(|line| line.starts_with(&head))
 }
 
-/// Shows them, those that the plugins brought at the end.
+/// Writes all licenses to standard output, those of plugins (`of_plugins`) last.
 pub(crate) fn show(of_plugins: &str) -> Outcome {
     console::out(&text(of_plugins))?;
     Ok(DONE)
@@ -39,10 +39,8 @@ fn text(of_plugins: &str) -> String {
         NOTICES.split_once('\n').map_or(NOTICES, |(_, rest)| rest.trim_start())
     );
     if !of_plugins.is_empty() {
-        let _ = write!(
-            out,
-            "\nPlugins in this program, and the crates that they bring, with their notices:\n\n{of_plugins}"
-        );
+        let _ =
+            write!(out, "\nPlugins in this program and the crates they depend on, with their notices:\n\n{of_plugins}");
     }
     out
 }

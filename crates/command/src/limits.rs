@@ -1,20 +1,20 @@
-//! What the system gives a process, and where it ends.
+//! Limits that the system sets for this process: processors and file size.
 
-/// Processors that this process may use.
+/// Number of processors that this process may use.
 pub(crate) fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// From now on a file beyond the limit of the process (`ulimit -f`) is a write that fails, as on a full disk, and no longer the
-/// end of the process: what was rendered can be kept elsewhere.
+/// Makes a write beyond the file size limit (`ulimit -f`) fail like a write to a full disk, instead of killing the process. The
+/// rendered data can then be saved elsewhere.
 #[cfg(unix)]
 pub(crate) fn report_large_files() {
     use std::sync::Arc;
     use std::sync::atomic::AtomicBool;
-    // Heard and not heeded. Where it cannot be, the signal does what it did.
+    // The signal is caught and ignored. If it cannot be caught, it keeps its default action.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::new(AtomicBool::new(false)));
 }
 
-/// Other systems have no such limit.
+/// Does nothing: systems other than Unix have no file size limit.
 #[cfg(not(unix))]
 pub(crate) fn report_large_files() {}

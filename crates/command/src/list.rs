@@ -1,24 +1,25 @@
-//! `spectra list`: what can be named, with the words that one chooses by.
+//! `spectra list`: lists all names that can be used, with the figures to choose by.
 
 use crate::arguments::List;
 use crate::console;
 use crate::outcome::{DONE, Outcome};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use spectra_analysis::fan::FanFinder;
+use spectra_analysis::fan::largest_field_rad;
 use spectra_core::names;
 use spectra_core::params::Fault;
 use spectra_core::registry::{self, Documentation, Listed};
 use spectra_film::stock::{Process, Stock};
 use spectra_glass::Catalogue;
 use spectra_lens::Section;
+use spectra_optics::Optics;
 use spectra_scene::bundled::{self, Bundled};
 use spectra_scene::{FileKind, FileResources, file_schema};
 use spectra_spectrum::table::Table;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Something that can be named.
+/// An entry of the list: something that a scene or a command can name.
 #[derive(Debug, Serialize)]
 struct Item {
     stage: &'static str,
@@ -26,30 +27,30 @@ struct Item {
     package: &'static str,
     version: &'static str,
     default: bool,
-    /// Of a registered stage.
+    /// Documentation of a registered stage; `None` for bundled data.
     documentation: Option<Documentation>,
-    /// What one chooses by: figures with their units in their names.
+    /// Figures to choose by; their names contain the units.
     #[serde(flatten)]
     figures: Map<String, Value>,
-    /// The same in columns.
+    /// The figures formatted as columns of text.
     #[serde(skip)]
     columns: Vec<String>,
-    /// What it is, in a line.
+    /// One-line description of the entry.
     summary: String,
 }
 
-/// Kinds of things beside the registered stages, in the order of the list.
+/// Kinds of bundled data, in the order of the list; the other kinds are registered stages.
 const KINDS: [&str; 7] = ["scene", "lens", "stock", "spectrum", "glass", "sensor", "format"];
-/// Those that are too many to be listed among all others.
+/// Kinds with too many entries to appear in the list of everything.
 const LONG: [&str; 2] = ["spectrum", "glass"];
-/// Fields beyond this are not searched for, degrees.
+/// Largest half field angle to search for, degrees.
 const WIDEST_DEG: f64 = 85.0;
 
-/// Shows the list.
+/// Writes the list to standard output.
 pub(crate) fn list(arguments: &List) -> Outcome {
     let mut kinds: Vec<&str> = registry::list().iter().map(|l| l.stage).collect();
     kinds.dedup();
-    // Of spectra there are kinds and files.
+    // `spectrum` is both a kind of stage and a kind of file.
     kinds.retain(|kind| !KINDS.contains(kind));
     kinds.extend(KINDS);
     let all = kinds.clone();
@@ -57,7 +58,7 @@ pub(crate) fn list(arguments: &List) -> Outcome {
         Some(typed) => vec![kind(typed, &kinds)?],
         None => kinds,
     };
-    // Among all others only those are listed of which there are few: of spectra the kinds and not the files.
+    // The list of everything omits the files of long kinds: of spectra it shows only the registered kinds.
     let short = |kind: &str| arguments.stage.is_none() && LONG.contains(&kind);
     let of = |kind: &&str| if short(kind) { registered(kind) } else { items(kind) };
     let mut items: Vec<Item> = wanted.iter().flat_map(of).collect();
@@ -85,9 +86,10 @@ pub(crate) fn list(arguments: &List) -> Outcome {
     Ok(DONE)
 }
 
-/// What there is and how many of each: what is looked for first at the top, kinds of stages behind it. `listed` has all but the long ones.
+/// Returns the table of contents: each kind with its number of entries, bundled data first, then kinds of stages. `listed` holds the
+/// entries of all kinds except the long ones.
 fn contents(kinds: &[&str], listed: &[Item]) -> String {
-    let mut out = String::from("What can be named, and how many there are:\n");
+    let mut out = String::from("Kinds of names, and how many there are:\n");
     let order = KINDS.into_iter().chain(kinds.iter().copied().filter(|kind| !KINDS.contains(kind)));
     let width = kinds.iter().map(|kind| kind.len()).max().unwrap_or(0);
     for kind in order {
@@ -102,7 +104,7 @@ fn contents(kinds: &[&str], listed: &[Item]) -> String {
     out
 }
 
-/// The kind that is meant: `lens`, `lenses`, `stocks`, `spectra`.
+/// Returns the kind that a word means, also in the plural: `lens`, `lenses`, `stocks`, `spectra`.
 fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
     let key = names::normalized(typed);
     let several = |kind: &str| match kind {
@@ -113,7 +115,7 @@ fn kind(typed: &str, kinds: &[&'static str]) -> Result<&'static str, Fault> {
     if let Some(kind) = kinds.iter().copied().find(|kind| key == *kind || key == several(kind)) {
         return Ok(kind);
     }
-    let fault = Fault::new(format!("no list is called `{typed}`"));
+    let fault = Fault::new(format!("there is no list `{typed}`"));
     if names::nearest(&key, kinds.iter().copied()).is_some() {
         return Err(fault.hint(names::hint(&key, kinds, "")));
     }
@@ -155,7 +157,7 @@ fn items_of(kind: &str) -> Vec<Item> {
         "lens" => Bundled::Lens.names().iter().filter_map(|name| lens(name)).collect(),
         "stock" => {
             let mut all: Vec<Item> = Stock::bundled().filter_map(stock).collect();
-            // Print stocks stand apart: no scene is exposed on one.
+            // Print stocks come last, because no scene is exposed on one.
             all.sort_by_key(|item| item.stage);
             all.reverse();
             let (mut camera, print): (Vec<Item>, Vec<Item>) = all.into_iter().partition(|item| item.stage == "stock");
@@ -189,7 +191,7 @@ fn plain(stage: &'static str, name: &str, summary: &str) -> Item {
     }
 }
 
-/// A scene, by the comment at its head.
+/// Returns the entry of a bundled scene; its description is the comment at the top of the file.
 fn scene(name: &str) -> Option<Item> {
     let text = spectra_data::text(&format!("scenes/{name}.yaml"))?;
     let head: Vec<&str> = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim).collect();
@@ -202,12 +204,11 @@ fn first_sentence(text: &str) -> String {
 }
 
 fn lens(name: &str) -> Option<Item> {
-    let lens = spectra_lens::load(name, &FileResources::beside(Path::new(""))).ok()?;
+    let lens = Optics::new(spectra_lens::load(name, &FileResources::beside(Path::new(""))).ok()?);
     let f_mm = Some(lens.first_order(lens.reference_nm).efl_mm.abs()).filter(|f| f.is_finite());
-    // Without power there is no f-number, only rounding.
+    // An afocal lens has no f-number, only rounding errors.
     let f_number = lens.marginal_ray().ok().map(|ray| ray.f_number()).filter(|n| n.is_finite() && f_mm.is_some());
-    let finder = FanFinder::new(&lens, Section::Y, lens.reference_nm).ok();
-    let field = finder.and_then(|finder| finder.largest_field_rad(f64::INFINITY, WIDEST_DEG.to_radians()));
+    let field = largest_field_rad(&lens, Section::Y, f64::INFINITY, WIDEST_DEG.to_radians()).ok().flatten();
     let field_deg = field.map(f64::to_degrees);
     let rounded = |value: f64, digits: i32| {
         let scale = 10_f64.powi(digits);
@@ -287,7 +288,7 @@ fn glass_item(glass: &spectra_glass::Glass) -> Item {
     Item { figures: map(figures), columns, ..plain("glass", &glass.full_name(), "") }
 }
 
-/// The formats that imagers know, from their schema.
+/// Returns the image formats that imagers know, taken from their schema.
 fn formats() -> Vec<Item> {
     fn search(value: &Value) -> Option<&Vec<Value>> {
         match value {
@@ -329,7 +330,7 @@ fn table(items: &[Item]) -> String {
             // Writing to a String cannot fail.
             let _ = writeln!(out, "{gap}{stage}");
         }
-        // The columns of one group are as wide as its widest entry.
+        // Each column of a group is as wide as its widest entry.
         let group = items[at..].iter().chain(&items[..at]).filter(|other| other.stage == stage);
         let group: Vec<&Item> = group.collect();
         let width = |of: &dyn Fn(&Item) -> usize| group.iter().map(|item| of(item)).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! How a command ends.
+//! Exit codes and errors of commands.
 
 use crate::console;
 use spectra_core::params::{Fault, Faults};
@@ -6,31 +6,31 @@ use spectra_files::WriteError;
 use spectra_session::SessionError;
 use std::io;
 
-/// Done, or stopped when its time was up.
+/// Exit code of success, or of a render stopped by its time limit.
 pub(crate) const DONE: u8 = 0;
-/// Something failed on the way.
+/// Exit code of a failure along the way, such as a full disk.
 pub(crate) const FAILED: u8 = 1;
-/// The input is wrong.
+/// Exit code of wrong input.
 pub(crate) const BAD_INPUT: u8 = 2;
 
-/// An exit code, or why the command could not do what it should.
+/// Result of a command: its exit code, or the reason it failed.
 pub(crate) type Outcome = Result<u8, Failure>;
 
-/// Why a command could not do what it should.
+/// Reason why a command failed.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// Everything wrong with the files given.
+    /// All faults of the given files.
     Faults(Faults),
     /// An argument or a table is wrong.
     Input(String),
     /// The system refused something, or the render failed.
     Failed(String),
-    /// Whoever read standard output has enough: `spectra list | head -1`.
+    /// The reader of standard output has closed it, as in `spectra list | head -1`. This is not an error.
     ReaderGone,
 }
 
 impl Failure {
-    /// Says so on standard error; returns the exit code.
+    /// Reports the failure on standard error; returns the exit code.
     pub(crate) fn report(&self) -> u8 {
         match self {
             Self::Faults(faults) => console::faults(faults),
@@ -40,7 +40,7 @@ impl Failure {
         self.code()
     }
 
-    /// The exit code.
+    /// Exit code of this failure.
     pub(crate) fn code(&self) -> u8 {
         match self {
             Self::Faults(_) | Self::Input(_) => BAD_INPUT,
@@ -78,7 +78,7 @@ impl From<WriteError> for Failure {
     }
 }
 
-/// Standard output that cannot be written.
+/// Converts an error of standard output. A closed pipe becomes [`Failure::ReaderGone`].
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         match error.kind() {

@@ -1,12 +1,12 @@
-//! Arguments with units, read as a scene reads them.
+//! Arguments with units, parsed the same way as in a scene.
 
 use spectra_core::params::{Quantity, Wavelength};
 use spectra_core::quantity::light_nm;
 
-/// Reads an argument such as `2m`, `f/2` or `30s`.
+/// Parses an argument such as `2m`, `f/2` or `30s`.
 ///
 /// # Errors
-/// What was found and what is expected, on one line.
+/// Says on one line what was found and what is expected.
 pub(crate) fn parse<Q: Quantity>(text: &str) -> Result<Q, String> {
     Q::from_text(text).map_err(|message| match message.split_once("\nhint: ") {
         Some((message, hint)) => format!("{message} ({hint})"),
@@ -14,26 +14,26 @@ pub(crate) fn parse<Q: Quantity>(text: &str) -> Result<Q, String> {
     })
 }
 
-/// A wavelength of light, in nm if bare.
+/// Parses a wavelength of light; a bare number is in nm.
 ///
 /// # Errors
-/// As [`parse`], and what is too short for light: it was given in micrometers.
+/// Fails like [`parse`], and for a wavelength too short for light, which was probably meant in micrometers.
 pub(crate) fn wavelength(text: &str) -> Result<Wavelength, String> {
     let wavelength = parse::<Wavelength>(text)?;
     light_nm(wavelength.nm()).map_err(|wrong| format!("{wrong} ({})", wrong.hint()))?;
     Ok(wavelength)
 }
 
-/// A part in percent; a bare number might be meant as either.
+/// Returns a percentage unchanged, as text. Refuses a bare positive number, which could mean a percentage or a fraction.
 pub(crate) fn percent(text: &str) -> Result<String, String> {
     match text.trim().parse::<f64>() {
-        // Without what a product has behind the digits that were written: 57, not 56.99999999999999.
+        // Rounding removes digits that come only from the product: 57, not 56.99999999999999.
         Ok(number) => {
             let percent = (1e10 * number).round() / 1e8;
             match number {
-                1.0.. => Err(format!("percent? Write `{number}%`")),
-                n if n > 0.0 => Err(format!("percent or a part? Write `{number}%` or `{percent}%`")),
-                // What is wrong with it is told where it is read.
+                1.0.. => Err(format!("is this a percentage? Write `{number}%`")),
+                n if n > 0.0 => Err(format!("percentage or fraction? Write `{number}%` or `{percent}%`")),
+                // The scene reader reports what is wrong with it.
                 _ => Ok(text.to_owned()),
             }
         }
@@ -56,9 +56,9 @@ mod tests {
     #[test]
     fn a_bare_number_is_no_percentage() {
         assert_eq!(percent("0.5%"), Ok("0.5%".to_owned()));
-        assert_eq!(percent("5"), Err("percent? Write `5%`".to_owned()));
+        assert_eq!(percent("5"), Err("is this a percentage? Write `5%`".to_owned()));
         assert_eq!(percent("0"), Ok("0".to_owned()));
-        assert_eq!(percent("0.57"), Err("percent or a part? Write `0.57%` or `57%`".to_owned()));
+        assert_eq!(percent("0.57"), Err("percentage or fraction? Write `0.57%` or `57%`".to_owned()));
     }
 
     use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Time};

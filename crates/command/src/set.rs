@@ -1,8 +1,8 @@
-//! `--set`: values on top of a file.
+//! `--set`: values that override those of a file.
 
 use clap::Args;
 
-/// `--set`.
+/// Argument `--set`, shared by several commands.
 #[derive(Debug, Args)]
 pub(crate) struct Set {
     /// Set a value in the scene, as if it were written in the file; can be repeated.

@@ -1,27 +1,29 @@
-//! The sources that plugins are built against, and the user's cache that they are unpacked into.
+//! Source code that plugins are built against, and the user's cache folder that it is unpacked into.
 
 use crate::outcome::Failure;
 use spectra_core::params::Fault;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Unpacks the sources that a program holds into a folder of a cache, with these data files (name and content) beside
-/// them, unless they are there already; returns their folder. [`io::ErrorKind::NotFound`] says that the program holds none.
+/// Unpacks the source code embedded in a program into a folder of a cache, together with the given data files (name and content).
+/// Leaves a folder that is already unpacked as it is. Returns the folder of the sources, or [`io::ErrorKind::NotFound`] if the
+/// program contains no sources.
 pub type Unpack = fn(&Path, &mut dyn Iterator<Item = (&'static str, &'static [u8])>) -> io::Result<PathBuf>;
 
-/// Folder of the sources: a checkout, or the unpacked ones of this program.
+/// Folder of the sources of `spectra`: a checkout, or the unpacked sources of this program.
 #[derive(Clone, Debug)]
 pub(crate) struct Sources {
     folder: PathBuf,
 }
 
 impl Sources {
-    /// Those at `core`, which is a checkout or its `crates/core`; or this program's own, unpacked to the cache.
+    /// Finds the sources at `core`, which is a checkout or its folder `crates/core`. Without `core`, unpacks the sources of this
+    /// program to the cache.
     pub(crate) fn find(core: Option<&Path>, unpack: Unpack) -> Result<Self, Failure> {
         let Some(core) = core else { return Self::unpacked(unpack) };
         let no_sources = |text: &str| {
             let fault = Fault::new(format!("--core {}: {text}", core.display()));
-            Failure::from(fault.hint("a checkout of spectra, or its folder crates/core"))
+            Failure::from(fault.hint("give a checkout of spectra, or its folder crates/core"))
         };
         let core = core.canonicalize().map_err(|error| no_sources(&error.to_string()))?;
         let folder = [core.clone(), core.join("../..")].into_iter().find(|root| root.join(CORE_MANIFEST).is_file());
@@ -33,30 +35,30 @@ impl Sources {
         let cache = cache()?;
         let mut data = spectra_data::list("").filter_map(|name| Some((name, spectra_data::get(name)?)));
         let folder = unpack(&cache, &mut data).map_err(|error| {
-            // The system's own word for a folder that cannot be made is the same, and comes with a number.
+            // A folder that cannot be created gives the same error kind, but with an error number of the system.
             if error.kind() == io::ErrorKind::NotFound && error.raw_os_error().is_none() {
                 let fault = Fault::new(error.to_string());
                 return Failure::from(fault.hint("name a checkout of the same version: --core PATH"));
             }
             Failure::Failed(format!(
-                "{}: the sources cannot be unpacked: {error} (SPECTRA_CACHE names another folder)",
+                "{}: the sources cannot be unpacked: {error} (set SPECTRA_CACHE to use another folder)",
                 cache.display()
             ))
         })?;
         Ok(Self { folder: plain(&folder) })
     }
 
-    /// Their folder, absolute.
+    /// Absolute path of the sources.
     pub(crate) fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// A crate among them, such as `crates/core`.
+    /// Returns the path of a crate in the sources, such as `crates/core`.
     pub(crate) fn crate_folder(&self, inside: &str) -> PathBuf {
         self.folder.join(inside)
     }
 
-    /// All crates: package and folder, by package.
+    /// Lists all crates of the sources as (package name, folder), sorted by package name.
     pub(crate) fn packages(&self) -> Result<Vec<(String, PathBuf)>, Failure> {
         let mut found = Vec::new();
         for family in ["crates", "plugins"] {
@@ -72,7 +74,7 @@ impl Sources {
         Ok(found)
     }
 
-    /// A file of the root, such as `Cargo.lock`.
+    /// Reads a text file of the root folder, such as `Cargo.lock`.
     pub(crate) fn read(&self, name: &str) -> Result<String, Failure> {
         let path = self.folder.join(name);
         std::fs::read_to_string(&path).map_err(|error| unreadable(&path, &error))
@@ -85,7 +87,7 @@ fn unreadable(path: &Path, error: &io::Error) -> Failure {
     Failure::Failed(format!("{}: {error}", path.display()))
 }
 
-/// The folder for what can be made again: `$SPECTRA_CACHE`, or `spectra` in the place that the system has for such things.
+/// Returns the cache folder, absolute: `$SPECTRA_CACHE`, or `spectra` in the system's folder for caches.
 pub(crate) fn cache() -> Result<PathBuf, Failure> {
     let stated = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let home = |inside: &str| std::env::home_dir().map(|home| home.join(inside));
@@ -96,18 +98,20 @@ pub(crate) fn cache() -> Result<PathBuf, Failure> {
     };
     let folder = stated("SPECTRA_CACHE").or_else(|| platform().map(|cache| cache.join("spectra")));
     let folder = folder.ok_or_else(|| {
-        Failure::from(Fault::new("no cache folder is known").hint("set the environment variable SPECTRA_CACHE"))
+        Failure::from(
+            Fault::new("the system has no known cache folder").hint("set the environment variable SPECTRA_CACHE"),
+        )
     })?;
     std::path::absolute(&folder).map_err(|error| unreadable(&folder, &error))
 }
 
-/// Where cargo puts what `spectra build` and the tests of new plugins compile: one folder for all, so that
-/// crates with the same features are compiled once.
+/// Returns the target folder of cargo for `spectra build` and for the tests of new plugins. They share one folder, so that crates
+/// with the same features are compiled only once.
 pub(crate) fn target() -> Result<PathBuf, Failure> {
     Ok(cache()?.join("target"))
 }
 
-/// The sections of a manifest that say how to compile.
+/// Returns the `[profile...]` sections of a manifest, without comments.
 pub(crate) fn profiles(manifest: &str) -> String {
     let mut kept = String::new();
     let mut in_profile = false;
@@ -123,7 +127,7 @@ pub(crate) fn profiles(manifest: &str) -> String {
     kept
 }
 
-/// A path as cargo writes it: absolute, without `..`, and without the `\\?\` that Windows puts before it.
+/// Returns a path as cargo writes it: absolute, without `..`, and without the `\\?\` prefix of Windows.
 pub(crate) fn plain(path: &Path) -> PathBuf {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     match path.to_str().and_then(|text| text.strip_prefix(r"\\?\")) {
@@ -132,7 +136,7 @@ pub(crate) fn plain(path: &Path) -> PathBuf {
     }
 }
 
-/// A text as a string of TOML.
+/// Quotes a text as a TOML string.
 pub(crate) fn toml(text: &str) -> String {
     let mut out = String::from('"');
     for c in text.chars() {
@@ -146,10 +150,10 @@ pub(crate) fn toml(text: &str) -> String {
     out
 }
 
-/// A path as a string of TOML.
+/// Quotes a path as a TOML string. Fails if the path is not valid Unicode.
 pub(crate) fn toml_path(path: &Path) -> Result<String, Failure> {
     let text =
-        path.to_str().ok_or_else(|| Failure::Input(format!("{}: a path that is not Unicode", path.display())))?;
+        path.to_str().ok_or_else(|| Failure::Input(format!("{}: the path is not valid Unicode", path.display())))?;
     Ok(toml(text))
 }
 

@@ -1,4 +1,4 @@
-//! `--time-limit` before any light is traced.
+//! Enforces `--time-limit` while the scene is set up, before any light is traced.
 
 use crate::console;
 use crate::outcome::DONE;
@@ -12,19 +12,19 @@ const SETTING_UP: u8 = 0;
 const TRACING: u8 = 1;
 const OVER: u8 = 2;
 
-/// Ends the program where its time is over before light is traced: nothing has been written then, and nothing is lost.
+/// Ends the program if the time limit passes before light is traced. Nothing has been written by then, so nothing is lost.
 pub(crate) struct SetUp {
     state: Arc<AtomicU8>,
 }
 
 impl SetUp {
-    /// Watches from now on until `deadline`, `limit_s` after the start of the program. Not where another program called the command:
-    /// its process does not end here.
+    /// Starts watching until `deadline`, which is `limit_s` seconds after the start of the program. Does not watch if another program
+    /// called the command in its own process, because that process must not end here.
     pub(crate) fn watched(deadline: Option<Instant>, limit_s: f64, is_json: bool, is_quiet: bool) -> Self {
         let state = Arc::new(AtomicU8::new(SETTING_UP));
         if let Some(deadline) = deadline.filter(|_| !console::is_kept()) {
             let state = Arc::clone(&state);
-            // Where no thread can be had, the limit holds once light is traced.
+            // If no thread can be started, the limit applies only once light is traced.
             let _ = std::thread::Builder::new().name("time limit".to_owned()).spawn(move || {
                 std::thread::sleep(deadline.saturating_duration_since(Instant::now()));
                 if state.compare_exchange(SETTING_UP, OVER, SeqCst, SeqCst).is_ok() {
@@ -36,10 +36,10 @@ impl SetUp {
         Self { state }
     }
 
-    /// From now on light is traced.
+    /// Ends the watch because light is traced from now on.
     pub(crate) fn done(&self) {
         if self.state.compare_exchange(SETTING_UP, TRACING, SeqCst, SeqCst) == Err(OVER) {
-            // The program is ending.
+            // The watching thread is ending the program.
             loop {
                 std::thread::park();
             }
@@ -48,7 +48,7 @@ impl SetUp {
 }
 
 impl Drop for SetUp {
-    /// A scene that cannot be rendered says so, also at the last moment.
+    /// Ends the watch, so that the error of a scene that cannot be rendered is reported even at the last moment.
     fn drop(&mut self) {
         self.done();
     }

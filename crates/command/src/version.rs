@@ -1,13 +1,14 @@
-//! Which program this is.
+//! Version of this program: number, commit, compiler, plugins.
 
 use serde_json::{Map, Value, json};
 use spectra_core::{Isa, registry};
 use std::sync::LazyLock;
 
-/// Its version.
+/// Version number of this program.
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// What `--version` shows: version, commit, compiler, target and the widest instruction set of this machine.
+/// Returns the text of `--version`: version, commit, compiler, target, build profile, the widest instruction set of this machine,
+/// and plugins.
 pub(crate) fn long() -> &'static str {
     static TEXT: LazyLock<String> = LazyLock::new(|| {
         format!(
@@ -23,12 +24,12 @@ pub(crate) fn long() -> &'static str {
     &TEXT
 }
 
-/// The commit that it was built from, if it is known.
+/// Commit that this program was built from, or `unknown`.
 pub(crate) fn commit() -> &'static str {
     COMMIT.unwrap_or("unknown")
 }
 
-/// Crates in this program that are not its own, with the stages that they bring.
+/// Returns one line per stage that a plugin adds to this program, with the crate of the plugin.
 fn plugins() -> String {
     let mut text = String::new();
     for one in registry::list().iter().filter(|l| !BUILT_IN.contains(&l.package)) {
@@ -37,7 +38,7 @@ fn plugins() -> String {
     text
 }
 
-/// The crates of the built-in stages.
+/// Names of the crates that hold the built-in stages.
 const BUILT_IN: [&str; 12] = [
     "spectra-glass",
     "spectra-lens",
@@ -53,10 +54,10 @@ const BUILT_IN: [&str; 12] = [
     "spectra-spectrum",
 ];
 
-/// Commit that it was built from, where that is known.
+/// Commit that this program was built from, if known.
 const COMMIT: Option<&str> = option_env!("SPECTRA_COMMIT");
 
-/// The versions that a result depends on.
+/// Returns the versions that a result depends on: program, commit, compiler, target and crates of all stages.
 pub(crate) fn to_json() -> Value {
     let plugins: Map<String, Value> =
         registry::list().iter().map(|l| (l.package.to_owned(), l.version.into())).collect();

@@ -1,4 +1,4 @@
-//! `spectra view`.
+//! `spectra view`: shows a scene or a photograph in the browser.
 
 use crate::arguments;
 use crate::console;
@@ -17,7 +17,7 @@ use std::process::{Command, Stdio};
 /// Serves a scene, or the color tester, to a browser until the process ends.
 pub(crate) fn view(arguments: &arguments::View, isa: Isa) -> Outcome {
     let ready = |address: &str| {
-        // A reader that has gone away is no failure.
+        // It is not an error if the reader of standard output has gone away.
         let _ = console::out(&format!("{address}\n"));
         if arguments.no_open {
             console::note("open this address in a browser; Ctrl-C ends the viewer");
@@ -28,7 +28,7 @@ pub(crate) fn view(arguments: &arguments::View, isa: Isa) -> Outcome {
         }
     };
     let ended = match &arguments.scene {
-        // The parser lets nothing else through.
+        // The parser allows a missing scene only with --color-tester.
         None => spectra_view::color_tester(arguments.port, ready),
         Some(scene) => {
             let (stock, overrides) = film(arguments, scene)?;
@@ -49,14 +49,15 @@ pub(crate) fn view(arguments: &arguments::View, isa: Isa) -> Outcome {
     }
 }
 
-/// The film of a photograph, by `--stock` or by `--set film.stock=...`, and what else is set: what light the picture is in follows from it.
+/// Returns the film for a photograph, from `--stock` or `--set film.stock=...`, and the remaining `--set` values. The film decides which
+/// light the photograph is taken to be in. For a scene the film is `None`.
 fn film(arguments: &arguments::View, scene: &Path) -> Result<(Option<String>, Vec<String>), Failure> {
     let is_stock = |text: &String| text.split_once('=').is_some_and(|(path, _)| path.trim() == "film.stock");
     let all = &arguments.set.overrides;
     if !is_picture(scene) {
         if let Some(stock) = &arguments.stock {
-            let fault = Fault::new("`--stock` is for a photograph, and this is a scene");
-            return Err(fault.hint(format!("`--set film.stock={stock}`")).into());
+            let fault = Fault::new("`--stock` is only for photographs, and this is a scene");
+            return Err(fault.hint(format!("write `--set film.stock={stock}`")).into());
         }
         return if is_text(scene) { Ok((None, all.clone())) } else { Err(no_text(scene)) };
     }
@@ -66,25 +67,24 @@ fn film(arguments: &arguments::View, scene: &Path) -> Result<(Option<String>, Ve
     Ok((stock, all.iter().filter(|text| !is_stock(text)).cloned().collect()))
 }
 
-/// Whether a file begins as text does; what cannot be read is told of where it is read.
+/// Whether a file begins like text. An unreadable file counts as text: the scene reader reports the error.
 fn is_text(file: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(file).and_then(|file| file.take(4096).read_to_end(&mut head));
     read.is_err() || !head.iter().any(|byte| *byte < 8)
 }
 
-/// That a file is neither a scene nor a picture.
+/// Returns the error for a file that is neither a scene nor a picture.
 fn no_text(file: &Path) -> Failure {
-    let fault =
-        Fault::new(format!("`{}` is neither a scene nor a picture that is known by its ending", file.display()));
+    let fault = Fault::new(format!("`{}` is neither a scene nor a picture with a known extension", file.display()));
     let known = format!(
-        "pictures end in .{}; save it as one of these, such as TIFF of 16 bits from a camera's raw file",
+        "pictures end in .{}; save it as one of these, for example a camera's raw file as a 16-bit TIFF",
         PICTURES.join(", .")
     );
     fault.hint(known).into()
 }
 
-/// Asks the system to open an address; whether it could be asked.
+/// Asks the system to open an address in a browser. Returns whether that command could be started.
 fn open(address: &str) -> bool {
     let mut command = if cfg!(target_os = "macos") {
         Command::new("open")

@@ -1,9 +1,9 @@
-//! Numbers, times and names as a person reads them.
+//! Formatting of numbers, times and names for people.
 
 pub(crate) use spectra_session::words::*;
 use std::path::{Path, PathBuf};
 
-/// The file that a figure of `name` goes to where none is given: `NAME.svg` in the working folder.
+/// Returns the default file for a figure of `name`: `NAME.svg` in the working folder.
 pub(crate) fn figure_of(name: &str) -> PathBuf {
     let file = Path::new(name.trim()).file_name().map_or("figure".into(), |name| name.to_string_lossy());
     let stem = file.strip_suffix(".yaml").or(file.strip_suffix(".yml")).or(file.strip_suffix(".csv")).unwrap_or(&file);

@@ -1,33 +1,36 @@
-//! What a wavefront's aberrations and the edge of the opening do together.
+//! Corrects the diffraction pattern for the combined effect of a wavefront's aberrations and the edge of the opening.
 //!
-//! A traced picture has the aberrations as rays have them. Spread by a perfect lens's pattern it has the product of two contrasts, that of
-//! rays and that of the edge, where light has the contrast of the wavefront: less is lost, most where aberrations are of the order of a
-//! wavelength. So the pattern gets what is between them.
+//! A traced picture already has the aberrations of the rays. Spreading it by the pattern of a perfect lens gives the product of two
+//! contrasts, that of the rays and that of the edge. The light really has the contrast of the wavefront, which is higher. The difference is
+//! largest if aberrations are of the order of a wavelength. The pattern is corrected by this difference, which sums to zero.
+//!
+//! At each frequency of a lattice, the wanted contrast is (wave rays + e^2 edge) / (rays^2 + e^2), with the contrasts of wavefront, rays
+//! and edge, and e = 0.1. Contrast that the rays lost altogether therefore stays lost. Phases stay those of the rays.
 
 use crate::{Light, Polygon, Wave};
 use spectra_core::math;
 use std::f64::consts::TAU;
 
-/// Pixels that the correction reaches, at least and at most.
+/// Smallest and largest reach of the correction, pixels.
 const REACH: [usize; 2] = [6, 40];
-/// Wavelengths times f-number that it reaches beyond what rays do.
+/// Reach of the correction beyond the rays, in wavelengths times f-number.
 const FRINGES: f64 = 24.0;
-/// Cells across the opening, at least and at most.
+/// Smallest and largest number of cells across the opening.
 const CELLS: [f64; 2] = [48.0, 256.0];
-/// Contrast of rays below which the perfect lens's pattern stays: what they lost cannot be given back.
+/// Contrast of rays below which the pattern of the perfect lens is kept, because contrast that the rays lost cannot be restored.
 const LEAST: f64 = 0.1;
-/// A correction of less contrast is none.
+/// Contrast below which a correction is negligible.
 const SEEN: f64 = 2e-3;
 
-/// Weights of the pixels around one, `2 reach + 1` in a line.
+/// The weights by which the pixels around one are corrected, `2 reach + 1` per line.
 pub(crate) struct Correction {
     pub(crate) reach: usize,
     pub(crate) weights: Vec<f64>,
 }
 
-/// What is to be added to the pattern of a perfect lens with this opening, so that rays with the aberrations of `wave` spread by it have
-/// the contrast of the wavefront: in sum nothing. Opposite pixels get the same, so phases stay those of rays. `None` where it is nothing,
-/// or aberrations are so large that rays tell all.
+/// Computes the correction to the pattern of a perfect lens with this opening. Rays with the aberrations of `wave`, spread by the corrected
+/// pattern, have the contrast of the wavefront. The weights sum to 0. Opposite pixels get the same weight, so phases stay those of the
+/// rays. `None` if the correction is negligible, or if aberrations are so large that rays alone describe the light.
 pub(crate) fn correction(opening: &Polygon, wave: &Wave, light: &Light, pitch_mm: [f64; 2]) -> Option<Correction> {
     let mean = light.mean_mm();
     let across = 2.0 * opening.reach();
@@ -36,7 +39,7 @@ pub(crate) fn correction(opening: &Polygon, wave: &Wave, light: &Light, pitch_mm
     let extent = 3.0 * farthest + FRINGES * mean / across;
     let reach = ((extent / pitch).ceil() as usize).clamp(REACH[0], REACH[1]);
     let side = 2 * reach + 1;
-    // Rays that land beyond half of the lattice turn phases faster than it can follow.
+    // Rays that land beyond half of the lattice turn phases faster than it can resolve.
     if farthest > 0.5 * side as f64 * pitch {
         return None;
     }
@@ -66,7 +69,7 @@ pub(crate) fn correction(opening: &Polygon, wave: &Wave, light: &Light, pitch_mm
     Some(Correction { reach, weights: pixels(&missing, reach) })
 }
 
-/// How far from the place rays land at most, mm, about their mean.
+/// Returns the largest distance of the rays' landing points from their mean, mm.
 fn spots(opening: &Polygon, wave: &Wave) -> f64 {
     let [cx, cy] = opening.center();
     let places =
@@ -76,7 +79,8 @@ fn spots(opening: &Polygon, wave: &Wave) -> f64 {
     slopes.iter().map(|s| (s[0] - mean[0]).abs().max((s[1] - mean[1]).abs())).fold(0.0, f64::max)
 }
 
-/// From what frequencies miss (rows from 0 on, columns about 0, in cycles per side) to pixels, faded out toward the edge.
+/// Transforms the missing contrast by frequency (rows from 0 on, columns about 0, in cycles per side) to pixel weights, which fade out
+/// toward the edge.
 fn pixels(missing: &[f64], reach: usize) -> Vec<f64> {
     let side = 2 * reach + 1;
     let turn: Vec<[f64; 2]> = (0..side)
@@ -89,7 +93,7 @@ fn pixels(missing: &[f64], reach: usize) -> Vec<f64> {
     let r = reach as isize;
     let mut weights = vec![0.0; side * side];
     for i in -r..r + 1 {
-        // Along rows first.
+        // Transform along the rows first.
         let lines: Vec<[f64; 2]> = (0..reach + 1)
             .map(|row| {
                 let line = &missing[row * side..][..side];
@@ -102,7 +106,7 @@ fn pixels(missing: &[f64], reach: usize) -> Vec<f64> {
         for j in -r..r + 1 {
             let sum: f64 = lines.iter().zip(0..).fold(0.0, |sum, ([re, im], b)| {
                 let [c, s] = phase(b, j);
-                // Each row but the first stands for its opposite, too.
+                // Each row except the first also stands for the opposite one.
                 sum + if b == 0 { *re } else { 2.0 * (re * c - im * s) }
             });
             let fade = |k: isize| {
@@ -117,14 +121,14 @@ fn pixels(missing: &[f64], reach: usize) -> Vec<f64> {
     weights
 }
 
-/// The opening in cells, of which a whole number makes a step of the lattice of frequencies.
+/// The opening divided into cells, of which a whole number makes one step of the frequency lattice.
 struct Cells {
     size: [usize; 2],
-    /// Cells to a step.
+    /// Number of cells per step, across and down.
     steps: [usize; 2],
-    /// Amplitude of the light in each: nothing beside the opening.
+    /// Complex amplitude of the light in each cell; 0 outside the opening.
     amplitudes: Vec<[f64; 2]>,
-    /// Where rays land, mm.
+    /// Landing points of the rays, mm.
     spots: Vec<[f64; 2]>,
 }
 
@@ -162,7 +166,8 @@ impl Cells {
         (!spots.is_empty()).then_some(Self { size, steps, amplitudes, spots })
     }
 
-    /// What of the opening overlaps with itself, so many steps on: its area and the modulus of its amplitudes' product, of all.
+    /// Computes the overlap of the opening with itself, shifted by this many steps: its area, and the modulus of the product of its
+    /// amplitudes, both relative to the whole opening.
     fn overlap(&self, [across, down]: [isize; 2]) -> [f64; 2] {
         let [width, height] = self.size;
         let shift = across * self.steps[0] as isize;
@@ -186,7 +191,7 @@ impl Cells {
         [passed / all, (re * re + im * im).sqrt() / all]
     }
 
-    /// The contrast of rays on the lattice of frequencies.
+    /// Computes the contrast of the rays on the frequency lattice.
     fn rays(&self, reach: usize, pitch_mm: [f64; 2]) -> Vec<f64> {
         let side = 2 * reach + 1;
         let mut sums = vec![[0.0; 2]; (reach + 1) * side];

@@ -1,4 +1,8 @@
-//! How a unit of light in one pixel is spread over those around it.
+//! Spreads a unit of light in one pixel over the pixels around it.
+//!
+//! If pixels are finer than a fringe, each sample of the pattern reaches them through a windowed sinc and not through a pixel's own box:
+//! the traced light was already summed over that box. No pixel gets a negative weight. The middle pixel gets what the others leave of 1, so
+//! the energy is exact.
 
 use crate::aberrated::{Correction, correction};
 use crate::light::Light;
@@ -6,14 +10,15 @@ use crate::{Polygon, Wave, Wings};
 use spectra_core::math;
 use std::f64::consts::{PI, TAU};
 
-/// Fringes, in wavelengths times f-number, within which the pattern itself is added up; beyond, what edges do on average.
+/// Distance up to which the pattern itself is integrated, in fringes (wavelengths times f-number); beyond it the average effect of the
+/// edges is used.
 const FRINGES: f64 = 16.0;
-/// Samples of the pattern in the finest of its fringes.
+/// Number of samples of the pattern in its finest fringe.
 const SAMPLES: f64 = 3.0;
-/// Pixels that the window reaches which keeps fine patterns sharp.
+/// Reach, pixels, of the window that keeps fine patterns sharp.
 const WINDOW: f64 = 6.0;
 
-/// Weights of the pixels around one, the same at opposite places.
+/// The weights of the pixels around one, point-symmetric about it.
 #[derive(Clone, Debug)]
 pub struct PixelSpread {
     radius: usize,
@@ -21,8 +26,8 @@ pub struct PixelSpread {
 }
 
 impl PixelSpread {
-    /// The spread of a channel's light by an opening over pixels of `pitch_mm`, out to `radius` pixels, where it fades out by
-    /// `fade`; `elsewhere` is the part of the light that goes there. What is in it and elsewhere is all light.
+    /// Computes the spread of a channel's light by an opening. Pixels have the size `pitch_mm` (mm). The weights reach out to `radius`
+    /// pixels, where they fade out. `elsewhere` is the fraction of the light that goes beyond. The weights and `elsewhere` sum to 1.
     #[must_use]
     pub fn new(opening: &Polygon, light: &Light, pitch_mm: [f64; 2], radius: usize, elsewhere: f64) -> Self {
         let wings = Wings::new(opening);
@@ -34,7 +39,7 @@ impl PixelSpread {
         let colors = light.coarse();
         for j in 0..r + 1 {
             for i in -r..r + 1 {
-                // Columns run against x.
+                // Columns count opposite to x.
                 let (x, y) = (-i as f64 * pitch_mm[0], j as f64 * pitch_mm[1]);
                 let stays = 1.0 - fade((x * x + y * y).sqrt(), far_mm);
                 if (j == 0 && i < 1) || is_near(x, y) || stays <= 0.0 {
@@ -54,20 +59,21 @@ impl PixelSpread {
         own
     }
 
-    /// Pixels that it reaches.
+    /// Radius of the spread, pixels.
     #[must_use]
     pub fn radius(&self) -> usize {
         self.radius
     }
 
-    /// Weight of the pixel so far to the right and down.
+    /// Returns the weight of the pixel `i` to the right and `j` down.
     #[must_use]
     pub fn weight(&self, i: isize, j: isize) -> f64 {
         let r = self.radius as isize;
         self.weights[((j + r) * (2 * r + 1) + i + r) as usize]
     }
 
-    /// The same, but so that rays with a wavefront's aberrations, spread by it, have the contrast of the wavefront.
+    /// Corrects the weights for a wavefront's aberrations: rays with these aberrations, spread by the result, have the contrast of the
+    /// wavefront.
     #[must_use]
     pub fn with_wave(mut self, opening: &Polygon, wave: &Wave, light: &Light, pitch_mm: [f64; 2]) -> Self {
         if let Some(Correction { reach, weights }) = correction(opening, wave, light, pitch_mm) {
@@ -89,24 +95,24 @@ impl PixelSpread {
         }
     }
 
-    /// The pattern itself, sampled and shared out to the pixels near the middle.
+    /// Samples the pattern itself and distributes it to the pixels near the middle.
     fn add_near(&mut self, opening: &Polygon, light: &Light, pitch_mm: [f64; 2], near_mm: f64, far_mm: f64) {
         let [shortest, longest] = light.range_mm();
         let across = 2.0 * opening.reach();
         let pitch = pitch_mm[0].min(pitch_mm[1]);
         let widest = pitch_mm[0].max(pitch_mm[1]);
-        // In cycles per unit of direction cosine: film over wavelength.
+        // Step in cycles per unit of direction cosine: length on film over wavelength.
         let step = (1.0 / (SAMPLES * across)).min(0.4 * pitch / longest);
-        // Patterns much finer than pixels need no window: boxes take all of them.
+        // Patterns much finer than pixels need no window: the boxes of the pixels collect all of them.
         let sharp = pitch < light.mean_mm() / across;
         let room = if sharp { WINDOW } else { 0.75 };
         let samples = ((near_mm + room * widest) / shortest / step).ceil() as isize;
         let side = 2 * samples as usize + 1;
         let mut pattern = vec![0.0; side * side];
-        // What these corners are off turns no phase by more than a thousandth.
+        // The simplified corners change no phase by more than a thousandth.
         let simple = opening.simplified(1e-3 / (TAU * step * samples as f64));
         for (k, value) in simple.lattice(TAU * step, samples as usize).into_iter().enumerate() {
-            // Columns run against x.
+            // Columns count opposite to x.
             let (i, j) = (side - 1 - k % side, k / side);
             pattern[(samples as usize + j) * side + i] = value;
             pattern[(samples as usize - j) * side + side - 1 - i] = value;
@@ -117,7 +123,7 @@ impl PixelSpread {
         let mut sums = [vec![0.0; pixels * pixels], vec![0.0; pixels * pixels]];
         for [mm, share] in light.shares() {
             for (kind, sum) in sums.iter_mut().enumerate().take(1 + usize::from(sharp)) {
-                // What the pixels of a line get of each sample.
+                // The shares of each sample that the pixels of a line get.
                 let taps = |pitch: f64| -> Vec<Vec<(usize, f64)>> {
                     let size = step * mm / pitch;
                     (-samples..samples + 1).map(|i| taps(i as f64 * size, size, reach, kind == 1)).collect()
@@ -146,7 +152,7 @@ impl PixelSpread {
             let [i, j] = places(k);
             let r = distance([i, j]);
             if r <= near_mm && (j > 0 || (j == 0 && i > 0)) {
-                // No pixel gets less than nothing, or than a little of what its own box gets.
+                // No pixel gets a negative weight, or less than 2 % of what its own box gets.
                 let own = if sharp { windowed[k].max(0.02 * a) } else { *a };
                 self.set(i, j, (1.0 - fade(r, far_mm)) * own);
             }
@@ -154,18 +160,19 @@ impl PixelSpread {
     }
 }
 
-/// How far the pattern itself is added up, mm.
+/// Returns the distance up to which the pattern itself is integrated, mm.
 pub(crate) fn near_mm(opening: &Polygon, light: &Light) -> f64 {
     FRINGES * light.range_mm()[1] / (2.0 * opening.reach())
 }
 
-/// The part of the light at a distance that is no more in the pixels around: 0 up to 0.6 of the way, 1 from its end on.
+/// Returns the fraction of the light at distance `r` that no longer goes to the pixels around: 0 up to 0.6 of `end`, rising to 1 at `end`
+/// and beyond.
 pub(crate) fn fade(r: f64, end: f64) -> f64 {
     let t = ((r / end - 0.6) / 0.4).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The parts that pixels up to `reach` get of a sample of this size around `at`, in pixels.
+/// Returns the shares of a sample, of this size around `at` (in pixels), for the pixels up to `reach`.
 fn taps(at: f64, size: f64, reach: usize, sharp: bool) -> Vec<(usize, f64)> {
     let end = reach as f64;
     let pixel = |k: f64| (k + end) as usize;
@@ -184,8 +191,8 @@ fn taps(at: f64, size: f64, reach: usize, sharp: bool) -> Vec<(usize, f64)> {
     taps
 }
 
-/// A sinc that ends at [`WINDOW`]: 1 at its pixel, 0 at all others (C. E. Duchon, "Lanczos filtering in one and two dimensions", J. Appl.
-/// Meteorol. 18, 1979).
+/// A windowed sinc that ends at [`WINDOW`]: 1 at its own pixel, 0 at all others (C. E. Duchon, "Lanczos filtering in one and two
+/// dimensions", J. Appl. Meteorol. 18, 1979).
 fn window(x: f64) -> f64 {
     let sinc = |x: f64| if x.abs() < 1e-9 { 1.0 } else { math::sin(PI * x) / (PI * x) };
     if x.abs() >= WINDOW { 0.0 } else { sinc(x) * sinc(x / WINDOW) }

@@ -1,16 +1,17 @@
-//! The light of a channel, as few wavelengths.
+//! The light of a channel, reduced to a few wavelengths.
 
-/// Light of a channel: wavelengths (mm) with their shares, which sum to 1.
+/// The light of a channel: wavelengths (mm) with their shares, which sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
     shares: Vec<[f64; 2]>,
 }
 
-/// Wavelengths that a channel's light is taken as.
+/// Number of wavelengths to which a channel's light is reduced.
 const WAVELENGTHS: usize = 8;
 
 impl Light {
-    /// Of what a channel sees at wavelengths, nm: parts of equal light, each as its mean wavelength. `None` where it sees nothing.
+    /// Reduces pairs of wavelength (nm) and light seen by the channel to parts of equal light, each at its mean wavelength. `None` if the
+    /// channel sees no light.
     #[must_use]
     pub fn of(seen: &[[f64; 2]]) -> Option<Self> {
         let mut sorted: Vec<[f64; 2]> = seen.iter().copied().filter(|[_, light]| *light > 0.0).collect();
@@ -45,29 +46,30 @@ impl Light {
         Some(Self { shares })
     }
 
-    /// One wavelength, nm.
+    /// Creates light of a single wavelength, nm.
     #[must_use]
     pub fn line(nm: f64) -> Self {
         Self { shares: vec![[nm * 1e-6, 1.0]] }
     }
 
-    /// Wavelengths, mm, with their shares.
+    /// Wavelengths, mm, with their shares, which sum to 1.
     #[must_use]
     pub fn shares(&self) -> &[[f64; 2]] {
         &self.shares
     }
 
-    /// Mean wavelength, mm.
+    /// Mean wavelength of the light, mm.
     #[must_use]
     pub fn mean_mm(&self) -> f64 {
         self.shares.iter().map(|[mm, share]| mm * share).sum()
     }
 
+    /// Shortest and longest wavelength, mm.
     pub(crate) fn range_mm(&self) -> [f64; 2] {
         self.shares.iter().fold([f64::INFINITY, 0.0], |[low, high], [mm, _]| [low.min(*mm), high.max(*mm)])
     }
 
-    /// The same light as at most four wavelengths: enough for wings.
+    /// Reduces the light to at most four wavelengths, which is enough for wings.
     pub(crate) fn coarse(&self) -> Vec<[f64; 2]> {
         let pairs = self.shares.chunks(self.shares.len().div_ceil(4));
         pairs

@@ -1,22 +1,22 @@
-//! An opening by its edges, and its transform.
+//! An opening bounded by straight edges, and its Fourier transform.
 
 use spectra_core::math;
 use std::f64::consts::TAU;
 
 /// A flat opening bounded by straight edges, holes included.
 ///
-/// Its places have any unit; of a lens they are direction cosines, which have none.
+/// Its coordinates may have any unit. For a lens they are direction cosines, which have none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
-    /// Closed rings, corners in order about the centroid; what passes lies to the left of each edge.
+    /// Closed rings, with corners in order, relative to the centroid. The opening lies to the left of each edge.
     rings: Vec<Vec<[f64; 2]>>,
     center: [f64; 2],
     area: f64,
 }
 
 impl Polygon {
-    /// Of closed rings of corners: the opening lies to the left of their edges, so that outer rings run counter-clockwise and holes
-    /// clockwise. `None` where they enclose nothing.
+    /// Creates an opening from closed rings of corners. The opening lies to the left of their edges, so outer rings run counterclockwise
+    /// and holes clockwise. `None` if they enclose no area.
     #[must_use]
     pub fn new(rings: Vec<Vec<[f64; 2]>>) -> Option<Self> {
         let edges = |ring: &[[f64; 2]], sum: &mut dyn FnMut([f64; 2], [f64; 2])| {
@@ -41,10 +41,11 @@ impl Polygon {
         Some(Self { rings, center, area: 0.5 * twice })
     }
 
-    /// A regular polygon with its corners at `radius`, one of them on +y before it is turned by `rotation_rad`.
+    /// Creates a regular polygon with its corners at `radius` from the origin. One corner lies on +y before the polygon is turned by
+    /// `rotation_rad`.
     ///
     /// # Panics
-    /// Of fewer than three corners, or of no size.
+    /// Panics with fewer than three corners, or if the polygon has no area.
     #[must_use]
     pub fn regular(corners: u32, radius: f64, rotation_rad: f64) -> Self {
         let corner = |k: u32| {
@@ -54,19 +55,19 @@ impl Polygon {
         Self::new(vec![(0..corners).map(corner).collect()]).expect("a polygon of some size")
     }
 
-    /// Its rings, about [`Polygon::center`].
+    /// The rings of the opening, relative to [`Polygon::center`].
     #[must_use]
     pub fn rings(&self) -> &[Vec<[f64; 2]>] {
         &self.rings
     }
 
-    /// Its centroid.
+    /// The centroid of the opening.
     #[must_use]
     pub fn center(&self) -> [f64; 2] {
         self.center
     }
 
-    /// Its area.
+    /// The area of the opening.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.area
@@ -78,7 +79,7 @@ impl Polygon {
         self.rings.iter().flatten().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max)
     }
 
-    /// The least and the largest of each coordinate, as they were given to [`Polygon::new`].
+    /// Returns the smallest and the largest value of each coordinate, in the coordinates given to [`Polygon::new`].
     #[must_use]
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
@@ -91,7 +92,7 @@ impl Polygon {
         bounds
     }
 
-    /// The parts of a line of constant `y` that lie in the opening, from `x` to `x`, as they were given to [`Polygon::new`].
+    /// Returns the intervals of `x` in which a line of constant `y` lies in the opening, in the coordinates given to [`Polygon::new`].
     #[must_use]
     pub fn spans(&self, y: f64) -> Vec<[f64; 2]> {
         let y = y - self.center[1];
@@ -108,12 +109,13 @@ impl Polygon {
         crossed.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
     }
 
-    /// The mean over the opening of exp(i k r), r from its centroid: real and imaginary part, 1 at the origin. `k` is in radians per
-    /// unit of its places.
+    /// Returns the mean of exp(i k r) over the opening, with r measured from its centroid: real and imaginary part, 1 at the origin. `k` is
+    /// in radians per unit of the coordinates.
     ///
-    /// By Gauss's theorem a sum over edges of (k x d) sinc(k d / 2) exp(i k m) / (i k^2), with d along an edge and m its middle (S.-W.
-    /// Lee and R. Mittra, "Fourier transform of a polygonal shape function", IEEE Trans. Antennas Propag. 31, 1983). The d of a ring
-    /// sum to 0, so 1 may be taken off each sinc exp: then nothing cancels toward the origin, nor where k is perpendicular to an edge.
+    /// By Gauss's theorem it is a sum over edges of (k x d) sinc(k d / 2) exp(i k m) / (i k^2), with d along an edge and m its middle
+    /// (S.-W. Lee and R. Mittra, "Fourier transform of a polygonal shape function", IEEE Trans. Antennas Propag. 31, 1983). The vectors d
+    /// of a ring sum to 0, so 1 may be subtracted from each sinc exp. This avoids cancellation toward the origin, and where k is
+    /// perpendicular to an edge.
     #[must_use]
     pub fn amplitude(&self, k: [f64; 2]) -> [f64; 2] {
         let k2 = k[0] * k[0] + k[1] * k[1];
@@ -126,7 +128,7 @@ impl Polygon {
             for &to in ring {
                 let d = [to[0] - from[0], to[1] - from[1]];
                 let cross = k[0] * d[1] - k[1] * d[0];
-                // Half of the phase of the middle.
+                // Half of the phase at the middle.
                 let half = 0.25 * (k[0] * (from[0] + to[0]) + k[1] * (from[1] + to[1]));
                 let less = sinc_less_one(0.5 * (k[0] * d[0] + k[1] * d[1]));
                 let (sin, cos) = (math::sin(half), math::cos(half));
@@ -140,18 +142,18 @@ impl Polygon {
         [im * scale, -re * scale]
     }
 
-    /// The square of [`Polygon::amplitude`].
+    /// Returns the squared modulus of [`Polygon::amplitude`].
     #[must_use]
     pub fn intensity(&self, k: [f64; 2]) -> f64 {
         let [re, im] = self.amplitude(k);
         re * re + im * im
     }
 
-    /// [`Polygon::intensity`] on a lattice of `step` radians per unit: rows from the origin on, `count` of them after it, each from as
-    /// many columns before the origin to as many after it.
+    /// Returns [`Polygon::intensity`] on a lattice of `step` radians per unit. There are `count` + 1 rows, from the origin on, each with
+    /// `count` columns on both sides of the origin.
     ///
-    /// Far from the origin and from an edge's normal its term is a difference of its ends' phases, which are products of one of the
-    /// column and one of the row.
+    /// Far from the origin and from an edge's normal, the term of the edge is the difference of the phases at its ends. Each phase is the
+    /// product of one factor for the column and one for the row.
     #[must_use]
     pub fn lattice(&self, step: f64, count: usize) -> Vec<f64> {
         let columns = 2 * count + 1;
@@ -190,13 +192,13 @@ impl Polygon {
                     let cross = k[0] * d[1] - k[1] * d[0];
                     let along = k[0] * d[0] + k[1] * d[1];
                     let after = end(to);
-                    // (k x d) sinc exp(i k m): its quotient by i k^2 comes last.
+                    // The term (k x d) sinc exp(i k m); the division by i k^2 comes last.
                     if along.abs() > 0.2 {
                         let part = cross / along;
                         re += part * (after[1] - before[1]);
                         im -= part * (after[0] - before[0]);
                     } else {
-                        // The phase of the middle is that of the first end, turned on by half of the way.
+                        // The phase at the middle is that at the first end, advanced by half of the edge.
                         let sinc = cross * (1.0 + sinc_less_one(0.5 * along));
                         let [c, s] = turn(0.5 * along);
                         re += sinc * (before[0] * c - before[1] * s);
@@ -211,13 +213,13 @@ impl Polygon {
         (0..count + 1).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect()
     }
 
-    /// The same without corners that lie closer than `tolerance` to the line between their neighbors that stay.
+    /// Returns the opening without corners that lie closer than `tolerance` to the line between the neighbors that are kept.
     #[must_use]
     pub fn simplified(&self, tolerance: f64) -> Self {
         let mut rings = Vec::new();
         for ring in &self.rings {
             let count = ring.len();
-            // Begin where it turns most, so that a straight side is one piece.
+            // Begin where the outline turns most, so that a straight side is one piece.
             let turn = |i: usize| {
                 let (a, b, c) = (ring[(i + count - 1) % count], ring[i], ring[(i + 1) % count]);
                 ((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])).abs()
@@ -228,7 +230,7 @@ impl Polygon {
             let mut from = 0;
             while from < count {
                 kept.push(at(from));
-                // As far as all corners between lie on the line.
+                // Continue as long as all corners in between lie on the line.
                 let mut to = from + 1;
                 while to < count {
                     let (a, b) = (at(from), at(to + 1));
@@ -249,15 +251,16 @@ impl Polygon {
         Self::new(rings).unwrap_or_else(|| self.clone())
     }
 
-    /// What of it lies inside of a convex polygon whose corners run counter-clockwise, both as they were given to [`Polygon::new`]
-    /// (I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17, 1974). `None` where nothing does.
+    /// Returns the part of the opening inside a convex polygon whose corners run counterclockwise, both in the coordinates given to
+    /// [`Polygon::new`] (I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17, 1974). `None` if no part lies
+    /// inside.
     #[must_use]
     pub fn within(&self, convex: &[[f64; 2]]) -> Option<Self> {
         let lines: Vec<_> = (0..convex.len()).map(|i| [convex[i], convex[(i + 1) % convex.len()]]).collect();
         self.left_of(&lines)
     }
 
-    /// What of it lies to the left of each of these lines, given by two places. `None` where nothing does.
+    /// Returns the part of the opening to the left of each of these lines, each given by two points. `None` if nothing remains.
     #[must_use]
     pub fn left_of(&self, lines: &[[[f64; 2]; 2]]) -> Option<Self> {
         let mut rings: Vec<Vec<[f64; 2]>> = self.rings.clone();
@@ -285,13 +288,13 @@ impl Polygon {
     }
 }
 
-/// sin(x) / x - 1, also near 0.
+/// Returns sin(x) / x - 1, accurate also near 0.
 fn sinc_less_one(x: f64) -> f64 {
     if x.abs() > 0.5 {
         return math::sin(x) / x - 1.0;
     }
     let x2 = x * x;
-    // The series to x^14: the next term is below 1e-17 of the first.
+    // Series up to x^14: the next term is below 1e-17 of the first.
     let mut sum = 0.0;
     for n in (1..8).rev() {
         let n = f64::from(n);

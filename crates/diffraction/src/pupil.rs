@@ -1,171 +1,151 @@
-//! The opening of a lens as a place on film sees it.
+//! The opening of a lens as seen from a point on film.
 
 use crate::{Polygon, Wave};
 use glam::{DVec2, DVec3};
+use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::sin_cos_turns;
-use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Aperture, Element, Indices, Lens, Path, Route, Shape, Tracer, Travel};
+use spectra_lens::{Aperture, Element, Shape};
 use spectra_numerics::linear::least_squares;
+use spectra_optics::{Bundle, Clipping, Optics};
+use spectra_tracer::{Indices, Tracer, Travel};
+use std::sync::Arc;
 
-/// Pieces of the sides of an opening: they bend on their way to the film.
+/// Number of pieces of each side of an opening, because sides are curved when seen from the film.
 const PIECES: u32 = 6;
-/// Rings of rays, and rays on each, by which it is found how an opening is seen; and how far beyond its rim they go.
+/// Number of rings of rays that measure how an opening is seen.
 const RINGS: usize = 6;
+/// Number of rays on each ring.
 const SPOKES: usize = 24;
+/// Radius of the outermost ring, as a multiple of the opening's.
 const BEYOND: f64 = 1.2;
-/// Corners of a rim that cuts the opening.
+/// Number of corners of a rim that cuts the opening.
 const CORNERS: usize = 192;
-/// Steps toward the middle of the stop.
-const STEPS: usize = 40;
-/// How much larger than its marginal ray a stop without a size is taken.
+/// Halvings of the way to a rim, from the middle of what passes.
+const HALVINGS: usize = 40;
+/// Step by which the slopes at the middle of the stop are measured, in parts of the window's reach.
+const SLOPE_STEP: f64 = 1e-5;
+/// Radius of a stop without a size, as a multiple of the marginal ray's height there.
 const ROOM: f64 = 1.3;
-/// Rays across an opening that find its wavefront.
+/// Number of rays across an opening that measure its wavefront.
 const WAVE_RAYS: usize = 22;
-/// Degree of the map from an opening to the directions in which it is seen.
+/// Degree of the polynomial map from an opening to the directions in which it is seen.
 const DEGREE: usize = 5;
 
-/// Closed rings, mm.
+/// Closed rings of corners, mm.
 type Rings = Vec<Vec<[f64; 2]>>;
 
-/// The openings of a lens, to be seen from the film.
-pub struct Pupil {
-    lens: Lens,
-    tracer: Tracer,
-    /// The element that shapes the light, and the way to it from the film.
+/// The opening of a lens, to be seen from the film.
+pub struct Pupil<'o> {
+    optics: &'o Optics,
+    /// Index of the element that shapes the light.
     stop: usize,
-    routes: Vec<Route>,
-    /// What passes the stop, mm in its frame.
-    rings: Vec<Vec<[f64; 2]>>,
+    /// Outline of the light that passes the stop, mm in its frame.
+    rings: Rings,
     reach_mm: f64,
 }
 
-impl Pupil {
-    /// Of a lens as it is set.
+/// Rays from a point of the film over the opening and somewhat beyond it, the one through the middle of the stop first.
+struct Rays<'o> {
+    bundle: Bundle<'o>,
+    /// Places of the rays in the window of the bundle, mm.
+    places: Vec<[f64; 2]>,
+    /// Direction cosines of the rays along two unit vectors.
+    cosines: Vec<DVec2>,
+    /// Where each meets the stop, mm in its frame.
+    at_stop: Vec<Option<DVec2>>,
+}
+
+impl<'o> Pupil<'o> {
+    /// Prepares the opening of a lens in its current setting.
     ///
     /// # Errors
-    /// Why what its stop does to light is not known.
-    pub fn new(lens: &Lens) -> Result<Self, String> {
+    /// Explains why the diffraction at the stop cannot be computed.
+    pub fn new(optics: &'o Optics) -> Result<Self, String> {
         let smallest = || {
             let sized =
-                lens.elements.iter().enumerate().filter_map(|(at, e)| e.semi_diameter_mm.map(|size| (at, size)));
+                optics.elements.iter().enumerate().filter_map(|(at, e)| e.semi_diameter_mm.map(|size| (at, size)));
             sized.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
         };
-        let stop = lens.stop().or_else(smallest).ok_or("the lens states no opening, so no edge bends light")?;
-        let rings = match opening(&lens.elements[stop])? {
+        let stop = optics.stop().or_else(smallest).ok_or("the lens states no opening, so no edge diffracts light")?;
+        let rings = match opening(&optics.elements[stop])? {
             Some(rings) => rings,
-            // Rims stop the light alone: what they cut is all that their marginal ray leaves open, and more.
+            // The rims alone limit the light. Start from more than the marginal ray leaves open; the rims cut it below.
             None => {
-                let height = lens.marginal_ray().ok().and_then(|ray| ray.stop_height_mm);
-                let open = circle(ROOM * height.ok_or("the stop states no size, so no edge bends light")?);
+                let height = optics.marginal_ray().ok().and_then(|ray| ray.stop_height_mm);
+                let open = circle(ROOM * height.ok_or("the stop states no size, so no edge diffracts light")?);
                 open.rings(None, PIECES).unwrap_or_default()
             }
         };
         let reach_mm = rings.iter().flatten().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max);
-        let tracer = without_rims(lens, lens.reference_nm)?;
-        let count = lens.elements.len();
-        let route = |at: usize| tracer.route(&Path::through(count, Travel::Backward).up_to(|k| k == at));
-        let routes = (0..count).map(route).collect();
-        Ok(Self { lens: lens.clone(), tracer, stop, routes, rings, reach_mm })
+        Ok(Self { optics, stop, rings, reach_mm })
     }
 
-    /// Where rays from a point of the film (mm, frame of the image plane) in some directions meet an element, in its frame.
-    fn met(&self, at: usize, point: DVec3, directions: &[DVec3]) -> Vec<Option<DVec2>> {
-        let mut rays = RayBatch::new(directions.len());
-        rays.restart(directions.len());
-        let c = rays.columns_mut();
-        for (i, direction) in directions.iter().enumerate() {
-            (c.x[i], c.y[i], c.z[i]) = point.into();
-            (c.l[i], c.m[i], c.n[i]) = (*direction).into();
-            c.wavelength_nm[i] = self.lens.reference_nm;
-        }
-        self.tracer.follow(&self.routes[at], &mut rays, &mut self.tracer.work_in_place(directions.len()));
-        let [x, y, z] = rays.positions();
-        let local = |i: usize| self.lens.elements[at].pose.local_point(DVec3::new(x[i], y[i], z[i])).truncate();
-        let states = rays.states();
-        (0..directions.len()).map(|i| (states[i] == ALIVE).then(|| local(i)).filter(|p| p.is_finite())).collect()
-    }
-
-    /// The opening in direction cosines along two unit vectors, as a point of the film sees it: mm and vectors in the frame of the image
-    /// plane. `None` where it sees none.
+    /// Returns the opening as seen from a point of the film, in direction cosines along two unit vectors. Point (mm) and vectors are in the
+    /// frame of the image plane. `None` if the point sees no opening.
     #[must_use]
     pub fn seen_from(&self, point: DVec3, axes: [DVec3; 2]) -> Option<Polygon> {
-        let rear = self.lens.elements.last()?.pose.origin_mm;
-        let toward = (self.lens.image_pose.local_point(rear) - point).try_normalize()?;
-        let e1 = (axes[0] - axes[0].dot(toward) * toward).try_normalize()?;
-        let e2 = toward.cross(e1);
-        let direction = |a: DVec2| (toward + a.x * e1 + a.y * e2).normalize();
-        // The ray through the middle of the stop, by Newton's method.
-        let mut at = DVec2::ZERO;
-        let step = 1e-5;
-        let look = |at: DVec2| -> Option<(DVec2, [DVec2; 2])> {
-            let rays = [at, at + DVec2::X * step, at + DVec2::Y * step].map(direction);
-            let met = self.met(self.stop, point, &rays);
-            let (p, px, py) = (met[0]?, met[1]?, met[2]?);
-            Some((p, [(px - p) / step, (py - p) / step]))
-        };
-        let (mut off, mut slopes) = look(at)?;
-        let solve = |[sx, sy]: [DVec2; 2], v: DVec2| {
-            let det = sx.perp_dot(sy);
-            (det != 0.0).then(|| DVec2::new(v.perp_dot(sy), sx.perp_dot(v)) / det)
-        };
-        let mut part = 1.0;
-        for _ in 0..STEPS {
-            if off.length() < 1e-9 * self.reach_mm {
-                break;
-            }
-            let next = at - solve(slopes, off)? * part;
-            match look(next).filter(|(p, _)| p.length() < off.length()) {
-                Some((p, s)) => (at, off, slopes, part) = (next, p, s, 1.0),
-                None => part *= 0.5,
-            }
-        }
-        if off.length() > 1e-3 * self.reach_mm {
-            return None;
-        }
-        let directions: Vec<DVec3> = std::iter::once((0.0, 0.0))
-            .chain((0..RINGS * SPOKES).map(|i| {
-                let (sin, cos) = sin_cos_turns((i % SPOKES) as f64 / SPOKES as f64);
-                let r = BEYOND * self.reach_mm * ((i / SPOKES) as f64 + 1.0) / RINGS as f64;
-                (r * cos, r * sin)
-            }))
-            .map(|(x, y)| solve(slopes, DVec2::new(x, y)).map(|a| direction(at + a)))
-            .collect::<Option<_>>()?;
-        let cosines: Vec<DVec2> = directions.iter().map(|d| DVec2::new(d.dot(axes[0]), d.dot(axes[1]))).collect();
-        let at_stop = self.met(self.stop, point, &directions);
-        let known: Vec<usize> = (0..directions.len()).filter(|i| at_stop[*i].is_some()).collect();
-        let places: Vec<DVec2> = known.iter().filter_map(|i| at_stop[*i].map(|p| p / self.reach_mm)).collect();
-        let seen: Vec<DVec2> = known.iter().map(|i| cosines[*i]).collect();
+        let rays = self.rays_from(point, axes)?;
+        let (places, seen): (Vec<DVec2>, Vec<DVec2>) =
+            rays.at_stop.iter().zip(&rays.cosines).filter_map(|(p, c)| Some(((*p)? / self.reach_mm, *c))).unzip();
         let map = Map::fitted(&places, &seen)?;
-        let mut rings: Vec<Vec<[f64; 2]>> = self.rings.clone();
+        let mut rings = self.rings.clone();
         rings.iter_mut().flatten().for_each(|p| *p = map.at(DVec2::from(*p) / self.reach_mm).into());
-        let turned = |mut rings: Vec<Vec<[f64; 2]>>| {
+        let turned = |mut rings: Rings| {
             rings.iter_mut().for_each(|ring| ring.reverse());
             rings
         };
-        let mut opening = Polygon::new(rings.clone()).or_else(|| Polygon::new(turned(rings)))?;
-        // Rims, as far as they cut it.
+        let opening = Polygon::new(rings.clone()).or_else(|| Polygon::new(turned(rings)))?;
+        self.cut_by_rims(opening, &rays)
+    }
+
+    /// Returns rays from a point of the film over the opening. `None` if none goes through the middle of the stop.
+    fn rays_from(&self, point: DVec3, axes: [DVec3; 2]) -> Option<Rays<'o>> {
+        let indices = Indices::At(self.optics.reference_nm);
+        let bundle = Bundle::behind(self.optics, point, indices).ok()??.clipped(Clipping::None).ok()?;
+        let [a, b] = bundle.through(self.stop, DVec2::ZERO, [0.0; 2])?;
+        let step = SLOPE_STEP * bundle.reach_mm();
+        let met = bundle.meet(self.stop, &[[a - step, b], [a + step, b], [a, b - step], [a, b + step]]);
+        let (sx, sy) = ((met[1]? - met[0]?) / (2.0 * step), (met[3]? - met[2]?) / (2.0 * step));
+        let det = sx.perp_dot(sy);
+        if det == 0.0 {
+            return None;
+        }
+        let place = |v: DVec2| {
+            let by = DVec2::new(v.perp_dot(sy), sx.perp_dot(v)) / det;
+            [a + by.x, b + by.y]
+        };
+        let on_rings = (0..RINGS * SPOKES).map(|i| {
+            let (sin, cos) = sin_cos_turns((i % SPOKES) as f64 / SPOKES as f64);
+            DVec2::new(cos, sin) * (BEYOND * self.reach_mm * ((i / SPOKES) as f64 + 1.0) / RINGS as f64)
+        });
+        let places: Vec<[f64; 2]> = std::iter::once(DVec2::ZERO).chain(on_rings).map(place).collect();
+        let directions = places.iter().map(|place| bundle.ray(*place).1);
+        let cosines = directions.map(|d| DVec2::new(d.dot(axes[0]), d.dot(axes[1]))).collect();
+        let at_stop = bundle.meet(self.stop, &places);
+        Some(Rays { bundle, places, cosines, at_stop })
+    }
+
+    /// Cuts an opening in direction cosines by the rims of the other elements. `None` if they leave nothing.
+    fn cut_by_rims(&self, mut opening: Polygon, rays: &Rays<'_>) -> Option<Polygon> {
         let scale = opening.reach();
-        let middle = cosines[0];
-        let near: Vec<DVec2> = cosines.iter().map(|p| (*p - middle) / scale).collect();
-        let mut passes: Vec<bool> = at_stop.iter().map(|p| p.is_some_and(|p| p.length() <= self.reach_mm)).collect();
+        let middle = rays.cosines[0];
+        let near: Vec<DVec2> = rays.cosines.iter().map(|p| (*p - middle) / scale).collect();
+        let within = |p: &Option<DVec2>, radius: f64| p.is_some_and(|p| p.length() <= radius);
+        let mut passes: Vec<bool> = rays.at_stop.iter().map(|p| within(p, self.reach_mm)).collect();
         let mut cuts = Vec::new();
-        for (number, e) in self.lens.elements.iter().enumerate().filter(|(number, _)| *number != self.stop) {
+        for (number, e) in self.optics.elements.iter().enumerate().filter(|(number, _)| *number != self.stop) {
             let Some(radius) = rim(e) else { continue };
-            let met = self.met(number, point, &directions);
-            let outside = |p: &Option<DVec2>| p.is_none_or(|p| p.length() > radius);
-            let cuts_it = passes
-                .iter()
-                .zip(&at_stop)
-                .zip(&met)
-                .any(|((_, stop), met)| stop.is_some_and(|p| p.length() <= 1.2 * self.reach_mm) && outside(met));
-            if !cuts_it {
+            let met = rays.bundle.meet(number, &rays.places);
+            let cut = |(stop, met): (&Option<DVec2>, &Option<DVec2>)| {
+                within(stop, BEYOND * self.reach_mm) && !within(met, radius)
+            };
+            if !rays.at_stop.iter().zip(&met).any(cut) {
                 continue;
             }
-            passes.iter_mut().zip(&met).for_each(|(passes, met)| *passes &= !outside(met));
-            let lit: Vec<usize> = (0..met.len()).filter(|i| met[*i].is_some()).collect();
-            let from: Vec<DVec2> = lit.iter().map(|i| near[*i]).collect();
-            let to: Vec<DVec2> = lit.iter().filter_map(|i| met[*i].map(|p| p / radius)).collect();
+            passes.iter_mut().zip(&met).for_each(|(passes, met)| *passes &= within(met, radius));
+            let lit = met.iter().zip(&near).filter_map(|(met, near)| Some((*near, (*met)? / radius)));
+            let (from, to): (Vec<DVec2>, Vec<DVec2>) = lit.unzip();
             cuts.push(Map::fitted(&from, &to)?);
         }
         if cuts.is_empty() {
@@ -176,24 +156,23 @@ impl Pupil {
             return None;
         }
         let heart = inside.iter().sum::<DVec2>() / inside.len() as f64;
-        let farthest = 2.0 * BEYOND;
+        // The maps are only valid where rays were traced.
+        let end = near.iter().map(|p| p.length()).fold(0.0, f64::max).min(2.0 * BEYOND);
         for cut in &cuts {
-            let end = near.iter().map(|p| p.length()).fold(0.0, f64::max).min(farthest);
             let corner = |i: usize| -> Option<[f64; 2]> {
                 let (sin, cos) = sin_cos_turns(i as f64 / CORNERS as f64);
                 let way = DVec2::new(cos, sin);
-                // Within what was looked at, as the map knows nothing beyond.
                 let (mut low, mut high) = (0.0, reach_along(heart, way, end));
                 if cut.at(heart + way * high).length() <= 1.0 {
                     return None;
                 }
-                for _ in 0..40 {
+                for _ in 0..HALVINGS {
                     let half = 0.5 * (low + high);
                     *(if cut.at(heart + way * half).length() <= 1.0 { &mut low } else { &mut high }) = half;
                 }
                 Some((middle + (heart + way * low) * scale).into())
             };
-            // Where the rim does not come by there is nothing to cut.
+            // Where the rim does not cross the opening there is nothing to cut.
             let corners: Vec<Option<[f64; 2]>> = (0..CORNERS).map(corner).collect();
             let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
             let lines: Vec<[[f64; 2]; 2]> = pairs.filter_map(|(a, b)| Some([(*a)?, (*b)?])).collect();
@@ -203,36 +182,27 @@ impl Pupil {
     }
 }
 
-fn without_rims(lens: &Lens, nm: f64) -> Result<Tracer, String> {
-    let mut open = lens.clone();
-    for e in &mut open.elements {
-        e.semi_diameter_mm = None;
-        e.apertures.clear();
-    }
-    Tracer::new(&open, Indices::At(nm), Isa::detect()).map_err(|e| e.to_string())
-}
-
-/// The wavefronts of a lens at one wavelength, of points at the distance that it is focused at.
+/// The wavefronts of a lens at one wavelength, for points at its focus distance.
 pub struct Waves<'a> {
-    lens: &'a Lens,
-    tracer: Tracer,
+    optics: &'a Optics,
+    tracer: Arc<Tracer>,
     nm: f64,
 }
 
 impl<'a> Waves<'a> {
-    /// At a wavelength, nm, that its glasses know.
+    /// Prepares a lens at a wavelength, nm; `None` if a glass is not defined there.
     #[must_use]
-    pub fn new(lens: &'a Lens, nm: f64) -> Option<Self> {
-        Some(Self { lens, tracer: without_rims(lens, nm).ok()?, nm })
+    pub fn new(optics: &'a Optics, nm: f64) -> Option<Self> {
+        Some(Self { optics, tracer: optics.tracer_clipping(Indices::At(nm), Clipping::None).ok()?, nm })
     }
 
-    /// The wavefront of the light that comes to a point of the film through an opening in direction cosines along two unit vectors: mm
-    /// and vectors in the frame of the image plane. `None` where too few rays come through.
+    /// Returns the wavefront of the light that reaches a point of the film through an opening, given in direction cosines along two unit
+    /// vectors. Point (mm) and vectors are in the frame of the image plane. `None` if too few rays come through.
     #[must_use]
     pub fn seen_from(&self, point: DVec3, axes: [DVec3; 2], opening: &Polygon) -> Option<Wave> {
         let normal = axes[0].cross(axes[1]);
-        // Toward the lens.
-        let rear = self.lens.image_pose.local_point(self.lens.elements.last()?.pose.origin_mm) - point;
+        // Vector toward the lens.
+        let rear = self.optics.image_pose.local_point(self.optics.elements.last()?.pose.origin_mm) - point;
         let along = |u: f64, v: f64| {
             let up = (1.0 - u * u - v * v).max(0.0).sqrt();
             let aside = axes[0] * u + axes[1] * v;
@@ -264,14 +234,14 @@ impl<'a> Waves<'a> {
         if states[0] != ALIVE {
             return None;
         }
-        // The ray from the middle of the opening says where the point is that is seen there.
+        // The ray from the middle of the opening gives the point that is seen there.
         let (from, toward) = (at(0), way(0));
-        let distance = self.lens.focused_mm;
+        let distance = self.optics.focused_mm;
         let seen = from + toward * ((-distance - from.z) / toward.z);
         let paths = rays.optical_path_mm()?;
         let rest = |i: usize| {
             let (p, d) = (at(i), way(i));
-            // To where the ray comes nearest to that point; of an infinite distance, to a plane across the middle ray.
+            // Distance to where the ray comes nearest to that point; for an infinite distance, to a plane perpendicular to the middle ray.
             if distance.is_finite() { d.dot(seen - p) } else { (from - p).dot(toward) / d.dot(toward) }
         };
         let (places, mm): (Vec<_>, Vec<_>) = (0..cosines.len())
@@ -283,13 +253,13 @@ impl<'a> Waves<'a> {
     }
 }
 
-/// How far it is from a place in a disk about the origin to its edge.
+/// Returns the distance from a place in a disk about the origin to its edge, along a direction.
 fn reach_along(from: DVec2, way: DVec2, radius: f64) -> f64 {
     let along = from.dot(way);
     -along + (along * along + (radius * radius - from.length_squared()).max(0.0)).sqrt()
 }
 
-/// Radius of what an element lets pass about its vertex, where it is round.
+/// Returns the radius of the clear aperture of an element about its vertex, if it is round.
 fn rim(e: &Element) -> Option<f64> {
     let round = e.apertures.iter().filter(|a| a.center_mm == [0.0; 2] && !a.obscures).filter_map(|a| match a.shape {
         Shape::Ring { outer_mm, .. } => Some(outer_mm),
@@ -298,10 +268,10 @@ fn rim(e: &Element) -> Option<f64> {
     round.chain(e.semi_diameter_mm).reduce(f64::min).filter(|r| r.is_finite())
 }
 
-/// What passes the stop, as rings.
+/// Returns the outline of the light that passes the stop, as rings; `None` if the stop states no size.
 fn opening(e: &Element) -> Result<Option<Rings>, String> {
     let unknown = || {
-        "what a picture as a mask, or a drawing with gray or crossing outlines, does to light is not known".to_owned()
+        "diffraction by a picture used as a mask, or a drawing with gray or crossing outlines, is not known".to_owned()
     };
     let holes: Vec<&Aperture> = e.apertures.iter().filter(|a| a.obscures).collect();
     let mut outer = e.apertures.iter().filter(|a| !a.obscures);
@@ -309,7 +279,7 @@ fn opening(e: &Element) -> Result<Option<Rings>, String> {
     let Some(own) = own else { return Ok(None) };
     let mut rings = own.rings(e.semi_diameter_mm, PIECES).ok_or_else(unknown)?;
     for other in outer {
-        // Two openings in one plane: what is inside of both, where the second is convex.
+        // Two openings in one plane: take the part inside both, where the second is convex.
         let all = other.rings(e.semi_diameter_mm, PIECES).ok_or_else(unknown)?;
         let [convex] = &all[..] else { return Err(unknown()) };
         let both = Polygon::new(rings).and_then(|first| first.within(convex)).ok_or("the stop lets nothing pass")?;
@@ -331,6 +301,7 @@ struct Map {
     by: [Vec<f64>; 2],
 }
 
+/// Returns the terms of the polynomial at a point.
 fn terms(p: DVec2) -> Vec<f64> {
     let mut terms = Vec::with_capacity((DEGREE + 1) * (DEGREE + 2) / 2);
     for degree in 0..DEGREE + 1 {

@@ -1,8 +1,12 @@
-//! A frame spread by diffraction.
+//! Spreads a frame by diffraction.
 //!
-//! Near its core each pixel's light is spread by the opening as its part of the frame sees it, in zones that pass into each other. Farther
-//! out the spikes of bright pixels are drawn line by line to the edge of the frame; what other pixels send there, and what lies between
-//! spikes, is smooth and spread on coarse cells. All light is accounted for: what it does is spread, or left beside the frame.
+//! Near its core, each pixel's light is spread by the opening as seen from its part of the frame, in zones that blend into each other.
+//! Farther out, the spikes of bright pixels are drawn line by line to the edge of the frame; the pixels of a square of 48 x 48 share an
+//! opening. The light that other pixels send there, and the light between spikes, is smooth and is spread on coarse cells. All light is
+//! accounted for: it is spread, or counted as leaving the frame.
+//!
+//! **Borders.** The frame continues beyond its border as in a mirror, so that a gray frame stays gray. Lamps are not mirrored: a mirrored
+//! lamp would send spikes in.
 
 use crate::kernel::{fade, near_mm};
 use crate::star::{Spike, Spikes, fading};
@@ -12,31 +16,31 @@ use spectra_core::frame::FrameSize;
 use spectra_numerics::convolve::Convolver;
 use std::f64::consts::TAU;
 
-/// Zones of the core across the longer side of the frame.
+/// Number of zones across the longer side of the frame.
 const ZONES: usize = 4;
-/// Pixels around one within which its light is spread pixel by pixel, at least and at most.
+/// Smallest and largest radius, pixels, within which the light of a pixel is spread pixel by pixel.
 const RADIUS: [usize; 2] = [48, 160];
-/// Cells of what is spread smoothly, for each radius.
+/// Number of cells per radius for light that is spread smoothly.
 const CELLS: usize = 8;
-/// Side of the squares whose bright pixels share the spikes of their middle, pixels.
+/// Side, pixels, of the squares whose bright pixels share the spikes of the middle of the square.
 const SQUARE: usize = 48;
-/// A spike is drawn where it stands out by this part of what pixels have at their median ...
+/// Smallest excess of a spike that is drawn, as a fraction of the median pixel.
 const SEEN: f64 = 2e-3;
-/// ... and by this part of the brightest spike.
+/// Smallest excess of a spike that is drawn, as a fraction of the brightest spike.
 const OF_BRIGHTEST: f64 = 1e-4;
-/// Most pixels of a channel whose spikes are drawn.
+/// Largest number of pixels of a channel whose spikes are drawn.
 const MOST: usize = 6000;
 
-/// How the places of a frame see the lens: at a column and row, in pixels from the upper left corner of the picture.
+/// The lens as seen from places of a frame: at a column and row, in pixels from the upper left corner of the picture.
 pub trait View: Sync {
-    /// The opening. `None` where none is seen.
+    /// Returns the opening seen from a place, in direction cosines; `None` if none is seen.
     fn opening(&self, at: [f64; 2]) -> Option<Polygon>;
 
-    /// The wavefront over that opening. `None` of a perfect lens, and where it is not known.
+    /// Returns the wavefront over that opening; `None` for a perfect lens, or if the wavefront is not known.
     fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wave>;
 }
 
-/// Of a perfect lens.
+/// The view of a perfect lens, whose openings the closure returns.
 impl<F: Fn([f64; 2]) -> Option<Polygon> + Sync> View for F {
     fn opening(&self, at: [f64; 2]) -> Option<Polygon> {
         self(at)
@@ -47,19 +51,19 @@ impl<F: Fn([f64; 2]) -> Option<Polygon> + Sync> View for F {
     }
 }
 
-/// What was done to a channel.
+/// What diffraction did to one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Account {
-    /// Part of its light that diffraction brings beside the frame.
+    /// Fraction of the channel's light that diffraction moves outside the frame.
     pub left: f64,
-    /// Part of the light of a pixel in the middle of the frame that stays in it.
+    /// Fraction of the light of a pixel in the middle of the frame that stays in that pixel.
     pub stays: f64,
-    /// Pixels whose spikes were drawn.
+    /// Number of pixels whose spikes were drawn.
     pub stars: usize,
 }
 
-/// What of the median of a frame the brightest star has where it leaves the pixels around its light; `None` where the middle of the frame
-/// sees no opening, or where no light is.
+/// Returns the brightness of the brightest star, as a fraction of the frame's median, where the star leaves the pixels around its light.
+/// `None` if the middle of the frame sees no opening, or if there is no light.
 #[must_use]
 pub fn brightest_star(size: FrameSize, light: &Light, seen: &dyn View, plane: &[f32]) -> Option<f64> {
     let pitch_mm = [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)];
@@ -71,8 +75,8 @@ pub fn brightest_star(size: FrameSize, light: &Light, seen: &dyn View, plane: &[
     (star > 0.0).then(|| star / f64::from(median(plane)))
 }
 
-/// Whether two openings with their waves spread light alike: their shapes within a thousandth of their size, wherever they lie, and waves
-/// within a hundredth of a wavelength.
+/// Whether two openings with their wavefronts spread light alike. Their shapes must agree within a thousandth of their size, wherever they
+/// lie, and their wavefronts within a hundredth of a wavelength.
 fn are_alike(a: &(Polygon, Option<Wave>), b: &(Polygon, Option<Wave>), mean_mm: f64) -> bool {
     let [(a, wave_a), (b, wave_b)] = [a, b];
     let size = b.reach();
@@ -90,17 +94,17 @@ fn are_alike(a: &(Polygon, Option<Wave>), b: &(Polygon, Option<Wave>), mean_mm: 
     };
     let [ca, cb] = [a.center(), b.center()];
     let places = b.rings().iter().flatten().flat_map(|[x, y]| [0.5, 1.0].map(|t| [t * x, t * y]));
-    // Of each from its own center.
+    // Optical path of each wavefront relative to its own center.
     let path = |wave: &Wave, c: [f64; 2], p: [f64; 2]| wave.at([c[0] + p[0], c[1] + p[1]]).0 - wave.at(c).0;
     shapes && places.into_iter().all(|p| (path(wave_a, ca, p) - path(wave_b, cb, p)).abs() < 0.01 * mean_mm)
 }
 
-/// How many pixels around one get its light pixel by pixel, where that goes so far.
+/// Returns the radius, pixels, within which light is spread pixel by pixel, if the pattern itself reaches `near_mm`.
 fn radius(near_mm: f64, pitch_mm: f64) -> usize {
     ((near_mm / pitch_mm / 0.6).ceil() as usize + 2).clamp(RADIUS[0], RADIUS[1])
 }
 
-/// The most that a pixel's star brings to another one at a distance, of a round opening all around.
+/// Returns the largest fraction of a pixel's light that its star brings to another pixel at a distance, at least that of a round opening.
 fn star_peak(opening: &Polygon, mean_mm: f64, pitch_mm: [f64; 2], end_mm: f64) -> f64 {
     let wings = Wings::new(opening);
     let around = wings.beyond(end_mm, mean_mm) / (TAU * end_mm * end_mm) * pitch_mm[0] * pitch_mm[1];
@@ -113,7 +117,7 @@ fn median(plane: &[f32]) -> f32 {
     *median
 }
 
-/// A frame made ready: the kernels of one channel's light.
+/// A frame prepared for spreading: the kernels of one channel's light.
 pub struct Spread<'a> {
     size: FrameSize,
     pitch_mm: [f64; 2],
@@ -121,18 +125,19 @@ pub struct Spread<'a> {
     light: Light,
     radius: usize,
     middle: Polygon,
-    /// What goes farther than the pixels around, from the middle of the frame: all, and without spikes.
+    /// Light that goes farther than the pixels around, cell by cell, as seen from the middle of the frame: all of it, and without spikes.
     cells: [Vec<f64>; 2],
     cell_px: usize,
     reach: [usize; 2],
-    /// What of it lies beyond the reach of the cells.
+    /// Part of this light beyond the reach of the cells: of all of it, and without spikes.
     beyond: [f64; 2],
     zones: [usize; 2],
     kernels: Vec<PixelSpread>,
 }
 
-/// Takes what is less than nothing off the rest: a star darkens nothing. Kernels of lenses with aberrations are the difference of two, and
-/// less than nothing beside their middle where that is not exact; beside a sun the sky would turn black.
+/// Removes negative values and takes their sum off the rest, because a star darkens nothing. Kernels of lenses with aberrations are the
+/// difference of two kernels. They become negative around their middle where the difference is not exact. Next to a sun the sky would
+/// otherwise turn black.
 fn lighten(light: &mut [f64]) {
     let (mut above, mut below) = (0.0, 0.0);
     light.iter().for_each(|v| *(if *v > 0.0 { &mut above } else { &mut below }) += v);
@@ -141,7 +146,7 @@ fn lighten(light: &mut [f64]) {
 }
 
 impl<'a> Spread<'a> {
-    /// For a channel's light on a frame. `None` where the middle of the frame sees no opening.
+    /// Prepares spreading for a channel's light on a frame. `None` if the middle of the frame sees no opening.
     #[must_use]
     pub fn new(size: FrameSize, light: Light, seen: &'a dyn View) -> Option<Self> {
         let (width, height) = (size.width_px as usize, size.height_px as usize);
@@ -158,7 +163,7 @@ impl<'a> Spread<'a> {
         };
         let count = (zones[0] + 1) * (zones[1] + 1);
         let mut openings: Vec<(Polygon, Option<Wave>)> = (0..count).into_par_iter().map(node).collect();
-        // A small piece of a frame sees one opening, whose kernels need not be made again and again.
+        // A small part of a frame sees the same opening everywhere: compute its kernel only once.
         let mut zones = zones;
         let center = openings.len() / 2;
         if openings.iter().all(|other| are_alike(other, &openings[center], light.mean_mm())) {
@@ -205,12 +210,13 @@ impl<'a> Spread<'a> {
         Some(own)
     }
 
-    /// Where light has left the pixels around, mm.
+    /// Returns the distance at which light has left the pixels around, mm.
     fn end_mm(&self) -> f64 {
         self.radius as f64 * self.pitch_mm[0].min(self.pitch_mm[1])
     }
 
-    /// What goes farther than the pixels around, cell by cell; of spikes only what lies beside their boxes.
+    /// Computes the light that goes farther than the pixels around, cell by cell. With `without_boxes`, only the part of spikes beside
+    /// their boxes is included.
     fn smooth(&self, wings: &Wings, without_boxes: bool) -> Vec<f64> {
         let [across, down] = self.reach.map(|r| r as isize);
         let side = self.pitch_mm.map(|p| p * self.cell_px as f64);
@@ -223,7 +229,7 @@ impl<'a> Spread<'a> {
                 if r + diagonal < 0.6 * end {
                     return 0.0;
                 }
-                // Near the middle a cell is large for what it holds.
+                // Near the middle a cell is too large for a single sample.
                 let (parts, colors): (usize, _) = if r < 3.0 * end { (4, &colors[..]) } else { (1, &mean[..]) };
                 let mut sum = 0.0;
                 for k in 0..parts * parts {
@@ -241,21 +247,21 @@ impl<'a> Spread<'a> {
             };
             (-across..across + 1).map(cell).collect()
         };
-        // The same at opposite places.
+        // The light is the same at opposite places.
         let lower: Vec<f64> = (0..down + 1).into_par_iter().flat_map_iter(row).collect();
         let line = 2 * across as usize + 1;
         lower[line..].iter().rev().chain(&lower).copied().collect()
     }
 
-    /// Spreads a plane of exposures, in place.
+    /// Spreads a plane of exposures by diffraction, in place.
     ///
     /// # Panics
-    /// If it has another size.
+    /// Panics if the plane does not have the size of the frame.
     pub fn apply(&self, plane: &mut [f32]) -> Account {
         let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
         assert_eq!(plane.len(), width * height, "the plane has the frame's size");
         let before: f64 = plane.iter().map(|v| f64::from(*v)).sum();
-        // No light, or more than a number can hold.
+        // No light, or too much for a finite number.
         if !(before > 0.0 && before.is_finite()) {
             return Account::default();
         }
@@ -281,7 +287,7 @@ impl<'a> Spread<'a> {
         Account { left: 1.0 - after / before, stays, stars: bright.len() }
     }
 
-    /// The pixels whose spikes are drawn.
+    /// Returns the pixels whose spikes are drawn.
     fn bright(&self, plane: &[f32]) -> Vec<usize> {
         let peak = star_peak(&self.middle, self.light.mean_mm(), self.pitch_mm, self.end_mm());
         let brightest = plane.iter().fold(0.0_f32, |a, b| a.max(*b));
@@ -297,7 +303,8 @@ impl<'a> Spread<'a> {
         (0..plane.len()).filter(|at| plane[*at] > least).collect()
     }
 
-    /// The core of all pixels. What is no star goes on beyond the frame as in a mirror, so that as much comes in as leaves.
+    /// Spreads the cores of all pixels. The frame is continued beyond its edges by mirroring, except for stars, so that as much light comes
+    /// in as leaves.
     fn cores(&self, plane: &[f32], bright: &[usize]) -> Vec<f64> {
         let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
         let r = self.radius;
@@ -306,7 +313,7 @@ impl<'a> Spread<'a> {
         let mut spread = vec![0.0; plane.len()];
         for (at, kernel) in self.kernels.iter().enumerate() {
             let node = [at % (self.zones[0] + 1), at / (self.zones[0] + 1)];
-            // The first and last pixel with a share in this zone, a margin beyond the frame included.
+            // Returns the first and last pixel with a share in this zone, including a margin beyond the frame.
             let span = |k: usize, side: usize| -> [isize; 2] {
                 let (zones, node) = (self.zones[k], node[k]);
                 let place = |n: usize| side as f64 * n as f64 / zones as f64;
@@ -319,7 +326,7 @@ impl<'a> Spread<'a> {
                 let p = (at as f64 + 0.5).clamp(0.0, side as f64) * self.zones[k] as f64 / side as f64;
                 (1.0 - (p - node[k] as f64).abs()).max(0.0)
             };
-            // With room for what is spread beside it.
+            // The buffer has room for light that is spread beyond the zone.
             let (w, h) = ((xs[1] - xs[0]) as usize + 2 * r, (ys[1] - ys[0]) as usize + 2 * r);
             let mut part = vec![0.0_f32; w * h];
             let columns: Vec<(usize, bool, f64)> = (xs[0]..xs[1])
@@ -351,7 +358,7 @@ impl<'a> Spread<'a> {
         spread
     }
 
-    /// The spikes of bright pixels; and in the pixels themselves what these hold more or less than others.
+    /// Draws the spikes of bright pixels, and corrects the pixels themselves for what their spikes hold more or less than others.
     fn stars(&self, plane: &[f32], bright: &[usize], spread: &mut [f64]) {
         if bright.is_empty() {
             return;
@@ -386,12 +393,13 @@ impl<'a> Spread<'a> {
         spikes.add_to(spread);
     }
 
-    /// Spreads a plane by cells that know how light goes farther than the pixels around; beyond the frame a mirror of it, or nothing.
+    /// Spreads a plane by cells with the given weights, for light that goes farther than the pixels around. Beyond the frame lies its
+    /// mirror image, or nothing.
     fn cells(&self, plane: &[f32], mirror: bool, weights: &[f64], spread: &mut [f64]) {
         let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
         let cell = self.cell_px;
         let [across, down] = self.reach;
-        // A frame of cells with a margin as far as they reach.
+        // The frame of cells has a margin as wide as their reach.
         let (w, h) = (3 * across + 4, 3 * down + 4);
         let first = [across as isize + 2, down as isize + 2];
         let place = |at: isize, k: usize| {
@@ -449,7 +457,7 @@ impl<'a> Spread<'a> {
     }
 }
 
-/// The pixel of a frame that a mirror at its border shows at a place.
+/// Returns the pixel of a frame that a mirror at its border shows at a place.
 fn mirrored(at: isize, side: usize) -> usize {
     let side = side as isize;
     let at = at.rem_euclid(2 * side);

@@ -1,37 +1,38 @@
-//! The spikes of bright pixels, out to the edge of the frame.
+//! Draws the spikes of bright pixels, out to the edge of the frame.
 //!
-//! A spike is a line of boxes across itself, one for each column (or row) of pixels. Boxes are written by where they begin and end, and
-//! summed up once for all: a box costs the same however wide it is.
+//! A spike is a line of boxes across it, one for each column (or row) of pixels. Only the ends of each box are written, and the plane is
+//! summed up once for all. A box therefore costs the same however wide it is.
 
 use crate::kernel::fade;
 use crate::{Fan, Wings};
 
-/// A spike as lines of boxes on pixels.
+/// A spike, represented by boxes on pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spike {
-    /// Whether it goes from column to column (and not from row to row).
+    /// Whether the spike goes from column to column (rather than from row to row).
     across: bool,
-    /// Rows for each column (columns for each row), signed.
+    /// Slope: rows per column (columns per row), signed.
     slope: f64,
-    /// Distance on film for each column or row, mm.
+    /// Distance on film per column or row, mm.
     step_mm: f64,
-    /// Light beyond a distance r is this over r.
+    /// Light beyond a distance r, times r, mm.
     light_mm: f64,
-    /// Half width of the boxes in rows (columns): what it begins with, and what it gains with each column.
+    /// Half width of the two boxes in rows (columns): at the start, and its increase per column.
     half: [[f64; 2]; 2],
+    /// Fractions of the spike's light in the two boxes.
     parts: [f64; 2],
 }
 
 impl Spike {
-    /// The spikes of an opening for light of a mean wavelength (mm), on pixels of `pitch_mm`; each goes both ways.
+    /// Returns the spikes of an opening for light of a mean wavelength (mm), on pixels of `pitch_mm`. Each spike extends to both sides.
     pub(crate) fn all(wings: &Wings, wavelength_mm: f64, pitch_mm: [f64; 2]) -> Vec<Self> {
         let one = |fan: &Fan| {
-            // Columns run against x.
+            // Columns count opposite to x.
             let way = [-fan.normal[0] / pitch_mm[0], fan.normal[1] / pitch_mm[1]];
             let across = way[0].abs() >= way[1].abs();
             let (along, aside) = if across { (way[0], way[1]) } else { (way[1], way[0]) };
             let step_mm = 1.0 / along.abs();
-            // A width across the spike, in rows: over the cosine, and the pixel's height.
+            // A width across the spike, in rows: divided by the cosine and by the height of a pixel.
             let cosine = if across { fan.normal[0].abs() } else { fan.normal[1].abs() };
             let pitch = if across { pitch_mm[1] } else { pitch_mm[0] };
             let rows = |mm: f64| mm / cosine / pitch;
@@ -44,12 +45,13 @@ impl Spike {
         wings.fans().iter().filter(|fan| fan.is_spike()).map(one).collect()
     }
 
-    /// Part of the light that it takes to both of its sides, beyond where pixels around fade out at `end_mm`.
+    /// Returns the fraction of the light that the spike takes to both its sides, beyond the distance `end_mm` at which the pixels around
+    /// fade out.
     pub(crate) fn light(&self, end_mm: f64) -> f64 {
         2.0 * self.light_mm * self.parts.iter().sum::<f64>() * fading(end_mm)
     }
 
-    /// The brightest pixel of it at a distance, as a part of the light.
+    /// Returns the value of the spike's brightest pixel at a distance, as a fraction of the light.
     pub(crate) fn peak(&self, at_mm: f64) -> f64 {
         let boxes = self.half.iter().zip(self.parts);
         let high: f64 =
@@ -58,7 +60,7 @@ impl Spike {
     }
 }
 
-/// The integral of the faded part of 1/r^2, 1/mm.
+/// Returns the integral of 1/r^2 weighted by the fade, 1/mm.
 pub(crate) fn fading(end_mm: f64) -> f64 {
     const STEPS: usize = 400;
     let begin = 0.6 * end_mm;
@@ -67,13 +69,13 @@ pub(crate) fn fading(end_mm: f64) -> f64 {
     (0..STEPS).map(|i| fade(at(i), end_mm) * step / (at(i) * at(i))).sum::<f64>() + 1.0 / end_mm
 }
 
-/// Spikes of a plane of pixels, written by where their boxes begin and end.
+/// The spikes in a plane of pixels, stored by the ends of their boxes.
 pub(crate) struct Spikes {
     width: usize,
     height: usize,
-    /// Changes down the columns, of spikes that go across.
+    /// Changes down the columns, from spikes that go across.
     down: Vec<f64>,
-    /// Changes along the rows, of spikes that go down.
+    /// Changes along the rows, from spikes that go down.
     along: Vec<f64>,
 }
 
@@ -82,7 +84,7 @@ impl Spikes {
         Self { width, height, down: vec![0.0; width * (height + 2)], along: vec![0.0; (width + 2) * height] }
     }
 
-    /// Adds a spike of a pixel that holds so much light.
+    /// Adds a spike of a pixel with this much light.
     pub(crate) fn add(&mut self, spike: &Spike, column: usize, row: usize, light: f64, end_mm: f64) {
         let (from, aside, count, rows) =
             if spike.across { (column, row, self.width, self.height) } else { (row, column, self.height, self.width) };
@@ -94,7 +96,7 @@ impl Spikes {
                 let center = aside as f64 + if forth { spike.slope } else { -spike.slope } * distance;
                 let r = distance * spike.step_mm;
                 let near = r - 0.5 * spike.step_mm;
-                // From one edge of the column to the other.
+                // Integrate from one edge of the column to the other.
                 let part = spike.light_mm * spike.step_mm / (near * (near + spike.step_mm)) * fade(r, end_mm);
                 let widest = spike.half.iter().map(|[begin, gain]| begin + gain * distance).fold(0.0, f64::max);
                 if center + widest < -0.5 || center - widest > rows as f64 - 0.5 {
@@ -114,7 +116,7 @@ impl Spikes {
         }
     }
 
-    /// From a place on, all pixels of a line have so much more; the pixel that it lies in its part.
+    /// Raises all pixels of a line by `height` from a place on. The pixel that holds the place gets its fraction.
     fn edge(&mut self, across: bool, line: usize, place: f64, height: f64) {
         let rows = if across { self.height } else { self.width };
         let place = (place + 0.5).clamp(0.0, rows as f64);
@@ -127,7 +129,7 @@ impl Spikes {
         to[b] += height * (1.0 - part);
     }
 
-    /// Adds all of it to a plane.
+    /// Adds all spikes to a plane.
     pub(crate) fn add_to(mut self, plane: &mut [f64]) {
         for row in 0..self.height {
             let (before, now) = self.down.split_at_mut(row * self.width);

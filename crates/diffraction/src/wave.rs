@@ -1,13 +1,17 @@
-//! How far the light that comes to a place on film is out of step across the opening.
+//! The wavefront of the light that reaches a point of the film: how far it is out of phase across the opening.
+//!
+//! [`Waves`](crate::Waves) traces optical paths from a node of the zones back to the point that it sees at the distance in focus. A
+//! polynomial over direction cosines is fitted to them; its slope is the landing of the rays.
 
 use spectra_numerics::linear::least_squares;
 
-/// Degree of the polynomial that a wavefront is fitted with.
+/// Degree of the polynomial that is fitted to a wavefront.
 const DEGREE: usize = 8;
 const TERMS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
-/// The wavefront at a place of the film: optical path against that of a perfect lens, mm, over the direction cosines in which the place
-/// sees the opening. Its slope is where the ray from there lands, mm from the place (M. Born and E. Wolf, "Principles of optics", 5.1).
+/// The wavefront at a point of the film: optical path relative to that of a perfect lens, mm, over the direction cosines in which the point
+/// sees the opening. Its slope is the landing point of the ray from there, mm from the point (M. Born and E. Wolf, "Principles of optics",
+/// 5.1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wave {
     center: [f64; 2],
@@ -16,14 +20,14 @@ pub struct Wave {
 }
 
 impl Wave {
-    /// Through optical paths, mm, at direction cosines. `None` where these are too few or lie on a line.
+    /// Fits a wavefront to optical paths, mm, at direction cosines. `None` if there are too few of these or they lie on a line.
     #[must_use]
     pub fn fitted(cosines: &[[f64; 2]], paths_mm: &[f64]) -> Option<Self> {
         let count = cosines.len() as f64;
         let center = [0, 1].map(|k| cosines.iter().map(|p| p[k]).sum::<f64>() / count);
         let away = |p: &[f64; 2]| (p[0] - center[0]).abs().max((p[1] - center[1]).abs());
         let scale = cosines.iter().map(away).fold(0.0, f64::max);
-        // The mean of the paths is long beside their differences, and means nothing.
+        // Subtract the mean of the paths: it is large compared with their differences, and has no meaning.
         let mean = paths_mm.iter().sum::<f64>() / count;
         let mut own = Self { center, scale, terms: Vec::new() };
         let rows: Vec<f64> = cosines.iter().flat_map(|p| own.powers(*p).0).collect();
@@ -32,7 +36,7 @@ impl Wave {
         Some(own)
     }
 
-    /// Optical path, mm, and its slope along both cosines, mm.
+    /// Returns the optical path, mm, and its slope along both cosines, mm.
     #[must_use]
     pub fn at(&self, cosines: [f64; 2]) -> (f64, [f64; 2]) {
         let (values, slopes) = self.powers(cosines);
@@ -40,7 +44,7 @@ impl Wave {
         (sum(&values), slopes.map(|powers| sum(&powers) / self.scale))
     }
 
-    /// The terms' values at a place, and their slopes in units of the scale.
+    /// Returns the values of the terms at a place, and their slopes in units of the scale.
     fn powers(&self, cosines: [f64; 2]) -> ([f64; TERMS], [[f64; TERMS]; 2]) {
         let [x, y] = [0, 1].map(|k| {
             let v = (cosines[k] - self.center[k]) / self.scale;

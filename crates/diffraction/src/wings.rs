@@ -1,54 +1,55 @@
-//! Far from its core: a point spread as what each edge of the opening sends off along its normal.
+//! The diffraction pattern of a point far from its core: the light that each edge of the opening sends along its normal.
 //!
-//! The squared transform of a polygon is a sum over pairs of edges. Pairs that do not meet beat with a period of wavelength times
-//! f-number, which pixels and colors average away. What is left are the edges alone, each a spike across itself that falls as 1/r^2 and
-//! is wavelength over length wide, and pairs that share a corner. A bent edge sends its light into a fan of normals.
+//! The squared transform of a polygon is a sum over pairs of edges. Pairs that do not meet beat with a period of wavelength times f-number,
+//! which pixels and colors average out. What remains is the edges alone and the pairs that share a corner. An edge alone makes a spike
+//! across it that falls off as 1/r^2, with the angular width wavelength over length. A bent edge sends its light into a fan of normals.
 
 use crate::Polygon;
 use spectra_core::math;
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
-/// Edges that turn by less than this from one to the next are pieces of one line, rad.
+/// Angle between successive edges below which they belong to one line, rad.
 const CORNER_RAD: f64 = 0.2;
-/// Lines of edges that bend less than this send off a spike, rad; others a fan.
+/// Angle below which a line of edges makes a spike rather than a fan, rad.
 const SPIKE_RAD: f64 = 0.03;
-/// Widest fan: a line that bends by more is taken in pieces, rad.
+/// Angle of the widest fan, rad: a line that bends by more is divided.
 const WIDEST_RAD: f64 = 0.12;
 
-/// What a line of edges sends off to both of its sides.
+/// The light that a line of edges sends to both its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fan {
-    /// Unit vector out of the opening, in the middle of the fan.
+    /// Unit vector pointing out of the opening, in the middle of the fan.
     pub normal: [f64; 2],
-    /// Angle of the fan, rad; 0 of a straight edge.
+    /// Angle of the fan, rad; 0 for a straight edge.
     pub spread_rad: f64,
-    /// Length of the edge that it comes from.
+    /// Length of the edge that the fan comes from.
     pub length: f64,
-    /// Length of the whole line that this is a piece of.
+    /// Length of the whole line of which the edge is a piece.
     pub line: f64,
 }
 
 impl Fan {
-    /// Whether what it sends off is a spike: it comes from a whole line that hardly bends.
+    /// Whether the fan is a spike: it comes from a whole line that hardly bends.
     #[must_use]
     pub fn is_spike(&self) -> bool {
         self.length == self.line && self.spread_rad <= SPIKE_RAD
     }
 }
 
-/// What a polygon does far from the core.
+/// The diffraction of a polygon far from its core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wings {
     fans: Vec<Fan>,
-    /// Fans before and behind each corner.
+    /// Indices of the fans before and after each corner.
     corners: Vec<[usize; 2]>,
     area: f64,
+    /// Length of all edges together.
     around: f64,
 }
 
 impl Wings {
-    /// Of an opening in direction cosines.
+    /// Computes the wings of an opening given in direction cosines.
     #[must_use]
     pub fn new(opening: &Polygon) -> Self {
         let (mut fans, mut corners) = (Vec::new(), Vec::new());
@@ -59,27 +60,27 @@ impl Wings {
         Self { fans, corners, area: opening.area(), around }
     }
 
-    /// What each line of edges sends off.
+    /// The fans of all lines of edges.
     #[must_use]
     pub fn fans(&self) -> &[Fan] {
         &self.fans
     }
 
-    /// Part of the light of a wavelength (mm) that falls farther than `r_mm` from the middle: that which each edge sends off, wavelength
-    /// times circumference over 2 pi^2 times area times r.
+    /// Returns the fraction of the light of a wavelength (mm) that falls farther than `r_mm` from the middle. It is what the edges send
+    /// there: wavelength times circumference over 2 pi^2 times area times r.
     #[must_use]
     pub fn beyond(&self, r_mm: f64, wavelength_mm: f64) -> f64 {
         wavelength_mm * self.around / (2.0 * PI * PI * self.area * r_mm)
     }
 
-    /// Part of the light of a wavelength (mm) that one fan sends beyond `r_mm`, both sides together.
+    /// Returns the fraction of the light of a wavelength (mm) that one fan sends beyond `r_mm`, both sides together.
     #[must_use]
     pub fn of_fan(&self, fan: &Fan, r_mm: f64, wavelength_mm: f64) -> f64 {
         wavelength_mm * fan.length / (2.0 * PI * PI * self.area * r_mm)
     }
 
-    /// Part of the light per mm^2 at a place on film, mm from the middle, on average over fringes and over a cell of these half sides;
-    /// without that which `boxes` take of each spike: see [`Wings::boxes`].
+    /// Returns the fraction of the light per mm^2 at a place on film, mm from the middle, averaged over fringes and over a cell with these
+    /// half sides. With `without_boxes` it leaves out what the boxes take of each spike: see [`Wings::boxes`].
     #[must_use]
     pub fn intensity(&self, at: [f64; 2], half_mm: [f64; 2], wavelength_mm: f64, without_boxes: bool) -> f64 {
         let r2 = at[0] * at[0] + at[1] * at[1];
@@ -87,7 +88,7 @@ impl Wings {
         let across = |fan: &Fan| {
             let [nx, ny] = fan.normal;
             let t = at[1] * nx - at[0] * ny;
-            // The cell seen along the edge is one box spread by another; so is the fan.
+            // The cell, seen along the edge, is one box convolved with another; so is the fan.
             let (a, b) = (half_mm[0] * ny.abs(), half_mm[1] * nx.abs());
             (at[0] * nx + at[1] * ny, t, [a.max(b) + 0.5 * r * fan.spread_rad, a.min(b)])
         };
@@ -117,15 +118,15 @@ impl Wings {
         (if without_boxes { all } else { all.max(0.0) }) / (4.0 * PI * PI * self.area * r2 * r2)
     }
 
-    /// A spike across itself as two boxes: part of its light and half width, in wavelengths over length of the line. Together they are as
-    /// high as the spike is in its middle, and hold nine tenths of it.
+    /// Returns two boxes that approximate a spike across its width: for each its fraction of the light, and its half width in wavelengths
+    /// over the length of the line. Together they are as high as the middle of the spike, and hold nine tenths of it.
     #[must_use]
     pub fn boxes() -> [[f64; 2]; 2] {
         [[0.7, 0.42], [0.2, 0.6]]
     }
 }
 
-/// Lines of edges of a ring, cut at its corners.
+/// Finds the lines of edges of a ring, divided at its corners.
 fn lines(ring: &[[f64; 2]], fans: &mut Vec<Fan>, corners: &mut Vec<[usize; 2]>) {
     let count = ring.len();
     let edge = |i: usize| {
@@ -134,7 +135,7 @@ fn lines(ring: &[[f64; 2]], fans: &mut Vec<Fan>, corners: &mut Vec<[usize; 2]>) 
     };
     let length = |d: [f64; 2]| (d[0] * d[0] + d[1] * d[1]).sqrt();
     let all: f64 = (0..count).map(|i| length(edge(i))).sum();
-    // Edges without length turn nowhere.
+    // Edges without length have no direction.
     let edges: Vec<[f64; 2]> = (0..count).map(edge).filter(|d| length(*d) > 1e-12 * all).collect();
     let count = edges.len();
     let turn = |i: usize| {
@@ -165,7 +166,7 @@ fn lines(ring: &[[f64; 2]], fans: &mut Vec<Fan>, corners: &mut Vec<[usize; 2]>) 
     debug_assert!(fans.len() > first_fan);
 }
 
-/// The fans of one line of edges.
+/// Finds the fans of one line of edges.
 fn line(edges: &[[f64; 2]], span: &[usize], turn: &dyn Fn(usize) -> f64, closed: bool, fans: &mut Vec<Fan>) {
     let length = |d: [f64; 2]| (d[0] * d[0] + d[1] * d[1]).sqrt();
     let whole: f64 = span.iter().map(|i| length(edges[*i])).sum();
@@ -203,14 +204,14 @@ fn line(edges: &[[f64; 2]], span: &[usize], turn: &dyn Fn(usize) -> f64, closed:
     }
 }
 
-/// The mean of (sin(x) / x)^2 around x over one box spread by another, of these half widths.
+/// Returns the mean of (sin(x) / x)^2 around x over a box of half width `wide` convolved with a box of half width `narrow`.
 fn spike_mean(x: f64, [wide, narrow]: [f64; 2]) -> f64 {
     let (x, sum, less) = (x.abs(), wide + narrow, wide - narrow);
     if x - sum < POINTS as f64 * STEP {
         return mean(x, [wide, narrow], spike_integrals);
     }
-    // Differences of the series that stand in `spike_integrals`: what is alike in them is left out, and the sines of sums are made
-    // of those of what is added.
+    // Differences of the series in `spike_integrals`. Equal terms cancel and are left out, and sines of sums are computed from those of the
+    // summands.
     let sin_cos = |x: f64| {
         let turns = x / PI;
         math::sin_cos_turns(turns - turns.floor())
@@ -239,7 +240,7 @@ fn spike_mean(x: f64, [wide, narrow]: [f64; 2]) -> f64 {
     (falls + both(sum) - both(less)) / area
 }
 
-/// The mean of a function around x over one box spread by another, by its integral and the integral of that.
+/// Returns the mean of a function around x over one box convolved with another, from its integral and the integral of that.
 fn mean(x: f64, [wide, narrow]: [f64; 2], integrals: fn(f64) -> [f64; 2]) -> f64 {
     let at = |x: f64| integrals(x);
     if narrow < 0.02 {
@@ -250,11 +251,12 @@ fn mean(x: f64, [wide, narrow]: [f64; 2], integrals: fn(f64) -> [f64; 2]) -> f64
     (second(x + sum) - second(x + less) - second(x - less) + second(x - sum)) / (4.0 * wide * narrow)
 }
 
-/// Points of the table of [`spike_integrals`], and their distance.
+/// Number of points in the table of [`spike_integrals`].
 const POINTS: usize = 1024;
+/// Step between points in the table of [`spike_integrals`].
 const STEP: f64 = TAU / 128.0;
 
-/// Integral of (sin(x) / x)^2 from 0 to x, and the integral of that, within 1e-6.
+/// Returns the integral of (sin(x) / x)^2 from 0 to x, and the integral of that, within 1e-6.
 fn spike_integrals(x: f64) -> [f64; 2] {
     static TABLE: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
     let value = |x: f64| {
@@ -267,7 +269,7 @@ fn spike_integrals(x: f64) -> [f64; 2] {
             .map(|i| {
                 let to = i as f64 * STEP;
                 let point = [value(to), first, second];
-                // Of the cubic through four points of the step to the next (Simpson's 3/8 rule), and its moment about the end.
+                // Integral of the cubic through four points of the step (Simpson's 3/8 rule), and its moment about the end.
                 let at = [0.0, 1.0, 2.0, 3.0].map(|k| value(to + k / 3.0 * STEP));
                 second +=
                     STEP * first + STEP * STEP * (39.0 * at[0] + 108.0 * at[1] + 27.0 * at[2] + 6.0 * at[3]) / 360.0;
@@ -276,7 +278,7 @@ fn spike_integrals(x: f64) -> [f64; 2] {
             })
             .collect()
     });
-    // Far out: the sine and cosine integrals' asymptotic series.
+    // Far out: the asymptotic series of the sine and cosine integrals.
     let far_first = |x: f64| {
         let (sin, cos) = (math::sin(2.0 * x), math::cos(2.0 * x));
         0.5 * PI - 0.5 / x + (cos / x - sin + 1.5 * sin / (x * x)) / (4.0 * x * x)
@@ -290,7 +292,7 @@ fn spike_integrals(x: f64) -> [f64; 2] {
     let [first, second] = if p < POINTS as f64 {
         let i = p as usize;
         let (f, [da, a, c], [db, b, d]) = (p - i as f64, table[i], table[i + 1]);
-        // Hermite's cubics.
+        // Cubic Hermite interpolation.
         let cubic = |a: f64, b: f64, da: f64, db: f64| {
             let (m, n) = (STEP * da - (b - a), (b - a) - STEP * db);
             a + f * (b - a) + f * (1.0 - f) * ((1.0 - f) * m + f * n)
@@ -304,7 +306,7 @@ fn spike_integrals(x: f64) -> [f64; 2] {
     [if x < 0.0 { -first } else { first }, second]
 }
 
-/// The same of the boxes that stand for a spike.
+/// Returns the integral from 0 to x of the boxes that approximate a spike, and the integral of that.
 fn boxes_integrals(x: f64) -> [f64; 2] {
     let far = x.abs();
     let mut both = [0.0; 2];
@@ -349,7 +351,7 @@ mod tests {
             (5e3, 2.8, 2.8),
             (900.0, 400.0, 9.0),
         ] {
-            // The second box by its middles; the first by steps much finer than a ripple.
+            // The second box by the midpoint rule; the first by steps much finer than a ripple.
             let boxed = |x: f64, half: f64, of: &dyn Fn(f64) -> f64| {
                 let n = (half * 200.0).ceil().max(1.0);
                 (0..n as usize).map(|i| of(x + half * (2.0 * (i as f64 + 0.5) / n - 1.0))).sum::<f64>() / n

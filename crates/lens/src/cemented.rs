@@ -1,14 +1,14 @@
-//! Which surfaces meet a gas, and which lie between two glasses.
+//! Tells surfaces that meet a gas from cemented surfaces between two glasses.
 
 use crate::{Element, Lens, Separation};
 use spectra_core::surface::Action;
 
-/// A medium of a lower index is a gas: a surface between two others is cemented, and no coating lies in it.
+/// A medium of a lower index counts as a gas. A surface between two other media is cemented and has no coating.
 const GAS_INDEX: f64 = 1.05;
 
 impl Lens {
-    /// The same lens with this separation in all its cemented surfaces, whatever they state; those without a semi-diameter have no
-    /// edge from which one of some depth could begin. Says in how many.
+    /// Puts this separation into all cemented surfaces, replacing what they state. A surface without a semi-diameter is skipped if the
+    /// separation has a depth, because the depth is measured from the edge. Returns the lens and the number of changed surfaces.
     #[must_use]
     pub fn with_separation(mut self, separation: &Separation) -> (Self, usize) {
         let mut many = 0;
@@ -26,7 +26,7 @@ impl Lens {
         self.index(medium, self.reference_nm) < GAS_INDEX
     }
 
-    /// Whether an element is a surface between two glasses.
+    /// Whether an element is a cemented surface between two glasses.
     pub(crate) fn is_cemented(&self, e: &Element) -> bool {
         e.action == Action::Refract
             && e.medium_before != e.medium_after

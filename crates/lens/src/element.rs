@@ -1,4 +1,4 @@
-//! One surface in its place.
+//! Elements: one surface with its position, its media and everything on it.
 
 use crate::Solid;
 use crate::aperture::Aperture;
@@ -11,62 +11,62 @@ use spectra_core::params::Params;
 use spectra_core::surface::{Action, Surface};
 use std::sync::Arc;
 
-/// One surface in its place.
+/// One surface of a lens with its position, its media and everything on it; or a prism.
 #[derive(Clone, Debug)]
 pub struct Element {
-    /// Its `kind` in the file.
+    /// The `kind` of the surface in the lens file.
     pub kind: String,
-    /// Its own parameters as they stand in the file, for export; `None` where it was built otherwise.
+    /// Parameters of the surface's kind as they stand in the lens file, for export; `None` if the surface was not read from a file.
     pub parameters: Option<Params>,
-    /// The prism that it is, if it is one; then [`Element::surface`] is a plane that stands for it in first order.
+    /// The prism, if this element is one. [`Element::surface`] is then a plane that stands for it in first-order optics.
     pub solid: Option<Arc<Solid>>,
-    /// Shape and bending.
+    /// Shape of the surface, and how it bends light.
     pub surface: Arc<dyn Surface>,
-    /// Bends of the axis in front of it, in order.
+    /// Bends of the axis in front of the surface, in order.
     pub breaks: Vec<AxisBreak>,
-    /// Its own shift and tilt about its vertex; what follows stays where it is.
+    /// Shift and tilt of this surface alone about its vertex. Elements that follow stay where they are.
     pub displacement: Displacement,
-    /// Whether it stands the other way round, turned by half a turn about its y axis.
+    /// Whether the surface is reversed: turned by half a turn about its y axis.
     pub reversed: bool,
-    /// Distance to the next vertex along the axis, mm; of the last surface, to the image plane.
+    /// Distance to the next vertex along the axis, mm; for the last surface, to the image plane.
     pub thickness_mm: f64,
-    /// Clear semi-diameter, mm; `None` clips nothing.
+    /// Clear semi-diameter, mm; if `None`, the surface clips nothing.
     pub semi_diameter_mm: Option<f64>,
-    /// Edge of the element that it belongs to, mm, for drawing: a flat annulus lies outside of the clear
+    /// Semi-diameter of the edge of the glass element, mm, for drawing. A flat annulus lies outside the clear
     /// semi-diameter. Clips nothing.
     pub outer_semi_diameter_mm: Option<f64>,
     /// Leg of the 45 degree chamfer at the edge, mm: positive toward +z.
     pub chamfer_mm: f64,
-    /// What else limits the light here.
+    /// Apertures besides the clear semi-diameter that limit the light at this surface.
     pub apertures: Vec<Aperture>,
-    /// Whether it is the aperture stop.
+    /// Whether this surface is the aperture stop.
     pub stop: bool,
-    /// What it does to light.
+    /// What the surface does to light: refract, reflect or pass it.
     pub action: Action,
-    /// Its own coating; `None` has the lens's.
+    /// Coating of this surface; if `None`, the coating of the lens.
     pub coating: Option<Coating>,
-    /// Where its cement has come apart, if it is cemented.
+    /// Where the cement has separated, if this surface is cemented.
     pub separation: Option<Separation>,
-    /// Rings that were left on it when it was made.
+    /// Rings left on the surface by the turning of its mold.
     pub onion_rings: Option<OnionRings>,
-    /// What lies on it and scatters light.
+    /// Layers on the surface that scatter light.
     pub layers: Vec<Layer>,
-    /// Part of the light that it reflects where it is a mirror, 0 to 1.
+    /// Fraction of the light that the surface reflects if it is a mirror, 0 to 1.
     pub reflectance: f64,
-    /// Medium in front of it: index into [`crate::Lens::media`].
+    /// Medium in front of the surface: index into [`crate::Lens::media`].
     pub medium_before: usize,
-    /// Medium behind it.
+    /// Medium behind the surface: index into [`crate::Lens::media`].
     pub medium_after: usize,
-    /// Where it stands; follows from the above, see [`crate::Lens::arrange`].
+    /// Pose of the surface in the frame of the lens. It follows from the fields above, see [`crate::Lens::arrange`].
     pub pose: Pose,
-    /// Length of the axis from the first vertex, mm: its z where nothing is folded.
+    /// Length of the axis from the first vertex to this surface, mm: the z of the vertex if nothing is folded.
     pub along_axis_mm: f64,
-    /// Whether light that runs forward arrives here along the axis (and not, behind a mirror, against it).
+    /// Whether light that runs forward through the lens arrives here along +z of the axis; behind a mirror it arrives against it.
     pub along: bool,
 }
 
 impl Element {
-    /// A surface that refracts, on the axis; still to be placed by [`crate::Lens::arrange`].
+    /// Creates a refracting surface (or a stop, if its kind is one) on the axis. [`crate::Lens::arrange`] must still place it.
     #[must_use]
     pub fn new(kind: &str, surface: Arc<dyn Surface>, medium_before: usize, medium_after: usize) -> Self {
         let stop = surface.is_stop();
@@ -98,13 +98,13 @@ impl Element {
         }
     }
 
-    /// Its vertex, mm from the first one along the lens's z.
+    /// Position of the vertex along the lens's z axis, mm from the first vertex.
     #[must_use]
     pub fn vertex_z_mm(&self) -> f64 {
         self.pose.origin_mm.z
     }
 
-    /// Curvature at the vertex along x and y, 1/mm, as it stands: turned round where the surface is.
+    /// Curvature at the vertex along x and y, 1/mm, with its sign reversed if the surface is reversed.
     #[must_use]
     pub fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         let (x, y) = self.surface.vertex_curvature_per_mm();

@@ -1,48 +1,48 @@
 //! First-order (paraxial) optics by the ray-transfer method.
 //!
-//! A paraxial ray has a height y (mm) and a slope u = dy/dz; a surface of curvature c between media
-//! n and n' maps n' u' = n u - y c (n' - n) (W. J. Smith, Modern Optical Engineering, ch. 3). Behind a mirror light
-//! runs toward -z: indices count as negative there, and a mirror is a surface with n' = -n. A folded axis is taken as
-//! if it were straight.
+//! A paraxial ray has a height y (mm) and a slope u = dy/dz. A surface of curvature c between media
+//! n and n' maps it by n' u' = n u - y c (n' - n) (W. J. Smith, Modern Optical Engineering, ch. 3). Behind a mirror light
+//! runs toward -z: indices count as negative there, and a mirror is a surface with n' = -n. A folded axis is treated
+//! as straight.
 
 use crate::Lens;
 use spectra_core::surface::Action;
 
-/// First-order figures of a lens at one wavelength. Distances are measured as the names say, in mm.
+/// The first-order figures of a lens at one wavelength. Distances are in mm, measured as the names say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstOrder {
-    /// Wavelength, nm; `None` where every medium was held at its stated index.
+    /// Wavelength, nm; `None` if every medium was held at its stated index.
     pub wavelength_nm: Option<f64>,
-    /// Effective focal length.
+    /// Effective focal length, mm.
     pub efl_mm: f64,
-    /// Back focal length: last vertex to the rear focal point.
+    /// Back focal length: from the last vertex to the rear focal point, mm.
     pub bfl_mm: f64,
-    /// Front focal length: first vertex to the front focal point (negative in front of it).
+    /// Front focal length: from the first vertex to the front focal point, mm (negative if the point lies in front of the vertex).
     pub ffl_mm: f64,
-    /// Rear principal plane, from the first vertex.
+    /// Position of the rear principal plane, mm from the first vertex.
     pub rear_principal_z_mm: f64,
-    /// Front principal plane, from the first vertex.
+    /// Position of the front principal plane, mm from the first vertex.
     pub front_principal_z_mm: f64,
-    /// Front nodal point, from the first vertex: what aims at it leaves the rear one in the same direction.
+    /// Position of the front nodal point, mm from the first vertex. A ray aimed at it leaves the rear nodal point in the same direction.
     pub front_nodal_z_mm: f64,
-    /// Rear nodal point, from the first vertex.
+    /// Position of the rear nodal point, mm from the first vertex.
     pub rear_nodal_z_mm: f64,
-    /// Entrance pupil, from the first vertex; `None` without a stop.
+    /// Position of the entrance pupil, mm from the first vertex; `None` if the lens has no stop.
     pub entrance_pupil_z_mm: Option<f64>,
-    /// Exit pupil, from the first vertex; `None` without a stop.
+    /// Position of the exit pupil, mm from the first vertex; `None` if the lens has no stop.
     pub exit_pupil_z_mm: Option<f64>,
-    /// Entrance pupil's size over the stop's.
+    /// Size of the entrance pupil divided by that of the stop; `None` if the lens has no stop.
     pub entrance_pupil_magnification: Option<f64>,
-    /// Exit pupil's size over the stop's.
+    /// Size of the exit pupil divided by that of the stop; `None` if the lens has no stop.
     pub exit_pupil_magnification: Option<f64>,
 }
 
-/// A plane through the axis.
+/// A plane that contains the axis, in which first-order optics is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Section {
-    /// x and z.
+    /// The plane of x and z.
     X,
-    /// y and z: the plane of the paper.
+    /// The plane of y and z: the plane of a drawing on paper.
     Y,
 }
 
@@ -58,7 +58,7 @@ impl Section {
 /// The paraxial map through a lens, from the first vertex plane to the last.
 #[derive(Clone, Copy, Debug)]
 struct Matrix {
-    /// height' = a height + b slope; slope' = c height + d slope.
+    /// Matrix elements: height' = a height + b slope; slope' = c height + d slope.
     a: f64,
     b: f64,
     c: f64,
@@ -68,7 +68,7 @@ struct Matrix {
 impl Matrix {
     const UNIT: Self = Self { a: 1.0, b: 0.0, c: 0.0, d: 1.0 };
 
-    /// A surface of this power, 1/mm, between media of these (signed) indices.
+    /// Appends a surface of this power, 1/mm, between media of these signed indices.
     fn bend(self, power: f64, n: f64, after: f64) -> Self {
         let power = power / after;
         let ratio = n / after;
@@ -89,7 +89,7 @@ impl Lens {
             let sign = if e.along == e.reversed { -1.0 } else { 1.0 };
             let (n, after) = (sign * index(e.medium_before), sign * index(e.medium_after));
             match e.action {
-                // Turned round, a surface stands between the same media in the other order.
+                // A reversed surface stands between the same media in reverse order.
                 Action::Refract => {
                     let (first, second) = if e.reversed { (after, n) } else { (n, after) };
                     m = m.bend(section.of(e.surface.paraxial_power_per_mm(first, second)), n, after);
@@ -107,26 +107,27 @@ impl Lens {
         m
     }
 
-    /// Whether light that runs forward leaves the lens toward +z: 1; else -1.
-    pub(crate) fn sense_behind(&self) -> f64 {
+    /// Returns 1 if light that runs forward leaves the lens toward +z, otherwise -1.
+    pub fn sense_behind(&self) -> f64 {
         let mirrors = self.elements.iter().filter(|e| e.action == Action::Reflect).count();
         if mirrors.is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 
-    /// First order at a wavelength, nm.
+    /// Computes the first-order figures in the y-z section at a wavelength, nm.
     #[must_use]
     pub fn first_order(&self, wavelength_nm: f64) -> FirstOrder {
         self.first_order_in(Section::Y, wavelength_nm)
     }
 
-    /// First order in one section of the lens, at a wavelength, nm: a cylinder has power in one only.
+    /// Computes the first-order figures in one section of the lens at a wavelength, nm. A cylinder has power in only one section.
     #[must_use]
     pub fn first_order_in(&self, section: Section, wavelength_nm: f64) -> FirstOrder {
         let by = self.first_order_by(section, &|m| self.index(m, wavelength_nm));
         FirstOrder { wavelength_nm: Some(wavelength_nm), ..by }
     }
 
-    /// First order with every medium at its stated index (its formula's at the reference line where none is stated).
+    /// Computes the first-order figures in the y-z section with every medium at its stated index. If none is stated, the index of the
+    /// dispersion formula at the reference line is used.
     #[must_use]
     pub fn first_order_at_stated_nd(&self) -> FirstOrder {
         let index = |m: usize| self.media[m].stated_nd.unwrap_or_else(|| self.index(m, self.reference_nm));
@@ -139,7 +140,7 @@ impl Lens {
         let m = self.matrix(0..count, section, index);
         let n_object = self.elements.first().map_or(1.0, |e| index(e.medium_before));
         let n_image = self.elements.last().map_or(1.0, |e| index(e.medium_after));
-        // One over the power, positive for a lens that collects light, whichever way the light leaves.
+        // One over the power: positive for a lens that converges light, whichever way the light leaves.
         let focal = -1.0 / m.c;
         let efl = focal * self.sense_behind();
         let bfl = -m.a / m.c;
@@ -148,14 +149,14 @@ impl Lens {
         let front_focal = efl * n_object / n_image;
         let (mut enp, mut exp, mut enp_m, mut exp_m) = (None, None, None, None);
         if let Some(stop) = self.stop() {
-            // From the first vertex plane to the stop: the stop's image in object space.
+            // From the first vertex plane to the stop: this gives the image of the stop in object space.
             let to_stop = self.matrix(0..stop, section, index);
             let gap = if stop > 0 { self.gap_mm(stop - 1) } else { 0.0 };
             let front = to_stop.advance(gap);
-            // A ray through the centre of the stop: a h + b s = 0, it crosses the axis at -h / s = b / a.
+            // A ray through the center of the stop has a h + b s = 0; it crosses the axis at -h / s = b / a.
             enp = Some(front.b / front.a);
             enp_m = Some(1.0 / front.a);
-            // Behind its center: with the bending there, where the stop is an optical surface.
+            // Behind the center of the stop, including the refraction there if the stop is an optical surface.
             let rear = self.matrix(stop..count, section, index);
             let z = -rear.b / rear.d;
             exp = Some(last_z + z);
@@ -177,24 +178,25 @@ impl Lens {
         }
     }
 
-    /// Where the paraxial image of an axial point lies, mm behind the last vertex; the point is
+    /// Position of the paraxial image of an axial point, mm behind the last vertex, in the y-z section. The point lies
     /// `object_mm` in front of the first vertex (infinity allowed).
     #[must_use]
     pub fn paraxial_image_gap_mm(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
         self.paraxial_image_gap_in_mm(Section::Y, object_mm, wavelength_nm)
     }
 
-    /// The same in one section of the lens.
+    /// Position of the paraxial image of an axial point in one section of the lens, mm behind the last vertex. The point lies `object_mm`
+    /// in front of the first vertex (infinity allowed).
     #[must_use]
     pub fn paraxial_image_gap_in_mm(&self, section: Section, object_mm: f64, wavelength_nm: f64) -> f64 {
         let m = self.matrix(0..self.elements.len(), section, &|medium| self.index(medium, wavelength_nm));
-        // A ray from the point with slope s: height object s at the first vertex.
+        // A ray from the point with slope s has the height `object_mm` * s at the first vertex.
         let (height, slope) =
             if object_mm.is_finite() { (m.a * object_mm + m.b, m.c * object_mm + m.d) } else { (m.a, m.c) };
         -height / slope
     }
 
-    /// Lateral magnification of an object `object_mm` in front of the first vertex (negative: upside down).
+    /// Lateral magnification of an object `object_mm` in front of the first vertex, in the y-z section; negative means upside down.
     #[must_use]
     pub fn paraxial_magnification(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
         let m = self.matrix(0..self.elements.len(), Section::Y, &|medium| self.index(medium, wavelength_nm));

@@ -4,21 +4,21 @@ use crate::Element;
 use crate::pose::Displacement;
 use std::ops::Range;
 
-/// Surfaces that move together.
+/// A group of surfaces that move together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// Its name in the file.
+    /// Name of the group in the lens file.
     pub name: String,
-    /// Its elements, by index.
+    /// Indices of the elements in the group.
     pub elements: Range<usize>,
-    /// The element about whose vertex it is tilted, by index: its first, unless the lens is turned round.
+    /// Index of the element about whose vertex the group is tilted: its first, unless the lens is reversed.
     pub about: usize,
-    /// Shift and tilt of the whole group about that vertex: a misalignment.
+    /// Shift and tilt of the whole group about that vertex: its misalignment.
     pub displacement: Displacement,
 }
 
 impl Group {
-    /// Moves its elements from where they stand.
+    /// Applies the displacement of the group to the poses of its elements.
     pub(crate) fn displace(&self, elements: &mut [Element]) {
         if self.displacement.is_none() || self.elements.is_empty() {
             return;

@@ -1,6 +1,5 @@
-//! A lens: surfaces along the axis, media between them, and where it comes from.
+//! A lens: surfaces along the axis, the media between them, and the source of its figures.
 
-use crate::aperture::Shape;
 use crate::coating::Coating;
 use crate::focus::FocusLaw;
 use crate::group::Group;
@@ -11,82 +10,83 @@ use spectra_core::cover::CoverStack;
 use spectra_core::surface::Action;
 use spectra_glass::{LineTriple, Medium};
 
-/// A medium as the prescription names it.
+/// A medium of a lens as the prescription names it.
 #[derive(Clone, Debug)]
 pub struct LensMedium {
-    /// Its dispersion.
+    /// Dispersion of the medium.
     pub medium: Medium,
-    /// The index that the prescription states at its reference line, if it does.
+    /// Index that the prescription states at its reference line; `None` if it states none.
     pub stated_nd: Option<f64>,
-    /// How the file names it, such as `SCHOTT/BAF9` or `air`.
+    /// Name of the medium in the lens file, such as `SCHOTT/BAF9` or `air`.
     pub label: String,
 }
 
 impl LensMedium {
-    /// Air, index 1: glass catalogues state indices relative to it.
+    /// Returns air with the index 1: glass catalogues state indices relative to air.
     #[must_use]
     pub fn air() -> Self {
         Self { medium: Medium::Air, stated_nd: Some(1.0), label: "air".to_owned() }
     }
 }
 
-/// A lens.
+/// A lens: its surfaces, the media between them, and the source of its figures.
 #[derive(Clone, Debug)]
 pub struct Lens {
-    /// Name for people.
+    /// Name of the lens for people.
     pub name: String,
-    /// Year of design, where known.
+    /// Year of design; `None` if not known.
     pub year: Option<i32>,
-    /// The f-number in its name: full aperture, as makers round it.
+    /// F-number in the name of the lens: its full aperture, as makers round it.
     pub nominal_f_number: Option<f64>,
-    /// By how much it squeezes the picture across, as makers round it; 1 of any lens that is not anamorphic.
+    /// Factor by which the lens squeezes the picture horizontally, as makers round it; 1 for a lens that is not anamorphic.
     pub squeeze: f64,
-    /// Patent and example, where known.
+    /// Patent and example; `None` if not known.
     pub patent: Option<String>,
-    /// Maker, where known.
+    /// Maker of the lens; `None` if not known.
     pub maker: Option<String>,
-    /// Where the figures come from.
+    /// Source of the figures of the prescription.
     pub source: Option<String>,
-    /// Doubts, and choices that were made.
+    /// Doubts about the figures, and choices that were made.
     pub remark: Option<String>,
-    /// Where the semi-diameters come from, where that is known.
+    /// Origin of the semi-diameters; `None` if not known.
     pub rims: Option<Rims>,
-    /// Wavelength of the reference line, nm: focus and first order are meant there.
+    /// Wavelength of the reference line, nm: focus and first-order figures refer to it.
     pub reference_nm: f64,
-    /// The lines of the Abbe numbers that go with it.
+    /// Lines of the Abbe numbers that belong to the reference line.
     pub abbe_lines: LineTriple,
-    /// The surfaces, in the order of the light.
+    /// Surfaces of the lens, in the order in which light meets them.
     pub elements: Vec<Element>,
     /// Groups of surfaces that move together.
     pub groups: Vec<Group>,
-    /// How groups move in focusing; none: the whole lens moves.
+    /// Focusing laws of the groups; if empty, the whole lens moves.
     pub focus_laws: Vec<FocusLaw>,
-    /// Distance from the first vertex that it is focused at, mm; infinite as the file has it.
+    /// Object distance from the first vertex at which the lens is focused, mm; infinite as read from the file.
     pub focused_mm: f64,
     /// Bends of the axis between the last surface and the image plane.
     pub image_breaks: Vec<AxisBreak>,
-    /// The plates right before the frame of the camera that it is on, if there are any: see [`Lens::with_cover`].
+    /// Plates directly in front of the frame of the camera, if there are any: see [`Lens::with_cover`].
     pub cover: Option<CoverStack>,
-    /// Where the image plane stands; follows from the above, see [`Lens::arrange`].
+    /// Pose of the image plane. It follows from the fields above, see [`Lens::arrange`].
     pub image_pose: Pose,
-    /// Length of the axis from the first vertex to the image plane, mm: its z where nothing is folded. Follows as well.
+    /// Length of the axis from the first vertex to the image plane, mm: the z of the plane if nothing is folded. It is also set by
+    /// [`Lens::arrange`].
     pub image_along_axis_mm: f64,
-    /// The media; number 0 is air.
+    /// Media of the lens; number 0 is air.
     pub media: Vec<LensMedium>,
-    /// Coating of every surface that states none of its own.
+    /// Coating of every surface that has none of its own.
     pub coating: Coating,
-    /// Whether that coating is assumed, as of lenses of the time, and not known.
+    /// Whether [`Lens::coating`] is assumed, as usual for lenses of its time, and not known.
     pub coating_assumed: bool,
-    /// Whether glass absorbs, where its catalogue says how much.
+    /// Whether glass absorbs light, if its catalogue says how much.
     pub absorption: bool,
-    /// What is worth knowing of how it is set; nothing that one should mend.
+    /// Notes on how the lens is set up; nothing in them needs to be fixed.
     pub notes: Vec<String>,
-    /// What a person should know of the file: a glass that disagrees with the stated index, and so on.
+    /// Warnings about the lens file, for example a glass that disagrees with the stated index.
     pub warnings: Vec<String>,
 }
 
 impl Lens {
-    /// A lens without surfaces, of which nothing but the name is known; to be filled.
+    /// Creates a lens with a name, default values and no surfaces, to be filled in.
     #[must_use]
     pub fn empty(name: &str) -> Self {
         Self {
@@ -118,14 +118,14 @@ impl Lens {
         }
     }
 
-    /// Number of the stop among the elements, if there is one.
+    /// Index of the stop among the elements; `None` if there is no stop.
     #[must_use]
     pub fn stop(&self) -> Option<usize> {
         self.elements.iter().position(|e| e.stop)
     }
 
-    /// Puts every surface where thicknesses, bends of the axis, displacements and groups say. To be called after any
-    /// of them was changed.
+    /// Places every surface and the image plane by the thicknesses, bends of the axis, displacements and groups. Call this after changing
+    /// any of them.
     pub fn arrange(&mut self) {
         let mut axis = Pose::IDENTITY;
         let mut along_axis_mm = 0.0;
@@ -140,15 +140,15 @@ impl Lens {
                 along = !along;
             }
             if let Some(solid) = &e.solid {
-                // From where the axis leaves it, along the light.
+                // The axis continues where it leaves the prism, along the light.
                 axis = axis.then(&solid.exit);
                 along_axis_mm += solid.reduced_mm;
             }
             axis = axis.advanced(e.thickness_mm);
             along_axis_mm += e.thickness_mm;
         }
-        // Behind an odd number of mirrors light arrives from the other side: the image plane faces it, and its x is
-        // that of the lens still, so that a picture shows the subject unmirrored.
+        // Behind an odd number of mirrors light arrives from the other side. The image plane then faces that side but keeps the x axis of
+        // the lens, so that a picture shows the subject unmirrored.
         let (image, image_along_axis_mm) = bent(axis, along_axis_mm, &self.image_breaks);
         self.image_along_axis_mm = image_along_axis_mm;
         self.image_pose = if along { image } else { image.facing_back() };
@@ -171,19 +171,19 @@ impl Lens {
         }
     }
 
-    /// Whether it looks the same from all azimuths: nothing is displaced or folded, and every surface and aperture
+    /// Whether the lens is symmetric about its axis: nothing is displaced or folded, and every surface and aperture
     /// is round.
     #[must_use]
     pub fn has_axis_of_revolution(&self) -> bool {
         symmetry::has_axis_of_revolution(&self.elements, &self.image_pose)
     }
 
-    /// The same lens with the blades of its stop opened to their circle: for what the f-number means.
-    pub(crate) fn with_round_stop(mut self) -> Self {
-        for e in &mut self.elements {
-            e.apertures.retain(|a| !matches!(a.shape, Shape::Iris(_)));
+    /// Removes all rims and apertures, so that a ray ends only if it misses a surface or is totally reflected.
+    pub fn remove_rims(&mut self) {
+        for element in &mut self.elements {
+            element.semi_diameter_mm = None;
+            element.apertures.clear();
         }
-        self
     }
 
     /// Distance of the image plane from the last vertex, mm.
@@ -192,7 +192,7 @@ impl Lens {
         self.elements.last().map_or(0.0, |e| e.thickness_mm)
     }
 
-    /// The same lens with another distance from the last vertex to the image plane, mm.
+    /// Returns the lens with another distance from the last vertex to the image plane, mm.
     #[must_use]
     pub fn with_image_gap_mm(mut self, gap_mm: f64) -> Self {
         if let Some(last) = self.elements.last_mut() {
@@ -202,7 +202,7 @@ impl Lens {
         self
     }
 
-    /// The same lens with its stop set to this semi-diameter, mm.
+    /// Returns the lens with its stop set to this semi-diameter, mm. A lens without a stop is returned unchanged.
     #[must_use]
     pub fn with_stop_semi_diameter_mm(mut self, semi_diameter_mm: f64) -> Self {
         if let Some(stop) = self.stop() {
@@ -211,20 +211,20 @@ impl Lens {
         self
     }
 
-    /// Index of refraction of medium `medium` at a wavelength, by its formula.
+    /// Refractive index of medium `medium` at a wavelength, nm, by its dispersion formula.
     #[must_use]
     pub fn index(&self, medium: usize, wavelength_nm: f64) -> f64 {
         self.media[medium].medium.index(wavelength_nm)
     }
 
-    /// The largest stated clear semi-diameter, mm; `None` where no surface states one.
+    /// Largest stated clear semi-diameter, mm; `None` if no surface states one.
     #[must_use]
     pub fn largest_semi_diameter_mm(&self) -> Option<f64> {
         self.elements.iter().filter_map(|e| e.semi_diameter_mm).reduce(f64::max)
     }
 }
 
-/// The axis behind bends, and how long it is by then.
+/// Returns the axis behind these bends, and its length up to there, mm.
 fn bent(mut axis: Pose, mut along_axis_mm: f64, breaks: &[AxisBreak]) -> (Pose, f64) {
     for bend in breaks {
         if !bend.displacement.is_none() {

@@ -1,14 +1,14 @@
-//! What is taken of a lens's losses, in words: beside every T-number.
+//! Describes in words which losses of a lens are counted, as shown beside every T-number.
 
 use crate::{Coating, Lens, Soil};
 use spectra_core::surface::Action;
 use spectra_glass::{Lender, Medium};
 
-/// From here on, stops, a person is told that an assumed absorption darkens a lens.
+/// Loss, stops, from which on a warning says that an assumed absorption darkens a lens.
 const DARK_STOPS: f64 = 1.0;
 
 impl Lens {
-    /// What coatings and absorption are counted, and what of it is assumed: `bare (assumed for 1927), glass absorbs`.
+    /// Describes the coatings and the absorption that are counted, and which of them are assumed: `bare (assumed for 1927), glass absorbs`.
     #[must_use]
     pub fn losses(&self) -> String {
         let refracts = |e: &&crate::Element| e.action == Action::Refract && e.medium_before != e.medium_after;
@@ -24,14 +24,14 @@ impl Lens {
         }
         let apart = match self.elements.iter().filter(|e| e.separation.is_some()).count() {
             0 => String::new(),
-            1 => ", cement apart in 1 surface".to_owned(),
-            many => format!(", cement apart in {many} surfaces"),
+            1 => ", cement separated at 1 surface".to_owned(),
+            many => format!(", cement separated at {many} surfaces"),
         };
         let soiled = self.layer_words().map_or(String::new(), |words| format!(", {words}"));
         format!("{coating}, {}{apart}{soiled}", self.absorption_words())
     }
 
-    /// What lies on surfaces, and on how many: `haze on 8 surfaces`.
+    /// Describes the layers on surfaces, and on how many: `haze on 8 surfaces`; `None` if there are none.
     fn layer_words(&self) -> Option<String> {
         let on = |soil: Soil| {
             let many = self
@@ -45,7 +45,7 @@ impl Lens {
         (!words.is_empty()).then(|| words.join(", "))
     }
 
-    /// Whether glass absorbs, by how much of what is known.
+    /// Describes whether glass absorbs, and for how many glasses the absorption is known.
     fn absorption_words(&self) -> String {
         if !self.absorption {
             return "no absorption".to_owned();
@@ -63,8 +63,8 @@ impl Lens {
         }
     }
 
-    /// The medium whose assumed absorption takes most light on the axis, whose absorption it is, and how many stops all that are
-    /// assumed take together at the reference line; `None` below one stop, or where glass does not absorb.
+    /// Returns the medium whose assumed absorption takes most light on the axis, the glass whose absorption is assumed for it, and the
+    /// total loss of all assumed absorptions at the reference line, stops. Returns `None` below one stop, or if glass does not absorb.
     #[must_use]
     pub fn darkened_by_assumption(&self) -> Option<(&str, Lender, f64)> {
         let nm = self.reference_nm;
@@ -81,7 +81,7 @@ impl Lens {
         (self.absorption && all >= DARK_STOPS).then(|| (self.media[at].label.as_str(), lender, all))
     }
 
-    /// Whether nothing is lost at surfaces or in glass, by assumption.
+    /// Whether the lens loses no light at surfaces or in glass by assumption.
     #[must_use]
     pub fn is_lossless(&self) -> bool {
         let ideal = |e: &crate::Element| e.coating.as_ref().unwrap_or(&self.coating) == &Coating::Ideal;

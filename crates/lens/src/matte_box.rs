@@ -6,23 +6,23 @@ use crate::{Element, Lens};
 use spectra_core::surface::{Action, Kernel, Plane};
 use std::sync::Arc;
 
-/// The `kind` of the element that a matte box is.
+/// The `kind` of the element that stands for a matte box.
 pub const MATTE_BOX: &str = "matte-box";
 
-/// A rectangular opening in front of the lens, centered on the axis.
+/// A matte box: a rectangular opening in front of the lens, centered on the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatteBox {
     /// Distance of the opening in front of the first vertex, mm, positive.
     pub distance_mm: f64,
-    /// Its full width, mm.
+    /// Full width of the opening, mm.
     pub width_mm: f64,
-    /// Its full height, mm.
+    /// Full height of the opening, mm.
     pub height_mm: f64,
 }
 
 impl Lens {
-    /// The same lens behind a matte box: an element in front of the first, which clips in both directions and which
-    /// every search of a pupil sees. All that stood stays where it is, the origin too; numbers of elements rise by one.
+    /// Puts the lens behind a matte box: an element in front of the first one, which clips light in both directions and which every search
+    /// for a pupil sees. Everything else, including the origin, stays where it is; the numbers of all other elements rise by one.
     #[must_use]
     pub fn behind_matte_box(mut self, opening: &MatteBox) -> Self {
         let (half_width_mm, half_height_mm) = (0.5 * opening.width_mm, 0.5 * opening.height_mm);

@@ -1,20 +1,20 @@
-//! Groups out of place.
+//! Misalignment: groups of surfaces that are shifted or tilted.
 
 use crate::Lens;
 
-/// A misalignment of a group.
+/// A misalignment of one group of surfaces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Misalignment {
-    /// Shift along x and y, mm; as the file has it if absent.
+    /// Shift along x and y, mm; if `None`, as in the lens file.
     pub decenter_mm: Option<[f64; 2]>,
-    /// Tilts about x, y and z, rad, about the vertex of its first surface; as the file has them if absent.
+    /// Tilts about x, y and z through the vertex of the group's first surface, rad; if `None`, as in the lens file.
     pub tilt_rad: Option<[f64; 3]>,
     /// Shift along the axis toward the image, mm.
     pub shift_mm: f64,
 }
 
 impl Lens {
-    /// The same lens with the group of this name out of place; `None` where there is no such group. The other groups and
+    /// Returns the lens with the group of this name misaligned; `None` if there is no such group. The other groups and
     /// the image plane stay where they are.
     #[must_use]
     pub fn with_misalignment(mut self, group: &str, by: &Misalignment) -> Option<Self> {

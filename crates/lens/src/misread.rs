@@ -1,18 +1,18 @@
-//! Slips in the glasses of a lens: more axial color than designers leave, and a medium that no maker melts.
+//! Signs of misread glass figures: more axial color than designers leave, and a medium that no maker melts.
 
 use crate::{Lens, LensMedium};
 use spectra_core::surface::Action;
 use spectra_glass::lines::D;
 use spectra_glass::{Catalogue, LineTriple, Medium};
 
-/// Axial color beyond this part of the focal length is doubted: corrected lenses of the library leave 0.1 to 0.35 %.
+/// Axial color above this fraction of the focal length is questioned: corrected lenses of the library leave 0.1 to 0.35 %.
 const MOST_COLOR: f64 = 0.004;
-/// Two indices that differ by less are the same figure.
+/// Two indices that differ by less count as the same figure.
 const SAME_INDEX: f64 = 1e-5;
-/// Abbe numbers of one index that differ by more are of two kinds of glass.
+/// At the same index, Abbe numbers that differ by more belong to different kinds of glass.
 const OTHER_KIND: f64 = 5.0;
 
-/// A medium with dispersion that light goes into.
+/// A dispersive medium behind a refracting surface.
 struct Disperser<'a> {
     surface: usize,
     medium: &'a Medium,
@@ -21,24 +21,24 @@ struct Disperser<'a> {
 }
 
 impl Lens {
-    /// Returns what looks like a misread index or Abbe number: axial color beyond 0.4 % of the focal length where two glasses or more refract,
-    /// and two media of one index with Abbe numbers over 5 apart, one of which is far from every glass of the catalogue. Nothing
-    /// is said where a glass was not measured at the lines.
+    /// Returns a warning for each sign of a misread index or Abbe number. One sign is axial color above 0.4 % of the focal length where two
+    /// or more glasses refract. The other is two media of the same index with Abbe numbers more than 5 apart, one of which is far from
+    /// every glass of the catalogue. A lens with a glass that was not measured at both lines gets no warning about its axial color.
     #[must_use]
     pub fn glass_doubts(&self) -> Vec<String> {
         let dispersers = self.dispersers();
         self.color_doubt(&dispersers).into_iter().chain(twins(&dispersers)).collect()
     }
 
-    /// Returns how far behind the focus of the red line that of the blue one lies, mm, in the order of the lens's Abbe numbers: F - C as a
-    /// rule.
+    /// Returns how far the focus of the blue line lies behind the focus of the red line, mm. The lines are the outer ones of the lens's
+    /// Abbe numbers, F and C as a rule.
     #[must_use]
     pub fn axial_color_mm(&self) -> f64 {
         let back_mm = |nm: f64| self.first_order(nm).bfl_mm;
         back_mm(self.abbe_lines.short.wavelength_nm) - back_mm(self.abbe_lines.long.wavelength_nm)
     }
 
-    /// The media with dispersion behind surfaces that refract, each once.
+    /// Lists the dispersive media behind refracting surfaces, each once.
     fn dispersers(&self) -> Vec<Disperser<'_>> {
         let mut found: Vec<Disperser<'_>> = Vec::new();
         for (at, e) in self.elements.iter().enumerate() {
@@ -68,8 +68,8 @@ impl Lens {
         let part = (color_mm / self.first_order(self.reference_nm).efl_mm).abs();
         (part.is_finite() && part > MOST_COLOR).then(|| {
             format!(
-                "the foci of {} and {} lie {:.3} mm apart, {:.2} % of the focal length, where corrected lenses leave 0.1 to 0.3 %: is an index or an \
-                 Abbe number misread?",
+                 "the foci of {} and {} lie {:.3} mm apart, {:.2} % of the focal length; corrected lenses leave 0.1 to 0.3 %: is an index \
+                  or an Abbe number misread?",
                 short.label(),
                 long.label(),
                 color_mm.abs(),
@@ -79,7 +79,7 @@ impl Lens {
     }
 }
 
-/// Two media of one index, of which one is no glass.
+/// Returns a warning for each pair of media with the same index but different Abbe numbers, at least one of which is near no glass.
 fn twins(dispersers: &[Disperser<'_>]) -> Vec<String> {
     let mut all = Vec::new();
     for (i, one) in dispersers.iter().enumerate() {
@@ -94,8 +94,8 @@ fn twins(dispersers: &[Disperser<'_>]) -> Vec<String> {
                 continue;
             }
             all.push(format!(
-                "the media behind surfaces {} and {} have one index, {:.5}, and Abbe numbers of {:.1} and {:.1}, and no glass of the catalogue is near \
-                 that of {}: is one of them misread?",
+                 "the media behind surfaces {} and {} have the same index, {:.5}, but Abbe numbers of {:.1} and {:.1}, and no glass of \
+                  the catalogue is near that of {}: is one of them misread?",
                 one.surface,
                 other.surface,
                 one.nd,
@@ -108,7 +108,7 @@ fn twins(dispersers: &[Disperser<'_>]) -> Vec<String> {
     all
 }
 
-/// Whether no glass has these figures; what has data of its own is one.
+/// Whether no glass of the catalogue is near these figures. A medium with data of its own counts as a glass.
 fn is_far(d: &Disperser<'_>) -> bool {
     matches!(d.medium, Medium::Model(_)) && !Catalogue::bundled().has_near(d.nd, d.vd)
 }

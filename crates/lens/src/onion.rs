@@ -1,4 +1,4 @@
-//! Rings that a turning tool left on the mold of an asphere: in highlights out of focus they show as an onion cut in two.
+//! Onion rings: the rings that a turning tool left on the mold of an asphere. Out-of-focus highlights show them like a cut onion.
 
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -9,55 +9,58 @@ use spectra_core::params::{Length, Positive};
 use spectra_core::{Loss, RayBatch};
 use std::f64::consts::PI;
 
-/// A ring-shaped error of the height of a surface: a cosine of the distance from the axis. So small a height moves no ray's
-/// place on the surface, only its slope matters.
+/// A ring-shaped height error of a surface: a cosine of the distance from the axis. The height is so small that it does not move the
+/// point where a ray meets the surface; only the slope matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OnionRings {
-    /// From ring to ring, mm.
+    /// Distance from ring to ring, mm.
     pub period_mm: f64,
-    /// From valley to peak, mm.
+    /// Height from valley to peak, mm.
     pub height_mm: f64,
 }
 
-/// Rings that the turning of its mold left on an asphere: highlights out of focus look like an onion cut in two.
+/// Rings left on an asphere by the turning of its mold: out-of-focus highlights look like an onion cut in two.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(inline)]
-pub(crate) struct OnionRingsForm {
+pub struct OnionRingsForm {
     /// Distance from ring to ring, mm if bare, 10 um to 100 mm.
     #[schemars(range(min = 0.01, max = 100))]
     period: Positive<Length>,
-    /// Height from valley to peak, mm if bare, up to 1 um: some tens of nm are seen.
+    /// Height from valley to peak, mm if bare, up to 1 um; some tens of nm are visible.
     #[schemars(range(max = 0.001))]
     height: Positive<Length>,
 }
 
 impl OnionRingsForm {
-    pub(crate) fn rings(&self) -> OnionRings {
+    /// Returns the rings that the form states.
+    pub fn rings(&self) -> OnionRings {
         OnionRings { period_mm: self.period.mm(), height_mm: self.height.mm() }
     }
 }
 
-/// What rays met that were bent by a surface as it should be.
-pub(crate) struct Bent<'a> {
-    /// Directions in front of it.
+/// What rays met at a surface that refracted or reflected them as if it had no rings.
+pub struct Bent<'a> {
+    /// Components of the unit directions in front of the surface.
     pub before: [&'a [f64]; 3],
-    /// Indices in front of it and behind it.
+    /// Refractive indices in front of the surface and behind it.
     pub n: [&'a [f64]; 2],
+    /// Whether the surface is a mirror.
     pub mirror: bool,
+    /// Number of the surface, from 1, recorded in the rays that end there.
     pub number: u32,
 }
 
 impl OnionRings {
-    /// Slope at a distance from the axis, mm, away from it.
+    /// Slope of the error at a distance from the axis, mm, in the outward direction.
     #[must_use]
     pub fn slope(&self, r_mm: f64) -> f64 {
         let turns = r_mm / self.period_mm;
         -PI * self.height_mm / self.period_mm * sin_cos_turns(turns - turns.floor()).0
     }
 
-    /// Bends living rays, in the frame of the surface, as one with rings does. Says how many ended by total reflection.
-    pub(crate) fn bend(&self, rays: &mut RayBatch, bent: &Bent<'_>) -> usize {
+    /// Corrects the directions of live rays, in the frame of the surface, for the rings. Returns how many ended by total reflection.
+    pub fn bend(&self, rays: &mut RayBatch, bent: &Bent<'_>) -> usize {
         let c = rays.columns_mut();
         let mut ended = 0;
         for i in 0..c.x.len() {
@@ -68,7 +71,7 @@ impl OnionRings {
             let before = DVec3::from_array(bent.before.map(|column| column[i]));
             let after = DVec3::new(c.l[i], c.m[i], c.n[i]);
             let [n, n_after] = bent.n.map(|column| column[i]);
-            // What refraction and reflection change is along the normal.
+            // Refraction and reflection change the direction along the normal.
             let normal = if bent.mirror { after - before } else { n_after * after - n * before };
             if normal.z == 0.0 {
                 continue;

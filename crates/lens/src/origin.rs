@@ -1,24 +1,24 @@
-//! Where the clear semi-diameters of a lens come from: they decide the light of corners and the shapes of blurs, and patents state them
-//! seldom.
+//! The origin of the clear semi-diameters of a lens. They determine the light in the corners and the shapes of blurs, but patents seldom
+//! state them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Where the semi-diameters of a lens come from.
+/// The origin of the semi-diameters of a lens.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub enum Rims {
-    /// By the source, figure by figure.
+    /// The source states each figure.
     Stated,
-    /// By rays that were to pass: the axial beam, and a part of that at the edge of the frame.
+    /// Computed from rays that were meant to pass: the axial beam, and a part of the beam at the edge of the frame.
     Computed,
-    /// Round figures of somebody who drew the lens.
+    /// Round figures chosen by the person who drew the lens.
     Guessed,
-    /// Chosen so that the light over the frame is that of a real lens: what was measured, and by whom.
+    /// Chosen so that the illumination over the frame matches that of a real lens.
     Fitted(
-        /// What was measured, of which copy, and by whom.
+        /// What was measured, on which copy, and by whom.
         String,
     ),
 }
@@ -28,9 +28,9 @@ impl fmt::Display for Rims {
         match self {
             Self::Stated => f.write_str("stated by the source"),
             Self::Computed => {
-                f.write_str("computed by rays that were to pass; corners and shapes of blurs are an estimate")
+                f.write_str("computed from rays that were meant to pass; corners and blur shapes are estimates")
             }
-            Self::Guessed => f.write_str("guessed; corners and shapes of blurs may be far off"),
+            Self::Guessed => f.write_str("guessed; corners and blur shapes may be far off"),
             Self::Fitted(to) => write!(f, "fitted to {to}"),
         }
     }

@@ -1,62 +1,67 @@
-//! Where a surface stands in space: along the axis, moved aside, tilted, turned round.
+//! Poses: the position of a surface along the axis and its decenter, tilt and reversal.
+//!
+//! A lens file states thicknesses, bends of the axis (`coordinate-break`), and displacements of single surfaces and of groups.
+//! [`Lens::arrange`](crate::Lens::arrange) converts them to one pose per surface, and the tracer knows only poses. The pose of a reversed
+//! surface is turned by half a turn, so no kind of surface needs to know about reversal. Apertures that are not round are evaluated at the
+//! point where the light met the surface, after the surface has acted.
 
 use glam::{DMat3, DVec3};
 use spectra_core::math;
 
-/// A place and an attitude: takes points from a local frame into the frame of the lens.
+/// A position and an orientation: converts points from a local frame to the frame of the lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// The local origin, mm, frame of the lens.
+    /// Origin of the local frame, mm in the frame of the lens.
     pub origin_mm: DVec3,
-    /// Columns are the local axes in the frame of the lens.
+    /// Rotation whose columns are the local axes in the frame of the lens.
     pub rotation: DMat3,
 }
 
 impl Pose {
-    /// The frame of the lens itself.
+    /// The pose of the lens itself: no shift, no rotation.
     pub const IDENTITY: Self = Self { origin_mm: DVec3::ZERO, rotation: DMat3::IDENTITY };
 
-    /// A point in the frame of the lens, mm.
+    /// Converts a local point to the frame of the lens, mm.
     #[must_use]
     pub fn point(&self, local_mm: DVec3) -> DVec3 {
         self.origin_mm + self.rotation * local_mm
     }
 
-    /// A direction in the frame of the lens.
+    /// Converts a local direction to the frame of the lens.
     #[must_use]
     pub fn direction(&self, local: DVec3) -> DVec3 {
         self.rotation * local
     }
 
-    /// A point of the frame of the lens in the local one, mm.
+    /// Converts a point from the frame of the lens to the local frame, mm.
     #[must_use]
     pub fn local_point(&self, point_mm: DVec3) -> DVec3 {
         self.rotation.transpose() * (point_mm - self.origin_mm)
     }
 
-    /// A direction of the frame of the lens in the local one.
+    /// Converts a direction from the frame of the lens to the local frame.
     #[must_use]
     pub fn local_direction(&self, direction: DVec3) -> DVec3 {
         self.rotation.transpose() * direction
     }
 
-    /// The pose of something whose pose in this local frame is `inner`.
+    /// Returns the pose, in the frame of the lens, of something whose pose in this local frame is `inner`.
     #[must_use]
     pub fn then(&self, inner: &Self) -> Self {
         Self { origin_mm: self.point(inner.origin_mm), rotation: self.rotation * inner.rotation }
     }
 
-    /// The pose that undoes this one.
+    /// Returns the pose that undoes this one.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
         Self { origin_mm: -(rotation * self.origin_mm), rotation }
     }
 
-    /// Moved by a distance along the local z axis, mm.
+    /// Returns the pose moved by a distance along its local z axis, mm.
     #[must_use]
     pub fn advanced(&self, distance_mm: f64) -> Self {
-        // On the axis nothing is multiplied: a lens without tilts keeps the bits of its sums.
+        // On the axis no multiplication is done, so a lens without tilts keeps its sums bit for bit.
         let origin_mm = if self.rotation == DMat3::IDENTITY {
             DVec3::new(self.origin_mm.x, self.origin_mm.y, self.origin_mm.z + distance_mm)
         } else {
@@ -65,20 +70,20 @@ impl Pose {
         Self { origin_mm, ..*self }
     }
 
-    /// Whether it stands on the axis of the lens, unturned.
+    /// Whether the pose lies on the axis of the lens, without rotation.
     #[must_use]
     pub fn is_on_axis(&self) -> bool {
         self.rotation == DMat3::IDENTITY && self.origin_mm.x == 0.0 && self.origin_mm.y == 0.0
     }
 
-    /// With z toward the other side, x and y as they are: a left-handed frame, in which a picture stays unmirrored.
+    /// Returns the pose with z reversed and x and y unchanged: a left-handed frame, in which a picture stays unmirrored.
     #[must_use]
     pub fn facing_back(&self) -> Self {
         let r = self.rotation;
         Self { rotation: DMat3::from_cols(r.x_axis, r.y_axis, -r.z_axis), ..*self }
     }
 
-    /// Moved to the other side of itself: turned by half a turn about its y axis.
+    /// Returns the pose turned by half a turn about its own y axis.
     #[must_use]
     pub fn reversed(&self) -> Self {
         let r = self.rotation;
@@ -86,28 +91,28 @@ impl Pose {
     }
 }
 
-/// A shift across the axis and a tilt: of one surface, of a group, or of the axis itself.
+/// A decenter and a tilt: of one surface, of a group, or of the axis itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacement {
     /// Shift along x and y, mm.
     pub decenter_mm: [f64; 2],
     /// Right-handed rotations about x, y and z, rad.
     pub tilt_rad: [f64; 3],
-    /// Tilts about z, y, x (in that order) before the shift, in place of the shift and then x, y, z.
+    /// Whether the tilts about z, y, x (in that order) come before the shift. If false, the shift comes first, then tilts about x, y, z.
     pub tilt_first: bool,
 }
 
 impl Displacement {
-    /// None.
+    /// The displacement that moves nothing.
     pub const NONE: Self = Self { decenter_mm: [0.0; 2], tilt_rad: [0.0; 3], tilt_first: false };
 
-    /// Whether it moves nothing.
+    /// Whether this displacement moves nothing.
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.decenter_mm == [0.0; 2] && self.tilt_rad == [0.0; 3]
     }
 
-    /// As a pose: the displaced frame in the one that it started from.
+    /// Returns the pose of the displaced frame in the original frame.
     #[must_use]
     pub fn pose(&self) -> Pose {
         let shift = DVec3::new(self.decenter_mm[0], self.decenter_mm[1], 0.0);
@@ -121,16 +126,16 @@ impl Displacement {
     }
 }
 
-/// A bend of the axis in front of a surface: what stands behind it moves along.
+/// A bend of the axis in front of a surface. Everything behind the bend moves with the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisBreak {
     /// Shift and tilt of the axis.
     pub displacement: Displacement,
-    /// Distance to what follows, along the new axis, mm.
+    /// Distance along the new axis to the next surface or break, mm.
     pub thickness_mm: f64,
 }
 
-/// Sine and cosine: exact at multiples of a quarter turn, so that a fold by 90 degrees stays one.
+/// Returns the sine and cosine, exact at multiples of a quarter turn, so that a fold by 90 degrees stays one.
 fn sin_cos(angle_rad: f64) -> (f64, f64) {
     let quarters = angle_rad / std::f64::consts::FRAC_PI_2;
     if quarters.fract() == 0.0 && quarters.abs() < 1e9 {
@@ -163,7 +168,7 @@ fn about_z(angle_rad: f64) -> DMat3 {
 mod tests {
     use super::*;
 
-    /// A right-handed quarter turn about x takes y to z and z to -y, and so round.
+    /// A right-handed quarter turn about x takes y to z and z to -y, and so on cyclically.
     #[test]
     fn rotations_are_right_handed() {
         let quarter = std::f64::consts::FRAC_PI_2;
@@ -172,7 +177,7 @@ mod tests {
         assert_eq!(about_z(quarter) * DVec3::X, DVec3::Y);
     }
 
-    /// The two orders differ, and one undoes the other with all signs turned.
+    /// The two orders differ, and one undoes the other when all signs are reversed.
     #[test]
     fn tilt_first_undoes_decenter_first() {
         let there = Displacement { decenter_mm: [3.0, -2.0], tilt_rad: [0.3, -0.7, 1.1], tilt_first: false };

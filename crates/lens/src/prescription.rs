@@ -1,4 +1,4 @@
-//! Lens files: a prescription in YAML, and where it comes from.
+//! Lens files: reads a prescription in YAML, with the source of its figures.
 
 use crate::prism::{self, PRISM, PrismParams};
 use crate::schema::SurfaceOrBreak;
@@ -22,16 +22,16 @@ use spectra_glass::file::{self, Figures, StatedLines};
 use spectra_glass::{Beside, Catalogue, LineTriple, Medium, ModelGlass};
 use std::sync::Arc;
 
-/// A lens: its prescription, surface by surface, and where it comes from.
+/// A lens: its prescription, surface by surface, and the source of its figures.
 ///
-/// Surfaces stand in the order of the light, each with its shape (`kind` and the keys of that kind), the medium behind
-/// it and the thickness to the next vertex; the last thickness leads to the image plane. Lengths are millimeters unless
-/// they say otherwise. The origin is the vertex of the first surface, +z runs toward the image, +y is up; a radius is
-/// positive where its center lies at larger z. Behind a mirror light runs the other way: thicknesses are negative
+/// Surfaces are listed in the order in which light meets them. Each has its shape (`kind` and the keys of that kind), the medium behind
+/// it and the thickness to the next vertex; the last thickness leads to the image plane. Lengths are in millimeters unless
+/// they have another unit. The origin is the vertex of the first surface, +z runs toward the image, +y is up. A radius is
+/// positive if its center lies at larger z. Behind a mirror light runs the other way, and thicknesses are negative
 /// there.
 ///
-/// A `coordinate-break` among the surfaces bends the axis for all that follows. `spectra doc surface` lists the kinds
-/// and what every surface takes; `spectra lens info FILE` shows what the lens does.
+/// A `coordinate-break` among the surfaces bends the axis for everything that follows. `spectra doc surface` lists the kinds
+/// and the keys that every surface has; `spectra lens info FILE` shows what the lens does.
 ///
 /// # Example
 /// ```yaml
@@ -51,52 +51,52 @@ use std::sync::Arc;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct LensFile {
-    /// Name for people.
+    /// Name of the lens, for people.
     name: String,
     /// Year of design; not known if absent.
     year: Option<i32>,
-    /// F-number in its name, as makers round it: `f-number: f/1.4` in a scene then means full aperture, also where that is
+    /// F-number in the name of the lens, as makers round it. `f-number: f/1.4` in a scene then means full aperture, even if that is
     /// f/1.44. None if absent.
     f_number: Option<FNumber>,
-    /// Of an anamorphic lens: by how much it squeezes the picture across, 0.1 to 10, as makers round it. Pixels of its pictures are
-    /// so many times as wide, when they are looked at. 1 if absent.
+    /// For an anamorphic lens: the factor by which it squeezes the picture horizontally, 0.1 to 10, as makers round it. Pixels of its
+    /// pictures are shown that many times as wide. 1 if absent.
     #[schemars(range(min = 0.1, max = 10))]
     squeeze: Option<f64>,
     /// Maker; not known if absent.
     maker: Option<String>,
     /// Patent and example; none if absent.
     patent: Option<String>,
-    /// Line at which indices are stated and focus is meant, by its short name, d, D or e mostly, with the usual lines of Abbe numbers; or
-    /// three lines from blue to red, by name or wavelength, `[F', e, C']` or `[450 nm, 580 nm, 680 nm]`: the index at the
-    /// middle one, the Abbe number by all. d if absent.
+    /// Reference line, at which indices are stated and the focus is defined: its short name (usually d, D or e), which implies the usual
+    /// lines of Abbe numbers. Or three lines from blue to red, by name or wavelength, `[F', e, C']` or `[450 nm, 580 nm, 680 nm]`: the
+    /// index is stated at the middle one, the Abbe number by all three. d if absent.
     reference_line: Option<StatedLines>,
-    /// Where the figures come from.
+    /// Source of the figures.
     source: Option<String>,
-    /// Doubts and choices, for people.
+    /// Doubts about the figures and choices made, for people.
     remark: Option<String>,
-    /// Where the semi-diameters come from: `stated` by the source, `computed` by rays that were to pass, `guessed`, or
-    /// `{fitted: ...}`, to light that was measured, with what was. Not known if absent.
+    /// Origin of the semi-diameters: `stated` by the source, `computed` from rays that were meant to pass, `guessed`, or
+    /// `{fitted: ...}` to measured light, with a note on what was measured. Not known if absent.
     rims: Option<Rims>,
-    /// The surfaces, one or more, in the order of the light.
+    /// Surfaces of the lens, one or more, in the order in which light meets them.
     surfaces: Vec<Part<SurfaceOrBreak>>,
-    /// Groups of surfaces that move together, in focusing or out of place; none if absent.
+    /// Groups of surfaces that move together, in focusing or by misalignment; none if absent.
     #[serde(default)]
     groups: Vec<Part<GroupParams>>,
-    /// How groups move in focusing; the whole lens if absent.
+    /// Focusing laws: how groups move in focusing. The whole lens moves if absent.
     #[serde(default)]
     focus: Vec<Part<FocusParams>>,
     /// Coating of all surfaces that state none: `ideal`, `bare`, `single-layer`, `three-layer`, a layer or a stack; with
-    /// `assumed: true` where it is not known. What lenses of the `year` had if absent: `bare` before 1940 or without a year,
+    /// `assumed: true` if it is not known. If absent, the usual coating of lenses of the `year`: `bare` before 1940 or without a year,
     /// `single-layer` before 1970, then `three-layer`.
     coating: Option<Part<CoatingForm>>,
-    /// Haze on all surfaces where glass meets air that state none: the share of the light that each scatters, and how wide. None if
-    /// absent.
+    /// Haze on all surfaces where glass meets air, except those that state their own: the fraction of the light that each scatters, and how
+    /// wide. None if absent.
     haze: Option<Part<HazeForm>>,
-    /// Dust on them: the share that it covers, and how large its grains are. None if absent.
+    /// Dust on the same surfaces: the fraction that it covers, and the size of its grains. None if absent.
     dust: Option<Part<DustForm>>,
-    /// Scratches on them: the share that they cover or a drawing of them, and how wide they are. None if absent.
+    /// Scratches on the same surfaces: the fraction that they cover or a drawing of them, and their width. None if absent.
     scratches: Option<Part<ScratchesForm>>,
-    /// Whether glass absorbs as its catalogue says.
+    /// Whether glass absorbs light, as its catalogue says.
     #[serde(default = "yes")]
     absorption: bool,
 }
@@ -105,13 +105,13 @@ fn yes() -> bool {
     true
 }
 
-/// Where a stated index and the glass's own differ by more, a person is told.
+/// Difference between a stated index and the glass's own above which a warning is given.
 const INDEX_TOLERANCE: f64 = 0.002;
 
-/// A shorter radius is less than a wavelength.
+/// Shortest radius of a surface, mm; anything shorter is less than a wavelength.
 const SHORTEST_RADIUS_MM: f64 = 1e-6;
 
-/// A length as it is written, where it is one.
+/// Reads a length in mm; `None` if the node is not a length.
 fn length_mm(node: &Node) -> Option<f64> {
     match &node.value {
         Value::Number(number) => Some(number.value),
@@ -120,17 +120,17 @@ fn length_mm(node: &Node) -> Option<f64> {
     }
 }
 
-/// The schema of a lens file. Its surfaces refer to the definition `surface`, see
+/// Returns the JSON Schema of a lens file. Its surfaces refer to the definition `surface`, see
 /// [`spectra_core::registry::definitions`].
 #[must_use]
 pub fn lens_schema(generator: &mut SchemaGenerator) -> Schema {
     LensFile::json_schema(generator)
 }
 
-/// Reads a lens by the path of its file, or by its name among the bundled ones.
+/// Reads a lens from a file, given by its path or by the name of a bundled lens.
 ///
 /// # Errors
-/// All that is wrong with the file, with places.
+/// All faults of the file, with their places.
 pub fn load(name: &str, resources: &dyn Resources) -> Result<Lens, Faults> {
     parse(&resources.document(name, &["lenses"], &[".yaml"])?, resources)
 }
@@ -138,7 +138,7 @@ pub fn load(name: &str, resources: &dyn Resources) -> Result<Lens, Faults> {
 /// Builds a lens from its parsed file.
 ///
 /// # Errors
-/// All that is wrong with it, with places.
+/// All faults of the file, with their places.
 pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults> {
     let file: LensFile = params.parse()?;
     let mut faults = Faults::new();
@@ -225,7 +225,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             faults.push(fault.hint("leave the glass out: the medium in front of the mirror continues"));
         }
         let medium_after = if stated.mirror || (surface.is_stop() && !medium_is_stated) {
-            medium_before // a stop stands in the medium that is there
+            medium_before // a stop does not change the medium
         } else {
             match medium(&stated, &place, number, resources, reference, &mut lens) {
                 Ok(Some(medium)) => remember(&mut lens.media, medium),
@@ -239,7 +239,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         if stated.mirror {
             along = !along;
         }
-        // A break of the axis that follows states the distance itself.
+        // If a bend of the axis follows, it states the distance itself.
         let distance_follows = file.surfaces.get(at + 1).is_none_or(|next| kind_of(next) == Some(BREAK));
         if stated.thickness.is_none() && medium_after != 0 && medium_after != medium_before && !distance_follows {
             let fault = place.fault("thickness", "missing key `thickness`: the glass behind this surface needs one");
@@ -251,7 +251,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             let fault = shape.fault("radius", format!("{radius_mm:e} mm is too small a radius for a lens"));
             faults.push(fault.hint(format!("at least {SHORTEST_RADIUS_MM:e} mm; 0 for a plane")));
         }
-        // Behind a mirror light runs the other way; between two planes in air the step may be imagined.
+        // Behind a mirror light runs the other way; between two planes in air the step may be a formal one.
         if thickness_mm < 0.0 && along && medium_after != medium_before {
             let fault = place.fault("thickness", format!("the thickness is negative: {thickness_mm} mm"));
             faults.push(fault.hint("thicknesses follow the direction of the light: write it without the minus sign"));
@@ -281,11 +281,11 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
                 fault.hint("a lens has one stop; other surfaces limit the light by `semi-diameter` or `aperture`"),
             );
         }
-        // Some tilted surfaces have no point on their axis; a number that is none is a fault of the code of the surface.
+        // Some tilted surfaces have no point on their axis. A sag that is not a number is an error in the code of the surface.
         if element.surface.sag_mm(0.0, 0.0).is_some_and(|sag| !sag.is_finite()) {
             let fault = place.fault_here("the sag of this surface at its vertex is not a number");
             faults.push(
-                fault.hint("its keys, and the code of its kind: where a surface does not reach it returns `None`"),
+                fault.hint("check its keys, and the code of its kind: where there is no surface it must return `None`"),
             );
         } else if let Some(semi_diameter_mm) = semi_diameter_mm.filter(|s| *s > 0.0)
             && let Some(reach_mm) = reach_mm(&*element.surface, semi_diameter_mm)
@@ -312,10 +312,10 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
             && let Some(separation) = faults.take(read_separation(node, resources))
         {
             if !lens.is_cemented(&element) {
-                let fault = place.fault(separation::KEY, "only cement comes apart: no two glasses meet here");
+                let fault = place.fault(separation::KEY, "only cement can separate: no two glasses meet here");
                 faults.push(fault.hint("state it at a surface between two glasses"));
             } else if separation.depth_mm.is_some() && semi_diameter_mm.is_none() {
-                let fault = place.fault(separation::KEY, "a `depth` begins at the edge, and the surface states none");
+                let fault = place.fault(separation::KEY, "`depth` is measured from the edge, but the surface has none");
                 faults.push(fault.hint("add `semi-diameter: ...`, or leave `depth` out"));
             }
             element.separation = Some(separation);
@@ -345,7 +345,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         let law = faults.take(focus_law(node, &lens.groups));
         if let Some(again) = law.as_ref().filter(|law| lens.focus_laws.iter().any(|l| l.group == law.group)) {
             let name = &lens.groups[again.group].name;
-            faults.push(node.fault(format!("group `{name}` moves by two laws")).hint("one law per group"));
+            faults.push(node.fault(format!("group `{name}` has two focusing laws")).hint("write one law per group"));
         }
         lens.focus_laws.extend(law);
     }
@@ -357,7 +357,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
     faults.into_result(lens)
 }
 
-/// Faults of what a kind of surface says, where it knows only keys of its own: what all surfaces may state is known, too.
+/// Corrects the hints for unknown keys of a kind of surface, which knows only its own keys: adds the keys that all surfaces have.
 fn with_keys_of_all(mut faults: Faults, of_all: &[String]) -> Faults {
     for fault in &mut faults.0 {
         let key = fault.message.strip_prefix("unknown key `").and_then(|rest| rest.strip_suffix('`'));
@@ -374,7 +374,7 @@ fn with_keys_of_all(mut faults: Faults, of_all: &[String]) -> Faults {
     faults
 }
 
-/// What is written of haze, dust and scratches.
+/// Collects the nodes of haze, dust and scratches in the order that [`read_layers`] expects.
 fn soils<'a>(
     haze: &'a Option<Part<HazeForm>>,
     dust: &'a Option<Part<DustForm>>,
@@ -389,17 +389,17 @@ fn soils<'a>(
 struct FocusParams {
     /// Name of the group, one of `groups`.
     group: String,
-    /// Its travel relative to the others', toward the object where positive, not 0. Or else `table`.
+    /// Travel of the group relative to the others', toward the object if positive, not 0. Or give `table`.
     factor: Option<f64>,
-    /// Distances of the object (mm if bare, or inf), falling, two or more, each with the shift toward the object (mm if
-    /// bare). Or else `factor`.
+    /// Object distances (mm if bare, or inf), descending, two or more, each with the shift toward the object (mm if
+    /// bare). Or give `factor`.
     table: Option<Vec<(OrInfinity<Positive<Length>>, Length)>>,
-    /// `x`, of a lens with cylinders: as far as it takes to have the x-z section in focus, too, where the other groups, or the whole
-    /// lens, focus the y-z section. In place of both.
+    /// `x`, for a lens with cylinders: the group moves until the x-z section is in focus, too, while the other groups, or the whole
+    /// lens, focus the y-z section. Instead of `factor` and `table`.
     section: Option<Across>,
 }
 
-/// The section that a group follows.
+/// The section that a group keeps in focus.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -426,7 +426,7 @@ fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
         }
         (None, Some(points)) => {
             let points: Vec<_> = points.iter().map(|(distance, shift)| (distance.mm(), shift.mm())).collect();
-            let fault = || params.fault("table", "two or more distances, the farthest first, each with its shift");
+            let fault = || params.fault("table", "list two or more distances, the farthest first, each with its shift");
             GroupTravel::Table(FocusTable::new(&points).ok_or_else(|| fault().hint("such as [[inf, 0], [2000, 0.4]]"))?)
         }
         (None, None) | (Some(_), Some(_)) => {
@@ -439,7 +439,7 @@ fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
     Ok(FocusLaw { group, travel })
 }
 
-/// A fault for a group that the lens does not have, at `key`.
+/// Creates a fault at `key` for a group that the lens does not have.
 pub fn unknown_group(params: &Params, key: &str, name: &str, groups: &[Group]) -> Fault {
     let fault = params.fault(key, format!("the lens has no group `{name}`"));
     let known: Vec<&str> = groups.iter().map(|g| g.name.as_str()).collect();
@@ -450,13 +450,13 @@ pub fn unknown_group(params: &Params, key: &str, name: &str, groups: &[Group]) -
     })
 }
 
-/// A group of surfaces.
+/// A group of surfaces that move together.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GroupParams {
-    /// Its name.
+    /// Name of the group.
     name: String,
-    /// First and last surface, by number from 1 (a bend of the axis does not count).
+    /// First and last surface, by number from 1 (bends of the axis do not count).
     surfaces: [Whole<1, { u32::MAX as u64 }>; 2],
     /// Shift of the group along x and y, mm if bare; none if absent.
     decenter: Option<[Length; 2]>,
@@ -480,18 +480,18 @@ fn group(node: &StageNode, surfaces: usize) -> Result<Group, Faults> {
     })
 }
 
-/// The kind that an item of the list names.
+/// Returns the `kind` of an item of `surfaces`.
 fn kind_of(node: &StageNode) -> Option<&str> {
     node.node().get("kind").unwrap_or(node.node()).as_str()
 }
 
-/// By how much a semi-diameter may exceed the surface: published tables round that of a hemisphere up (the Minolta
+/// Fraction by which a semi-diameter may exceed the surface. Published tables round the semi-diameter of a hemisphere up (the Minolta
 /// fisheye's by 0.7 %).
 const BEYOND: f64 = 0.02;
 
-/// Where a surface ends, mm from its axis, if that is before `semi_diameter_mm` along both x and y.
+/// Returns where a surface ends, mm from its axis, if that is before `semi_diameter_mm` along both x and y.
 fn reach_mm(surface: &dyn Surface, semi_diameter_mm: f64) -> Option<f64> {
-    // As light finds it: where the sag is not a number, there is no surface.
+    // There is no surface where the sag is not a number, just as for light.
     let reaches = |r: f64| [(r, 0.0), (0.0, r)].iter().any(|(x, y)| surface.sag_mm(*x, *y).is_some_and(f64::is_finite));
     if reaches(semi_diameter_mm * (1.0 - BEYOND)) || !reaches(0.0) {
         return None;
@@ -501,11 +501,11 @@ fn reach_mm(surface: &dyn Surface, semi_diameter_mm: f64) -> Option<f64> {
         let middle = 0.5 * (inside + outside);
         if reaches(middle) { inside = middle } else { outside = middle }
     }
-    // As a person writes it.
+    // Rounded as a person would write it.
     Some((outside * 1e4).round() / 1e4)
 }
 
-/// An index that a surface states beside its glass or in place of one, with its Abbe number and the lines of both.
+/// Returns the index that a surface states besides its glass or instead of one, with its Abbe number and the lines of both.
 fn stated_figures(
     stated: &Place,
     place: &Params,
@@ -525,7 +525,7 @@ fn stated_figures(
     }
 }
 
-/// The medium that a surface states, or `None` for air. `nd` and `vd` of a surface hold for the reference lines.
+/// Returns the medium that a surface states, or `None` for air. `nd` and `vd` of a surface refer to the reference lines.
 fn medium(
     stated: &Place,
     place: &Params,
@@ -536,7 +536,7 @@ fn medium(
 ) -> Result<Option<LensMedium>, Faults> {
     let figures = stated_figures(stated, place, reference)?;
     let reference_nm = reference.mid.wavelength_nm;
-    // The index at the reference line, if that is where it is stated.
+    // The stated index, if it is stated at the reference line.
     let stated_nd = figures.filter(|(_, _, lines)| lines.mid.wavelength_nm == reference_nm).map(|(n, ..)| n);
     let Some(glass) = &stated.glass else {
         let Some((n, v, lines)) = figures else { return Ok(None) };
@@ -578,7 +578,7 @@ fn medium(
             let own = medium.index(lines.mid.wavelength_nm);
             if (n - own).abs() > INDEX_TOLERANCE {
                 let called = lines.mid.indexed("n");
-                let text = format!("surface {number}: {name} has {called} {own:.5}, the prescription states {n}");
+                let text = format!("surface {number}: {name} has {called} {own:.5}, but the prescription states {n}");
                 lens.warnings.push(text);
             }
         }
@@ -586,7 +586,7 @@ fn medium(
         return Ok(Some(LensMedium { medium, stated_nd: Some(stated_nd), label: name.to_owned() }));
     }
     let params = Params::section(glass.node().clone(), glass.path())?;
-    // A glass written out where it stands, with the keys of a glass file; one of figures alone is a model.
+    // A glass written out in place, with the keys of a glass file. A map of figures alone is a model glass.
     if ["formula", "table", "file", "name"].iter().any(|key| glass.node().get(key).is_some()) {
         let called = format!("surface {number}");
         let medium = Medium::from(file::from_params(&params, &called, resources)?);
@@ -603,7 +603,7 @@ fn medium(
     Ok(Some(LensMedium { stated_nd: Some(stated_nd), medium, label }))
 }
 
-/// Says where an Abbe number was probably forgotten: a glass without dispersion beside others that have one.
+/// Warns where an Abbe number was probably forgotten: at a glass without dispersion in a lens whose other glasses have one.
 fn warn_of_constant_indices(lens: &mut Lens) {
     let is_constant = |number: &usize| matches!(lens.media[*number].medium, Medium::Constant(_));
     let disperses = |number: &usize| matches!(lens.media[*number].medium, Medium::Model(_) | Medium::Glass(_));
@@ -613,19 +613,20 @@ fn warn_of_constant_indices(lens: &mut Lens) {
     }
     let text = |(at, number): (usize, usize)| {
         format!(
-            "surface {}: its glass ({}) has no dispersion, as the other glass of this lens has: add `vd: ...`, or `vd: 0` if there is none",
+            "surface {}: its glass ({}) has no dispersion, unlike the other glasses of this lens: add `vd: ...`, or `vd: 0` if \
+             there is none",
             at + 1,
             lens.media[number].label
         )
     };
-    // Where light goes into it, not where a stop or a mirror stands in it.
+    // Only where light enters the glass, not where a stop or a mirror stands in it.
     let into = lens.elements.iter().enumerate().filter(|(_, e)| e.medium_after != e.medium_before);
     let constant: Vec<String> =
         into.map(|(at, e)| (at, e.medium_after)).filter(|(_, number)| is_constant(number)).map(text).collect();
     lens.warnings.extend(constant);
 }
 
-/// Number of a medium: that of an equal one, or a new one.
+/// Returns the index of a medium in the list, and adds the medium if no equal one is there.
 fn remember(media: &mut Vec<LensMedium>, medium: LensMedium) -> usize {
     let same = |m: &LensMedium| m.label == medium.label && m.stated_nd == medium.stated_nd && m.medium == medium.medium;
     media.iter().position(same).unwrap_or_else(|| {
@@ -639,7 +640,7 @@ mod tests {
     use super::*;
     use spectra_core::surface::{FromSag, PerRay, SagShape};
 
-    /// A sphere by a root, whose sag beyond its radius is none or not a number, as its author thought of it or not.
+    /// A sphere computed with a root. Beyond its radius the sag is `None` if its author was careful, otherwise not a number.
     #[derive(Clone, Debug)]
     struct Root {
         radius_mm: f64,

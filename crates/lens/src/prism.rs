@@ -1,4 +1,4 @@
-//! `kind: prism` in a lens file.
+//! `kind: prism` in a lens file: a solid instead of a surface.
 
 use crate::Solid;
 use schemars::JsonSchema;
@@ -6,35 +6,36 @@ use serde::Deserialize;
 use spectra_core::math;
 use spectra_core::params::{Angle, Faults, Length, Params, Positive, Whole};
 
-/// The kind that is a solid, and no surface.
+/// The `kind` of an element that is a solid and not a surface.
 pub(crate) const PRISM: &str = "prism";
 
-/// A prism: a solid of flat faces that light passes by the nearest one, reflected totally where it must be.
+/// A prism: a solid with flat faces, in which light goes to the nearest face and is reflected totally where it must be.
 ///
-/// By `apex` and `side`, or by `corners`. What follows stands on the axis where it leaves the prism, at the reference line: no angle has to
-/// be worked out. `glass` is that of the prism; what is in front of it continues behind it.
+/// Its outline is given by `apex` and `side`, or by `corners`. Everything behind the prism is placed on the axis where it leaves, at the
+/// reference line, so no angle has to be computed. `glass` is that of the prism; the medium in front of the prism continues behind it.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct PrismParams {
     /// Angle between the two faces that the light passes, degrees if bare, more than 0, less than 180. With `side`.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
     apex: Option<Angle>,
-    /// Length of each of these faces, mm if bare; the axis meets the middle of the first.
+    /// Length of each of these two faces, mm if bare; the axis meets the middle of the first.
     side: Option<Positive<Length>>,
-    /// Angle of incidence of the axis on the first face, degrees if bare, between -90 and 90; that of least deviation if absent.
+    /// Angle of incidence of the axis on the first face, degrees if bare, between -90 and 90. The angle of least deviation if absent.
     #[schemars(extend("exclusiveMinimum" = -90, "exclusiveMaximum" = 90))]
     incidence: Option<Angle>,
-    /// Corners of the outline, in order, each [y, z] in mm: z along the axis from the place where the thickness in front leads to, y up.
+    /// Corners of the outline, in order, each [y, z] in mm. z runs along the axis from the point to which the thickness in front leads; y
+    /// is up.
     #[schemars(length(min = 3, max = 64))]
     corners: Option<Vec<[Length; 2]>>,
-    /// Full width along x, mm if bare; its sides are ground black. It ends nowhere if absent.
+    /// Full width along x, mm if bare; the end faces are ground black. The prism has no ends if absent.
     width: Option<Positive<Length>>,
-    /// Faces that are silvered, by number: the first runs from the first corner to the second. None if absent.
+    /// Numbers of the silvered faces: the first runs from the first corner to the second. None if absent.
     #[serde(default)]
     silvered: Vec<Whole<1, 64>>,
 }
 
-/// Keys of surfaces that a prism has not.
+/// Keys of surfaces that a prism does not have.
 const NOT_OF_A_PRISM: [&str; 12] = [
     "semi-diameter",
     "outer-semi-diameter",
@@ -50,7 +51,7 @@ const NOT_OF_A_PRISM: [&str; 12] = [
     "separation",
 ];
 
-/// Faults of keys that a prism has not.
+/// Reports a fault for each key that a prism does not have.
 pub(crate) fn misplaced(place: &Params) -> Faults {
     let mut faults = Faults::new();
     for key in NOT_OF_A_PRISM.iter().filter(|key| place.get(key).is_some()) {
@@ -63,7 +64,7 @@ pub(crate) fn misplaced(place: &Params) -> Faults {
 }
 
 impl PrismParams {
-    /// The prism, of a glass whose index is so many times that of what is around it.
+    /// Builds the prism from a glass whose index is `index` times that of the surrounding medium.
     pub(crate) fn solid(&self, params: &Params, medium: usize, index: f64) -> Result<Solid, Faults> {
         let (corners, key) = match (self.apex, self.side, &self.corners) {
             (Some(apex), Some(side), None) => {
@@ -74,7 +75,7 @@ impl PrismParams {
                         "apex",
                         "no light along the axis passes both sides: the apex is too large for this glass",
                     );
-                    return Err(fault.hint("a smaller angle, or `incidence: ...` where it is to be reflected").into());
+                    return Err(fault.hint("choose a smaller angle, or set `incidence: ...` for a reflection").into());
                 }
                 let incidence_rad = self.incidence.map_or_else(|| math::asin(least), Angle::rad);
                 (Solid::of_apex(apex_rad, side.mm(), incidence_rad), "apex")
@@ -84,7 +85,7 @@ impl PrismParams {
             }
             _ => {
                 let fault =
-                    params.fault_here("a prism has `apex` and `side`, perhaps with `incidence`, or else `corners`");
+                    params.fault_here("a prism needs `apex` and `side`, perhaps with `incidence`, or else `corners`");
                 let hint = "such as `apex: 60 deg, side: 30 mm`, or `corners: [[-15, 0], [15, 0], [0, 15]]`";
                 return Err(fault.hint(hint).into());
             }

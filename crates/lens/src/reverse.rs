@@ -1,39 +1,39 @@
-//! A lens mounted the other way round.
+//! Reverses a lens, as mounted the other way round.
 
 use crate::pose::{AxisBreak, Displacement};
 use crate::{Element, Lens};
 use spectra_core::surface::Action;
 
-/// Why a lens cannot be turned round.
+/// The reason why a lens cannot be reversed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReverseError {
-    /// It looks back to where its light comes from; turned round it has no front.
+    /// The lens has an odd number of mirrors and sends light back to the object side, so reversed it has no front.
     #[error("a lens with an odd number of mirrors cannot be reversed: its image is on the object side")]
     OddMirrors,
-    /// Its axis leaves a prism by another way than it enters.
+    /// The lens has a prism, whose axis enters and leaves by different faces.
     #[error("a lens with a prism cannot be reversed: write its file the other way round")]
     Prism,
 }
 
-/// Seen from the other side, half a turn about y away: right is left, front is rear.
+/// Converts a displacement to the frame turned by half a turn about y, in which right is left and front is rear.
 fn turned(d: Displacement) -> Displacement {
     let ([x, y], [a, b, c]) = (d.decenter_mm, d.tilt_rad);
     Displacement { decenter_mm: [-x, y], tilt_rad: [-a, b, -c], ..d }
 }
 
-/// The way back, seen from the other side.
+/// Returns the inverse of a displacement, seen from the other side.
 fn undone(d: Displacement) -> Displacement {
     let ([x, y], [a, b, c]) = (d.decenter_mm, d.tilt_rad);
     Displacement { decenter_mm: [x, -y], tilt_rad: [a, -b, c], tilt_first: !d.tilt_first }
 }
 
 impl Lens {
-    /// The lens turned round by half a turn about its y axis: the last surface is the first. Its image plane stands where
-    /// infinity is sharp by paraxial optics, or as far away as before where there is no such place behind it. It focuses
-    /// as a whole, and bends of the axis in front of the image plane are gone.
+    /// Returns the lens turned by half a turn about its y axis, so that the last surface is the first. The image plane stands at the
+    /// paraxial focus for infinity, or at the same distance as before if that focus does not lie behind the lens. The reversed lens focuses
+    /// as a whole, and bends of the axis in front of the image plane are removed.
     ///
     /// # Errors
-    /// [`ReverseError`].
+    /// [`ReverseError`] if the lens has an odd number of mirrors or a prism.
     pub fn reversed(&self) -> Result<Self, ReverseError> {
         if self.elements.iter().filter(|e| e.action == Action::Reflect).count() % 2 == 1 {
             return Err(ReverseError::OddMirrors);
@@ -51,7 +51,7 @@ impl Lens {
             if at + 1 == count {
                 continue;
             }
-            // The way to the next one is the way that led here: bends and distances in the other order.
+            // The path to the next element is the path that led here, with bends and distances in reverse order.
             let here = &self.elements[count - 1 - at];
             e.thickness_mm = here.breaks.last().map_or(self.elements[count - 2 - at].thickness_mm, |b| b.thickness_mm);
         }

@@ -1,22 +1,22 @@
-//! Slips of typing that show in the shape of a lens: surfaces that pass through each other, an image that is none.
+//! Signs of typing mistakes in the shape of a lens: surfaces that pass through each other, an image that cannot be recorded.
 
 use crate::{Element, Lens};
 use spectra_core::surface::Action;
 
-/// Steps over the radius.
+/// Number of steps from the axis to the rim in the search for a crossing.
 const STEPS: usize = 64;
-/// Halvings between two of them.
+/// Number of halvings of the step in which two surfaces cross.
 const HALVINGS: usize = 40;
-/// Surfaces may meet at their very rims, this part of the semi-diameter and beyond: published semi-diameters are rounded up
+/// Surfaces may meet at their very rims, beyond this fraction of the semi-diameter. Published semi-diameters are rounded up
 /// (those of three library lenses by 2 to 3 %), and edges that touch are ground.
 const RIM: f64 = 0.95;
-/// Gaps are compared with this slack, mm.
+/// Tolerance for comparing gaps, mm.
 const TOUCH_MM: f64 = 1e-6;
 
 impl Lens {
-    /// What looks like a slip in the prescription, each with a hint: neighbors that meet within their clear semi-diameters,
-    /// an image of distant objects in front of the last surface or of the whole lens, light that a mirror
-    /// sends away from the next surface. Nothing is said of lenses with a bent axis, and little of those with mirrors.
+    /// Returns a warning, with a hint, for each sign of a mistake in the prescription: neighbors that meet within their clear
+    /// semi-diameters, an image of distant objects in front of the last surface or of the whole lens, or a mirror that
+    /// sends light away from the next surface. Lenses with a bent axis are not checked, and those with mirrors only for the last sign.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         let straight = |e: &Element| {
@@ -51,14 +51,14 @@ impl Lens {
         }
         if efl.is_finite() && efl < 0.0 {
             all.push(format!(
-                "the lens spreads light (focal length {efl:.2} mm), so no image of distant objects falls on film: do all radii have the sign of \
-                 another convention?"
+                 "the lens spreads light (focal length {efl:.2} mm), so no image of distant objects falls on film: do all radii follow \
+                  the opposite sign convention?"
             ));
         }
         all
     }
 
-    /// Surfaces that the light of a mirror runs away from, where all lie on one axis.
+    /// Warns of surfaces that the light from a mirror runs away from, if all surfaces lie on one axis.
     fn behind_mirrors(&self) -> Vec<String> {
         let on_axis = |e: &Element| e.solid.is_none() && (e.pose.is_on_axis() || e.pose.reversed().is_on_axis());
         if !self.elements.iter().all(on_axis) {
@@ -85,7 +85,7 @@ impl Lens {
         all
     }
 
-    /// Distance from the axis at which two surfaces meet within the clear semi-diameters of both, mm.
+    /// Finds the distance from the axis at which two surfaces meet within the clear semi-diameters of both, mm; `None` if they do not.
     fn meeting_mm(&self, front: usize, rear: usize) -> Option<f64> {
         let (front, rear) = (&self.elements[front], &self.elements[rear]);
         let rim = match (front.semi_diameter_mm, rear.semi_diameter_mm) {
@@ -98,7 +98,7 @@ impl Lens {
         };
         [(1.0, 0.0), (0.0, 1.0)].into_iter().find_map(|(x, y)| {
             let gap = |r: f64| Some(z(rear, r * x, r * y)? - z(front, r * x, r * y)?);
-            // An imagined step back between two planes is none of our business.
+            // Vertices in reverse order, a formal step back between two planes, are not checked.
             gap(0.0).filter(|g| *g >= -TOUCH_MM)?;
             let step = |i: usize| rim * i as f64 / STEPS as f64;
             let past = (1..=STEPS).find(|i| gap(step(*i)).is_some_and(|g| g < -TOUCH_MM))?;

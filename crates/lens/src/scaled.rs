@@ -1,4 +1,4 @@
-//! A lens at another size: all its lengths times a factor, so that angles, f-numbers and glasses stay what they are.
+//! Scaling: multiplies all lengths of a lens by a factor, so that angles, f-numbers and glasses stay the same.
 
 use crate::aperture::{Aperture, Shape};
 use crate::focus::GroupTravel;
@@ -7,23 +7,24 @@ use crate::solid::Solid;
 use crate::{Element, Lens};
 use std::sync::Arc;
 
-/// Why a lens cannot be scaled.
+/// The reason why a lens cannot be scaled.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScaleError {
-    /// A surface does not know how; its number, from 1, and its kind.
+    /// A surface of a kind that does not support scaling; its number, from 1, and its kind.
     #[error("surface {0} (`{1}`) does not say how it scales")]
     Surface(usize, String),
-    /// A surface has a drawing as its aperture; its number, from 1.
+    /// A surface has a drawing as its aperture, which is not scaled; its number, from 1.
     #[error("surface {0} has a drawing as its aperture, which is not scaled")]
     Drawing(usize),
 }
 
 impl Lens {
-    /// The lens with all its lengths times `factor`, above 0: radii, gaps, rims, apertures, displacements, and how groups move. Layers
-    /// that act by the wavelength stay as they are: coatings, gaps of air in cement, the lines of a grating, the rings that a tool left.
+    /// Returns the lens with all its lengths multiplied by `factor`, above 0: radii, gaps, rims, apertures, displacements, and how groups
+    /// move. Layers that act by the wavelength stay unchanged: coatings, gaps of air in cement, the lines of a grating, the rings left by a
+    /// tool.
     ///
     /// # Errors
-    /// [`ScaleError`]
+    /// [`ScaleError`] if a surface or an aperture cannot be scaled.
     pub fn scaled(mut self, factor: f64) -> Result<Self, ScaleError> {
         for (at, element) in self.elements.iter_mut().enumerate() {
             scale_element(element, at + 1, factor)?;
@@ -46,7 +47,7 @@ impl Lens {
 fn scale_element(element: &mut Element, number: usize, factor: f64) -> Result<(), ScaleError> {
     let unknown = || ScaleError::Surface(number, element.kind.clone());
     element.surface = element.surface.scaled(factor).ok_or_else(unknown)?;
-    // What the file says of it holds no longer.
+    // The parameters in the file no longer describe this surface.
     element.parameters = None;
     element.solid = element.solid.as_deref().map(|solid| Arc::new(Solid::scaled(solid, factor)));
     element.breaks.iter_mut().for_each(|axis| *axis = axis.scaled(factor));
@@ -69,7 +70,7 @@ fn scale_element(element: &mut Element, number: usize, factor: f64) -> Result<()
 }
 
 impl Aperture {
-    /// With all lengths times `factor`; `None` of a drawing.
+    /// Returns the aperture with all lengths multiplied by `factor`; `None` for a drawing.
     fn scaled(&self, factor: f64) -> Option<Self> {
         let by = |mm: &f64| mm * factor;
         let shape = match &self.shape {

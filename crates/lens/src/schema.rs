@@ -1,4 +1,4 @@
-//! JSON Schema of what stands in a lens file, for editors.
+//! JSON Schemas of the parts of a lens file, for editors.
 
 use crate::aperture::ApertureKeys;
 use crate::coating::CoatingKeys;
@@ -9,25 +9,25 @@ use serde_json::json;
 use spectra_core::params::Kinds;
 use std::borrow::Cow;
 
-/// What every surface may state beside the parameters of its kind: the schema of a map.
+/// Returns the schema of the keys that every surface may have besides the parameters of its kind, as a map.
 #[must_use]
 pub fn surface_keys(generator: &mut SchemaGenerator) -> Schema {
     Place::json_schema(generator)
 }
 
-/// What every coating may say beside the parameters of its kind: the schema of a map.
+/// Returns the schema of the keys that every coating may have besides the parameters of its kind, as a map.
 #[must_use]
 pub fn coating_keys(generator: &mut SchemaGenerator) -> Schema {
     CoatingKeys::json_schema(generator)
 }
 
-/// What every aperture may say beside the parameters of its shape: the schema of a map.
+/// Returns the schema of the keys that every aperture may have besides the parameters of its shape, as a map.
 #[must_use]
 pub fn aperture_keys(generator: &mut SchemaGenerator) -> Schema {
     ApertureKeys::json_schema(generator)
 }
 
-/// An item of `surfaces`.
+/// The schema of an item of `surfaces`: a surface, a prism, or a bend of the axis.
 pub(crate) struct SurfaceOrBreak;
 
 impl JsonSchema for SurfaceOrBreak {

@@ -1,7 +1,8 @@
-//! Cement that has come apart: a gap of air between two glasses, over a part of a cemented surface.
+//! Separated cement: a gap of air between two glasses, over a part of a cemented surface.
 //!
-//! The gap is as thin as light is long, so it is a layer of index 1 in which light interferes with itself: colored fringes where it is
-//! as narrow as that, and beyond the angle of total reflection only what tunnels through. Light runs on as if the cement held.
+//! The gap is about as thin as a wavelength, so it is a layer of index 1 in which light interferes with itself. Where the gap is that
+//! narrow, colored fringes appear. Beyond the angle of total reflection only light that tunnels passes. Rays continue as if the cement
+//! held.
 
 use crate::aperture::{Aperture, ApertureForm, read as read_apertures};
 use crate::coating::Coating;
@@ -10,22 +11,22 @@ use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Part, Positive, StageNode};
 use spectra_core::resources::Resources;
 
-/// Its key in a lens file.
-pub(crate) const KEY: &str = "separation";
+/// The key of a separation in a lens file.
+pub const KEY: &str = "separation";
 const NM_PER_MM: f64 = 1e6;
 
-/// Cement that has come apart: air between two glasses.
+/// Cement that has separated: a gap of air between two glasses.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(inline)]
 pub struct SeparationForm {
-    /// Width of the gap of air, mm if bare, 1 nm to 100 um; with `depth` its width at the edge.
+    /// Width of the gap of air, mm if bare, 1 nm to 100 um; with `depth`, the width at the edge.
     #[schemars(range(min = 0.000_001, max = 0.1))]
     gap: Positive<Length>,
-    /// How far it reaches in from the edge of the surface, mm if bare; the gap narrows to nothing there, with Newton's rings on the way.
-    /// If absent, the gap is as wide everywhere.
+    /// How far the gap reaches in from the edge of the surface, mm if bare. It narrows to nothing there, with Newton's rings on the way.
+    /// If absent, the gap has the same width everywhere.
     depth: Option<Positive<Length>>,
-    /// Where it is, as of `haze`. All over the surface if absent.
+    /// Where the gap is, written as for `haze`. All over the surface if absent.
     #[serde(rename = "where")]
     place: Option<Part<ApertureForm>>,
 }
@@ -33,16 +34,16 @@ pub struct SeparationForm {
 /// A gap of air in a cemented surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Separation {
-    /// Its width, nm; at the clear edge of the surface where it has a depth.
+    /// Width of the gap, nm; if it has a depth, the width at the clear edge of the surface.
     pub gap_nm: f64,
-    /// How far it reaches in from the clear edge, mm, where it ends in nothing; `None` where it is as wide everywhere.
+    /// How far the gap reaches in from the clear edge, mm, narrowing to nothing; `None` if its width is the same everywhere.
     pub depth_mm: Option<f64>,
-    /// Where it is: all over the surface, or where all of these let light pass.
+    /// Where the gap is: all over the surface if empty, otherwise where all of these apertures let light pass.
     pub places: Vec<Aperture>,
 }
 
 impl Separation {
-    /// Its width at a place of the surface, nm; 0 where the cement holds.
+    /// Width of the gap at a point of the surface (x, y in mm), nm; 0 where the cement holds.
     #[must_use]
     pub fn gap_nm(&self, [x_mm, y_mm]: [f64; 2], semi_diameter_mm: Option<f64>) -> f64 {
         let (Some(depth_mm), Some(edge_mm)) = (self.depth_mm, semi_diameter_mm) else { return self.gap_nm };
@@ -50,23 +51,26 @@ impl Separation {
         self.gap_nm * (1.0 - inward_mm / depth_mm).clamp(0.0, 1.0)
     }
 
-    /// The gap at a place of the surface, mm, as a coating, and the part of the light that meets it. `None` where the cement holds.
-    pub(crate) fn at(&self, place: [f64; 2], semi_diameter_mm: Option<f64>) -> Option<(f64, Coating)> {
+    /// Returns the fraction of the light that meets the gap at a point of the surface (x, y in mm), and the gap as a coating. Returns
+    /// `None` where the cement holds.
+    pub fn at(&self, place: [f64; 2], semi_diameter_mm: Option<f64>) -> Option<(f64, Coating)> {
         let thickness_nm = self.gap_nm(place, semi_diameter_mm);
         let through = |aperture: &Aperture| aperture.transmittance(place[0], place[1], semi_diameter_mm);
         let part: f64 = if thickness_nm > 0.0 { self.places.iter().map(through).product() } else { 0.0 };
         (part > 0.0).then_some((part, Coating::Layer { index: 1.0, thickness_nm }))
     }
 
-    pub(crate) fn is_round(&self) -> bool {
+    /// Returns whether the region of the gap is symmetric about the axis.
+    #[must_use]
+    pub fn is_round(&self) -> bool {
         self.places.iter().all(Aperture::is_round)
     }
 }
 
-/// A separation, as it is written.
+/// Reads a separation from a lens file.
 ///
 /// # Errors
-/// A key is faulty.
+/// Faults if a key is wrong, each with its place.
 pub fn read_separation(node: &StageNode, resources: &dyn Resources) -> Result<Separation, Faults> {
     let params = Params::section(node.node().clone(), node.path())?;
     let p: SeparationForm = params.parse()?;

@@ -1,8 +1,16 @@
-//! Prisms: solids of flat faces in which light goes to the nearest one, whatever the order.
+//! Prisms: solids with flat faces, in which light goes to the nearest face rather than from surface to surface in a fixed order.
 //!
-//! The outline is a polygon in the y-z plane, drawn out along x. Light enters at the face that it meets first; inside it goes on from face
-//! to face, reflected totally or by a silvered one, until a face lets it out; where it meets the prism again it enters again. What the
-//! faces reflect of light that they let pass is not followed.
+//! A prism (`kind: prism`) is one element of the lens but not a surface. The outline is a polygon in the y-z plane, extended along x. The
+//! tracer passes rays through it one by one. Light enters at the first face that it meets. Inside it goes from face to face, at most 256
+//! times, and is reflected totally or by silver until a face refracts it out. Light that then meets the prism again enters it again. Each
+//! face weighs light by the prism's own coating or that of the lens. The part that is reflected at a face that light passes is booked as
+//! lost elsewhere and not followed. Light keeps its polarization from face to face, whether or not the batch carries polarization.
+//!
+//! The axis is traced through the prism once, at the reference line. Everything behind the prism is placed on the axis where it leaves.
+//! First-order optics uses the length of the axis inside the prism divided by the index.
+//!
+//! **Limits.** Prisms take no part in ghosts: a scene that asks for ghosts through a prism gets a warning. A lens with a prism cannot be
+//! reversed.
 
 use crate::coating::{Amplitudes, Coating, Polarizing};
 use crate::pose::{Displacement, Pose};
@@ -10,67 +18,70 @@ use glam::{DVec2, DVec3};
 use spectra_core::Loss;
 use spectra_core::math;
 
-/// Faces that light meets at most.
+/// Largest number of faces that a ray may meet in one prism.
 const MOST_FACES: usize = 256;
-/// Light that meets a face nearer than this stands on it, mm.
+/// A ray that meets a face nearer than this starts on that face, mm.
 const ON_THE_FACE_MM: f64 = 1e-9;
-/// Light along the edges of the prism never meets its outline: sine of the angle to them.
+/// Smallest sine of the angle between a ray and the edges of the prism. A ray nearly parallel to them never meets the outline.
 const ALONG: f64 = 1e-9;
-/// The axis leaves straight where its direction is this near to the axis: rounding.
+/// The axis counts as undeviated if the y component of its unit direction is smaller than this; the rest is rounding.
 const STRAIGHT: f64 = 1e-12;
 
-/// A prism.
+/// A prism with flat faces, extended along x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
-    /// Corners in the y-z plane of its frame, mm: y, z. The outline runs so that the inside lies on the left of each face, seen with y
-    /// to the right and z upward.
+    /// Corners in the y-z plane of the prism's frame, mm: y, z. The outline runs so that the inside lies to the left of each face, seen
+    /// with y to the right and z upward.
     corners: Vec<DVec2>,
-    /// Outward unit normals of the faces, of which each runs from the corner of its number to the next one.
+    /// Outward unit normals of the faces, (y, z). Face k runs from corner k to the next corner.
     normals: Vec<DVec2>,
-    /// Which faces reflect as mirrors.
+    /// Whether each face is silvered and reflects as a mirror.
     silvered: Vec<bool>,
-    /// Half the width along x, mm; infinite where the prism ends nowhere.
+    /// Half the width along x, mm; infinite if the prism has no end.
     half_width_mm: f64,
-    /// Its glass: index into [`crate::Lens::media`].
+    /// Glass of the prism: index into [`crate::Lens::media`].
     pub medium: usize,
-    /// Where the axis leaves, in its frame: z along the light, x as it was.
+    /// Pose of the axis where it leaves the prism, in the prism's frame: z along the light, x unchanged.
     pub exit: Pose,
-    /// Length of the axis inside, mm.
+    /// Length of the axis inside the prism, mm.
     pub inside_mm: f64,
-    /// That over the index of the glass relative to what is outside, mm: as far as first order goes.
+    /// Length of the axis inside, divided by the index of the glass relative to the medium outside, mm: the length that first order counts.
     pub reduced_mm: f64,
 }
 
-/// Why corners make no prism, or the axis does not pass it.
+/// The reason why corners make no valid prism, or why the axis does not pass it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SolidError {
     /// Fewer than three corners, or two of them in the same place.
     #[error("a prism has three corners or more, no two of them in the same place")]
     Corners,
-    /// Faces cross.
+    /// Two faces of the outline cross; their numbers, from 1.
     #[error("faces {0} and {1} of the prism cross")]
     Crossing(usize, usize),
-    /// The axis passes beside.
+    /// The axis misses the prism.
     #[error("the axis does not meet the prism")]
     Beside,
-    /// The axis stays inside.
+    /// The axis never leaves the prism.
     #[error("light along the axis does not leave the prism")]
     Trapped,
 }
 
-/// Light that passed a prism.
+/// A ray that has passed through a prism.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Passed {
+pub struct Passed {
+    /// Point where the ray leaves the prism, mm in the frame of the prism.
     pub position: DVec3,
+    /// Unit direction of the ray where it leaves the prism.
     pub direction: DVec3,
-    /// Ways outside (of the line to the place of entry, negative backward) and inside, mm.
+    /// Path length from the start of the ray to the point of entry, mm; negative if that point lies behind the start.
     pub outside_mm: f64,
+    /// Path length inside the glass, mm.
     pub inside_mm: f64,
 }
 
 impl Solid {
-    /// With all lengths times `factor`.
-    pub(crate) fn scaled(&self, factor: f64) -> Self {
+    /// Returns the prism with all lengths multiplied by `factor`.
+    pub fn scaled(&self, factor: f64) -> Self {
         Self {
             corners: self.corners.iter().map(|corner| *corner * factor).collect(),
             half_width_mm: self.half_width_mm * factor,
@@ -81,11 +92,12 @@ impl Solid {
         }
     }
 
-    /// By its corners (y and z in mm, either way round), the faces that are silvered (from 0), half its width along x, mm, and the index of its
-    /// glass over that of what is outside, for the axis.
+    /// Creates a prism from its corners (y and z in mm, in either sense of rotation), the silvered faces (numbers from 0), half the width
+    /// along x, mm, and the medium of its glass. `relative_index`, the index of the glass over that of the medium outside, is used to trace
+    /// the axis.
     ///
     /// # Errors
-    /// [`SolidError`]
+    /// [`SolidError`] if the corners make no valid outline or the axis does not pass the prism.
     pub fn new(
         corners: Vec<[f64; 2]>,
         silvered: &[usize],
@@ -121,7 +133,7 @@ impl Solid {
         } else {
             axis.direction
         };
-        // About x, so that z runs along the light: exact for straight and turned back.
+        // A rotation about x so that z runs along the light; exact where the axis goes straight on or straight back.
         let angle = if way.y == 0.0 {
             if way.z > 0.0 { 0.0 } else { std::f64::consts::PI }
         } else {
@@ -133,31 +145,32 @@ impl Solid {
         Ok(own)
     }
 
-    /// Corners of a prism whose two sides of this length, mm, meet at an apex of this angle, rad, above; the axis meets the middle of the
-    /// first side at this angle of incidence, rad.
+    /// Returns the corners of a prism whose two sides, each `side_mm` long, meet at the top at an apex angle of `apex_rad`. The axis meets
+    /// the middle of the first side at the angle of incidence `incidence_rad`.
     #[must_use]
     pub fn of_apex(apex_rad: f64, side_mm: f64, incidence_rad: f64) -> Vec<[f64; 2]> {
         let (s, c) = (math::sin(incidence_rad), math::cos(incidence_rad));
-        // Along the first face toward the apex, and into the glass.
+        // Unit vectors along the first face toward the apex, and into the glass.
         let (up, inward) = (DVec2::new(c, s), DVec2::new(-s, c));
         let top = 0.5 * side_mm * up;
         let down = -up * math::cos(apex_rad) + inward * math::sin(apex_rad);
         [-top, top, top + side_mm * down].map(|corner| corner.to_array()).to_vec()
     }
 
-    /// The corners, y and z in mm of its frame.
+    /// Returns the corners, y and z in mm, in the frame of the prism.
     #[must_use]
     pub fn corners(&self) -> Vec<[f64; 2]> {
         self.corners.iter().map(|c| c.to_array()).collect()
     }
 
-    /// The radius about its origin that holds its outline, mm.
+    /// Radius about the origin of the prism that contains its outline, mm.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
         self.corners.iter().map(|c| c.length()).fold(0.0, f64::max)
     }
 
-    /// The nearest face that a ray meets beyond `from`: outside those that it enters by, inside those that it can leave by.
+    /// Finds the nearest face ahead of point `p` along direction `d`, and the distance to it. Outside only faces by which the ray can enter
+    /// count, inside only faces by which it can leave. Face `last` is skipped.
     fn nearest(&self, p: DVec3, d: DVec3, inside: bool, last: Option<usize>) -> Option<(usize, f64)> {
         let (p2, d2) = (DVec2::new(p.y, p.z), DVec2::new(d.y, d.z));
         let mut best: Option<(usize, f64)> = None;
@@ -171,7 +184,7 @@ impl Solid {
             let along = (p2 + d2 * t - a).dot(b - a) / (b - a).length_squared();
             let slack = if inside { ON_THE_FACE_MM } else { 0.0 };
             if t > -ON_THE_FACE_MM && (-slack..=1.0 + slack).contains(&along) && best.is_none_or(|(_, best)| t < best) {
-                // Outside, a face ends at its sides.
+                // Seen from outside, a face ends at the sides of the prism.
                 if inside || (p.x + t * d.x).abs() <= self.half_width_mm {
                     best = Some((k, t));
                 }
@@ -180,9 +193,13 @@ impl Solid {
         best
     }
 
-    /// Takes a ray through, given in its frame by any point of its line, where the index inside is `index` times that outside. `face` hears
-    /// of each face that it meets.
-    pub(crate) fn pass(
+    /// Traces a ray through the prism. The ray is given in the prism's frame by any point of its line, mm, and its unit direction. `index`
+    /// is the index of the glass over that of the medium outside. `face` is called for each face that the ray meets.
+    ///
+    /// # Errors
+    /// [`Loss::Missed`] if the ray meets no face, [`Loss::Vignetted`] if it meets a ground side, and [`Loss::Absorbed`] if it cannot get in
+    /// or out.
+    pub fn pass(
         &self,
         position: DVec3,
         direction: DVec3,
@@ -194,7 +211,7 @@ impl Solid {
         if speed < ALONG {
             return Err(Loss::Missed);
         }
-        // Back along the line to where it is in front of the prism.
+        // Go back along the line until the point is in front of the prism.
         let back =
             -(DVec2::new(position.y, position.z).dot(across) / (speed * speed)) - (self.reach_mm() + 1.0) / speed;
         let (mut p, mut d) = (position + back * direction, direction);
@@ -211,11 +228,11 @@ impl Solid {
             p += d * t;
             *(if inside { &mut inside_mm } else { &mut outside_mm }) += t;
             if p.x.abs() > self.half_width_mm {
-                // The ground sides of the prism.
+                // The ray meets a ground side of the prism.
                 return Err(Loss::Vignetted);
             }
             let outward = DVec3::new(0.0, self.normals[k].x, self.normals[k].y);
-            // Against the light.
+            // The normal that points against the light.
             let normal = if inside { -outward } else { outward };
             let cosine = -d.dot(normal);
             let ratio = if inside { index } else { 1.0 / index };
@@ -223,7 +240,7 @@ impl Solid {
             last = Some(k);
             if self.silvered[k] || inner <= 0.0 {
                 if !inside {
-                    // The back of a mirror, or total reflection at the outside.
+                    // The ray meets the back of a mirror, or is totally reflected on the outside.
                     return Err(Loss::Absorbed);
                 }
                 face(&Face {
@@ -243,21 +260,23 @@ impl Solid {
     }
 }
 
-/// A face that light meets.
+/// A meeting of a ray with a face of a prism.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Face {
-    /// Of the light in front of it.
+pub struct Face {
+    /// Unit direction of the ray in front of the face.
     pub direction: DVec3,
-    /// Against the light.
+    /// Unit normal of the face, pointing against the light.
     pub normal: DVec3,
-    /// Of the angle of incidence.
+    /// Cosine of the angle of incidence.
     pub cosine: f64,
+    /// What the light does at the face.
     pub bend: Bend,
 }
 
 impl Face {
-    /// What the face does to s and p light by its coating between a medium of index `n` and glass of index `inside`, or by its silver.
-    pub(crate) fn polarizes(
+    /// Returns what the face does to s and p light: by its coating between a medium of index `n` and glass of index `inside`, or by its
+    /// silver.
+    pub fn polarizes(
         &self,
         [n, inside]: [f64; 2],
         wavelength_nm: f64,
@@ -273,16 +292,20 @@ impl Face {
     }
 }
 
-/// What light does at a face.
+/// What light does at a face of a prism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Bend {
+pub enum Bend {
+    /// The light enters the glass.
     In,
+    /// The light leaves the glass.
     Out,
+    /// The light is reflected by a silvered face.
     Mirror,
+    /// The light is totally reflected inside the glass.
     Total,
 }
 
-/// Whether two lines, each a start and a way, cross between their ends.
+/// Whether two line segments, each given by its start and its extent, cross.
 fn crosses([a, u]: [DVec2; 2], [b, v]: [DVec2; 2]) -> bool {
     let det = u.perp_dot(v);
     let (s, t) = ((b - a).perp_dot(v) / det, (b - a).perp_dot(u) / det);

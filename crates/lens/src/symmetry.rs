@@ -1,14 +1,14 @@
-//! Whether a lens looks the same from all azimuths.
+//! Tells whether a lens is symmetric about its axis.
 
 use crate::{Element, Pose};
 
-/// Azimuths that a sag is compared at, as (cosine, sine): no symmetry of a few folds passes all of them.
+/// Azimuths at which sags are compared, as (cosine, sine). No surface with a symmetry of only a few folds passes at all of them.
 const AZIMUTHS: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-0.6, 0.8), (0.28, -0.96)];
-/// Radii that are looked at, as parts of the rim.
+/// Radii at which sags are compared, as fractions of the rim.
 const RADII: [f64; 3] = [0.3, 0.65, 0.95];
-/// Sags that differ by less, mm, are the same.
+/// Sags that differ by less than this, mm, count as equal.
 const SAME_MM: f64 = 1e-12;
-/// Rim where a surface states none, mm.
+/// Rim radius of a surface that states none, mm.
 const RIM_MM: f64 = 1.0;
 
 pub(crate) fn has_axis_of_revolution(elements: &[Element], image: &Pose) -> bool {

@@ -1,4 +1,15 @@
-//! Backward: each pixel asks, through the rear of the lens, what light arrives.
+//! Backward rendering: traces rays from each pixel through the rear of the lens and looks up the light that arrives along them.
+//!
+//! **One ray.** Each sample has five numbers: wavelength, place in the pixel (2), place on the pupil (2). The wavelength density turns the
+//! first into a wavelength and divides the weight by its density. The imager places the ray on the film. [`RearPupil`] aims it at what
+//! passes the lens and multiplies its weight by cosine, cosine and area over the square of the distance. The tracer follows it, and the
+//! source multiplies by the radiance along it. The weight times each channel's response is rounded to an integer and added.
+//!
+//! **Core and rim.** Rays that are lost at a rim are the main source of noise. With 1 % of them lost at random, a layer of color film that
+//! sees a third of the rays needs 300 rays for 1 % noise, however smooth the light is. The core and the rim of what passes are therefore
+//! traced separately ([`AimPart`]). Each sample sends a ray to the core, where almost none ends. One in 16 samples of a pixel also brings a
+//! ray to the rim along. That ray stands for 16 and weighs little, so it hardly matters whether it ends. Neighboring pixels bring it with
+//! different samples. Rays to the rim have streams of their own and are in no count of rays.
 
 use crate::blame::Blame;
 use crate::error::RenderError;
@@ -17,33 +28,36 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
 use spectra_core::numbers::{Numbers, StageKey, Stretch};
 use spectra_core::stage::{Launch, Radiance};
-use spectra_lens::{AimPart, RIM_EVERY, RearPupil, Travel};
+use spectra_optics::{AimPart, RIM_EVERY, RearPupil};
+use spectra_tracer::Travel;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Samples of each pixel in a unit of work.
+/// Samples per pixel in one unit of work.
 pub(crate) const SAMPLES_PER_PASS: u32 = 32;
 
-/// What numbers of its own stages draw by.
+/// Estimator name from which the stages derive their own random numbers.
 const ESTIMATOR: &str = "backward";
-/// The same of rays to the rim of the pupil, and what sets their numbers apart from those of the same pixel.
+/// Estimator name from which the stages derive their own random numbers for rays to the rim of the pupil.
 const RIM: &str = "rim";
+/// Stream bit of rays to the rim. It keeps their random numbers apart from those of the pixel's other rays.
 const RIM_STREAM: u64 = 1 << 40;
-/// What says which samples bring them along.
+/// Stream of the random numbers that decide which samples bring a ray to the rim along.
 const SHIFT_STREAM: u64 = 1 << 41;
 
+/// Estimator that traces rays from the imager to the source.
 pub(crate) struct Backward {
     pipeline: Arc<Pipeline>,
     rear: Arc<RearPupil>,
     numbers: Numbers,
-    /// Says which samples bring a ray to the rim along.
+    /// Random numbers that decide which samples bring a ray to the rim along.
     shifts: Numbers,
-    /// Of the sums.
+    /// Scale of the sums: contributions are multiplied by it before they are rounded to integers.
     scale: f64,
 }
 
 impl Backward {
-    /// Searches what passes the lens, and finds the scale of the sums.
+    /// Searches for the pupil that the imager sees and finds the scale of the sums.
     pub(crate) fn new(pipeline: Arc<Pipeline>, workers: &dyn Workers) -> Result<Self, RenderError> {
         let scene = &pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
@@ -72,21 +86,23 @@ impl Backward {
         Ok(own.with_seed(seed))
     }
 
-    /// The same with the numbers of a seed.
+    /// Returns a copy that draws from the random numbers of `seed`.
     fn with_seed(&self, seed: u64) -> Self {
         let numbers = self.pipeline.numbers(seed);
         let (pipeline, rear) = (self.pipeline.clone(), self.rear.clone());
         Self { shifts: numbers.as_random(), pipeline, rear, numbers, scale: self.scale }
     }
 
-    /// The same for what the meters see, which has no sums; `None` where they see nothing.
+    /// Returns a copy that traces what the meters see, or `None` if they see none of the source's light. Its scale is 1, since it adds to
+    /// no sums.
     fn of_meters(&self) -> Option<Self> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         let (numbers, shifts) = (self.numbers.clone(), self.shifts.clone());
         Some(Self { pipeline, rear: self.rear.clone(), numbers, shifts, scale: 1.0 })
     }
 
-    /// The mean of the frame, W/m2 in the sum of its channels, by a few thousand rays, the same for any seed of the picture.
+    /// Estimates the mean of the frame from [`PILOT_RAYS`] rays: W/m2, summed over the channels. The result is the same for any seed of the
+    /// picture.
     pub(crate) fn mean(&self) -> f64 {
         let pilot = self.with_seed(PILOT_SEED);
         let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
@@ -95,15 +111,15 @@ impl Backward {
     }
 
     fn launch(&self) -> &dyn Launch {
-        self.pipeline.scene.imager.launch().expect("`new` saw it")
+        self.pipeline.scene.imager.launch().expect("checked by `new`")
     }
 
     fn radiance(&self) -> &dyn Radiance {
-        self.pipeline.source().radiance().expect("`new` saw it")
+        self.pipeline.source().radiance().expect("checked by `new`")
     }
 
-    /// Traces samples of some pixels, pixel after pixel, through a part of the pupil, with a look at the rays after each step.
-    /// Afterwards the weights are irradiance, and 0 for rays that ended.
+    /// Traces samples of some pixels, pixel after pixel, through a part of the pupil. `look` sees the rays after each step. Afterwards the
+    /// weights are irradiance, and 0 for rays that ended.
     #[inline(always)]
     fn steps(&self, state: &mut ThreadState, spans: &[Span], part: AimPart, look: &mut impl FnMut(Step, &RayBatch)) {
         let isa = self.pipeline.isa;
@@ -129,8 +145,8 @@ impl Backward {
         self.follow(state, len, part, start, look);
     }
 
-    /// Traces `len` rays through a part of the pupil by the columns of numbers, from the pixels that `start` writes, with the numbers of
-    /// their own that it gives.
+    /// Traces `len` rays through a part of the pupil, with the random numbers in the columns of `state`. `start` writes the pixel of each
+    /// ray and sets up the stages' own random numbers. `look` sees the rays after each step.
     #[inline(always)]
     pub(crate) fn follow(
         &self,
@@ -167,7 +183,7 @@ impl Backward {
     /// Adds samples `first .. first + samples` of a tile's pixels to the sums.
     ///
     /// # Errors
-    /// A contribution is no number, or does not fit; then nothing of the unit is added.
+    /// Fails if a contribution is not a finite number or does not fit. Nothing of the unit is added then.
     fn unit(
         &self,
         state: &mut ThreadState,
@@ -180,7 +196,7 @@ impl Backward {
         let mut local = vec![0_i64; tile.len() as usize * channels];
         let mut spans = Vec::with_capacity(tile.len() as usize);
         let capacity = state.rays.capacity() as u32;
-        // As many whole pixels as the batch holds; where it holds not even one, parts of a pixel.
+        // A batch takes as many whole pixels as it holds, or part of one pixel if it does not hold a whole one.
         let at_once = samples.min(capacity);
         let whole = (capacity / at_once).max(1);
         for begin in (0..tile.len()).step_by(whole as usize) {
@@ -205,7 +221,7 @@ impl Backward {
     }
 }
 
-/// Samples of a pixel.
+/// Consecutive samples of one pixel.
 #[derive(Clone, Copy)]
 struct Span {
     pixel: u32,
@@ -213,14 +229,14 @@ struct Span {
     count: usize,
 }
 
-/// A sample of pixels all over the frame, [`PILOT_RAYS`] of them.
+/// Returns [`PILOT_RAYS`] pixels spread evenly over the frame, each with the sample of this number.
 fn spread(pixels: u64, sample: u32) -> Vec<Span> {
     let pixel = |i: u32| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32;
     (0..PILOT_RAYS).map(|i| Span { pixel: pixel(i), first: sample, count: 1 }).collect()
 }
 
 impl Backward {
-    /// Traces samples of pixels of a tile and adds them to its sums.
+    /// Traces samples of a tile's pixels through a part of the pupil and adds them to the local sums of the tile.
     fn add(
         &self,
         state: &mut ThreadState,
@@ -235,7 +251,7 @@ impl Backward {
             self.steps(state, spans, part, &mut |step, rays| blame.look(step, rays));
             return Err(blame.error(&self.pipeline, state, self.scale));
         }
-        // The samples of a pixel lie together.
+        // The samples of one pixel are adjacent in the batch.
         let channels = state.integers.len();
         let mut from = 0;
         for tags in state.rays.tags().chunk_by(|a, b| a == b) {
@@ -252,8 +268,9 @@ impl Backward {
         Ok(())
     }
 
-    /// The same through the rim of the pupil: of each [`RIM_EVERY`] samples of a pixel one brings a ray there along, which one
-    /// differs between neighbors and is as likely any. These rays are no samples: they are in no account of rays.
+    /// Adds rays through the rim of the pupil. In each block of [`RIM_EVERY`] samples of a pixel, one sample brings such a ray along. Which
+    /// one it is differs between neighboring pixels, and each is equally likely. These rays do not count as samples, and losses and
+    /// detected rays leave them out.
     fn add_rim(
         &self,
         state: &mut ThreadState,
@@ -267,11 +284,11 @@ impl Backward {
         let with_ray = |pixel: u32, block: u32| {
             let (column, row) = (pixel % tile.width, pixel / tile.width);
             let shift = shifts[(block - blocks.start) as usize];
-            // Neighbors take turns: seven and five steps lead to every place.
+            // Neighbors take turns: steps of seven and five reach every sample of a block.
             let own = (7 * (column % RIM_EVERY) + 5 * (row % RIM_EVERY) + shift) % RIM_EVERY;
             samples.contains(&(block * RIM_EVERY + own))
         };
-        // All blocks but the first and the last lie within the samples.
+        // Every block except the first and the last lies entirely within the samples.
         let span = |pixel: u32| {
             let count = blocks.clone().filter(|block| with_ray(pixel, *block)).count();
             let first = blocks.start + u32::from(!with_ray(pixel, blocks.start));
@@ -294,7 +311,7 @@ impl Backward {
         self.pipeline.scene.imager.size()
     }
 
-    /// Tile and samples of a unit.
+    /// Returns the tile and the samples of a unit.
     fn piece(samples: &Range<u64>, tiles: &[u32], unit: u64) -> (u32, Range<u64>) {
         let many = tiles.len() as u64;
         let first = samples.start + unit / many * u64::from(SAMPLES_PER_PASS);
@@ -349,7 +366,7 @@ impl Estimator for Backward {
         match self.unit(state, &tile, samples.start as u32, count, sums) {
             Ok(()) => Unit { rays: u64::from(tile.len()) * u64::from(count), error: None },
             Err(error) => {
-                // Nothing of it is in the sums, so nothing is in the account.
+                // None of this unit is in the sums, so its losses and detected rays are not counted either.
                 (state.work.losses, state.detected) = booked;
                 Unit { rays: 0, error: Some(error) }
             }
@@ -383,13 +400,12 @@ impl Estimator for Backward {
     }
 }
 
-/// Points over the whole of an imager, those of its rim and corners among them: its shape, as the
-/// search of the pupil needs it.
+/// Returns rays at points all over the imager, including its edges and corners. They give its outline for the pupil search.
 fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
     const SIDE: u32 = 65;
     let mut rays = RayBatch::new((SIDE * SIDE) as usize).with_numbers();
     rays.restart((SIDE * SIDE) as usize);
-    // Pixel and place in it, from one edge of the frame to the other.
+    // Returns the pixel at step `k` from one edge of the frame to the other, and the position within the pixel.
     let split = |k: u32, pixels: u32| {
         let at = f64::from(k) / f64::from(SIDE - 1) * f64::from(pixels);
         let pixel = (at as u32).min(pixels - 1);
@@ -407,11 +423,11 @@ fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
     rays
 }
 
-/// What was measured on some rays may be exceeded by others: this much room is left.
+/// Margin on the measured sideways shift, because rays that were not measured may be shifted further.
 const ROOM: f64 = 1.25;
 
-/// How far an imager moves rays aside after they were aimed, mm: the most of rays from all over it, in the middle and at four
-/// sides of the pupil.
+/// Measures how far the imager shifts rays sideways after they were aimed, mm. Takes the largest shift of rays from all over the imager
+/// through the middle and four sides of the pupil.
 fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &RayBatch, isa: Isa) -> f64 {
     let mut most = 0.0_f64;
     for (u, v) in [(0.5, 0.5), (0.02, 0.5), (0.98, 0.5), (0.5, 0.02), (0.5, 0.98)] {

@@ -1,4 +1,4 @@
-//! Which stage made a number that is none.
+//! Finds the stage that produced a number that is not finite.
 
 use crate::error::RenderError;
 use crate::no_number::{NoNumber, Step};
@@ -7,17 +7,18 @@ use crate::sums::{LARGEST_CONTRIBUTION, LARGEST_EXPECTED};
 use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 
-/// Looks over a batch step by step.
+/// Checks a batch step by step and remembers the first number that is not finite.
 #[derive(Debug, Default)]
 pub(crate) struct Blame {
-    /// Step, wavelength, whether infinite: of the first number that is none.
+    /// Step, wavelength (nm) and whether it is infinite, for the first number that is not finite.
     found: Option<(Step, f64, bool)>,
-    /// Rays that have no place or no direction at the start, since one of the batch before ended there. They get theirs before the lens.
+    /// Rays without a valid position or direction at the start, because a ray of the previous batch ended there. They get theirs before the
+    /// lens.
     stale: Vec<usize>,
 }
 
 impl Blame {
-    /// Looks at the rays after a step.
+    /// Checks the rays after a step.
     pub(crate) fn look(&mut self, step: Step, rays: &RayBatch) {
         if self.found.is_some() {
             return;
@@ -35,18 +36,18 @@ impl Blame {
             let own = [weights[i], wavelengths[i]];
             let way = if stale.binary_search(&i).is_ok() { [0.0; 6] } else { [x[i], y[i], z[i], l[i], m[i], n[i]] };
             let of_ray = own.into_iter().chain(way);
-            // Where several numbers are none, NaN is the one that tells of a slip.
+            // If several numbers are not finite, report NaN: it is the one that points to a fault.
             let bad = of_ray.filter(|v| !v.is_finite()).reduce(|a, b| if a.is_nan() { a } else { b })?;
             Some((step, wavelengths[i], bad.is_infinite()))
         });
     }
 
-    /// Whether a number was none.
+    /// Returns an error if any number was not finite.
     pub(crate) fn no_number(&self, pipeline: &Pipeline) -> Option<RenderError> {
         self.found.map(|found| no_number(pipeline, found))
     }
 
-    /// Why the contributions of the batch that was looked at do not fit.
+    /// Explains why the contributions of the checked batch do not fit.
     pub(crate) fn error(&self, pipeline: &Pipeline, state: &mut ThreadState, scale: f64) -> RenderError {
         if let Some(error) = self.no_number(pipeline) {
             return error;
@@ -69,8 +70,8 @@ fn no_number(pipeline: &Pipeline, (step, wavelength_nm, infinite): (Step, f64, b
 mod tests {
     use super::*;
 
-    /// A ray of the batch before ended nowhere; its successor has no place yet when wavelengths are drawn, no direction yet when it stands on
-    /// the source, and both when it reaches the lens.
+    /// A ray of the previous batch ended without a valid place. Its successor has no position yet when wavelengths are drawn, no direction
+    /// yet when it is placed on the source, and both when it reaches the lens.
     #[test]
     fn what_a_ray_of_the_batch_before_left_is_nobodys_fault() {
         let mut rays = RayBatch::new(2);

@@ -1,8 +1,8 @@
-//! What goes on between a running render and the one who started it.
+//! Communication between a running render and its caller.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-/// Shared between a render and its watcher: a request to stop one way, progress the other.
+/// State shared by a render and its caller. The caller asks the render to stop; the render reports its progress.
 #[derive(Debug, Default)]
 pub struct Control {
     stop: AtomicBool,
@@ -11,30 +11,30 @@ pub struct Control {
 }
 
 impl Control {
-    /// Nobody has asked for an end.
+    /// Creates a state without a request to stop and without progress.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Asks the render to stop; it does within one unit of work.
+    /// Asks the render to stop. It stops within one unit of work.
     pub fn stop(&self) {
         self.stop.store(true, Relaxed);
     }
 
-    /// Whether it should stop now.
+    /// Whether the render should stop now.
     #[must_use]
     pub fn should_stop(&self) -> bool {
         self.stop.load(Relaxed)
     }
 
-    /// Rays launched so far.
+    /// Number of rays launched so far.
     #[must_use]
     pub fn rays(&self) -> u64 {
         self.rays.load(Relaxed)
     }
 
-    /// Rays to launch in all; 0 before the render knows.
+    /// Number of rays to launch in all; 0 until the render knows it.
     #[must_use]
     pub fn total_rays(&self) -> u64 {
         self.total_rays.load(Relaxed)

@@ -1,4 +1,11 @@
-//! Exposure spread by the edge of the aperture.
+//! Spreads the exposure by diffraction at the edge of the aperture.
+//!
+//! Diffraction comes after the light is summed: exposure is linear, and the sums of rays stay as they are. [`spectra_diffraction`] has the
+//! model; this module shows it the lens from each place of the frame and the light of each channel.
+//!
+//! Unless the scene decides, diffraction is on if lights are rendered apart from the rest and their stars can be seen. The star of the
+//! brightest pixel must exceed 1 % of the frame's median in some channel, at the distance where it leaves the core. This is decided from
+//! the sums at each look, before any kernel is made.
 
 use glam::DVec3;
 use spectra_core::frame::ExposureChannel;
@@ -7,26 +14,26 @@ use spectra_core::{Isa, RayBatch};
 use spectra_diffraction::{Account, Light, Polygon, Pupil, Spread, View, Wave, Waves, brightest_star};
 use spectra_scene::Scene;
 
-/// What diffraction did to a channel.
+/// What diffraction did to one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diffracted {
-    /// The channel.
+    /// Name of the channel.
     pub channel: String,
-    /// Part of its light that it brings beside the frame.
+    /// Fraction of the channel's light that diffraction moves outside the frame.
     pub left: f64,
-    /// Part of the light of a pixel in the middle of the frame that stays in it.
+    /// Fraction of the light of a pixel in the middle of the frame that stays in that pixel.
     pub stays: f64,
-    /// Pixels whose star is drawn out to the edge of the frame.
+    /// Number of pixels whose star is drawn out to the edge of the frame.
     pub stars: usize,
 }
 
-/// Why it is not known what the stop of a scene does to light; `None` where it is.
+/// Explains why the diffraction at the stop cannot be computed, if the scene asks for it; `None` if it can.
 pub(crate) fn fault(scene: &Scene) -> Option<String> {
     if scene.render.diffraction == Some(true) { Pupil::new(&scene.lens).err() } else { None }
 }
 
-/// What of the median of a frame the brightest star has where it leaves the pixels around its light, in the channel that has most.
-/// `None` where that is not known.
+/// Returns the brightness of the brightest star, as a fraction of the median of the frame, where the star leaves the pixels around its
+/// light. Takes the channel in which it is largest; `None` if it cannot be computed.
 pub(crate) fn star(scene: &Scene, planes: &[ExposureChannel], recorded: &[usize], isa: Isa) -> Option<f64> {
     let seen = Seen { scene, pupil: &Pupil::new(&scene.lens).ok()?, waves: None, isa };
     let one = |number: &usize| {
@@ -36,7 +43,7 @@ pub(crate) fn star(scene: &Scene, planes: &[ExposureChannel], recorded: &[usize]
     recorded.iter().filter_map(one).reduce(f64::max)
 }
 
-/// Spreads the recorded planes of a frame.
+/// Spreads the recorded planes of a frame by diffraction, in place, and returns what it did to each channel.
 pub(crate) fn spread(
     scene: &Scene,
     planes: &mut [ExposureChannel],
@@ -56,7 +63,7 @@ pub(crate) fn spread(
     Ok(recorded.iter().filter_map(one).collect())
 }
 
-/// What a channel sees of the light of a source, by wavelength.
+/// Returns the light of a source as the channel sees it, by wavelength; `None` if the channel sees none.
 fn light(source: &SpectralPower, channel: &Channel) -> Option<Light> {
     let grid = source.grid;
     let continuum = grid.wavelengths_nm().zip(&source.continuum).zip(&channel.response);
@@ -68,10 +75,10 @@ fn light(source: &SpectralPower, channel: &Channel) -> Option<Light> {
     Light::of(&continuum.chain(lines).collect::<Vec<_>>())
 }
 
-/// The lens as places of the frame see it.
+/// The lens as seen from points of the frame.
 struct Seen<'a> {
     scene: &'a Scene,
-    pupil: &'a Pupil,
+    pupil: &'a Pupil<'a>,
     waves: Option<Waves<'a>>,
     isa: Isa,
 }
@@ -88,13 +95,13 @@ impl View for Seen<'_> {
     }
 }
 
-/// A place of the frame, and the axes of the frame there, in the frame of the image plane.
+/// Returns a point of the frame and the two axes of the frame there, in the coordinates of the image plane.
 fn place(scene: &Scene, [column, row]: [f64; 2], isa: Isa) -> Option<(DVec3, [DVec3; 2])> {
     let size = scene.imager.size();
     let pixel = |at: f64, count: u32| (at.max(0.0) as u32).min(count - 1);
     let (i, j) = (pixel(column, size.width_px), pixel(row, size.height_px));
     let tag = j * size.width_px + i;
-    // The place, and the sides of its pixel.
+    // The point itself, and the four sides of its pixel.
     let u = [column - f64::from(i), 0.0, 1.0, 0.5, 0.5];
     let v = [row - f64::from(j), 0.5, 0.5, 0.0, 1.0];
     let points: Vec<DVec3> = match scene.imager.launch() {
@@ -108,7 +115,7 @@ fn place(scene: &Scene, [column, row]: [f64; 2], isa: Isa) -> Option<(DVec3, [DV
         }
         None => u.iter().zip(v).map(|(u, v)| size.point_of(tag, *u, v)).map(|(x, y)| DVec3::new(x, y, 0.0)).collect(),
     };
-    // Columns run against x.
+    // Columns count opposite to x.
     let axes = [(points[1] - points[2]).try_normalize()?, (points[4] - points[3]).try_normalize()?];
     Some((points[0], axes))
 }

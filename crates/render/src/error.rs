@@ -1,4 +1,4 @@
-//! Why a scene cannot be rendered.
+//! Errors that say why a scene cannot be rendered.
 
 use crate::Workers;
 use crate::memory::bytes;
@@ -6,69 +6,69 @@ use crate::no_number::NoNumber;
 use spectra_core::params::{Fault, Faults};
 use spectra_scene::Scene;
 
-/// Why a scene cannot be rendered as asked.
+/// The reason why a scene cannot be rendered as requested.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The source has no forward ability.
+    /// The source cannot emit rays, which forward rendering needs.
     #[error("this source cannot emit rays: render it backward")]
     CannotEmit,
-    /// The imager has no forward ability.
+    /// The imager cannot receive rays, which forward rendering needs.
     #[error("this imager cannot receive rays: render it backward")]
     CannotReceive,
-    /// The imager has no backward ability.
+    /// The imager cannot launch rays, which backward rendering needs.
     #[error("this imager cannot launch rays: render it forward")]
     CannotLaunch,
-    /// The source has no backward ability.
+    /// The source cannot give its radiance along a ray, which backward rendering needs.
     #[error("this source can only be rendered forward")]
     NoRadiance,
-    /// What the source reads is broken.
+    /// Files that the source reads are broken.
     #[error("{0}")]
     Source(Faults),
-    /// Whoever asked does not want it any more: no fault of the scene.
-    #[error("stopped before the scene was made ready")]
+    /// The caller asked to stop; this is no fault of the scene.
+    #[error("stopped before the scene was ready")]
     Stopped,
-    /// No surface states a size.
-    #[error("no surface of the lens states a semi-diameter: nothing says where light may enter")]
+    /// No surface of the lens states a semi-diameter.
+    #[error("no surface of the lens states a semi-diameter, so it is unknown where light can enter")]
     NoAperture,
-    /// The wavelength strategy refuses.
+    /// The wavelength strategy cannot be used in this scene.
     #[error("wavelengths: {0}")]
     Sampler(String),
-    /// A medium of the lens has no index in the band.
+    /// A medium of the lens has no refractive index somewhere in the band.
     #[error("lens: {0}")]
     Lens(String),
-    /// The lens is none whose veiling glare is known.
+    /// The veiling glare of this lens cannot be computed.
     #[error("glare: {0}")]
     Glare(String),
-    /// What the stop does to light is not known.
+    /// The diffraction at the stop of this lens cannot be computed.
     #[error("diffraction: {0}")]
     Diffraction(String),
-    /// A stage gave a number that no light can have.
+    /// A stage gave a number that no light can have: NaN or infinite.
     #[error("{0}")]
     NoNumber(NoNumber),
-    /// A sum or a contribution did not fit.
+    /// A sum, or one contribution to it, did not fit into the integers.
     #[error(
-        "the sums overflowed: a ray was {times:.1e} times as bright as the brightest of the {} that were tried before",
+        "the sums overflowed: a ray was {times:.1e} times as bright as the brightest of the {} pilot rays",
         crate::sums::PILOT_RAYS
     )]
     Overflow {
-        /// How much brighter than the brightest ray of the pilot run.
+        /// Brightness of the ray, as a multiple of the brightest ray of the pilot run.
         times: f64,
     },
-    /// The sums of the picture do not fit into memory.
-    #[error("the picture needs {} of memory, which the system refused", bytes(*.0))]
+    /// The sums of the picture, of this many bytes in all, do not fit into memory.
+    #[error("the picture needs {} of memory, which the system could not provide", bytes(*.0))]
     Memory(u64),
-    /// More samples are asked for than the scene states, of numbers that are made for so many.
-    #[error("`numbers: {0}` are laid out for the samples that the scene states; no others can be added to them")]
+    /// More or fewer samples were requested than the scene states, with random numbers that are laid out for exactly that many.
+    #[error("`numbers: {0}` works only with exactly the number of samples that the scene states")]
     DoesNotExtend(&'static str),
 }
 
 impl RenderError {
-    /// Why a search for what passes gave nothing.
+    /// Returns the error for a pupil search that found nothing: it was stopped, or no surface states a size.
     pub(crate) fn no_pupil(workers: &dyn Workers) -> Self {
         if workers.should_stop() { Self::Stopped } else { Self::NoAperture }
     }
 
-    /// The same as a fault of the scene, at the section that has it; `None` for what is not the scene's doing.
+    /// Returns this error as a fault of the scene, located at the section that causes it; `None` if the scene is not the cause.
     #[must_use]
     pub fn faults(&self, scene: &Scene) -> Option<Faults> {
         let at = |key: &str, text: &str, hint: &str| -> Option<Faults> {
@@ -82,26 +82,26 @@ impl RenderError {
             Self::CannotEmit | Self::CannotReceive => at("render.direction", &text, "`direction: backward`"),
             Self::CannotLaunch | Self::NoRadiance => at("render.direction", &text, "`direction: forward`"),
             Self::NoAperture => at("lens", &text, spectra_scene::size_hint(scene.params.get("lens"))),
-            // The strategy says in one text what is wrong and what to take.
+            // The text of the strategy holds both the problem and the remedy.
             Self::Sampler(text) => match text.split_once("; ") {
                 Some((text, hint)) => at("wavelengths", text, hint),
                 None => at("wavelengths", text, "leave `wavelengths` out for the usual strategy"),
             },
-            Self::Lens(text) => at("lens", text, "another glass, or another `wavelengths: {band: ...}`"),
-            Self::Glare(text) => at("render.glare", text, "leave `glare` out, or take another lens"),
+            Self::Lens(text) => at("lens", text, "use another glass, or another `wavelengths: {band: ...}`"),
+            Self::Glare(text) => at("render.glare", text, "leave out `glare`, or use another lens"),
             Self::Diffraction(_) => at(
                 "render.diffraction",
                 &text,
-                "`diffraction: false`, or a stop with blades or one that is drawn as an SVG in black and white",
+                "write `diffraction: false`, or use a stop with blades or one drawn as a black and white SVG",
             ),
             Self::NoNumber(found) => at(
                 found.step.section(),
                 &text,
-                "a fault of that stage or of the data that it reads: try another one, or another `wavelengths: {band: ...}`",
+                "that stage or its data is faulty: try another one, or another `wavelengths: {band: ...}`",
             ),
-            Self::Memory(_) => at("imager.resolution", &text, "fewer pixels, or fewer channels"),
+            Self::Memory(_) => at("imager.resolution", &text, "use fewer pixels or fewer channels"),
             Self::Source(faults) => Some(faults.clone()),
-            Self::DoesNotExtend(_) => at("render.numbers", &text, "`numbers: sobol`, which goes on at any length"),
+            Self::DoesNotExtend(_) => at("render.numbers", &text, "`numbers: sobol`, which allows any number"),
             Self::Overflow { .. } | Self::Stopped => None,
         }
     }

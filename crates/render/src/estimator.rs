@@ -1,71 +1,71 @@
-//! One way to estimate the exposure.
+//! The interface of the ways to estimate the exposure.
 
 use crate::pipeline::ThreadState;
 use crate::sums::ExactSums;
 use crate::{Done, RenderError, Workers};
 use std::ops::Range;
 
-/// A way to estimate the exposure, or a part of it: those of one scene add.
+/// A way to estimate the exposure or a part of it. The light of all estimators of a scene is added up.
 ///
-/// Samples are numbered from 0; a span of them is cut into units of work, each a pure function of the scene, the seed, the
-/// span and its own number. Units may run in any order on any thread: their results are added as integers.
+/// Samples are numbered from 0. A span of samples is divided into units of work, each a pure function of the scene, the seed, the span and
+/// the number of the unit. Units may run in any order on any thread, because their results are added as integers.
 pub trait Estimator: Send + Sync {
-    /// What it is called: `forward`, `backward`.
+    /// Name of the estimator, such as `forward` or `backward`.
     fn name(&self) -> &'static str;
 
-    /// Parts of the frame that may have samples of their own number; 1 where light lands anywhere.
+    /// Number of parts of the frame that may have different numbers of samples; 1 if light may land anywhere.
     fn tiles(&self) -> usize;
 
-    /// Paths of ghosts whose light it sums once more, each by itself: as many sums again behind those of all of its light, in this
-    /// order. The surfaces of each, counted from 1.
+    /// Ghost paths whose light is also summed separately, each given by its surfaces, counted from 1. Their sums follow the sums of all the
+    /// light, in this order, and each is as large.
     fn paths(&self) -> &[Vec<usize>] {
         &[]
     }
 
-    /// The tile of a pixel.
+    /// Returns the number of the tile that holds a pixel.
     fn tile_of(&self, pixel: usize) -> usize;
 
-    /// A copy that draws its samples from the numbers of `seed`, for the picture of another seed. What was searched and decided
-    /// before the first ray is shared.
+    /// Returns a copy that draws its samples from the random numbers of `seed`, for the picture with seed `picture`. What was searched and
+    /// decided before the first ray is shared.
     fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator>;
 
-    /// Into how many units a span of samples of these tiles is cut.
+    /// Returns the number of units that a span of samples of these tiles is divided into.
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64;
 
-    /// Rays that a span of samples of these tiles launches.
+    /// Returns the number of rays that a span of samples of these tiles launches.
     fn rays(&self, samples: &Range<u64>, tiles: &[u32]) -> u64;
 
-    /// The columns that one thread works in.
+    /// Allocates the buffers that one thread works in.
     fn scratch(&self) -> Scratch;
 
-    /// Does one unit of a span of samples of these tiles.
+    /// Traces one unit of a span of samples of these tiles and adds its light to `sums`.
     fn run(&self, samples: &Range<u64>, tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit;
 
-    /// The noise that a pixel of its light is expected to have after so many samples, as a part of that light, in the median over the frame;
-    /// `None` of an estimator that does not look.
+    /// Estimates the noise of a pixel after this many samples, as a fraction of the light of this estimator, in the median over the frame.
+    /// `None` if the estimator makes no such estimate.
     fn expected_noise(&self, _samples: u64) -> Option<f64> {
         None
     }
 
-    /// What one unit of each pixel's sums is worth, in W/m2 times the exposure time. `rays` were launched in all.
+    /// Returns the factor for each pixel that turns its integer sums into W/m2 times the exposure time. `rays` were launched in all.
     fn weights(&self, done: &Done, rays: u64, time_s: f64) -> Vec<f64>;
 
-    /// What the camera's meters see, found with rays of their own by the same way: for each of the scene's meter channels,
-    /// W/m2 at each pixel, 0 where no meter looks. Empty where they see nothing of the source.
+    /// Computes what the camera's meters see, with rays of its own, traced in the same way as those of the picture. Returns W/m2 at each
+    /// pixel for each meter channel of the scene, 0 where no meter looks. The list is empty if the meters see none of the source's light.
     ///
     /// # Errors
-    /// As [`Estimator::run`].
+    /// Fails like [`Estimator::run`].
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError>;
 }
 
-/// What came of a unit.
+/// The result of one unit of work.
 #[derive(Debug)]
 pub struct Unit {
-    /// Rays whose light is in the sums.
+    /// Number of rays whose light is in the sums.
     pub rays: u64,
-    /// Why these are not all of the unit's.
+    /// The reason why rays of the unit are missing from the sums, if any are.
     pub error: Option<RenderError>,
 }
 
-/// The columns of one thread, what it counted in them, and what it summed and has not yet added to the sums of all.
+/// The buffers of one thread: its rays, what it counted, and what it summed but has not yet added to the shared sums.
 pub struct Scratch(pub(crate) ThreadState);

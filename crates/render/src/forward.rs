@@ -1,4 +1,11 @@
-//! Forward: paths from the source, splatted where they land.
+//! Forward rendering: traces paths from the source and adds their light where it lands.
+//!
+//! **One ray.** The source places the ray (`Emit::place`), [`FrontPupil`] aims it at the real entrance pupil, and the source gives it its
+//! light (`Emit::radiate`). The tracer follows it, and the imager finds its pixel (`Receive::receive`).
+//!
+//! **Number of rays.** If bright lights are traced apart from the rest, they get enough rays for each pixel that they reach to receive 12
+//! per sample. A census of 65 536 trial rays finds how many pixels these are. One ray would not be enough: the samples of a backward pixel
+//! fill the pupil evenly, but rays from a light land at random.
 
 use crate::blame::Blame;
 use crate::error::RenderError;
@@ -16,52 +23,59 @@ use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::{Dimension, Numbers, StageKey};
 use spectra_core::stage::{Emit, Receive};
-use spectra_lens::{AimPattern, FrontPupil, Travel};
+use spectra_optics::{AimPattern, FrontPupil};
 use spectra_scene::ConePattern;
+use spectra_tracer::Travel;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Paths a unit of work: some milliseconds.
+/// Number of paths in a unit of work, which takes some milliseconds.
 const PATHS_PER_UNIT: u64 = 1 << 16;
-/// All forward paths form one stream of numbers.
+/// All forward paths draw from one stream of random numbers.
 const STREAM: u64 = 0;
 
-/// What numbers of its own stages draw by.
+/// Estimator name from which the stages derive their own random numbers.
 pub(crate) const ESTIMATOR: &str = "forward";
 
+/// Estimator that traces rays from the source to the imager.
 pub(crate) struct Forward {
     pipeline: Arc<Pipeline>,
-    /// Where light goes in; `None` for a source that sets its directions itself.
+    /// Entrance pupil at which rays are aimed; `None` if the source sets their directions itself.
     pupil: Option<Arc<FrontPupil>>,
+    /// Random numbers of the wavelength and of the point on the source.
     numbers: Numbers,
+    /// Random numbers of the point on the pupil.
     cone: Numbers,
-    /// How the spots are imaged that the source is made of, where each ray stands for all of one.
+    /// How the lens images the spots of the source, if it consists of spots and each ray stands for a whole one.
     spots: Option<Arc<Spots>>,
-    /// How light is spread that the lens scatters, if it is that.
+    /// How light that the lens scatters is spread, if this estimator traces that light.
     haze: Option<Arc<Haze>>,
-    /// Of the sums.
+    /// Scale of the sums: contributions are multiplied by it before they are rounded to integers.
     scale: f64,
-    /// Rays for each sample of all pixels, where the scene does not state how many there are in all.
+    /// Rays per sample of all pixels together, if the scene does not state the total number of rays.
     a_sample: Option<u64>,
 }
 
-/// Rays of lights for each sample of a pixel that they reach, where the scene does not state how many there are: as a pixel's
-/// samples backward fill the pupil evenly, and rays that land where they will do not.
+/// Rays of lights for each sample of a pixel that they reach, if the scene does not state the number of rays. One would not be enough: the
+/// samples of a backward pixel fill the pupil evenly, but rays from a light land at random.
 const LIGHTS_A_SAMPLE: f64 = 12.0;
-/// The same of light that haze scatters: each ray's is spread over many pixels.
+/// Rays for each sample of a pixel for light that haze scatters. Fewer are enough, because the light of each ray is spread over many
+/// pixels.
 const HAZE_A_SAMPLE: f64 = 2.0;
-/// Rays that say where lights land, and the parts of the frame that they are counted in, across and down.
+/// Number of trial rays that find where the lights land.
 const CENSUS: usize = 1 << 16;
+/// Parts of the frame, across and down, in which the trial rays are counted.
 const PARTS: [usize; 2] = [48, 32];
-/// Rays of lights for each pixel and sample: at least and at most.
+/// Smallest number of rays of lights per pixel and sample.
 const LEAST_LIGHTS: f64 = 0.125;
+/// Largest number of rays of lights per pixel and sample.
 const MOST_LIGHTS: f64 = 32.0;
 
-/// Source points that are looked at before the pupil is searched.
+/// Source points from which the pupil is searched.
 const SOURCE_POINTS: usize = 4096;
 
 impl Forward {
-    /// Searches where light goes in, and finds the scale of the sums.
+    /// Searches for the pupil that the source sees and finds the scale of the sums.
     pub(crate) fn new(pipeline: Arc<Pipeline>, workers: &dyn Workers) -> Result<Self, RenderError> {
         let seed = pipeline.seed;
         let mut own = Self::aimed(pipeline, workers)?;
@@ -76,7 +90,8 @@ impl Forward {
         own.scaled(seed)
     }
 
-    /// How many rays of lights go with a sample of all pixels: as many as give each that they reach [`LIGHTS_A_SAMPLE`].
+    /// Returns the number of rays of lights for one sample of all pixels: enough to give each pixel that they reach [`LIGHTS_A_SAMPLE`], or
+    /// [`HAZE_A_SAMPLE`] of light scattered by haze.
     fn lights_a_sample(&self) -> u64 {
         let size = self.pipeline.scene.imager.size();
         let sides = [size.width_px as usize, size.height_px as usize];
@@ -92,7 +107,7 @@ impl Forward {
             }
         }
         let landed: u64 = counts.iter().sum();
-        // Two rays in the same part: how likely that is says how many parts they share.
+        // The probability that two rays land in the same part tells how many parts they share.
         let pairs: u64 = counts.iter().map(|n| n * n.saturating_sub(1)).sum();
         let pixels = size.pixels() as f64;
         let a_pixel = if landed == 0 {
@@ -107,7 +122,7 @@ impl Forward {
         ((a_pixel * pixels) as u64).max(1)
     }
 
-    /// With the scale that its pilot finds, and the numbers of a seed.
+    /// Finds the scale of the sums by a pilot, then takes the random numbers of `seed`.
     fn scaled(mut self, seed: u64) -> Result<Self, RenderError> {
         (self.numbers, self.cone) = Self::numbers(&self.pipeline, PILOT_SEED);
         self.scale = pilot::scale(&self.pipeline, |state, batch, mut look| {
@@ -117,7 +132,7 @@ impl Forward {
         Ok(self)
     }
 
-    /// The same for what the meters see; `None` where they see nothing.
+    /// Returns a copy that traces what the meters see, or `None` if they see none of the source's light.
     fn of_meters(&self) -> Option<Result<Self, RenderError>> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         let (numbers, cone) = (self.numbers.clone(), self.cone.clone());
@@ -126,7 +141,7 @@ impl Forward {
         Some(Self { pupil, numbers, cone, spots: None, haze: None, scale: 1.0, pipeline, a_sample: None }.scaled(seed))
     }
 
-    /// With the numbers of the pilot, and no scale.
+    /// Searches for the pupil. The result draws from the random numbers of the pilot and has no scale yet.
     pub(crate) fn aimed(pipeline: Arc<Pipeline>, workers: &dyn Workers) -> Result<Self, RenderError> {
         let scene = &pipeline.scene;
         let emit = pipeline.source().emit().ok_or(RenderError::CannotEmit)?;
@@ -145,7 +160,7 @@ impl Forward {
         Ok(Self { pupil, numbers, cone, spots: None, haze: None, scale: 1.0, pipeline, a_sample: None })
     }
 
-    /// How the spots are imaged that the source is made of, if it is.
+    /// Measures how the lens images the spots of the source; `None` if the source has none or their light cannot be spread.
     fn spots(&self) -> Option<Spots> {
         let half_mm = self.emit().spots_mm()?;
         let planes_mm = [-self.pipeline.source().distance_mm(), self.pupil.as_ref()?.eye_z_mm()];
@@ -153,7 +168,7 @@ impl Forward {
         Spots::look(half_mm, planes_mm, &self.aimed_rays(true), &self.pipeline.tracer, pixel_mm)
     }
 
-    /// Some rays of the pilot's numbers, aimed; from the middle of spots if that is asked for.
+    /// Returns [`PILOT_RAYS`] aimed rays, drawn from the current random numbers. They start in the middle of spots if `in_middle` is true.
     fn aimed_rays(&self, in_middle: bool) -> RayBatch {
         let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
         self.aim(&mut state, 0, PILOT_RAYS as usize, in_middle, &mut |_, _| {});
@@ -161,14 +176,14 @@ impl Forward {
     }
 
     fn emit(&self) -> &dyn Emit {
-        self.pipeline.source().emit().expect("`aimed` saw it")
+        self.pipeline.source().emit().expect("checked by `aimed`")
     }
 
     fn receive(&self) -> &dyn Receive {
-        self.pipeline.scene.imager.receive().expect("`aimed` saw it")
+        self.pipeline.scene.imager.receive().expect("checked by `aimed`")
     }
 
-    /// The numbers of a path, and those of its place on the pupil.
+    /// Returns the random numbers of a path and those of its point on the pupil.
     fn numbers(pipeline: &Pipeline, seed: u64) -> (Numbers, Numbers) {
         let numbers = pipeline.numbers(seed);
         let random = pipeline.scene.render.cone == ConePattern::Random;
@@ -176,12 +191,12 @@ impl Forward {
         (numbers, cone)
     }
 
-    /// Traces paths `first .. first + len`; what arrived is left in the batch, pixels in the tags.
+    /// Traces paths `first .. first + len`. Rays that arrived are left in the batch, with their pixels in the tags.
     fn batch(&self, state: &mut ThreadState, first: u64, len: usize) {
         self.steps(state, first, len, &mut |_, _| {});
     }
 
-    /// The same, with a look at the rays after each step.
+    /// Traces paths `first .. first + len` and lets `look` see the rays after each step. Rays that arrived are left in the batch.
     #[inline(always)]
     pub(crate) fn steps(
         &self,
@@ -259,8 +274,8 @@ impl Forward {
         look(Step::Source, &state.rays);
     }
 
-    /// Adds a unit of paths to the sums. Gives the number of paths added, and why they are not all, where a contribution is
-    /// no number or does not fit.
+    /// Adds a unit of paths to the sums. Returns the number of paths added, and an error if a contribution is not finite or does not fit;
+    /// the remaining paths are missing then.
     pub(crate) fn unit(
         &self,
         state: &mut ThreadState,
@@ -281,7 +296,7 @@ impl Forward {
                 }
             };
             if !is_good {
-                // Anew: places of rays that ended in another batch are nobody's fault.
+                // Trace in a fresh state: positions left over from rays that ended in another batch must not be blamed.
                 let mut blame = Blame::default();
                 let mut again = ThreadState::new(&self.pipeline, state.rays.capacity());
                 self.steps(&mut again, at, len as usize, &mut |step, rays| blame.look(step, rays));
@@ -292,7 +307,7 @@ impl Forward {
         (paths, None)
     }
 
-    /// Adds what the rays of a batch contribute; false where a contribution is no number or does not fit, and nothing is added.
+    /// Adds the contributions of a batch to the sums. Returns false if one is not finite or does not fit; nothing is added then.
     fn add(&self, state: &mut ThreadState, sums: &ExactSums) -> bool {
         if !state.contributions(&self.pipeline, self.scale) {
             return false;
@@ -305,7 +320,8 @@ impl Forward {
         true
     }
 
-    /// Traces paths as [`Forward::batch`] and adds the light of each to all the places that it is spread over. They are booked once.
+    /// Traces paths like [`Forward::batch`] and adds the light of each to all the places over which it is spread. Each path is counted
+    /// once.
     fn spread(&self, state: &mut ThreadState, first: u64, len: usize, spots: &Spots, sums: &ExactSums) -> bool {
         self.lens_steps(state, first, len, true, &mut |_, _| {});
         state.rays.compact();
@@ -328,7 +344,7 @@ impl Forward {
         is_good
     }
 
-    /// Traces paths as [`Forward::batch`] and spreads the light of each over a part of the way that it was scattered by.
+    /// Traces paths like [`Forward::batch`] and spreads the light of each over a fraction of the distance by which scattering moved it.
     fn scatter(&self, state: &mut ThreadState, first: u64, len: usize, haze: &Haze, sums: &ExactSums) -> bool {
         self.aim(state, first, len, false, &mut |_, _| {});
         let numbers = state.rays.tags().to_vec();
@@ -347,7 +363,7 @@ impl Forward {
         true
     }
 
-    /// The sample that a path belongs to.
+    /// Returns the sample that a path belongs to.
     fn sample_of(&self, path: u64) -> u64 {
         let render = &self.pipeline.scene.render;
         match self.a_sample {
@@ -358,7 +374,7 @@ impl Forward {
 }
 
 impl Forward {
-    /// The paths of a span of samples: all that the scene states are for all its samples.
+    /// Returns the paths of a span of samples. The rays that the scene states are divided over all its samples.
     fn paths(&self, samples: &Range<u64>) -> Range<u64> {
         let render = &self.pipeline.scene.render;
         if let Some(rays) = self.a_sample {
@@ -431,7 +447,7 @@ impl Estimator for Forward {
     }
 }
 
-/// Some points of a source, as the search of the pupil needs them.
+/// Returns some points of the source, from which the pupil is searched.
 pub(crate) fn source_points(pipeline: &Pipeline, emit: &dyn Emit, numbers: &Numbers) -> Vec<DVec3> {
     let isa = pipeline.isa;
     let mut state = ThreadState::new(pipeline, SOURCE_POINTS);

@@ -1,15 +1,17 @@
-//! Haze without noise: light of lamps that haze on the lens scatters, spread as it lands.
+//! Spreads the light of lamps that haze on the lens scatters, as it lands, to remove its noise.
 //!
-//! Model: each ray of a lamp is traced twice, once as haze scatters it and once as it goes without. The farther
-//! apart the two land, the smoother the glow is there: what glass scatters falls off as a power of the angle. So the scattered light is spread
-//! over a square whose half side is a fixed part of that distance ([`OF_WAY`]). For a glow that falls with the power n of the distance
-//! that changes its light by about (n - 2)^2 / 6 times the square of that part: 1.5 % for n = 4. A later sample has smaller squares, so
-//! both noise and blur go to nothing. No light is lost: the shares of a ray add up to it, and those beyond the frame are folded back.
+//! Model: each ray of a lamp is traced twice, once with the scattering by haze and once without. The farther apart the two rays land, the
+//! smoother the glow is there, because light scattered by glass falls off as a power of the angle. The scattered light is therefore spread
+//! over a square whose half side is a fixed fraction of that distance ([`OF_WAY`]). If the glow falls with the power n of the distance,
+//! this changes its light by about (n - 2)^2 / 6 times the square of that fraction: 1.5 % for n = 4. Later samples have smaller squares, so
+//! both noise and blur tend to zero. No light is lost: the shares of a ray add up to its light, and shares beyond the frame are folded
+//! back.
 //!
-//! A ray that without haze is lost at a rim would have landed where a linear map says that holds for the others; how far the map is off them
-//! is taken off its distance.
+//! A ray that is lost at a rim when traced without haze still needs a landing point. A linear map, fitted to the other rays, gives it. The
+//! error of the map is subtracted from the distance.
 //!
-//! Limits: the rings of dust and the streaks of scratches are not smooth; where either lies on the lens nothing is spread. The plate itself is traced from the imager and needs none of this.
+//! Limits: the rings of dust and the streaks of scratches are not smooth. If either lies on the lens, nothing is spread. The plate itself
+//! is traced from the imager and needs none of this.
 
 use crate::error::RenderError;
 use crate::footprint::Footprint;
@@ -18,36 +20,36 @@ use crate::spreader::Spreader;
 use spectra_core::RayBatch;
 use spectra_core::linear::least_squares;
 use spectra_core::loss::ALIVE;
-use spectra_lens::{Tracer, Travel};
 use spectra_scene::GhostSpread;
+use spectra_tracer::{Tracer, Travel};
 
-/// Half the side of a footprint, as a part of how far the ray was moved.
+/// Half side of a footprint, as a fraction of the distance by which scattering moved the ray.
 const OF_WAY: f64 = 0.15;
-/// Rays that have to land to say how others would.
+/// Smallest number of landed rays that the map is fitted to.
 const LEAST: usize = 128;
-/// Samples after which the largest footprints begin to shrink.
+/// Number of samples after which the largest footprints begin to shrink.
 const SAMPLES: f64 = 64.0;
 
-/// What spreading scattered light needs, found once for a scene.
+/// The data for spreading scattered light, computed once per scene.
 #[derive(Debug)]
 pub(crate) struct Haze {
     pub spreader: Spreader,
-    /// The lens as if nothing lay on it.
+    /// Tracer for the lens with nothing on its surfaces.
     clean: Tracer,
-    /// Pixels, and mm, across and up.
+    /// Size of the frame, across and up: first in pixels, then in mm.
     frame: [[f64; 2]; 2],
-    /// Where rays land by where they are aimed at, roughly: for columns and rows. `None` where too few of them do to say so.
+    /// Rough linear map from aimed rays to the column and row where they land; `None` if too few rays land to fit it.
     map: Option<[Linear; 2]>,
 }
 
-/// A linear map of aimed rays, and how far it is off those it was fitted to: root mean square, pixels.
+/// A linear map from aimed rays to one landing coordinate, and its root mean square error over the fitted rays, pixels.
 #[derive(Clone, Copy, Debug)]
 struct Linear {
     terms: [f64; TERMS],
     off_px: f64,
 }
 
-/// 1, a place on the plane of the imager as if there were no lens, and slopes.
+/// Number of terms: 1, the two coordinates where the ray would meet the plane of the imager without a lens, and its two slopes.
 const TERMS: usize = 5;
 
 fn terms(rays: &RayBatch, i: usize) -> [f64; TERMS] {
@@ -70,23 +72,23 @@ impl Linear {
     }
 }
 
-/// Where a ray lands without haze: columns to the left and rows down from the middle.
+/// The point where a ray lands without haze, in pixels from the middle of the frame: columns to the left, rows down.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Landing {
     place: [f64; 2],
-    /// How far that may be off, pixels; 0 where the ray was traced to it.
+    /// Uncertainty of the point, pixels; 0 if the ray was traced to it.
     off_px: f64,
 }
 
 impl Haze {
-    /// Whether the light of rays is spread.
+    /// Whether the pipeline traces scattered light that is smooth, in a scene that asks for footprints.
     pub fn suits(pipeline: &Pipeline) -> bool {
         let scene = &pipeline.scene;
         let is_asked_for = scene.render.reflections.spread == GhostSpread::Footprint;
         pipeline.scattered && is_asked_for && scene.lens.scatters_smoothly()
     }
 
-    /// For a scene whose lens scatters, by some rays that are aimed at it; `None` where its light is not smooth, or the scene wants all
+    /// Prepares the spreading for a scene, from some aimed rays. `None` if the scattered light is not smooth, or if the scene wants all
     /// light of a ray in the pixel that it meets.
     pub fn of(pipeline: &Pipeline, aimed: &RayBatch) -> Result<Option<Self>, RenderError> {
         if !Self::suits(pipeline) {
@@ -109,7 +111,7 @@ impl Haze {
         Ok(Some(own))
     }
 
-    /// Where on the frame a ray lands that left the lens: columns to the left and rows down from the middle.
+    /// Returns the point where a ray that left the lens lands, in pixels from the middle of the frame: columns to the left, rows down.
     fn landed(&self, rays: &RayBatch, i: usize) -> [f64; 2] {
         let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
         let ([columns, rows], [width, height]) = (self.frame[0], self.frame[1]);
@@ -117,7 +119,7 @@ impl Haze {
         [(x[i] + way * l[i]) / width * columns, (y[i] + way * m[i]) / height * rows]
     }
 
-    /// Where aimed rays land through a lens without haze.
+    /// Computes where aimed rays land through a lens without haze.
     pub fn unscattered(&self, aimed: &RayBatch) -> Vec<Landing> {
         let mut rays = aimed.clone();
         self.clean.trace(&mut rays, &mut self.clean.work_in_place(aimed.len()), Travel::Forward);
@@ -132,7 +134,7 @@ impl Haze {
         (0..aimed.len()).map(landing).collect()
     }
 
-    /// How far scattering moved each ray that left the lens, pixels; 0 where that is not known.
+    /// Returns the distance by which scattering moved each ray that left the lens, pixels; 0 if it is not known.
     pub fn moved_px(&self, rays: &RayBatch, unscattered: &[Landing]) -> Vec<f64> {
         let moved = |(i, number): (usize, &u32)| {
             let ([x, y], Landing { place, off_px }) = (self.landed(rays, i), unscattered[*number as usize]);
@@ -141,7 +143,7 @@ impl Haze {
         rays.tags().iter().enumerate().map(moved).collect()
     }
 
-    /// The footprint of a ray that was moved so far, in a sample of this number.
+    /// Returns the footprint of a ray that scattering moved by `moved_px`, in a sample of this number.
     #[inline]
     pub fn footprint(&self, moved_px: f64, sample: u64) -> Footprint {
         let smaller = (SAMPLES / (sample + 1) as f64).sqrt().sqrt().min(1.0);

@@ -1,8 +1,8 @@
-//! How noisy a picture is, and where it is clean: by two halves of the samples, whose numbers are scrambled independently.
+//! Measures how noisy a picture is and where it is clean, from two halves of the samples with independently scrambled random numbers.
 //!
-//! The halves of a pixel differ by twice the error of their mean, so the mean square of the difference over the 256 pixels of a
-//! block is known within some 4 %, whatever the light looks like. All is computed from exact sums in a fixed order: what is clean
-//! is so on every machine.
+//! The difference between the halves of a pixel is twice the error of their mean. Its mean square over the 256 pixels of a block is
+//! therefore known to within about 4 %, whatever the light looks like. Everything is computed from exact sums in a fixed order, so that
+//! every machine finds the same blocks clean.
 
 use crate::estimator::Estimator;
 use crate::light::{Light, Part};
@@ -14,33 +14,33 @@ use spectra_core::workers::each_of;
 use spectra_scene::Scene;
 use std::convert::Infallible;
 
-/// Side of a block, pixels: some tiles.
+/// Side of a block, pixels; it holds whole tiles.
 const BLOCK: usize = 16;
 const _: () = assert!(BLOCK.is_multiple_of(TILE as usize));
-/// A block that is darker than the middle one of the frame by so much is judged as if it were no darker: four stops.
+/// A block darker than this fraction of the frame's median block (four stops) is judged as if it were no darker.
 const DARKEST: f64 = 1.0 / 16.0;
-/// An estimator goes on where at least this part of the variance is its own, of so many that there are.
+/// An estimator goes on in a block if it causes at least this fraction of the variance, divided by the number of estimators.
 const OWN_PART: f64 = 0.5;
 
-/// One block of pixels and one channel.
+/// Sums over one block of pixels in one channel.
 #[derive(Clone, Debug, Default)]
 struct Cell {
-    /// Sum of the two halves, over its lit pixels.
+    /// Sum of the two halves over the lit pixels.
     sum: f64,
-    /// Pixels that any light reached: those of other colors of a mosaic have none.
+    /// Number of pixels that any light reached. In a mosaic, pixels of other colors have none.
     lit: f64,
-    /// Sums of squared differences between the halves, by kind.
+    /// Sums of squared differences between the halves, one for each estimator.
     squares: Vec<f64>,
 }
 
 impl Cell {
-    /// Mean of both halves in its lit pixels.
+    /// Returns the mean of both halves over the lit pixels.
     fn mean(&self) -> f64 {
         if self.lit > 0.0 { 0.5 * self.sum / self.lit } else { 0.0 }
     }
 }
 
-/// The frame in blocks.
+/// The frame, divided into blocks.
 struct Blocks {
     across: usize,
     down: usize,
@@ -55,17 +55,17 @@ impl Blocks {
         Self { across: width.div_ceil(BLOCK), down: height.div_ceil(BLOCK), width, height }
     }
 
-    /// The pixels of a block, row by row.
+    /// Iterates over the pixels of a block, row by row.
     fn pixels(&self, block: usize) -> impl Iterator<Item = usize> {
         self.each(block, 1)
     }
 
-    /// The first pixel of each tile of a block.
+    /// Iterates over the first pixel of each tile of a block.
     fn tiles(&self, block: usize) -> impl Iterator<Item = usize> {
         self.each(block, TILE as usize)
     }
 
-    /// Of each square of pixels of a block the first.
+    /// Iterates over the first pixel of each square of this side in a block.
     fn each(&self, block: usize, side: usize) -> impl Iterator<Item = usize> {
         let (column, row) = (block % self.across * BLOCK, block / self.across * BLOCK);
         let columns = (column..self.width.min(column + BLOCK)).step_by(side);
@@ -74,17 +74,17 @@ impl Blocks {
     }
 }
 
-/// What each block says of itself.
+/// The noise of each block.
 struct Judged {
     blocks: Blocks,
-    /// Noise, the worst of the channels that count.
+    /// Noise of each block, in the worst of the channels that count.
     noise: Vec<f64>,
-    /// Of each pair of estimators: the part of the variance that is its own, in the channel that is worst there.
+    /// Fraction of each block's variance that each estimator causes, in the channel that is worst there.
     share: Vec<Vec<f64>>,
 }
 
 impl Renderer {
-    /// Looks at all blocks.
+    /// Measures the noise of all blocks.
     fn judge(&self, light: &Light, workers: &dyn Workers) -> Judged {
         let blocks = Blocks::of(self.scene());
         let kinds = light.parts.len() / 2;
@@ -111,7 +111,7 @@ impl Renderer {
             }
             cell
         };
-        // A row of blocks at a time, channel by channel.
+        // Work on one row of blocks at a time, channel by channel.
         let row = |(): &mut (), row: usize| -> Result<Vec<Vec<Cell>>, Infallible> {
             let of = |channel: &usize| (0..blocks.across).map(|c| cell(row * blocks.across + c, *channel)).collect();
             Ok(judged.iter().map(of).collect())
@@ -121,7 +121,7 @@ impl Renderer {
         let mut share = vec![vec![0.0_f64; noise.len()]; kinds];
         for channel in 0..judged.len() {
             let cells: Vec<&Cell> = rows.iter().flat_map(|row| &row[channel]).collect();
-            // That of the middle block says what is dark.
+            // The median block sets the limit below which a block counts as dark.
             let mut means: Vec<f64> = cells.iter().map(|cell| cell.mean()).collect();
             let middle = means.len() / 2;
             let floor = DARKEST * *means.clone().select_nth_unstable_by(middle, f64::total_cmp).1;
@@ -144,7 +144,7 @@ impl Renderer {
         Judged { blocks, noise, share }
     }
 
-    /// Ends the tiles that are clean. To be called between rounds only.
+    /// Ends the tiles that are clean: they get no more samples. Must be called between rounds only.
     pub(crate) fn end_clean(&self, light: &mut Light, asked: f64, workers: &dyn Workers) {
         let Judged { blocks, noise, share } = self.judge(light, workers);
         let kinds = light.parts.len() / 2;
@@ -161,7 +161,7 @@ impl Renderer {
         }
     }
 
-    /// The noise of the light so far; `None` where the scene asks for none, or the light has no two halves yet.
+    /// Returns the noise of the light so far; `None` if the scene asks for none, or if the light does not have two halves yet.
     pub(crate) fn noise(&self, light: &Light) -> Option<Noise> {
         let asked = self.scene().render.noise?;
         if light.parts.iter().any(|part| part.rays == 0) {

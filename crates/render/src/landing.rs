@@ -1,21 +1,21 @@
-//! Where light lands in the plane of the imager, on the frame or beside it.
+//! Finds where light lands in the plane of the imager, on the frame or outside it.
 
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
 use spectra_core::{Isa, RayBatch};
 use spectra_scene::Scene;
 
-/// Where the light of a source lands.
+/// The place in the plane of the imager where the light of a source lands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landing {
-    /// The middle of it, mm on the nominal image plane: what `imager.shift` counts in.
+    /// Middle (median) of the light, mm on the nominal image plane, the unit of `imager.shift`.
     pub middle_mm: [f64; 2],
-    /// Share of it that lands on the frame.
+    /// Fraction of the light that lands on the frame.
     pub on_frame: f64,
 }
 
 impl Landing {
-    /// Of rays that have left the lens; `None` where none meets the plane of the imager.
+    /// Measures where rays that left the lens land; `None` if none meets the plane of the imager.
     pub(crate) fn of(scene: &Scene, rays: &RayBatch, isa: Isa) -> Option<Self> {
         let (middle, across, down) = frame(scene, isa);
         let normal = across.cross(down);
@@ -44,18 +44,18 @@ impl Landing {
     }
 }
 
-/// The corners of the frame, mm on the nominal image plane, in order.
+/// Returns the corners of the frame in order around it, mm on the nominal image plane.
 pub(crate) fn corners(scene: &Scene, isa: Isa) -> Vec<[f64; 2]> {
     let (middle, across, down) = frame(scene, isa);
     [across + down, across - down, -across - down, down - across].map(|p| [middle.x + p.x, middle.y + p.y]).to_vec()
 }
 
-/// The middle of the frame, and half of it across and down, mm on the nominal image plane.
+/// Returns the middle of the frame and the vectors of half its width and half its height, mm on the nominal image plane.
 fn frame(scene: &Scene, isa: Isa) -> (DVec3, DVec3, DVec3) {
     let size = scene.imager.size();
     let (width, height) = (DVec3::X * 0.5 * size.width_mm, DVec3::Y * 0.5 * size.height_mm);
     let Some(launch) = scene.imager.launch() else { return (DVec3::ZERO, width, height) };
-    // Its corners: those of its first and last row and column.
+    // Take the corners of the frame from the pixels in its first and last row and column.
     let (columns, rows) = (size.width_px, size.height_px);
     let last = rows * columns - columns;
     let mut rays = RayBatch::new(4);

@@ -1,4 +1,9 @@
-//! The exposure of a render so far: of all light, of a kind of it, of a path of ghosts.
+//! The exposure of a render so far: of all light, of one kind of light, or of one ghost path.
+//!
+//! Each estimator has sums of its own, so the light of a kind is the exposure of its estimators. What diffraction moves is the difference
+//! that it makes to the sum. Of the strongest ghost paths, as many as an output asks for, the estimator adds the same integers once more,
+//! to sums behind those of all paths. The sums of all paths do not change by that, and the light of the other paths is their exact
+//! difference. Saved light holds all of these sums.
 
 use crate::estimator::Estimator;
 use crate::light::Part;
@@ -8,7 +13,7 @@ use spectra_core::frame::ExposureChannel;
 use spectra_scene::{GhostPaths, LightKind, LightLayer, Scene};
 use std::ops::Range;
 
-/// What of an estimator's sums is meant, in sums of all its light: one place, less some others.
+/// Selects some of an estimator's sums: one set of sums, less some others.
 #[derive(Clone, Debug)]
 struct Taken {
     from: usize,
@@ -16,7 +21,7 @@ struct Taken {
 }
 
 impl Taken {
-    /// In an estimator that sums these paths by themselves; `None` where it does not have that path.
+    /// Selects the sums of `paths` in an estimator with separate sums for the paths `apart`; `None` if it does not have that path.
     fn of(paths: &GhostPaths, apart: &[Vec<usize>]) -> Option<Self> {
         match paths {
             GhostPaths::All => Some(Self { from: 0, less: 0..0 }),
@@ -24,19 +29,19 @@ impl Taken {
                 let at = apart.iter().position(|path| path == surfaces)?;
                 Some(Self { from: 1 + at, less: 0..0 })
             }
-            // Integers: nothing is lost.
+            // The sums are integers, so the subtraction is exact.
             GhostPaths::Others => Some(Self { from: 0, less: 1..1 + apart.len() }),
         }
     }
 }
 
 impl Renderer {
-    /// Paths of ghosts that have sums of their own, strongest first.
+    /// Ghost paths that have separate sums, strongest first.
     fn paths_apart(&self) -> &[Vec<usize>] {
         self.estimators().map(Estimator::paths).find(|paths| !paths.is_empty()).unwrap_or_default()
     }
 
-    /// The layers of light that the outputs of a scene hold, before diffraction; `weights` are those of the parts.
+    /// Computes the layers of light that the outputs of a scene hold, before diffraction. `weights` are those of the estimators.
     pub(crate) fn layers(
         &self,
         scene: &Scene,
@@ -55,8 +60,8 @@ impl Renderer {
         wanted.into_iter().map(layer).collect()
     }
 
-    /// The exposure before diffraction, of all light or of a layer; `weights` are those of the parts. What meters see of all light
-    /// stands in the layer of straight light.
+    /// Computes the exposure before diffraction, of all light or of one layer. `weights` are those of the estimators. The layer of direct
+    /// light also holds what the meters see of all light.
     pub(crate) fn planes(
         &self,
         scene: &Scene,
@@ -93,7 +98,7 @@ impl Renderer {
             } else if let Some(seen) = seen.filter(|_| is_straight) {
                 values.extend(seen.iter().map(|value| (value * time_s) as f32));
             } else {
-                // A kind that there is none of, or a meter that sees nothing of this source.
+                // No light of this kind, or a meter that sees none of the source's light.
                 values.resize(pixels, 0.0);
             }
             let named =
@@ -105,10 +110,10 @@ impl Renderer {
     }
 }
 
-/// The kind of light that an estimator estimates.
+/// Returns the kind of light that an estimator estimates.
 fn kind_of(estimator: &dyn Estimator) -> LightKind {
     match estimator.name() {
-        // Stray light, as what lies on glass scatters.
+        // Light scattered by haze, dust or scratches is stray light, too.
         name if name == veil::ESTIMATOR || name == SCATTER => LightKind::Glare,
         name if name == ghosts::ESTIMATOR => LightKind::Ghosts,
         _ => LightKind::Direct,

@@ -1,8 +1,22 @@
-//! Rendering: forward and backward light transport with exact sums.
+//! Renders scenes by forward and backward light transport, with exact sums.
 //!
-//! Work is cut into units that are pure functions of (scene, seed, unit). Their results are added as
-//! integers, so neither the order, nor the number of threads, nor a stop in between changes a bit of
-//! what was finished.
+//! **Work.** Work is divided into units, each a pure function of (scene, seed, unit). Their results are added as integers. The sums are
+//! therefore the same, bit for bit, whatever the order of the units and the number of threads. A stop in between does not change what was
+//! finished.
+//!
+//! **Estimators.** An [`Estimator`] estimates the exposure or a part of it: `backward`, `forward`, `ghosts`, `glare`, `scatter`. Each
+//! divides a span of samples into units of its own, has sums and a scale of its own, and states the value of a unit of its sums. The
+//! exposure is the sum of all estimators in a fixed order. If the source has bright lights and it pays, the lights are traced forward, with
+//! a wavelength density of their own, and the rest backward. Both directions estimate the same exposure in the same units;
+//! `tests/it/directions.rs` compares them.
+//!
+//! **Stopping and continuing.** [`Done`] states which samples are in the sums: all below a number, and a set of units of one further span.
+//! Light can therefore be stopped, saved, loaded and continued, and has the bits of a run without a stop. The renderer refuses to go beyond
+//! random numbers that are laid out in strata for a fixed number of samples.
+//!
+//! **Noise.** If a scene limits the noise (`render.noise`), each estimator exists twice, with independently scrambled numbers, and each
+//! half traces half of the samples. After each complete round, tiles whose blocks are clean get no more samples. The decisions rest on
+//! exact sums, so they are the same however the work was divided.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -55,6 +69,6 @@ pub use remarks::percent;
 pub use renderer::Renderer;
 pub use rendering::{GhostNoise, Rendering};
 pub use spectra_core::workers::{Alone, Workers};
-pub use spectra_lens::Effort;
+pub use spectra_optics::Effort;
 pub use sums::ExactSums;
 pub use workers::Threads;

@@ -1,44 +1,44 @@
-//! The light of a render so far.
+//! The sums of a render so far.
 
 use crate::done::Done;
 use crate::sums::ExactSums;
 use spectra_core::LossCounts;
 
-/// What was summed of a scene, by each of its estimators, and what was lost meanwhile.
+/// The light of a scene so far: the sums of each of its estimators, and the rays lost along the way.
 pub struct Light {
     pub(crate) parts: Vec<Part>,
     pub(crate) losses: LossCounts,
-    /// What the meters see, once they have looked: see [`crate::Estimator::metered`].
+    /// What the meters see, once measured: see [`crate::Estimator::metered`].
     pub(crate) metered: Option<Vec<Vec<f64>>>,
-    /// Samples of each half after which it was decided last where to go on.
+    /// Number of samples of each half at the last decision where to go on.
     pub(crate) judged: u64,
-    /// Halves that each sample of a pixel is one of: two where noise is asked for.
+    /// Number of halves that the samples are divided into: two if noise is limited, else one.
     pub(crate) halves: u64,
 }
 
-/// The sums of one estimator.
+/// The sums and counters of one estimator.
 pub(crate) struct Part {
     pub sums: ExactSums,
     pub done: Done,
     pub rays: u64,
-    /// Of these, rays that brought light to the imager.
+    /// Number of these rays that brought light to the imager.
     pub detected: u64,
 }
 
 impl Light {
-    /// Of each pixel, so many samples are in the sums: of several estimators, the fewest.
+    /// Returns the number of samples of each pixel that are in the sums: with several estimators, the smallest number.
     #[must_use]
     pub fn samples(&self) -> u64 {
         self.halves * self.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0)
     }
 
-    /// Rays that were launched for it.
+    /// Returns the number of rays launched for this light.
     #[must_use]
     pub fn rays(&self) -> u64 {
         self.parts.iter().map(|part| part.rays).sum()
     }
 
-    /// Rays of these that brought light to the imager.
+    /// Returns the number of launched rays that brought light to the imager.
     #[must_use]
     pub fn detected(&self) -> u64 {
         self.parts.iter().map(|part| part.detected).sum()

@@ -1,59 +1,60 @@
-//! How much memory a picture takes: known before any light is traced.
+//! Computes how much memory a picture needs, before any light is traced.
 
 use spectra_core::params::{Faults, Value};
 use spectra_scene::{Holds, Lights, Scene};
 
-/// Bytes of a sum and of an exposure: one of each, a pixel and channel.
+/// Bytes of a sum, of which there is one for each pixel and channel.
 const SUM: u64 = 8;
+/// Bytes of an exposure, of which there is one for each pixel and channel.
 const EXPOSURE: u64 = 4;
-/// Bytes of what a veil knows of each pixel.
+/// Bytes per pixel that an estimator of veiling glare stores.
 const GAIN: u64 = 8;
-/// Bytes a pixel that developing a film takes beside the exposure: planes that are convolved, densities, the picture.
+/// Bytes per pixel that developing a film needs in addition to the exposure: convolved planes, densities, the picture.
 const DEVELOPING: u64 = 40;
-/// Bytes a pixel of a picture that an imager shows by itself, and of packing it into a file.
+/// Bytes per pixel of a picture that an imager shows without film, and of packing it into a file.
 const SHOWING: u64 = 16;
 
-/// Bytes that rendering and writing a scene takes beyond what the scene holds already.
+/// Returns the bytes of memory that rendering and writing a scene needs, beyond what the scene already holds.
 #[must_use]
 pub fn memory_needed(scene: &Scene) -> u64 {
     needed(scene, scene.ghost_paths() as u64)
 }
 
-/// The same with layers of so many paths of ghosts.
+/// Returns the bytes of memory that a scene needs with layers of this many ghost paths.
 fn needed(scene: &Scene, paths: u64) -> u64 {
     let pixels = scene.imager.size().pixels() as u64;
     let channels = scene.channels.len() as u64;
     let is_shown = scene.output.iter().any(|o| matches!(o.holds(), Holds::Picture | Holds::Numbers));
-    // A meter's channels have no sums, but as much for its own figures while it looks.
-    // Lights that are rendered apart have sums of their own; before the source is read it is not known whether there are any.
+    // A meter's channels have no sums, but need as much while the meter looks. Lights that are rendered separately have their own sums.
+    // Whether there are any is not known before the source is read.
     let apart = match scene.render.lights {
         Lights::Same => false,
         Lights::Auto => scene.source.split().is_some_and(|split| split.pays),
         Lights::Forward => true,
     };
-    // So have ghosts; where the scene does not say, whether they matter is not known before they are looked for.
+    // Ghosts have their own sums, too. If the scene does not say, whether they matter is not known before they are searched.
     let ghosts = scene.render.reflections.order.map_or(apart, |order| order > 0);
     let halves = 1 + u64::from(scene.render.noise.is_some());
-    // What haze, dust and scratches scatter is traced beside what they do not.
+    // Light that haze, dust and scratches scatter is traced separately from the rest.
     let scattered = if scene.lens.scatters() { 1 + u64::from(apart) } else { 0 };
-    // The veil is one of all light, or one of lights and one of the rest, whether or not it pays to render lights apart.
+    // There is one veil of all light, or one of the lights and one of the rest, whether or not rendering lights separately pays.
     let emits = |split: spectra_core::stage::Split<'_>| split.lights.emit().is_some();
     let veils = if scene.render.glare.is_some() { 1 + u64::from(scene.source.split().is_some_and(emits)) } else { 0 };
-    // Paths that have layers have sums of their own beside those of all ghosts.
+    // Paths with layers have their own sums in addition to those of all ghosts.
     let kinds = 1 + u64::from(apart) + if ghosts { 1 + paths } else { 0 } + scattered + veils;
-    // Layers of kinds of light and of paths, and the exposure before diffraction while it is worked out.
+    // Layers of the kinds of light and of ghost paths, and the exposure before diffraction while diffraction is computed.
     let of_paths = if paths == 0 { 0 } else { 1 + if ghosts { paths } else { 0 } };
     let layers = scene.light_layers().len() as u64 + of_paths;
     let layers = if layers > 0 && scene.render.diffraction.unwrap_or(apart) { layers + 1 } else { layers };
     let traced = channels * (SUM * halves * kinds + EXPOSURE * (1 + layers)) + GAIN * veils;
-    // Sums are gone by then. Of several films each is developed from a copy of its own channels.
+    // The sums are freed by then. With several films, each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };
-    // A file of layers is written from a copy of them.
+    // A file with layers is written from a copy of them.
     let written = channels * EXPOSURE * (1 + 2 * layers) + if is_shown { picture } else { channels * EXPOSURE };
     pixels.saturating_mul(traced.max(written))
 }
 
-/// A size for people: `3.5 GB`.
+/// Formats a size for people, as in `3.5 GB`.
 #[must_use]
 pub fn bytes(bytes: u64) -> String {
     let mut size = bytes as f64;
@@ -66,10 +67,10 @@ pub fn bytes(bytes: u64) -> String {
     if size < 10.0 && unit != "bytes" { format!("{size:.1} {unit}") } else { format!("{size:.0} {unit}") }
 }
 
-/// Whether a scene fits into so many bytes.
+/// Checks whether rendering a scene fits into `available` bytes of memory.
 ///
 /// # Errors
-/// A fault at what makes it large: the bands, or else the resolution.
+/// Returns a fault at the key that makes the scene too large: ghost paths, bands, or else the resolution.
 pub fn fits(scene: &Scene, available: u64) -> Result<(), Faults> {
     let needed = memory_needed(scene);
     if needed <= available {
@@ -80,16 +81,17 @@ pub fn fits(scene: &Scene, available: u64) -> Result<(), Faults> {
     let paths = scene.ghost_paths() as u64;
     if let Some(fewer) = (0..paths).rev().find(|paths| self::needed(scene, *paths) <= available) {
         let text = format!(
-            "layers of {paths} paths of ghosts, {} x {} pixels of {per} channel{} each, bring the picture to {} of memory, and {} are available",
+            "layers of {paths} ghost paths, {} x {} pixels of {per} channel{} each, raise the picture's memory to {}, but only \
+             {} are available",
             size.width_px,
             size.height_px,
             if per == 1 { "" } else { "s" },
             bytes(needed),
             bytes(available)
         );
-        let hint = if fewer == 0 { "leave `ghost-paths` out".to_owned() } else { format!("`ghost-paths: {fewer}`") };
+        let hint = if fewer == 0 { "leave out `ghost-paths`".to_owned() } else { format!("`ghost-paths: {fewer}`") };
         let key = key_of_paths(scene).unwrap_or_else(|| "output".to_owned());
-        return Err(scene.params.fault(&key, text).hint(format!("{hint}, or a machine with more memory")).into());
+        return Err(scene.params.fault(&key, text).hint(format!("{hint}, or use a machine with more memory")).into());
     }
     let imager = scene.params.get("imager");
     let key = ["bands", "resolution"].into_iter().find(|key| imager.is_some_and(|node| node.get(key).is_some()));
@@ -97,19 +99,19 @@ pub fn fits(scene: &Scene, available: u64) -> Result<(), Faults> {
     let side = (available as f64 / needed as f64).sqrt();
     let smaller = [size.width_px, size.height_px].map(|px| ((f64::from(px) * side) as u32).max(1));
     let text = format!(
-        "{} x {} pixels of {per} channel{} need {} of memory, and {} are available",
+        "{} x {} pixels of {per} channel{} need {} of memory, but only {} are available",
         size.width_px,
         size.height_px,
         if per == 1 { "" } else { "s" },
         bytes(needed),
         bytes(available)
     );
-    let fewer = if key.ends_with("bands") { "fewer bands, or " } else { "" };
+    let fewer = if key.ends_with("bands") { "use fewer bands, " } else { "use " };
     let hint = format!("{fewer}`resolution: [{}, {}]`, or a machine with more memory", smaller[0], smaller[1]);
     Err(scene.params.fault(&key, text).hint(hint).into())
 }
 
-/// Where a scene asks for layers of paths.
+/// Returns the key with which a scene asks for layers of ghost paths.
 fn key_of_paths(scene: &Scene) -> Option<String> {
     let Value::Seq(items) = &scene.params.get("output")?.value else { return None };
     let at = items.iter().position(|item| item.get("ghost-paths").is_some())?;

@@ -1,8 +1,10 @@
-//! What the camera's meter sees: light of its own, so that metering does not change the picture's samples.
+//! Traces what the camera's meter sees, with rays of its own, so that metering does not change the picture's samples.
 //!
-//! It meters what falls on the film, so ghosts and veil too. A meter wants a mean and no picture. It gets a small part of the
-//! rays, drawn from a wavelength density made for its own channel, by numbers of their own. Where there are fewer rays than pixels
-//! that it looks at, neighbors share one.
+//! The meter measures everything that falls on the film, ghosts and veiling glare included. It needs a mean, not a picture, so it gets a
+//! small fraction of the rays, some 4 % of a picture of 64 samples. They are drawn from a wavelength density made for its own channel, with
+//! separate random numbers. If there are fewer rays than pixels that it looks at, neighboring pixels share one.
+//!
+//! If a film meters, light is recorded for 1 s, and the result is scaled to the time that the meter finds (`Scene::film_times`).
 
 use crate::Workers;
 use crate::blame::Blame;
@@ -14,34 +16,34 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::Numbers;
 use spectra_core::workers::each_of;
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::Effort;
+use spectra_optics::Effort;
 use std::ops::Range;
 
-/// Rays that it takes for a pixel: 4 % of the time of a picture of 64 samples. The picture's own number does not matter, so that a
-/// picture that is traced step by step is metered as one that is traced at once.
+/// Rays of a meter per pixel: 4 % of the time of a picture of 64 samples. They do not depend on the picture's own number of samples, so
+/// that a picture traced step by step is metered like one traced at once.
 const RAYS_PER_PIXEL: f64 = 64.0 / 25.0;
-/// Rays that it takes at least: the mean of a frame of usual contrast is within half a percent (1/140 stop).
+/// Smallest number of rays of a meter: the mean of a frame of usual contrast is then within half a percent (1/140 stop).
 const LEAST: u64 = 1 << 16;
-/// And at most: more tell nothing.
+/// Largest number of rays of a meter; more do not improve the mean noticeably.
 const MOST: u64 = 1 << 20;
-/// Those of a first look: the mean is within a hundredth.
+/// Number of rays of a meter for a draft: the mean is within 1 %.
 const OF_DRAFT: u64 = 1 << 14;
-/// Most rays forward, where many are needed to hit a small spot.
+/// Largest number of rays of a forward meter, which needs many to hit a small spot.
 const MOST_FORWARD: u64 = 1 << 22;
-/// Places of a unit of work. They share one stream of numbers, so that neighbors complete each other.
+/// Places in a unit of work. They share one stream of random numbers, so that neighbors complete each other.
 const PLACES_PER_UNIT: usize = 64;
 /// Turns the picture's seed into the meter's.
 pub(crate) const SEED: u64 = 0x6d65_7465_7220_6c78;
-/// The stream of the numbers that choose a pixel among neighbors.
+/// Stream of the random numbers that choose a pixel among neighbors.
 const CHOICE: u64 = u64::MAX;
 
-/// Traces rays from the pixels that its third argument writes, and shows them after each step.
+/// Traces rays from the pixels that its third argument writes, and passes them to its fourth argument after each step.
 type Follow<'a> =
     dyn Fn(&mut ThreadState, usize, &mut dyn FnMut(&mut RayBatch), &mut dyn FnMut(Step, &RayBatch)) + Sync + 'a;
-/// Traces rays from one on, so many.
+/// Traces a number of rays, given by the first ray and their count, and adds their light to the sums.
 type SumUp<'a> = dyn Fn(&mut ThreadState, u64, u64, &ExactSums) -> Option<RenderError> + Sync + 'a;
 
-/// How many rays a meter takes in a frame of so many pixels.
+/// Returns the number of rays that a meter takes in a frame of this many pixels.
 pub(crate) fn rays_for(pixels: usize, effort: Effort) -> u64 {
     match effort {
         Effort::Full => ((pixels as f64 * RAYS_PER_PIXEL) as u64).clamp(LEAST, MOST),
@@ -49,14 +51,14 @@ pub(crate) fn rays_for(pixels: usize, effort: Effort) -> u64 {
     }
 }
 
-/// A pixel that is looked at, for itself and its neighbors.
+/// A pixel that the meter looks at, for itself and its neighbors.
 struct Place {
     pixel: u32,
-    /// Those that get its value, as a range of the metered pixels.
+    /// Pixels that get the value of this one, as a range of the metered pixels.
     stands_for: Range<usize>,
 }
 
-/// At most `most` places that cover `pixels` evenly.
+/// Returns at most `most` places that cover `pixels` evenly.
 fn places(pixels: &[u32], most: u64, numbers: &Numbers, isa: Isa) -> Vec<Place> {
     let count = pixels.len().min(most as usize);
     let mut choice = vec![0.0; count];
@@ -70,8 +72,8 @@ fn places(pixels: &[u32], most: u64, numbers: &Numbers, isa: Isa) -> Vec<Place> 
     choice.into_iter().enumerate().map(place).collect()
 }
 
-/// The mean irradiance times response of each of the pipeline's channels, W mm^-2 as the picture's, over the whole frame: 0
-/// where no meter looks. `follow` traces rays from pixels, with numbers of their own by a name.
+/// Measures the mean irradiance times response of each of the pipeline's channels over the whole frame, W mm^-2 like those of the picture,
+/// and 0 where no meter looks. `follow` traces rays from pixels. Stages derive their own random numbers from the estimator name `name`.
 pub(crate) fn backward(
     pipeline: &Pipeline,
     (name, follow): (&str, &Follow<'_>),
@@ -108,7 +110,7 @@ pub(crate) fn backward(
     Ok(planes)
 }
 
-/// The sums of `samples` rays from each place, channel by channel.
+/// Sums `samples` rays from each place, channel by channel.
 fn unit(
     pipeline: &Pipeline,
     (name, follow): (&str, &Follow<'_>),
@@ -141,7 +143,7 @@ fn unit(
             let rays = &state.rays;
             let values = &mut state.values[..rays.len()];
             pipeline.isa.run(pipeline.responses.weigh(channel, rays.wavelengths_nm(), rays.weights(), values));
-            // Pixels come in rising order, and rays stay in theirs: sums do not depend on the size of a batch.
+            // Pixels come in rising order and rays keep their order, so the sums do not depend on the size of a batch.
             for (value, tag) in values.iter().zip(rays.tags()) {
                 let (pixel, only) = pixel_and_channel(*tag);
                 let at = places.partition_point(|place| place.pixel < pixel);
@@ -159,7 +161,7 @@ fn unit(
     Ok(sums)
 }
 
-/// The same by rays from the source: `unit` traces a span of them, of `a_unit` at most, and sums their light times `scale`.
+/// Measures what the meters see by rays from the source. `unit` traces a span of at most `a_unit` rays and sums their light times `scale`.
 pub(crate) fn forward(
     pipeline: &Pipeline,
     scale: f64,
@@ -173,7 +175,7 @@ pub(crate) fn forward(
     if looked_at == 0 {
         return Ok(vec![vec![0.0; size.pixels()]; channels]);
     }
-    // Rays land where they will: as many in what is metered as backward ones would be.
+    // Rays land at random: take enough to put as many into the metered area as backward ones would.
     let rays = rays_for(size.pixels(), pipeline.effort);
     let rays = (rays as f64 * size.pixels() as f64 / looked_at as f64).min(MOST_FORWARD.max(rays) as f64) as u64;
     let too_large = || RenderError::Memory(crate::memory_needed(scene));
@@ -191,7 +193,7 @@ pub(crate) fn forward(
     Ok(planes(&sums, channels, |_| weight, size.pixels()))
 }
 
-/// Sums as planes of the channels, by what a unit of them is worth at each pixel.
+/// Converts sums to one plane per channel. `weight` is the factor of the sums at each pixel.
 pub(crate) fn planes(sums: &ExactSums, channels: usize, weight: impl Fn(usize) -> f64, pixels: usize) -> Vec<Vec<f64>> {
     let value = |pixel: usize, channel: usize| sums.get(pixel * channels + channel) as f64 * weight(pixel);
     (0..channels).map(|channel| (0..pixels).map(|pixel| value(pixel, channel)).collect()).collect()

@@ -1,26 +1,26 @@
-//! A number that is none, and the steps of a batch that one may come from.
+//! A number that is not finite, and the steps of a batch that it may come from.
 
 use std::fmt;
 
-/// The steps of a batch, each the work of one stage.
+/// The steps of tracing a batch, each the work of one stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Wavelengths are drawn.
+    /// The wavelengths are drawn.
     Wavelengths,
-    /// The source gives light.
+    /// The source gives its light.
     Source,
-    /// Rays are aimed at the pupil.
+    /// The rays are aimed at the pupil.
     Pupil,
-    /// The lens bends them.
+    /// The lens bends the rays.
     Lens,
-    /// The imager launches or receives them.
+    /// The imager launches or receives the rays.
     Imager,
-    /// The channels weigh them.
+    /// The channels weigh the rays by their responses.
     Response,
 }
 
 impl Step {
-    /// The section of the scene that states the stage.
+    /// Returns the section of the scene that states the stage.
     #[must_use]
     pub fn section(self) -> &'static str {
         match self {
@@ -32,29 +32,29 @@ impl Step {
         }
     }
 
-    /// What the stage gives.
+    /// Describes, for messages, what the stage returns.
     fn gives(self) -> &'static str {
         match self {
             Self::Wavelengths => "a wavelength or a density",
             Self::Source => "a radiance",
-            Self::Pupil => "an aim",
-            Self::Lens => "a place, a direction or a transmittance",
-            Self::Imager => "a place or a weight",
+            Self::Pupil => "a direction toward the pupil",
+            Self::Lens => "a position, a direction or a transmittance",
+            Self::Imager => "a position or a weight",
             Self::Response => "a response",
         }
     }
 }
 
-/// A number that no light can have, and the stage that it comes from.
+/// A number that no light can have (infinite or NaN), and the stage that returned it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoNumber {
-    /// The step after which it was first seen.
+    /// The step after which the number was first seen.
     pub step: Step,
-    /// The name of the stage, where the scene states one.
+    /// Kind of the stage, if the scene states one.
     pub kind: Option<String>,
     /// Wavelength of the ray, nm.
     pub wavelength_nm: f64,
-    /// Whether it is infinite; else it is no number at all.
+    /// Whether the number is infinite; if false, it is NaN.
     pub infinite: bool,
 }
 

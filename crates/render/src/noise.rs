@@ -1,26 +1,29 @@
-//! The noise of a picture, and the rounds after which it is judged.
+//! The noise of a picture, and the rounds after which it is measured.
+//!
+//! A round ends after 32, 40, 48, ..., 128, 144, 160, ... samples of a half. Only then is it decided which tiles go on, so that a render
+//! that was stopped decides as one without a stop. `judge.rs` measures the noise.
 
-/// Samples of a half, after which it is decided where to go on: then a quarter to an eighth as many again, and so on.
+/// Samples of a half after which it is first decided where to go on. Later rounds add a quarter to an eighth of the samples so far.
 const FIRST_ROUND: u64 = 32;
-/// Samples of a half in a round, at least.
+/// Smallest number of samples of a half in a round.
 const LEAST_ROUND: u64 = 8;
 
-/// The noise of a picture: standard deviation of a pixel over the mean around it, of luminance or of the worst layer.
+/// The noise of a picture: the standard deviation of a pixel divided by the mean around it, of luminance or of the worst layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// What was asked for.
+    /// The noise that was requested.
     pub asked: f64,
-    /// Of the middle block of the frame.
+    /// Noise of the frame's median block.
     pub median: f64,
-    /// Below it lie 95 % of all blocks.
+    /// The noise that 95 % of all blocks stay below.
     pub p95: f64,
-    /// Of the worst block.
+    /// Noise of the worst block.
     pub worst: f64,
-    /// Part of the blocks that have what was asked for.
+    /// Fraction of the blocks that are no noisier than requested.
     pub clean: f64,
 }
 
-/// The end of the round in which sample `done` of a half lies, if it has ended none.
+/// Returns the sample of a half at which the round that holds sample `done` ends.
 pub(crate) fn next_round(done: u64) -> u64 {
     let mut end = FIRST_ROUND;
     while end <= done {
@@ -30,7 +33,7 @@ pub(crate) fn next_round(done: u64) -> u64 {
     end
 }
 
-/// Whether a round ends after so many samples of a half.
+/// Whether a round ends after this many samples of a half.
 pub(crate) fn ends_round(done: u64) -> bool {
     done > 0 && next_round(done - 1) == done
 }

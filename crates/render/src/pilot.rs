@@ -1,4 +1,4 @@
-//! A few thousand rays before all others: how bright the brightest are, and whether a stage is broken.
+//! Traces a few thousand rays before all others: to see how bright the brightest are, and whether a stage is broken.
 
 use crate::RenderError;
 use crate::blame::Blame;
@@ -7,14 +7,14 @@ use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{PILOT_RAYS, scale_for};
 use spectra_core::RayBatch;
 
-/// Seed of the pilot: the scale of the sums must not depend on the seed of the render, so that
-/// renders of the same scene with other seeds add.
+/// Seed of the pilot. The scale of the sums must not depend on the seed of the render, so that renders of the same scene with other seeds
+/// can be added.
 pub(crate) const PILOT_SEED: u64 = 0x5ca1e;
-/// Batches tried before a scene is taken to be dark.
+/// Number of batches without light after which a scene is taken to be dark.
 const PILOT_BATCHES: u32 = 64;
 
-/// The scale of the sums, by the largest contribution of the first batch that has any light. `trace` traces a batch by its
-/// number, and shows the rays after each step.
+/// Finds the scale of the sums from the largest contribution in the first batch that has any light. `trace` traces a batch by its number
+/// and passes the rays to its last argument after each step.
 pub(crate) fn scale(
     pipeline: &Pipeline,
     trace: impl Fn(&mut ThreadState, u32, &mut dyn FnMut(Step, &RayBatch)),
@@ -23,7 +23,7 @@ pub(crate) fn scale(
     for batch in 0..PILOT_BATCHES {
         let mut blame = Blame::default();
         trace(&mut state, batch, &mut |step, rays| blame.look(step, rays));
-        // A stage that is broken shows before any light is traced, if a few thousand rays find it.
+        // This shows a broken stage before any light is traced, if a few thousand rays are enough to find it.
         if let Some(error) = blame.no_number(pipeline) {
             return Err(error);
         }

@@ -1,4 +1,4 @@
-//! What both directions share: the stages made ready, and one thread's columns.
+//! Parts that both directions share: the prepared stages, and the buffers of one thread.
 
 use crate::error::RenderError;
 use crate::response::Responses;
@@ -11,23 +11,24 @@ use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{Source, WavelengthDensity};
 use spectra_core::{Isa, Loss, RayBatch};
-use spectra_lens::{Effort, Indices, Tracer, Work};
+use spectra_optics::Effort;
 use spectra_scene::{NumberFamily, Scene};
+use spectra_tracer::{Indices, Tracer, Work};
 use std::sync::Arc;
 
-/// Which light of a source is traced.
+/// The part of a source's light that is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Share {
-    /// All.
+    /// All light of the source.
     Whole,
-    /// That of its lights: see [`spectra_core::stage::Split`].
+    /// The bright lights of the source: see [`spectra_core::stage::Split`].
     Lights,
-    /// All but that.
+    /// All light except that of the bright lights.
     Rest,
 }
 
 impl Share {
-    /// The source that stands for it.
+    /// Returns the source that emits this share of the light.
     pub(crate) fn of(self, scene: &Scene) -> &dyn Source {
         match (self, scene.source.split()) {
             (Self::Lights, Some(split)) => split.lights,
@@ -37,34 +38,35 @@ impl Share {
     }
 }
 
-/// The stages, made ready for one scene.
+/// The stages of a scene, ready to trace.
 #[derive(Clone)]
 pub struct Pipeline {
     pub(crate) scene: Arc<Scene>,
-    /// The seed of the picture: the scene's, unless the renderer was reseeded.
+    /// Seed of the picture: that of the scene, unless the renderer was reseeded.
     pub(crate) seed: u64,
-    /// Which light of the source is traced.
+    /// The part of the source's light that is traced.
     pub(crate) share: Share,
     pub(crate) isa: Isa,
     pub(crate) effort: Effort,
     pub(crate) tracer: Arc<Tracer>,
     pub(crate) density: Arc<dyn WavelengthDensity>,
     pub(crate) responses: Responses,
-    /// Which channels of the scene are recorded, in the order of `responses`.
+    /// The channels of the scene that are recorded, in the order of `responses`.
     pub(crate) recorded: Vec<usize>,
-    /// Whether a stage on the way draws numbers of its own, for which batches carry what it needs.
+    /// Whether a stage draws random numbers of its own, so that batches must carry the data for it.
     pub(crate) draws: bool,
-    /// Whether it traces light that layers on the lens scatter at least once, in place of what none of them does.
+    /// Whether this pipeline traces only light that a layer on the lens scattered at least once. If false, it traces only unscattered
+    /// light.
     pub(crate) scattered: bool,
 }
 
-/// What an estimator of scattered light is called, in either direction.
+/// Name of the estimators of scattered light, in either direction.
 pub(crate) const SCATTER: &str = "scatter";
-/// Its numbers are none of those of the other light of the same pixel.
+/// Turns the seed into that of scattered light, so that its random numbers differ from those of the other light of the same pixel.
 const SCATTER_SEED: u64 = 0x5ca7_7e4e_d11f_7b0d;
 
 impl Pipeline {
-    /// With this density of wavelengths, where one is known to fit.
+    /// Prepares the stages of a scene. `density` is a wavelength density already fitted to this scene; if `None`, one is fitted.
     pub(crate) fn new(
         scene: &Arc<Scene>,
         isa: Isa,
@@ -74,7 +76,7 @@ impl Pipeline {
         if let Some(text) = crate::diffracted::fault(scene) {
             return Err(RenderError::Diffraction(text));
         }
-        // A meter's channel is none of them: whether a camera meters must not change the picture's samples.
+        // The channels of meters are not recorded: whether a camera meters must not change the picture's samples.
         let recorded = scene.picture_channels();
         let system = system(scene, Share::Whole, &recorded);
         let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
@@ -86,7 +88,7 @@ impl Pipeline {
         Ok(Self { scene, seed, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
     }
 
-    /// What the number of rays that ghosts are searched and booked with is divided by.
+    /// Returns the divisor of the number of rays with which ghosts are searched and their light is booked.
     pub(crate) fn search_divisor(&self) -> usize {
         match self.effort {
             Effort::Full => 1,
@@ -94,19 +96,20 @@ impl Pipeline {
         }
     }
 
-    /// The same for a share of the source, with a density of its own where one can be fitted to it.
+    /// Returns a copy for a share of the source's light, with its own wavelength density if one can be fitted.
     pub(crate) fn of_share(&self, share: Share) -> Self {
         let system = system(&self.scene, share, &self.recorded);
         let density = self.scene.sampler.prepare(&system).map_or_else(|_| Arc::clone(&self.density), Arc::from);
         Self { share, density, responses: Responses::new(self.scene.grid, &system.channels), ..self.clone() }
     }
 
-    /// The same stages for a picture of another seed.
+    /// Returns a copy for a picture of another seed.
     pub(crate) fn of_seed(&self, seed: u64) -> Self {
         Self { seed, ..self.clone() }
     }
 
-    /// Channels that noise is asked of, by their place among those recorded: luminance where there is one, else all.
+    /// Returns the channels in which noise is measured, by their position among the recorded ones: luminance (`Y`) if there is one, else
+    /// all.
     pub(crate) fn judged_channels(&self) -> Vec<usize> {
         let mut names = self.recorded.iter().map(|at| self.scene.channels[*at].name.as_str());
         names
@@ -114,12 +117,12 @@ impl Pipeline {
             .map_or_else(|| (0..self.recorded.len()).collect(), |luminance| vec![luminance])
     }
 
-    /// The same through a lens that is made ready otherwise.
+    /// Returns a copy that traces through another tracer of the lens.
     pub(crate) fn with_tracer(&self, tracer: Tracer) -> Self {
         Self { tracer: Arc::new(tracer), ..self.clone() }
     }
 
-    /// The same for light that haze, dust and scratches on the lens scatter; `None` where nothing lies on it.
+    /// Returns a copy that traces light scattered by haze, dust and scratches on the lens; `None` if nothing lies on it.
     pub(crate) fn scattered(&self) -> Result<Option<Self>, RenderError> {
         if !self.scene.lens.scatters() {
             return Ok(None);
@@ -128,17 +131,17 @@ impl Pipeline {
         Ok(Some(Self { draws: true, scattered: true, ..self.with_tracer(tracer) }))
     }
 
-    /// The lens as if nothing lay on it that scatters.
+    /// Returns a tracer for the lens with nothing on it that scatters.
     pub(crate) fn clean_tracer(&self) -> Result<Tracer, RenderError> {
         tracer(&self.scene, self.isa)
     }
 
-    /// What is traced of the source.
+    /// Returns the source of the light that this pipeline traces.
     pub(crate) fn source(&self) -> &dyn Source {
         self.share.of(&self.scene)
     }
 
-    /// The same for what the meters see, with a density of their own; `None` where they see nothing of the source.
+    /// Returns a copy that traces what the meters see, with its own wavelength density; `None` if they see none of the source's light.
     pub(crate) fn of_meters(&self) -> Option<Self> {
         let recorded = self.scene.meter_channels();
         let system = system(&self.scene, self.share, &recorded);
@@ -147,7 +150,7 @@ impl Pipeline {
         Some(Self { density, responses, recorded, ..self.clone() })
     }
 
-    /// The numbers of a seed, as the scene wants them.
+    /// Returns the random numbers of a seed, of the family that the scene states.
     pub(crate) fn numbers(&self, seed: u64) -> Numbers {
         let seed = if self.scattered { seed ^ SCATTER_SEED } else { seed };
         match self.scene.render.numbers {
@@ -158,19 +161,19 @@ impl Pipeline {
         }
     }
 
-    /// How many samples in a row share one number of a dimension, rotated: only wavelengths ever do.
+    /// Returns the number of consecutive samples that share one rotated number of a dimension: more than one for wavelengths only.
     pub(crate) fn group(&self, dimension: usize) -> u32 {
         if dimension == Dimension::Wavelength as usize { self.density.group() } else { 1 }
     }
 }
 
-/// The lens of a scene, made ready for its band.
+/// Prepares the lens of a scene for its band.
 fn tracer(scene: &Scene, isa: Isa) -> Result<Tracer, RenderError> {
     let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
     Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))
 }
 
-/// Whether any stage draws.
+/// Whether any stage draws random numbers of its own.
 fn draws(scene: &Scene) -> bool {
     scene.lens.elements.iter().any(|e| e.surface.draws())
         || scene.source.emit().is_some_and(|emit| emit.draws())
@@ -179,26 +182,26 @@ fn draws(scene: &Scene) -> bool {
         || scene.imager.receive().is_some_and(|receive| receive.draws())
 }
 
-/// The source, and some of the channels.
+/// Returns the spectrum of a share of the source and the responses of the recorded channels.
 fn system(scene: &Scene, share: Share, recorded: &[usize]) -> SystemResponse {
     let channels = recorded.iter().filter_map(|at| scene.channels.get(*at)).cloned().collect();
     SystemResponse { grid: scene.grid, source: share.of(scene).spectrum().clone(), channels }
 }
 
-/// Columns of one thread.
+/// The buffers of one thread.
 pub(crate) struct ThreadState {
     pub rays: RayBatch,
     pub work: Work,
     pub numbers: [Column<f64>; 5],
     pub values: Vec<f64>,
     pub integers: Vec<Vec<i64>>,
-    /// What was summed and not yet added to the sums of all threads, of an estimator that sums so.
+    /// Sums of this thread that were not yet added to the shared sums, for an estimator whose rays add to single pixels.
     pub own: Option<OwnSums>,
-    /// The same of an estimator whose rays add to pixels in a row.
+    /// Sums of this thread that were not yet added to the shared sums, for an estimator whose rays add to rows of pixels.
     pub steps: Option<OwnSteps>,
-    /// Rays as they came from the lens, of an estimator that spreads their light.
+    /// Rays as they left the lens, for an estimator that spreads their light.
     pub before: Before,
-    /// Rays that brought light to the imager.
+    /// Number of rays that brought light to the imager.
     pub detected: u64,
 }
 
@@ -219,7 +222,7 @@ impl ThreadState {
         }
     }
 
-    /// Draws `len` wavelengths by the first column of numbers, into a batch that starts over.
+    /// Draws `len` wavelengths by the first column of random numbers into a restarted batch.
     pub(crate) fn draw_wavelengths(&mut self, pipeline: &Pipeline, len: usize) {
         self.rays.restart(len);
         let u = self.numbers[Dimension::Wavelength as usize].slice(len);
@@ -227,8 +230,8 @@ impl ThreadState {
         pipeline.density.draw(u, c.wavelength_nm, c.line, c.weight, pipeline.isa);
     }
 
-    /// Takes the weight from the rays that ended. Books those that ended at no surface of the lens (the lens has booked its
-    /// own), and those that carry no light; counts the others as detected.
+    /// Sets the weight of the rays that ended to 0. Counts as lost those that ended outside the lens (the lens counts its own) and those
+    /// that carry no light; counts the others as detected.
     pub(crate) fn settle(&mut self, isa: Isa) {
         let c = self.rays.columns_mut();
         let Settled { lit, alive, beside_lens } = isa.run(Settle { state: c.state, weight: c.weight });
@@ -244,7 +247,7 @@ impl ThreadState {
         }
     }
 
-    /// Books and drops the rays that were not even aimed: nothing passes from where they start.
+    /// Counts as lost and drops the rays that could not be aimed, because nothing passes from where they start.
     pub(crate) fn drop_dark(&mut self, dark: usize) {
         if dark > 0 {
             self.work.losses.add_states(self.rays.states());
@@ -252,7 +255,7 @@ impl ThreadState {
         }
     }
 
-    /// The largest contribution of the batch to any channel.
+    /// Returns the largest contribution of the batch to any channel.
     pub(crate) fn largest(&mut self, pipeline: &Pipeline) -> f64 {
         let len = self.rays.len();
         let mut largest = 0.0_f64;
@@ -269,7 +272,7 @@ impl ThreadState {
         largest
     }
 
-    /// What all rays of the batch contribute to all channels.
+    /// Returns the sum of what all rays of the batch contribute to all channels.
     pub(crate) fn sum(&mut self, pipeline: &Pipeline) -> f64 {
         let len = self.rays.len();
         let mut sum = 0.0;
@@ -282,19 +285,19 @@ impl ThreadState {
         sum
     }
 
-    /// Writes each ray's contribution to each channel as integers; false where one does not fit.
+    /// Writes each ray's contribution to each channel as integers. Returns false if one does not fit.
     pub(crate) fn contributions(&mut self, pipeline: &Pipeline, scale: f64) -> bool {
         let (nm, weights) = (self.rays.wavelengths_nm(), self.rays.weights());
         pipeline.isa.run(pipeline.responses.count(nm, weights, scale, &mut self.integers))
     }
 }
 
-/// How many rays of a batch are what.
+/// Counts of the rays of a batch by their state.
 struct Settled {
-    /// Alive, with a weight.
+    /// Rays that are alive and have a weight.
     lit: u64,
     alive: u64,
-    /// Ended, at no surface of the lens.
+    /// Rays that ended, but not at a surface of the lens.
     beside_lens: u64,
 }
 
@@ -314,7 +317,7 @@ impl Vectorized for Settle<'_> {
             *weight = kept;
             lit += u64::from(kept != 0.0);
             alive += u64::from(is_alive);
-            // Cause in the low byte, surface above it.
+            // The state holds the cause in its low byte and the surface above it.
             beside_lens += u64::from((*state != ALIVE) & (*state < 0x100));
         }
         Settled { lit, alive, beside_lens }

@@ -1,4 +1,4 @@
-//! What a person should know of a picture before believing it: nothing on it, too much on it, too little of it.
+//! Warnings about a picture: no light on it, too much light, or too few rays.
 
 use crate::forward;
 use crate::light::Light;
@@ -9,23 +9,24 @@ use spectra_core::frame::ExposureFrame;
 use spectra_core::{Loss, LossCounts, shutter};
 use spectra_scene::{Direction, Scene, SceneFilm};
 
-/// Of the lit pixels, this share alone or beside holes tells that rays are too few, and not that the picture is black there.
+/// If at least this fraction of the lit pixels is isolated or beside holes, there are too few rays, and the picture is not black there.
 const SPARSE: f64 = 0.5;
-/// Where so many rays are expected, one pixel of 3000 gets none.
+/// Number of expected rays per pixel above which hardly any pixel stays empty by chance: one in 3000 gets none at this number.
 const FEW_RAYS: f64 = 8.0;
-/// What is clean almost everywhere is not worth a word.
+/// Fraction of clean blocks above which no warning about noise is given.
 const CLEAN: f64 = 0.99;
 
-/// One part in so many of the frame may be a light and not what the picture is of.
+/// One part in this many of the frame may be a light rather than the subject of the picture.
 const DAZZLING: usize = 100;
-/// A meter goes by the lights and by nothing else where they make its mean so many times larger: six stops.
+/// Ratio of the mean with and without the lights above which a meter follows the lights alone: six stops.
 const DAZZLED: f64 = 64.0;
-/// The shortest time of most cameras; where a meter asks for less, two stops are enough to say why.
+/// Shortest exposure time of most cameras, s. If a meter asks for less, a smaller ratio is enough for a warning.
 const SHUTTER_S: f64 = 1.0 / 8000.0;
+/// Ratio of the mean with and without the lights that is enough for a warning if the exposure time is too short: two stops.
 const DAZZLED_SHORT: f64 = 4.0;
 
 impl Renderer {
-    /// What a person should know of a rendering of this light before believing it.
+    /// Returns the warnings that a person should read before believing a rendering of this light.
     #[must_use]
     pub fn remarks(&self, light: &Light, rendering: &Rendering) -> Vec<String> {
         remarks(self, light, rendering)
@@ -36,7 +37,7 @@ fn remarks(renderer: &Renderer, light: &Light, rendering: &Rendering) -> Vec<Str
     let scene = renderer.scene();
     let mut all = Vec::new();
     if rendering.detected == 0 {
-        // Stopped before its first ray, it tells nothing.
+        // A render that stopped before its first ray gives no information.
         if rendering.rays > 0 {
             all.push(nothing_seen(renderer, rendering));
         }
@@ -50,13 +51,13 @@ fn remarks(renderer: &Renderer, light: &Light, rendering: &Rendering) -> Vec<Str
     let infinite = (0..pixels).filter(|p| planes.iter().any(|plane| !plane.values[*p].is_finite())).count();
     if infinite > 0 {
         all.push(format!(
-            "{infinite} of {pixels} pixels have more light than a 32-bit float can hold (3.4e38): they are infinite; less \
-             luminance or a shorter exposure keeps them finite"
+            "{infinite} of {pixels} pixels have more light than a 32-bit float can hold (3.4e38) and are infinite; use less \
+             luminance or a shorter exposure"
         ));
     } else if planes.iter().all(|plane| plane.values.iter().all(|value| *value == 0.0)) {
         all.push(
-            "all pixels are 0: light arrived, but less than a 32-bit float can hold (1.4e-45); more luminance, a larger \
-             source or a longer exposure shows it"
+            "all pixels are 0: light arrived, but less than a 32-bit float can hold (1.4e-45); use more luminance, a \
+             larger source or a longer exposure"
                 .to_owned(),
         );
     } else if scene.render.direction == Direction::Forward && !scene.films.is_empty() {
@@ -65,12 +66,11 @@ fn remarks(renderer: &Renderer, light: &Light, rendering: &Rendering) -> Vec<Str
     all
 }
 
-/// The most samples did not suffice.
+/// Warns if the largest number of samples was not enough for the requested noise.
 fn still_noisy(scene: &Scene, noise: &Noise) -> Option<String> {
     (noise.clean < CLEAN).then(|| {
         format!(
-            "{:.0} % of the frame has more noise than the {} that was asked for, up to {}: `render.samples` (now {}) was the \
-             limit, more of them go on",
+            "{:.0} % of the frame is noisier than the requested {} (worst block {}); raise `render.samples` (now {})",
             100.0 * (1.0 - noise.clean),
             percent(noise.asked),
             percent(noise.worst),
@@ -79,28 +79,28 @@ fn still_noisy(scene: &Scene, noise: &Noise) -> Option<String> {
     })
 }
 
-/// A share to two digits: `1.4 %`.
+/// Formats a fraction as a percentage with two digits, as in `1.4 %`.
 #[must_use]
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent < 10.0 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
-/// A meter that sees no light cannot choose a time.
+/// Warns about a meter that sees no light and therefore cannot choose an exposure time.
 fn blind_meter(film: &SceneFilm, exposure: &ExposureFrame) -> Option<String> {
     let planes = exposure.channels.get(film.channels.clone())?.get(film.film.picture_channels()..)?;
     let is_blind = !planes.is_empty() && planes.iter().all(|plane| plane.values.iter().all(|value| *value == 0.0));
     let named = film.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
     is_blind.then(|| {
         format!(
-            "{named}the camera's meter sees no light where it looks, so the film is exposed for {}; state `exposure` in \
-             place of `metering`, or meter another part of the frame",
+            "{named}the camera's meter sees no light where it looks, so the film is exposed for {}; write `exposure` \
+             instead of `metering`, or meter another part of the frame",
             shutter::words(film.film.metered_time_s(exposure))
         )
     })
 }
 
-/// A sun or a lamp in the frame outshines what the picture is of, and a mean goes by it.
+/// Warns if a sun or a lamp in the frame outshines the subject and dominates the mean of a meter.
 fn dazzled_meter(film: &SceneFilm, exposure: &ExposureFrame) -> Option<String> {
     let plane = exposure.channels.get(film.channels.clone())?.get(film.film.picture_channels()..)?.first()?;
     if !film.film.is_metered() || plane.values.iter().any(|value| !value.is_finite()) {
@@ -122,16 +122,16 @@ fn dazzled_meter(film: &SceneFilm, exposure: &ExposureFrame) -> Option<String> {
     }
     let named = film.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
     Some(format!(
-        "{named}the brightest hundredth of what the camera's meter sees sets the exposure, {}, and leaves the rest of the picture \
-         {:.0} stops too dark; in place of `metering`, `exposure: {}` is the time without it",
+        "{named}the brightest hundredth of what the camera's meter sees sets the exposure ({}) and makes the rest of the picture \
+         {:.0} stops too dark; write `exposure: {}` instead of `metering` to expose for the rest",
         shutter::words(time_s),
         spectra_core::math::log2(brighter),
         shutter::words(time_s * brighter)
     ))
 }
 
-/// Film is no mean: what no ray reached is developed as unexposed, between pixels that rays did reach. Of the light that
-/// `render.rays` are for: ghosts and glare have theirs by `samples`.
+/// Warns if empty pixels lie between pixels that rays reached: film is not a mean, it develops empty pixels as unexposed. Looks only at the
+/// light that `render.rays` trace, because ghosts and glare get theirs by `samples`.
 fn sparse(renderer: &Renderer, light: &Light) -> Option<String> {
     let scene = renderer.scene();
     let size = scene.imager.size();
@@ -145,7 +145,7 @@ fn sparse(renderer: &Renderer, light: &Light) -> Option<String> {
         reached.iter_mut().enumerate().for_each(|(p, sum)| *sum += of(p));
         rays += part.detected;
     }
-    // As much as so many rays bring: what has more was not reached by chance.
+    // The light of this many average rays: a pixel with more was not reached by chance.
     let few = FEW_RAYS * reached.iter().sum::<f64>() / rays as f64;
     let lit: Vec<bool> = reached.iter().map(|sum| *sum != 0.0).collect();
     let around = |p: usize| {
@@ -155,7 +155,7 @@ fn sparse(renderer: &Renderer, light: &Light) -> Option<String> {
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column)).filter(move |at| *at != p)
     };
     let lit_around = |p: usize| around(p).filter(|at| lit[*at]).count();
-    // Alone, or beside a hole: the edge of a small spot is neither.
+    // Isolated, or beside a hole: the edge of a small spot is neither.
     let is_ragged = |p: usize| {
         let beside_empty = around(p).any(|at| !lit[at]);
         beside_empty && (lit_around(p) < 3 || around(p).any(|at| !lit[at] && lit_around(at) > 3))
@@ -167,15 +167,16 @@ fn sparse(renderer: &Renderer, light: &Light) -> Option<String> {
         return None;
     }
     let can_backward = scene.source.radiance().is_some() && scene.imager.launch().is_some();
-    let instead = if can_backward { ", or `render.direction: backward`" } else { "" };
+    let instead = if can_backward { ", or write `render.direction: backward`" } else { "" };
     Some(format!(
-        "{:.0} % of the pixels got no ray, many of them among pixels that did: film shows them as unexposed, too dark overall; more `render.rays` (now {}){instead} fills them",
+        "{:.0} % of the pixels got no ray, many of them next to pixels that did; film shows them as unexposed, so the picture is too dark; \
+         raise `render.rays` (now {}){instead}",
         100.0 * empty as f64 / lit.len() as f64,
         scene.render.rays
     ))
 }
 
-/// Why the frame is empty, and what would see the light.
+/// Explains why the frame is empty and what to change.
 fn nothing_seen(renderer: &Renderer, rendering: &Rendering) -> String {
     let scene = renderer.scene();
     let landing = renderer.landing();
@@ -184,15 +185,15 @@ fn nothing_seen(renderer: &Renderer, rendering: &Rendering) -> String {
         let size = rendering.exposure.size;
         let [x, y] = landing.middle_mm.map(|mm| format!("{mm:.1} mm"));
         return format!(
-            "no light reaches the frame: it lands around x = {x}, y = {y} of the image plane, beside the {} x {} mm that are \
-             recorded; `imager.shift: [{x}, {y}]` would catch it",
+            "no light reaches the frame: it lands around x = {x}, y = {y} in the image plane, outside the recorded {} x {} mm; \
+             write `imager.shift: [{x}, {y}]` to record it",
             size.width_mm, size.height_mm
         );
     }
     let why = chief_loss(&rendering.losses);
     match (scene.render.direction, landing) {
         (Direction::Backward, _) if rendering.losses.of_cause(Loss::Unlit) > 0 => {
-            "no light reaches the frame: everything in view is beside the picture, or black; make the `source` larger or move it closer"
+            "no light reaches the frame: everything in view is black or outside the picture; make the `source` larger or move it closer"
                 .to_owned()
         }
         (Direction::Forward, Some(_)) => {
@@ -204,7 +205,7 @@ fn nothing_seen(renderer: &Renderer, rendering: &Rendering) -> String {
     }
 }
 
-/// Where most rays end, in words.
+/// Describes where most rays end; empty if that is not at a surface of the lens.
 fn chief_loss(losses: &LossCounts) -> String {
     let most = losses.iter().max_by_key(|(_, _, rays)| *rays);
     most.filter(|(surface, _, _)| *surface > 0).map_or(String::new(), |(surface, cause, _)| {

@@ -1,4 +1,4 @@
-//! The renderer: units of work, handed to threads, summed exactly.
+//! The renderer: hands units of work to threads and sums their light exactly.
 
 use crate::backward::Backward;
 use crate::diffracted;
@@ -19,49 +19,51 @@ use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::{Isa, LossCounts};
-use spectra_lens::Travel;
 use spectra_scene::{Direction, LightKind, Lights, NumberFamily, Scene};
+use spectra_tracer::Travel;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How many units one thread takes at a time: this part of all, so that none waits long for the others, and at most so many.
+/// A thread takes one part in this many of all units at a time, so that no thread waits long for the others.
 const UNITS_A_RUN: u64 = 1024;
+/// Largest number of units that a thread takes at a time.
 const LONGEST_RUN: u64 = 16;
 
-/// A scene made ready to render.
+/// A scene that is ready to render.
 pub struct Renderer {
     scene: Arc<Scene>,
     pipeline: Arc<Pipeline>,
     estimators: Vec<Box<dyn Estimator>>,
     ledger: Option<LightLedger>,
-    /// Whether lights are rendered apart from the rest.
+    /// Whether the bright lights of the source are rendered separately from the rest.
     has_lights: bool,
 }
 
 impl Renderer {
-    /// Makes a scene ready: fits the wavelength density, searches pupils, finds the scale of the sums.
+    /// Prepares a scene: fits the wavelength density, searches the pupils and finds the scale of the sums.
     ///
     /// # Errors
-    /// [`RenderError`]: a stage lacks the ability that the direction needs, or the source's files are broken.
+    /// Returns a [`RenderError`] if a stage lacks an ability that the direction needs, or if files of the source are broken.
     pub fn new(scene: impl Into<Arc<Scene>>, isa: Isa) -> Result<Self, RenderError> {
         Self::on(scene, isa, &Alone)
     }
 
-    /// The same, with the search for pupils on these workers: the same bits on any.
+    /// Prepares a scene like [`Renderer::new`], with the search for pupils shared out over `workers`. The result has the same bits on any
+    /// workers.
     ///
     /// # Errors
-    /// As [`Renderer::new`].
+    /// Returns the same errors as [`Renderer::new`].
     pub fn on(scene: impl Into<Arc<Scene>>, isa: Isa, workers: &dyn Workers) -> Result<Self, RenderError> {
         Self::with_density(scene.into(), isa, None, workers)
     }
 
-    /// The same with a density of wavelengths that is known to fit.
+    /// Prepares a scene like [`Renderer::on`]. `density` is a wavelength density already fitted to this scene; if `None`, one is fitted.
     ///
-    /// Where the source has lights ([`spectra_core::stage::Split`]), and the scene wants it or does not say and it pays, they are
-    /// traced forward and the rest backward.
+    /// Bright lights of the source ([`spectra_core::stage::Split`]) are traced forward and the rest backward if the scene asks for it. If
+    /// the scene does not say, this is done when it pays.
     ///
     /// # Errors
-    /// As [`Renderer::new`].
+    /// Returns the same errors as [`Renderer::new`].
     pub fn with_density(
         scene: Arc<Scene>,
         isa: Isa,
@@ -71,11 +73,10 @@ impl Renderer {
         Self::with_effort(scene, isa, density, Effort::Full, workers)
     }
 
-    /// The same, with some effort to find what passes and what meters see; [`RenderError::Stopped`] where the workers are to stop
-    /// meanwhile.
+    /// Prepares a scene like [`Renderer::with_density`]. `effort` sets how closely pupils are searched and meters are read.
     ///
     /// # Errors
-    /// As [`Renderer::new`].
+    /// Returns the same errors as [`Renderer::new`], and [`RenderError::Stopped`] if the workers are to stop meanwhile.
     pub fn with_effort(
         scene: Arc<Scene>,
         isa: Isa,
@@ -123,7 +124,7 @@ impl Renderer {
         Ok(Self { estimators: halved(&scene, kinds), scene, pipeline, ledger, has_lights: true })
     }
 
-    /// With the ghosts of its lights, or of all of the source where none of it is brighter than the rest.
+    /// Adds the ghosts of the bright lights, or of the whole source if no part of it is brighter than the rest.
     fn with_ghosts(mut self, workers: &dyn Workers) -> Result<Self, RenderError> {
         let share = if self.scene.source.split().is_some() { Share::Lights } else { Share::Whole };
         let found = match share {
@@ -134,7 +135,7 @@ impl Renderer {
         self.ledger = Some(found.ledger().clone());
         let halves = self.halves() as usize;
         let mut both = halved(&self.scene, vec![Box::new(found)]).into_iter();
-        // Halves stand behind one another.
+        // The estimators of the second half follow those of the first.
         let kinds = self.estimators.len() / halves;
         for half in (1..=halves).rev() {
             let Some(ghosts) = both.next_back() else { break };
@@ -143,10 +144,10 @@ impl Renderer {
         Ok(self)
     }
 
-    /// Nothing but the ghosts of a scene, to measure them by themselves; `None` where nothing reflects.
+    /// Prepares a renderer for the ghosts of a scene alone, to measure them. Returns `None` if nothing reflects.
     ///
     /// # Errors
-    /// As [`Renderer::new`].
+    /// Returns the same errors as [`Renderer::new`].
     pub fn of_ghosts(
         scene: Arc<Scene>,
         isa: Isa,
@@ -161,10 +162,10 @@ impl Renderer {
         Ok(Some(Self { estimators: halved(&scene, vec![Box::new(found)]), scene, pipeline, ledger, has_lights: false }))
     }
 
-    /// With the veiling glare that the scene asks for: of lights from the source, of the rest from the imager.
+    /// Adds the veiling glare that the scene asks for: walks start at the source for the bright lights, and at the imager for the rest.
     fn with_veil(mut self) -> Result<Self, RenderError> {
         let Some(matter) = self.scene.render.glare else { return Ok(self) };
-        // Also where they are traced because the lights are bright enough, and nothing was said.
+        // Ghosts may also be traced without being requested, because the lights are bright enough.
         let has_ghosts = self.estimators().any(|estimator| estimator.name() == ghosts::ESTIMATOR);
         let ghosts_order = if has_ghosts { self.scene.render.reflections.order.unwrap_or(2) } else { 0 };
         let emits = |split: &spectra_core::stage::Split<'_>| split.lights.emit().is_some();
@@ -181,7 +182,7 @@ impl Renderer {
         let halves = self.halves() as usize;
         let many = veils.len();
         let all = halved(&self.scene, veils.into_iter().map(|veil| Box::new(veil) as Box<dyn Estimator>).collect());
-        // Halves stand behind one another.
+        // The estimators of the second half follow those of the first.
         let kinds = self.estimators.len() / halves;
         let mut all: Vec<_> = all.into_iter().collect();
         for half in (1..=halves).rev() {
@@ -191,16 +192,17 @@ impl Renderer {
         Ok(self)
     }
 
-    /// Where the light of lights goes, if ghosts are traced.
+    /// Ledger of the light of the bright lights, if ghosts are traced.
     #[must_use]
     pub fn ledger(&self) -> Option<&LightLedger> {
         self.ledger.as_ref()
     }
 
-    /// The same by these estimators, whose light is added, and with a density of wavelengths that is known to fit.
+    /// Builds a renderer that traces in the given directions and adds up their light. `density` is a wavelength density already fitted to
+    /// this scene.
     ///
     /// # Errors
-    /// As [`Renderer::new`].
+    /// Returns the same errors as [`Renderer::new`].
     pub fn of(
         scene: Arc<Scene>,
         isa: Isa,
@@ -234,8 +236,8 @@ impl Renderer {
         Ok(Self { estimators: halved(&scene, estimators), scene, pipeline, ledger: None, has_lights: false })
     }
 
-    /// This renderer for the picture of another seed: the bits are those of [`Renderer::new`] for the scene with that seed. What was
-    /// searched and decided before the first ray does not depend on the seed and is shared, so that this costs next to nothing.
+    /// Returns a copy for the picture of another seed, with the same bits as [`Renderer::new`] for the scene with that seed. What was
+    /// searched and decided before the first ray does not depend on the seed and is shared, so this costs next to nothing.
     #[must_use]
     pub fn reseeded(&self, seed: u64) -> Self {
         let mut scene = (*self.scene).clone();
@@ -253,15 +255,15 @@ impl Renderer {
         }
     }
 
-    /// Looks whether a scene can be made ready: what [`Renderer::new`] refuses, as far as that shows without
-    /// its search for pupils, its pilot and the large files of a source.
+    /// Checks whether a scene can be prepared: reports what [`Renderer::new`] refuses, as far as that shows without its search for pupils,
+    /// its pilot and the large files of a source.
     ///
     /// # Errors
-    /// As [`Renderer::new`].
+    /// Returns the same errors as [`Renderer::new`].
     pub fn check(scene: &Arc<Scene>, isa: Isa) -> Result<(), RenderError> {
         let pipeline = Pipeline::new(scene, isa, None, Effort::Full)?;
         veil::check(&pipeline)?;
-        let sized = |travel| spectra_lens::has_sizes(&scene.lens, travel);
+        let sized = |travel| spectra_optics::has_sizes(&scene.lens, travel);
         let is_open = match scene.render.direction {
             Direction::Forward => {
                 let emit = scene.source.emit().ok_or(RenderError::CannotEmit)?;
@@ -277,8 +279,8 @@ impl Renderer {
         if is_open { Ok(()) } else { Err(RenderError::NoAperture) }
     }
 
-    /// Where the light of the source lands in the plane of the imager, whichever way the scene is rendered; `None` where
-    /// the source cannot emit, or nothing passes the lens.
+    /// Finds where the light of the source lands in the plane of the imager, whichever way the scene is rendered. `None` if the source
+    /// cannot emit, or if nothing passes the lens.
     #[must_use]
     pub fn landing(&self) -> Option<Landing> {
         let forward = Forward::aimed(Arc::clone(&self.pipeline), &Alone).ok()?;
@@ -292,10 +294,10 @@ impl Renderer {
         landing
     }
 
-    /// Renders all samples that the scene states, or until `control` says stop.
+    /// Renders all samples that the scene states, or until `control` asks to stop.
     ///
     /// # Errors
-    /// As [`Renderer::advance`].
+    /// Returns the same errors as [`Renderer::advance`].
     pub fn run(&self, workers: &dyn Workers, control: &Control) -> Result<Rendering, RenderError> {
         let mut light = self.begin()?;
         self.advance(&mut light, u64::from(self.scene.render.samples), workers, control)?;
@@ -304,12 +306,12 @@ impl Renderer {
         Ok(rendering)
     }
 
-    /// Goes on until so many samples of each pixel are in the sums, or until `control` says stop. What was begun before is
-    /// ended first, also where that is more.
+    /// Continues until `samples` samples of each pixel are in the sums, or until `control` asks to stop. A span that was begun before is
+    /// finished first, even if it is longer.
     ///
     /// # Errors
-    /// As soon as a ray shows it, [`RenderError::NoNumber`] or [`RenderError::Overflow`]: then the light of all rays before
-    /// is there. [`RenderError::DoesNotExtend`].
+    /// Returns [`RenderError::NoNumber`] or [`RenderError::Overflow`] as soon as a ray shows it; `light` then holds the light of all rays
+    /// before. Returns [`RenderError::DoesNotExtend`] if the random numbers are laid out for another number of samples.
     pub fn advance(
         &self,
         light: &mut Light,
@@ -322,7 +324,7 @@ impl Renderer {
         }
         if light.metered.is_none() {
             match self.metered(workers) {
-                // Nothing is lost: the meters look again the next time.
+                // Nothing is lost: the meters measure again the next time.
                 Err(RenderError::Stopped) => return Ok(()),
                 metered => light.metered = Some(metered?),
             }
@@ -342,10 +344,10 @@ impl Renderer {
         }
     }
 
-    /// No light yet.
+    /// Allocates the light of a render that has not begun.
     ///
     /// # Errors
-    /// [`RenderError::Memory`].
+    /// Returns [`RenderError::Memory`] if the sums do not fit into memory.
     pub fn begin(&self) -> Result<Light, RenderError> {
         let part = |estimator: &dyn Estimator| {
             let cells = self.cells().checked_mul(1 + estimator.paths().len());
@@ -357,23 +359,23 @@ impl Renderer {
         Ok(Light { parts, losses: LossCounts::default(), metered: None, judged: 0, halves })
     }
 
-    /// Halves of the samples, with numbers of their own: two where noise is asked for.
+    /// Number of halves of the samples, each with its own random numbers: two if the scene limits the noise, else one.
     pub(crate) fn halves(&self) -> u64 {
         1 + u64::from(self.scene.render.noise.is_some())
     }
 
-    /// Estimators that are not another half of one.
+    /// Number of estimators, not counting those of the second half.
     fn kinds(&self) -> usize {
         self.estimators.len() / self.halves() as usize
     }
 
-    /// Whether the noise asked for is reached everywhere.
+    /// Whether the requested noise is reached everywhere.
     fn is_clean(&self, light: &Light) -> bool {
         let ended = |(e, part): (&dyn Estimator, &Part)| part.done.ended().len() == e.tiles();
         self.halves() == 2 && self.estimators().zip(&light.parts).all(ended)
     }
 
-    /// Goes on until each estimator has so many samples.
+    /// Continues until each estimator has `samples` samples.
     fn trace(
         &self,
         light: &mut Light,
@@ -382,14 +384,14 @@ impl Renderer {
         control: &Control,
     ) -> Result<(), RenderError> {
         let spans: Vec<_> = light.parts.iter_mut().map(|part| part.done.next(samples)).collect();
-        // What was begun is one piece of work; beyond it lies another.
+        // A span that was begun is one piece of work; what lies beyond it is another.
         let more = light.parts.iter().any(|part| part.done.end() < samples);
         let rays = self.estimators.iter().zip(&light.parts).map(|(e, part)| {
             let tiles = part.done.active(e.tiles());
             e.rays(&(part.done.complete()..samples.max(part.done.end())), &tiles)
         });
         let rays = rays.sum::<u64>();
-        // Of rounds, all before count too.
+        // With rounds, the rays of all earlier rounds count, too.
         control.expect(if self.halves() == 2 { control.rays() + rays } else { rays });
         for (at, span) in spans.into_iter().enumerate() {
             let Some(span) = span else { continue };
@@ -401,7 +403,7 @@ impl Renderer {
         if more { self.trace(light, samples, workers, control) } else { Ok(()) }
     }
 
-    /// What the meters see of the light of all estimators.
+    /// Measures what the meters see of the light of all estimators.
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
         let mut all: Vec<Vec<f64>> = Vec::new();
         if self.scene.meter_channels().is_empty() {
@@ -415,7 +417,7 @@ impl Renderer {
                 all.iter_mut().flatten().zip(own.iter().flatten()).for_each(|(sum, value)| *sum += value);
             }
         }
-        // A picture that is taken as it is shows the meter its mid gray.
+        // A picture that is taken as already exposed shows the meter its mid gray.
         for (plane, at) in all.iter_mut().zip(self.scene.meter_channels()) {
             let mut films = self.scene.films.iter().filter(|film| film.channels.contains(&at));
             if films.any(|film| self.scene.is_as_taken(film)) {
@@ -428,7 +430,7 @@ impl Renderer {
         Ok(all)
     }
 
-    /// What a mid gray of the source leaves in the channels of meters.
+    /// Returns the exposure of a mid gray of the source in each channel: 0 except in the channels of meters.
     fn mid_gray(&self, planes: &[ExposureChannel]) -> Option<Vec<f32>> {
         let mut all = vec![0.0; planes.len()];
         for at in self.scene.meter_channels() {
@@ -441,7 +443,7 @@ impl Renderer {
         Some(all)
     }
 
-    /// Does what is left of a span of one estimator.
+    /// Traces the remaining units of a span of one estimator.
     fn span(
         &self,
         at: usize,
@@ -454,7 +456,7 @@ impl Renderer {
         let tiles = part.done.active(estimator.tiles());
         let units = estimator.units(samples, &tiles);
         let known = part.done.open().map(|(_, units)| units.clone()).unwrap_or_default();
-        // Who takes some at a time has neighbors, whose light comes from near each other.
+        // A thread that takes several units at a time gets neighbors, whose light comes from nearby places.
         let run = (units / UNITS_A_RUN).clamp(1, LONGEST_RUN);
         let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
         let failure: Mutex<Option<RenderError>> = Mutex::new(None);
@@ -483,7 +485,7 @@ impl Renderer {
                         Some(error) => fail(error),
                     }
                     if part.sums.overflowed() {
-                        // A pixel's sum: so many contributions that none of them is to blame.
+                        // The sum of a pixel overflowed: there are so many contributions that none of them is to blame.
                         fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
                     }
                 }
@@ -512,15 +514,16 @@ impl Renderer {
         failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
     }
 
-    /// The picture so far, as `scene` has it: the scene itself, or one that differs only in what comes after the light.
+    /// Computes the picture so far, as `scene` describes it: the scene itself, or one that differs only in what follows the light.
     ///
     /// # Errors
-    /// [`RenderError::Memory`].
+    /// Returns [`RenderError::Memory`] if the exposure does not fit into memory, and [`RenderError::Diffraction`] if diffraction cannot be
+    /// computed.
     pub fn look(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
         let recorded = &self.pipeline.recorded;
         let time_s = scene.exposure_time_s();
         let parts = self.estimators.iter().zip(&light.parts);
-        // Halves are added up; each stands for all light.
+        // The halves are added up, and each stands for all the light.
         let share_s = time_s / self.halves() as f64;
         let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, share_s)).collect();
         let mut planes = self.planes(scene, light, &weights, None)?;
@@ -558,7 +561,7 @@ impl Renderer {
         })
     }
 
-    /// How noisy ghosts are expected to be after so many samples.
+    /// Estimates the noise of ghosts after this many samples.
     fn ghost_noise(&self, samples: u64) -> Option<GhostNoise> {
         const MOST: u64 = 1 << 16;
         let halves = self.halves();
@@ -574,13 +577,13 @@ impl Renderer {
         Some(GhostNoise { noise, clean_samples })
     }
 
-    /// Whether diffraction matters by itself.
+    /// Whether a star is bright enough for diffraction to matter without being requested.
     fn has_seen_star(&self, scene: &Scene, planes: &[ExposureChannel]) -> bool {
         let star = || diffracted::star(scene, planes, &self.pipeline.recorded, self.pipeline.isa);
         self.has_lights && star().is_some_and(|star| star > MATTERS)
     }
 
-    /// What part of all light is veiling glare; `weights` are those of the parts.
+    /// Returns the fraction of all light that is veiling glare; `weights` are those of the estimators.
     fn glare_of(&self, light: &Light, weights: &[Vec<f64>]) -> Option<f64> {
         self.scene.render.glare?;
         let channels = self.pipeline.recorded.len();
@@ -594,13 +597,13 @@ impl Renderer {
         (all > 0.0).then_some(glare / all)
     }
 
-    /// The scene.
+    /// The scene that this renderer renders.
     #[must_use]
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The density that its wavelengths are drawn by.
+    /// The density from which the wavelengths are drawn.
     #[must_use]
     pub fn density(&self) -> &Arc<dyn WavelengthDensity> {
         &self.pipeline.density
@@ -618,7 +621,7 @@ impl Renderer {
         self.estimators.iter().map(|e| &**e)
     }
 
-    /// Sums of all light of one estimator: one a pixel and channel.
+    /// Number of sums for all the light of one estimator: one for each pixel and channel.
     pub(crate) fn cells(&self) -> usize {
         self.scene.imager.size().pixels() * self.pipeline.recorded.len()
     }
@@ -628,7 +631,7 @@ impl Renderer {
     }
 }
 
-/// Estimators as they are; where noise is asked for twice, with numbers that are scrambled independently.
+/// Returns the estimators unchanged, or twice with independently scrambled random numbers if the scene limits the noise.
 fn halved(scene: &Scene, estimators: Vec<Box<dyn Estimator>>) -> Vec<Box<dyn Estimator>> {
     if scene.render.noise.is_none() {
         return estimators;
@@ -638,7 +641,7 @@ fn halved(scene: &Scene, estimators: Vec<Box<dyn Estimator>>) -> Vec<Box<dyn Est
     half(0).chain(half(1)).collect()
 }
 
-/// The seed of the numbers of one half of the samples.
+/// Returns the seed of the random numbers of one half of the samples.
 fn half_seed(seed: u64, half: u64) -> u64 {
     mix64(seed ^ mix64(half + 1))
 }

@@ -1,4 +1,4 @@
-//! What a render gives.
+//! The results of a render.
 
 use crate::diffracted::Diffracted;
 use crate::ghosts::LightLedger;
@@ -7,50 +7,51 @@ use spectra_core::LossCounts;
 use spectra_core::frame::ExposureFrame;
 use spectra_scene::LightLayer;
 
-/// What a render gives.
+/// The results of a render, complete or partial.
 #[derive(Clone, Debug)]
 pub struct Rendering {
-    /// Linear exposure per channel.
+    /// Linear exposure of each channel.
     pub exposure: ExposureFrame,
-    /// What a mid gray of the picture that is the source leaves in each channel of a meter (lx s, in the time of the recording), 0 in the
-    /// others; `None` where the source has no mid gray.
+    /// Exposure that a mid gray of the source picture gives in each meter channel (lx s, in the exposure time), 0 in the other channels.
+    /// `None` if the source has no mid gray.
     pub mid_gray: Option<Vec<f32>>,
-    /// The same by kinds of light, and by paths of ghosts, of those of which an output of the scene holds layers.
+    /// Exposure of the kinds of light and of the ghost paths for which an output of the scene holds layers.
     pub layers: Vec<LightLayer>,
-    /// Rays launched toward the first or last surface; of those from the film, rays to the rim of the pupil, one for 16, are not counted.
+    /// Number of rays launched toward the first or last surface. Rays from the film to the rim of the pupil, one for 16 others, are not
+    /// counted.
     pub rays: u64,
-    /// What was lost, by cause and surface.
+    /// Number of rays lost, by cause and surface.
     pub losses: LossCounts,
-    /// Rays that brought light to the imager: with those that were lost, all that were launched.
+    /// Number of rays that brought light to the imager; together with the lost rays, all that were launched.
     pub detected: u64,
-    /// Whether it was stopped before its end.
+    /// Whether the render was stopped before its end.
     pub partial: bool,
-    /// How noisy it is, where the scene asks.
+    /// Noise of the picture, if the scene limits it.
     pub noise: Option<Noise>,
-    /// The estimators whose light it is: `forward`, `backward`.
+    /// Names of the estimators whose light this is, such as `forward` and `backward`.
     pub estimators: Vec<&'static str>,
-    /// Where the light of the source's lights goes, if ghosts are traced.
+    /// Ledger of the light of the source's lights, if ghosts are traced.
     pub ledger: Option<LightLedger>,
-    /// How noisy ghosts are expected to be, where their light is spread over footprints.
+    /// Expected noise of the ghosts, if their light is spread over footprints.
     pub ghost_noise: Option<GhostNoise>,
-    /// What part of the exposure of the whole frame, all channels together, is veiling glare, where it is asked for.
+    /// Fraction of the exposure of the whole frame, over all channels, that is veiling glare, if the scene asks for glare.
     pub glare: Option<f64>,
-    /// What diffraction did to each channel of the picture, where the scene asks for it.
+    /// What diffraction did to each channel of the picture, if the scene asks for it or it matters.
     pub diffraction: Option<Vec<Diffracted>>,
-    /// What a person should know before believing the picture, and what to write.
+    /// Warnings to read before believing the picture, each with what to write.
     pub warnings: Vec<String>,
 }
 
-/// The expected noise of ghosts: that of a pixel, as a part of the ghosts' light there, in the median over the frame.
+/// The expected noise of ghosts: the noise of a pixel as a fraction of the ghosts' light there, in the median over the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GhostNoise {
-    /// Of this picture.
+    /// Expected noise in this picture.
     pub noise: f64,
-    /// The samples a pixel that would bring [`GhostNoise::CLEAN`], where this picture has more noise than that.
+    /// Samples per pixel that would reach [`GhostNoise::CLEAN`], if this picture is noisier than that.
     pub clean_samples: Option<u64>,
 }
 
 impl GhostNoise {
-    /// Ghosts with no more noise than this look smooth.
+    /// Noise up to which ghosts look smooth.
     pub const CLEAN: f64 = 0.04;
 }

@@ -1,11 +1,11 @@
-//! What the channels see of each ray.
+//! Weighs rays by the responses of the channels.
 
 use crate::sums::rounded;
 use spectra_core::isa::Vectorized;
 use spectra_core::math::whole;
 use spectra_core::spectral::{Channel, Grid};
 
-/// The responses of all channels, one table after the other, each linear between points.
+/// The responses of all channels, one table each, linear between their points.
 #[derive(Clone, Debug)]
 pub(crate) struct Responses {
     grid: Grid,
@@ -22,8 +22,8 @@ impl Responses {
         self.tables.len()
     }
 
-    /// Work that writes weight times response times `scale` of each channel for each ray as whole numbers ([`rounded`]): those of
-    /// [`Responses::weigh`]. Says whether each of them fits.
+    /// Returns work that writes weight times response times `scale` for each channel and ray as integers ([`rounded`]), with the values of
+    /// [`Responses::weigh`]. The work reports whether all of them fit.
     pub(crate) fn count<'a>(
         &'a self,
         wavelength_nm: &'a [f64],
@@ -34,7 +34,7 @@ impl Responses {
         CountAll { responses: self, wavelength_nm, weight, scale, out }
     }
 
-    /// Work that writes weight times response of one channel for each ray; 0 outside of the band.
+    /// Returns work that writes weight times response of one channel for each ray; 0 outside the band.
     pub(crate) fn weigh<'a>(
         &'a self,
         channel: usize,
@@ -71,7 +71,7 @@ impl Vectorized for Weigh<'_> {
     }
 }
 
-/// Rays that are worked on at a time.
+/// Number of rays processed at a time.
 const CHUNK: usize = 64;
 
 pub(crate) struct CountAll<'a> {
@@ -87,7 +87,7 @@ impl Vectorized for CountAll<'_> {
     #[inline(always)]
     fn run(self) -> bool {
         let Responses { grid, inverse_step, tables } = self.responses;
-        // Where wavelengths lie in the tables, how far from one point to the next, and what rays weigh inside of the band.
+        // Table index and fraction toward the next point for each wavelength, and the weight of rays inside the band.
         let (mut point, mut part, mut lit) = ([0_u32; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
         let mut good = true;
         for start in (0..self.weight.len()).step_by(CHUNK) {
@@ -157,7 +157,8 @@ mod tests {
     use crate::sums::Round;
     use spectra_core::Isa;
 
-    /// All channels at once are each channel alone, bit by bit, on every tier; a weight that is no number, or too large, shows.
+    /// All channels at once give the same bits as each channel alone, on every instruction set. A weight that is NaN or too large is
+    /// reported.
     #[test]
     fn all_channels_at_once_are_each_alone() {
         let grid = Grid { start_nm: 380.0, step_nm: 5.0, count: 70 };

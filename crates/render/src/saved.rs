@@ -1,4 +1,4 @@
-//! Light as a file.
+//! Saves light to a file and loads it.
 
 use crate::done::{Done, Units};
 use crate::light::{Light, Part};
@@ -7,10 +7,10 @@ use spectra_core::Loss;
 use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 
-/// Begins every file of light; its last digit is the version of the form.
+/// First bytes of every light file; the last digit is the version of the format.
 const MAGIC: &[u8; 16] = b"spectra light 5\n";
 
-/// Numbers in a row, little endian, with a check sum behind them (FNV-1a of 64 bits: G. Fowler, L. C. Noll, K.-P. Vo).
+/// A stream of little-endian numbers followed by a checksum (64-bit FNV-1a by G. Fowler, L. C. Noll, K.-P. Vo, over words of eight bytes).
 struct Form<T> {
     stream: T,
     check: u64,
@@ -55,10 +55,10 @@ impl<T: Read> Form<T> {
 }
 
 impl Light {
-    /// Writes all of it, so that another process can go on with it.
+    /// Writes the light, so that another process can continue the render.
     ///
     /// # Errors
-    /// What the stream has.
+    /// Returns the errors of the stream.
     pub fn save(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut form = Form::new(out);
         form.put(MAGIC)?;
@@ -102,22 +102,24 @@ impl Light {
         form.number(check)
     }
 
-    /// Reads what [`Light::save`] wrote of a render of the same scene.
+    /// Reads light that [`Light::save`] wrote during a render of the same scene.
     ///
     /// # Errors
-    /// What the stream has; [`io::ErrorKind::InvalidData`] where it is no light, is damaged, or of another scene.
+    /// Returns the errors of the stream, or [`io::ErrorKind::InvalidData`] if the data is not light, is damaged or belongs to another
+    /// scene.
     pub fn load(renderer: &Renderer, from: &mut dyn Read) -> io::Result<Self> {
-        /// More causes, or more pieces, no render has.
+        /// Upper limit on the number of loss causes or pieces, which no render exceeds.
         const MANY: u64 = 1 << 24;
-        /// Surfaces that are not the lens's own: plates before the frame, and none at all.
+        /// Allowance for surfaces outside the lens: plates in front of the frame, and no surface at all.
         const FEW: u64 = 64;
         let bad = |text: &str| io::Error::new(io::ErrorKind::InvalidData, text.to_owned());
-        let other = || bad("this light is of another scene");
+        let other = || bad("this light belongs to another scene");
         let mut form = Form::new(from);
         if form.take::<16>()? != *MAGIC {
-            return Err(bad("this is no light of a render, or one of another version"));
+            return Err(bad("this is not a light file, or it has another version"));
         }
-        // What stands at the lens and around it, along ways through it that go back and forth; a count is made for each up to the last, so a number is looked at before.
+        // Largest surface number that a loss may name, for the lens and what stands around it, along routes that go back and forth. A count
+        // is allocated for each surface up to the last, so the number is checked first.
         let surfaces = 4 * renderer.scene().lens.elements.len() as u64 + FEW;
         let mut light = renderer.begin().map_err(|e| io::Error::new(io::ErrorKind::OutOfMemory, e.to_string()))?;
         let mut lost = 0_u64;
@@ -165,7 +167,7 @@ impl Light {
                     (0, _) => other(),
                     _ if saved % of_all != 0 => other(),
                     (saved, own) => bad(&format!(
-                        "this light has sums of {} paths of ghosts by themselves, and this scene has {}: set `ghost-paths` as it was",
+                        "this light has separate sums for {} ghost paths, but this scene has {}; set `ghost-paths` to its earlier value",
                         saved - 1,
                         own - 1
                     )),

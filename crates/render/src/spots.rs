@@ -1,45 +1,48 @@
-//! Lamps whose light comes from small spots: each ray stands for all of its spot.
+//! Spreads the light of lamps that consist of small spots: each ray stands for its whole spot.
 //!
-//! A lamp of one pixel of a picture is a spot that fades from its middle. Where it is in the spot that a ray starts makes no difference to
-//! what it carries, but moves where it lands, by as much as the lens magnifies. So rays start in the middle of spots, and each one's
-//! light lands at several places, spread over the image of the spot by the same share each: of a disk of light out of focus a pixel has
-//! the light of as many more rays as the image is larger than a pixel. No ray is traced for it.
+//! A lamp of one pixel of a picture is a spot that fades from its middle. The position in the spot from which a ray starts does not change
+//! what the ray carries; it only moves the point where it lands, by as much as the lens magnifies. Rays therefore start in the middle of
+//! spots. The light of each ray lands in 13 equal shares, spread evenly over the image of the spot and shifted by a hash of the landing
+//! point. In a disk of light out of focus, a pixel then gets the light of more rays, by the ratio of the areas of image and pixel. No
+//! additional ray is traced for this, and a lamp of that size blurs its image as much anyway. Light of all wavelengths mixes over the
+//! image.
 //!
-//! How a step in a spot moves a ray as it lands is measured: rays are traced from beside the middle, through the same points of the plane
-//! of the entrance pupil. Over the frame that is smooth, and polynomials of second degree in the place where rays land hold it; where they
-//! do not within a tenth, or the image of a spot is smaller than a pixel, rays start anywhere in a spot instead.
+//! The shift that a step in the spot causes is measured: rays are traced from beside the middle through the same points of the plane of the
+//! entrance pupil. The shift is smooth over the frame and is described by polynomials of second degree in the place where rays land. If
+//! they miss it by more than a tenth, or if the image of a spot is smaller than a pixel, rays start anywhere in a spot instead.
 
 use spectra_core::RayBatch;
 use spectra_core::isa::Vectorized;
 use spectra_core::linear::least_squares;
 use spectra_core::loss::ALIVE;
 use spectra_core::numbers::mix64;
-use spectra_lens::{Tracer, Travel};
+use spectra_tracer::{Tracer, Travel};
 
-/// Places that the light of a ray lands at: a Fibonacci lattice, turned for each ray.
+/// Number of places at which the light of a ray lands: a Fibonacci lattice, shifted at random for each ray.
 pub(crate) const PLACES: usize = 13;
+/// Generator of the Fibonacci lattice.
 const LATTICE: usize = 8;
-/// Rays that have to land to say how spots are imaged.
+/// Smallest number of landed rays from which the imaging of spots is measured.
 const LEAST: usize = 128;
-/// Smallest image of a spot that light is spread over: half its width, pixels.
+/// Smallest half width of the image of a spot over which light is spread, pixels.
 const SMALLEST: f64 = 0.5;
-/// Largest deviation from the polynomials, as a part of the image (root mean square).
+/// Largest error of the polynomials, as a fraction of the image (root mean square).
 const MOST_OFF: f64 = 0.1;
-/// Terms of the polynomials.
+/// Number of terms of the polynomials.
 const TERMS: usize = 6;
 
-/// How spots are imaged.
+/// The way in which the lens images spots.
 #[derive(Debug)]
 pub(crate) struct Spots {
-    /// For half the width and half the height of a spot, how far it moves a ray to the right and up as it lands, mm: polynomials in the
-    /// place where it lands.
+    /// Shift of the landing point to the right and up, mm, for a step by half the width and by half the height of a spot: polynomials in
+    /// the place where the ray lands.
     moves: [[[f64; TERMS]; 2]; 2],
 }
 
-/// What a batch was before its light was spread, and how each ray's is.
+/// A batch before its light is spread, and the shifts by which each ray's light is spread.
 #[derive(Default)]
 pub(crate) struct Before {
-    /// Positions, then by how much the lattice is turned, then the moves to the right and up for half the width and half the height of a
+    /// Positions of the rays, two shifts of the lattice, and the shifts to the right and up for half the width and for half the height of a
     /// spot.
     columns: [Vec<f64>; 9],
     weight: Vec<f64>,
@@ -51,7 +54,7 @@ fn terms([x, y]: [f64; 2]) -> [f64; TERMS] {
     [1.0, x, y, x * x, x * y, y * y]
 }
 
-/// A place under a tent of half width 1 about 0, by a number in [0, 2) of which the whole part does not count.
+/// Maps a number in [0, 2), of which only the fractional part counts, to a position distributed as a tent of half width 1 about 0.
 #[inline(always)]
 fn tent(u: f64) -> f64 {
     let u = if u < 1.0 { u } else { u - 1.0 };
@@ -60,7 +63,7 @@ fn tent(u: f64) -> f64 {
     if is_left { -inward } else { inward }
 }
 
-/// Where a ray meets the plane of the image, mm.
+/// Returns the point where a ray meets the image plane, mm.
 #[inline(always)]
 fn landed(rays: &RayBatch, i: usize) -> [f64; 2] {
     let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
@@ -68,8 +71,9 @@ fn landed(rays: &RayBatch, i: usize) -> [f64; 2] {
 }
 
 impl Spots {
-    /// Looks how spots of this half width and height (mm) on the plane at `source_z_mm` are imaged, by rays that start in the middle of some, are
-    /// aimed and go through the same points of the plane at `through_z_mm`; `None` where they cannot be spread.
+    /// Measures how the lens images spots of this half width and height (mm) on the plane at `source_z_mm`. `start` holds aimed rays from
+    /// the middle of some spots; they are traced through the same points of the plane at `through_z_mm`. `None` if the light cannot be
+    /// spread.
     pub(crate) fn look(
         half_mm: [f64; 2],
         [source_z_mm, through_z_mm]: [f64; 2],
@@ -83,7 +87,7 @@ impl Spots {
             let mut rays = start.clone();
             let c = rays.columns_mut();
             for i in 0..c.x.len() {
-                // From the source's plane, through the same point of the plane of the pupil.
+                // Start on the source's plane and pass through the same point of the pupil's plane.
                 let back = (source_z_mm - c.z[i]) / c.n[i];
                 let from = [c.x[i] + back * c.l[i] + step[0], c.y[i] + back * c.m[i] + step[1], source_z_mm];
                 let to = (through_z_mm - c.z[i]) / c.n[i];
@@ -123,12 +127,12 @@ impl Spots {
         (off <= MOST_OFF * MOST_OFF * size && half_image_mm >= SMALLEST * pixel_mm).then_some(Self { moves })
     }
 
-    /// Remembers a batch as it comes from the lens.
+    /// Stores a batch as it leaves the lens, with the shifts for spreading its light.
     pub(crate) fn keep(&self, rays: &RayBatch, before: &mut Before) {
         before.columns.iter_mut().for_each(Vec::clear);
         let [x, y, z] = rays.positions();
         for i in 0..rays.len() {
-            // Turned by the place itself, which is as good as chance and the same however rays are cut into batches.
+            // The position of the ray shifts the lattice: as good as a random number, and the same however rays are cut into batches.
             let bits = mix64(x[i].to_bits() ^ mix64(y[i].to_bits()));
             let turn = [bits as u32, (bits >> 32) as u32].map(|part| f64::from(part) / 4_294_967_296.0);
             let at = terms(landed(rays, i));
@@ -143,7 +147,7 @@ impl Spots {
     }
 }
 
-/// Sets a batch to what it was before, each ray with its share of the light at one of its [`PLACES`].
+/// Resets a batch to its state before the light was spread, each ray with its share of the light at one of its [`PLACES`].
 pub(crate) struct Land<'a> {
     pub number: usize,
     pub before: &'a Before,

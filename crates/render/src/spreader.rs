@@ -1,4 +1,8 @@
-//! Spreads the light of rays over their footprints as they land: each ray's integers in shares that add up to them.
+//! Spreads the light of rays over their footprints as they land: divides each ray's integers into shares that add up to them.
+//!
+//! Each thread keeps the differences between neighboring pixels along rows and columns, so a square costs four additions per channel,
+//! however large it is. Frames of more than 2.8 million pixels of three channels have no room for that. There the share of each pixel is
+//! added separately, so squares reach at most 2 pixels to each side. Separate layers of single paths cost as much time again.
 
 use crate::footprint::{Box, Footprint, Ground, MOST_HALF, shared};
 use crate::pipeline::{Pipeline, ThreadState};
@@ -7,25 +11,25 @@ use crate::veil;
 use spectra_core::batch::pixel_and_channel;
 use std::sync::Arc;
 
-/// How far footprints reach to each side at most in frames so large that each pixel's share is added by itself: as many additions as a
-/// ray's path takes time for.
+/// Largest half side of footprints, pixels, in frames so large that the share of each pixel is added separately. So many additions take
+/// about as long as tracing the ray.
 const LARGE_FRAME_HALF: f64 = 2.0;
 
-/// The frame of a scene, ready for light to be spread over it.
+/// The frame of a scene, prepared for spreading light over it.
 #[derive(Clone, Debug)]
 pub(crate) struct Spreader {
     ground: Ground,
-    /// Columns and rows of the frame, and channels.
+    /// Number of columns and rows of the frame.
     frame: [usize; 2],
     channels: usize,
-    /// How far footprints reach to each side at most, pixels.
+    /// Largest half side of footprints, pixels.
     pub most_half: f64,
-    /// Of a mosaic the channel of each pixel, by its place among those recorded.
+    /// The channel of each pixel of a mosaic, as its position among the recorded ones; `None` if pixels have all channels.
     filters: Option<Arc<[u8]>>,
 }
 
 impl Spreader {
-    /// For the frame and the recorded channels of a scene.
+    /// Prepares spreading for the frame and the recorded channels of a scene.
     pub fn of(pipeline: &Pipeline) -> Self {
         let size = pipeline.scene.imager.size();
         let frame = [size.width_px, size.height_px].map(|side| side as usize);
@@ -35,13 +39,13 @@ impl Spreader {
         Self { ground, frame, channels, most_half, filters: filters(pipeline) }
     }
 
-    /// Sums of a thread for such shares; `None` where shares are added to those of all threads one by one.
+    /// Allocates sums of one thread for spread shares; `None` if shares are added to the shared sums one by one.
     pub fn steps(&self) -> Option<OwnSteps> {
         OwnSteps::new(self.frame, self.channels, self.filters.clone())
     }
 
-    /// Adds the integers of a batch's rays to the cells that begin with the first, and to those that begin with `own_cells`, each spread over
-    /// the footprint that `footprint` gives for the ray's number in the batch.
+    /// Adds the integers of a batch's rays to the sums. `footprint` gives the footprint of each ray by its number in the batch. The light
+    /// is also added to the separate cells that begin at `own_cells`, if there are any.
     #[inline]
     pub fn add(
         &self,
@@ -79,8 +83,7 @@ impl Spreader {
         }
     }
 
-    /// Adds shares of a footprint, and what is left to the pixel in its middle, to the sums of all threads, in the cells that begin with
-    /// `first`.
+    /// Adds the shares of a footprint to the shared sums, and the rest to the pixel in its middle. The cells begin at `first`.
     fn each(&self, pixel: u32, footprint: &Footprint, [shares, left]: [&[i64]; 2], sums: &ExactSums, first: usize) {
         let filters = self.filters.as_deref();
         let add = |[columns, [low, high]]: Box, values: &[i64]| {
@@ -101,7 +104,7 @@ impl Spreader {
     }
 }
 
-/// Of a mosaic the channel of each pixel.
+/// Returns the channel of each pixel of a mosaic, as its position among the recorded ones; `None` if pixels have all channels.
 fn filters(pipeline: &Pipeline) -> Option<Arc<[u8]>> {
     let only = veil::filters(pipeline)?;
     let channel = |only: u8| pipeline.recorded.iter().position(|at| *at == only as usize).unwrap_or(0) as u8;

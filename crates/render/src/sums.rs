@@ -1,4 +1,4 @@
-//! Exact sums: 64-bit fixed point, so that the order of adding cannot matter.
+//! Exact sums in 64-bit fixed point, so that the order of adding cannot matter.
 
 use spectra_core::batch::pixel_and_channel;
 use std::hint::black_box;
@@ -6,20 +6,20 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering::Relaxed};
 
-/// Bits given to the largest contribution that a pilot run saw. With 2^32 of them in one pixel the
-/// sum stays inside of 62 bits; rounding is 2^-30 of that contribution.
+/// Number of bits for the largest contribution that a pilot run saw. With 2^32 of them in one pixel the sum stays within 62 bits; rounding
+/// is 2^-30 of that contribution.
 const BITS_OF_LARGEST: i32 = 29;
-/// The largest contribution that is expected, scaled.
+/// The largest contribution that is expected, scaled to integers.
 pub(crate) const LARGEST_EXPECTED: f64 = (1_u64 << BITS_OF_LARGEST) as f64;
-/// The sum of a cell must stay below this.
+/// Limit below which the sum of a cell must stay.
 const LIMIT: u64 = 1 << 62;
-/// One contribution must stay below this for its rounding to be exact.
+/// Limit below which one contribution must stay so that its rounding is exact.
 pub(crate) const LARGEST_CONTRIBUTION: f64 = (1_u64 << 50) as f64;
 
-/// Rays of a pilot batch: the brightest of them sets the scale.
+/// Number of rays of a pilot batch: the brightest of them sets the scale.
 pub(crate) const PILOT_RAYS: u32 = 4096;
 
-/// The scale for contributions whose largest is about `largest`: a power of two, so that scaling is exact.
+/// Returns the scale for contributions whose largest is about `largest`: a power of two, so that scaling is exact.
 pub(crate) fn scale_for(largest: f64) -> f64 {
     if !(largest.is_finite() && largest > 0.0) {
         return 1.0;
@@ -28,7 +28,8 @@ pub(crate) fn scale_for(largest: f64) -> f64 {
     libm::ldexp(1.0, BITS_OF_LARGEST - exponent)
 }
 
-/// A scaled value as the nearest integer, ties to even, by the same operations on every tier; and whether it fits.
+/// Rounds a scaled value to the nearest integer, ties to even, by the same operations on every instruction set. Also returns whether it
+/// fits.
 #[inline(always)]
 pub(crate) fn rounded(scaled: f64) -> (i64, bool) {
     // Adding 1.5 * 2^52 leaves the integer in the low bits.
@@ -37,7 +38,7 @@ pub(crate) fn rounded(scaled: f64) -> (i64, bool) {
     ((scaled + MAGIC).to_bits() as i64 - BITS, scaled.abs() < LARGEST_CONTRIBUTION)
 }
 
-/// [`rounded`] values times a scale.
+/// Work that rounds values times a scale with [`rounded`].
 #[cfg(test)]
 pub(crate) struct Round<'a> {
     pub values: &'a [f64],
@@ -61,14 +62,14 @@ impl spectra_core::isa::Vectorized for Round<'_> {
     }
 }
 
-/// One integer a pixel and channel, shared by all threads.
+/// The sums of an estimator, one integer for each pixel and channel, shared by all threads.
 pub struct ExactSums {
     cells: Vec<AtomicI64>,
     overflow: AtomicBool,
 }
 
 impl ExactSums {
-    /// `None` where memory does not suffice.
+    /// Allocates sums of 0; `None` if there is not enough memory.
     pub(crate) fn new(cells: usize) -> Option<Self> {
         let mut all = Vec::new();
         all.try_reserve_exact(cells).ok()?;
@@ -84,7 +85,7 @@ impl ExactSums {
         }
     }
 
-    /// Adds what rays brought to the cells that begin with `first`: to the pixel that each one's tag names, one integer a channel.
+    /// Adds the contributions of rays to the cells that begin at `first`: to the pixel that each ray's tag names, one integer per channel.
     pub(crate) fn add_rays(&self, first: usize, tags: &[u32], integers: &[Vec<i64>], recorded: &[usize]) {
         for start in (0..tags.len()).step_by(AHEAD) {
             let rays = start..(start + AHEAD).min(tags.len());
@@ -93,7 +94,7 @@ impl ExactSums {
         }
     }
 
-    /// Adds what a thread summed by itself.
+    /// Adds what one thread summed for a cell.
     fn merge(&self, cell: usize, value: i64) {
         let old = self.cells[cell].fetch_add(value, Relaxed);
         if old.unsigned_abs() >= LIMIT || old.wrapping_add(value).unsigned_abs() >= LIMIT {
@@ -105,7 +106,7 @@ impl ExactSums {
         self.cells[cell].load(Relaxed)
     }
 
-    /// How many there are.
+    /// Number of cells.
     pub(crate) fn cells(&self) -> usize {
         self.cells.len()
     }
@@ -115,20 +116,20 @@ impl ExactSums {
     }
 }
 
-/// Cells of which each thread sums by itself: 8 MB. A locked addition takes as long as twenty plain ones, but for larger frames both
-/// wait for memory.
+/// Largest number of cells for which each thread keeps its own sums: 8 MB. An atomic addition takes as long as twenty plain ones, but for
+/// larger frames both wait for memory.
 const MOST_OWN: usize = 1 << 20;
-/// The same where each ray adds to many cells: 100 MB.
+/// Largest number of cells for which each thread keeps its own steps, if each ray adds to many cells: 100 MB.
 const MOST_STEPS: usize = 1 << 23;
-/// More than what the shares of one ray leave: fewer units than its footprint has pixels.
+/// Upper limit on the rest that the shares of one ray leave, which is less than the number of pixels of its footprint.
 const MOST_REST: i32 = 1 << 10;
-/// What a thread's own cell may hold before it goes to the shared one, which is below [`LIMIT`] then.
+/// Value at which a thread's own cell is added to the shared one, which stays below [`LIMIT`] then.
 const OWN_LIMIT: u64 = 1 << 60;
 
-/// After so many rays, whatever they bring, a cell that was below [`OWN_LIMIT`] is below [`LIMIT`].
+/// Number of rays after which a cell that was below [`OWN_LIMIT`] is still below [`LIMIT`], whatever the rays bring.
 const MOST_RAYS: usize = 1 << 11;
 
-/// Calls `add` with the cell and the integer of each of some rays and each channel that it adds to.
+/// Calls `add` with the cell and the integer for each of some rays and each channel that it adds to.
 #[inline(always)]
 fn each(tags: &[u32], integers: &[Vec<i64>], recorded: &[usize], rays: Range<usize>, mut add: impl FnMut(usize, i64)) {
     for i in rays {
@@ -142,17 +143,18 @@ fn each(tags: &[u32], integers: &[Vec<i64>], recorded: &[usize], rays: Range<usi
     }
 }
 
-/// Rays whose cells are looked up before any is added to. Pixels lie far apart, and additions would wait for memory one by one.
+/// Number of rays whose cells are loaded before any is added to. Pixels lie far apart in memory, and additions would wait for it one by
+/// one.
 const AHEAD: usize = 32;
 
-/// Looks up the first cell of each of some rays.
+/// Loads the first cell of each of some rays into the cache.
 #[inline(always)]
 fn look_ahead(tags: &[u32], channels: usize, cell: impl Fn(usize) -> i64) {
     let cells = tags.iter().map(|tag| cell(pixel_and_channel(*tag).0 as usize * channels));
     black_box(cells.fold(0, |all, cell| all | cell));
 }
 
-/// Adds `N` channels of some rays; gives all bits of the sizes that cells came to.
+/// Adds `N` channels of some rays. Returns the bitwise or of the magnitudes that the cells reached.
 #[inline(always)]
 fn add_all<const N: usize>(cells: &mut [i64], tags: &[u32], integers: [&Vec<i64>; N], rays: Range<usize>) -> u64 {
     let mut most = 0;
@@ -171,13 +173,13 @@ fn add_all<const N: usize>(cells: &mut [i64], tags: &[u32], integers: [&Vec<i64>
     most
 }
 
-/// The sums of one thread, until it gives them to those of all: integers, so it does not matter when.
+/// The sums of one thread until it adds them to the shared ones. They are integers, so it does not matter when.
 pub(crate) struct OwnSums {
     cells: Vec<i64>,
 }
 
 impl OwnSums {
-    /// `None` for frames that are too large.
+    /// Allocates sums of 0; `None` if the frame is too large or there is not enough memory.
     pub(crate) fn new(cells: usize) -> Option<Self> {
         if cells > MOST_OWN {
             return None;
@@ -188,8 +190,8 @@ impl OwnSums {
         Some(Self { cells: all })
     }
 
-    /// Adds what rays brought: to the pixel that each one's tag names, one integer a channel, each below
-    /// [`LARGEST_CONTRIBUTION`]; `recorded` are the numbers of the channels, for rays that add to one only.
+    /// Adds the contributions of rays: to the pixel that each ray's tag names, one integer per channel, each below
+    /// [`LARGEST_CONTRIBUTION`]. `recorded` holds the numbers of the channels, for rays that add to one only.
     pub(crate) fn add(&mut self, tags: &[u32], integers: &[Vec<i64>], recorded: &[usize], sums: &ExactSums) {
         for start in (0..tags.len()).step_by(MOST_RAYS) {
             let rays = start..(start + MOST_RAYS).min(tags.len());
@@ -214,7 +216,7 @@ impl OwnSums {
         }
     }
 
-    /// Gives all of it to the sums of all threads.
+    /// Adds these sums to the shared ones and clears them.
     pub(crate) fn give(&mut self, sums: &ExactSums) {
         for (cell, value) in self.cells.iter_mut().enumerate().filter(|(_, value)| **value != 0) {
             sums.merge(cell, std::mem::take(value));
@@ -222,30 +224,31 @@ impl OwnSums {
     }
 }
 
-/// The sums of one thread where rays add the same to boxes of pixels: kept as steps from each pixel to the next, along rows and along
-/// columns, so that a box takes four additions a channel, however large it is.
+/// The sums of one thread if rays add the same value to boxes of pixels. They are kept as differences from each pixel to the next, along
+/// rows and columns, so that a box takes four additions per channel, however large it is.
 pub(crate) struct OwnSteps {
-    /// One more a row, and one more row, than there are pixels.
+    /// The differences: one more column and one more row than there are pixels.
     steps: Vec<i64>,
-    /// Columns, rows.
+    /// Number of columns and rows.
     frame: [usize; 2],
     channels: usize,
-    /// Of a mosaic the one channel that each pixel has.
+    /// The one channel of each pixel of a mosaic; `None` if pixels have all channels.
     filters: Option<Arc<[u8]>>,
-    /// What single pixels got beside: less than [`MOST_REST`] a ray.
+    /// What single pixels got in addition: less than [`MOST_REST`] per ray.
     rest: Vec<i32>,
-    /// What any cell got at most since they were given away last, and from how many rays.
+    /// The most that any cell can have got since the sums were last added to the shared ones.
     most: u64,
+    /// Number of rays since the sums were last added to the shared ones.
     rays: i32,
 }
 
 impl OwnSteps {
-    /// Whether a frame is small enough.
+    /// Whether a frame is small enough for sums of this kind.
     pub(crate) fn suit([columns, rows]: [usize; 2], channels: usize) -> bool {
         (columns + 1) * (rows + 1) * channels <= MOST_STEPS
     }
 
-    /// `None` for frames that are too large, and where memory does not suffice.
+    /// Allocates sums of 0; `None` if the frame is too large or there is not enough memory.
     pub(crate) fn new(frame: [usize; 2], channels: usize, filters: Option<Arc<[u8]>>) -> Option<Self> {
         if !Self::suit(frame, channels) {
             return None;
@@ -259,7 +262,7 @@ impl OwnSteps {
         Some(Self { steps, frame, channels, filters, rest, most: 0, rays: 0 })
     }
 
-    /// Makes room for a ray that brings so much at most to any cell.
+    /// Makes room for a ray that brings at most `most` to any cell: adds the sums to the shared ones if they could overflow.
     #[inline]
     pub(crate) fn make_room(&mut self, most: u64, sums: &ExactSums) {
         self.most += most;
@@ -270,7 +273,7 @@ impl OwnSteps {
         }
     }
 
-    /// Adds what the shares of a ray leave to a pixel, one integer a channel.
+    /// Adds to a pixel the rest that the shares of a ray leave, one integer per channel.
     #[inline]
     pub(crate) fn add_rest(&mut self, pixel: usize, rest: &[i64]) {
         let at = pixel * self.channels;
@@ -278,7 +281,7 @@ impl OwnSteps {
         cells.zip(rest).for_each(|(cell, rest)| *cell += *rest as i32);
     }
 
-    /// Adds the same to each pixel of a box, from one column and row to another, one integer a channel.
+    /// Adds the same values to each pixel of a box (first and last column, first and last row), one integer per channel.
     #[inline]
     pub(crate) fn add_box(&mut self, [[left, right], [low, high]]: [[usize; 2]; 2], shares: &[i64]) {
         match *shares {
@@ -298,7 +301,7 @@ impl OwnSteps {
         }
     }
 
-    /// The same for a number of channels that the compiler knows.
+    /// Adds the same values to each pixel of a box, for a number of channels that is known to the compiler.
     #[inline]
     fn add_box_of<const CHANNELS: usize>(
         &mut self,
@@ -316,11 +319,11 @@ impl OwnSteps {
         }
     }
 
-    /// Gives all of it to the sums of all threads; on a mosaic each pixel has what its own channel got.
+    /// Adds these sums to the shared ones and clears them. In a mosaic each pixel keeps only its own channel.
     pub(crate) fn give(&mut self, sums: &ExactSums) {
         let [columns, rows] = self.frame;
         let (row, channels) = ((columns + 1) * self.channels, self.channels);
-        // Steps along a row, of all rows so far.
+        // Differences along a row, summed over all rows so far.
         let mut along = vec![0_i64; row];
         for (at, steps) in self.steps.chunks_exact_mut(row).enumerate() {
             along.iter_mut().zip(steps).for_each(|(along, step)| *along += std::mem::take(step));
@@ -379,7 +382,7 @@ mod tests {
     #[test]
     fn overflow_is_noticed() {
         let sums = ExactSums::new(1).expect("memory");
-        // Four of them reach the limit exactly; the next one finds the sum there.
+        // Four values reach the limit exactly; the next addition finds the sum there.
         for _ in 0..4 {
             sums.add(0, 1 << 60);
         }
@@ -405,7 +408,7 @@ mod tests {
                 each(&tags, &integers, &recorded, 0..90, |cell, value| want.add(cell, value));
                 beside.add_rays(3, &tags, &integers, &recorded);
             }
-            // Given away once.
+            // Giving twice must add only once.
             own.iter_mut().for_each(|own| own.give(&sums));
             own[0].give(&sums);
             assert!((0..7 * channels).all(|cell| sums.get(cell) == want.get(cell)), "{channels}");

@@ -1,14 +1,15 @@
-//! The frame in tiles, and their numbers.
+//! The tiles of a frame and their numbers.
 
 use spectra_core::frame::FrameSize;
 
-/// Side of a tile, the pixels of a unit of work: blocks that noise is judged by consist of whole ones.
+/// Side of a tile (the pixels of a unit of work), pixels. Blocks in which noise is judged consist of whole tiles.
 pub(crate) const TILE: u32 = 8;
-/// Tiles a side of a patch, whose tiles have numbers in a row: neighbors see much of the same scene, so who takes some of them one after
-/// the other finds it in the cache.
+/// Side of a patch, in tiles. Tiles of a patch have consecutive numbers: neighbors see much of the same scene, so a thread that takes some
+/// of them one after the other finds it in the cache.
 const PATCH: u32 = 4;
 
-/// The tiles of a frame, by numbers from 0: patch by patch, within each row by row; smaller at the frame's right and lower border.
+/// The tiles of a frame, numbered from 0 patch by patch and row by row within a patch. Tiles at the right and lower border of the frame may
+/// be smaller.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tiles {
     size: FrameSize,
@@ -25,7 +26,7 @@ impl Tiles {
         self.across as usize * self.down as usize
     }
 
-    /// The tile of a number.
+    /// Returns the tile with this number.
     pub fn tile(&self, number: u32) -> Tile {
         let of_row = PATCH * self.across;
         let (patch_row, in_row) = (number / of_row, number % of_row);
@@ -39,7 +40,7 @@ impl Tiles {
         Tile { width: width_px, column, row, columns, rows }
     }
 
-    /// The number of the tile that is so many tiles from the left and from the top.
+    /// Returns the number of the tile in this column and row of tiles, counted from the left and the top.
     pub fn number(&self, column: u32, row: u32) -> u32 {
         let (patch, patch_row) = (column / PATCH, row / PATCH);
         let rows = PATCH.min(self.down - patch_row * PATCH);
@@ -47,13 +48,13 @@ impl Tiles {
         PATCH * (patch_row * self.across + patch * rows) + row % PATCH * columns + column % PATCH
     }
 
-    /// The number of the tile that a pixel of the frame lies in.
+    /// Returns the number of the tile that holds a pixel of the frame.
     pub fn number_of(&self, pixel: usize) -> u32 {
         let width = self.size.width_px as usize;
         self.number((pixel % width) as u32 / TILE, (pixel / width) as u32 / TILE)
     }
 
-    /// For each pixel of the frame the value of its tile.
+    /// Returns for each pixel of the frame the value of its tile.
     pub fn spread(&self, of_tile: &[f64]) -> Vec<f64> {
         let (side, width) = (TILE as usize, self.size.width_px as usize);
         let row = |row: u32| {
@@ -64,11 +65,11 @@ impl Tiles {
     }
 }
 
-/// A square of pixels.
+/// A rectangle of pixels of the frame, square except at the border.
 pub(crate) struct Tile {
-    /// Of the frame.
+    /// Width of the frame, pixels.
     pub width: u32,
-    /// Of its first pixel.
+    /// Column of the first pixel of the tile in the frame.
     column: u32,
     row: u32,
     columns: u32,
@@ -80,12 +81,12 @@ impl Tile {
         self.columns * self.rows
     }
 
-    /// The pixel of the frame that is the tile's `at`.
+    /// Returns the frame's number of the pixel at position `at` in the tile.
     pub fn pixel(&self, at: u32) -> u32 {
         (self.row + at / self.columns) * self.width + self.column + at % self.columns
     }
 
-    /// Which of the tile's a pixel of the frame is.
+    /// Returns the position in the tile of a pixel of the frame.
     pub fn at(&self, pixel: u32) -> u32 {
         (pixel / self.width - self.row) * self.columns + pixel % self.width - self.column
     }
@@ -95,7 +96,7 @@ impl Tile {
 mod tests {
     use super::*;
 
-    /// Each pixel of frames of all kinds of sides is in one tile, in one place of it.
+    /// Every pixel of frames with various sides is in exactly one tile and at one position in it.
     #[test]
     fn tiles_cover_the_frame_once() {
         for (width_px, height_px) in [(1, 1), (8, 8), (33, 7), (100, 70), (96, 64), (31, 129)] {

@@ -1,11 +1,17 @@
-//! Veiling glare: all light that comes to the imager otherwise than straight, by walks inside the lens ([`spectra_lens::Interior`]).
+//! Estimates veiling glare: all light that reaches the imager other than directly, by random walks inside the lens
+//! ([`spectra_tracer::Interior`]).
 //!
-//! It is smooth, so it is estimated on a lattice of [`ACROSS`] cells across the frame and is linear between its nodes: each walk adds to
-//! the four nodes around it by hats, which keeps the energy; what is lost is detail finer than a cell, of the order of the square of
-//! its size. A unit of work walks for some samples and then adds its lattice to the sums of all pixels.
+//! **Lattice.** Glare is smooth and a walk is rare, so single pixels would show noise. It is estimated on a lattice of [`ACROSS`] cells
+//! across the frame and interpolated linearly between the nodes. Each walk adds to the four nodes around it by hat functions, which
+//! preserves the energy. What is lost is detail finer than a cell, of the order of the square of the cell size. A unit of work traces the
+//! walks of some samples and then adds its lattice to the sums of all pixels. The sums of nodes are integers, and so are the weights of the
+//! interpolation. The bits therefore do not depend on how samples are divided into units.
 //!
-//! Lights are followed from the source, all else from the imager. Where ghosts are traced, what glass reflected twice of the same light
-//! is theirs, and is left out here.
+//! **Walks** start at the source for bright lights, and at the imager for everything else. If ghosts are traced, light that glass reflected
+//! twice belongs to them and is left out here.
+//!
+//! **Limits.** The estimator is on only if the scene asks for it. From a source such as the sun few walks find the film, and each of them
+//! brings much light: 16 samples leave blotches of color all over the frame.
 
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, Unit};
@@ -22,37 +28,40 @@ use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Radiance};
 use spectra_core::workers::each_of;
-use spectra_lens::{Chance, FrontOpening, Interior, Particle, StrayMatter, Walker};
+use spectra_optics::FrontOpening;
+use spectra_tracer::{Chance, Interior, Particle, StrayMatter, Walker};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What numbers of its own stages draw by.
+/// Estimator name from which the stages derive their own random numbers.
 pub(crate) const ESTIMATOR: &str = "glare";
 /// Turns the picture's seed into that of the walks.
 const SEED: u64 = 0x0067_6c61_7265;
-/// All walks form one stream of numbers.
+/// All walks draw from one stream of random numbers.
 const STREAM: u64 = 0;
-/// Cells of the lattice across the frame.
+/// Number of lattice cells across the frame.
 const ACROSS: usize = 16;
-/// Walks of a sample, whatever the number of pixels: the veil has as much detail on any of them.
+/// Number of walks in a sample, whatever the number of pixels, because the glare has as much detail at any resolution.
 const WALKS_A_SAMPLE: u64 = 1 << 15;
-/// Samples of a unit of work.
+/// Number of samples in a unit of work.
 const SAMPLES_PER_UNIT: u64 = 8;
-/// Walks that say how bright the veil is.
+/// Number of pilot walks that measure how bright the glare is.
 const PILOT_WALKS: u64 = 1 << 17;
-/// Units of walks that say what meters see, and walks of each.
+/// Number of units of walks that measure what meters see.
 const METER_UNITS: usize = 8;
+/// Number of walks in each unit of a meter.
 const METER_WALKS: u64 = 1 << 14;
-/// Room of the sums below what one ray may bring to a pixel elsewhere: nodes of many walks are multiplied by [`PARTS`] twice.
+/// Headroom of the sums: a node collects many walks and is multiplied by [`PARTS`] twice, so the scale is lower by this factor than for
+/// single rays.
 const HEADROOM: f64 = 64.0;
-/// Steps from one node of the lattice to the next.
+/// Number of interpolation steps from one node of the lattice to the next.
 const PARTS: usize = 256;
-/// The largest contribution of a walk to a node, scaled.
+/// Largest contribution of a walk to a node, scaled to integers.
 const LARGEST: f64 = (1_u64 << 34) as f64;
-/// Light enters from so many radii of the front away.
+/// Distance in front of the lens at which light starts, in radii of the front opening.
 const BEFORE: f64 = 4.0;
 
-/// The frame in the plane of the imager: its middle, and half of it across and down, mm.
+/// The frame in the plane of the imager: its middle, half its width and half its height as vectors, mm.
 #[derive(Clone, Copy)]
 struct Frame {
     middle: [f64; 2],
@@ -64,27 +73,27 @@ impl Frame {
     fn of(pipeline: &Pipeline) -> Self {
         let [a, b, c, _] =
             <[[f64; 2]; 4]>::try_from(landing::corners(&pipeline.scene, pipeline.isa)).unwrap_or_default();
-        // Corners stand in order: right and bottom, right and top, left and top, left and bottom of the picture.
+        // The corners are in this order: bottom right, top right, top left, bottom left of the picture.
         let half = |p: [f64; 2], q: [f64; 2]| [0.5 * (p[0] - q[0]), 0.5 * (p[1] - q[1])];
         let mut frame = Self { middle: half(a, c.map(|v| -v)), across: half(b, c), down: half(a, b) };
         if pipeline.scene.imager.launch().is_none() {
-            // Without rays of its own the frame stands upright: columns count against x.
+            // An imager that launches no rays has an upright frame: columns count opposite to x.
             frame.across = frame.across.map(|v| -v);
         }
         frame
     }
 
-    /// Half its size along x and y.
+    /// Returns half the size of the frame along x and y, mm.
     fn half(&self) -> [f64; 2] {
         std::array::from_fn(|k| self.across[k].abs() + self.down[k].abs())
     }
 
-    /// A place, 0 to 1 across and down, mm.
+    /// Returns the point (mm) at a position in the frame, 0 to 1 across and down.
     fn at(&self, u: f64, v: f64) -> [f64; 2] {
         std::array::from_fn(|k| self.middle[k] + self.across[k] * (2.0 * u - 1.0) + self.down[k] * (2.0 * v - 1.0))
     }
 
-    /// The other way round.
+    /// Returns the position in the frame, 0 to 1 across and down, of a point (mm).
     fn place(&self, at: [f64; 2]) -> [f64; 2] {
         let from: [f64; 2] = std::array::from_fn(|k| at[k] - self.middle[k]);
         let [a, d] = [self.across, self.down];
@@ -97,28 +106,30 @@ impl Frame {
     }
 }
 
-/// What a pixel makes of the irradiance at its place.
+/// The factor between the irradiance at a pixel and what the pixel records.
 #[derive(Clone, Copy)]
 struct PixelGain {
     gain: f32,
-    /// The only channel that it has, plus one.
+    /// The only channel of the pixel, plus one; 0 if it has all channels.
     only: u8,
 }
 
-/// What was made ready once.
+/// The data that is prepared once per scene.
 struct Plan {
     interior: Interior,
     frame: Frame,
-    /// Where light of lights comes in; `None` where walks start at the imager, or the source directs its rays.
+    /// Opening at which the light of bright lights is aimed; `None` if walks start at the imager, or if the source directs its rays itself.
     opening: Option<FrontOpening>,
+    /// Whether walks start at the source rather than at the imager.
     from_source: bool,
-    /// What glass alone reflected so often at most is another's.
+    /// Largest number of reflections by glass alone that another estimator traces; 0 for none.
     ghosts_order: u32,
     gains: Vec<PixelGain>,
-    /// Cells down.
+    /// Number of lattice cells down the frame.
     rows: usize,
 }
 
+/// Estimator of veiling glare.
 pub(crate) struct Veil {
     pipeline: Arc<Pipeline>,
     plan: Arc<Plan>,
@@ -128,8 +139,8 @@ pub(crate) struct Veil {
 }
 
 impl Veil {
-    /// Of a share of the source: from it, or from the imager. `ghosts_order`: an estimator of ghosts has its paths of so many
-    /// reflections, 0 for none.
+    /// Prepares the glare of a share of the source, by walks from the source or from the imager. Paths of up to `ghosts_order` reflections
+    /// belong to an estimator of ghosts; 0 if there is none.
     pub(crate) fn new(
         pipeline: Arc<Pipeline>,
         from_source: bool,
@@ -170,7 +181,7 @@ impl Veil {
         (ACROSS + 1) * (self.plan.rows + 1)
     }
 
-    /// By the largest contribution to a node that a pilot finds.
+    /// Finds the scale of the sums from the largest contribution to a node in a pilot.
     fn pilot_scale(&self) -> Result<f64, RenderError> {
         let mut state = ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch);
         let (mut largest, mut is_number) = (0.0_f64, true);
@@ -184,13 +195,13 @@ impl Veil {
         Ok(scale_for(HEADROOM * largest))
     }
 
-    /// Walks, and says what they bring to which nodes, channel by channel: irradiance, as if each node had all walks.
+    /// Traces walks and calls `add` with what they bring to each node, channel by channel: irradiance, as if each node had all walks.
     fn walk(&self, state: &mut ThreadState, walks: Range<u64>, add: &mut impl FnMut(usize, f64)) {
         let isa = self.pipeline.isa;
         let plan = &*self.plan;
         let mut walker = Walker::new(&plan.interior);
         let capacity = state.rays.capacity() as u64;
-        // Weight, wavelength and place of what came to the imager.
+        // Weight, wavelength and position in the frame of the light that reached the imager.
         let (mut weights, mut nm, mut places) = (Vec::new(), Vec::new(), Vec::new());
         let mut first = walks.start;
         while first < walks.end {
@@ -256,7 +267,7 @@ impl Veil {
         }
     }
 
-    /// Whether light is stray, and no other estimator's.
+    /// Whether light is stray and belongs to no other estimator.
     fn is_ours(&self, particle: &Particle) -> bool {
         let is_ghosts =
             particle.scattered == 0 && particle.diffused == 0 && particle.mirrored <= self.plan.ghosts_order;
@@ -264,15 +275,15 @@ impl Veil {
     }
 
     fn radiance(&self) -> &dyn Radiance {
-        self.pipeline.source().radiance().expect("`new` saw it")
+        self.pipeline.source().radiance().expect("checked by `new`")
     }
 
-    /// Starts light of lights in front of the lens, where it is to come in.
+    /// Starts the light of bright lights in front of the lens, at the place where it is to enter.
     fn start(&self, state: &mut ThreadState, len: usize) {
         let isa = self.pipeline.isa;
         state.rays.set_stage(StageKey::SOURCE);
         let [_, u, v, a, b] = &state.numbers;
-        let emit = self.pipeline.source().emit().expect("`new` saw it");
+        let emit = self.pipeline.source().emit().expect("checked by `new`");
         emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
         if let Some(opening) = &self.plan.opening {
             let (a, b) = (a.slice(len), b.slice(len));
@@ -297,7 +308,8 @@ impl Veil {
         emit.radiate(&mut state.rays, isa);
     }
 
-    /// Adds to the nodes around each place by the hats there, over the mean of each hat.
+    /// Adds each contribution to the four nodes around it: the hat function of the node there, divided by the mean of the hat over the
+    /// frame.
     fn deposit(&self, weights: &[f64], nm: &[f64], places: &[[f64; 2]], add: &mut impl FnMut(usize, f64)) {
         let (columns, rows, nodes) = (ACROSS, self.plan.rows, self.nodes());
         let mut values = vec![0.0; weights.len()];
@@ -313,7 +325,7 @@ impl Veil {
                 for (dr, wy) in [(0, 1.0 - y), (1, y)] {
                     for (dc, wx) in [(0, 1.0 - x), (1, x)] {
                         let (r, c) = (row + dr, column + dc);
-                        // A hat's mean over the frame: one cell's share, half of it at each edge.
+                        // The mean of a hat over the frame is the share of one cell, and half of it at each edge.
                         let edge = |at: usize, last: usize| if at == 0 || at == last { 2.0 } else { 1.0 };
                         let over = (columns * rows) as f64 * edge(r, rows) * edge(c, columns);
                         add(channel * nodes + r * (columns + 1) + c, value * wx * wy * over);
@@ -323,8 +335,8 @@ impl Veil {
         }
     }
 
-    /// Adds a lattice to the sums of all pixels. Weights of nodes are whole numbers, so that the sum of two lattices is spread as each of
-    /// them is: however samples are cut into units, the bits are the same.
+    /// Adds a lattice to the sums of all pixels. The weights of nodes are integers, so the sum of two lattices is spread exactly like the
+    /// two lattices one by one. However samples are cut into units, the bits are the same.
     fn spread(&self, lattice: &[i64], sums: &ExactSums) {
         let size = self.pipeline.scene.imager.size();
         let (width, height) = (size.width_px as usize, size.height_px as usize);
@@ -338,7 +350,7 @@ impl Veil {
             let (r, y) = cell(row, height, self.plan.rows);
             for channel in 0..channels {
                 let node = |r: usize, c: usize| lattice[channel * nodes + r * (columns + 1) + c];
-                // This row of the picture, at the columns of the lattice.
+                // Interpolate this row of the picture at the columns of the lattice.
                 let whole = PARTS as i64;
                 let line: [i64; ACROSS + 1] = std::array::from_fn(|c| node(r, c) * (whole - y) + node(r + 1, c) * y);
                 if line.iter().all(|value| *value == 0) {
@@ -356,12 +368,12 @@ impl Veil {
         }
     }
 
-    /// What a unit of the sums of so many walks is worth in such a time where the pixel's gain is 1, J/m2.
+    /// Returns the value of one unit of the sums of this many walks, J/m2 in the given time, for a pixel with gain 1.
     fn worth(&self, walks: u64, time_s: f64) -> f64 {
         time_s / self.scale / walks.max(1) as f64 / (PARTS * PARTS) as f64
     }
 
-    /// The veil by few walks, W/m2 at each pixel, channel by channel.
+    /// Measures the glare with few walks, W/m2 at each pixel, channel by channel.
     fn seen(mut self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
         let (scene, many) = (Arc::clone(&self.pipeline.scene), self.channels() * self.nodes());
         let (pixels, channels) = (scene.imager.size().pixels(), self.channels());
@@ -383,7 +395,7 @@ impl Veil {
         if !largest.is_finite() {
             return Err(no_number());
         }
-        // All walks are done, so a node is known.
+        // All walks are done, so the largest node is known.
         self.scale = if largest > 0.0 { LARGEST / largest } else { 1.0 };
         let sums =
             ExactSums::new(pixels * channels).ok_or_else(|| RenderError::Memory(crate::memory_needed(&scene)))?;
@@ -394,6 +406,7 @@ impl Veil {
         Ok(meter::planes(&sums, channels, weight, pixels))
     }
 
+    /// Returns the samples of a unit.
     fn samples_of(samples: &Range<u64>, unit: u64) -> Range<u64> {
         let first = samples.start + unit * SAMPLES_PER_UNIT;
         first..samples.end.min(first + SAMPLES_PER_UNIT)
@@ -439,7 +452,7 @@ impl Estimator for Veil {
         let mut largest = 0.0_f64;
         self.walk(&mut scratch.0, walks, &mut |node, value| {
             let value = value * self.scale;
-            // What is no number is larger than any.
+            // NaN counts as larger than any number.
             largest = if value.abs() <= largest { largest } else { value.abs() };
             lattice[node] += value.round_ties_even() as i64;
         });
@@ -464,16 +477,16 @@ impl Estimator for Veil {
 }
 
 fn no_number() -> RenderError {
-    RenderError::Glare("the source gives light that is no number".to_owned())
+    RenderError::Glare("the source gives light that is not a finite number".to_owned())
 }
 
-/// Looks whether the veiling glare that a scene asks for can be worked out.
+/// Checks whether the veiling glare that a scene asks for can be computed.
 pub(crate) fn check(pipeline: &Pipeline) -> Result<(), RenderError> {
     let Some(matter) = pipeline.scene.render.glare else { return Ok(()) };
     interior(pipeline, &Frame::of(pipeline), matter).map(|_| ())
 }
 
-/// The lens and the camera from within.
+/// Builds the interior of the lens and the camera.
 fn interior(pipeline: &Pipeline, frame: &Frame, matter: StrayMatter) -> Result<Interior, RenderError> {
     let scene = &pipeline.scene;
     let band_nm = [scene.grid.start_nm, scene.grid.end_nm()];
@@ -481,13 +494,13 @@ fn interior(pipeline: &Pipeline, frame: &Frame, matter: StrayMatter) -> Result<I
     Ok(interior.map_err(|e| RenderError::Glare(e.to_string()))?.with_imager_at(frame.middle))
 }
 
-/// The channel that each pixel of a mosaic has; `None` of an imager whose pixels have all of them.
+/// Returns the channel of each pixel of a mosaic; `None` if the pixels of the imager have all channels.
 pub(crate) fn filters(pipeline: &Pipeline) -> Option<Vec<u8>> {
     let gains = gains(pipeline);
     gains.iter().any(|gain| gain.only != 0).then(|| gains.iter().map(|gain| gain.only.saturating_sub(1)).collect())
 }
 
-/// What each pixel makes of light along the normal in the middle of the band.
+/// Computes what each pixel records of light along the normal, at the middle of the band.
 fn gains(pipeline: &Pipeline) -> Vec<PixelGain> {
     const BATCH: usize = 4096;
     let scene = &pipeline.scene;

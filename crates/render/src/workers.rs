@@ -1,8 +1,8 @@
-//! Threads, for a program that has none of its own.
+//! Threads for a program that has none of its own.
 
 use spectra_core::workers::Workers;
 
-/// So many threads of this process, made for each piece of work: for a program that has none of its own.
+/// Runs work on this many threads of the process, started anew for each piece of work. For programs without threads of their own.
 #[derive(Clone, Copy, Debug)]
 pub struct Threads(pub usize);
 
@@ -11,7 +11,7 @@ impl Workers for Threads {
         std::thread::scope(|scope| {
             for number in 1..self.0 {
                 let thread = std::thread::Builder::new().name(format!("render {number}"));
-                // Where the system has no more threads, fewer do all the work.
+                // If the system cannot start more threads, fewer do all the work.
                 if thread.spawn_scoped(scope, work).is_err() {
                     break;
                 }

@@ -1,5 +1,5 @@
-//! What only the scene as a whole can say of its faults: a file in the wrong place, a section under another one, a
-//! section that is a bare name; and the order in which faults are told.
+//! Hints that need the whole scene: a file in the wrong place, a section nested in another one, a section that is a bare name.
+//! Also sorts the faults for display.
 
 use crate::bundled::{self, Bundled};
 use crate::slips;
@@ -8,10 +8,10 @@ use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Value};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Sections of a scene that somebody may write under another one.
+/// Sections of a scene that users may nest in another section by mistake.
 const SECTIONS: [&str; 8] = ["source", "wavelengths", "lens", "imager", "film", "render", "output", "spectra"];
 
-/// What a file of ours is.
+/// Kinds of YAML files that the program reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FileIs {
     Scene,
@@ -20,7 +20,7 @@ pub(crate) enum FileIs {
 }
 
 impl FileIs {
-    /// What a tree is by its keys; `None` where they do not tell.
+    /// Returns the kind of file that a tree is, judged by its keys; `None` if they do not tell.
     fn of(node: &Node) -> Option<Self> {
         let has = |key: &str| node.get(key).is_some();
         if has("surfaces") {
@@ -43,7 +43,7 @@ impl FileIs {
     }
 }
 
-/// The fault of a file that is not what is wanted, without a place.
+/// Returns a fault, without a place, if the file is of another kind than the wanted one.
 pub(crate) fn other_file(node: &Node, wanted: FileIs) -> Option<Fault> {
     let found = FileIs::of(node).filter(|found| *found != wanted)?;
     let name = &node.file.name;
@@ -57,7 +57,7 @@ pub(crate) fn other_file(node: &Node, wanted: FileIs) -> Option<Fault> {
     }))
 }
 
-/// The faults of a scene file that cannot be read, with what stands in its place.
+/// Improves the faults of a scene file that cannot be read: names a directory, a similar file or a similar bundled scene.
 pub(crate) fn unreadable(faults: Faults, path: &Path) -> Faults {
     let name = path.display();
     let names = |folder: &Path| -> Vec<String> {
@@ -85,7 +85,7 @@ pub(crate) fn unreadable(faults: Faults, path: &Path) -> Faults {
     let scenes = Bundled::Scene.names();
     let stem = wanted.strip_suffix(".yaml").unwrap_or(&wanted);
     let (beside, bundled) = (names(folder), scenes.iter().map(String::as_str));
-    // A file beside it is named with its folder, a bundled scene by its name alone: each works as it is written here.
+    // A nearby file is named with its folder, a bundled scene by its name alone: both work as they are shown.
     let near = match nearest(&wanted, beside.iter().map(String::as_str)) {
         Some(near) => Some(path.with_file_name(near).display().to_string()),
         None => nearest(stem, bundled).map(str::to_owned),
@@ -103,7 +103,7 @@ pub(crate) fn unreadable(faults: Faults, path: &Path) -> Faults {
     Fault::new(format!("`{name}`: {missing}")).hint(hint).into()
 }
 
-/// Whether it is written as a file is named, rather than as something bundled.
+/// Returns whether a name is written like a file name instead of the name of something bundled.
 pub(crate) fn is_file_name(name: &str) -> bool {
     [".yaml", ".yml", ".zmx", ".seq", ".csv"].iter().any(|ending| name.to_ascii_lowercase().ends_with(ending))
 }
@@ -113,11 +113,11 @@ fn list(names: &[String]) -> String {
     shown.join(", ") + if names.len() > shown.len() { " ..." } else { "" }
 }
 
-/// The faults of a scene with what the scene as a whole knows of them, in the order of its file; then those of other
-/// files, one file after the other.
+/// Adds hints from the whole scene to its faults and sorts them: those of the scene file in its order, then those of other files,
+/// one file after another.
 pub(crate) fn advised(faults: Faults, scene: &Params) -> Faults {
     let mut all: Vec<Fault> = faults.into_iter().map(|fault| advise(fault, scene)).collect();
-    // Files in the order in which they came up, the scene's own first.
+    // Lists files in the order in which they appear, the scene's own first.
     let mut files: Vec<Arc<SourceFile>> = vec![Arc::clone(&scene.node().file)];
     for (file, _) in all.iter().filter_map(|fault| fault.place.as_ref()) {
         if !files.contains(file) {
@@ -131,7 +131,7 @@ pub(crate) fn advised(faults: Faults, scene: &Params) -> Faults {
     Faults(all)
 }
 
-/// A film as it may be written.
+/// Returns an example of a film section for a stock.
 fn film_of(stock: &str) -> String {
     format!("{{stock: {stock}, exposure: 1/60 s}}")
 }
@@ -156,7 +156,7 @@ fn advise(fault: Fault, scene: &Params) -> Fault {
         let hint = format!("`{key}` is a section of its own: start it in the same column as `{section}:`");
         return fault.hint(hint);
     }
-    // A bare name is the name of a kind; of a film it will be that of a stock.
+    // A bare name is read as a kind. In place of a film it is meant as the name of a stock.
     if fault.path.starts_with("film")
         && fault.path.ends_with(".kind")
         && fault.message.starts_with("unknown")
@@ -165,16 +165,16 @@ fn advise(fault: Fault, scene: &Params) -> Fault {
         let example = film_of(name);
         let is_alone = fault.path == "film.kind";
         return fault.hint(if is_alone {
-            format!("a stock is named by `film: {example}`")
+            format!("write a film stock as `film: {example}`")
         } else {
-            format!("a stock in a list of films is `{example}`")
+            format!("in a list of films, write a stock as `{example}`")
         });
     }
     if fault.path == "film.stock"
         && let Some(Value::Seq(stocks)) = scene.node().at_path("film.stock").map(|node| &node.value)
     {
         let films: Vec<String> = stocks.iter().filter_map(Node::as_str).map(film_of).collect();
-        return fault.hint(format!("several films at once are a list of them: `film: [{}]`", films.join(", ")));
+        return fault.hint(format!("write several films at once as a list: `film: [{}]`", films.join(", ")));
     }
     match slips::hint(&fault, scene) {
         Some(hint) => fault.hint(hint),

@@ -1,4 +1,4 @@
-//! From a scene file to a [`Scene`], with every fault in one go.
+//! Assembly of a [`Scene`] from a scene file; all faults are reported together.
 
 use crate::advice::{self, FileIs};
 use crate::cast;
@@ -22,7 +22,9 @@ use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::{MATTE_BOX, StrayMatter};
+use spectra_lens::MATTE_BOX;
+use spectra_optics::Optics;
+use spectra_tracer::StrayMatter;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -73,7 +75,7 @@ pub(crate) struct SceneFile {
     /// The files to write, named after the scene; EXR and PNG if absent.
     #[serde(default)]
     output: Option<Vec<Part<StageOf<dyn Output>>>>,
-    // What follows is used up before a scene is assembled; named here, so that a slip in one of them is told.
+    // The following keys are consumed before a scene is assembled. They are listed so that a misspelled one is reported.
     /// Scenes that this one builds on: a file or a list of files. Maps merge, and the values of this scene win.
     #[serde(default)]
     include: Option<Part<language::IncludeForm>>,
@@ -88,7 +90,7 @@ pub(crate) struct SceneFile {
     animation: Option<Part<language::AnimationForm>>,
 }
 
-/// The `wavelengths` section's own keys; the others are the sampler's.
+/// The keys of the `wavelengths` section itself; its other keys belong to the sampler.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct BandSection {
@@ -97,26 +99,27 @@ pub(crate) struct BandSection {
     band: Option<[Wavelength; 2]>,
 }
 
-/// The `render` section.
+/// The `render` section of a scene file.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RenderSection {
-    /// Direction in which rays are traced: `backward` (from the imager), `forward` (from the source), `both` (lights, which
-    /// are far brighter than the rest of the source, from the source, and the rest from the imager) or `auto` (the default:
-    /// backward if source and imager allow it, and both if that gives much less noise).
+    /// Direction in which rays are traced: `backward` (from the imager), `forward` (from the source), `both` or `auto` (the
+    /// default). With `both`, lights that are far brighter than the rest of the source are traced from the source, and the rest
+    /// from the imager. `auto` is `backward` if source and imager allow it, and `both` if that gives much less noise.
     #[serde(default)]
     direction: Way,
-    /// Backward: samples per pixel, a whole number from 1 to 4194304; 64 if absent. With `noise`, the most samples that a pixel
-    /// gets; 8192 if absent.
+    /// Backward: samples per pixel, a whole number from 1 to 4194304; 64 if absent. With `noise`, the largest number of samples
+    /// per pixel; 8192 if absent.
     samples: Option<Whole<1, MAX_SAMPLES>>,
-    /// Stop when the picture is clean: standard deviation of a pixel relative to the mean around it, 0.01 % to 50 %, of luminance
+    /// Noise at which rendering stops: standard deviation of a pixel relative to the mean around it, 0.01 % to 50 %, of luminance
     /// or of the noisiest film layer. If absent, every pixel gets `samples`.
     #[schemars(extend("minimum" = 0.0001, "maximum" = 0.5))]
     noise: Option<Ratio>,
     /// Forward: total number of rays, a whole number from 1 to 1e15; 4 x pixels x `samples` if absent. With both directions, the
-    /// rays from the lights; 16 x `samples` for each pixel that they reach if absent.
+    /// rays from the lights; 12 x `samples` for each pixel that they reach if absent.
     rays: Option<Whole<1, MAX_RAYS>>,
-    /// Seed of all random numbers, a whole number from 0 to 18446744073709551615; 1 if absent. The same scene with the same seed gives the same picture.
+    /// Seed of all random numbers, a whole number from 0 to 18446744073709551615; 1 if absent. The same scene with the same seed
+    /// gives the same picture.
     seed: Option<Whole<0, { u64::MAX }>>,
     /// Number of the frame: gives each frame its own random numbers, noise and grain, derived from the seeds.
     frame: Option<Whole<0, { u64::MAX }>>,
@@ -130,43 +133,45 @@ struct RenderSection {
     /// How rays fill the aperture: `disk` (the default), `rings` (of equal area) or `random`.
     #[serde(default)]
     cone: ConePattern,
-    /// Light of the source's lights that surfaces of the lens reflect to the imager: ghosts and flare.
+    /// Ghosts and flare: light of the source's lights that surfaces of the lens reflect to the imager.
     #[serde(default)]
     reflections: ReflectionsSection,
-    /// Veiling glare: light that glass, paint, film or sensor spread over the frame. `true`, or what it is made of; none if absent.
+    /// Veiling glare: light that glass, paint, film or sensor spread over the frame. `true`, or a map of what causes it; none if
+    /// absent.
     glare: Option<GlareSection>,
-    /// Whether the edge of the aperture spreads light: stars around lamps, and pictures that soften as the stop closes. If absent, where
-    /// lights are rendered apart from the rest, and the star of the brightest pixel has more than 1 % of the median of the frame where it
-    /// leaves the pixels around.
+    /// Whether the edge of the aperture spreads light: stars around lamps, and pictures that soften as the stop closes. If
+    /// absent, only where lights are rendered separately and the star of the brightest pixel matters. A star matters if, just
+    /// outside the neighboring pixels, it is brighter than 1 % of the median of the frame.
     diffraction: Option<bool>,
 }
 
-/// What `glare` is written as.
+/// The forms in which `glare` can be written.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 enum GlareSection {
-    /// With black paint, or none.
+    /// Glare with black paint, or no glare.
     Switch(bool),
-    /// Of this.
+    /// Glare with these causes.
     Of(GlareParams),
 }
 
-/// What makes veiling glare.
+/// Causes of veiling glare.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct GlareParams {
-    /// Part of the light that barrel, rims, edges of the glass, blades and the camera's inside scatter, from 0 to 1; 4 % if absent, as of
-    /// flat black paint.
+    /// Fraction of the light that barrel, rims, edges of the glass, blades and the inside of the camera scatter, from 0 to 1. If
+    /// absent, 4 %, as for flat black paint.
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     paint: Option<Ratio>,
-    /// Part of the light that film or sensor scatter back into the lens, from 0 to 1; none if absent. What they reflect as a mirror does
-    /// is `reflections.imager`.
+    /// Fraction of the light that film or sensor scatter back into the lens, from 0 to 1; none if absent. Their mirror-like
+    /// reflection is `reflections.imager`.
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     imager: Option<Ratio>,
 }
 
 impl GlareSection {
-    /// What is asked for, beside an imager that reflects a part as a mirror; `None` where nothing is.
+    /// Returns the causes of glare that are asked for, together with the mirror-like reflectance of the imager; `None` if glare
+    /// is off.
     fn matter(self, imager_mirror: f64) -> Option<StrayMatter> {
         let usual = StrayMatter { imager_mirror, ..StrayMatter::default() };
         match self {
@@ -181,31 +186,33 @@ impl GlareSection {
     }
 }
 
-/// Which reflections are traced.
+/// Settings for the reflections to trace.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ReflectionsSection {
-    /// How often light may be reflected on its way to the imager: 0 (no ghosts), 2 or 4. If absent, 2 where lights are so bright that
-    /// the brightest ghost is more than 1 % of the mean of the frame without them, and 0 elsewhere. Of 4, paths that begin with less than
-    /// 1e-8 of the light are left out.
+    /// How often light may be reflected on its way to the imager: 0 (no ghosts), 2 or 4. If absent, 2 where lights are so bright
+    /// that the brightest ghost is more than 1 % of the mean of the frame without ghosts, and 0 elsewhere. With 4, paths that
+    /// begin with less than 1e-8 of the light are left out.
     order: Option<Whole<0, 4>>,
-    /// Part of the light that film or sensor sends back into the lens as a mirror does, from 0 to 1; assumed 0.043 if absent, as of
-    /// gelatin (index 1.52) in air.
+    /// Fraction of the light that film or sensor reflect back into the lens like a mirror, from 0 to 1. If absent, 0.043 is
+    /// assumed, as for gelatin (index 1.52) in air.
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     imager: Option<Ratio>,
-    /// Follow the polarization that light gets at each surface: slower, and truer by some percent at steep angles. Not if absent.
+    /// Follow the polarization of the light at each surface: slower, and more accurate by some percent at steep angles. False if
+    /// absent.
     #[serde(default)]
     polarized: bool,
-    /// How the light of a ray lands: spread over its footprint, the part of the frame that it stands for, so that ghosts are smooth; or all
-    /// of it in the pixel that it meets (`none`), noisier, and the reference that footprints are tested by. `footprint` if absent.
+    /// How the light of a ray lands: `footprint` (the default) spreads it over the part of the frame that the ray represents, so
+    /// that ghosts are smooth. `none` puts all of it into the pixel that the ray hits, which is noisier; footprints are tested
+    /// against it.
     #[serde(default)]
     spread: GhostSpread,
 }
 
-/// Fresnel's reflectance of gelatin of index 1.52 along the normal.
+/// Fresnel reflectance of gelatin of index 1.52 at normal incidence.
 const GELATIN: f64 = (0.52 / 2.52) * (0.52 / 2.52);
 
-/// Which way rays are to run.
+/// The forms in which `direction` can be written.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -217,19 +224,19 @@ enum Way {
     Both,
 }
 
-/// Most samples of a pixel.
+/// Largest number of samples per pixel.
 const MAX_SAMPLES: u64 = 4_194_304;
-/// Most rays of a picture.
+/// Largest number of rays of a picture.
 const MAX_RAYS: u64 = 1_000_000_000_000_000;
 const DEFAULT_SAMPLES: u64 = 64;
-/// Where noise is asked for: a hundred times as many as most pictures need for 1 %.
+/// Default limit of samples with `noise`: a hundred times as many as most pictures need for 1 %.
 const DEFAULT_MOST_SAMPLES: u64 = 8192;
 const DEFAULT_BATCH: usize = 256;
 const DEFAULT_SEED: u64 = 1;
-/// Forward rays a pixel and sample asked for, where `rays` is not given: a forward ray lands anywhere.
+/// Forward rays per pixel and sample if `rays` is not given; there are several because a forward ray lands anywhere.
 const FORWARD_RAYS_A_SAMPLE: u64 = 4;
 
-/// The scene file, or where there is none the bundled scene of that name.
+/// Reads the scene file, or the bundled scene of that name if there is no such file.
 pub(crate) fn read(path: &Path) -> Result<Node, Faults> {
     if !path.exists()
         && let Ok(bundled) = crate::bundled::scene_file(&path.to_string_lossy())
@@ -240,8 +247,8 @@ pub(crate) fn read(path: &Path) -> Result<Node, Faults> {
     read_yaml(path).map_err(|faults| advice::unreadable(faults, path))
 }
 
-/// The scene as written, with the overrides below it. What changes no picture is left out, so that the
-/// record in a picture file does not change with it either.
+/// Returns the scene as written, with the overrides below it as comments. Settings that do not change a picture are left out, so
+/// that the record in a picture file does not change with them.
 pub(crate) fn record(text: &str, overrides: &[String]) -> String {
     let mut record = text.to_owned();
     if !record.is_empty() && !record.ends_with('\n') {
@@ -255,10 +262,10 @@ pub(crate) fn record(text: &str, overrides: &[String]) -> String {
     record
 }
 
-/// All stages of a scene, from a tree that holds nothing of the language above it.
+/// Assembles all stages of a scene from a tree in which includes, variables and series are already resolved.
 ///
 /// # Errors
-/// Everything that is wrong with it, each with its place.
+/// Every fault of the scene, each with its place.
 pub(crate) fn assemble(
     name: &str,
     text: String,
@@ -281,14 +288,14 @@ fn all_stages(
 ) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
     let mut earlier = earlier.fitting(params);
-    // Several films are no single stage: their section is read apart.
-    // A key whose value is null is not there: `--set film=null` takes the film away.
+    // A list of films is not a single stage, so its section is read separately. A key whose value is null counts as absent:
+    // `--set film=null` removes the film.
     let (several, others) = match params.get("film").map(|node| &node.value) {
         Some(Value::Seq(items)) => (Some(items), params.split(&["film"]).1),
         _ => (None, params.clone()),
     };
     let file: Option<SceneFile> = faults.take(others.parse());
-    // Even where a section is missing or unknown, the others are looked at: all faults in one go.
+    // If a section is missing or unknown, the others are still checked, so that all faults are reported together.
     let others = others.without_nulls();
     let section = |key: &str, faults: &mut Faults| faults.take(others.stage_at(key)).flatten();
     let parts = ["wavelengths", "source", "lens", "imager", "film", "render"].map(|key| section(key, &mut faults));
@@ -307,7 +314,8 @@ fn all_stages(
         None => faults.take(registry::build::<dyn WavelengthSampler>(&sampler, &context)).map(Arc::from),
     };
     let filters = lens.as_ref().and_then(|p| faults.take(filters::filters_of(p, grid, resources))).flatten();
-    // Focus wants to know all others, and a source what the lens sees; faults are told in the order of the sections.
+    // Focus needs all other sections, and a source needs the view of the lens. Faults are reported in the order of the sections
+    // all the same.
     let (mut of_lens, mut behind) = (Faults::new(), Faults::new());
     let imager_place = imager.clone().filter(|p| earlier.imager.is_none() && landing::is_wanted(p));
     let mut imager = match earlier.imager.take() {
@@ -318,11 +326,11 @@ fn all_stages(
     let cover = imager.as_ref().and_then(|imager| imager.cover());
     let hold = |faults: &mut Faults| lens.as_ref().and_then(|p| faults.take(held_lens(p, resources, cover.clone())));
     let is_view_known = earlier.source.is_some() && (earlier.same_view || earlier.is_check);
-    // A lens that is there as it is to be is not read again.
+    // A lens that can be taken over from the earlier scene is not read again.
     let held = if is_view_known && earlier.may_have_lens() { None } else { Some(hold(&mut of_lens)) };
     let seen = || {
         let (held, imager) = held.as_ref()?.as_ref().zip(imager.as_ref())?;
-        sight::seen(&held.lens, &**imager, earlier.search)
+        sight::seen(&Optics::new(held.lens.clone()), &**imager, earlier.search)
     };
     let (source, dark) = match earlier.source.take() {
         Some(source) if is_view_known => (Some(source), said.dark),
@@ -355,7 +363,7 @@ fn all_stages(
             behind.push(fault.hint("write `imager: {kind: film, ...}`, or leave the film out"));
             None
         }
-        // A film that failed to build has been reported.
+        // A film that failed to build has already been reported.
         (None, None) if film_is_wanted => None,
         (None, None) => {
             behind.push(
@@ -376,7 +384,7 @@ fn all_stages(
     if let (Some(channels), Some(transmittance)) = (&mut channels, &filters) {
         filters::fold(channels, transmittance);
     }
-    // The lens is focused in the light of the scene, as the film or the imager sees it.
+    // The lens is focused in the light of the scene, as seen by the film or the imager.
     let focus_light = match (&source, &imager, &channels) {
         (Some(source), Some(imager), Some(channels)) => {
             let pictured = films::pictured(films.as_deref().unwrap_or_default(), channels);
@@ -395,7 +403,8 @@ fn all_stages(
         (imager_place, &lens, &source, &focus_light)
         && imager.is_some()
     {
-        // Now that it is known where the light lands, the imager looks there. What it had to say was said before.
+        // The landing place of the light is known now, so the imager is built again around it. Its warnings were already
+        // collected.
         match landing::middle_mm(&**source, lens, light, &grid, size_hint(params.get("lens"))) {
             Ok(landing_mm) => {
                 let context = Context { landing_mm: Some(landing_mm), warnings: None, ..context };
@@ -431,7 +440,7 @@ fn all_stages(
     };
     let (mut films, mut imager) = (films.unwrap_or_default(), imager);
     if let Some(frame) = render.frame.filter(|_| !earlier.is_check) {
-        // What another scene holds too is of this frame already.
+        // Stages shared with another scene already belong to this frame.
         Arc::get_mut(&mut imager).into_iter().for_each(|imager| imager.set_frame(frame));
         films.iter_mut().filter_map(|film| Arc::get_mut(&mut film.film)).for_each(|film| film.set_frame(frame));
     }
@@ -493,21 +502,24 @@ fn render_settings(
     let default = if s.noise.is_some() { DEFAULT_MOST_SAMPLES } else { DEFAULT_SAMPLES };
     let samples = s.samples.map_or(default, Whole::get);
     if s.noise.is_some() && s.numbers == NumberFamily::Stratified {
-        let fault = params
-            .fault("numbers", "`stratified` numbers need all of their samples, so rendering cannot stop at a noise");
+        let fault = params.fault(
+            "numbers",
+            "`stratified` numbers need all of their samples, so rendering cannot stop at a noise level",
+        );
         faults.push(fault.hint("write `numbers: sobol`, or leave `noise` out"));
     }
-    // 2^22 samples of 2^28 pixels, four times: 2^52.
+    // The largest default is 2^52 rays: 2^22 samples of 2^28 pixels, times four.
     let rays = s.rays.map_or(samples * FORWARD_RAYS_A_SAMPLE * imager.size().pixels() as u64, Whole::get);
     let seed = s.seed.map_or(DEFAULT_SEED, Whole::get);
     let frame = s.frame.map(Whole::get);
     if s.reflections.order.is_some_and(|order| order.get() % 2 == 1) {
-        let fault = params.fault("reflections.order", "light that is reflected once goes back out of the front");
+        let fault = params
+            .fault("reflections.order", "light that is reflected an odd number of times leaves the lens at the front");
         faults.push(fault.hint("write `order: 2` or `order: 4`, or `order: 0` for no ghosts"));
     }
     let can_backward = source.radiance().is_some() && imager.launch().is_some();
     let can_forward = source.emit().is_some() && imager.receive().is_some();
-    // Of a source whose lights alone emit, the rest is seen backward.
+    // If only the lights of a source emit rays, the rest is rendered backward.
     let has_lights = source.split().is_some_and(|split| split.lights.emit().is_some());
     let lights_forward = can_forward || has_lights && imager.receive().is_some();
     let direction = match s.direction {
@@ -533,15 +545,15 @@ fn render_settings(
         faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
     }
     if direction == Direction::Forward && rays > MAX_RAYS {
-        let fault = params.fault("samples", format!("this makes {rays} rays, at most {MAX_RAYS} are traced"));
-        faults.push(fault.hint("fewer samples or pixels, or write `rays`"));
+        let fault = params.fault("samples", format!("this makes {rays} rays, but at most {MAX_RAYS} can be traced"));
+        faults.push(fault.hint("use fewer samples or pixels, or write `rays`"));
     }
     let imager_mirror = s.reflections.imager.map_or(GELATIN, Ratio::number);
     let glare = s.glare.and_then(|glare| glare.matter(imager_mirror));
     if let Some(matter) = glare.filter(|matter| matter.imager + matter.imager_mirror > 1.0) {
-        let fault = params.fault("glare.imager", "the imager sends back more light than comes to it");
+        let fault = params.fault("glare.imager", "the imager sends back more light than reaches it");
         faults.push(fault.hint(format!(
-            "`glare.imager` and `reflections.imager` ({}) together are at most 1",
+            "`glare.imager` and `reflections.imager` ({}) must add up to at most 1",
             matter.imager_mirror
         )));
     }

@@ -1,29 +1,29 @@
-//! What is bundled and can be named: scenes, lenses, film stocks, spectra, coatings, and media by their catalogue.
+//! Bundled data that can be used by name: scenes, lenses, film stocks, spectra, coatings, and media from glass catalogues.
 
 use spectra_core::names::{self, Match};
 use spectra_film::stock::Stock;
 use spectra_glass::Catalogue;
 
-/// What a name can be the name of.
+/// Kinds of bundled data that a name can refer to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bundled {
-    /// A scene.
+    /// A bundled scene.
     Scene,
-    /// A lens.
+    /// A bundled lens.
     Lens,
     /// A film stock, or a print stock.
     Stock,
-    /// A spectrum.
+    /// A bundled spectrum.
     Spectrum,
     /// A glass, or another medium.
     Glass,
 }
 
 impl Bundled {
-    /// All of them.
+    /// All kinds of bundled data.
     pub const ALL: [Self; 5] = [Self::Scene, Self::Lens, Self::Stock, Self::Spectrum, Self::Glass];
 
-    /// What lies in this folder of the bundled data.
+    /// Returns the kind of data in this folder of the bundled files; `None` for other folders.
     #[must_use]
     pub fn in_folder(folder: &str) -> Option<Self> {
         match folder {
@@ -34,7 +34,7 @@ impl Bundled {
         }
     }
 
-    /// Its noun with its article.
+    /// Returns the noun of this kind with its article, such as `a lens`.
     #[must_use]
     pub const fn noun(self) -> &'static str {
         match self {
@@ -46,7 +46,7 @@ impl Bundled {
         }
     }
 
-    /// How the names are listed.
+    /// Returns the command that lists the names of this kind.
     #[must_use]
     pub const fn listed_by(self) -> &'static str {
         match self {
@@ -58,7 +58,7 @@ impl Bundled {
         }
     }
 
-    /// The names, without the endings of their files.
+    /// Returns the names of this kind, without file extensions.
     #[must_use]
     pub fn names(self) -> Vec<String> {
         let files = |folder: &'static str| {
@@ -74,10 +74,10 @@ impl Bundled {
         }
     }
 
-    /// The one name that `typed` stands for, by the rules of [`spectra_core::names::find`].
+    /// Finds the one name that `typed` stands for, by the rules of [`spectra_core::names::find`].
     ///
     /// # Errors
-    /// All names that it could stand for, where there are several; none where there is none.
+    /// All names that it could stand for; an empty list if there is none.
     pub fn find(self, typed: &str) -> Result<String, Vec<String>> {
         if self == Self::Glass {
             return match Catalogue::bundled().find(typed) {
@@ -97,7 +97,7 @@ impl Bundled {
     }
 }
 
-/// Names of the stocks that a scene is exposed on: all but those that negatives are printed on.
+/// Returns the names of the stocks that a scene can be exposed on: all except the print stocks.
 #[must_use]
 pub fn camera_films() -> Vec<String> {
     let is_print = |name: &str| {
@@ -107,8 +107,8 @@ pub fn camera_films() -> Vec<String> {
     Stock::bundled().filter(|name| !is_print(name)).map(str::to_owned).collect()
 }
 
-/// What `typed` is the name of, or a part of one name of its kind only, the likeliest first: whole names before parts, and
-/// scenes last, which are called after what stands in them.
+/// Returns the names that `typed` stands for, as a whole or as a part of only one name of its kind, the likeliest first. Whole
+/// names come before parts, and scenes come last, because they are named after their contents.
 #[must_use]
 pub fn meanings(typed: &str) -> Vec<(Bundled, String)> {
     let mut found: Vec<(Bundled, String)> =
@@ -118,8 +118,8 @@ pub fn meanings(typed: &str) -> Vec<(Bundled, String)> {
     found
 }
 
-/// A hint for a name that is of another kind than is wanted: "`kodak-tri-x-400` is a film stock; `spectra list lens` shows
-/// the lenses".
+/// Returns a hint for a name that belongs to another kind than the wanted one: "`kodak-tri-x-400` is a film stock; for a lens,
+/// take a name from `spectra list lens`".
 #[must_use]
 pub fn other_kind(typed: &str, wanted: Bundled) -> Option<String> {
     let (kind, name) = meanings(typed).into_iter().find(|(kind, _)| *kind != wanted)?;
@@ -129,17 +129,14 @@ pub fn other_kind(typed: &str, wanted: Bundled) -> Option<String> {
         Bundled::Lens => format!(" (in a scene: `lens: {{file: {name}}}`)"),
         Bundled::Scene | Bundled::Spectrum | Bundled::Glass => String::new(),
     };
-    Some(format!(
-        "`{name}` is {}{place}; where {article} is wanted, take a name from `{}`",
-        kind.noun(),
-        wanted.listed_by()
-    ))
+    Some(format!("`{name}` is {}{place}; for {article}, take a name from `{}`", kind.noun(), wanted.listed_by()))
 }
 
-/// The bundled file of a scene that is called `typed`, as `biotar-ortho`, `scenes/biotar-ortho.yaml` or a part of one name.
+/// Returns the bundled file of a scene that is called `typed`, such as `biotar-ortho`, `scenes/biotar-ortho.yaml` or a part of
+/// one name.
 ///
 /// # Errors
-/// All scenes that it could be, where there are several; none where there is none.
+/// All scenes that it could be; an empty list if there is none.
 pub(crate) fn scene_file(typed: &str) -> Result<String, Vec<String>> {
     let slashed = typed.replace('\\', "/");
     let inside = slashed.trim_start_matches("./");
@@ -149,7 +146,7 @@ pub(crate) fn scene_file(typed: &str) -> Result<String, Vec<String>> {
     if spectra_data::get(&whole).is_some() {
         return Ok(whole);
     }
-    // A path of one's own that is not there is no part of a name.
+    // A path of the user's own that does not exist is not a part of a name.
     if stem != inside || stem != slashed {
         return Err(Vec::new());
     }

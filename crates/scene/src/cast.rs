@@ -1,7 +1,7 @@
-//! Color film under a light that it is not balanced for.
+//! Warnings about color film in light that it is not balanced for.
 //!
 //! A gray card in the light that a film is balanced for exposes its layers alike. In another white light one layer gets more than
-//! another, and the picture has a cast that a photographer takes away with a conversion filter before the lens.
+//! another, and the picture has a cast. A photographer removes it with a conversion filter in front of the lens.
 
 use crate::SceneFilm;
 use crate::filters::conversion;
@@ -11,14 +11,15 @@ use spectra_core::params::{Node, Params, Value, Warning};
 use spectra_core::spectral::{Channel, Grid, SpectralPower};
 use spectra_spectrum::Observer;
 
-/// Stops between the layers from which on a cast is said. Daylight film between D50 and D75 stays below.
+/// Smallest difference between the layers, stops, that gives a warning. Daylight film between D50 and D75 stays below.
 const STOPS: f64 = 1.0;
-/// Farthest from the Planckian locus (CIE 1960) that light counts as white: what is more colored is colored on purpose.
+/// Largest distance from the Planckian locus (CIE 1960) at which light counts as white. More strongly colored light is taken as
+/// intended.
 const WHITE_DUV: f64 = 0.02;
-/// Strongest conversion filter that is proposed, mired.
+/// Strongest conversion filter that is suggested, mired.
 const MIRED: i32 = 250;
 
-/// What is said of the films of a scene in its light. `channels` hold what the filters of the scene leave.
+/// Returns the warnings about color casts of the films of a scene in its light. `channels` include the filters of the scene.
 pub(crate) fn casts(
     films: &[SceneFilm],
     channels: &[Channel],
@@ -31,7 +32,7 @@ pub(crate) fn casts(
         Some(Value::Seq(items)) => items,
         _ => &[],
     };
-    // Who takes another filter than a conversion filter wants its color.
+    // A filter other than a conversion filter is there for its color.
     if filters.iter().any(|filter| filter.get("mired").is_none()) {
         return Vec::new();
     }
@@ -74,22 +75,22 @@ pub(crate) fn casts(
         );
         let hint = if left < 0.5 * stops && !filters.is_empty() {
             format!(
-                "add `{{mired: {mired}}}` to `lens.filters`, or take a film for this light; nothing has to be done if the cast is meant"
+                "add `{{mired: {mired}}}` to `lens.filters`, or take a film for this light; ignore this if the cast is intended"
             )
         } else if left < 0.5 * stops {
             format!(
                 "write `lens.filters: [{{mired: {mired}}}]` for the conversion filter that a photographer would use, or take a film for this \
-                 light; nothing has to be done if the cast is meant"
+                 light; ignore this if the cast is intended"
             )
         } else {
-            "take a film for this light; nothing has to be done if the cast is meant".to_owned()
+            "take a film for this light; ignore this if the cast is intended".to_owned()
         };
         Some(Warning(params.fault(&at, text).hint(hint)))
     };
     films.iter().enumerate().filter_map(of).collect()
 }
 
-/// Where what is said of a film stands: at its stock, or at the film where it names none.
+/// Returns the path at which messages about a film are placed: its stock, or the film section if it names none.
 #[must_use]
 pub fn place(film: &SceneFilm, index: usize, params: &Params) -> String {
     let section = params.get("film").map(|node| if film.name.is_some() { node.element(index) } else { Some(node) });

@@ -1,7 +1,7 @@
-//! Faults as a person and as a program reads them.
+//! Display of faults for people and for programs.
 //!
-//! [`render`] shows each fault with its place, the lines around it, a label at the exact token and the hint;
-//! [`to_json`] gives the same as data.
+//! [`render`] shows each fault with its place, the lines around it, a label at the exact token and the hint; [`to_json`] gives
+//! the same facts as data.
 
 use miette::{
     Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode,
@@ -11,24 +11,24 @@ use serde_json::{Value, json};
 use spectra_core::params::{Fault, Faults, SourceFile, Span, Warning};
 use std::fmt;
 
-/// Columns that a message is wrapped to.
+/// Width that messages are wrapped to, columns.
 const WIDTH: usize = 100;
-/// Most characters of a line that are shown.
+/// Largest number of characters shown of a line.
 const SHOWN: usize = 160;
-/// Characters shown before the label, where a line is longer than that.
+/// Characters shown before the label if the line is longer than that.
 const BEFORE: usize = 60;
-/// Most bytes on either side of a place that are looked through for the ends of its lines.
+/// Largest distance from a place, bytes, that is searched for the ends of its lines.
 const REACH: usize = 4096;
 
-/// All faults as text for a terminal; each states `file:line:column` on the line above its snippet, with and
-/// without color.
+/// Formats all faults as text for a terminal, with or without color. Each fault states `file:line:column` on the line above its
+/// snippet.
 #[must_use]
 pub fn render(faults: &Faults, color: bool) -> String {
     let theme = if color { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
     let handler = GraphicalReportHandler::new_themed(theme)
         .with_width(WIDTH)
         .with_links(false)
-        // The header is our own: places of the command line have no line and column.
+        // The header is our own, because places on the command line have no line and column.
         .without_primary_span_start();
     let mut out = String::new();
     for (i, fault) in faults.iter().enumerate() {
@@ -37,7 +37,7 @@ pub fn render(faults: &Faults, color: bool) -> String {
         }
         let report = Report::of(fault);
         if handler.render_report(&mut out, &report).is_err() {
-            // Never less than the plain line.
+            // If rendering fails, the plain line is shown.
             out.push_str(&fault.to_string());
             out.push('\n');
         }
@@ -45,20 +45,20 @@ pub fn render(faults: &Faults, color: bool) -> String {
     out
 }
 
-/// All faults as a JSON array of objects with `file`, `line`, `column`, `path`, `message` and `hint`; what a
-/// fault lacks is null.
+/// Returns all faults as a JSON array of objects with `file`, `line`, `column`, `path`, `message` and `hint`. Missing values are
+/// null.
 #[must_use]
 pub fn to_json(faults: &Faults) -> Value {
     Value::Array(faults.iter().map(one_to_json).collect())
 }
 
-/// Warnings in the same form.
+/// Returns warnings in the form of [`to_json`].
 #[must_use]
 pub fn warnings_to_json(warnings: &[Warning]) -> Value {
     Value::Array(warnings.iter().map(warning_to_json).collect())
 }
 
-/// One of them.
+/// Returns one warning as an object in the form of [`to_json`].
 #[must_use]
 pub fn warning_to_json(warning: &Warning) -> Value {
     one_to_json(&warning.0)
@@ -76,7 +76,7 @@ fn one_to_json(fault: &Fault) -> Value {
     })
 }
 
-/// A fault in the form that the renderer takes.
+/// A fault in the form that the renderer needs.
 #[derive(Debug)]
 struct Report<'a> {
     fault: &'a Fault,
@@ -115,13 +115,12 @@ impl Diagnostic for Report<'_> {
     }
 }
 
-/// The line of a place with the ones before and after it, made fit to show: cut to a window of columns,
-/// without control characters.
+/// The line of a place with its neighbors, cut to a window of columns and without control characters.
 #[derive(Debug)]
 struct Snippet {
     name: String,
     text: String,
-    /// Number of its first line, from 0.
+    /// Number of the first line of the snippet, from 0.
     line: usize,
     lines: usize,
     /// Offset and length of the label in `text`, in bytes.
@@ -134,7 +133,7 @@ impl Snippet {
         let at = floor_boundary(text, span.offset);
         let start = line_start(text, at);
         let end = line_end(text, at);
-        // The column counts from the true start of the line, which may be out of reach.
+        // The column counts from the true start of the line, which may be beyond the searched range.
         let column = text[start..at].chars().count();
         let first = column.saturating_sub(if text[start..end].chars().count() > SHOWN { BEFORE } else { column });
         let mut snippet =
@@ -172,7 +171,7 @@ impl Snippet {
     }
 }
 
-/// The last boundary of a character that is not beyond `offset`.
+/// Returns the last character boundary at or before `offset`.
 fn floor_boundary(text: &str, offset: usize) -> usize {
     let mut at = offset.min(text.len());
     while !text.is_char_boundary(at) {
@@ -307,7 +306,7 @@ mod tests {
         assert_eq!(to_json(&all), expected);
     }
 
-    /// Whatever is wrong with a text, a person reads it, and a program counts as many faults.
+    /// A broken text gives a readable message, and the same number of faults as data.
     #[test]
     fn hostile_texts_are_shown() {
         for text in

@@ -1,7 +1,7 @@
-//! What is probably not meant, and what makes a picture less true than it looks: seen only once a scene is put together.
+//! Warnings about likely mistakes, and about data that make a picture less accurate than it looks. They need the whole scene.
 //!
-//! A bare number has a unit that its key states, and slips there make a picture, only a wrong one: each rule here asks for
-//! a number without a unit, or for what no camera does.
+//! A bare number has the unit that its key states. A slip there still makes a picture, but a wrong one. The rules here look for
+//! numbers without a unit, and for values that no camera has.
 
 use crate::remembered::BUNDLED;
 use crate::sight::Dark;
@@ -11,16 +11,17 @@ use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::Source;
 use spectra_lens::Lens;
 
-/// Seconds from which an exposure without a unit is doubted: `125` is meant as 1/125 s.
+/// Shortest exposure without a unit, s, that gives a warning: `125` is probably meant as 1/125 s.
 const LONG_S: f64 = 8.0;
-/// A source nearer than this part of the focal length is doubted, where its distance has no unit: `2` is meant as 2 m.
+/// Fraction of the focal length. A source nearer than that gives a warning if its distance has no unit: `2` is probably meant as
+/// 2 m.
 const NEAR: f64 = 0.5;
-/// Share of the exposure that data which were not measured may carry without a word.
+/// Largest fraction of the exposure that may rest on extrapolated data without a warning.
 const UNMEASURED: f64 = 0.01;
-/// The same for the glass of a bundled lens: what is known of it stands in its file, and nobody can add to it.
+/// Limit like [`UNMEASURED`] for the glass of a bundled lens: all known data are in its file, and users cannot add any.
 const UNMEASURED_BUNDLED: f64 = 0.25;
 
-/// A scene whose parts are there.
+/// A scene with all its parts assembled.
 pub(crate) struct Whole<'a> {
     pub params: &'a Params,
     pub resources: &'a dyn Resources,
@@ -33,7 +34,7 @@ pub(crate) struct Whole<'a> {
 }
 
 impl Whole<'_> {
-    /// Says all that is doubtful.
+    /// Adds all warnings about the scene.
     pub(crate) fn doubt(&self, dark: Option<&Dark>, warnings: &Warnings) {
         for text in &self.lens.warnings {
             let hint = format!("`spectra lens info {}` shows the glass behind each surface", self.lens_file());
@@ -51,7 +52,7 @@ impl Whole<'_> {
         self.ghosts(warnings);
     }
 
-    /// Prisms, whose faces have ghosts that no path follows.
+    /// Warns about prisms: the ghosts of their faces are not traced.
     fn ghosts(&self, warnings: &Warnings) {
         let elements = self.lens.elements.iter().enumerate();
         let prisms: Vec<String> =
@@ -62,16 +63,15 @@ impl Whole<'_> {
         let key = "render.reflections.order";
         let key = if self.at(key).is_some() { key } else { "lens.file" };
         let text = format!(
-            "no path of ghosts is reflected by the faces of a prism (surface{} {} of the lens): what of these falls on the frame is missing",
+            "ghosts that the faces of a prism reflect (surface{} {} of the lens) are not traced, so their light is missing in the picture",
             if prisms.len() == 1 { "" } else { "s" },
             prisms.join(", ")
         );
-        let hint =
-            "faces written as surfaces of `kind: plane` between bends of the axis have ghosts; `order: 0` traces none";
+        let hint = "write the faces as surfaces of `kind: plane` between bends of the axis to get their ghosts; `order: 0` traces none";
         warnings.push(self.params.fault(key, text).hint(hint));
     }
 
-    /// A source close to the lens.
+    /// Warns about a source that is very close to the lens.
     fn distances(&self, warnings: &Warnings) {
         let efl_mm = self.lens.first_order(self.lens.reference_nm).efl_mm.abs();
         let source = self.params.get("source");
@@ -83,7 +83,7 @@ impl Whole<'_> {
         for key in std::iter::once("source.distance".to_owned()).chain(keys) {
             let Some(mm) = self.at(&key).and_then(bare) else { continue };
             if efl_mm.is_finite() && mm < NEAR * efl_mm {
-                let fault = self.params.fault(&key, format!("{mm} mm in front of the lens"));
+                let fault = self.params.fault(&key, format!("this is only {mm} mm in front of the lens"));
                 warnings.push(
                     fault.hint(format!(
                         "a number without a unit is in mm: did you mean `{mm} m`? If not, write `{mm} mm`"
@@ -93,7 +93,7 @@ impl Whole<'_> {
         }
     }
 
-    /// A focus so near that the picture is larger than what it shows.
+    /// Warns about a focus so near that the image is larger than the subject.
     fn focus(&self, warnings: &Warnings) {
         let key = if self.at("lens.focus.distance").is_some() { "lens.focus.distance" } else { "lens.focus" };
         let Some(node) = self.at(key) else { return };
@@ -116,7 +116,7 @@ impl Whole<'_> {
         warnings.push(self.params.fault(key, text).hint(hint));
     }
 
-    /// Exposures of many seconds.
+    /// Warns about exposures of many seconds.
     fn exposures(&self, warnings: &Warnings) {
         let films = match self.params.get("film").map(|film| &film.value) {
             Some(Value::Seq(items)) => (0..items.len()).map(|i| format!("film[{i}].exposure")).collect(),
@@ -131,7 +131,7 @@ impl Whole<'_> {
         }
     }
 
-    /// A frame that is larger than what the lens draws.
+    /// Warns about a frame that is larger than the image circle of the lens.
     fn dark(&self, dark: &Dark, warnings: &Warnings) {
         let Some(circle_mm) = dark.circle_mm else { return };
         let key = if self.at("imager.format").is_some() { "imager.format" } else { "imager.width" };
@@ -146,7 +146,7 @@ impl Whole<'_> {
         warnings.push(self.params.fault(key, text).hint(hint));
     }
 
-    /// Light that is continued flat beyond what was measured.
+    /// Warns about light that is extrapolated with constant values beyond the measured range.
     fn light(&self, warnings: &Warnings) {
         for end in warnings.ends() {
             let [first, last] = end.measured_nm;
@@ -169,13 +169,13 @@ impl Whole<'_> {
         self.at("lens.file").and_then(Node::as_str).unwrap_or_default()
     }
 
-    /// Whether the lens comes with the program, by whatever part of its name it is called.
+    /// Returns whether the lens is a bundled one, whatever part of its name is given.
     fn is_bundled_lens(&self) -> bool {
         let read = self.resources.document(self.lens_file(), &["lenses"], &[".yaml"]);
         read.is_ok_and(|read| read.node().file.name.starts_with(BUNDLED))
     }
 
-    /// Glass of which no absorption is known, and whose stand-in darkens the picture.
+    /// Warns about glass with unknown absorption, if the absorption assumed instead darkens the picture.
     fn assumed_absorption(&self, warnings: &Warnings) {
         if let Some((medium, lender, stops)) = self.lens.darkened_by_assumption() {
             let text = format!(
@@ -187,7 +187,7 @@ impl Whole<'_> {
         }
     }
 
-    /// Glass whose formula is used where nobody measured it.
+    /// Warns about glass whose formula is used outside the measured range.
     fn glass(&self, warnings: &Warnings) {
         let may = if self.is_bundled_lens() { UNMEASURED_BUNDLED } else { UNMEASURED };
         let (from_nm, to_nm) = (self.grid.start_nm, self.grid.end_nm());
@@ -210,7 +210,7 @@ impl Whole<'_> {
         }
     }
 
-    /// The share of the exposure, summed over all channels, that light of some wavelengths carries.
+    /// Returns the fraction of the exposure, summed over all channels, that comes from the wavelengths that `is_counted` selects.
     fn share(&self, is_counted: impl Fn(f64) -> bool) -> f64 {
         let spectrum = self.source.spectrum();
         let (mut counted, mut all) = (0.0, 0.0);
@@ -233,7 +233,7 @@ impl Whole<'_> {
         if all > 0.0 { counted / all } else { 0.0 }
     }
 
-    /// The value at a path.
+    /// Returns the value at a path of the scene.
     fn at(&self, path: &str) -> Option<&Node> {
         let mut node = self.params.node();
         for step in path.split('.') {
@@ -250,7 +250,7 @@ impl Whole<'_> {
     }
 }
 
-/// A number that was written without a unit.
+/// Returns a number that was written without a unit.
 fn bare(node: &Node) -> Option<f64> {
     match &node.value {
         Value::Number(number) => Some(number.value),

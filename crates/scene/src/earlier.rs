@@ -1,4 +1,9 @@
-//! What a picture shares with one that was assembled before it.
+//! Reuse of stages from a scene that was assembled before.
+//!
+//! A section that has the same values keeps its stage. What has to be made again shows by what is no longer the same stage: if source,
+//! lens, imager, wavelength density and channels are the same, the light is kept, whatever the film does with it. A density depends only on
+//! spectra, so it stays if another chart fills the frame or another lens is used. A lens depends on its section, the light that it is
+//! focused in and the plates in front of the frame, so it stays if the frame turns.
 
 use crate::focus::FocusLight;
 use crate::landing;
@@ -11,7 +16,7 @@ use spectra_core::params::{Fault, Node, Params, Value};
 use spectra_core::stage::{Imager, Source, WavelengthSampler};
 use std::sync::Arc;
 
-/// A lens of another scene.
+/// The focused lens of another scene.
 struct Focused {
     params: Params,
     set: SetLens,
@@ -26,7 +31,7 @@ impl Focused {
     }
 }
 
-/// Stages of another scene: where a section says the same, its stage is taken over.
+/// Stages of an earlier scene. If a section is unchanged, its stage is taken over.
 #[derive(Default)]
 pub(crate) struct Earlier<'a> {
     params: Option<Params>,
@@ -34,20 +39,20 @@ pub(crate) struct Earlier<'a> {
     pub sampler: Option<Arc<dyn WavelengthSampler>>,
     pub imager: Option<Arc<dyn Imager>>,
     pub films: Option<Vec<SceneFilm>>,
-    /// Lenses, as they were focused.
+    /// Lenses as they were focused in earlier scenes.
     lenses: Vec<Focused>,
     frame: Option<u64>,
     said: Said,
-    /// Whether lens and imager say the same.
+    /// Whether the sections of lens and imager are unchanged.
     pub same_view: bool,
-    /// The scene is only looked at: noise and grain need not be those of its frame.
+    /// Whether the scene is only checked: noise and grain need not be those of its frame.
     pub is_check: bool,
-    /// How what the frame sees is looked for, where it is looked for again.
+    /// Effort and workers of a new search for what the frame sees.
     pub search: Search<'a>,
 }
 
 impl<'a> Earlier<'a> {
-    /// The stages of `scene`. Where nobody else holds it, they are all that is left of it, and may be set for another frame.
+    /// Takes the stages of `scene`. If nothing else holds them, they may be set to another frame.
     pub(crate) fn of(scene: Option<Arc<Scene>>, is_check: bool) -> Self {
         let Some(scene) = scene else { return Self { is_check, ..Self::default() } };
         Self {
@@ -64,39 +69,39 @@ impl<'a> Earlier<'a> {
         }
     }
 
-    /// With what the frame sees looked for so.
+    /// Sets the effort and workers for the search for what the frame sees.
     pub(crate) fn by(self, search: Search<'a>) -> Self {
         Self { search, ..self }
     }
 
-    /// Whether a lens may be among these as it is to be.
+    /// Returns whether one of these lenses may be usable.
     pub(crate) fn may_have_lens(&self) -> bool {
         !self.lenses.is_empty()
     }
 
-    /// With the lens of one more scene, where it was focused as it is to be here; of all else of that scene nothing.
+    /// Adds the lens of another scene as a candidate, and nothing else of that scene.
     pub(crate) fn and_lens_of(mut self, other: Option<&Scene>) -> Self {
         self.lenses.extend(other.and_then(Focused::of));
         self
     }
 
-    /// Leaves nothing of what `params` say otherwise.
+    /// Drops all stages whose sections differ in `params`.
     pub(crate) fn fitting(self, params: &Params) -> Self {
         let same = |key: &str| self.params.as_ref().is_some_and(|before| same_section(before, params, key));
-        // The band is everybody's.
+        // All stages depend on the band.
         let mut lenses = self.lenses;
         lenses.retain(|known| ["wavelengths", "lens"].iter().all(|key| same_section(&known.params, params, key)));
         if !same("wavelengths") {
             return Self { is_check: self.is_check, search: self.search, lenses, ..Self::default() };
         }
         let (films, lens) = (same("film"), same("lens"));
-        // An imager that looks where the light lands stands by all others.
+        // An imager that centers on the light depends on all other sections.
         let follows = params.stage_at("imager").ok().flatten().is_some_and(|imager| landing::is_wanted(&imager));
         let imager = same("imager") && (!follows || (same("source") && lens && films));
-        // A source that fills the frame has its size from the lens and the imager.
+        // A source that fills the frame gets its size from lens and imager.
         let fills = params.get("source").is_some_and(fills_the_frame);
         let source = same("source") && (!fills || (imager && lens));
-        // An imager with noise is the imager of its frame, a film with grain the film of it.
+        // An imager with noise and a film with grain belong to their frame.
         let frame = params.get("render").and_then(|render| render.get("frame"));
         let frame = match frame.map(|node| &node.value) {
             Some(Value::Number(number)) => number.text.parse().ok(),
@@ -120,13 +125,13 @@ impl<'a> Earlier<'a> {
         }
     }
 
-    /// The lens, where it was focused in this light and behind these plates already.
+    /// Returns the lens if it was focused in this light and behind these cover plates before.
     pub(crate) fn lens_in(&mut self, light: Option<&FocusLight>, cover: Option<&CoverStack>) -> Option<SetLens> {
         let is_it = |known: &Focused| light == Some(&known.light) && cover == known.set.lens.cover.as_ref();
         std::mem::take(&mut self.lenses).into_iter().find(is_it).map(|known| known.set)
     }
 
-    /// What was said of the stages that are left.
+    /// Takes the messages of the stages that are left.
     pub(crate) fn said(&mut self) -> Said {
         std::mem::take(&mut self.said)
     }
@@ -140,7 +145,7 @@ fn same_section(a: &Params, b: &Params, key: &str) -> bool {
     }
 }
 
-/// Whether a width within is `fill`.
+/// Returns whether a `width` anywhere in the node is `fill`.
 fn fills_the_frame(node: &Node) -> bool {
     match &node.value {
         Value::Map(entries) => entries
@@ -151,7 +156,7 @@ fn fills_the_frame(node: &Node) -> bool {
     }
 }
 
-/// Whether two trees say the same, in the same files (a name of a file counts from there).
+/// Returns whether two trees have the same values from the same files (file names are relative to these).
 fn same_node(a: &Node, b: &Node) -> bool {
     (Arc::ptr_eq(&a.file, &b.file) || (a.file.name == b.file.name && a.file.text == b.file.text))
         && match (&a.value, &b.value) {

@@ -1,4 +1,4 @@
-//! The film of a scene, or several side by side: one light, recorded by each.
+//! The film of a scene, or several films side by side that record the same light.
 
 use crate::SceneFilm;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -11,7 +11,7 @@ use spectra_core::stage::Film;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// What the section is written as: a film, or a list.
+/// The forms in which the `film` section can be written: a film, or a list of films.
 pub(crate) struct FilmForm;
 
 impl JsonSchema for FilmForm {
@@ -25,29 +25,29 @@ impl JsonSchema for FilmForm {
     }
 }
 
-/// What every film of a list may state.
+/// The keys of each film in a list of films.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct FilmKeys {
-    /// In a list of films: what its pictures are called.
+    /// In a list of films: the name of its pictures.
     name: Option<String>,
 }
 
-/// Most films side by side.
+/// Largest number of films side by side.
 const MAX_FILMS: usize = 16;
 
-/// A film alone.
+/// Wraps a single film.
 pub(crate) fn one(film: Box<dyn Film>) -> Vec<SceneFilm> {
     let channels = 0..film.channels().len();
     vec![SceneFilm { name: None, film: film.into(), channels }]
 }
 
-/// The films of a list. Each has a name that its pictures bear: its key `name`, or else the name of its stock or kind.
+/// Builds the films of a list. Each has a name for its pictures: its key `name`, or the name of its stock or kind.
 pub(crate) fn several(items: &[Node], params: &Params, context: &Context<'_>) -> Result<Vec<SceneFilm>, Faults> {
     let mut faults = Faults::new();
     if items.is_empty() || items.len() > MAX_FILMS {
         let fault = params.fault("film", format!("{} films side by side", items.len()));
-        return Err(fault.hint(format!("1 to {MAX_FILMS}")).into());
+        return Err(fault.hint(format!("write 1 to {MAX_FILMS} films")).into());
     }
     let mut films: Vec<SceneFilm> = Vec::new();
     for (at, item) in items.iter().enumerate() {
@@ -64,7 +64,7 @@ pub(crate) fn several(items: &[Node], params: &Params, context: &Context<'_>) ->
     faults.into_result(films)
 }
 
-/// A name of a few letters that is part of a file's name, and that no other film has.
+/// Returns the name of a film: short, valid as part of a file name, and different from those of the other films.
 fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Faults> {
     let taken = |name: &str| others.iter().any(|f| f.name.as_deref() == Some(name));
     let Some(name) = named.parse::<FilmKeys>()?.name else {
@@ -78,7 +78,9 @@ fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Fa
     let fault = |text: String| named.fault("name", text);
     let good = |c: char| c.is_alphanumeric() || "-_+".contains(c);
     if name.is_empty() || name.len() > 64 || !name.chars().all(good) {
-        return Err(fault(format!("`{name}` cannot be part of a file's name")).hint("letters, digits, - and _").into());
+        return Err(fault(format!("`{name}` cannot be part of a file's name"))
+            .hint("use letters, digits, - and _")
+            .into());
     }
     if taken(&name) {
         return Err(fault(format!("two films are called `{name}`")).hint("each needs a name of its own").into());
@@ -86,8 +88,8 @@ fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Fa
     Ok(name)
 }
 
-/// The channels of all films, in order. Of several films each channel bears the film's name before its own, and its
-/// response holds how much longer than the first one the film is exposed.
+/// Returns the channels of all films, in order. With several films, the film's name precedes each channel name, and the responses
+/// include the ratio of the film's exposure time to that of the first film.
 pub(crate) fn channels(films: &[SceneFilm]) -> Vec<Channel> {
     let time = |film: &SceneFilm| film.film.exposure_time_s();
     let Some(first_s) = films.first().map(time) else { return Vec::new() };
@@ -106,7 +108,7 @@ pub(crate) fn channels(films: &[SceneFilm]) -> Vec<Channel> {
     all
 }
 
-/// What a person should know of the films. What several have to say is said once, with the names of those films.
+/// Returns the warnings of the films. A warning of several films is given once, with the names of those films.
 pub(crate) fn warnings(films: &[SceneFilm]) -> Vec<String> {
     let mut said: Vec<(String, Vec<&str>)> = Vec::new();
     for film in films {
@@ -124,7 +126,7 @@ pub(crate) fn warnings(films: &[SceneFilm]) -> Vec<String> {
     said.into_iter().map(named).collect()
 }
 
-/// Those channels that pictures are made of: not a meter's. All of an imager that records by itself.
+/// Returns the channels that make pictures, without those of meters; all channels of an imager that records by itself.
 pub(crate) fn pictured(films: &[SceneFilm], channels: &[Channel]) -> Arc<[Channel]> {
     if films.is_empty() {
         return channels.into();

@@ -1,9 +1,8 @@
-//! Filters in front of the lens: one transmittance by which all light is multiplied, whatever source it comes from.
+//! Filters in front of the lens: one transmittance that multiplies all light, from any source.
 //!
-//! A filter acts on a ray as often as it passes, which is once, and by the wavelength alone; so it is folded into the
-//! response of the channels: both directions, every source and the choice of wavelengths see it, and so does whatever
-//! meters the exposure. Filters are taken at normal incidence, and shift no focus by their thickness; the light that they
-//! leave is the light that the lens is focused in.
+//! A ray passes a filter once, and the effect depends only on the wavelength. The filter is therefore folded into the responses
+//! of the channels. Both directions, every source, the choice of wavelengths and every exposure meter see it that way. Filters
+//! are used at normal incidence, and their thickness does not shift the focus. The lens is focused in the light that they leave.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -14,7 +13,7 @@ use spectra_core::spectral::{Channel, Grid};
 use spectra_glass::Medium;
 use spectra_lens::{Coating, read_coating};
 
-/// The part of the `lens` section that stands in front of the lens.
+/// The keys of the `lens` section for what stands in front of the lens.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FrontSection {
@@ -24,7 +23,7 @@ struct FrontSection {
     filters: Vec<Part<FilterForm>>,
 }
 
-/// A measured transmittance.
+/// A filter with a measured transmittance.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Measured {
@@ -32,31 +31,31 @@ pub(crate) struct Measured {
     file: String,
 }
 
-/// A plate of glass.
+/// A plate of glass as a filter.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Plate {
-    /// Its name in a catalogue, such as `SCHOTT/N-BK7`.
+    /// Name of the glass in a catalogue, such as `SCHOTT/N-BK7`.
     glass: String,
-    /// How thick it is, mm if bare.
+    /// Thickness of the plate, mm if bare.
     thickness: Positive<Length>,
     /// Coating of both faces: `ideal`, `bare`, or a layer; `bare` if absent.
     coating: Option<Part<spectra_lens::CoatingForm>>,
 }
 
-/// An ideal conversion filter.
+/// An ideal color conversion filter.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Conversion {
-    /// By how much it moves the reciprocal color temperature of light, mired, -500 to 500: 131 makes light of 5500 K one of 3200 K, as a
-    /// Wratten 85B does, -131 the other way, as an 80A.
+    /// Shift of the reciprocal color temperature of light, mired, -500 to 500. A shift of 131 turns light of 5500 K into light of
+    /// 3200 K, as a Wratten 85B does; -131 does the opposite, as an 80A does.
     #[schemars(range(min = -500, max = 500))]
     mired: f64,
 }
 
-/// Transmittance of an ideal conversion filter on the grid: by Wien's law the light of a black body of temperature T becomes that of one
-/// with `mired` added to 10^6 / T, whatever T is: exp(-c2 m / wavelength), and 1 at the end of the visible, 400 or 700 nm, where it
-/// passes most. Nothing passes more than that.
+/// Returns the transmittance of an ideal conversion filter on the grid: exp(-c2 m / wavelength), with m = `mired` * 10^-6 / K. By
+/// Wien's law it turns the light of a black body of any temperature T into that of one with `mired` added to 10^6 / T. It is
+/// scaled to 1 at the end of the visible range where it passes most, 400 or 700 nm, and limited to 1 beyond that.
 pub(crate) fn conversion(mired: f64, grid: &Grid) -> Vec<f64> {
     /// Second radiation constant, nm K (CODATA 2018).
     const C2_NM_K: f64 = 1.438_776_877e7;
@@ -65,12 +64,12 @@ pub(crate) fn conversion(mired: f64, grid: &Grid) -> Vec<f64> {
     grid.wavelengths_nm().map(|nm| exp(exponent(nm)).min(1.0)).collect()
 }
 
-/// What a filter is written as.
+/// The forms in which a filter can be written.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "states what is allowed; `one` reads it")]
 pub(crate) enum FilterForm {
-    /// A transmittance by name.
+    /// Name of a transmittance.
     Named(String),
     /// A table beside the scene.
     Measured(Measured),
@@ -80,7 +79,7 @@ pub(crate) enum FilterForm {
     Conversion(Conversion),
 }
 
-/// Transmittance on the grid of all filters of a `lens` section together; `None` without one.
+/// Returns the combined transmittance, on the grid, of all filters of a `lens` section; `None` if it has no filters.
 pub(crate) fn filters_of(lens: &Params, grid: Grid, resources: &dyn Resources) -> Result<Option<Vec<f64>>, Faults> {
     let (front, _) = lens.split(&keys_of::<FrontSection>());
     let section: FrontSection = front.parse()?;
@@ -100,7 +99,7 @@ pub(crate) fn filters_of(lens: &Params, grid: Grid, resources: &dyn Resources) -
     faults.into_result(Some(product))
 }
 
-/// Puts the transmittance into what the channels see.
+/// Multiplies the responses of the channels by the transmittance.
 pub(crate) fn fold(channels: &mut [Channel], transmittance: &[f64]) {
     for channel in channels {
         for (response, t) in channel.response.iter_mut().zip(transmittance) {
@@ -128,7 +127,7 @@ fn one(node: &StageNode, grid: Grid, resources: &dyn Resources) -> Result<Vec<f6
         if !(p.mired.abs() <= 500.0) {
             return Err(node
                 .fault(format!("`mired: {}` is out of range", p.mired))
-                .hint("-500 to 500, such as 131")
+                .hint("use -500 to 500, such as 131")
                 .into());
         }
         return Ok(conversion(p.mired, &grid));
@@ -146,9 +145,10 @@ fn one(node: &StageNode, grid: Grid, resources: &dyn Resources) -> Result<Vec<f6
     })
 }
 
-/// A plate at normal incidence, with all reflections between its two faces, incoherent: (1 - R)^2 t / (1 - R^2 t^2) with
-/// what its coating does not pass; bare R = ((n - 1) / (n + 1))^2 (Born and Wolf, "Principles of Optics", 1.5.2 and 7.6.1
-/// without interference). Beyond the catalogue's table of absorption its last value is kept.
+/// Returns the transmittance of a plate at normal incidence, with all incoherent reflections between its two faces, which is (1 -
+/// R)^2 t / (1 - R^2 t^2). R is what the coating does not transmit; for a bare face it is ((n - 1) / (n + 1))^2. Source: Born and
+/// Wolf, "Principles of Optics", 1.5.2, and 7.6.1 without interference. Beyond the catalogue's table of absorption its last value
+/// is kept.
 fn plate(medium: &Medium, thickness_mm: f64, coating: &Coating, grid: Grid) -> Option<Vec<f64>> {
     let inside: Vec<Option<f64>> =
         grid.wavelengths_nm().map(|nm| medium.internal_transmittance(nm, thickness_mm)).collect();
@@ -170,7 +170,8 @@ mod tests {
     use spectra_core::spectral::BAND;
     use spectra_glass::Catalogue;
 
-    /// A black body of 5500 K through +131 mired has the chromaticity of one of about 3197 K; Wien's law stands for Planck's.
+    /// Light of a black body of 5500 K has, after +131 mired, the chromaticity of one of about 3197 K. Wien's law approximates
+    /// Planck's.
     #[test]
     fn a_conversion_filter_moves_the_color_temperature() {
         for (kelvin, mired) in [(5500.0, 131.0), (3200.0, -131.0), (4000.0, 60.0)] {
@@ -188,8 +189,8 @@ mod tests {
         assert!(conversion(0.0, &BAND).iter().all(|t| *t == 1.0));
     }
 
-    /// N-BK7 at 587.56 nm: nd 1.5168, so a plate without absorption passes 2 n / (n^2 + 1) = 0.91907; 10 mm of it
-    /// absorb hardly anything there (SCHOTT's data sheet: internal transmittance 0.998 at 580 nm).
+    /// N-BK7 at 587.56 nm has nd 1.5168, so a plate without absorption passes 2 n / (n^2 + 1) = 0.91907. 10 mm of it absorb
+    /// hardly anything there (SCHOTT's data sheet: internal transmittance 0.998 at 580 nm).
     #[test]
     fn a_plate_of_crown_passes_92_percent() {
         let glass = Catalogue::bundled().medium("SCHOTT/N-BK7").unwrap();

@@ -1,31 +1,31 @@
-//! What focus must know of the rest of a scene: which light, and how fine; and how it was done, for the record.
+//! The light and spatial frequency that a lens is focused with, and the record of how it was focused.
 
 use spectra_core::spectral::{Channel, SpectralPower, SystemResponse};
 use spectra_core::stage::{Imager, Source};
 use std::fmt;
 use std::sync::Arc;
 
-/// Spatial frequency that counts on a 135 frame, line pairs a mm: that of a sharp negative.
+/// Spatial frequency to focus for on a 135 frame, line pairs per mm: that of a sharp negative.
 const FREQUENCY_135_PER_MM: f64 = 30.0;
-/// Diagonal of that frame, 36 x 24 mm.
+/// Diagonal of a 135 frame, 36 x 24 mm.
 const DIAGONAL_135_MM: f64 = 43.266_615_305_567_87;
-/// Diagonal of the smallest frame that film is cut for, super 8. What is smaller is taken as a part of a picture, looked
-/// at closely: the lens is not focused any finer for that.
+/// Diagonal of the smallest film frame, super 8. A smaller frame counts as a part of a picture seen closely: the lens is not
+/// focused any finer for it.
 const SMALLEST_DIAGONAL_MM: f64 = 7.516;
-/// Wavelengths that stand for the light.
+/// Number of wavelengths that represent the light.
 const WAVELENGTHS: usize = 12;
 
-/// The light that a lens is focused in, and how finely.
+/// The light that a lens is focused in, and the spatial frequency to focus for.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FocusLight {
-    /// The spatial frequency whose contrast counts, line pairs a mm.
+    /// Spatial frequency at which the contrast is maximized, line pairs per mm.
     pub(crate) per_mm: f64,
-    /// Wavelengths, nm, with their weights: the source times the summed response; none where nothing of it is seen.
+    /// Wavelengths, nm, with their weights: source times summed response. Empty if nothing responds to the light.
     pub(crate) light: Vec<(f64, f64)>,
 }
 
 impl FocusLight {
-    /// Of a source, an imager and those channels that the picture is made of.
+    /// Returns the focus light for a source, an imager and the channels that make the picture.
     pub(crate) fn of(source: &dyn Source, imager: &dyn Imager, pictured: Arc<[Channel]>) -> Self {
         let size = imager.size();
         let diagonal_mm = (size.width_mm * size.width_mm + size.height_mm * size.height_mm).sqrt();
@@ -39,7 +39,7 @@ impl FocusLight {
 }
 
 impl FocusLight {
-    /// The wavelength, nm, at a share of the light, 0 to 1; `None` where nothing of it is seen.
+    /// Returns the wavelength, nm, at a fraction of the light, 0 to 1; `None` if nothing responds to the light.
     pub(crate) fn wavelength_nm(&self, share: f64) -> Option<f64> {
         let total: f64 = self.light.iter().map(|(_, weight)| weight).sum();
         let mut before = 0.0;
@@ -51,11 +51,11 @@ impl FocusLight {
     }
 }
 
-/// Wavelengths that stand for light seen through a response: each for an equal part of it, in the middle of that part.
-/// A line that holds several parts is named once, with their sum.
+/// Chooses wavelengths that represent light seen through a response. Each stands for an equal part of the light and lies in the
+/// middle of that part. A spectral line that holds several parts appears once, with the sum of their weights.
 fn representatives(light: &SpectralPower, response: &[f64], count: usize) -> Vec<(f64, f64)> {
     let grid = light.grid;
-    // Pieces of the band in order: from, to, and the light in it; a line has no width.
+    // Pieces of the band in order: start, end, and the light in it. A spectral line has no width.
     let seen: Vec<f64> = light.continuum.iter().zip(response).map(|(p, r)| p * r).collect();
     let mut pieces: Vec<[f64; 3]> = (1..grid.count)
         .map(|i| {
@@ -93,24 +93,24 @@ fn representatives(light: &SpectralPower, response: &[f64], count: usize) -> Vec
     all
 }
 
-/// By what a lens was focused.
+/// Criterion by which a lens was focused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FocusBy {
-    /// Not at all: it stands as its file has it.
+    /// No focusing: the lens stands as in its file.
     File,
-    /// First-order optics.
+    /// Focusing by first-order optics.
     Paraxial,
-    /// The smallest spot, root mean square.
+    /// Focusing for the smallest RMS spot radius.
     Spot,
-    /// The highest contrast at this spatial frequency.
+    /// Focusing for the highest contrast at a spatial frequency.
     Contrast {
-        /// Line pairs a mm.
+        /// Spatial frequency, line pairs per mm.
         per_mm: f64,
     },
 }
 
 impl FocusBy {
-    /// As a scene names it.
+    /// Returns the name of the criterion, such as `contrast`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -122,18 +122,18 @@ impl FocusBy {
     }
 }
 
-/// How the lens of a scene was focused.
+/// Record of how the lens of a scene was focused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Focus {
-    /// Distance in front of the first vertex, mm, that was asked for, if one was.
+    /// Requested distance in front of the first vertex, mm; `None` if none was requested.
     pub distance_mm: Option<f64>,
-    /// By what.
+    /// Criterion that was used.
     pub by: FocusBy,
-    /// Why it is not as asked, where it is not.
+    /// Reason for a difference from the request, if there is one.
     pub remark: Option<String>,
 }
 
-/// A distance as a photographer says it.
+/// Formats a distance as a photographer says it.
 fn distance(mm: f64) -> String {
     if mm >= 1000.0 && mm.is_finite() { format!("{} m", mm / 1000.0) } else { format!("{mm} mm") }
 }
@@ -160,7 +160,7 @@ mod tests {
     use super::*;
     use spectra_core::spectral::{Grid, Line};
 
-    /// Equal parts of a flat spectrum; two lines of 1 and 3 beside it; one line alone.
+    /// Tests equal parts of a flat spectrum, two lines with powers of 1 and 3, and one line alone.
     #[test]
     fn wavelengths_stand_for_equal_parts_of_the_light() {
         let grid = Grid { start_nm: 400.0, step_nm: 100.0, count: 5 };
@@ -176,7 +176,7 @@ mod tests {
         assert_eq!(representatives(&lamp, &[0.0; 5], 8), []);
         let both = SpectralPower { continuum: vec![0.01; 5], ..lamp };
         let seen = representatives(&both, &[1.0; 5], 8);
-        // Four of the continuum, one each from the middle of 100 nm; the first stands where the weaker line does.
+        // Four are from the continuum, one each from the middle of 100 nm; the first coincides with the weaker line.
         assert_eq!(seen, [(450.0, 2.0), (550.0, 1.0), (610.0, 3.0), (650.0, 1.0), (750.0, 1.0)]);
     }
 

@@ -1,10 +1,10 @@
-//! Lamps whose lines are as strong as somebody estimated.
+//! Notes about lamps whose line strengths are estimates.
 
 use spectra_core::params::{Node, Params, Value};
 use spectra_spectrum::{Strengths, bundled_meta, bundled_spectra};
 
-/// A note of the bundled lamps that the source names and whose line strengths are estimates: light and color of the scene
-/// are no better than these.
+/// Returns a note on the bundled lamps in the source whose line strengths are estimates: the light and color of the scene are no
+/// better than these.
 pub(crate) fn notes(scene: &Params) -> Vec<String> {
     let mut lamps = Vec::new();
     if let Some(source) = scene.get("source") {
@@ -29,7 +29,7 @@ fn gather(node: &Node, lamps: &mut Vec<String>) {
         Value::Map(entries) => entries.iter().for_each(|(_, value)| gather(value, lamps)),
         Value::Seq(items) => items.iter().for_each(|item| gather(item, lamps)),
         _ => {
-            // A light may be made of others: `0.5 * neon + D65`.
+            // A light may be composed of others: `0.5 * neon + D65`.
             let words = node.as_str().unwrap_or_default().split(['+', '*', ' ', '(', ')']);
             for name in words.filter(|word| is_estimated(word)) {
                 if !lamps.iter().any(|known: &String| known.eq_ignore_ascii_case(name)) {

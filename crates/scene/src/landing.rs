@@ -1,4 +1,5 @@
-//! Where the light of a source lands behind a lens, for imagers that look there: `imager: {around: source}`.
+//! Search for the place where the light of a source lands behind a lens, for imagers that center on it:
+//! `imager: {around: source}`.
 
 use crate::focus::FocusLight;
 use spectra_core::glam::DVec3;
@@ -8,27 +9,28 @@ use spectra_core::params::{Params, Value};
 use spectra_core::spectral::Grid;
 use spectra_core::stage::Source;
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{AimPattern, FrontPupil, Indices, Lens, Tracer, Travel};
+use spectra_optics::{AimPattern, FrontPupil, Optics};
+use spectra_tracer::{Indices, Tracer, Travel};
 
-/// Rays traced.
+/// Number of rays traced.
 const RAYS: usize = 4096;
-/// Their numbers: the same for every scene.
+/// Seed of the rays' numbers, the same for every scene.
 const SEED: u64 = 1;
 
-/// Whether an imager asks to look where the light of the source lands.
+/// Returns whether an imager asks to be centered on the light of the source.
 pub(crate) fn is_wanted(imager: &Params) -> bool {
     matches!(imager.get("around").map(|node| &node.value), Some(Value::String(text)) if text == "source")
 }
 
-/// The middle of what the light of `source` makes in the image plane, mm: half of the rays land to each side of it, in x and in y. Rays
-/// start all over the source and go all over what passes the lens, in wavelengths as source and channels have them. `size_hint` is
-/// what to write where no surface states its size: see [`crate::size_hint`].
+/// Returns the median landing point of the light of `source` in the image plane, mm, in x and in y. Rays start all over the
+/// source, fill everything that passes the lens, and have the wavelengths of source and channels. `size_hint` is the hint for a
+/// lens without sizes: see [`crate::size_hint`].
 ///
 /// # Errors
-/// What is wrong, and what to do.
+/// The message, and a hint for the user.
 pub(crate) fn middle_mm(
     source: &dyn Source,
-    lens: &Lens,
+    lens: &Optics,
     light: &FocusLight,
     grid: &Grid,
     size_hint: &str,
@@ -43,7 +45,7 @@ pub(crate) fn middle_mm(
         ["none of the light of the source passes the lens to the imager".to_owned(), hint.to_owned()]
     };
     let band = Indices::Band { min_nm: grid.start_nm, max_nm: grid.end_nm() };
-    let tracer = Tracer::new(lens, band, isa).map_err(|error| [error.to_string(), "another glass".to_owned()])?;
+    let tracer = lens.tracer(band).map_err(|error| [error.to_string(), "use another glass".to_owned()])?;
     let numbers = Numbers::sobol(SEED);
     let columns: Vec<Vec<f64>> = (0..5)
         .map(|dimension| {
@@ -56,7 +58,7 @@ pub(crate) fn middle_mm(
     rays.restart(RAYS);
     for (nm, share) in rays.columns_mut().wavelength_nm.iter_mut().zip(&columns[0]) {
         *nm = light.wavelength_nm(*share).ok_or_else(|| {
-            let hint = "another light, or another film or response";
+            let hint = "use another light, or another film or response";
             ["the imager sees nothing of the light of the source".to_owned(), hint.to_owned()]
         })?;
     }
@@ -83,9 +85,9 @@ pub(crate) fn middle_mm(
     middle(across).zip(middle(down)).map(|(x, y)| [x, y]).ok_or_else(blocked)
 }
 
-/// Sends rays from where they start all over what passes the lens.
+/// Aims rays from their starting points over everything that passes the lens.
 fn aim(
-    lens: &Lens,
+    lens: &Optics,
     tracer: &Tracer,
     rays: &mut RayBatch,
     places: [&[f64]; 2],

@@ -1,8 +1,12 @@
 //! The `lens` section of a scene: which lens, and how it is set.
 //!
-//! In this order: the lens is scaled, turned round, coated, stopped and focused as its maker meant it; then groups go out of place;
-//! a focus by real rays, as a camera finds it, sees them so; a matte box comes last. The frame stands as much farther back
-//! as the plates before it set the image back, whether a distance is focused or not.
+//! The lens is scaled, reversed, coated, stopped down and focused as its maker intended, in this order. Then groups are
+//! misaligned. A focus by real rays, as a camera finds it, sees the misaligned lens. A matte box comes last. The frame is moved
+//! back by the image shift of the cover plates in front of it, with or without focusing.
+//!
+//! By default the lens is focused where the contrast on the axis is highest in the light of the scene. It is therefore set after the
+//! other stages are known. The tracer ends at the frame's nominal plane and knows no plates. Focus adds what they do in closed form
+//! ([`spectra_core::cover`]), and the imager itself passes the light through them.
 
 use crate::filters::FilterForm;
 use crate::focus::{Focus, FocusBy, FocusLight};
@@ -16,49 +20,53 @@ use spectra_core::params::{
 use spectra_core::resources::Resources;
 use spectra_exchange::Format;
 use spectra_lens::{
-    ApertureError, ApertureForm, CoatingForm, Criterion, DustForm, FocusError, FocusSearch, HazeForm, Lens, MatteBox,
-    Misalignment, ScaleError, ScratchesForm, SeparationForm, Shape,
+    ApertureForm, CoatingForm, DustForm, FocusError, HazeForm, Lens, MatteBox, Misalignment, ScaleError, ScratchesForm,
+    SeparationForm, Shape,
 };
+use spectra_optics::{ApertureError, Criterion, FocusSearch, Optics, stop_down};
 use std::sync::Arc;
 
-/// The `lens` section.
+/// The `lens` section of a scene file.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct LensSection {
     /// A lens file beside the scene, or the name of a bundled lens.
     #[expect(dead_code, reason = "states the key; the lens is read even where another key is faulty")]
     file: String,
-    /// Focal length that the lens is scaled to, with all its lengths, at its reference line, mm if bare; the lens file's if absent. Patents
+    /// Focal length that the whole lens is scaled to, at its reference line, mm if bare; that of the lens file if absent. Patents
     /// state many lenses for a focal length of 1 or 100.
     focal_length: Option<Positive<Length>>,
     /// Whether the lens is mounted back to front.
     #[serde(default)]
     reverse: bool,
     /// Coating of all surfaces: `ideal` (no reflection), `bare`, `single-layer`, `three-layer`, a layer or a stack. If absent,
-    /// that of the lens file, or else the usual one of the lens's year.
+    /// that of the lens file, or else the usual coating for the year of the lens.
     coating: Option<Part<CoatingForm>>,
-    /// Cement that has come apart in all surfaces between two glasses, in place of what the lens file says of it, by the width of the
-    /// gap of air and how far it reaches in from the edge.
+    /// Separated cement in all surfaces between two glasses, instead of what the lens file says: the width of the air gap, and
+    /// how far it reaches in from the edge.
     separation: Option<Part<SeparationForm>>,
-    /// Haze on all surfaces where glass meets air, in place of what the lens file says of it: the share of the light that each
-    /// scatters, and how wide.
+    /// Haze on all surfaces between glass and air, instead of what the lens file says: the share of the light that each surface
+    /// scatters, and how widely.
     haze: Option<Part<HazeForm>>,
-    /// Dust on them, likewise: the share that it covers, and how large its grains are.
+    /// Dust on all surfaces between glass and air, instead of what the lens file says: the share that it covers, and the size of
+    /// its grains.
     dust: Option<Part<DustForm>>,
-    /// Scratches on them, likewise: the share that they cover or a drawing of them, and how wide they are.
+    /// Scratches on all surfaces between glass and air, instead of what the lens file says: the share that they cover or a
+    /// drawing of them, and their width.
     scratches: Option<Part<ScratchesForm>>,
-    /// Whether glass absorbs light; if absent, as the lens file says, or else true.
+    /// Whether glass absorbs light. If absent, as in the lens file, or else true.
     absorption: Option<bool>,
-    /// F-number, set with the real marginal ray; as in the lens file if absent. The f-number in the lens's name means wide open.
+    /// F-number, set with the real marginal ray; as in the lens file if absent. The f-number in the name of a lens means wide
+    /// open.
     f_number: Option<FNumber>,
     /// Shape of the opening at the stop, such as blades or a mask: one or a list, as in a lens file; round if absent.
     aperture: Option<Part<ApertureForm>>,
-    /// Distance from the first vertex that is in focus, mm if bare, or `infinity`; the lens file's focus if absent. An object
-    /// at this distance on the axis has the highest contrast, in the light and at the aperture of the scene. To focus for
-    /// something else, write a map.
+    /// Distance from the first vertex that is in focus, mm if bare, or `infinity`; the lens file's focus if absent. An object at
+    /// this distance on the axis has the highest contrast, in the light and at the aperture of the scene. To focus by another
+    /// criterion, write a map.
     focus: Option<Part<FocusForm>>,
-    /// By how much the lens squeezes the picture across, 0.1 to 10, for the shape of the pixels in the files; if absent, as the lens file
-    /// says.
+    /// Factor by which the lens squeezes the picture horizontally, 0.1 to 10; it sets the shape of the pixels in the files. If
+    /// absent, as in the lens file.
     #[schemars(range(min = 0.1, max = 10))]
     squeeze: Option<f64>,
     /// Misalignment: groups of the lens that are displaced or tilted. None if absent.
@@ -71,7 +79,7 @@ pub(crate) struct LensSection {
     matte_box: Option<Part<MatteBoxParams>>,
 }
 
-/// A matte box.
+/// A matte box in front of the lens.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MatteBoxParams {
@@ -83,15 +91,16 @@ struct MatteBoxParams {
     height: Positive<Length>,
 }
 
-/// `focus` as a map.
+/// `focus` written as a map.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct FocusParams {
     /// Distance from the first vertex that is in focus, mm if bare, or `infinity`.
     distance: OrInfinity<Positive<Length>>,
-    /// What is optimized: `contrast` (the highest at a spatial frequency; the default), `spot` (the smallest RMS radius; `rms`
-    /// means the same) or `paraxial` (no search: from infinity, as its file has it, the lens moves as far as first-order optics says, at its reference
-    /// line; what its file leaves between the image plane and the first-order image stays, as designers put the film where fast lenses are sharpest).
+    /// Criterion: `contrast` (the highest at a spatial frequency; the default), `spot` (the smallest RMS radius; `rms` means the
+    /// same) or `paraxial`. With `paraxial` there is no search: from its infinity position in the file, the lens moves as far as
+    /// first-order optics says, at its reference line. The distance between the image plane and the first-order image in the file
+    /// is kept, because designers put the film where fast lenses are sharpest.
     #[serde(default)]
     by: By,
     /// Field angle that is in focus, -89 to 89 degrees, degrees if bare; 0, the axis, if absent.
@@ -104,8 +113,8 @@ struct FocusParams {
     /// Instead of `wavelength`: 1 to 64 wavelengths, nm if bare, each with a weight greater than 0.
     #[schemars(length(min = 1, max = 64))]
     spectrum: Option<Vec<Weighed>>,
-    /// With `by: contrast`: the spatial frequency, line pairs per mm if bare. If absent, 30 on a 135 frame, and inversely
-    /// proportional to the diagonal on other frames (on frames smaller than super 8, the value of super 8).
+    /// Spatial frequency for `by: contrast`, line pairs per mm if bare. If absent, 30 on a 135 frame, and inversely proportional
+    /// to the diagonal on other frames (on frames smaller than super 8, the value of super 8).
     frequency: Option<Positive<SpatialFrequency>>,
 }
 
@@ -114,7 +123,7 @@ struct FocusParams {
 #[schemars(inline)]
 struct Weighed(#[schemars(range(min = 200, max = 2500))] Wavelength, #[schemars(extend("exclusiveMinimum" = 0))] f64);
 
-/// What is sharpest.
+/// Criteria that a focus can be set by.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -126,17 +135,17 @@ enum By {
     Paraxial,
 }
 
-/// What a focus is written as.
+/// The forms in which `focus` can be written.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 enum FocusForm {
     /// The distance alone.
     Distance(OrInfinity<Positive<Length>>),
-    /// What to focus by.
+    /// Map with distance and criterion.
     By(Box<FocusParams>),
 }
 
-/// A group out of place.
+/// A misaligned group of the lens.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct AdjustParams {
@@ -144,32 +153,32 @@ struct AdjustParams {
     group: String,
     /// Shift along x and y, mm if bare; as in the lens file if absent.
     decenter: Option<[Length; 2]>,
-    /// Tilts about x, y and z, degrees if bare, about the vertex of its first surface; as in the lens file if
-    /// absent.
+    /// Tilts about x, y and z, degrees if bare, about the vertex of the group's first surface; as in the lens file if absent.
     tilt: Option<[Angle; 3]>,
     /// Shift along the axis toward the image, mm if bare; none if absent.
     shift: Option<Length>,
 }
 
-/// What is to be in focus, and by what.
+/// The requested focus, and the search for it.
 struct Wanted {
     distance_mm: f64,
     by: FocusBy,
     search: Option<FocusSearch>,
-    /// Whether only the distance was said.
+    /// Whether only the distance was stated.
     plain: bool,
 }
 
-/// A lens as a scene sets it.
+/// A lens as set by a scene.
 #[derive(Clone)]
 pub(crate) struct SetLens {
-    pub(crate) lens: Arc<Lens>,
+    pub(crate) lens: Arc<Optics>,
     pub(crate) focus: Focus,
-    /// What a person should know of how it is set.
+    /// Warnings about how the lens is set.
     pub(crate) warnings: Vec<Fault>,
 }
 
-/// A lens set in all but its focus by real rays, which rests on the light of the scene: it is focused by first order.
+/// A lens that is set completely except for the focus by real rays, which depends on the light of the scene. It is focused by
+/// first order.
 pub(crate) struct HeldLens {
     pub(crate) lens: Lens,
     params: Params,
@@ -177,7 +186,7 @@ pub(crate) struct HeldLens {
     matte_box: Option<MatteBox>,
 }
 
-/// The lens of a scene, set before plates that stand so in front of the frame.
+/// Sets the lens of a scene, with these cover plates in front of the frame.
 pub(crate) fn held_lens(
     params: &Params,
     resources: &dyn Resources,
@@ -201,7 +210,7 @@ pub(crate) fn held_lens(
         .into());
     }
     let section = faults.take(params.parse::<LensSection>());
-    // The lens is read even where another key of this section is faulty: all faults in one go.
+    // The lens is read even if another key of this section is faulty, so that all faults are reported together.
     let file = params.get("file").and_then(|node| node.as_str());
     let lens = file.and_then(|file| {
         faults.take(spectra_lens::load(file, resources).map_err(|faults| params.place_at("file", faults)))
@@ -212,7 +221,7 @@ pub(crate) fn held_lens(
     }
     lens = as_built(lens, &section, params, resources, &mut faults);
     if let Some(f_number) = section.f_number {
-        let stopped = lens.clone().at_f_number(f_number.number());
+        let stopped = stop_down(lens.clone(), f_number.number());
         lens = faults.take(stopped.map_err(|e| aperture_fault(params, &e))).unwrap_or(lens);
     }
     if let Some(node) = section.aperture {
@@ -234,7 +243,7 @@ pub(crate) fn held_lens(
 }
 
 impl HeldLens {
-    /// The lens focused in the light of the scene. Without it, where another section is faulty, it stays as it is.
+    /// Focuses the lens in the light of the scene. Without light, because another section is faulty, the lens stays as it is.
     pub(crate) fn focused(self, light: Option<&FocusLight>) -> Result<SetLens, Faults> {
         let Self { mut lens, params, focus: node, matte_box } = self;
         let mut focus = Focus { distance_mm: None, by: FocusBy::File, remark: None };
@@ -258,27 +267,27 @@ impl HeldLens {
         if let Some(opening) = matte_box {
             lens = lens.behind_matte_box(&opening);
         }
-        Ok(SetLens { lens: Arc::new(lens), focus, warnings })
+        Ok(SetLens { lens: Arc::new(Optics::new(lens)), focus, warnings })
     }
 }
 
-/// The lens moved on to where real rays find it best, where that is asked for, and what is to be said of it.
+/// Focuses the lens by real rays if that is requested. Returns it with a remark, if there is one.
 fn by_rays(lens: &Lens, wanted: &Wanted) -> Result<(Lens, Option<String>), FocusError> {
     let Some(search) = &wanted.search else { return Ok((lens.clone(), None)) };
-    let found = lens.clone().focused_by(search)?;
-    let apart = found.sections_apart_mm(search)?.map(|mm| {
+    let found = Optics::new(search.focus(lens.clone())?);
+    let apart = search.sections_apart_mm(&found)?.map(|mm| {
         format!(
-            "lines along x and lines along y are sharp {:.2} mm apart; the mean of their contrasts is highest here; \
-             stop down for more of both",
+            "lines along x and lines along y come into focus {:.2} mm apart; the mean of their contrasts is highest here; \
+             stop down to sharpen both",
             mm.abs()
         )
     });
-    Ok((found, apart))
+    Ok((Lens::clone(&found), apart))
 }
 
-/// The lens with more at its stop.
+/// Returns the lens with more apertures at its stop.
 fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Result<Lens, Faults> {
-    // A photographer's aperture is the f-number; the optical engineer's is what stands at the stop.
+    // Photographers call the f-number aperture; for optical engineers it is the opening at the stop.
     if let Some(text) = node.node().as_str()
         && let Some(figure) = f_number_in(text)
     {
@@ -292,19 +301,19 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     };
     if stop.semi_diameter_mm.is_none() && apertures.iter().any(|a| matches!(a.shape, Shape::Iris(_))) {
         let fault = node.fault("the stop of this lens has no size, so the size of the blades is unknown");
-        return Err(fault.hint("`f-number: f/4` beside `aperture`").into());
+        return Err(fault.hint("add an f-number, such as `f-number: f/4`, beside `aperture`").into());
     }
     stop.apertures.extend(apertures);
     Ok(lens)
 }
 
-/// The lens scaled to a focal length, mm.
+/// Returns the lens scaled to a focal length, mm.
 fn at_focal_length(lens: &Lens, wanted_mm: f64, params: &Params) -> Result<Lens, Fault> {
     let own_mm = lens.first_order(lens.reference_nm).efl_mm.abs();
-    // An afocal attachment has none, and so has a flat window.
+    // An afocal attachment has no focal length, and neither has a flat window.
     if !(own_mm.is_finite() && own_mm > 0.0 && own_mm < MOST_FOCAL_MM) {
         let fault =
-            params.fault("focal-length", format!("{} has no focal length that it could be scaled by", lens.name));
+            params.fault("focal-length", format!("{} has no focal length, so it cannot be scaled to one", lens.name));
         return Err(fault.hint("leave it out; `spectra lens scale FILE --by 2` scales a file by a factor"));
     }
     let factor = wanted_mm / own_mm;
@@ -312,8 +321,8 @@ fn at_focal_length(lens: &Lens, wanted_mm: f64, params: &Params) -> Result<Lens,
     let mut scaled = scaled.map_err(|error| {
         let fault = params.fault("focal-length", format!("the lens cannot be scaled: {error}"));
         fault.hint(match error {
-            ScaleError::Surface(..) => "leave it out; a plugin's surface says how it scales by `scaled`",
-            ScaleError::Drawing(_) => "leave it out, or draw the aperture at the size that is wanted",
+            ScaleError::Surface(..) => "leave it out, or let the plugin implement `scaled` for this surface",
+            ScaleError::Drawing(_) => "leave it out, or draw the aperture at the final size",
         })
     })?;
     scaled
@@ -322,10 +331,10 @@ fn at_focal_length(lens: &Lens, wanted_mm: f64, params: &Params) -> Result<Lens,
     Ok(scaled)
 }
 
-/// Focal length, mm, from which on a lens counts as having none.
+/// Focal length, mm, from which a lens counts as afocal.
 const MOST_FOCAL_MM: f64 = 1e7;
 
-/// The lens before anything is set on it: turned round or not, coated, absorbing.
+/// Returns the lens with its build applied before f-number and focus: reversed, coated, separated, soiled, absorbing.
 fn as_built(
     mut lens: Lens,
     section: &LensSection,
@@ -347,7 +356,7 @@ fn as_built(
         let (apart, many) = lens.with_separation(&separation);
         lens = apart;
         if many == 0 {
-            let fault = params.fault("separation", format!("no glasses are cemented in the lens {}", lens.name));
+            let fault = params.fault("separation", format!("the lens {} has no cemented glasses", lens.name));
             faults.push(fault.hint("leave it out, or take a lens with cemented glasses"));
         }
     }
@@ -360,17 +369,17 @@ fn as_built(
     lens
 }
 
-/// Whether the lens of a section does not reach the f-number asked for.
+/// Returns whether the lens of a section cannot reach the requested f-number.
 pub(crate) fn is_too_fast(params: &Params, resources: &dyn Resources) -> bool {
     let Ok(section) = params.parse::<LensSection>() else { return false };
     let file = params.get("file").and_then(|node| node.as_str());
     let Some(lens) = file.and_then(|file| spectra_lens::load(file, resources).ok()) else { return false };
     let lens = as_built(lens, &section, params, resources, &mut Faults::new());
-    let stopped = section.f_number.map(|f_number| lens.at_f_number(f_number.number()));
+    let stopped = section.f_number.map(|f_number| stop_down(lens, f_number.number()));
     matches!(stopped, Some(Err(ApertureError::TooFast { .. })))
 }
 
-/// The figure of `f/4` or `4`.
+/// Returns the number in `f/4` or `4`.
 fn f_number_in(text: &str) -> Option<f64> {
     match Reading::of(text) {
         Reading::Bare(figure) => Some(figure),
@@ -379,34 +388,34 @@ fn f_number_in(text: &str) -> Option<f64> {
     }
 }
 
-/// What to write where no surface of a lens states its size: a file of another program has words of its own. `section` is that
-/// of the lens.
+/// Returns the hint for a lens with no surface that states its size. A file of another program has keywords of its own. `section`
+/// is the `lens` section.
 #[must_use]
 pub fn size_hint(section: Option<&Node>) -> &'static str {
     file_of(section).map_or(SIZE_HINT, size_hint_of)
 }
 
-/// The same for a lens by the name of its file.
+/// Returns the hint of [`size_hint`] for a lens given by the name of its file.
 #[must_use]
 pub fn size_hint_of(file: &str) -> &'static str {
     Format::of_name(file).map_or(SIZE_HINT, Format::how_to_clip)
 }
 
-/// What to write so that a lens has a stop, by the name of its file: a file of another program has words of its own.
+/// Returns the hint for a lens without a stop, by the name of its file. A file of another program has keywords of its own.
 #[must_use]
 pub fn stop_hint_of(file: &str) -> &'static str {
     Format::of_name(file).map_or(STOP_HINT, Format::how_to_stop)
 }
 
-const SIZE_HINT: &str = "state `semi-diameter` in the lens file, at least of the first surface";
+const SIZE_HINT: &str = "state `semi-diameter` in the lens file, at least for the first surface";
 const STOP_HINT: &str = "in the lens file, write `stop: true` at a surface, or a line `- {kind: stop, thickness: ...}` where the stop stands";
 
-/// The name of the lens file that a section states.
+/// Returns the name of the lens file that a section states.
 fn file_of(section: Option<&Node>) -> Option<&str> {
     section.and_then(|node| node.get("file").unwrap_or(node).as_str())
 }
 
-/// A fault at `f-number`.
+/// Returns a fault at `f-number`.
 fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
     let hint = match error {
         ApertureError::TooFast { widest, .. } => {
@@ -419,7 +428,7 @@ fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
     params.fault("f-number", error.to_string()).hint(hint)
 }
 
-/// A fault at `focus`, or at its `distance`.
+/// Returns a fault at `focus`, or at its `distance`.
 fn focus_fault(params: &Params, error: &FocusError) -> Fault {
     let key =
         if params.get("focus").is_some_and(|node| node.get("distance").is_some()) { "focus.distance" } else { "focus" };
@@ -439,7 +448,7 @@ fn focus_fault(params: &Params, error: &FocusError) -> Fault {
 }
 
 fn focus_of(node: &Part<FocusForm>, reference_nm: f64, light: Option<&FocusLight>) -> Result<Wanted, Faults> {
-    // Where nothing is seen of the source there is the reference line still.
+    // If nothing responds to the source, the reference line is used.
     let seen = light.map_or(&[][..], |light| &light.light);
     let seen = if seen.is_empty() { vec![(reference_nm, 1.0)] } else { seen.to_vec() };
     let default_per_mm = light.map_or(30.0, |light| light.per_mm);

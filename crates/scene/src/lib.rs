@@ -1,7 +1,7 @@
 //! Scene files: YAML with places, assembly of stages, diagnostics.
 //!
-//! [`load`] reads a scene, finds every fault of it at once, and gives a [`Scene`]: all stages built, the
-//! lens focused and stopped, nothing traced yet. [`load_series`] does so for a file that stands for several pictures.
+//! [`load`] reads a scene, finds all of its faults at once, and returns a [`Scene`]. Its stages are built, the lens is focused
+//! and stopped down, and no ray is traced yet. [`load_series`] does so for a file that stands for several pictures.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -1,25 +1,25 @@
-//! Light by the way that it came to the imager.
+//! Layers of light, separated by the way that it reached the imager.
 
 use spectra_core::frame::ExposureChannel;
 
-/// How light came to the imager. All kinds together are the exposure.
+/// Ways in which light reaches the imager. All kinds together are the exposure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LightKind {
-    /// Straight through the lens.
+    /// Light that comes straight through the lens.
     Direct,
-    /// By reflections that are traced as paths.
+    /// Light from reflections that are traced as paths.
     Ghosts,
-    /// By walks inside the lens, or scattered by what lies on its glass.
+    /// Light from random walks inside the lens, or scattered by dirt on its glass.
     Glare,
-    /// What diffraction moves: it is negative where more is taken away than comes.
+    /// Light that diffraction moves; negative where it takes away more than it adds.
     Star,
 }
 
 impl LightKind {
-    /// All of them.
+    /// All kinds of light.
     pub const ALL: [Self; 4] = [Self::Direct, Self::Ghosts, Self::Glare, Self::Star];
 
-    /// Its name in a scene, and as a layer.
+    /// Returns the name of this kind in a scene and as a layer.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -31,33 +31,35 @@ impl LightKind {
     }
 }
 
-/// Which paths of ghosts a layer has the light of.
+/// The ghost paths whose light a layer holds.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum GhostPaths {
-    /// All of them; so has every other kind of light.
+    /// All paths; also used for every other kind of light.
     #[default]
     All,
-    /// That which these surfaces reflect, in the order of the light, counted from 1; one more than the lens has is the imager.
+    /// The path reflected by these surfaces, in the order of the light, counted from 1. One more than the number of surfaces is
+    /// the imager.
     One(Vec<usize>),
-    /// All that have no layer of their own.
+    /// All paths that have no layer of their own.
     Others,
 }
 
-/// The light of one kind, or of some paths of it.
+/// A layer with the light of one kind, or of some paths of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightLayer {
-    /// Which one.
+    /// Kind of the light.
     pub kind: LightKind,
-    /// Of which paths.
+    /// Ghost paths of the layer.
     pub paths: GhostPaths,
-    /// Channels in the order of the exposure's, under names such as `ghosts.Y` and `ghosts.7-3.Y`.
+    /// Channels in the order of the exposure's channels, under names such as `ghosts.Y` and `ghosts.7-3.Y`.
     pub channels: Vec<ExposureChannel>,
 }
 
 impl LightLayer {
-    /// A layer's name: `ghosts`, `ghosts.7-3` for what the seventh surface and then the third one reflect, `ghosts.other`.
+    /// Returns the name of a layer: `ghosts`, `ghosts.other`, or `ghosts.7-3` for light reflected by surface 7 and then by
+    /// surface 3.
     ///
-    /// No comma, as programs that take lists of channels part them by commas.
+    /// Names have no commas, because some programs separate lists of channels by commas.
     #[must_use]
     pub fn name(kind: LightKind, paths: &GhostPaths) -> String {
         match paths {

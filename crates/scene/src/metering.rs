@@ -1,11 +1,11 @@
-//! The keys of a film by which a camera meters.
+//! The keys of a film that affect its exposure.
 
-/// Keys that only a camera which meters has.
+/// Keys that only metered films have.
 pub(crate) const KEYS: [&str; 4] = ["metering", "meter", "spot", "compensation"];
-/// Keys of a film besides by which the exposure of its pictures changes.
+/// Other keys of a film that change the exposure of its pictures.
 const OTHERS: [&str; 4] = ["exposure", "stock", "iso", "kind"];
 
-/// Whether a path of a scene leads to what a film is exposed by: one of these keys, or the whole film.
+/// Returns whether a path of a scene leads to something that affects the exposure: one of these keys, or the whole film.
 pub(crate) fn is_of_meter(path: &str) -> bool {
     let mut steps = path.split(['.', '[']);
     let is_film = steps.next() == Some("film");

@@ -1,20 +1,21 @@
-//! Developed films, kept while one way to print them follows another.
+//! A cache of developed films, for printing the same exposure several times.
 
 use spectra_core::frame::{ExposureFrame, Finished, Wanted};
 use spectra_core::stage::{Film, Negative};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The films of one exposure, developed. What changes only how they are printed, scanned or looked at needs no more than these;
-/// where a film develops otherwise, it is developed anew. They take as much memory as the exposure.
+/// Developed films of one exposure. A change of how they are printed, scanned or viewed needs nothing else; a film that develops
+/// differently is developed again. They take as much memory as the exposure.
 #[derive(Default)]
 pub struct Negatives(Mutex<Vec<Option<Developed>>>);
 
-/// A film, and what came of it.
+/// A film, and its developed negative.
 type Developed = (Arc<dyn Film>, Negative);
 
 impl Negatives {
-    /// The picture of the film at `place`, of its part of the exposure: always the same.
+    /// Returns the picture of the film at index `place` for its part of the exposure. The exposure must be the same in every
+    /// call.
     pub(crate) fn finish(
         &self,
         place: usize,

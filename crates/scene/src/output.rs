@@ -1,4 +1,4 @@
-//! The `output` section: what a scene wants written. Each output is a stage of its own.
+//! The `output` section: the files that a scene asks for. Each output is a stage of its own.
 
 use crate::light_layer::LightKind;
 use crate::{FileResources, Scene, SceneFilm, Shot};
@@ -10,108 +10,108 @@ use spectra_core::stage::{Film, Imager};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A kind of file that is written of a picture.
+/// A kind of file that is written for a picture.
 pub trait Output: Send + Sync {
-    /// Its name in a scene.
+    /// Returns the name of this output in a scene.
     fn kind(&self) -> &'static str;
 
-    /// How its files are called: what stands between the name of the picture (of films side by side, with the film's) and the
-    /// ending, mostly nothing, and the ending: `["-rays", ".svg"]`.
+    /// Returns the parts of its file names after the name of the picture (and of the film, if there are several). These are a
+    /// middle part, mostly empty, and the extension, such as `["-rays", ".svg"]`.
     fn ending(&self) -> [&'static str; 2];
 
-    /// What it holds.
+    /// Returns what its files hold.
     fn holds(&self) -> Holds;
 
-    /// Looks whether it can be had of what such an imager records.
+    /// Checks that the output can be made from what such an imager records.
     ///
     /// # Errors
-    /// Why not, and what to write instead.
+    /// The reason why not, and what to write instead.
     fn check(&self, _imager: &dyn Imager) -> Result<(), [String; 2]> {
         Ok(())
     }
 
-    /// The same of a film on the imager.
+    /// Checks that the output can be made from the picture of a film on the imager.
     ///
     /// # Errors
-    /// Why not, and what to write instead.
+    /// The reason why not, and what to write instead.
     fn check_film(&self, _film: &dyn Film) -> Result<(), [String; 2]> {
         Ok(())
     }
 
-    /// What it needs of a picture beside what a screen shows.
+    /// Returns what it needs of a picture in addition to what a screen shows.
     fn wanted(&self) -> Wanted {
         Wanted::default()
     }
 
-    /// Kinds of light of which it holds layers of their own.
+    /// Returns the kinds of light for which it holds separate layers.
     fn lights(&self) -> &[LightKind] {
         &[]
     }
 
-    /// Of how many paths of ghosts, the strongest, it holds layers of their own, with one for all others; 0 for none. Where outputs
-    /// ask for different numbers, all get the layers of the largest.
+    /// Returns the number of ghost paths, the strongest ones, that get layers of their own, besides one layer for all others; 0
+    /// for none. If outputs ask for different numbers, all get the layers of the largest.
     fn ghost_paths(&self) -> usize {
         0
     }
 
-    /// Writes a file; of films side by side, that of the film at a place.
+    /// Writes a file; for films side by side, that of the film at index `film`.
     ///
     /// # Errors
-    /// What the place that it goes to has; [`WriteFault::Format`] where the picture has nothing to write.
+    /// Errors of `out`; [`WriteFault::Format`] if the picture has nothing to write.
     fn write(&self, shot: &Shot<'_>, film: usize, out: &mut dyn Out) -> Result<(), WriteFault>;
 
-    /// Whether it also makes one file of a whole sweep or animation, `SCENE-series` with its ending.
+    /// Returns whether it also makes one file of a whole sweep or animation, `SCENE-series` with its extension.
     fn is_of_series(&self) -> bool {
         false
     }
 
-    /// Writes that file.
+    /// Writes the file of a whole sweep or animation.
     ///
     /// # Errors
-    /// What the place that it goes to has.
+    /// Errors of the output stream; [`WriteFault::Format`] if this kind makes no such file.
     fn write_series(&self, _: &Told<'_>, _: &mut dyn Out) -> Result<(), WriteFault> {
-        Err(WriteFault::Format(format!("{} makes no file of several pictures", self.kind())))
+        Err(WriteFault::Format(format!("{} cannot hold several pictures", self.kind())))
     }
 }
 
-/// What there is to say of a sweep or an animation.
+/// Facts about a finished sweep or animation.
 #[derive(Clone, Copy, Debug)]
 pub struct Told<'a> {
-    /// Its name.
+    /// Name of the series.
     pub name: &'a str,
-    /// The scene, as its file has it.
+    /// Text of the scene file.
     pub text: &'a str,
-    /// The content of `SCENE-series.json`.
+    /// Content of `SCENE-series.json`.
     pub report: &'a serde_json::Value,
-    /// Contact sheets as PNG files: their names, and their bytes.
+    /// Contact sheets as PNG files: names and bytes.
     pub contact_sheets: &'a [(String, Vec<u8>)],
 }
 
-/// What a file holds.
+/// Kinds of content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
-    /// All the light that was recorded: nothing is lost with a picture that has it.
+    /// All recorded light: a picture with such a file loses nothing.
     Light,
-    /// What a person looks at, a file for each film.
+    /// The picture to look at, one file for each film.
     Picture,
-    /// What is made of the recorded numbers otherwise.
+    /// Other data computed from the recorded numbers.
     Numbers,
-    /// What is drawn of the scene.
+    /// A drawing of the scene.
     Figure,
 }
 
 spectra_core::declare!(OutputEntry, dyn Output, "output", "A registered output.");
 
-/// Outputs where a scene names none.
+/// Outputs of a scene that names none.
 const USUAL: [&str; 2] = ["exr", "png"];
 
-/// The output of a kind, as it is without parameters.
+/// Builds the output of a kind without parameters.
 fn of_kind(kind: &str, params: &Params, context: &Context<'_>) -> Result<Arc<dyn Output>, Faults> {
     let name = Node { value: Value::String(kind.to_owned()), ..params.node().clone() };
     registry::build::<dyn Output>(&Params::stage(name, "output")?, context).map(Arc::from)
 }
 
-/// Reads the section; EXR and PNG where it is absent.
+/// Reads the `output` section; EXR and PNG if it is absent.
 pub(crate) fn read(
     items: Option<&[Part<StageOf<dyn Output>>]>,
     params: &Params,
@@ -126,7 +126,7 @@ pub(crate) fn read(
         let is_plain = matches!(&own.node().value, Value::Map(keys) if keys.is_empty());
         let [part, ending] = output.ending();
         match found.iter().find(|(other, _)| other.ending() == [part, ending]) {
-            // The same, said twice.
+            // The same output, named twice.
             Some((_, true)) if is_plain => {}
             Some(_) => {
                 let fault = item.fault(format!("two outputs write `SCENE{part}{ending}`"));
@@ -138,7 +138,7 @@ pub(crate) fn read(
     faults.into_result(found.into_iter().map(|(output, _)| output).collect())
 }
 
-/// Faults of outputs that cannot be had of what the imager records, each at its place.
+/// Returns the faults of outputs that cannot be made from what the imager records, each at its place.
 pub(crate) fn check(
     outputs: &[Arc<dyn Output>],
     imager: &dyn Imager,
@@ -160,7 +160,7 @@ pub(crate) fn check(
 }
 
 impl Scene {
-    /// Kinds of light of which an output holds layers.
+    /// Returns the kinds of light for which an output holds layers.
     #[must_use]
     pub fn light_layers(&self) -> Vec<LightKind> {
         LightKind::ALL
@@ -169,18 +169,18 @@ impl Scene {
             .collect()
     }
 
-    /// Of how many paths of ghosts, the strongest, an output holds layers.
+    /// Returns the number of ghost paths, the strongest ones, for which an output holds layers.
     #[must_use]
     pub fn ghost_paths(&self) -> usize {
         self.output.iter().map(|output| output.ghost_paths()).max().unwrap_or(0)
     }
 
-    /// The output whose file has this ending (`.png`), and nothing before it but the picture's name: one of the scene's own, a
-    /// finished picture of the scene's that has the ending, or else what is registered.
+    /// Returns the output whose file has this extension (`.png`) directly after the picture's name. It is one of the scene's own
+    /// outputs, or a finished picture of the scene with this extension, or a registered output.
     #[must_use]
     pub fn output_of(&self, ending: &str) -> Option<Arc<dyn Output>> {
         let is_it = |output: &Arc<dyn Output>| output.ending() == ["", ending];
-        // A finished picture in light, which stands beside the exposure under a name of its own.
+        // A finished picture in linear light normally has a name of its own beside the exposure.
         let is_picture = |output: &&Arc<dyn Output>| output.holds() == Holds::Picture && output.ending()[1] == ending;
         let own = self.output.iter().find(|output| is_it(output)).or_else(|| self.output.iter().find(is_picture));
         own.cloned().or_else(|| {

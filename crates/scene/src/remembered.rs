@@ -1,4 +1,4 @@
-//! Files that are read once.
+//! A cache of files, so that each is read once.
 
 use spectra_core::params::{Faults, Params};
 use spectra_core::resources::{Found, Resource, ResourceError, Resources};
@@ -6,20 +6,20 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What was asked for: path, folders, endings.
+/// A request: path, folders, endings.
 type Key = (String, Vec<String>, Vec<String>);
 
-/// Remembers every file that stages read whole, so that a scene that is changed and assembled again reads none twice. Large
-/// files, which stages only look into, are not kept.
+/// Caches every file that stages read whole, so that a scene that is changed and assembled again reads none twice. Large files,
+/// of which stages read only parts, are not kept.
 pub(crate) struct Remembered {
     inner: Arc<dyn Resources>,
     files: Mutex<HashMap<Key, Resource>>,
     documents: Mutex<HashMap<Key, Params>>,
-    /// Names of all that was asked for and is there, as messages have them.
+    /// Names of all files that were requested and exist, as shown in messages.
     names: Mutex<BTreeSet<String>>,
 }
 
-/// Before the names of those that are bundled.
+/// Prefix of the names of bundled files.
 pub(crate) const BUNDLED: &str = "bundled:";
 
 fn key(path: &str, folders: &[&str], endings: &[&str]) -> Key {
@@ -27,7 +27,7 @@ fn key(path: &str, folders: &[&str], endings: &[&str]) -> Key {
     (path.to_owned(), owned(folders), owned(endings))
 }
 
-/// What is known of it, or else what `read` gives, which is known from then on.
+/// Returns the cached value, or calls `read` and caches its result.
 fn once<T: Clone, E>(known: &Mutex<HashMap<Key, T>>, key: Key, read: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     let found = known.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
     match found {
@@ -43,7 +43,7 @@ impl Remembered {
         Self { inner, files: Mutex::default(), documents: Mutex::default(), names: Mutex::default() }
     }
 
-    /// The files on disk among those that were asked for so far.
+    /// Returns the files on disk among those requested so far.
     pub(crate) fn on_disk(&self) -> Vec<PathBuf> {
         let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
         names.iter().filter(|name| !name.starts_with(BUNDLED)).map(PathBuf::from).collect()

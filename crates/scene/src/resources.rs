@@ -1,4 +1,4 @@
-//! Files for stages: beside the scene first, then among the bundled data.
+//! Files for stages: beside the scene first, then bundled.
 
 use crate::advice::{FileIs, other_file};
 use crate::bundled::{Bundled, camera_films, other_kind};
@@ -12,34 +12,34 @@ use std::borrow::Cow;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Most names that are offered where several begin alike: a folder may hold thousands of numbered pictures.
+/// Largest number of similar names that are suggested; a folder may hold thousands of numbered pictures.
 const MOST_NEAR: usize = 5;
 
-/// Largest YAML document, bytes.
+/// Size limit of a YAML document, bytes.
 const MAX_DOCUMENT: u64 = 4 << 20;
 
-/// The name of the lens that is none: an ideal one, which `spectra film develop` records for a picture that it exposed film to
-/// by its own pixels.
+/// Name of the ideal lens that stands for no lens. `spectra film develop` records it for a picture whose own pixels expose the
+/// film.
 pub const NO_LENS: &str = "no-lens";
-/// Its f-number. Its focal length is of no account: the picture fills the frame.
+/// F-number of the ideal lens named [`NO_LENS`]. Its focal length does not matter, because the picture fills the frame.
 pub const NO_LENS_F_NUMBER: f64 = 2.8;
 
-/// Looks beside a file, then beside others, then among the bundled data.
+/// Finds files beside the scene, then in other folders, then among the bundled data.
 #[derive(Clone, Debug)]
 pub struct FileResources {
     folder: PathBuf,
-    /// Folders that are looked through behind that one.
+    /// Folders that are searched after `folder`.
     others: Vec<PathBuf>,
 }
 
 impl FileResources {
-    /// Files in and under `folder`; absolute paths are taken as they are.
+    /// Returns a finder for files in and under `folder`; absolute paths are used as they are.
     #[must_use]
     pub fn beside(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), others: Vec::new() }
     }
 
-    /// The same, and where a file is not there, in and under `folders`, in this order: those of the files that a scene
+    /// Adds `folders` to search, in this order, for files that are not in the first folder: those of the files that a scene
     /// includes.
     #[must_use]
     pub fn and_beside(mut self, folders: &[PathBuf]) -> Self {
@@ -51,12 +51,12 @@ impl FileResources {
         self
     }
 
-    /// All folders on disk, in the order in which they are looked through.
+    /// Returns all folders on disk in search order.
     fn folders(&self) -> impl Iterator<Item = &PathBuf> {
         std::iter::once(&self.folder).chain(&self.others)
     }
 
-    /// Where a file was looked for, in words; nothing where there is one folder only.
+    /// Returns the part of a message that names the searched folders; empty if there is only one folder.
     fn looked(&self) -> String {
         if self.others.is_empty() {
             return String::new();
@@ -69,7 +69,7 @@ impl FileResources {
     }
 }
 
-/// `~/photo.jpg` as the file in the folder of the user, as shells have it.
+/// Expands `~/photo.jpg` to the user's home folder, as shells do.
 pub(crate) fn of_user(path: String) -> PathBuf {
     match (path.strip_prefix("~/"), std::env::home_dir()) {
         (Some(rest), Some(home)) if !home.as_os_str().is_empty() => home.join(rest),
@@ -111,7 +111,7 @@ impl Resources for FileResources {
         if let Some(found) = bundled(path, folders, &endings().collect::<Vec<_>>()) {
             return Ok(found);
         }
-        // A part of a name, or the name in another spelling.
+        // `path` may be a part of a name, or a name in another spelling.
         match named(path, folders, &endings().collect::<Vec<_>>()).map(|kind| kind.find(path)) {
             Some(Ok(name)) => {
                 if let Some(found) = bundled(&name, folders, &endings().collect::<Vec<_>>()) {
@@ -149,7 +149,7 @@ impl Resources for FileResources {
         if path == NO_LENS && folders == ["lenses"] {
             return no_lens();
         }
-        // A lens of another program is read as the lens file that its import would write.
+        // A lens file of another program is read as the lens file that an import would write.
         let foreign = Format::of_name(path).filter(|_| folders.contains(&"lenses"));
         let missing = match folders {
             _ if crate::advice::is_file_name(path) => "no such file",
@@ -201,7 +201,7 @@ impl Resources for FileResources {
 }
 
 impl FileResources {
-    /// The nearest names, bundled or on disk.
+    /// Returns the most similar names, bundled or on disk.
     fn near(&self, path: &str, folders: &[&str]) -> Vec<String> {
         let mut names: Vec<String> = folders
             .iter()
@@ -223,7 +223,7 @@ impl FileResources {
         if let Some(near) = nearest(path, names.iter().map(String::as_str)) {
             return vec![near.to_owned()];
         }
-        // A misspelt beginning: `heliso-44` of `helios-44-58-f2`.
+        // A misspelled beginning: `heliso-44` for `helios-44-58-f2`.
         let words = path.split('-').count();
         let beginning = |name: &String| name.split('-').take(words).collect::<Vec<_>>().join("-");
         let beginnings: Vec<String> = names.iter().map(beginning).collect();
@@ -231,7 +231,7 @@ impl FileResources {
             let alike = names.iter().zip(&beginnings).filter(|(_, own)| *own == near);
             return alike.map(|(name, _)| name.clone()).take(MOST_NEAR).collect();
         }
-        // `a\b.png` names a file of a folder on one system only; `biotar-50` is a part of a name.
+        // `a\b.png` means a file in a folder on one system only; `biotar-50` is a part of a name.
         let slashed = path.replace('\\', "/");
         if slashed != path && self.folder.join(&slashed).is_file() {
             return vec![slashed];
@@ -252,7 +252,7 @@ fn list(names: &[String]) -> String {
     shown.join(" or ") + if names.len() > MOST { " or one of the others" } else { "" }
 }
 
-/// What `path` can be the name of, where it is none of a file.
+/// Returns the kind of bundled data that `path` can name; `None` if it looks like a file name.
 fn named(path: &str, folders: &[&str], endings: &[&str]) -> Option<Bundled> {
     if !endings.contains(&".yaml") {
         return None;
@@ -265,7 +265,7 @@ fn named(path: &str, folders: &[&str], endings: &[&str]) -> Option<Bundled> {
     folders.iter().find_map(|folder| Bundled::in_folder(folder))
 }
 
-/// The bundled file of exactly this name.
+/// Returns the bundled file of exactly this name.
 fn bundled(path: &str, folders: &[&str], endings: &[&str]) -> Option<Resource> {
     for folder in folders {
         for ending in endings {
@@ -288,7 +288,7 @@ pub(crate) fn read_yaml(path: &Path) -> Result<Node, Faults> {
     }
 }
 
-/// Reads a file whose size is checked before and while it is read.
+/// Reads a file, and checks its size before and during reading.
 fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ResourceError> {
     let io = |e: std::io::Error| ResourceError::Io(e.to_string());
     let file = std::fs::File::open(path).map_err(io)?;
@@ -304,12 +304,12 @@ fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ResourceError> {
     Ok(bytes)
 }
 
-/// The path as a person who stands in the working folder would name it.
+/// Returns the path relative to the working folder if it is inside.
 fn from_here(path: &Path) -> &Path {
     std::env::current_dir().ok().and_then(|here| path.strip_prefix(here).ok()).unwrap_or(path)
 }
 
-/// The same path without `.` in it, and from the working folder where it lies in that: as a person would write it.
+/// Returns the path without `.` components, relative to the working folder if it is inside, as users write it.
 fn plain(path: &Path) -> PathBuf {
     let here = std::env::current_dir().ok();
     let path = here.and_then(|here| path.strip_prefix(here).ok()).unwrap_or(path);
@@ -324,7 +324,7 @@ mod tests {
     fn files_that_cannot_be_scenes_are_not_read() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("large.yaml");
-        // A sparse file: its length without its weight.
+        // A sparse file has the length without using the space.
         std::fs::File::create(&path).and_then(|file| file.set_len(100_000_000)).expect("written");
         let said = read_yaml(&path).expect_err("refused").to_string();
         assert!(said.contains("100000000 bytes, at most 4194304 are read"), "{said}");

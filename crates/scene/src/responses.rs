@@ -1,10 +1,10 @@
-//! Whether light can have been recorded by what the channels say of themselves: plugins write them, and a value that is no
-//! number would end the render far from its cause, a negative one in a picture without a word.
+//! Checks of the channels' responses, which plugins provide. A NaN would end the render far from its cause, and a negative value
+//! would spoil a picture without notice.
 
 use spectra_core::params::{Fault, Params};
 use spectra_core::spectral::{Channel, Grid};
 
-/// What is wrong with the channels of a film (`section` is `film`) or of an imager, one fault a channel.
+/// Returns the faults of the channels of a film (`section` is `film`) or of an imager, at most one for each channel.
 pub(crate) fn faults(channels: &[Channel], grid: &Grid, section: &str, params: &Params) -> Vec<Fault> {
     let is_film = section == "film";
     let fault = |channel: &Channel| {
@@ -14,11 +14,14 @@ pub(crate) fn faults(channels: &[Channel], grid: &Grid, section: &str, params: &
     channels.iter().filter_map(fault).collect()
 }
 
-/// What is wrong with a response, and where to look.
+/// Returns what is wrong with a response, and a hint where to look.
 fn wrong(response: &[f64], grid: &Grid, is_film: bool) -> Option<(String, &'static str)> {
     if response.len() != grid.count {
         let text = format!("its response has {} values, not one at each of {} wavelengths", response.len(), grid.count);
-        return Some((text, "the code of this kind: one value for each of `context.grid.wavelengths_nm()`"));
+        return Some((
+            text,
+            "check the code of this kind: it must give one value for each of `context.grid.wavelengths_nm()`",
+        ));
     }
     let at = |bad: fn(f64) -> bool| {
         let mut points = grid.wavelengths_nm().zip(response);
@@ -26,11 +29,11 @@ fn wrong(response: &[f64], grid: &Grid, is_film: bool) -> Option<(String, &'stat
     };
     if let Some((nm, value)) = at(|v| !v.is_finite()) {
         let what = if value.is_nan() { "not a number" } else { "infinite" };
-        let hint = "its keys, and the code of this kind where it computes the response";
+        let hint = "check its keys, and the code of this kind that computes the response";
         return Some((format!("its response at {nm} nm is {what}"), hint));
     }
     let (nm, value) = is_film.then(|| at(|v| v < 0.0)).flatten()?;
-    let hint = "its keys, and the code of this kind: light never takes exposure away; 0 is the least";
+    let hint = "check its keys, and the code of this kind: light never reduces exposure, so 0 is the smallest value";
     Some((format!("its response at {nm} nm is negative ({value:.3e})"), hint))
 }
 
@@ -54,7 +57,7 @@ mod tests {
         assert_eq!(said(&[0.0; 3], false).as_deref(), Some(short));
         let below = "its response at 430 nm is negative (-2.500e-1)";
         assert_eq!(said(&[0.0, 1.0, 1.0, -0.25], true).as_deref(), Some(below));
-        // Matching functions of primaries dip below zero, and a detector may have them.
+        // Color matching functions of real primaries have negative parts, and a detector may have them.
         assert_eq!(said(&[0.0, 1.0, 1.0, -0.25], false), None);
     }
 }

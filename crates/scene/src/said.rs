@@ -1,13 +1,13 @@
-//! What the stages of a scene said when they were built.
+//! Messages that the stages of a scene gave when they were built.
 
 use crate::sight::Dark;
 use spectra_core::params::{DataEnd, Warning};
 
-/// What stages said when they were built.
+/// Messages of stages from the time when they were built.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Said {
     pub warnings: Vec<Warning>,
     pub ends: Vec<DataEnd>,
-    /// The part of the frame that the lens leaves dark.
+    /// The part of the frame that the lens leaves dark, if any.
     pub dark: Option<Dark>,
 }

@@ -1,7 +1,7 @@
-//! A scene, assembled: every stage built, the lens focused and stopped, nothing traced yet.
+//! An assembled scene: every stage built, the lens focused and stopped down, nothing traced yet.
 
 use crate::Focus;
-// A circle with `output.rs`: a scene has its outputs, and each of them writes a picture of its scene.
+// A circle with `output.rs`: a scene has outputs, and each output writes a picture of its scene.
 use crate::Output;
 use crate::focus::FocusLight;
 use crate::said::Said;
@@ -12,21 +12,22 @@ use spectra_core::math::log10;
 use spectra_core::params::{Fault, Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
-use spectra_lens::{Lens, StrayMatter};
+use spectra_optics::Optics;
+use spectra_tracer::StrayMatter;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Which way light is computed.
+/// Direction in which light is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// From the source.
+    /// Traced from the source.
     Forward,
-    /// From the imager.
+    /// Traced from the imager.
     Backward,
 }
 
 impl Direction {
-    /// As a scene names it.
+    /// Returns the name of the direction in a scene.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -39,56 +40,57 @@ impl Direction {
 /// Whether the lights of a source are rendered forward while the rest of it is rendered backward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lights {
-    /// No: all of the source is rendered one way.
+    /// All of the source is rendered in one direction.
     Same,
-    /// Where that pays.
+    /// Lights are rendered separately if that reduces noise.
     Auto,
-    /// Wherever the source has lights.
+    /// Lights are rendered forward whenever the source has any.
     Forward,
 }
 
-/// Light that surfaces of the lens reflect on its way to the imager.
+/// Settings for light that surfaces of the lens reflect on its way to the imager.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflections {
-    /// Reflections on the way: 0 for none, 2 for pairs, 4 for more; `None` for pairs where lights are bright enough to matter.
+    /// Number of reflections on the way: 0 for no ghosts, 2, or up to 4. `None` means 2 if lights are bright enough to matter,
+    /// otherwise 0.
     pub order: Option<u32>,
-    /// Part of the light that the imager itself reflects as a mirror does.
+    /// Fraction of the light that the imager reflects like a mirror.
     pub imager: f64,
-    /// Whether the scene states that.
+    /// Whether the scene states the reflectance of the imager.
     pub imager_stated: bool,
-    /// Whether light is polarized by what it passes and is reflected by.
+    /// Whether the polarization of light is followed through surfaces and reflections.
     pub polarized: bool,
-    /// How much of the frame the light of a ray is spread over.
+    /// Area of the frame that the light of a ray is spread over.
     pub spread: GhostSpread,
 }
 
-/// How the light of a ray that was reflected lands.
+/// Area of the frame on which the light of a reflected ray lands.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub enum GhostSpread {
-    /// Over the part of the frame that it stands for.
+    /// The part of the frame that the ray represents.
     #[default]
     Footprint,
-    /// In the one pixel that it meets.
+    /// The one pixel that the ray hits.
     None,
 }
 
-/// How forward rays are spread over the front of the lens.
+/// Pattern in which forward rays fill the front of the lens.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub enum ConePattern {
     /// Independent random points.
     Random,
-    /// Equal-area rings.
+    /// Rings of equal area.
     Rings,
-    /// Low-discrepancy points, mapped neighbors to neighbors.
+    /// Low-discrepancy points, mapped so that neighbors stay neighbors.
     #[default]
     Disk,
 }
 
-/// How the numbers of one stream of samples lie to each other.
+/// Families of the random numbers for the samples of a pixel.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -100,49 +102,50 @@ pub enum NumberFamily {
     Lattice,
     /// Independent random numbers.
     Random,
-    /// Jittered strata, as many as a pixel has samples (forward: as the scene states `samples`).
+    /// Jittered strata, one for each sample of a pixel (forward: `samples` of the scene).
     Stratified,
 }
 
-/// The `render` section.
+/// Resolved values of the `render` section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
-    /// Sense of travel, decided: of all light but perhaps that of [`RenderSettings::lights`].
+    /// Direction in which light is traced, decided for all light except perhaps that of [`RenderSettings::lights`].
     pub direction: Direction,
-    /// Backward: whether what is bright in the source is rendered forward.
+    /// Backward: whether the bright lights of the source are rendered forward.
     pub lights: Lights,
-    /// Backward: samples a pixel; where noise is asked for, the most.
+    /// Backward: samples per pixel; with `noise`, the largest number.
     pub samples: u32,
-    /// Noise at which a part of the picture is clean, as a part of the light: where it is reached, no more samples are traced.
+    /// Target noise, as a fraction of the light: parts of the picture that reach it get no more samples.
     pub noise: Option<f64>,
-    /// Forward: rays in all.
+    /// Forward: total number of rays.
     pub rays: u64,
-    /// Whether the scene states them.
+    /// Whether the scene states the number of rays.
     pub rays_stated: bool,
-    /// Seed of all numbers: of a frame of an animation its own.
+    /// Seed of all random numbers; each frame of an animation has its own.
     pub seed: u64,
-    /// Number of the frame, where each has numbers of its own.
+    /// Number of the frame, if each frame has random numbers of its own.
     pub frame: Option<u64>,
-    /// Rays a batch.
+    /// Number of rays in a batch.
     pub batch: usize,
-    /// Family of the numbers.
+    /// Family of the random numbers.
     pub numbers: NumberFamily,
-    /// Pattern of the forward cone.
+    /// Pattern of the forward rays.
     pub cone: ConePattern,
-    /// What reflections are traced.
+    /// Settings for reflections.
     pub reflections: Reflections,
-    /// What veiling glare is made of, where it is asked for.
+    /// Causes of veiling glare, if glare is asked for.
     pub glare: Option<StrayMatter>,
-    /// Whether the edge of the aperture spreads the light that was summed; `None`: where stars of lights would be seen.
+    /// Whether diffraction at the edge of the aperture spreads the light. `None` means only if stars around lights would be
+    /// visible.
     pub diffraction: Option<bool>,
 }
 
 impl RenderSettings {
-    /// Whether the same rays are traced, as far as both want as many.
+    /// Returns whether both settings trace the same rays, apart from how many.
     #[must_use]
     pub fn traces_as(&self, other: &Self) -> bool {
         let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, diffraction: None, ..*settings };
-        // Forward, so many rays are a sample.
+        // Forward, this many rays make one sample.
         let share = |s: &Self| u128::from(s.rays);
         let as_many = (self.direction == Direction::Backward && self.lights == Lights::Same)
             || share(self) * u128::from(other.samples) == share(other) * u128::from(self.samples);
@@ -154,16 +157,16 @@ impl RenderSettings {
 /// A film on the imager.
 #[derive(Clone)]
 pub struct SceneFilm {
-    /// What its pictures are called by, where there are several films.
+    /// Name for the film's pictures, if there are several films.
     pub name: Option<String>,
-    /// The film.
+    /// The film itself.
     pub film: Arc<dyn Film>,
-    /// Which channels of the scene are its own.
+    /// Range of the scene's channels that belong to this film.
     pub channels: Range<usize>,
 }
 
 impl SceneFilm {
-    /// What this film recorded of a frame of the whole scene, its channels under the film's own names.
+    /// Returns what this film recorded of a frame of the whole scene, with its channels under the film's own names.
     #[must_use]
     pub fn exposure(&self, all: &ExposureFrame) -> ExposureFrame {
         let own = all.channels.get(self.channels.clone()).unwrap_or_default();
@@ -173,86 +176,86 @@ impl SceneFilm {
     }
 }
 
-/// Light of a mid gray over that of white.
+/// Luminance of a mid gray relative to white.
 pub const MID_GRAY: f64 = spectra_film::print::MID_GRAY;
 
-/// How long a film was exposed.
+/// The exposure time of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmTime {
-    /// Name of the film, where there are several.
+    /// Name of the film, if there are several.
     pub name: Option<String>,
-    /// What it is called, in a few words.
+    /// Short description of the film.
     pub film: String,
-    /// Exposure time, s: the meter's, where the camera meters.
+    /// Exposure time, s; chosen by the meter if the camera meters.
     pub time_s: f64,
-    /// That over the time that the frame was recorded for.
+    /// Exposure time divided by the time for which the frame was recorded.
     pub gain: f64,
-    /// Whether the meter chose it.
+    /// Whether the meter chose the time.
     pub is_metered: bool,
-    /// That meter, in a word; `None` of a stated time, or of one that was metered on another frame.
+    /// Name of the meter, such as `spot`; `None` for a stated time, or one metered on another frame.
     pub meter: Option<&'static str>,
-    /// The picture was exposed already and is taken as it is.
+    /// Whether the source is a picture that was already exposed and is used as it is.
     pub is_as_taken: bool,
-    /// The channels of the scene that are the film's own.
+    /// Range of the scene's channels that belong to this film.
     pub channels: Range<usize>,
 }
 
-/// A scene, ready to render. Copies share their stages.
+/// A scene that is ready to render. Clones share their stages.
 #[derive(Clone)]
 pub struct Scene {
-    /// Name of its outputs: the file's name without its ending.
+    /// Name of the outputs: the scene's file name without its extension.
     pub name: String,
     /// The scene as written, with overrides applied, for the record.
     pub text: String,
-    /// The band.
+    /// Wavelength grid of the band.
     pub grid: Grid,
-    /// The source.
+    /// The source of light.
     pub source: Arc<dyn Source>,
-    /// The wavelength strategy.
+    /// The sampler of wavelengths.
     pub sampler: Arc<dyn WavelengthSampler>,
-    /// The lens, focused and stopped.
-    pub lens: Arc<Lens>,
-    /// How it was focused.
+    /// The lens, focused and stopped down.
+    pub lens: Arc<Optics>,
+    /// Record of how the lens was focused.
     pub focus: Focus,
-    /// The light that it was focused in, and what is to be said of that.
+    /// The light that the lens was focused in, and warnings about that.
     pub(crate) focused: (Option<FocusLight>, Vec<Fault>),
-    /// What its stages said when they were built.
+    /// Messages of the stages from the time when they were built.
     pub(crate) said: Said,
-    /// The imager.
+    /// The imager behind the lens.
     pub imager: Arc<dyn Imager>,
-    /// The film on it, or several side by side in the same light; none on an imager that records by itself.
+    /// The film on the imager, or several films side by side in the same light; empty for an imager that records by itself.
     pub films: Vec<SceneFilm>,
-    /// What is recorded: the imager's own channels, or those of all films, one film after the other.
+    /// Recorded channels: the imager's own, or those of all films, one film after another.
     pub channels: Arc<[Channel]>,
-    /// How to render.
+    /// Settings of the render.
     pub render: RenderSettings,
-    /// What to write.
+    /// Outputs to write.
     pub output: Vec<Arc<dyn Output>>,
-    /// What a person should know: a glass off its listed range, and so on.
+    /// Warnings, for example about a glass used outside its measured range.
     pub warnings: Vec<Warning>,
-    /// What to bear in mind of the data that it uses, though nothing about the scene is wrong.
+    /// Notes on the data that the scene uses; they are not about faults of the scene.
     pub notes: Vec<String>,
-    /// The scene as it was read, for faults that show once the stages are put together.
+    /// The scene as it was read, to place faults that show once the stages are put together.
     pub params: Params,
 }
 
 impl Scene {
-    /// Exposure time that multiplies irradiance, s; 1 where none is stated and irradiance itself is recorded.
+    /// Returns the exposure time that multiplies irradiance, s; 1 if none is stated and irradiance itself is recorded.
     #[must_use]
     pub fn exposure_time_s(&self) -> f64 {
         match self.films.first() {
-            // Of several films the others' channels hold what their own time is more or less.
+            // The channels of other films include the ratio of their time to this one.
             Some(first) => first.film.exposure_time_s(),
             None => self.imager.response().and_then(|own| own.exposure_time_s()).unwrap_or(1.0),
         }
     }
 
-    /// All that is worth knowing though nothing is wrong: of how the lens is set, and of the data.
+    /// Iterates over all notes: on how the lens is set, and on the data.
     pub fn all_notes(&self) -> impl Iterator<Item = &String> {
         self.lens.notes.iter().chain(&self.notes)
     }
 
-    /// The channels that pictures are made of, as numbers into [`Scene::channels`]: not those of a meter.
+    /// Returns the indices in [`Scene::channels`] of the channels that make pictures, without those of meters.
     #[must_use]
     pub fn picture_channels(&self) -> Vec<usize> {
         if self.films.is_empty() {
@@ -262,14 +265,14 @@ impl Scene {
         self.films.iter().flat_map(of).collect()
     }
 
-    /// The other channels: what the camera's meters see.
+    /// Returns the indices in [`Scene::channels`] of the channels that the camera's meters see.
     #[must_use]
     pub fn meter_channels(&self) -> Vec<usize> {
         let of = |f: &SceneFilm| (f.channels.start + f.film.picture_channels()).min(f.channels.end)..f.channels.end;
         self.films.iter().flat_map(of).collect()
     }
 
-    /// The pixels that a meter looks at, in their order; none where the exposure is set by hand.
+    /// Returns the pixels that a meter looks at, in their order; empty if the exposure is set by hand.
     #[must_use]
     pub fn metered_pixels(&self) -> Vec<u32> {
         let size = self.imager.size();
@@ -279,14 +282,15 @@ impl Scene {
         if metered.is_empty() { Vec::new() } else { (0..size.pixels() as u32).filter(is_seen).collect() }
     }
 
-    /// Whether a film takes the picture that is the source as it was exposed already.
+    /// Returns whether a film uses the source picture as it was already exposed.
     #[must_use]
     pub fn is_as_taken(&self, film: &SceneFilm) -> bool {
         film.film.keeps_exposure() && self.source.is_exposed()
     }
 
-    /// By how many stops more a film is exposed than it would be to the picture as it is, whose mid gray leaves `gray` (lx s, in the time
-    /// of the recording) in each channel of the scene; `None` where no meter decides or nothing is known of the gray.
+    /// Returns how many stops more a film is exposed than for the source picture as it is. `gray` is the exposure of each channel
+    /// of the scene by the picture's mid gray, lx s, for the time of the recording. `None` if no meter decides, or if the gray is
+    /// not known.
     #[must_use]
     pub fn stops_over_file(&self, film: usize, time: &FilmTime, gray: &[f32]) -> Option<f64> {
         let SceneFilm { film, channels, .. } = self.films.get(film)?;
@@ -302,14 +306,14 @@ impl Scene {
         Some(log10(time.time_s / as_it_is_s) / log10(2.0)).filter(|stops| stops.is_finite())
     }
 
-    /// How long each film was exposed that is on the imager while the frame `exposure` of the scene is recorded. The
-    /// exposure that a film got is that of the frame times its gain.
+    /// Returns the exposure time of each film for the recorded frame `exposure` of the scene. The exposure of a film is that of
+    /// the frame times its gain.
     #[must_use]
     pub fn film_times(&self, exposure: &ExposureFrame) -> Vec<FilmTime> {
         let time = |film: &SceneFilm| {
             let recorded_s = film.film.exposure_time_s();
             let time_s = match &film.name {
-                // A film alone has the frame for itself.
+                // A single film owns the whole frame.
                 None => film.film.metered_time_s(exposure),
                 Some(_) => film.film.metered_time_s(&film.exposure(exposure)),
             };

@@ -1,4 +1,4 @@
-//! JSON Schemas of the files that a person writes, from the types that read them and from what is registered.
+//! JSON Schemas of the files that users write, made from the types that read them and from the registered stages.
 
 use crate::assemble::{BandSection, SceneFile};
 use crate::films::FilmKeys;
@@ -7,24 +7,24 @@ use serde_json::{Value, json};
 use spectra_core::registry::{self, Documentation};
 use spectra_film::stock::Stock;
 
-/// A kind of file that has a schema.
+/// Kinds of files that have a schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// A scene.
+    /// A scene file.
     Scene,
-    /// A lens.
+    /// A lens file.
     Lens,
-    /// A film stock.
+    /// A film stock file.
     Stock,
-    /// A spectrum.
+    /// A spectrum file.
     Spectrum,
 }
 
 impl FileKind {
-    /// All of them.
+    /// All kinds of files.
     pub const ALL: [Self; 4] = [Self::Scene, Self::Lens, Self::Stock, Self::Spectrum];
 
-    /// Its name in commands.
+    /// Returns the name of this kind in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl FileKind {
     }
 }
 
-/// The JSON Schema (2020-12) of a kind of file, with every stage that this program has.
+/// Returns the JSON Schema (2020-12) of a kind of file, with every stage that this program has.
 #[must_use]
 pub fn file_schema(kind: FileKind) -> Value {
     let mut generator = SchemaGenerator::default();
@@ -67,10 +67,10 @@ pub fn file_schema(kind: FileKind) -> Value {
     whole
 }
 
-/// A text that stands for a value with a name, see [`crate::load_series`].
+/// Pattern of a text that stands for a variable, see [`crate::load_series`].
 const VARIABLE: &str = r"^\$[A-Za-z_{]";
 
-/// Wherever a value is wanted, `$name` may stand for it.
+/// Allows `$name` wherever a value can stand.
 fn allow_variables(schema: &mut Value) {
     let Value::Object(map) = schema else {
         if let Value::Array(items) = schema {
@@ -105,7 +105,7 @@ fn or_variable(schema: &mut Value) {
     *schema = either;
 }
 
-/// A scene that includes others states a part of what a scene needs: for it nothing is required.
+/// Makes all keys optional for a scene that includes others, because it may hold only a part of what a scene needs.
 fn or_part(mut whole: Value) -> Value {
     let Some(definitions) = whole.as_object_mut().and_then(|map| map.remove("$defs")) else { return whole };
     let head = json!({ "$schema": whole["$schema"].take(), "title": whole["title"].take() });
@@ -133,7 +133,7 @@ fn or_part(mut whole: Value) -> Value {
     schema
 }
 
-/// Takes away what is required, but where it decides between kinds.
+/// Removes `required` everywhere except where it decides between kinds.
 fn make_part(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -155,7 +155,7 @@ fn is_one_const(properties: &Value) -> bool {
     properties.as_object().is_some_and(|map| map.len() == 1 && map.values().all(|p| p.get("const").is_some()))
 }
 
-/// A text that is all digits (`format: 135`) is a number to other readers of YAML.
+/// Allows numbers for texts, because other YAML readers take a text that is all digits (`format: 135`) for a number.
 fn allow_figures(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -178,7 +178,7 @@ fn allow_figures(schema: &mut Value) {
     }
 }
 
-/// What a person reads about a kind of file.
+/// Returns the documentation of a kind of file.
 #[must_use]
 pub fn file_documentation(kind: FileKind) -> Documentation {
     Documentation::of(match kind {
@@ -189,7 +189,7 @@ pub fn file_documentation(kind: FileKind) -> Documentation {
     })
 }
 
-/// What a person reads about the keys that all stages of a kind take beside their own; `None` where there are none.
+/// Returns the documentation of the keys that all stages of a kind share; `None` if there are none.
 #[must_use]
 pub fn shared_documentation(stage: &str) -> Option<Documentation> {
     Some(Documentation::of(match stage {
@@ -202,7 +202,7 @@ pub fn shared_documentation(stage: &str) -> Option<Documentation> {
     }))
 }
 
-/// Keys that belong to the place of a stage, not to the stage itself.
+/// Returns the keys that belong to the place of a stage and not to the stage itself.
 fn shared(generator: &mut SchemaGenerator) -> Vec<(&'static str, Schema)> {
     vec![
         ("surface", spectra_lens::surface_keys(generator)),
@@ -213,7 +213,7 @@ fn shared(generator: &mut SchemaGenerator) -> Vec<(&'static str, Schema)> {
     ]
 }
 
-/// The definitions that something refers to.
+/// Returns the definitions that are referred to, directly or through others.
 fn reached(root: &serde_json::Map<String, Value>, definitions: serde_json::Map<String, Value>) -> Value {
     let mut wanted: Vec<String> = Vec::new();
     for value in root.values() {
@@ -255,7 +255,7 @@ mod tests {
             let mut wanted = Vec::new();
             references(&schema, &mut wanted);
             for name in wanted {
-                // No plugin is linked into this test: the stages' definitions come with them.
+                // No plugin is linked into this test, so the definitions of stages are missing.
                 let stage = ["source", "color", "wavelengths", "surface", "imager", "film", "output"]
                     .contains(&name.trim_start_matches("part-"));
                 assert!(stage || schema["$defs"].get(&name).is_some(), "{}: {name}", kind.name());

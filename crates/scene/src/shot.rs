@@ -1,4 +1,11 @@
-//! A picture that was taken: the light of a scene, and what can be made of it.
+//! A recorded picture: the light of a scene, and the pictures made from it.
+//!
+//! A picture is finished once for all files. `Film::finish` and `Response::finish` give what a screen shows. On request they also give the
+//! layers of the film, and the picture without a gamut: linear sRGB, with values below 0 and above 1. All other color spaces follow from
+//! that. The `image_state` of a stage states what its values stand for (scene, display or densities), and decides which tags a file gets.
+//!
+//! A film may be finished in two steps, negative and print, and states by `develops_as` whose negatives are like its own. Printing is quick
+//! and developing is not, so a program that shows one exposure in many ways keeps the negatives ([`Negatives`]).
 
 use crate::{FilmTime, LightLayer, Negatives, Scene, SceneFilm};
 use serde_json::Value;
@@ -7,25 +14,25 @@ use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame
 use spectra_core::sink::WriteFault;
 use std::sync::OnceLock;
 
-/// A picture, with the name of its film where there are several.
+/// A developed picture, with the name of its film if there are several.
 pub type Developed = (Option<String>, DisplayPicture);
 
-/// All pictures, and what is known beside each.
+/// All pictures, and the additional data of each.
 type All = (Vec<Developed>, Vec<Beside>);
 
-/// The light that a scene recorded, on its way to files.
+/// The light that a scene recorded, ready to be developed and written to files.
 pub struct Shot<'a> {
-    /// The scene.
+    /// The scene that was rendered.
     pub scene: &'a Scene,
-    /// Linear exposure per channel, for the time that the scene records.
+    /// Linear exposure of each channel, for the exposure time of the recording.
     pub exposure: &'a ExposureFrame,
-    /// How long each film was exposed.
+    /// Exposure time of each film.
     pub times: &'a [FilmTime],
-    /// What is said of it in the headers of files: names and texts.
+    /// Names and texts for the headers of files.
     pub attributes: &'a [(String, String)],
     /// Instruction set to compute figures with.
     pub isa: Isa,
-    /// The light by its kinds, of those that an output holds.
+    /// Light separated by kinds, as far as outputs hold them.
     pub layers: &'a [LightLayer],
     tell: &'a (dyn Fn() -> Value + Sync),
     report: OnceLock<Value>,
@@ -34,7 +41,7 @@ pub struct Shot<'a> {
 }
 
 impl<'a> Shot<'a> {
-    /// Nothing is developed yet.
+    /// Wraps recorded light; nothing is developed yet.
     #[must_use]
     pub fn new(
         scene: &'a Scene,
@@ -48,32 +55,32 @@ impl<'a> Shot<'a> {
         Self { scene, exposure, times, attributes, isa, layers: &[], tell, report, kept: None, pictures }
     }
 
-    /// The same with what is said of how it came about, which is made when it is asked for.
+    /// Sets the function that makes the report. It is called when the report is first needed.
     #[must_use]
     pub fn told(self, tell: &'a (dyn Fn() -> Value + Sync)) -> Self {
         Self { tell, ..self }
     }
 
-    /// What is said of how it came about: the content of `SCENE.json`; null where nobody says.
+    /// Returns the report, which is the content of `SCENE.json`; null if no function was set.
     #[must_use]
     pub fn report(&self) -> &Value {
         self.report.get_or_init(self.tell)
     }
 
-    /// The same with the light by its kinds.
+    /// Adds the light separated by kinds.
     #[must_use]
     pub fn with_layers(self, layers: &'a [LightLayer]) -> Self {
         Self { layers, ..self }
     }
 
-    /// The same for pictures alone, nothing beside them: films that were developed of this exposure before are printed again, and those
-    /// that are developed are kept.
+    /// Uses a cache of negatives, for pictures without additional data. Prints films again that were already developed from this
+    /// exposure; develops the others and keeps them.
     #[must_use]
     pub fn keeping(self, kept: &'a Negatives) -> Self {
         Self { kept: Some(kept), ..self }
     }
 
-    /// By what the values of each channel are to be multiplied, to be what the films got.
+    /// Returns the factor for the values of each channel that gives the exposure of the films.
     #[must_use]
     pub fn gains(&self) -> Vec<f64> {
         let mut gains = vec![1.0; self.exposure.channels.len()];
@@ -83,37 +90,39 @@ impl<'a> Shot<'a> {
         gains
     }
 
-    /// The pictures of the frame: by each film, with its name where there are several, or else by the imager. They are
-    /// developed once.
+    /// Returns the pictures of the frame: one for each film, with its name if there are several, or the picture of the imager.
+    /// They are developed only once.
     ///
     /// # Errors
-    /// Why there is none, in words.
+    /// The reason why there is no picture, as text.
     pub fn pictures(&self) -> Result<&[Developed], String> {
         self.all().map(|(pictures, _)| &pictures[..])
     }
 
-    /// The picture of the film at a place, or the only one.
+    /// Returns the picture of the film at an index, or the only picture.
     ///
     /// # Errors
-    /// [`WriteFault::Format`]: why there is none.
+    /// [`WriteFault::Format`] with the reason why there is no picture.
     pub fn picture(&self, film: usize) -> Result<&DisplayPicture, WriteFault> {
         let (pictures, _) = self.all().map_err(WriteFault::Format)?;
         pictures.get(film).map(|(_, picture)| picture).ok_or_else(no_film)
     }
 
-    /// What is known of that picture beside it, as far as an output of the scene wants it ([`crate::Output::wanted`]).
+    /// Returns the additional data of the picture at an index, as far as an output of the scene wants them
+    /// ([`crate::Output::wanted`]).
     ///
     /// # Errors
-    /// [`WriteFault::Format`]: why there is none.
+    /// [`WriteFault::Format`] with the reason why there is no picture.
     pub fn beside(&self, film: usize) -> Result<&Beside, WriteFault> {
         let (_, beside) = self.all().map_err(WriteFault::Format)?;
         beside.get(film).ok_or_else(no_film)
     }
 
-    /// That picture in no gamut, as far as it is known: see [`Beside::open`].
+    /// Returns the picture at an index without gamut mapping, as far as it is known: see [`Beside::open`]. Otherwise returns the
+    /// ordinary picture.
     ///
     /// # Errors
-    /// [`WriteFault::Format`]: why there is none.
+    /// [`WriteFault::Format`] with the reason why there is no picture.
     pub fn open(&self, film: usize) -> Result<&DisplayPicture, WriteFault> {
         match &self.beside(film)?.open {
             Some(open) => Ok(open),
@@ -121,7 +130,7 @@ impl<'a> Shot<'a> {
         }
     }
 
-    /// What the values of that picture stand for.
+    /// Returns what the values of the picture at an index represent.
     #[must_use]
     pub fn image_state(&self, film: usize) -> ImageState {
         match self.scene.films.get(film) {
@@ -142,7 +151,7 @@ impl<'a> Shot<'a> {
         if scene.films.is_empty() {
             let shown = scene.imager.response().and_then(|own| own.finish(exposure, wanted));
             let Finished { shown, mut beside } =
-                shown.ok_or_else(|| "this imager shows no picture without a film on it".to_owned())?;
+                shown.ok_or_else(|| "this imager gives no picture without a film".to_owned())?;
             if wanted.layers {
                 let layers = exposure.channels.iter().cloned();
                 beside.layers = layers.map(|c| ExposureChannel { name: format!("exposure.{}", c.name), ..c }).collect();
@@ -155,14 +164,14 @@ impl<'a> Shot<'a> {
                 Some(kept) => kept.finish(place, &film.film, exposure),
             };
             let finished = match &film.name {
-                // A film alone has the frame for itself.
+                // A single film owns the whole frame.
                 None => finish(exposure)?,
                 Some(_) => finish(&film.exposure(exposure))?,
             };
             if let Some([x, y]) = no_number(&finished.shown) {
                 let film = film.film.name();
                 return Err(format!(
-                    "{film}: the color of pixel {x}, {y} is not a number: its `develop` made one that is none"
+                    "{film}: the color of pixel {x}, {y} is not a number: its `develop` computed a NaN"
                 ));
             }
             let Finished { shown, beside } = finished;
@@ -172,18 +181,18 @@ impl<'a> Shot<'a> {
         Ok(all.into_iter().unzip())
     }
 
-    /// Width over height of a pixel of the frame, as it is to be looked at: on the film times the squeeze of the lens.
+    /// Returns the width over height of a pixel for viewing: that on the film times the squeeze of the lens.
     #[must_use]
     pub fn pixel_aspect(&self) -> f64 {
         let size = self.exposure.size;
         let aspect = size.width_mm / f64::from(size.width_px) / (size.height_mm / f64::from(size.height_px));
-        // As near to square as whole numbers of pixels come.
+        // Widths and heights in whole pixels cannot give exactly square pixels.
         let aspect = if (aspect - 1.0).abs() < 0.005 { 1.0 } else { aspect };
         aspect * self.scene.lens.squeeze
     }
 }
 
-/// The first pixel, from the left and from the top, with a value that is not a number: files would show it black.
+/// Returns the first pixel, row by row, with a value that is not a number; files would show it black.
 fn no_number(picture: &DisplayPicture) -> Option<[usize; 2]> {
     let at = picture.rgb.iter().position(|rgb| rgb.iter().any(|v| v.is_nan()))?;
     let width = picture.width_px as usize;

@@ -1,7 +1,9 @@
-//! What the frame sees through the lens: real rays from points all over it, traced backward at the lens's reference line.
+//! View of the frame through the lens: real rays from points all over the frame, traced backward at the lens's reference
+//! wavelength.
 //!
-//! From each point a bundle is aimed at the paraxial exit pupil and somewhat beyond it; where nothing of that passes (a wide
-//! angle, a fold, a corner that is cut off), at the real one, which takes longer to find. What passes is a line of sight.
+//! From each point a bundle is aimed at the paraxial exit pupil and somewhat beyond it. If no ray of it passes (a wide angle, a
+//! fold, a vignetted corner), the bundle is aimed at the real exit pupil, which takes longer to find. Each ray that passes is a
+//! line of sight.
 
 use spectra_core::frame::FrameSize;
 use spectra_core::glam::DVec3;
@@ -10,23 +12,27 @@ use spectra_core::stage::Imager;
 use spectra_core::view::{Sight, View};
 use spectra_core::workers::{Alone, Workers};
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Effort, Indices, Lens, RearPupil, Tracer, Travel};
+use spectra_optics::{Effort, Optics, RearPupil};
+use spectra_tracer::{Indices, Tracer, Travel};
+use std::sync::Arc;
 
-/// Points a side of the frame, its edges among them.
+/// Number of points along each side of the frame, including its edges.
 const SIDE: usize = 13;
-/// Radius of what is aimed at first, in radii of the paraxial exit pupil: on a fast lens the real one is larger.
+/// Radius of the first bundle, in radii of the paraxial exit pupil. The real pupil of a fast lens is larger than the paraxial
+/// one.
 const BEYOND: f64 = 1.15;
-/// Rays a side over the real exit pupil.
+/// Number of rays along each side of the grid over the real exit pupil.
 const CELLS: usize = 12;
-/// Halvings of the way from the middle of the frame to a corner, in search of where the light ends.
+/// Number of bisection steps from the middle of the frame to a corner, in the search for the edge of the light.
 const HALVINGS: usize = 7;
 
-/// How what the frame sees is looked for.
+/// Settings of the search for what the frame sees.
 #[derive(Clone, Copy)]
 pub struct Search<'a> {
-    /// How closely; a draft has a view of its own, a little beside that of the picture.
+    /// Effort of the search. A draft has a view that differs slightly from that of the picture.
     pub effort: Effort,
-    /// Who traces: the same bits by any. Where they are to stop, the scene is not assembled, for a reason of no interest.
+    /// Threads that trace; any give the same bits. If they are told to stop, the scene is not assembled, and the error does not
+    /// matter.
     pub workers: &'a dyn Workers,
 }
 
@@ -36,27 +42,27 @@ impl Default for Search<'_> {
     }
 }
 
-/// What the frame sees.
+/// The view of the frame, and its dark part.
 pub(crate) struct Seen {
     pub view: View,
-    /// What the lens leaves dark of the frame, where it leaves any.
+    /// The part of the frame that the lens leaves dark, if any.
     pub dark: Option<Dark>,
 }
 
-/// A frame that is larger than the circle which the lens draws.
+/// A frame that is larger than the image circle of the lens.
 #[derive(Clone, Debug)]
 pub(crate) struct Dark {
-    /// The circle's diameter, mm; `None` where the middle of the frame is dark.
+    /// Diameter of the image circle, mm; `None` if the middle of the frame is dark.
     pub circle_mm: Option<f64>,
-    /// The frame's diagonal, mm.
+    /// Diagonal of the frame, mm.
     pub diagonal_mm: f64,
-    /// Share of the points of the frame to which no light comes.
+    /// Fraction of the points of the frame that get no light.
     pub share: f64,
 }
 
-/// What the frame of `imager` sees through `lens`. `None` where that cannot be told: an imager that launches no rays, or a
-/// lens none of whose surfaces states a size.
-pub(crate) fn seen(lens: &Lens, imager: &dyn Imager, search: Search<'_>) -> Option<Seen> {
+/// Returns what the frame of `imager` sees through `lens`. `None` if that cannot be found: an imager that launches no rays, or a
+/// lens with no surface that states its size.
+pub(crate) fn seen(lens: &Optics, imager: &dyn Imager, search: Search<'_>) -> Option<Seen> {
     let aim = Aim::new(lens)?;
     let points = points(imager, &grid())?;
     let mut found = aim.sights(&points);
@@ -89,13 +95,13 @@ fn diagonal_mm(size: FrameSize) -> f64 {
     (size.width_mm * size.width_mm + size.height_mm * size.height_mm).sqrt()
 }
 
-/// Places in the frame, from 0 to 1 across and down.
+/// Returns places in the frame, from 0 to 1 across and down.
 fn grid() -> Vec<[f64; 2]> {
     let at = |k: usize| k as f64 / (SIDE - 1) as f64;
     (0..SIDE * SIDE).map(|i| [at(i % SIDE), at(i / SIDE)]).collect()
 }
 
-/// Points of the imager, mm in the frame of the image plane.
+/// Returns the points of the imager at these places, mm in the frame of the image plane.
 fn points(imager: &dyn Imager, places: &[[f64; 2]]) -> Option<Vec<DVec3>> {
     let (launch, size) = (imager.launch()?, imager.size());
     let mut rays = RayBatch::new(places.len());
@@ -118,8 +124,8 @@ fn points(imager: &dyn Imager, places: &[[f64; 2]]) -> Option<Vec<DVec3>> {
     Some((0..places.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect())
 }
 
-/// Diameter of the circle that the lens draws about its axis, mm: from the middle of the frame toward each corner, to where
-/// the light ends.
+/// Returns the diameter of the image circle about the axis, mm. Searches from the middle of the frame toward each corner for the
+/// edge of the light.
 fn circle_mm(aim: &Aim<'_>, pupil: &RearPupil, imager: &dyn Imager) -> Option<f64> {
     let passes = |places: &[[f64; 2]]| -> Option<Vec<(bool, f64)>> {
         let points = points(imager, places)?;
@@ -149,22 +155,22 @@ fn circle_mm(aim: &Aim<'_>, pupil: &RearPupil, imager: &dyn Imager) -> Option<f6
     Some(2.0 * radius_mm)
 }
 
-/// Lines of sight of a point; one that runs backward is `None`.
+/// Lines of sight of a point; `None` for a line that runs backward.
 type Sights = Vec<Option<Sight>>;
 
 struct Aim<'a> {
-    lens: &'a Lens,
-    tracer: Tracer,
+    lens: &'a Optics,
+    tracer: Arc<Tracer>,
 }
 
 impl<'a> Aim<'a> {
-    fn new(lens: &'a Lens) -> Option<Self> {
+    fn new(lens: &'a Optics) -> Option<Self> {
         lens.largest_semi_diameter_mm()?;
-        let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::Baseline).ok()?;
+        let tracer = lens.tracer(Indices::At(lens.reference_nm)).ok()?;
         Some(Self { lens, tracer })
     }
 
-    /// Lines of sight of each point by way of the paraxial exit pupil: its middle and a ring on its edge, another beyond.
+    /// Traces lines of sight from each point through the paraxial exit pupil: its center, two rings inside it and one beyond it.
     fn sights(&self, points: &[DVec3]) -> Vec<Sights> {
         let lens = self.lens;
         let first = lens.first_order(lens.reference_nm);
@@ -185,13 +191,13 @@ impl<'a> Aim<'a> {
         self.traced(points, &targets)
     }
 
-    /// The real exit pupil, as points of the imager see it.
+    /// Finds the real exit pupil as seen from points of the imager.
     fn pupil(&self, points: &[DVec3], search: Search<'_>) -> Option<RearPupil> {
         let Search { effort, workers } = search;
         RearPupil::search_by(self.lens, &self.tracer, points, [self.lens.reference_nm; 2], workers, effort)
     }
 
-    /// Lines of sight of each point by way of the real exit pupil.
+    /// Traces lines of sight from each point through the real exit pupil.
     fn through(&self, pupil: &RearPupil, points: &[DVec3]) -> Vec<Sights> {
         let step = |k: usize| (k as f64 + 0.5) / CELLS as f64;
         let (u, v): (Vec<f64>, Vec<f64>) = (0..CELLS * CELLS).map(|i| (step(i % CELLS), step(i / CELLS))).unzip();
@@ -219,7 +225,7 @@ impl<'a> Aim<'a> {
             rays.restart(targets.len());
             let c = rays.columns_mut();
             for (i, target) in targets.iter().enumerate() {
-                // A pupil behind the film is looked at from it all the same, along the same line.
+                // A pupil behind the film lies on the same line, so the ray runs away from it.
                 let way = (*target - *point).normalize_or_zero();
                 let way = if way.z > 0.0 { -way } else { way };
                 (c.x[i], c.y[i], c.z[i]) = (*point).into();
@@ -233,7 +239,7 @@ impl<'a> Aim<'a> {
     }
 }
 
-/// The lines of sight of the rays that passed.
+/// Returns the lines of sight of the rays that passed.
 fn sights(rays: &RayBatch) -> Sights {
     let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
     let sight = |i: usize| {

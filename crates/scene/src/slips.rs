@@ -1,15 +1,15 @@
-//! What people write from other programs and from cameras, and how it is written here: `source: flower.jpg`, `blades: 6`, `fov: 40 deg`.
+//! Hints for what people write out of habit from other programs and cameras: `source: flower.jpg`, `blades: 6`, `fov: 40 deg`.
 
 use crate::bundled::Bundled;
 use spectra_core::math::tan;
 use spectra_core::params::{Angle, Fault, Length, Node, Params, Value};
 
-/// Endings of pictures that are read.
+/// File extensions of pictures that can be read.
 const PICTURES: [&str; 9] = ["exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "hdr"];
-/// Frames of rolls of film, which are asked for by the name of the film.
+/// Hint for users who name roll film instead of a frame format.
 const OF_120: &str = "120 film holds frames of several shapes: `6x4.5`, `6x6`, `6x7`, `6x9`, `6x12` or `6x17`";
 
-/// The hint for a fault that is such a slip.
+/// Returns the hint for a fault that is such a slip.
 pub(crate) fn hint(fault: &Fault, scene: &Params) -> Option<String> {
     let root = scene.node();
     let key = fault.path.rsplit('.').next().unwrap_or_default();
@@ -36,7 +36,7 @@ pub(crate) fn hint(fault: &Fault, scene: &Params) -> Option<String> {
     if key == "halation" && fault.message.starts_with("unknown value") {
         let stronger = "{entering: 0.3, transmittance: 0.35}";
         return Some(format!(
-            "`halation: off`; left out it is the stock's; stronger or weaker: `halation: {stronger}`"
+            "`halation: off`, or leave it out for that of the stock; stronger or weaker: `halation: {stronger}`"
         ));
     }
     let is_text_wanted = fault.hint.is_none() && fault.message.ends_with("expected a text");
@@ -50,12 +50,12 @@ pub(crate) fn hint(fault: &Fault, scene: &Params) -> Option<String> {
         && let Some(percent) = at(&fault.path).and_then(written)
         && let Some(part) = percent.strip_suffix('%').and_then(|number| number.trim().parse::<f64>().ok())
     {
-        return Some(format!("parts of one: `{}`", part / 100.0));
+        return Some(format!("write it as a fraction of 1: `{}`", part / 100.0));
     }
     None
 }
 
-/// A scalar as it was written.
+/// Returns a scalar as it was written.
 fn written(node: &Node) -> Option<String> {
     match &node.value {
         Value::String(text) => Some(text.clone()),
@@ -69,13 +69,13 @@ fn unknown_key(section: &str, key: &str, value: &Node, root: &Node) -> Option<St
     match (section, key) {
         ("lens", "blades" | "aperture-blades" | "iris") => {
             let blades = given.filter(|text| text.parse::<u8>().is_ok()).unwrap_or("6".to_owned());
-            Some(format!("the blades are those of the stop: `aperture: {{shape: iris, blades: {blades}}}`"))
+            Some(format!("the blades belong to the stop: `aperture: {{shape: iris, blades: {blades}}}`"))
         }
         ("lens", "focal_length" | "focal" | "zoom") => {
             let to = given.map_or("85mm".to_owned(), |text| text.replace(' ', ""));
             let to = if to.ends_with(|c: char| c.is_ascii_digit()) { format!("{to}mm") } else { to };
             Some(format!(
-                "`focal-length: {to}` scales the lens with all its lengths; `spectra list lens` shows what focal lengths there are"
+                "`focal-length: {to}` scales the whole lens; `spectra list lens` shows which focal lengths there are"
             ))
         }
         ("source", "fov" | "field-of-view" | "angle-of-view") => Some(width_of_view(value, root)),
@@ -88,12 +88,12 @@ fn unknown_key(section: &str, key: &str, value: &Node, root: &Node) -> Option<St
             "the sun is a source, alone or over another one: `source: {kind: sun, field: [15 deg, 9 deg], over: {kind: picture, ...}}`"
                 .to_owned(),
         ),
-        (_, "iso") => Some("the speed is the film's: `film: {stock: kodak-tri-x-400, metering: average}`; `compensation: 1` adds a stop".to_owned()),
+        (_, "iso") => Some("the film sets the speed: `film: {stock: kodak-tri-x-400, metering: average}`; `compensation: 1` adds a stop".to_owned()),
         _ => None,
     }
 }
 
-/// How wide a source is that spans this angle at its distance.
+/// Returns a hint with the width of a source that spans this angle at its distance.
 fn width_of_view(value: &Node, root: &Node) -> String {
     let angle = value.parse::<Angle>().ok().map(Angle::rad).filter(|rad| (0.0..std::f64::consts::PI).contains(rad));
     let distance = root.at_path("source.distance").and_then(|node| node.parse::<Length>().ok()).map(Length::mm);
@@ -106,12 +106,12 @@ fn width_of_view(value: &Node, root: &Node) -> String {
     format!("`width: fill` fills the frame of the lens{width}")
 }
 
-/// A picture, or a kind with its keys behind it, in place of a kind.
+/// Returns a hint for a picture, or for a kind followed by its keys, written as a kind.
 fn kind(stage: &str, typed: &str) -> Option<String> {
     let ending = typed.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     if stage == "source" && ending.is_some_and(|ending| PICTURES.contains(&ending.as_str())) {
         return Some(format!(
-            "a picture is named by `source: {{kind: picture, file: {typed}, distance: 2 m, width: fill}}`"
+            "write a picture as `source: {{kind: picture, file: {typed}, distance: 2 m, width: fill}}`"
         ));
     }
     let (name, keys) = typed.split_once('{')?;
@@ -124,11 +124,13 @@ fn kind(stage: &str, typed: &str) -> Option<String> {
     (!keys.is_empty()).then(|| format!("write `{own}: {{kind: {}, {}}}`", name.trim(), keys.join(", ")))
 }
 
-/// A drawing, a shape or a number of blades in place of the map.
+/// Returns a hint for a drawing, a shape or a number of blades written as the `aperture`.
 fn aperture(typed: &str) -> Option<String> {
     let ending = typed.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     if ending.is_some_and(|ending| ending == "svg" || PICTURES.contains(&ending.as_str())) {
-        return Some(format!("a drawing at the stop is `aperture: {{shape: mask, file: {typed}, width: 24 mm}}`"));
+        return Some(format!(
+            "write a drawing at the stop as `aperture: {{shape: mask, file: {typed}, width: 24 mm}}`"
+        ));
     }
     let number: String = typed.chars().take_while(char::is_ascii_digit).collect();
     match (typed, number.parse::<u8>()) {
@@ -138,7 +140,8 @@ fn aperture(typed: &str) -> Option<String> {
     }
 }
 
-/// What to say of a film that is not bundled: camera films only, those first that are like it by a word or by the speed.
+/// Returns a hint for a film that is not bundled. It lists camera films only, the most similar ones (by a word, or by the speed)
+/// first.
 #[must_use]
 pub fn other_films(typed: &str, camera: &[String]) -> String {
     let words = |name: &str| -> Vec<String> {
@@ -147,7 +150,7 @@ pub fn other_films(typed: &str, camera: &[String]) -> String {
     };
     let digits = |word: &str| word.chars().filter(char::is_ascii_digit).collect::<String>();
     let mine = words(typed);
-    // A word alike counts more than a speed alike.
+    // An equal word counts more than an equal speed.
     let likeness = |name: &String| -> usize {
         let theirs = words(name);
         let same = mine.iter().filter(|word| theirs.contains(word)).count();

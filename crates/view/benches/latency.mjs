@@ -1,11 +1,12 @@
-// How long a person waits for the first picture after a slider moved: node latency.mjs FOLDER CHROMIUM SPECTRA SCENE [EVENTS [ONLY]]
+// Measures how long a person waits for the first picture after a slider moved:
+// node latency.mjs FOLDER CHROMIUM SPECTRA SCENE [EVENTS [ONLY]]
 //
-// ONLY is a part of the names of the controls to be turned. The CPU time of the server is given for each event, too, the work on the
-// whole picture in the pauses included: it is what can be compared on a machine that is not idle.
+// ONLY is a part of the names of the controls to change. The server's CPU time per event is printed, too; it includes the work on the
+// whole picture in the pauses, and can be compared even on a busy machine.
 //
 // FOLDER holds node_modules/playwright-core. Each event sets a control of the page as a hand does; its time ends when the browser has
-// painted the first picture that has the value. Events come at random pauses of 150 to 600 ms, in the midst of whatever is traced.
-// "Lens" is how long after that picture the cross-section of the lens was another one.
+// painted the first picture that has the value. Events come after random pauses of 150 to 600 ms, while other pictures are being traced.
+// "Lens" is the time from that picture until the cross-section of the lens changed.
 import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -32,7 +33,7 @@ await page.waitForFunction(() => Number(document.body.dataset.frame) > 0);
 console.log(`page and first picture: ${Date.now() - opened} ms`);
 await page.waitForTimeout(3000);
 
-/** What the server has taken of the processors, ms; 0 where /proc does not say. */
+/** Returns the CPU time of the server, ms; 0 if /proc does not have it. */
 const cpu = () => {
   try {
     const fields = readFileSync(`/proc/${server.pid}/stat`, "utf8").split(") ")[1].split(" ");
@@ -42,10 +43,10 @@ const cpu = () => {
   }
 };
 
-// The same pauses in every run.
+// A fixed seed gives the same pauses in every run.
 let seed = 1;
 const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
-/** Sets a control; says when a picture of it was painted and, if asked, the lens drawn. */
+/** Sets a control; returns when a picture with it was painted and, for a control of the lens, when the lens was drawn. */
 const set = ([path, value]) => page.evaluate(async ([path, value]) => {
   const body = document.body;
   const painted = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)));
@@ -65,7 +66,7 @@ const set = ([path, value]) => page.evaluate(async ([path, value]) => {
   await painted();
   got.first = performance.now() - start;
   got.rays = document.querySelector("#state").textContent;
-  // Nothing else changes how the lens is drawn.
+  // Other controls do not change the drawing of the lens.
   if (!path.startsWith("lens.") && path !== "film.stock") return got;
   for (const end = performance.now() + 400; document.querySelector("#section").getAttribute("src") === lens;) {
     if (performance.now() > end) return got;
@@ -75,7 +76,7 @@ const set = ([path, value]) => page.evaluate(async ([path, value]) => {
   return got;
 }, [path, value]);
 
-/** Brightness, which asks nothing of the server: until it is painted. */
+/** Sets the brightness, which needs no request to the server; returns when it was painted. */
 const brighten = (value) => page.evaluate(async (value) => {
   const stops = document.querySelector("#stops");
   const start = performance.now();
@@ -90,7 +91,7 @@ const flip = () => { let on = true; return () => (on = !on); };
 const word = (...words) => { let i = 0; return () => words[(i += 1) % words.length]; };
 const whole = (least, most) => { let i = 0; return () => least + ((i += 1) % (most - least + 1)); };
 const of = (all, part) => all.sort((a, b) => a - b)[Math.min(all.length - 1, Math.floor(part * all.length))]?.toFixed(0) ?? "-";
-/** Turns a control so often, and says how long each took. */
+/** Changes a control repeatedly, and prints how long each change took. */
 async function turned([path, value, count], act = set, name = path) {
   if (!name.includes(only)) return;
   const times = [], lenses = [], wholes = [], before = cpu();
@@ -107,7 +108,7 @@ async function turned([path, value, count], act = set, name = path) {
   console.log(`${name}: first picture ${of(times, 0.5)} ms (median), ${of(times, 0.95)} ms (95 %), of ${times.length}${lens}${whole}; CPU ${((cpu() - before) / Number(count)).toFixed(0)} ms${fault ? `; ${fault}` : ""}`);
 }
 
-/** The page anew, with the scene as its file has it, and these values set. */
+/** Opens the page again with the scene of the file, and sets these values. */
 async function anew(values) {
   await page.goto(new URL("/", address).href);
   await page.waitForFunction(() => Number(document.body.dataset.frame) > 0 && document.querySelector("[data-path]"));
@@ -136,7 +137,7 @@ for (const [values, rows] of [
   for (const one of wanted) await turned(one);
 }
 
-// Until a picture has all its samples: of a scene that asks for a noise, until it is as clean as that.
+// Waits until a picture has all its samples, or, if the scene states a noise, until it is that clean.
 const ended = async (at) => {
   const got = await set(at);
   if (got) got.whole = await page.evaluate(async (start) => {
@@ -152,7 +153,7 @@ if ("lens.f-number, all samples".includes(only)) {
   await turned(["", () => ["lens.f-number", numbers(2, 5.6)()], events / 10], ended, "lens.f-number, all samples");
 }
 
-// Development alone of a large picture: a small one comes first, then the whole, and no ray is traced.
+// Changes only the development of a large picture: a small one comes first, then the whole one, and no ray is traced.
 const large = async (values) => {
   await anew(values);
   await page.locator("#width").selectOption("1920");

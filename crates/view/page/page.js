@@ -1,8 +1,8 @@
 // @ts-check
 // The page of `spectra view`: a picture that follows the controls beside it.
 //
-// Pictures come as linear light in sRGB primaries. Brightness, false color, zoom, A and B and the histogram are made of that here;
-// only what changes the scene goes to the server.
+// Pictures arrive as linear light in sRGB primaries. Brightness, false color, zoom, A and B and the histogram are computed from it here;
+// only changes of the scene go to the server.
 
 /** @typedef {{is: "number", before: string, unit: string, least: number?, most: number?, whole: boolean}} NumberKind */
 /** @typedef {{is: "pair", unit: string, least: number?, most: number?}} PairKind */
@@ -16,7 +16,7 @@
  *   exposure_s?: number, lens?: string, film?: string, focus?: string, flat?: boolean, left_out?: string[], warnings?: Fault[], fault?: {path: string, faults: Fault[]}?}} Head */
 /** @typedef {{across: number, down: number, light: Float32Array}} Light */
 /**
- * A picture, and its light: of a draft, fewer pixels than the picture will have.
+ * A picture and its light; the light of a draft has fewer pixels than the whole picture.
  * @typedef {Light & {head: Head, width: number, height: number, levels?: Light[]}} Picture
  */
 
@@ -57,14 +57,14 @@ let now = null;
 let kept = null;
 let keptIsShown = false;
 let view = { zoom: 1, x: 0, y: 0 };
-/** What is to be sent, by path; sent one after the other, the last value of each. @type {Map<string, any>} */
+/** Changes to send, by path, the last value of each; they are sent one after the other. @type {Map<string, any>} */
 const turned = new Map();
-/** What was sent and is not taken up yet, by path: its number among all that were turned. @type {Map<string, number>} */
+/** Changes that were sent and are not applied yet, by path: their numbers among all changes. @type {Map<string, number>} */
 const sent = new Map();
-/** What is not taken: by path, with what is wrong. Such a field stays red, and keeps what was typed until it is turned again or let go. @type {Map<string, Fault[]>} */
+/** Refused changes, by path, with the errors. Such a field stays red and keeps what was typed until it is changed again or given up. @type {Map<string, Fault[]>} */
 const refused = new Map();
 let isSending = false;
-/** What the scene's controls say now. @type {Said?} */
+/** Current state of the scene's controls. @type {Said?} */
 let said = null;
 
 /** @param {string} path @param {any} [body] */
@@ -89,10 +89,10 @@ async function send() {
     const [[path, value]] = turned;
     turned.delete(path);
     try {
-      // Until its number is known, it is not taken up.
+      // Until its number is known, the change counts as not applied.
       sent.set(path, Infinity);
       const answer = await post(`/turn?desk=${desk}`, { path, value });
-      // Who answers without a number has taken it.
+      // An answer without a number means that the change is applied.
       if (Number.isFinite(answer?.turn)) sent.set(path, answer.turn);
       else sent.delete(path);
     } catch (error) {
@@ -104,7 +104,7 @@ async function send() {
   refresh().catch(() => {});
 }
 
-/** A value is not taken: its field is red. @param {string} path @param {Fault[]} faults */
+/** Marks the value of a control as refused; its field becomes red. @param {string} path @param {Fault[]} faults */
 function refuse(path, faults) {
   refused.set(path, faults);
   sync();
@@ -117,7 +117,7 @@ const codes = Uint8ClampedArray.from({ length: 4097 }, (_, i) => {
   const v = i / 4096;
   return Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
 });
-/** Numbers of 16 bits, IEEE 754 binary16, as what they are. */
+/** Values of all 16-bit floats (IEEE 754 binary16), by their bits. */
 const halves = Float32Array.from({ length: 65536 }, (_, bits) => {
   const [exponent, rest] = [(bits >> 10) & 31, (bits & 1023) / 1024];
   const size = exponent === 31 ? (rest ? NaN : Infinity) : exponent === 0 ? rest * 2 ** -14 : (1 + rest) * 2 ** (exponent - 15);
@@ -130,7 +130,7 @@ const bands = [
 ];
 
 const inked = document.createElement("canvas");
-/** What `inked` holds, in pixels of its level, and where that lies in it. */
+/** The part of the picture that `inked` holds, in pixels of its level. */
 let inkedPart = { x: 0, y: 0, across: 0, down: 0, level: 0 };
 let isInked = false;
 
@@ -138,7 +138,7 @@ let isInked = false;
 const code = (v) => codes[v >= 1 ? 4096 : v > 0 ? (4096 * v) | 0 : 0];
 
 /**
- * The light of a picture in parts of 2^level pixels, each the mean of those that it covers; made when it is first asked for.
+ * Returns the light of a picture reduced by 2^level, each pixel the mean of those that it covers. Levels are made when first needed.
  * @param {Picture} picture @param {number} level @returns {Light}
  */
 function lightOf(picture, level) {
@@ -160,13 +160,13 @@ function lightOf(picture, level) {
   return picture.levels[level];
 }
 
-/** Inks what is seen of a picture, no finer than it is seen. @param {Picture} picture @param {number} scale pixels of the canvas to one of the picture */
+/** Draws the visible part of a picture into `inked`, no finer than it is shown. @param {Picture} picture @param {number} scale pixels of the canvas per pixel of the picture */
 function ink(picture, scale) {
   const finest = Math.max(0, Math.floor(Math.log2(picture.across / (picture.width * scale))));
   const level = Math.min(finest, 12);
   const { across, down, light } = lightOf(picture, level);
   const [perX, perY] = [across / picture.width, down / picture.height];
-  // One pixel more on each side, for what smooths them.
+  // One more pixel on each side, for smoothing.
   const x = Math.max(0, Math.floor(view.x * perX) - 1);
   const y = Math.max(0, Math.floor(view.y * perY) - 1);
   const right = Math.min(across, Math.ceil((view.x + picture.width / view.zoom) * perX) + 1);
@@ -204,17 +204,17 @@ function ink(picture, scale) {
   isInked = true;
 }
 
-/** So many pixels of a picture are enough for the shape of its histogram. */
+/** Number of pixels that are enough for the shape of a histogram. */
 const COUNTED = 200_000;
 
-/** Counts the codes of a picture, of a large one each so many pixels. @param {Picture} picture */
+/** Counts the codes of a picture, of a large one only for every n-th pixel. @param {Picture} picture */
 function count(picture) {
   const { light, across } = picture;
   const gain = 2 ** Number(stops.value);
   const counts = [0, 1, 2].map(() => new Uint32Array(256));
   const [reds, greens, blues] = counts;
   let step = Math.max(1, Math.round(light.length / 3 / COUNTED));
-  // All columns have their turn.
+  // The step must not divide the width, so that all columns are counted.
   while (step > 1 && across % step === 0) step += 1;
   for (let i = 0; i < light.length; i += 3 * step) {
     reds[code(gain * light[i])] += 1;
@@ -230,7 +230,7 @@ function drawHistogram(counts) {
   if (!context) return;
   context.clearRect(0, 0, histogram.width, histogram.height);
   context.globalCompositeOperation = matchMedia("(prefers-color-scheme: dark)").matches ? "lighter" : "multiply";
-  // The ends hold what is clipped: they would flatten all others.
+  // The first and the last bin hold clipped values, which would flatten all others.
   const most = Math.max(1, ...counts.map((c) => Math.max(...c.subarray(1, 255))));
   counts.forEach((c, i) => {
     context.fillStyle = ["#d84a42", "#3fa05a", "#4878d0"][i];
@@ -248,7 +248,7 @@ function shown() {
   return keptIsShown && kept ? kept : now;
 }
 
-/** Inks and counts anew, then draws. */
+/** Renders the picture and its histogram again, then draws them. */
 function redraw() {
   isInked = false;
   isCounted = false;
@@ -264,7 +264,7 @@ function draw() {
     isAsked = false;
     const picture = shown();
     if (!picture) return;
-    // A tall picture is seen whole.
+    // A tall picture is shown whole.
     canvas.style.setProperty("--aspect", String(picture.width / picture.height));
     const across = Math.max(1, Math.round(canvas.clientWidth * devicePixelRatio));
     const down = Math.round((across * picture.height) / picture.width);
@@ -273,7 +273,7 @@ function draw() {
     if (!context) return;
     const scale = (across / picture.width) * view.zoom;
     if (!isInked) ink(picture, scale);
-    // Of a draft, bilinear: a finer one takes as long as half of the draft itself.
+    // A draft is smoothed bilinearly; a better filter would take half as long as the draft itself.
     context.imageSmoothingEnabled = scale < 2 || picture.across !== picture.width;
     context.imageSmoothingQuality = "low";
     context.fillStyle = "#000";
@@ -300,7 +300,7 @@ function bound() {
   draw();
 }
 
-/** @param {number} factor @param {number} u part of the canvas across @param {number} v part of it down */
+/** Zooms around a place on the canvas. @param {number} factor @param {number} u fraction of the canvas across @param {number} v fraction down */
 function zoom(factor, u = 0.5, v = 0.5) {
   const picture = shown();
   if (!picture) return;
@@ -311,7 +311,7 @@ function zoom(factor, u = 0.5, v = 0.5) {
   bound();
 }
 
-/** The pixel under a place on the screen. @param {MouseEvent} event */
+/** Returns the pixel under the pointer. @param {MouseEvent} event */
 function pixelAt(event) {
   const picture = shown();
   if (!picture) return null;
@@ -440,7 +440,7 @@ function list(to, faults) {
   to.hidden = faults.length === 0;
 }
 
-/** What is wrong with the scene or the server, apart from values that are not taken. @type {Fault[]} */
+/** Errors of the scene or the server, apart from refused values. @type {Fault[]} */
 let faults = [];
 /** @param {Fault[]} now */
 function showFault(now) {
@@ -448,7 +448,7 @@ function showFault(now) {
   sync();
 }
 
-/** The name of a control, as a camera has it. @param {string} path */
+/** Returns the name of a control, in a photographer's words if there are any. @param {string} path */
 function named(path) {
   const known = NAMES[/** @type {keyof typeof NAMES} */ (path)];
   if (known) return known;
@@ -457,14 +457,14 @@ function named(path) {
 }
 
 /**
- * Every field says what the picture has, but for those that are red, those that wait for their picture, and the one that is being typed in.
+ * Makes every field show what the picture has, except red fields, fields that wait for their picture, and the one being typed in.
  */
 function sync() {
   const box = part("fault", HTMLElement);
   const lines = faults.map((fault) => line(fault));
   for (const [path, wrong] of refused) {
     for (const fault of wrong) {
-      // Where it stands in a command line helps nobody here.
+      // The place of a value in a command line is of no use here.
       const shown = line({ ...fault, place: undefined, message: `${named(path)}: ${fault.message}` });
       const back = document.createElement("button");
       back.type = "button";
@@ -493,7 +493,7 @@ function sync() {
   }
 }
 
-/** What a control says in the picture, in words. @param {string} path */
+/** Returns the value of a control in the picture, in words. @param {string} path */
 function shownValue(path) {
   const control = said?.controls.find((control) => control.path === path);
   if (!control || control.value === null) return "not set";
@@ -502,13 +502,13 @@ function shownValue(path) {
   return Array.isArray(control.value) ? control.value.join(", ") : String(control.value);
 }
 
-/** A value that was refused is given up: the field says again what the picture has. @param {string} path */
+/** Gives up a refused value: the field shows what the picture has again. @param {string} path */
 function letGo(path) {
   refused.delete(path);
   given.set(path, said?.refused?.[path]);
   sync();
 }
-/** Refusals that were seen and given up. @type {Map<string, any>} */
+/** Refusals that the user has given up, by path. @type {Map<string, any>} */
 const given = new Map();
 
 // Controls ----------------------------------------------------------------------------------------------------------------------
@@ -517,7 +517,7 @@ const groups = [
   ["picture", "Picture"], ["film", "Film"], ["lens", "Lens"], ["imager", "Frame"], ["source", "Light and subject"], ["variables", "Variables"],
   ["wavelengths", "Wavelengths"], ["render", "Render"],
 ];
-/** Names of controls that a camera has words for. */
+/** Names of controls for which photographers have words. */
 const NAMES = {
   picture: "Picture", "lens.file": "Lens", "lens.f-number": "Aperture", "lens.focus": "Focus", "lens.aperture": "Blades",
   "lens.aperture.blades": "Blades", "film.stock": "Film", "film.exposure": "Shutter", "film.compensation": "Exposure +/-",
@@ -548,7 +548,7 @@ function build(controls) {
         if (details.open && details.children.length === 1) details.append(...rest.map(row));
         sync();
       };
-      // Made when it is looked at: hundreds of fields cost time.
+      // Rows are made when the group is opened, because hundreds of fields take time.
       details.addEventListener("toggle", fill);
       if (details.open) details.append(...rest.map(row));
       set.append(details);
@@ -556,13 +556,13 @@ function build(controls) {
     return [set];
   }));
 }
-/** Groups whose further controls are seen. @type {Set<string>} */
+/** Groups whose further controls are open. @type {Set<string>} */
 const opened = new Set();
-/** What fills a row with the value that the picture has. @type {Map<HTMLElement, () => void>} */
+/** For each row, the function that fills it with the value that the picture has. @type {Map<HTMLElement, () => void>} */
 const fills = new Map();
-/** The value of a control now. @param {string} path */
+/** Returns the current value of a control. @param {string} path */
 const valueOf = (path) => said?.controls.find((control) => control.path === path)?.value ?? null;
-/** Whether somebody types in a field. @param {HTMLInputElement} field */
+/** Returns whether somebody is typing in a field. @param {HTMLInputElement} field */
 const isTypedIn = (field) => field.dataset.typed === "true" && document.activeElement === field;
 
 let ids = 0;
@@ -606,7 +606,7 @@ function row(control) {
       select.value = isKnown ? value : "";
       for (const tile of tiles) {
         const isOwn = tile.value === value;
-        // What is pressed is seen, once: whoever scrolls is not led back.
+        // A newly selected tile is scrolled into view once; later scrolling by the user is left alone.
         if (isOwn && tile.getAttribute("aria-pressed") !== "true") setTimeout(() => bringIn(tile));
         tile.setAttribute("aria-pressed", String(isOwn));
       }
@@ -655,13 +655,13 @@ function row(control) {
   return div;
 }
 
-/** Scrolls a strip to one of its tiles. @param {HTMLElement} tile */
+/** Scrolls the strip of tiles to one of them. @param {HTMLElement} tile */
 function bringIn(tile) {
   const strip = tile.parentElement;
   if (strip) strip.scrollLeft += tile.getBoundingClientRect().left - strip.getBoundingClientRect().left - 40;
 }
 
-/** Films side by side. @param {Tile[]} tiles @param {(word: string) => void} send */
+/** Makes the tiles of films that lie side by side. @param {Tile[]} tiles @param {(word: string) => void} send */
 function tilesOf(tiles, send) {
   return tiles.map(({ word, title, iso, kind }) => {
     const tile = document.createElement("button");
@@ -687,7 +687,7 @@ function unit(text) {
   return span;
 }
 
-/** A number to six digits. @param {number?} value */
+/** Returns a number as text with six digits. @param {number?} value */
 const shortly = (value) => value === null ? "" : String(Number(Number(value).toPrecision(6)));
 
 /** @param {{least: number?, most: number?, whole?: boolean}} kind */
@@ -701,7 +701,7 @@ function numberField(kind) {
   return field;
 }
 
-/** Knows when somebody types in a field. @param {HTMLInputElement} field */
+/** Records when somebody types in a field. @param {HTMLInputElement} field */
 function typed(field) {
   field.addEventListener("input", () => { field.dataset.typed = "true"; });
   field.addEventListener("change", () => { field.dataset.typed = "false"; });
@@ -711,28 +711,28 @@ function typed(field) {
   });
 }
 
-/** Stops of an aperture ring, a third apart, as they are engraved. */
+/** Stops of an aperture ring, a third of a stop apart, as they are engraved. */
 const STOPS = [0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.4, 1.6, 1.8, 2, 2.2, 2.5, 2.8, 3.2, 3.5, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9, 10, 11, 13, 14, 16, 18, 20, 22, 25, 29, 32, 36, 40, 45, 51, 57, 64];
-/** Times of a shutter, a third of a stop apart: one over these, seconds; then whole seconds. */
+/** Times of a shutter, a third of a stop apart, seconds: one over these numbers, then longer times. */
 const SHUTTER = [8000, 6400, 5000, 4000, 3200, 2500, 2000, 1600, 1250, 1000, 800, 640, 500, 400, 320, 250, 200, 160, 125, 100, 80, 60, 50, 40, 30, 25, 20, 15, 13, 10, 8, 6, 5, 4, 3, 2.5, 2]
   .map((part) => 1 / part).concat([0.6, 0.8, 1, 1.3, 1.6, 2, 2.5, 3.2, 4, 5, 6, 8, 10, 13, 15, 20, 25, 30, 60, 120, 240, 480]);
 
-/** A time as a camera has it. @param {number} seconds */
+/** Returns a time as a camera shows it. @param {number} seconds */
 function timeSaid(seconds) {
   const part = 1 / seconds;
   if (seconds < 0.35 && Math.abs(part - Math.round(part)) < 1e-4 * part) return `1/${Math.round(part)} s`;
   return `${Number(seconds.toPrecision(5))} s`;
 }
 
-/** Seconds of `1/80 s`, `1/80`, `0.5`; not a number of anything else. @param {string} text */
+/** Parses `1/80 s`, `1/80` or `0.5` into seconds; NaN for anything else. @param {string} text */
 function timeOf(text) {
   const found = /^\s*([0-9.]+)\s*(?:\/\s*([0-9.]+))?\s*s?\s*$/.exec(text);
   return found ? Number(found[1]) / Number(found[2] ?? 1) : NaN;
 }
 
 /**
- * A slider and a field. A ring of stops and a shutter click; what else is above zero and has no narrow range slides by factors, around where it
- * stands.
+ * Makes a slider and a field for a number. Aperture and shutter click in stops. Other values above zero without a narrow range slide by
+ * factors around the current value.
  * @param {Control} control @param {NumberKind} kind @param {string} id @param {(value: number) => void} send @returns {[HTMLElement[], () => void]}
  */
 function numberFields(control, kind, id, send) {
@@ -740,7 +740,7 @@ function numberFields(control, kind, id, send) {
   const isTime = path === "film.exposure" && kind.unit === "s";
   const field = numberField(kind);
   if (isTime) {
-    // `1/80 s` is no number to a browser.
+    // To a browser, `1/80 s` is not a number.
     field.type = "text";
     field.removeAttribute("step");
   }
@@ -800,13 +800,13 @@ function numberFields(control, kind, id, send) {
   });
   field.addEventListener("change", () => {
     const next = read();
-    // What is no number is none that the picture could have.
+    // Anything that is not a number goes back to the value of the picture.
     if (field.value === "" || !Number.isFinite(next)) sync();
     else send(next);
   });
   const fill = () => {
     if (!isTypedIn(field)) show(valueOf(path));
-    // A slider that goes by factors goes on from where it was taken.
+    // While it is dragged, a slider by factors keeps the value around which it started.
     if (!isDragged && document.activeElement !== slider) place();
   };
   place();
@@ -815,7 +815,7 @@ function numberFields(control, kind, id, send) {
 
 // Work --------------------------------------------------------------------------------------------------------------------------
 
-/** The lens and the shape of the form follow what was set: `lens.focus`, a map, other keys. */
+/** The shape of the form, as JSON; the form is built again when it changes, since other values may bring other controls. */
 let formSays = "";
 async function refresh() {
   const answer = await fetch(`/controls?desk=${desk}`);
@@ -827,7 +827,7 @@ async function refresh() {
   document.title = `${now.name} \u2013 spectra`;
   part("study", HTMLElement).hidden = !now.is_prism;
   save.disabled = !now.saves || now.changes === 0;
-  save.title = now.saves ? "" : "This is no file of yours: save it as one.";
+  save.title = now.saves ? "" : "This scene is not a file of yours: use Save as.";
   undo.disabled = !now.undos;
   const widths = now.widths.map(String).join();
   if (width.dataset.widths !== widths) {
@@ -835,7 +835,7 @@ async function refresh() {
     width.replaceChildren(...now.widths.map((w) => new Option(`${w} px`, String(w))));
   }
   width.value = String(now.width ?? 480);
-  // What the controls have is taken up, or refused.
+  // Changes up to this number are applied or refused.
   for (const [path, number] of sent) {
     if (number <= (now.turns ?? Infinity)) sent.delete(path);
   }
@@ -864,7 +864,7 @@ async function refresh() {
   }
   sync();
 }
-/** Values that the scene refused, as it was heard last. @type {Set<string>} */
+/** Paths of the values that the scene refused according to the last answer. @type {Set<string>} */
 const isTold = new Set();
 
 // Spectra -----------------------------------------------------------------------------------------------------------------------
@@ -872,14 +872,14 @@ const isTold = new Set();
 /** @typedef {{nm: number[], values: number[]}} Curve */
 /** @typedef {{light: Curve & {lines: number[][]}, layers: (Curve & {name: string})[]}} Spectra */
 
-/** The color of a curve by where it is highest. @param {Curve} curve */
+/** Returns the color of a curve by the wavelength of its peak. @param {Curve} curve */
 function tint(curve) {
   const peak = curve.nm[curve.values.indexOf(Math.max(...curve.values))] ?? 550;
   return peak < 490 ? "short" : peak < 580 ? "middle" : "long";
 }
 
 let spectraSaid = "";
-/** The light's spectrum and the film's layers, each by its largest value. */
+/** Draws the spectrum of the light and the sensitivities of the film's layers, each scaled to its largest value. */
 async function drawSpectra() {
   const answer = await fetch(`/spectra?desk=${desk}`);
   if (!answer.ok) return;
@@ -909,10 +909,10 @@ async function drawSpectra() {
   for (const [nm, power] of known.light.lines) if (nm >= from && nm <= to) put("line", { class: "light", x1: x(nm), x2: x(nm), y1: 172, y2: y(power) });
   for (const layer of known.layers) put("path", { class: `layer ${tint(layer)}`, d: path(layer) });
   const names = known.layers.map((layer) => layer.name).join(", ");
-  part("spectra-said", HTMLElement).textContent = `Spectrum of the light (dashed)${names ? `, and what answers to it: ${names}` : ""}; each by its largest value.`;
+  part("spectra-said", HTMLElement).textContent = `Spectrum of the light (dashed)${names ? ` and sensitivity of ${names}` : ""}, each scaled to its largest value.`;
 }
 
-/** The lens as it is now. */
+/** Draws the current lens. */
 async function drawLens() {
   const ground = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
   const drawing = await fetch(`/section?desk=${desk}&ground=${ground}`);
@@ -924,10 +924,10 @@ async function drawLens() {
   section.hidden = !drawing.ok;
 }
 
-/** When the last change was made, and how long the whole picture took to be made ready before, ms. */
+/** Time of the last change, ms; `readyMs` is how long the last whole picture took to prepare, ms. */
 let changedAt = performance.now();
 let readyMs = 0;
-/** Counts on while nothing comes: ghosts and stars are searched for before the first ray of the whole picture. */
+/** Shows the elapsed time while nothing arrives: ghosts and stars are searched for before the first ray of the whole picture. */
 setInterval(() => {
   const head = now?.head;
   if (!head?.draft || head.flat || refused.size > 0 || !isDraftSeen) return;
@@ -940,10 +940,10 @@ setInterval(() => {
 }, 500);
 let isDraftSeen = false;
 
-/** What a draft leaves out that the picture will have. @param {Head} head */
+/** Returns what a picture leaves out that the whole picture will have. @param {Head} head */
 const leftOut = (head) => (head.left_out ?? []).join(" and ");
 
-/** Marks what is seen as what it is. @param {Head} head */
+/** Labels the picture as a draft, or as lacking ghosts or stars. @param {Head} head */
 function mark(head) {
   const isDraft = head.draft && !head.flat;
   badge.hidden = !isDraft && !leftOut(head);
@@ -973,7 +973,7 @@ function tell(head) {
     const exposed = seconds < 0.3 ? `1/${Math.round(1 / seconds)} s` : `${Number(seconds.toPrecision(2))} s`;
     part("lens", HTMLElement).textContent = [head.lens, `focus ${head.focus}`, head.film && `${head.film}, ${exposed}`].filter(Boolean).join("; ");
   } else if (head.fault && !head.fault.path) {
-    state.textContent = "the scene cannot be as it is set";
+    state.textContent = "the scene is not valid as it is set";
   }
 }
 
@@ -1002,7 +1002,7 @@ async function follow(signal) {
       if (!keptIsShown) redraw();
     }
     tell(head);
-    // The first picture of another scene: it may have other controls and another lens.
+    // Another scene may have other controls and another lens.
     if (head.scene !== undefined && head.scene !== scene) {
       scene = head.scene;
       refresh().catch(() => {});
@@ -1013,7 +1013,7 @@ async function follow(signal) {
     }
     if (head.reread !== undefined && head.reread > reread) {
       reread = head.reread;
-      saved.textContent = "The scene's file was saved: this is what it says now.";
+      saved.textContent = "The scene's file was changed; the page now shows its new content.";
     }
     document.body.dataset.frame = String(head.frame);
     if (head.turns !== undefined) document.body.dataset.turns = String(head.turns);
@@ -1031,7 +1031,7 @@ save.addEventListener("click", async () => {
   }
 });
 
-/** What a step back is known by among what was sent. */
+/** Key under which an undo is recorded in `sent`. */
 const BACK = "back";
 async function back() {
   if (undo.disabled) return;
@@ -1057,17 +1057,17 @@ addEventListener("keydown", (event) => {
   }
 });
 
-/** Hands a file to the browser's downloads. @param {Blob} blob @param {string} name */
+/** Gives a file to the browser as a download. @param {Blob} blob @param {string} name */
 function handOver(blob, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-  saved.textContent = `${name} is among the downloads of your browser.`;
+  saved.textContent = `${name} is in the downloads of your browser.`;
 }
 
-/** All pixels of what is seen, with its brightness. */
+/** Saves all pixels of the shown picture, with its brightness. */
 part("save-picture", HTMLButtonElement).addEventListener("click", () => {
   const picture = shown();
   if (!picture) return;
@@ -1091,22 +1091,22 @@ part("save-as", HTMLButtonElement).addEventListener("click", async () => {
   const answer = await fetch(`/scene?desk=${desk}`);
   const text = await answer.text();
   if (answer.ok && text) handOver(new Blob([text], { type: "text/yaml" }), `${said?.name ?? "scene"}.yaml`);
-  else saved.textContent = text.trim() || "there is no text of this scene here";
+  else saved.textContent = text.trim() || "the text of this scene is not available here";
 });
 
 part("copy", HTMLButtonElement).addEventListener("click", async () => {
   const answer = await fetch(`/command?desk=${desk}`);
   if (answer.status !== 200) {
-    saved.textContent = "there is no command for this here";
+    saved.textContent = "no command is available for this here";
     return;
   }
   const { command } = await answer.json();
-  // Where the browser lets nobody copy, it is there to be read.
+  // If the browser does not allow copying, the command can still be read.
   const isCopied = await navigator.clipboard?.writeText(command).then(() => true, () => false);
   saved.textContent = `${isCopied ? "Copied: " : ""}${command}`;
 });
 
-/** What can be opened, asked for when somebody looks. */
+/** Fills the list of scenes and photographs that can be opened. */
 async function offer() {
   if (open.options.length > 1) return;
   const answer = await fetch("/openable");
@@ -1118,7 +1118,7 @@ async function offer() {
     group.append(...names.map((name) => new Option(name, `${mark}${name}`)));
     return group;
   };
-  if (files.length > 0) open.append(group("Here", files, "f"));
+  if (files.length > 0) open.append(group("This folder", files, "f"));
   open.append(group("Bundled scenes", bundled, "b"));
 }
 open.addEventListener("change", async () => {
@@ -1147,7 +1147,7 @@ addEventListener("pagehide", () => {
 addEventListener("pageshow", (event) => event.persisted && location.reload());
 form.addEventListener("submit", (event) => event.preventDefault());
 
-/** Forgets what was seen of another scene. */
+/** Forgets everything about the previous scene. */
 function forget() {
   [now, kept, keptIsShown, formSays, spectraSaid, said, readyMs, isDraftSeen] = [null, null, false, "", "", null, 0, false];
   turned.clear();
@@ -1160,7 +1160,7 @@ function forget() {
   fit();
 }
 
-/** Ends the wait for a picture of a scene that is left. */
+/** Aborts the wait for a picture of a scene that was left. */
 let follows = new AbortController();
 try {
   offer().catch(() => {});

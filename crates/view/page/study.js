@@ -1,8 +1,8 @@
 // @ts-check
-// The dispersion study: a beam through a prism, ray by ray as it is traced. What is computed is computed by the server.
+// The dispersion study: a beam through a prism, ray by ray as it is traced. The server does all computation.
 
 /** @typedef {{nm: number, rgb: number[], points: number[][]}} Ray */
-/** What the viewed scene has of a prism. @typedef {{apex: number, side: number?, incidence: number, beam: number, glass: string?, light: string?, intensity: string, text: string?}} Start */
+/** Prism, beam and light of the viewed scene. @typedef {{apex: number, side: number?, incidence: number, beam: number, glass: string?, light: string?, intensity: string, text: string?}} Start */
 /** @typedef {{glasses: string[], lights: string[], start: Start?}} Choices */
 /** @typedef {{nm: number[], catalogue: number[], rows: number[], two: number[], three: number[], samples: number[][], a: number, b_nm2: number, apart: number[]}} Cauchy */
 /** @typedef {{outline: number[][], rays: number, nd: number, least_deviation: number[]?, deviation_deg: number?, spread_deg: number?, cauchy: Cauchy}} Shown */
@@ -40,13 +40,13 @@ const value = (name) => Number(field(name).value);
 const save = part("save", HTMLButtonElement);
 const saved = part("saved", HTMLElement);
 
-/** Stands for the text of the scene's file that the study began with; none where there is none to save to. */
+/** Hash of the text of the scene's file with which the study began; empty if there is no file to save to. */
 let text = "";
 /** @type {Shown?} */
 let shown = null;
 /** @type {Ray[]} */
 let rays = [];
-/** Which prism is meant: a later one ends the work on an earlier. */
+/** Number of the current prism; work on an earlier one stops. */
 let prism = 0;
 let isTracing = true;
 
@@ -68,10 +68,13 @@ function put(to, name, attributes, text) {
 
 // The prism ---------------------------------------------------------------------------------------------------------------------
 
-/** The point of a figure in mm: along the beam, and up. @param {number[]} at */
+/** Returns a point, in mm along the beam and up, as SVG coordinates. @param {number[]} at */
 const place = ([z, y]) => `${z.toFixed(3)},${(-y).toFixed(3)}`;
 
-/** The figure's parts stay while their places change, so that a handle keeps the keyboard. @param {string} kind @param {string} which */
+/**
+ * Returns a part of the figure, made if it is missing. Parts stay while their places change, so that a handle keeps the keyboard focus.
+ * @param {string} kind @param {string} which
+ */
 function kept(kind, which) {
   const there = figure.querySelector(which);
   if (there instanceof SVGElement) return there;
@@ -107,7 +110,7 @@ function drawPrism() {
   drawRays(0);
 }
 
-/** Draws what was traced from this ray on. @param {number} from */
+/** Draws the traced rays from this one on. @param {number} from */
 function drawRays(from) {
   const group = figure.querySelector("#rays");
   if (!(group instanceof SVGElement)) return;
@@ -129,7 +132,7 @@ figure.addEventListener("pointermove", (event) => {
   if (!dragged) return;
   const mm = 190 / figure.clientWidth;
   const [across, up] = [(event.clientX - dragged.x) * mm, (dragged.y - event.clientY) * mm];
-  // Degrees or mm a mm of the hand's way.
+  // Change in degrees or mm per mm of the pointer's movement.
   const by = { apex: across, incidence: across + up, side: -up - across, beam: up }[dragged.moves] ?? 0;
   set(dragged.moves, dragged.from + by);
 });
@@ -182,7 +185,7 @@ function drawGlass() {
     put(curves, "text", { x: 380, y: 33 + 20 * i }, text);
   });
   part("fits", HTMLElement).textContent =
-    `By rows: A = ${a.toFixed(5)}, B = ${b_nm2.toFixed(0)} nm². Farthest from the catalogue at the six lines: ` +
+    `By rows: A = ${a.toFixed(5)}, B = ${b_nm2.toFixed(0)} nm². Largest deviation from the catalogue at the six lines: ` +
     `${apart.map((v) => v.toExponential(1)).join(", ")} (rows, two terms, three terms).`;
 }
 
@@ -196,7 +199,7 @@ function asked() {
   return words;
 }
 
-/** The prism is another one: it is drawn, and its rays grow, unless somebody stopped them. */
+/** Draws the changed prism, and traces its rays unless tracing was stopped. */
 async function changed() {
   prism += 1;
   const mine = prism;
@@ -218,7 +221,7 @@ async function changed() {
   }
 }
 
-/** Traces on. @param {number} mine @param {URLSearchParams} words */
+/** Traces further rays until all are there or the prism changes. @param {number} mine @param {URLSearchParams} words */
 async function grow(mine, words) {
   while (isTracing && mine === prism && shown && rays.length < shown.rays) {
     const first = rays.length;
@@ -240,7 +243,7 @@ function tell() {
   stop.disabled = !isTracing || isWhole;
   trace.disabled = isTracing && !isWhole;
   const least = shown.least_deviation;
-  const bent = shown.deviation_deg === null ? "The beam does not leave by the second face" : `The beam is bent by ${shown.deviation_deg.toFixed(3)}° (d line)`;
+  const bent = shown.deviation_deg === null ? "The beam does not leave through the second face" : `The beam is bent by ${shown.deviation_deg.toFixed(3)}° (d line)`;
   const spread = shown.spread_deg === null ? "" : `; 400 and 700 nm leave ${shown.spread_deg.toFixed(3)}° apart`;
   const at = least ? `; least deviation ${least[1].toFixed(3)}° at ${least[0].toFixed(3)}° of incidence` : "; no beam passes this prism symmetrically";
   part("said", HTMLElement).textContent = `${bent}${spread}; n = ${shown.nd.toFixed(5)}${at}.`;
@@ -272,7 +275,7 @@ for (const name of numbers) {
 for (const list of [glass, light, intensity]) list.addEventListener("change", () => changed());
 part("controls", HTMLFormElement).addEventListener("submit", (event) => event.preventDefault());
 
-/** Takes up what the scene has; what the study does not know stays as it is. @param {Start} start */
+/** Starts with the values of the scene; values that the study does not know stay as they are. @param {Start} start */
 function begin(start) {
   for (const name of numbers) {
     const known = start[/** @type {"apex"} */ (name)];
@@ -297,7 +300,7 @@ save.addEventListener("click", async () => {
   }
   const said = await answer.json();
   text = said.text;
-  saved.textContent = `The prism is written to ${said.lens}, and ${said.saved === 1 ? "1 value" : `${said.saved} values`} to the scene.`;
+  saved.textContent = `The prism was written to ${said.lens}, and ${said.saved === 1 ? "1 value" : `${said.saved} values`} to the scene.`;
 });
 
 try {

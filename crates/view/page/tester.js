@@ -1,5 +1,5 @@
 // @ts-check
-// The color tester: a light of one wavelength or a narrow band, as a screen can show it. All figures are the server's.
+// The color tester: light of one wavelength or a narrow band, as a screen can show it. The server computes all figures.
 
 /** @typedef {{nm: number, x: number, y: number, srgb: number[]}} Spectral */
 /** @typedef {{name: string, title: string, corners: number[][], white: number[]}} Space */
@@ -66,7 +66,7 @@ function shape(name, attributes, text) {
 const meet = (a, b) => a.x < b.x + b.width + 2 && b.x < a.x + a.width + 2 && a.y < b.y + b.height + 1 && b.y < a.y + a.height + 1;
 
 /**
- * A label at the first free place around a point, off the lines if it can be; none where all are taken and it may be left out.
+ * Puts a label at the first free place around a point, off the lines if possible. If all places are taken, an optional label is left out.
  * @param {Box[]} taken @param {Box[]} lines @param {number[]} at @param {string} text @param {string} kind @param {boolean} mustBe
  */
 function label(taken, lines, at, text, kind, mustBe) {
@@ -107,7 +107,7 @@ function draw() {
   for (let i = 0; i <= 9; i += 1) {
     const [x, y] = place(0, i / 10);
     diagram.append(shape("line", { class: "grid", x1: x, y1: y, x2: place(0.8, 0)[0], y2: y }));
-    // One zero stands for both axes.
+    // One zero is enough for both axes.
     if (i > 0) diagram.append(shape("text", { class: "axis", x: x - 8, y: y + 5, "text-anchor": "end" }, (i / 10).toFixed(1)));
   }
   diagram.append(shape("text", { class: "axis", x: place(0.8, 0)[0], y: place(0, 0)[1] + 36, "text-anchor": "end" }, "x"));
@@ -175,12 +175,12 @@ function tell() {
     part(`coded-${i}`, HTMLElement).textContent = String(color.coded[i]);
     part(`signed-${i}`, HTMLElement).textContent = fixed(color.signed[i]);
   }
-  const xy = (/** @type {number[]?} */ v) => (v ? v.map((c) => c.toFixed(5)).join(", ") : "none: an eye does not see it");
+  const xy = (/** @type {number[]?} */ v) => (v ? v.map((c) => c.toFixed(5)).join(", ") : "none, because the eye does not see it");
   part("figures", HTMLElement).textContent =
     `x, y: ${xy(color.xy)}; shown as ${xy(color.shown_xy)}; luminous efficacy ${color.efficacy.toPrecision(4)} lm/W`;
   const title = space.selectedOptions[0]?.textContent ?? "";
   const missing = color.outside.map((o) => `${o.channel} would have to be ${(100 * o.by).toFixed(1)} % of the brightest channel below zero`);
-  const by = color.shown_apart === null ? "" : `; what is shown lies ${color.shown_apart.toFixed(4)} away in u'v'`;
+  const by = color.shown_apart === null ? "" : `; the shown color lies ${color.shown_apart.toFixed(4)} away in u'v'`;
   part("outside", HTMLElement).textContent =
     !color.xy ? "" : missing.length > 0 ? `Outside of ${title}: ${missing.join(", and ")}${by}.` : `Inside of ${title}${by}.`;
   part("apart", HTMLElement).textContent =

@@ -1,7 +1,7 @@
-//! What a page may turn: a control for each number, choice and switch that the scene's stages declare.
+//! Controls of the page: one for each number, choice and switch that the scene's stages declare.
 //!
-//! A page sends numbers, words of a control's own list and switches, never text: the values of a scene are put together here, so no
-//! path of a file comes from a page.
+//! A page sends numbers, switches and words of a control's own list, never free text. The values for the scene are put together here, so
+//! no file path comes from a page.
 
 use serde_json::{Value, json};
 use spectra_core::params::{Node, Value as Written};
@@ -14,43 +14,43 @@ use spectra_spectrum::bundled_spectra;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// How a value is written.
+/// The kind of a control's value, and how it is written.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// A number between these, with this before and behind it.
+    /// A number from `least` to `most`, with a text before it and a unit behind it.
     Number { before: &'static str, unit: String, least: Option<f64>, most: Option<f64>, whole: bool },
-    /// Two numbers alike, a list.
+    /// A list of two numbers with the same unit and range.
     Pair { unit: String, least: Option<f64>, most: Option<f64> },
-    /// One of these.
+    /// One of these words.
     Choice(Vec<String>),
-    /// True or false.
+    /// A value that is true or false.
     Switch,
 }
 
-/// Something to turn.
+/// A control of the page: one value of the scene that can be changed.
 #[derive(Clone, Debug)]
 pub struct Control {
     path: String,
     kind: Kind,
-    /// As the scene has it; null where it is left out.
+    /// Value in the scene; null if the scene leaves it out.
     value: Value,
     help: String,
-    /// Whether it stands in front: the scene says it, or most people look for it.
+    /// Whether the control is shown at once, because the scene sets it or most people look for it.
     is_in_front: bool,
-    /// What is set in place of the number alone.
+    /// Text before and behind the number, if the number alone is not the value.
     within: Option<[&'static str; 2]>,
-    /// Whether it chooses one of the pictures of a sweep, or frames of an animation, and changes none of them.
+    /// Whether the control selects a picture of a sweep, or a frame of an animation, and changes none of them.
     picks: bool,
-    /// Why it cannot be turned, where it cannot.
+    /// Reason why the control cannot be changed; `None` if it can.
     fixed: Option<String>,
-    /// Where its scale begins, if that is not its range: a lens is no faster than it is.
+    /// Start of the control's scale, if it differs from the range: a lens cannot be opened beyond its own f-number.
     from: Option<f64>,
 }
 
-/// The path of the control that chooses the picture of a series.
+/// Path of the control that selects the picture of a series.
 pub(crate) const PICTURE: &str = "picture";
 
-/// Keys that stand in front even where a scene leaves them out.
+/// Keys that are shown at once even if a scene leaves them out.
 const IN_FRONT: [&str; 14] = [
     "lens.file",
     "lens.f-number",
@@ -67,9 +67,9 @@ const IN_FRONT: [&str; 14] = [
     "imager.tilt",
     "imager.shift",
 ];
-/// Keys that the viewer sets itself, or that say how the work is cut up and not what the picture is.
+/// Keys that the viewer sets itself, or that say how the work is divided and not what the picture is.
 const OWN: [&str; 4] = ["imager.resolution", "imager.crop", "render.batch", "render.frame"];
-/// Keys that do nothing where a photograph's own pixels are developed: no ray is traced.
+/// Keys that have no effect if a photograph's own pixels are developed, because no ray is traced.
 const OF_RAYS: [&str; 10] = [
     "lens.f-number",
     "lens.focus",
@@ -84,7 +84,7 @@ const OF_RAYS: [&str; 10] = [
 ];
 const LIGHTS: [&str; 3] = ["illuminant", "lamp", "light"];
 
-/// Sections of a scene, and the stages that stand in them.
+/// Sections of a scene, each with the kind of stage that it holds.
 const SECTIONS: [(&str, &str); 5] = [
     ("film", "film"),
     ("imager", "imager"),
@@ -93,11 +93,11 @@ const SECTIONS: [(&str, &str); 5] = [
     ("wavelengths", "wavelengths"),
 ];
 
-/// What this program's stages declare: the same for every scene, and slow to gather.
+/// The parameters that this program's stages declare. They are the same for every scene, and slow to gather.
 struct Declared {
     stages: Vec<(Listed, Vec<Parameter>)>,
     shared: Vec<(&'static str, Vec<Parameter>)>,
-    /// Of the scene's own sections.
+    /// Parameters of the sections `lens` and `render`, which hold no stage.
     of_file: Vec<Parameter>,
 }
 
@@ -114,7 +114,7 @@ static DECLARED: LazyLock<Declared> = LazyLock::new(|| {
     }
 });
 
-/// Names of the bundled stocks that are exposed in a camera, and of those that others are printed on.
+/// Names of the bundled camera stocks, and of the bundled print stocks.
 static STOCKS: LazyLock<[Vec<String>; 2]> = LazyLock::new(|| {
     let bundled = FileResources::beside(Path::new(""));
     let mut both = [Vec::new(), Vec::new()];
@@ -126,7 +126,7 @@ static STOCKS: LazyLock<[Vec<String>; 2]> = LazyLock::new(|| {
     both
 });
 
-/// The stocks of a camera as a page shows them side by side: names, speed, and what they are.
+/// The camera stocks as the page shows them side by side: name, title, speed and kind.
 static TILES: LazyLock<Value> = LazyLock::new(|| {
     let bundled = FileResources::beside(Path::new(""));
     let tile = |name: &String| {
@@ -141,13 +141,13 @@ static TILES: LazyLock<Value> = LazyLock::new(|| {
     STOCKS[0].iter().filter_map(tile).collect()
 });
 
-/// Gathers what all scenes have in common, ahead of the first page.
+/// Gathers the data that all scenes have in common, ahead of the first page.
 pub(crate) fn gather() {
     LazyLock::force(&DECLARED);
     LazyLock::force(&TILES);
 }
 
-/// The controls of a scene, as it is written.
+/// Returns the controls of a scene, given the root of its tree as written.
 #[must_use]
 pub fn of_scene(root: &Node) -> Vec<Control> {
     let mut all = Vec::new();
@@ -170,7 +170,7 @@ pub fn of_scene(root: &Node) -> Vec<Control> {
         all.extend(control(root, &parameter.key, parameter));
     }
     all.push(blades(root));
-    // Of several declarations of a key the first holds; a map in place of a number has its own controls.
+    // If a key is declared several times, the first declaration holds. A map where a number could be has its own controls.
     let mut seen = std::collections::BTreeSet::new();
     all.retain(|control| seen.insert(control.path.clone()));
     all.retain(|control| {
@@ -179,7 +179,7 @@ pub fn of_scene(root: &Node) -> Vec<Control> {
     });
     let of_map = |path: &str| path.rsplit_once('.').map(|(before, _)| before.to_owned());
     all.retain(|control| {
-        // `lens.focus.distance` where `lens.focus` is a length: it would take the place of it.
+        // If `lens.focus` is a length, a control for `lens.focus.distance` would replace it.
         let is_number =
             |path: &str| root.at_path(path).is_some_and(|node| !matches!(node.value, Written::Map(_) | Written::Null));
         of_map(&control.path).is_none_or(|parent| !is_number(&parent))
@@ -187,7 +187,7 @@ pub fn of_scene(root: &Node) -> Vec<Control> {
     all
 }
 
-/// The controls of a session: those of its scene, of which some choose among the pictures of its series instead.
+/// Returns the controls of a session: those of its scene, with controls that select among the pictures of its series.
 #[must_use]
 pub fn of_session(session: &Session) -> Vec<Control> {
     let mut all = of_scene(session.scene().params.node());
@@ -196,11 +196,11 @@ pub fn of_session(session: &Session) -> Vec<Control> {
         control.from = session.scene().lens.nominal_f_number;
     }
     if is_flat_picture(session.scene().params.node()) {
-        // What a flat picture does not have cannot be turned.
+        // A flat picture has no depth to control.
         all.retain(|control| !control.path.starts_with("source.depth"));
     }
     if series.is_without_lens() {
-        // Rays are what these are for.
+        // Without rays, these controls have no effect.
         all.retain(|control| !OF_RAYS.iter().any(|path| control.path.starts_with(path)));
     }
     if series.count() < 2 {
@@ -240,7 +240,7 @@ pub fn of_session(session: &Session) -> Vec<Control> {
             path: path.clone(),
             kind: Kind::Choice(words),
             value: of(at).map_or(Value::Null, Value::String),
-            help: "The sweep's own values: each chooses among its pictures.".to_owned(),
+            help: "Values of the sweep; each selects one of its pictures.".to_owned(),
             is_in_front: true,
             within: None,
             picks: true,
@@ -256,7 +256,7 @@ pub fn of_session(session: &Session) -> Vec<Control> {
     all
 }
 
-/// The control that chooses the picture of a series.
+/// Returns the control that selects the picture of a series.
 fn chooser(series: &Series, at: usize, is_sweep: bool) -> Control {
     let said = |index: usize| format!("{}: {}", index + 1, series.member(index).words());
     let (kind, value) = if is_sweep {
@@ -281,14 +281,14 @@ fn chooser(series: &Series, at: usize, is_sweep: bool) -> Control {
     }
 }
 
-/// The blades of the iris, which stand in a map of their own.
+/// Returns the control for the blades of the iris, which are in a map of their own.
 fn blades(root: &Node) -> Control {
     let at = root.at_path("lens.aperture.blades").and_then(number);
     Control {
         path: if at.is_some() { "lens.aperture.blades" } else { "lens.aperture" }.to_owned(),
         kind: Kind::Number { before: "", unit: String::new(), least: Some(3.0), most: Some(100.0), whole: true },
         value: at.as_ref().map_or(Value::Null, |(_, value, _)| json!(value)),
-        help: "Number of blades of the iris; the opening is round if absent.".to_owned(),
+        help: "Number of blades of the iris; the opening is round if left out.".to_owned(),
         is_in_front: true,
         within: at.is_none().then_some(["{shape: iris, blades: ", "}"]),
         picks: false,
@@ -297,7 +297,7 @@ fn blades(root: &Node) -> Control {
     }
 }
 
-/// A control of a parameter; none of what is a list, a map or a text without a list of names.
+/// Returns the control for a parameter; `None` for lists, maps, and texts that are not one of a list of names.
 fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
     if OWN.contains(&path) || path.contains("[]") || path.ends_with(".kind") {
         return None;
@@ -309,7 +309,7 @@ fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
     let written = node.and_then(number);
     let unit = match (&written, parameter.unit.as_str()) {
         (Some((_, _, unit)), _) => unit.clone(),
-        // A distance in a photographer's unit.
+        // Distances are in a photographer's unit.
         (None, "mm") if path.contains("focus") || path.contains("distance") => "m".to_owned(),
         (None, "f/") => String::new(),
         (None, unit) => unit.to_owned(),
@@ -353,7 +353,7 @@ fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
         },
         (_, None) => None,
     };
-    // A number that is written as a word, such as `inf`, is left to whoever wrote it until it is turned.
+    // A number written as a word, such as `inf`, has no value here; it stays as written until the control is changed.
     let help = parameter.description.split_whitespace().collect::<Vec<_>>().join(" ");
     let is_in_front = node.is_some() || IN_FRONT.contains(&path);
     let value = value.unwrap_or(Value::Null);
@@ -370,17 +370,17 @@ fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
     })
 }
 
-/// Whether the source is a flat picture, which film can get without a lens.
+/// Returns whether the source is a flat picture, which can be exposed on film without a lens.
 fn is_flat_picture(root: &Node) -> bool {
     let says = |path: &str| root.at_path(path).and_then(Node::as_str);
     says("source.kind") == Some("picture") && root.at_path("source.depth").is_none()
 }
 
-/// The names that a text is one of, by its place.
+/// Returns the names that are allowed as the text at a path; `None` if there is no list of names for it.
 fn names(path: &str) -> Option<Vec<String>> {
     let key = path.rsplit('.').next().unwrap_or_default();
     Some(match (path, key) {
-        // Those in folders are parts for tests; a word of a page holds no `/`.
+        // Names in folders are parts for tests; a word from a page never holds a `/`.
         ("lens.file", _) => Bundled::Lens.names().into_iter().filter(|name| !name.contains('/')).collect(),
         ("lens.coating", _) => ["ideal", "bare", "single-layer", "three-layer"].map(str::to_owned).into(),
         ("film.stock", _) => STOCKS[0].clone(),
@@ -394,7 +394,7 @@ fn names(path: &str) -> Option<Vec<String>> {
     })
 }
 
-/// Least and largest value by a range in words, as `spectra doc` has it.
+/// Parses the least and largest value from a range in words, as `spectra doc` prints it.
 fn range(words: &str) -> (Option<f64>, Option<f64>) {
     let words = words.trim_start_matches("each ");
     if let Some((least, most)) = words.split_once(" to ") {
@@ -411,7 +411,7 @@ fn range(words: &str) -> (Option<f64>, Option<f64>) {
     (least, most)
 }
 
-/// A range in words.
+/// Describes a range in words, for a message.
 fn range_said(least: Option<f64>, most: Option<f64>, unit: &str) -> String {
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     match (least, most) {
@@ -422,7 +422,7 @@ fn range_said(least: Option<f64>, most: Option<f64>, unit: &str) -> String {
     }
 }
 
-/// A number as it is written: what stands before it, its value and its unit.
+/// Reads a number as it is written: the text before it, its value and its unit. `None` if it is not a finite number.
 fn number(node: &Node) -> Option<(&'static str, f64, String)> {
     match &node.value {
         Written::Number(number) if number.value.is_finite() => Some(("", number.value, String::new())),
@@ -445,13 +445,13 @@ fn number(node: &Node) -> Option<(&'static str, f64, String)> {
 }
 
 impl Control {
-    /// Where its value stands in the scene.
+    /// Path of the control's value in the scene.
     #[must_use]
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// The unit of its numbers.
+    /// Unit of the control's numbers; empty if they have none.
     fn unit(&self) -> &str {
         match &self.kind {
             Kind::Number { unit, .. } | Kind::Pair { unit, .. } => unit,
@@ -459,7 +459,7 @@ impl Control {
         }
     }
 
-    /// As the page gets it.
+    /// Returns the control as JSON for the page.
     #[must_use]
     pub fn to_json(&self) -> Value {
         let kind = match &self.kind {
@@ -484,35 +484,35 @@ impl Control {
         })
     }
 
-    /// The word that it chooses a picture of the series by, if that is what it does.
+    /// Returns the word for `value` that selects a picture of the series; `None` if the control selects none.
     #[must_use]
     pub fn picked(&self, value: &Value) -> Option<String> {
         let word = || value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         self.picks.then(word)
     }
 
-    /// The text `path=value` of a value that a page sent.
+    /// Returns the text `path=value` for a value that a page sent.
     ///
     /// # Errors
-    /// Why it is none of this control's.
+    /// The reason why this control cannot have the value.
     pub fn text(&self, value: &Value) -> Result<String, String> {
         if let Some(why) = &self.fixed {
             return Err(why.clone());
         }
         let bounded = |value: &Value, least: Option<f64>, most: Option<f64>| match value.as_f64() {
-            Some(number) if !number.is_finite() => Err("no finite number".to_owned()),
+            Some(number) if !number.is_finite() => Err("not a finite number".to_owned()),
             Some(number) if least.is_some_and(|least| number < least) || most.is_some_and(|most| number > most) => {
                 Err(format!("{number} is out of range: {}", range_said(least, most, self.unit())))
             }
             Some(number) => Ok(number),
-            None => Err("no number".to_owned()),
+            None => Err("not a number".to_owned()),
         };
         let with_unit = |unit: &str| if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let written = match &self.kind {
             Kind::Number { before, unit, least, most, whole } => {
                 let number = bounded(value, *least, *most)?;
                 if *whole && number.fract() != 0.0 {
-                    return Err("no whole number".to_owned());
+                    return Err("not a whole number".to_owned());
                 }
                 format!("{before}{number}{}", with_unit(unit))
             }
@@ -525,7 +525,7 @@ impl Control {
             },
             Kind::Choice(words) => match value.as_str() {
                 Some(word) if words.iter().any(|known| known == word) => word.to_owned(),
-                _ => return Err("none of the choices".to_owned()),
+                _ => return Err("not one of the choices".to_owned()),
             },
             Kind::Switch => value.as_bool().ok_or("neither true nor false")?.to_string(),
         };
@@ -574,7 +574,7 @@ mod tests {
         for bad in ["../../etc/passwd", "/etc/passwd", "lens.yaml", "a\\b", "", "{}", "[1]"] {
             assert!(lens.text(&json!(bad)).is_err(), "{bad}");
         }
-        // Whatever a page may send is one of these lists, and none of their words is a path.
+        // A page may only send words of these lists, and none of the words is a path.
         for control in &all {
             if let Kind::Choice(words) = &control.kind {
                 assert!(!words.is_empty(), "{}", control.path);

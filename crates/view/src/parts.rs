@@ -1,4 +1,4 @@
-//! What a page needs wherever its engine runs: controls, the drawing of the lens, pictures and faults as it takes them.
+//! Data for a page, wherever its engine runs: controls, the drawing of the lens, pictures and faults in the page's format.
 
 pub use crate::controls::{Control, of_session};
 pub use crate::picks::Picks;
@@ -12,8 +12,8 @@ use spectra_core::params::Fault;
 use spectra_scene::{FilmTime, Scene};
 use spectra_session::{Session, SessionError};
 
-/// The numbers of a picture as a page takes them: of 16 bits (IEEE 754 binary16), little-endian, right to one part in 2048, which is
-/// finer than any screen's codes, and half of what a browser would else have to be handed.
+/// Returns the numbers of a picture as 16-bit floats (IEEE 754 binary16), little-endian. They are right to one part in 2048, which is finer
+/// than any screen's codes, and take half as many bytes as 32-bit floats.
 #[must_use]
 pub fn halves(numbers: &[f32]) -> Vec<u8> {
     let mut halves = vec![f16::ZERO; numbers.len()];
@@ -21,7 +21,7 @@ pub fn halves(numbers: &[f32]) -> Vec<u8> {
     halves.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// A head and the numbers of a picture, these from a place that is a multiple of four.
+/// Packs a picture for the page: the length of the head (`u32`, little-endian), the head as JSON, then the numbers, aligned to four bytes.
 #[must_use]
 pub fn packed(head: &Value, numbers: &[u8]) -> Vec<u8> {
     let mut head = head.to_string();
@@ -33,7 +33,8 @@ pub fn packed(head: &Value, numbers: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A head with what it says of a session's picture: its light so far, of so many rays, on films that were exposed so.
+/// Adds facts about a session's picture to the head `own`: samples so far, rays, exposure time, lens, film, focus and warnings. `times` are
+/// the exposure times of the films.
 #[must_use]
 pub fn head(mut own: Value, session: &Session, times: &[FilmTime], rays: u64) -> Value {
     let scene = session.scene();
@@ -53,7 +54,8 @@ pub fn head(mut own: Value, session: &Session, times: &[FilmTime], rays: u64) ->
     own
 }
 
-/// What a pixel got, channel by channel and by each film's own time, in the frame of this number; `None` where there is no such pixel.
+/// Returns the exposure of a pixel in each channel, at each film's own exposure time, in the frame of this number. `None` if there is no
+/// such pixel.
 #[must_use]
 pub fn pixel(exposure: &ExposureFrame, times: &[FilmTime], frame: u64, [x, y]: [u64; 2]) -> Option<Value> {
     let [width, height] = [exposure.size.width_px, exposure.size.height_px].map(u64::from);
@@ -69,7 +71,7 @@ pub fn pixel(exposure: &ExposureFrame, times: &[FilmTime], frame: u64, [x, y]: [
     Some(json!({"frame": frame, "channels": exposure.channels.iter().enumerate().map(of).collect::<Vec<_>>()}))
 }
 
-/// What is wrong, with the control that it is about.
+/// Returns an error as JSON, with the path of the control that it concerns.
 #[must_use]
 pub fn said(error: &SessionError, path: &str) -> Value {
     match error {
@@ -81,13 +83,14 @@ pub fn said(error: &SessionError, path: &str) -> Value {
     }
 }
 
-/// A fault as the page shows it.
+/// Returns a fault as JSON for the page: message, place and hint.
 #[must_use]
 pub fn fault_json(fault: &Fault) -> Value {
     json!({"message": fault.message, "place": fault.place_text(), "hint": fault.hint})
 }
 
-/// The spectrum of a scene's light, and what each layer of its film makes of it: its largest value 1, over the wavelengths.
+/// Returns the spectrum of a scene's light and the response of each channel of its picture as JSON: values over wavelength, nm, each scaled
+/// to a largest value of 1.
 #[must_use]
 pub fn spectra(scene: &Scene) -> Value {
     let unit = |values: &[f64]| -> Vec<f64> {

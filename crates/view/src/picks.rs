@@ -1,12 +1,12 @@
-//! The pictures that a scene stands for, and which of them has a value.
+//! Selection of a picture of a series by the values that it has.
 
 use crate::controls::PICTURE;
 use spectra_session::Session;
 
-/// Most pictures that a page chooses among by their values.
+/// Largest number of pictures among which a page can select by their values.
 const MANY: usize = 1000;
 
-/// The values of each picture, by path, as they are written; and which picture is seen.
+/// The values of each picture of a series, by path and as written, and the index of the picture that is shown.
 #[derive(Clone, Debug, Default)]
 pub struct Picks {
     all: Vec<Vec<(String, String)>>,
@@ -14,7 +14,7 @@ pub struct Picks {
 }
 
 impl Picks {
-    /// Those of a session.
+    /// Gathers the values of the pictures of a session; empty if there is only one picture.
     #[must_use]
     pub fn of(session: &Session) -> Self {
         let series = session.series();
@@ -22,8 +22,9 @@ impl Picks {
         Self { all: (0..count).map(|index| series.member(index).values).collect(), at: session.index() }
     }
 
-    /// The picture that has this value at a path, and of those the one that has most in common with the picture from which it is turned:
-    /// that which is seen, if none is said. Of `picture` itself the value is its number.
+    /// Finds the picture that has the value `word` at a path. If several have it, the one that shares most values with picture `from` is
+    /// taken, or with the picture that is shown if `from` is `None`. For the path `picture`, the value is the picture's number, from 1.
+    /// Returns the index of the picture.
     #[must_use]
     pub fn with(&self, from: Option<usize>, path: &str, word: &str) -> Option<usize> {
         if path == PICTURE {
@@ -34,7 +35,7 @@ impl Picks {
         let in_common = |values: &[(String, String)]| values.iter().filter(|value| from.contains(value)).count();
         let has = |values: &[(String, String)]| values.iter().any(|(own, value)| own == path && value == word);
         let mut found = self.all.iter().enumerate().filter(|(_, values)| has(values));
-        // The first one of several that have as much.
+        // If several share as many values, the first one is taken.
         let first = found.next()?;
         let best = found.fold(first, |best, other| if in_common(other.1) > in_common(best.1) { other } else { best });
         Some(best.0)

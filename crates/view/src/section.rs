@@ -1,27 +1,27 @@
-//! The cross-section of a scene's lens, with rays of three fields.
+//! Drawing of the cross-section of a scene's lens, with rays of three fields.
 
 use spectra_analysis::draw::{Fans, Ground, Sheet, View};
-use spectra_analysis::fan::FanFinder;
-use spectra_lens::{Lens, Section};
+use spectra_analysis::fan::largest_field_rad;
+use spectra_lens::Section;
 use spectra_scene::Scene;
 
-/// Fields beyond this are not looked for, degrees.
+/// Largest field that is searched for, degrees.
 const WIDEST_DEG: f64 = 85.0;
-/// Fields, as parts of the largest.
+/// Drawn fields, as fractions of the largest.
 const PARTS: [f64; 3] = [0.0, 0.6, 0.95];
-/// Wavelengths, nm.
+/// Wavelengths of the drawn rays, nm.
 const COLORS_NM: [f64; 3] = [450.0, 550.0, 640.0];
 
-/// The drawing as SVG.
+/// Draws the cross-section of the scene's lens as SVG, on a dark or light ground.
 ///
 /// # Errors
-/// Why there is none.
+/// The reason why the lens cannot be drawn.
 pub fn svg(scene: &Scene, is_dark: bool) -> Result<String, String> {
-    let lens: &Lens = &scene.lens;
+    let lens = &scene.lens;
     let object_mm = scene.focus.distance_mm.unwrap_or(f64::INFINITY);
     let said = |error: spectra_glass::DispersionError| error.to_string();
-    let finder = FanFinder::new(lens, Section::Y, lens.reference_nm).map_err(said)?;
-    let largest = finder.largest_field_rad(object_mm, WIDEST_DEG.to_radians()).unwrap_or(0.0).to_degrees();
+    let largest = largest_field_rad(lens, Section::Y, object_mm, WIDEST_DEG.to_radians()).map_err(said)?;
+    let largest = largest.unwrap_or(0.0).to_degrees();
     let mut fields_deg: Vec<f64> = PARTS.map(|part| part * largest).into();
     fields_deg.dedup();
     let fans = Fans { fields_deg, object_mm, rays: 7, wavelengths_nm: COLORS_NM.into() };

@@ -1,7 +1,7 @@
-// What `axe-core` finds wrong with a page, in both schemes and at two widths; nothing where it is not installed.
+// Accessibility check of a page by `axe-core`, in both color schemes and at two widths; skipped if it is not installed.
 import { existsSync, readFileSync } from "node:fs";
 
-/** @param {any} page @param {string} folder with `node_modules` */
+/** Returns the violations that `axe-core` finds. @param {any} page @param {string} folder with `node_modules` */
 export async function findings(page, folder) {
   const file = `${folder}/node_modules/axe-core/axe.min.js`;
   if (!existsSync(file)) {

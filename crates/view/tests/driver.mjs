@@ -1,8 +1,8 @@
-// What all scripts that drive a page begin and end with: node SCRIPT FOLDER-WITH-NODE_MODULES CHROMIUM ADDRESS
+// Common start and end of all scripts that drive a page: node SCRIPT FOLDER-WITH-NODE_MODULES CHROMIUM ADDRESS
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 
-/** A page in Chromium, as the words of the command line have it; what it says wrong on its console is kept. */
+/** Opens a page in Chromium according to the command line, and records the errors on its console. */
 export async function driven() {
   const [folder, executablePath, address, ...more] = process.argv.slice(2);
   const { chromium } = createRequire(`${folder}/`)("playwright-core");
@@ -12,14 +12,14 @@ export async function driven() {
   const errors = [];
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
   page.on("pageerror", (error) => errors.push(String(error)));
-  /** A phone's width: nothing is wider than the window. */
+  /** Checks that nothing is wider than the window at a phone's width. */
   const narrow = async () => {
     await page.setViewportSize({ width: 400, height: 800 });
     await page.waitForTimeout(200);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= 400, `${wide} px wide`);
   };
-  /** The end: nothing was wrong. */
+  /** Checks that there were no errors, and closes the browser. */
   const end = async () => {
     assert.deepEqual(errors, []);
     await browser.close();

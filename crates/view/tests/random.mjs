@@ -1,8 +1,8 @@
 // Random use by four pages: node random.mjs FOLDER CHROMIUM ADDRESS PID SECONDS
 //
 // FOLDER holds node_modules/playwright-core; PID is the server's process, whose memory, threads and child processes are read from /proc.
-// After a sixth of the time it is noted what the process holds; at the end it must not hold 50 MB more, nor other threads or
-// children. For half an hour as the issue asks: SECONDS = 1800.
+// What the process holds is recorded after a sixth of the time; at the end it must not hold 50 MB more, nor other threads or
+// children. A full run is half an hour: SECONDS = 1800.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -15,7 +15,7 @@ const errors = [];
 const open = async (url) => {
   const page = await context.newPage();
   page.on("console", (message) => {
-    // A value that the scene refuses is answered with 400, a picture that is not there yet with 404: the browser notes both.
+    // A value that the scene refuses is answered with 400, a picture that is not there yet with 404; the browser logs both.
     if (message.type() === "error" && !/status of 40[04]/.test(message.text())) errors.push(message.text());
   });
   page.on("pageerror", (error) => errors.push(String(error)));
@@ -30,7 +30,7 @@ while (pages.length < 4) pages.push(await open(origin));
 let seed = 20001;
 const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
 const pick = (all) => all[Math.floor(random() * all.length)];
-/** What the server's process holds. */
+/** Returns the memory, threads and child processes of the server. */
 const held = () => {
   const status = readFileSync(`/proc/${pid}/status`, "utf8");
   const tasks = readdirSync(`/proc/${pid}/task`);
@@ -43,7 +43,7 @@ const held = () => {
   });
   return { memory_mb: Number(/VmRSS:\s+(\d+)/.exec(status)[1]) / 1024, threads: tasks.length, children: children.length };
 };
-/** When nothing is asked of it: pictures are whole, connections are those that wait, and what was freed has gone back to the system. */
+/** Waits until the server is idle, with whole pictures, only waiting connections, and freed memory returned; then returns what it holds. */
 const rest = async () => {
   for (const page of pages) {
     await page.waitForFunction(() => document.querySelector("progress").value === 1 || !document.querySelector("#fault").hidden, null, { timeout: 300_000 }).catch(() => {});
@@ -54,7 +54,7 @@ const rest = async () => {
 
 const acts = {
   turn: async (page) => {
-    // A control that is seen, to a value that its own kind allows.
+    // Changes a visible control to a value that its kind allows.
     await page.evaluate(([a, b]) => {
       const rows = [...document.querySelectorAll("[data-path]")].filter((row) => !/^render\.|^wavelengths\.|threads/.test(row.dataset.path));
       const row = rows[Math.floor(a * rows.length)];
@@ -99,7 +99,7 @@ while (Date.now() - began < 1000 * Number(seconds)) {
   count += 1;
   await pages[0].waitForTimeout(400 * random());
   if (!before && Date.now() - began > 1000 * Number(seconds) / 6) {
-    // What was turned is forgotten, so that both ends look at the same scene.
+    // Reloading drops the changes, so that both measurements see the same scene.
     for (const page of pages) await acts.reload(page);
     before = await rest();
     console.log("after a sixth", before);
@@ -107,7 +107,7 @@ while (Date.now() - began < 1000 * Number(seconds)) {
 }
 for (const page of pages) await acts.reload(page);
 let after = await rest();
-// A connection that has just ended keeps its thread for a moment.
+// A connection that has just ended still has its thread for a moment.
 for (let second = 0; second < 30 && after.threads > before.threads; second += 1) {
   await pages[0].waitForTimeout(1000);
   after = held();

@@ -1,4 +1,4 @@
-// The color tester, as a person uses it: node tester.mjs FOLDER-WITH-NODE_MODULES CHROMIUM ADDRESS
+// Uses the color tester as a person does: node tester.mjs FOLDER-WITH-NODE_MODULES CHROMIUM ADDRESS
 import assert from "node:assert/strict";
 import { findings } from "./axe.mjs";
 import { driven } from "./driver.mjs";
@@ -18,7 +18,7 @@ const row = (name) => page.evaluate((name) => [0, 1, 2].map((i) => Number(docume
 await page.goto(address);
 await page.waitForFunction(() => document.body.dataset.nm);
 
-// Of the dispersion study's table, linear; and as a screen is told.
+// Colors from the table of the dispersion study, linear and as encoded for a screen.
 for (const [nm, linear, coded] of [
   [436, [33, 0, 255], [101, 0, 255]],
   [547, [0, 255, 0], [0, 255, 0]],
@@ -35,7 +35,7 @@ for (const [nm, linear, coded] of [
 
 assert.deepEqual(await findings(page, folder), []);
 
-// Every wavelength: the label is its own, and no two labels of the diagram meet.
+// At every wavelength the diagram has its label, and no two labels overlap.
 const overlaps = await page.evaluate(async () => {
   const field = document.querySelector("#nm-field");
   const wrong = [];
@@ -56,7 +56,7 @@ const overlaps = await page.evaluate(async () => {
 });
 assert.deepEqual(overlaps, []);
 
-// A gamut that holds more; a band; a match.
+// A larger gamut, a band, and a match.
 await set("nm", "520");
 await page.locator("#space").selectOption("rec2020");
 await page.waitForFunction(() => /of Rec\. 2020/.test(document.querySelector("#outside").textContent));

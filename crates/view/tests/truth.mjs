@@ -1,7 +1,7 @@
-// Whether the page tells the truth: node truth.mjs FOLDER CHROMIUM ADDRESS CHANGES [PICTURE.png]
+// Checks that the page tells the truth: node truth.mjs FOLDER CHROMIUM ADDRESS CHANGES [PICTURE.png]
 //
-// So many scripted changes, among them values that are refused and values out of range. After each, every field of the page says what
-// the server's scene has, or is red, and a red one is told. Prints how long each change took to be seen.
+// Makes CHANGES scripted changes, some with values that are refused or out of range. After each, every field of the page must show what
+// the server's scene has, or be red with its error reported. Prints how long changes took to be seen.
 import assert from "node:assert/strict";
 import { driven } from "./driver.mjs";
 
@@ -14,11 +14,11 @@ const opened = Date.now() - began;
 let seed = 20261128;
 const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
 
-/** Rows that can be turned. */
+/** Paths of the controls that can be changed. */
 const paths = await page.evaluate(() => [...document.querySelectorAll("[data-path]")]
   .filter((row) => !row.querySelector(":disabled")).map((row) => row.dataset.path).filter((path) => !/^render\.|^wavelengths\./.test(path)));
 
-/** Turns a control: a usual value, or one that cannot be. Gives what it was turned to. */
+/** Changes a control to a usual or an impossible value, and returns the value. */
 const change = (path, how) => page.evaluate(([path, how]) => {
   const row = document.querySelector(`[data-path="${path}"]`);
   const field = row?.querySelector("input[type=number], input[type=text], select, input[type=checkbox]");
@@ -37,7 +37,7 @@ const change = (path, how) => page.evaluate(([path, how]) => {
   return field.type === "checkbox" ? String(field.checked) : field.value;
 }, [path, how]);
 
-/** Once nothing waits: fields that say something else than the scene has, and are not red. */
+/** Returns the fields that show another value than the scene has and are not red. Call it when no change is pending. */
 const lies = () => page.evaluate(async () => {
   const address = performance.getEntriesByType("resource").map((entry) => entry.name).filter((name) => name.includes("/controls?desk=")).pop();
   const said = await (await fetch(address)).json();
@@ -73,14 +73,14 @@ for (let i = 0; i < Number(changes); i += 1) {
   const before = await page.evaluate(() => Number(document.body.dataset.turns ?? 0));
   const value = await change(path, random());
   if (value === null) continue;
-  // What is no number at all goes back at once.
+  // A value that is not a number goes back at once.
   const isBack = await page.evaluate((path) => document.body.dataset.waits === "0" && !document.querySelector(`[data-path="${path}"]`).classList.contains("refused"), path);
   if (isBack) {
     const found = await lies();
     assert.deepEqual(found.all, [], `after ${path} = ${value}`);
     continue;
   }
-  // Seen, as a draft at least, or refused.
+  // The change is seen, at least in a draft, or refused.
   await page.waitForFunction(([path, before]) => Number(document.body.dataset.turns ?? 0) > before
     || document.querySelector(`[data-path="${path}"]`)?.classList.contains("refused"), [path, before]).catch(() => {});
   times.push(Date.now() - from);
@@ -89,7 +89,7 @@ for (let i = 0; i < Number(changes); i += 1) {
   const found = await lies();
   assert.deepEqual(found.all, [], `after ${path} = ${value}`);
   red += found.red;
-  // One more while a field is red: it stays red, or says the truth.
+  // An undo while a field may be red: the field stays red, or tells the truth.
   if (random() < 0.3) {
     await page.locator("#undo:enabled").click({ timeout: 500 }).catch(() => {});
     await page.waitForTimeout(300);
@@ -101,6 +101,6 @@ times.sort((a, b) => a - b);
 const of = (part) => times[Math.min(times.length - 1, Math.floor(part * times.length))];
 console.log(`opened ${opened} ms; ${times.length} changes: median ${of(0.5)} ms, 95 % ${of(0.95)} ms, longest ${times.at(-1)} ms; ${red} red`);
 if (picture) await page.screenshot({ path: picture });
-// A value that is out of range is answered with 400, which the browser notes.
+// A value out of range is answered with 400, which the browser logs as an error.
 assert.deepEqual(errors.filter((text) => !/status of 400/.test(text)), []);
 await browser.close();

@@ -1,4 +1,4 @@
-//! `kind: dng`.
+//! `kind: dng`: raw files of a sensor, as DNG.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -9,10 +9,10 @@ use spectra_core::stage::{Digitize, Imager};
 use spectra_pictures::write::{RawLens, dng};
 use spectra_scene::{Holds, Output, Scene, Shot};
 
-/// The numbers of a sensor's converter as DNG.
+/// The raw numbers of a sensor, as converted from analog to digital, as a DNG file.
 ///
-/// For raw converters: mosaic, black and white level, color matrices for two illuminants, noise profile and exposure are in the file. Only an
-/// imager with a converter (`imager: {kind: sensor, ...}`) has such numbers.
+/// For raw converters: the file holds the mosaic, black and white level, color matrices for two illuminants, the noise profile and the
+/// exposure. Only an imager with an A/D converter (`imager: {kind: sensor, ...}`) has such numbers.
 ///
 /// # Example
 /// ```yaml
@@ -30,7 +30,7 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
     params.parse::<DngParams>().map(|_| Box::new(Dng) as Box<dyn Output>)
 }
 
-/// What is said of an imager that has no numbers.
+/// Message about an imager without raw numbers.
 const WITHOUT: &str = "this imager has no A/D converter, so there is no raw data";
 
 impl Output for Dng {
@@ -47,7 +47,7 @@ impl Output for Dng {
     }
 
     fn check(&self, imager: &dyn Imager) -> Result<(), [String; 2]> {
-        let hint = "`imager: {kind: sensor, ...}`, or leave `dng` out";
+        let hint = "use `imager: {kind: sensor, ...}`, or leave out `dng`";
         converter(imager).map(drop).ok_or_else(|| [WITHOUT.to_owned(), hint.to_owned()])
     }
 
@@ -61,7 +61,7 @@ fn converter(imager: &dyn Imager) -> Option<&dyn Digitize> {
     imager.response()?.digitize()
 }
 
-/// The lens as a raw file names it, focal length and f-number as they are set.
+/// Returns the lens as a raw file names it, with focal length and f-number as currently set.
 fn lens(scene: &Scene) -> RawLens {
     let lens = &scene.lens;
     RawLens {

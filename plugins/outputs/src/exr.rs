@@ -1,4 +1,4 @@
-//! `kind: exr`.
+//! `kind: exr`: exposures and pictures as OpenEXR files.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -11,20 +11,21 @@ use spectra_pictures::library;
 use spectra_pictures::write::{LinearSpace, exr, picture_exr, tiled_exr};
 use spectra_scene::{GhostPaths, Holds, LightKind, LightLayer, Output, Shot};
 
-/// Light as OpenEXR: the linear exposure, a channel for each that was recorded, or the finished picture.
+/// The linear exposure as an OpenEXR file with its recorded channels, or the finished picture.
 ///
-/// Of the exposure nothing that was computed is lost: 32-bit floats in lux seconds (or what the channel's unit says), with the scene
-/// and how it was rendered in the header. For measuring, and to keep the light of a long render. `layers` adds kinds of light, each
-/// with a channel for each of the exposure's: `layers: [direct, ghosts]` has `direct.Y` and `ghosts.Y` beside `Y`. All four together are
-/// the exposure, up to the rounding of their 32 bits; a kind that the picture has none of is 0. `ghost-paths: 6` takes `ghosts` apart: `ghosts.7-3.Y`
-/// is what surface 7 and then surface 3 reflect, for each of the six strongest paths, and `ghosts.other.Y` the rest.
+/// The exposure keeps everything that was computed: 32-bit floats in lux seconds (or in the unit of the channel), with the scene and how it
+/// was rendered in the header. Use it for measurements, and to keep the light of a long render. `layers` adds kinds of light, each with a
+/// channel for each channel of the exposure: `layers: [direct, ghosts]` adds `direct.Y` and `ghosts.Y` to `Y`. All four kinds together are
+/// the exposure, up to the rounding of their 32 bits. A kind that the picture does not have is 0. `ghost-paths: 6` splits `ghosts`:
+/// `ghosts.7-3.Y` is the light that surface 7 and then surface 3 reflect, for each of the six strongest paths, and `ghosts.other.Y` is the
+/// rest.
 ///
-/// `holds: picture` is for compositing, `SCENE-picture.exr`: R, G and B of the developed, printed or balanced picture in linear
-/// light, no color clipped by a screen's gamut. 1 is the film's white, or what the imager's picture shows as white. The header says
-/// the primaries (`chromaticities`, `adoptedNeutral`), the name of the space for OpenColorIO (`oiio:ColorSpace`) and for the Color
-/// Interop Forum (`colorInteropID`), and in `spectra:image state` whether the values are scene-referred (imagers that record
-/// by themselves), display-referred (prints and projections) or data (scans on a scale of density: R, G and B are the scale's values).
-/// Of films side by side a file each.
+/// `holds: picture` is for compositing, and writes `SCENE-picture.exr`: R, G and B of the developed, printed or balanced picture in linear
+/// light. No color is clipped to the gamut of a screen. 1 is the film's white, or what the picture of the imager shows as white. The header
+/// states the primaries (`chromaticities`, `adoptedNeutral`) and the name of the color space for OpenColorIO (`oiio:ColorSpace`) and for
+/// the Color Interop Forum (`colorInteropID`). `spectra:image state` in the header says what the values are. Imagers that record without
+/// film give scene-referred values, prints and projections display-referred ones. Scans on a density scale give data: R, G and B are the
+/// values of the scale. Several films side by side get a file each.
 ///
 /// # Example
 /// ```yaml
@@ -43,26 +44,26 @@ use spectra_scene::{GhostPaths, Holds, LightKind, LightLayer, Output, Shot};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ExrParams {
-    /// In tiles, for viewers that read a part of a large file; needs a program built with OpenImageIO.
+    /// Whether the file is written in tiles, for viewers that read only a part of a large file; needs a program built with OpenImageIO.
     #[serde(default)]
     tiled: bool,
-    /// What is in it: `light`, the exposure (the default), or `picture`.
+    /// Content of the file: `light`, the exposure (the default), or `picture`.
     #[serde(default)]
     holds: Content,
-    /// With `holds: picture`, its colors: `linear-srgb` (the default), `rec2020`, `p3-d65`, `acescg` (white of ACES), or `xyz`, all
-    /// but `acescg` with the white D65; whites are brought together by CAT02.
+    /// Color space with `holds: picture`: `linear-srgb` (the default), `rec2020`, `p3-d65`, `acescg` (with the white of ACES), or `xyz`.
+    /// All except `acescg` have the white D65; CAT02 adapts one white to another.
     space: Option<Space>,
-    /// Layers beside it. Of light: `direct`, straight through the lens; `ghosts`; `glare`, the veil; `star`, what diffraction moves, negative
-    /// where it takes more away than it brings. With `holds: picture`: `exposures` of each channel, of a film in lux seconds after scatter and halation, as
-    /// `exposure.red`; `densities` of each layer of a film as a densitometer reads them, grain included, as
-    /// `density.red`, and of a print's own, as `print.red`, or `print.silver` on paper.
+    /// Layers in addition to the main channels. Of light: `direct`, straight through the lens; `ghosts`; `glare`, the veil; `star`, the
+    /// light that diffraction moves, negative where more leaves than arrives. With `holds: picture`: `exposures` of each channel, for a
+    /// film in lux seconds after scatter and halation, as `exposure.red`; `densities` of each layer of a film as a densitometer reads them,
+    /// grain included, as `density.red`, and those of a print as `print.red`, or `print.silver` on paper.
     #[schemars(length(max = 4))]
     layers: Option<Vec<LayerGroup>>,
-    /// Of light, so many paths of ghosts as layers of their own: the strongest of the picture by their light on the frame in watts, as
-    /// its `ledger` has them, each named by the surfaces that reflect, as by `spectra lens ghosts`. All others are one layer more.
+    /// Number of ghost paths that get layers of their own. These are the strongest of the picture by their light on the frame in watts, as
+    /// in its `ledger`. Each is named by the surfaces that reflect, as by `spectra lens ghosts`. All others form one more layer.
     #[schemars(range(min = 1, max = 32))]
     ghost_paths: Option<u8>,
-    /// With `holds: picture`, whether R, G and B take 16 bits each: half the space, three digits.
+    /// Whether R, G and B take 16 bits each, with `holds: picture`: half the space, three digits.
     half: Option<bool>,
 }
 
@@ -104,7 +105,7 @@ enum LayerGroup {
 }
 
 impl LayerGroup {
-    /// The kind of light that it is; `None` of what is made of a picture.
+    /// Returns the kind of light that the layer holds; `None` if it is made from a picture.
     fn light(self) -> Option<LightKind> {
         match self {
             Self::Exposures | Self::Densities => None,
@@ -137,17 +138,17 @@ struct Exr {
 }
 
 impl Exr {
-    /// The layers that it holds, of those that there are.
+    /// Selects the layers that this output writes from those that the picture has.
     fn own<'a>(&self, layers: &'a [LightLayer]) -> Result<Vec<&'a LightLayer>, WriteFault> {
         let (kinds, paths): (Vec<_>, Vec<_>) = layers.iter().partition(|layer| layer.paths == GhostPaths::All);
         let of_kind = |kind: &LightKind| kinds.iter().copied().find(|layer| layer.kind == *kind);
         let mut own: Vec<&LightLayer> = self.lights.iter().filter_map(of_kind).collect();
         if own.len() < self.lights.len() {
-            return Err(WriteFault::Format("this light was not kept by its kinds".to_owned()));
+            return Err(WriteFault::Format("this light was saved without separate kinds of light".to_owned()));
         }
         if self.ghost_paths > 0 {
             if paths.is_empty() {
-                return Err(WriteFault::Format("the ghosts of this light were not kept by their paths".to_owned()));
+                return Err(WriteFault::Format("this light was saved without separate ghost paths".to_owned()));
             }
             own.extend(paths);
         }
@@ -159,22 +160,22 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
     let p: ExrParams = params.parse()?;
     let mut faults = Faults::new();
     if p.tiled && library::library().is_none() {
-        let fault = params.fault("tiled", "tiled OpenEXR files are written by OpenImageIO only");
+        let fault = params.fault("tiled", "only OpenImageIO can write tiled OpenEXR files");
         faults.push(fault.hint(library::WITHOUT));
     }
     if p.holds == Content::Picture {
         if p.tiled {
-            faults.push(params.fault("tiled", "a picture is written without tiles").hint("leave `tiled` out"));
+            faults.push(params.fault("tiled", "a picture cannot be written in tiles").hint("leave out `tiled`"));
         }
         let layers = p.layers.unwrap_or_default();
         if let Some(at) = layers.iter().position(|layer| layer.light().is_some()) {
             let fault =
                 params.fault(&format!("layers[{at}]"), "kinds of light are layers of the exposure, not of the picture");
-            faults.push(fault.hint("an output `{kind: exr, layers: [...]}` without `holds: picture`"));
+            faults.push(fault.hint("write an output `{kind: exr, layers: [...]}` without `holds: picture`"));
         }
         if p.ghost_paths.is_some() {
-            let fault = params.fault("ghost-paths", "paths of ghosts are layers of the exposure, not of the picture");
-            faults.push(fault.hint("an output `{kind: exr, ghost-paths: ...}` without `holds: picture`"));
+            let fault = params.fault("ghost-paths", "ghost paths are layers of the exposure, not of the picture");
+            faults.push(fault.hint("write an output `{kind: exr, ghost-paths: ...}` without `holds: picture`"));
         }
         let (space, half) = (p.space.unwrap_or_default().into(), p.half.unwrap_or(false));
         return faults.into_result(Box::new(PictureExr { space, layers, half }) as _);
@@ -182,21 +183,21 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
     for (key, given) in [("space", p.space.is_some()), ("half", p.half.is_some())] {
         if given {
             let fault = params.fault(key, format!("`{key}` is for the finished picture, not for the exposure"));
-            faults.push(fault.hint("`holds: picture`"));
+            faults.push(fault.hint("write `holds: picture`"));
         }
     }
     let mut lights = Vec::new();
     for (at, layer) in p.layers.unwrap_or_default().into_iter().enumerate() {
         match layer.light() {
             Some(kind) if lights.contains(&kind) => {
-                let fault = params.fault(&format!("layers[{at}]"), format!("`{}` is there twice", kind.name()));
+                let fault = params.fault(&format!("layers[{at}]"), format!("`{}` is listed twice", kind.name()));
                 faults.push(fault.hint("leave one of them out"));
             }
             Some(kind) => lights.push(kind),
             None => {
                 let fault = params
-                    .fault(&format!("layers[{at}]"), "this layer is of the finished picture, not of the exposure");
-                faults.push(fault.hint("`holds: picture`, or of light `direct`, `ghosts`, `glare`, `star`"));
+                    .fault(&format!("layers[{at}]"), "this layer belongs to the finished picture, not to the exposure");
+                faults.push(fault.hint("write `holds: picture`, or use `direct`, `ghosts`, `glare`, `star`"));
             }
         }
     }
@@ -238,7 +239,7 @@ impl Output for Exr {
     }
 }
 
-/// The finished picture.
+/// Output of the finished picture.
 struct PictureExr {
     space: LinearSpace,
     layers: Vec<LayerGroup>,
@@ -246,12 +247,12 @@ struct PictureExr {
 }
 
 impl PictureExr {
-    /// Whether a layer of this name is asked for.
+    /// Whether the scene asks for a layer of this name.
     fn takes(&self, name: &str) -> bool {
         let is_of = |group: &LayerGroup| match group {
             LayerGroup::Exposures => name.starts_with("exposure."),
             LayerGroup::Densities => name.starts_with("density.") || name.starts_with("print."),
-            // Kinds of light are refused.
+            // Kinds of light were already rejected.
             _ => false,
         };
         self.layers.iter().any(is_of)
@@ -273,7 +274,7 @@ impl Output for PictureExr {
 
     fn check(&self, imager: &dyn Imager) -> Result<(), [String; 2]> {
         if imager.response().is_some() && self.layers.contains(&LayerGroup::Densities) {
-            return Err(["there is no density without a film".to_owned(), "`layers: [exposures]`".to_owned()]);
+            return Err(["there is no density without a film".to_owned(), "write `layers: [exposures]`".to_owned()]);
         }
         Ok(())
     }
@@ -281,11 +282,11 @@ impl Output for PictureExr {
     fn check_film(&self, film: &dyn Film) -> Result<(), [String; 2]> {
         if !self.layers.is_empty() && !film.has_layers() {
             let text = format!("{} does not say what its layers hold", film.name());
-            return Err([text, "leave `layers` out".to_owned()]);
+            return Err([text, "leave out `layers`".to_owned()]);
         }
         let is_data = film.image_state() == ImageState::Data;
         if is_data && self.space != LinearSpace::default() {
-            return Err([DENSITIES.to_owned(), "leave `space` out, or `scan: picture`".to_owned()]);
+            return Err([DENSITIES.to_owned(), "leave out `space`, or write `scan: picture`".to_owned()]);
         }
         Ok(())
     }
@@ -304,5 +305,5 @@ impl Output for PictureExr {
     }
 }
 
-/// What is said of colors for what has none.
-pub(crate) const DENSITIES: &str = "a scan on a scale of density has no color space";
+/// Message about a color space for values that are not colors.
+pub(crate) const DENSITIES: &str = "a scan on a density scale has no color space";

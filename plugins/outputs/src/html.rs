@@ -1,4 +1,4 @@
-//! `kind: html`.
+//! `kind: html`: a page in one HTML file.
 
 use crate::rays;
 use schemars::JsonSchema;
@@ -13,11 +13,11 @@ use spectra_plot::{Cell, Page};
 use spectra_scene::{Holds, Output, OutputEntry, Shot, Told};
 use std::io::Cursor;
 
-/// A page on the picture for a browser, in one file that needs no network.
+/// A page about the picture for a browser, in one file that needs no network.
 ///
-/// The picture, the lens with its rays, the film, how much light arrived and where the rest went, how long it took, and the scene itself: what
-/// one sends to somebody who is to see what was done. Pictures by several films stand on one page. Of a sweep or an animation
-/// `SCENE-series.html` has the contact sheet and a row for each picture, beside a page for each.
+/// The page shows the picture, the lens with its rays, the film, how much light arrived and where the rest went, the render time and the
+/// scene itself: everything to show somebody else what was done. Pictures by several films are on one page. A sweep or an animation also
+/// gets `SCENE-series.html`, with the contact sheet and a row for each picture, in addition to a page for each picture.
 ///
 /// # Example
 /// ```yaml
@@ -44,7 +44,7 @@ impl Output for Html {
         ["", ".html"]
     }
 
-    /// One page for all films.
+    /// Returns the kind of content: a figure, because all films share one page.
     fn holds(&self) -> Holds {
         Holds::Figure
     }
@@ -69,7 +69,7 @@ fn of_picture(shot: &Shot<'_>) -> Result<Page, WriteFault> {
     let (scene, report) = (shot.scene, shot.report());
     let mut page = Page::new(&scene.name);
     page.aside(&scene.source.describe());
-    // Not every imager has something to show: then the page says what there is.
+    // Not every imager has something to show; the page then says why.
     match shot.pictures() {
         Ok(pictures) => {
             for (film, (name, _)) in pictures.iter().enumerate() {
@@ -106,13 +106,13 @@ fn of_picture(shot: &Shot<'_>) -> Result<Page, WriteFault> {
     Ok(page)
 }
 
-/// A picture as a PNG of square pixels, and how large it is shown.
+/// Returns a picture as a PNG with square pixels, and the size in which it is shown, CSS pixels.
 fn picture(shot: &Shot<'_>, film: usize) -> Result<(Vec<u8>, [f64; 2]), WriteFault> {
     let picture = squared(shot.picture(film)?, shot.pixel_aspect());
     let mut bytes = Cursor::new(Vec::new());
     png8(&mut bytes, &picture, PictureSpace::Srgb, 1.0)?;
     let [width, height] = [picture.width_px, picture.height_px].map(f64::from);
-    // Small pictures are shown larger, by whole steps so that pixels stay alike.
+    // Small pictures are enlarged by whole factors, so that all pixels have the same size.
     let fits = SIDE / width.max(height);
     let factor = if fits >= 1.0 { fits.floor().min(4.0) } else { fits };
     Ok((bytes.into_inner(), [width * factor, height * factor]))
@@ -157,7 +157,7 @@ fn recorder(shot: &Shot<'_>) -> Facts {
     facts
 }
 
-/// Six digits, with a power of ten where the number is large or small.
+/// Formats a value with five significant digits, and with a power of ten if it is large or small.
 fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -177,7 +177,7 @@ fn percent(part: f64, of: f64) -> String {
     }
 }
 
-/// What arrived, channel by channel, and where the rest of the rays went.
+/// Writes tables of the light that arrived, channel by channel, and of where the rest of the rays went.
 fn light(page: &mut Page, shot: &Shot<'_>) {
     let gains = shot.gains();
     let rows: Vec<Vec<Cell>> = shot
@@ -194,7 +194,7 @@ fn light(page: &mut Page, shot: &Shot<'_>) {
             name.into_iter().chain([number(low), number(mean), number(high)]).collect()
         })
         .collect();
-    // Bands of a spectrum are too many for a page.
+    // A page shows only some of the bands of a spectrum.
     const MOST: usize = 12;
     page.table(&["channel", "unit", "least", "mean", "most"], &rows[..rows.len().min(MOST)]);
     if rows.len() > MOST {
@@ -228,7 +228,7 @@ fn light(page: &mut Page, shot: &Shot<'_>) {
     }
 }
 
-/// How long it took, under that name, and on what.
+/// Lists the render time, under the name `seconds`, and the machine and versions that rendered.
 fn time(report: &Value, seconds: &str) -> Facts {
     let number = |key: &str| report[key].as_f64();
     let mut facts = Facts::new();
@@ -246,7 +246,7 @@ fn time(report: &Value, seconds: &str) -> Facts {
     facts
 }
 
-/// A sweep or an animation.
+/// Builds the page of a sweep or an animation.
 fn of_series(told: &Told<'_>) -> Page {
     let report = told.report;
     let mut page = Page::new(told.name);
@@ -254,7 +254,7 @@ fn of_series(told: &Told<'_>) -> Page {
     let kind = report["kind"].as_str().unwrap_or("series");
     page.aside(&format!("{kind}: {} of {} pictures", pictures.len(), report["count"]));
     for (name, png) in told.contact_sheets {
-        // The size stands in the head of the file (PNG, 11.2.2).
+        // The size is in the header of the file (PNG, 11.2.2).
         let side =
             |at: usize| png.get(at..at + 4).map_or(0.0, |b| f64::from(u32::from_be_bytes([b[0], b[1], b[2], b[3]])));
         let (width, height) = (side(16), side(20));

@@ -1,4 +1,4 @@
-//! `kind: jpeg`.
+//! `kind: jpeg`: finished pictures as JPEG files.
 
 use crate::screen::{Screen, Space};
 use schemars::JsonSchema;
@@ -11,10 +11,10 @@ use spectra_core::stage::Film;
 use spectra_pictures::write::jpeg;
 use spectra_scene::{Holds, Output, Shot};
 
-/// The picture as JPEG, to share.
+/// The picture as a JPEG file, to share.
 ///
-/// 8 bits a channel in sRGB without loss of color resolution, with an ICC profile; of films side by side a file each. A JPEG loses a
-/// little each time that it is saved: keep a `png`, `tiff` or `exr` to work on.
+/// 8 bits per channel in sRGB, with full color resolution and an ICC profile. Several films side by side get a file each. A JPEG loses a
+/// little quality each time it is saved: keep a `png`, `tiff` or `exr` for further work.
 ///
 /// # Example
 /// ```yaml
@@ -29,13 +29,13 @@ use spectra_scene::{Holds, Output, Shot};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct JpegParams {
-    /// From 1, small and coarse, to 100; 95 if absent.
+    /// Quality from 1 (small and coarse) to 100; 95 if absent.
     #[serde(default = "fine")]
     quality: Whole<1, 100>,
-    /// Its colors: `srgb` (the default), `display-p3`, or `rec2020` (its primaries under the curve of sRGB).
+    /// Color space of the file: `srgb` (the default), `display-p3`, or `rec2020` (its primaries with the curve of sRGB).
     #[serde(default)]
     space: Space,
-    /// Whether pixels that are not square (of an anamorphic lens with a `squeeze`, or of the imager) are made square.
+    /// Whether pixels that are not square, because of an anamorphic lens with a `squeeze` or of the imager, are made square.
     #[serde(default)]
     desqueeze: bool,
 }
@@ -55,9 +55,9 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
     let JpegParams { quality, space, desqueeze } = params.parse()?;
     if space == Space::AcesCct {
         let fault = params.fault("space", "8 bits are too few for a logarithmic space");
-        return Err(fault.hint("`srgb`, `display-p3` or `rec2020`; or `kind: tiff`, which has 16").into());
+        return Err(fault.hint("write `srgb`, `display-p3` or `rec2020`; or `kind: tiff`, which has 16").into());
     }
-    // At most 100.
+    // The quality is at most 100, so it fits.
     Ok(Box::new(Jpeg { quality: quality.get() as u8, screen: Screen { space, desqueeze } }))
 }
 

@@ -1,4 +1,4 @@
-//! Built-in outputs: what is written of a picture.
+//! Built-in outputs: the files that are written for a picture.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

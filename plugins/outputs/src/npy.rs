@@ -11,8 +11,8 @@ use spectra_scene::{Holds, Output, OutputEntry, Shot};
 
 /// The linear exposure as a NumPy array: height x width x channels of 32-bit floats.
 ///
-/// `numpy.load` reads it without any library for pictures, and so do most programs for data. The values are those of `exr`, in lux
-/// seconds or what the channel's unit says, the first row on top; names and units of the channels stand in `exr` and in the report.
+/// `numpy.load` reads it without a library for pictures, and so do most programs for data. The values are those of `exr`, in lux seconds or
+/// in the unit of the channel, with the first row at the top. The names and units of the channels are in `exr` and in the report.
 ///
 /// # Example
 /// ```yaml
@@ -54,14 +54,14 @@ impl Output for Npy {
     }
 }
 
-/// What stands before the header: the magic number, and version 1.0.
+/// First bytes of the file: the magic number, and version 1.0.
 const MAGIC: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
-/// Planes of equal size, each times its gain, value by value.
+/// Writes planes of equal size, each multiplied by its gain, value by value.
 fn write(out: &mut dyn Out, shape: [usize; 3], planes: &[&[f32]], gains: &[f64]) -> std::io::Result<()> {
     let [height, width, channels] = shape;
     let said = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({height}, {width}, {channels}), }}");
-    // With its length, two bytes, and a line break it ends on a multiple of 64.
+    // With its two length bytes and a line break, the header ends on a multiple of 64 bytes.
     let whole = (MAGIC.len() + 2 + said.len() + 1).next_multiple_of(64);
     let header = format!("{said:<0$}\n", whole - MAGIC.len() - 3);
     out.write_all(&MAGIC)?;

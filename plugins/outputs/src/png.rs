@@ -1,4 +1,4 @@
-//! `kind: png`.
+//! `kind: png`: finished pictures as PNG files.
 
 use crate::screen::{Screen, Space};
 use schemars::JsonSchema;
@@ -11,11 +11,11 @@ use spectra_core::stage::Film;
 use spectra_pictures::write::{png8, png16};
 use spectra_scene::{Holds, Output, Shot};
 
-/// The picture as PNG.
+/// The picture as a PNG file.
 ///
-/// 8 bits a channel in sRGB, as any viewer and web page shows it; of films side by side a file each. The file says its colors: cICP,
-/// and for older programs sRGB with gAMA and cHRM, or an ICC profile. What the scans `log`, `adx` and `density` write are no colors,
-/// and are not tagged.
+/// 8 bits per channel in sRGB, which any viewer and web page shows. Several films side by side get a file each. The file states its colors:
+/// by cICP, and for older programs by sRGB with gAMA and cHRM, or by an ICC profile. The scans `log`, `adx` and `density` write values that
+/// are not colors, and are not tagged.
 ///
 /// # Example
 /// ```yaml
@@ -31,15 +31,15 @@ use spectra_scene::{Holds, Output, Shot};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PngParams {
-    /// Bits a channel, 8 (the default) or 16.
+    /// Bits per channel: 8 (the default) or 16.
     #[serde(default = "eight")]
     bits: Whole<8, 16>,
-    /// Its colors: `srgb` (the default), `display-p3`, `rec2020` (its primaries under the curve of sRGB), or with 16 bits `acescct`, the
-    /// logarithmic space of ACES, which holds light far beyond white.
+    /// Color space of the file: `srgb` (the default), `display-p3`, `rec2020` (its primaries with the curve of sRGB), or with 16 bits
+    /// `acescct`, the logarithmic space of ACES, which holds light far beyond white.
     #[serde(default)]
     space: Space,
-    /// Whether pixels that are not square (of an anamorphic lens with a `squeeze`, or of the imager) are made square. Otherwise
-    /// the file only says their shape (pHYs), which few viewers heed.
+    /// Whether pixels that are not square, because of an anamorphic lens with a `squeeze` or of the imager, are made square. Otherwise the
+    /// file only states their shape (pHYs), which few viewers respect.
     #[serde(default)]
     desqueeze: bool,
 }
@@ -59,11 +59,11 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
     let PngParams { bits, space, desqueeze } = params.parse()?;
     let bits = bits.get();
     if !matches!(bits, 8 | 16) {
-        return Err(params.fault("bits", format!("a PNG has no {bits} bits a channel")).hint("8 or 16").into());
+        return Err(params.fault("bits", format!("a PNG cannot have {bits} bits per channel")).hint("8 or 16").into());
     }
     if space == Space::AcesCct && bits == 8 {
         let fault = params.fault("space", "8 bits are too few for a logarithmic space");
-        return Err(fault.hint("`bits: 16` beside it").into());
+        return Err(fault.hint("also write `bits: 16`").into());
     }
     Ok(Box::new(Png { is_deep: bits == 16, screen: Screen { space, desqueeze } }))
 }

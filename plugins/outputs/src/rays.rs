@@ -1,10 +1,10 @@
-//! `kind: rays`.
+//! `kind: rays`: a drawing of rays through the lens.
 
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_analysis::draw::{DrawnRay, Fans, Ground, Sheet, View};
-use spectra_analysis::fan::FanFinder;
+use spectra_analysis::fan::largest_field_rad;
 use spectra_color::RgbSpace;
 use spectra_core::params::{Faults, Length, Params, Positive, Whole};
 use spectra_core::registry::Context;
@@ -12,15 +12,16 @@ use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::Emit;
 use spectra_core::{Isa, RayBatch};
 use spectra_glass::DispersionError;
-use spectra_lens::{Indices, Section, Tracer};
+use spectra_lens::Section;
 use spectra_plot::{Canvas, Format};
 use spectra_scene::{Holds, Output, Scene, Shot};
 use spectra_spectrum::Observer;
+use spectra_tracer::Indices;
 
-/// The light's way through the lens, as a figure beside the picture.
+/// A figure of the light's path through the lens, in addition to the picture.
 ///
-/// A section of the lens with the rays of the scene's own light: a beam's rays in its colors, or fans over the field for a source that shines
-/// everywhere. For papers and pages that explain a picture, and for looking what a lens does with a prism's light.
+/// The figure is a section of the lens with rays of the scene's own light: the rays of a beam in their colors, or fans over the field for a
+/// source that shines everywhere. Use it in papers and pages that explain a picture, or to see what a lens does to the light of a prism.
 ///
 /// # Example
 /// ```yaml
@@ -29,27 +30,27 @@ use spectra_spectrum::Observer;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RaysParams {
-    /// Width and height, pixels, each 64 to 8192.
+    /// Width and height of the figure, pixels, each 64 to 8192.
     #[serde(default = "size")]
     size: [Whole<64, 8192>; 2],
-    /// Width of what is shown, mm if bare; fitted to the lens if absent.
+    /// Width of the region shown, mm if bare; fitted to the lens if absent.
     view: Option<Positive<Length>>,
-    /// Rays across the beam for each wavelength, 1 to 1001.
+    /// Number of rays across the beam for each wavelength, 1 to 1001.
     #[serde(default = "across")]
     rays: Whole<1, 1001>,
-    /// Wavelengths over a continuous spectrum, 1 to 4001.
+    /// Number of wavelengths over a continuous spectrum, 1 to 4001.
     #[serde(default = "wavelengths")]
     wavelengths: Whole<1, 4001>,
-    /// How bright colors are: `full` (the default; all alike) or `true` (relative to the brightest).
+    /// Brightness of the colors: `full` (the default; all equal) or `true` (relative to the brightest).
     #[serde(default)]
     intensity: Intensity,
-    /// What it is drawn on: `dark` (the default) or `light`.
+    /// Background of the figure: `dark` (the default) or `light`.
     #[serde(default)]
     ground: On,
-    /// What it is written as: `png` (the default) or `svg`.
+    /// File format of the figure: `png` (the default) or `svg`.
     #[serde(default)]
     format: As,
-    /// Whether the image plane is drawn, and ends the rays.
+    /// Whether the image plane is drawn and ends the rays.
     #[serde(default)]
     screen: bool,
 }
@@ -122,7 +123,7 @@ impl Output for Rays {
     }
 }
 
-/// A scene's light on its way through the lens.
+/// Draws the path of a scene's light through the lens.
 fn drawn(scene: &Scene, figure: &RaysParams, isa: Isa) -> Result<Canvas, DispersionError> {
     let rays = match scene.source.emit().filter(|emit| emit.is_directed()) {
         Some(emit) => beam(scene, emit, figure, isa)?,
@@ -141,10 +142,10 @@ fn drawn(scene: &Scene, figure: &RaysParams, isa: Isa) -> Result<Canvas, Dispers
     Ok(sheet.draw(&scene.lens, &rays))
 }
 
-/// The same on white ground, as a page shows it.
+/// Draws the path of a scene's light through the lens on a white background, for a page.
 ///
 /// # Errors
-/// A medium has no index at a wavelength of a ray.
+/// Fails if a medium has no refractive index at the wavelength of a ray.
 pub(crate) fn on_paper(scene: &Scene, isa: Isa) -> Result<Canvas, DispersionError> {
     let figure = RaysParams {
         size: [Whole::known(1100), Whole::known(420)],
@@ -159,13 +160,14 @@ pub(crate) fn on_paper(scene: &Scene, isa: Isa) -> Result<Canvas, DispersionErro
     drawn(scene, &figure, isa)
 }
 
-/// Light that a screen can show, nm.
+/// Wavelengths that a screen can show, nm.
 const VISIBLE_NM: [f64; 2] = [390.0, 710.0];
-/// Fields of a source that is not a beam, as parts of the largest that passes.
+/// Field angles drawn for a source that is not a beam, as fractions of the largest that passes.
 const PARTS: [f64; 3] = [0.0, 0.6, 0.95];
+/// Largest field angle that is tried, degrees.
 const WIDEST_DEG: f64 = 85.0;
 
-/// A beam's own rays: for each line, or for wavelengths over its continuum.
+/// Traces a beam's own rays: for each spectral line, and for wavelengths over its continuum.
 fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams, isa: Isa) -> Result<Vec<DrawnRay>, DispersionError> {
     let spectrum = scene.source.spectrum();
     let visible = |nm: f64| (VISIBLE_NM[0]..=VISIBLE_NM[1]).contains(&nm);
@@ -177,7 +179,7 @@ fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams, isa: Isa) -> Result
         (0..figure.wavelengths.get_u32()).filter(|_| continuum).map(|k| VISIBLE_NM[0] + step * (f64::from(k) + 0.5));
     let wavelengths = wavelengths.map(|nm| (nm, spectra_core::batch::CONTINUUM));
     let mut drawn = Vec::new();
-    // Lines and continuum have no common measure: each is relative to its own brightest.
+    // Lines and continuum have no common unit: each is relative to its own brightest.
     for group in [lines, wavelengths.collect()] {
         let first = drawn.len();
         for (wavelength_nm, line) in group {
@@ -189,7 +191,7 @@ fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams, isa: Isa) -> Result
             c.line.fill(line);
             let across: Vec<f64> = (0..n).map(|k| (k as f64 + 0.5) / n as f64).collect();
             emit.place(&mut rays, &vec![0.5; n], &across, isa);
-            let tracer = Tracer::new(&scene.lens, Indices::At(wavelength_nm), Isa::Baseline)?;
+            let tracer = scene.lens.tracer(Indices::At(wavelength_nm))?;
             for k in 0..n {
                 let [position, direction] =
                     [rays.positions(), rays.directions()].map(|columns| DVec3::from_array(columns.map(|c| c[k])));
@@ -206,17 +208,16 @@ fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams, isa: Isa) -> Result
     Ok(drawn)
 }
 
-/// How bright a screen shows one unit of light of a wavelength: the largest channel of its linear sRGB.
+/// Returns how bright a screen shows one unit of light of a wavelength: the largest channel of its linear sRGB.
 fn brightness(wavelength_nm: f64) -> f64 {
     let rgb = RgbSpace::srgb().from_xyz(Observer::cie_1931_2deg().at(wavelength_nm));
     rgb.into_iter().fold(0.0, f64::max)
 }
 
-/// Fans over the field, for a source that shines everywhere.
+/// Traces fans of rays over the field, for a source that shines everywhere.
 fn fans(scene: &Scene, figure: &RaysParams) -> Result<Vec<DrawnRay>, DispersionError> {
     let object_mm = scene.source.distance_mm();
-    let finder = FanFinder::new(&scene.lens, Section::Y, scene.lens.reference_nm)?;
-    let largest = finder.largest_field_rad(object_mm, f64::to_radians(WIDEST_DEG)).unwrap_or(0.0);
+    let largest = largest_field_rad(&scene.lens, Section::Y, object_mm, f64::to_radians(WIDEST_DEG))?.unwrap_or(0.0);
     let lines = [spectra_glass::lines::F_PRIME, spectra_glass::lines::E, spectra_glass::lines::C_PRIME];
     let fans = Fans {
         fields_deg: PARTS.iter().map(|part| part * largest.to_degrees()).collect(),

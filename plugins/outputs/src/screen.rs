@@ -1,4 +1,4 @@
-//! What `png`, `jpeg` and `tiff` have in common: colors, and pixels that are not square.
+//! Parts that `png`, `jpeg` and `tiff` share: color spaces, and pixels that are not square.
 
 use crate::exr::DENSITIES;
 use schemars::JsonSchema;
@@ -10,7 +10,7 @@ use spectra_pictures::write::{PictureSpace, squared};
 use spectra_scene::Shot;
 use std::borrow::Cow;
 
-/// Colors as written in a scene.
+/// A color space as written in a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[schemars(inline)]
 pub(crate) enum Space {
@@ -25,7 +25,7 @@ pub(crate) enum Space {
     AcesCct,
 }
 
-/// How a picture goes into a file for a screen.
+/// The way a picture is written to a file for a screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Screen {
     pub space: Space,
@@ -39,12 +39,12 @@ impl Screen {
 
     pub(crate) fn check_film(self, film: &dyn Film) -> Result<(), [String; 2]> {
         if film.image_state() == ImageState::Data && self.space != Space::Srgb {
-            return Err([DENSITIES.to_owned(), "leave `space` out, or `scan: picture`".to_owned()]);
+            return Err([DENSITIES.to_owned(), "leave out `space`, or write `scan: picture`".to_owned()]);
         }
         Ok(())
     }
 
-    /// The picture, its colors, and the width of its pixels over their height.
+    /// Returns the picture, its color space, and the ratio of its pixels' width to their height.
     pub(crate) fn of<'a>(
         self,
         shot: &'a Shot<'_>,

@@ -1,4 +1,4 @@
-//! `kind: tiff`.
+//! `kind: tiff`: finished pictures as TIFF files.
 
 use crate::screen::{Screen, Space};
 use schemars::JsonSchema;
@@ -11,10 +11,10 @@ use spectra_core::stage::Film;
 use spectra_pictures::write::tiff16;
 use spectra_scene::{Holds, Output, Shot};
 
-/// The picture as TIFF with 16 bits a channel.
+/// The picture as a TIFF file with 16 bits per channel.
 ///
-/// sRGB, uncompressed, with an ICC profile; of films side by side a file each. For photo editors: enough steps to lighten shadows
-/// without bands. What the scans `log`, `adx` and `density` write are no colors, and have no profile.
+/// sRGB, uncompressed, with an ICC profile. Several films side by side get a file each. For photo editors: there are enough steps to
+/// lighten shadows without banding. The scans `log`, `adx` and `density` write values that are not colors, and have no profile.
 ///
 /// # Example
 /// ```yaml
@@ -30,11 +30,11 @@ use spectra_scene::{Holds, Output, Shot};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct TiffParams {
-    /// Its colors: `srgb` (the default), `display-p3`, `rec2020` (its primaries under the curve of sRGB), or `acescct`, the logarithmic
-    /// space of ACES, which holds light far beyond white.
+    /// Color space of the file: `srgb` (the default), `display-p3`, `rec2020` (its primaries with the curve of sRGB), or `acescct`, the
+    /// logarithmic space of ACES, which holds light far beyond white.
     #[serde(default)]
     space: Space,
-    /// Whether pixels that are not square (of an anamorphic lens with a `squeeze`, or of the imager) are made square.
+    /// Whether pixels that are not square, because of an anamorphic lens with a `squeeze` or of the imager, are made square.
     #[serde(default)]
     desqueeze: bool,
 }

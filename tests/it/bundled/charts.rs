@@ -1,4 +1,4 @@
-//! Charts through lenses: where they are drawn, how light and how sharp.
+//! Charts through lenses: where they are imaged, how bright and how sharp.
 
 use super::colors::{Block, reflected};
 use super::plane::{Plane, edge, mean};
@@ -8,21 +8,22 @@ use std::f64::consts::PI;
 
 const SMALL: &[&str] = &["imager.resolution=96", "render.samples=64"];
 
-/// The middle square of the chart of slanted edges: 100 of its 1500 mm wide, of reflectance 0.2 on 0.8. It has a quarter of the light
-/// around it, its size, and stands in the middle. One mm of the design is `design_mm` mm of the chart.
+/// Checks the middle square of the slanted-edge chart. It is 100 mm of the design's 1500 mm wide and has reflectance 0.2 on 0.8, so
+/// it must have a quarter of the light around it, its size, and its place in the middle. One mm of the design is `design_mm` mm of
+/// the chart.
 fn square(taken: &Taken, plane: &Plane, [distance_mm, design_mm]: [f64; 2]) -> Vec<Found> {
     let mm = taken.magnification(distance_mm) * design_mm;
     let found = middle_square(plane, mm, [0.0, 84.0]);
     vec![
         Found::within("dark over bright", found.0, 0.25, 0.01),
         Found::near("side of the square", found.1, 100.0, 0.03),
-        Found::within("its middle across", found.2[0], 0.0, 2.0),
-        Found::within("its middle up", found.2[1], 0.0, 2.0),
+        Found::within("horizontal center of the square", found.2[0], 0.0, 2.0),
+        Found::within("vertical center of the square", found.2[1], 0.0, 2.0),
     ]
 }
 
-/// Its light over that of the ground, its side and its middle, in mm of the design, of which each is so many mm on the film; looked for
-/// so far up, and so far above and below that.
+/// Returns the light of the middle square over that of the ground, its side and its center, in mm of the design. One mm of the design
+/// is `mm` mm on the film. The search starts at height `up` and reaches `half` above and below it.
 fn middle_square(plane: &Plane, mm: f64, [up, half]: [f64; 2]) -> (f64, f64, [f64; 2]) {
     let beside = |x: f64| plane.mean(([x * mm, 0.0], [28.0 * mm; 2]));
     let ground = 0.5 * (beside(-100.0) + beside(100.0));
@@ -43,7 +44,7 @@ pub const EDGES: &[Promise] = &[
     Promise {
         scene: "bench/sampling-d65-xyz",
         pictures: &[first(SMALL)],
-        says: "a slanted edge in daylight, on XYZ color",
+        says: "a slanted edge in daylight, in XYZ color",
         held: |t| square(&t[0], &t[0].light(), BIOTAR),
     },
     Promise {
@@ -55,7 +56,7 @@ pub const EDGES: &[Promise] = &[
     Promise {
         scene: "bench/sampling-fl11-xyz",
         pictures: &[first(SMALL)],
-        says: "a slanted edge under a fluorescent lamp, on XYZ color",
+        says: "a slanted edge under a fluorescent lamp, in XYZ color",
         held: |t| square(&t[0], &t[0].light(), BIOTAR),
     },
     Promise {
@@ -67,16 +68,16 @@ pub const EDGES: &[Promise] = &[
     Promise {
         scene: "bench/sampling-mirror-ortho",
         pictures: &[first(SMALL)],
-        says: "a slanted edge through mirrors alone",
+        says: "a slanted edge through mirrors only",
         held: |t| {
-            // The chart is 9 m wide. How far up the square stands is not held: in focusing at 100 m the film moves along the axis of the last
-            // mirror, which stands at 45 degrees, and the picture 0.37 mm aside.
+            // The chart is 9 m wide. The vertical position of the square is not checked: in focusing at 100 m the film moves along
+            // the axis of the last mirror, which is at 45 degrees, and this shifts the picture by 0.37 mm.
             let mm = 200.0 / (100_000.0 - 200.0) * 6.0;
             let (ratio, side, [x, _]) = middle_square(&t[0].light(), mm, [16.0, 105.0]);
             vec![
                 Found::within("dark over bright", ratio, 0.25, 0.01),
                 Found::near("side of the square", side, 100.0, 0.05),
-                Found::within("its middle across", x, 0.0, 2.0),
+                Found::within("horizontal center of the square", x, 0.0, 2.0),
             ]
         },
     },
@@ -85,18 +86,18 @@ pub const EDGES: &[Promise] = &[
         pictures: &[first(SMALL)],
         says: "a slanted edge through a pinhole",
         held: |t| {
-            // 1.2 m wide at 1 m, and the film 50 mm behind the hole.
+            // The chart is 1.2 m wide at 1 m, and the film is 50 mm behind the pinhole.
             let (ratio, side, [x, y]) = middle_square(&t[0].light(), 0.05 * 1.2 / 1.5, [0.0, 84.0]);
             vec![
                 Found::within("dark over bright", ratio, 0.25, 0.01),
                 Found::near("side of the square", side, 100.0, 0.03),
-                Found::within("its middle", x.hypot(y), 0.0, 2.0),
+                Found::within("distance of the center from the axis", x.hypot(y), 0.0, 2.0),
             ]
         },
     },
     Promise {
         scene: "bench/sampling-d65-sensor",
-        // So small a frame lies in the dark square of the chart: the edge that the scene speaks of is not in it.
+        // Such a small frame lies inside the dark square of the chart, so the edge that the scene mentions is not in it.
         pictures: &[first(&["render.samples=64"]), first(&["render.samples=64", "source.chart=white"])],
         says: "a chart under D65 behind the color filters of a camera",
         held: |t| {
@@ -109,7 +110,7 @@ pub const EDGES: &[Promise] = &[
             vec![
                 Found::near("red over green", red / green, r / g, 0.05),
                 Found::near("blue over green", blue / green, b / g, 0.05),
-                Found::within("over a white chart", green / white, 0.2, 0.01),
+                Found::within("green over the green of a white chart", green / white, 0.2, 0.01),
             ]
         },
     },
@@ -120,7 +121,8 @@ pub const EDGES: &[Promise] = &[
         held: |t| {
             let mm = t[0].magnification(2000.0);
             let block = Block { middle: [0.0, -252.0 * mm], pitch: 65.0 * mm, half: 0.5 };
-            // Fourteen grays of density 0.05 to 1.48 from left to right, somewhat nearer to the middle for the lens's distortion.
+            // Fourteen grays of density 0.05 to 1.48 from left to right, slightly closer to the middle because of the lens's
+            // distortion.
             let light = t[0].light();
             let gray = |step: f64| light.mean(([45.0 * (step - 6.5) * 0.99 * mm, 412.5 * 0.99 * mm], [0.35, 0.35]));
             vec![
@@ -131,19 +133,24 @@ pub const EDGES: &[Promise] = &[
                     1.1,
                     0.1,
                 ),
-                Found::within("to the seventh", (gray(0.0) / gray(6.0)).log10(), 0.66, 0.06),
+                Found::within(
+                    "density from the first gray to the seventh",
+                    (gray(0.0) / gray(6.0)).log10(),
+                    0.66,
+                    0.06,
+                ),
             ]
         },
     },
     Promise {
         scene: "bench/forward-190m",
         pictures: &[first(&["imager.resolution=96", "render.rays=600000"])],
-        says: "a chart at 2 m, the Biotar wide open, in the forward direction",
+        says: "a chart at 2 m, the Biotar wide open, traced forward",
         held: |t| {
             let (mm, light) = (t[0].magnification(2000.0), t[0].light());
             let at = |x: f64| light.mean(([x * mm, 8.0 * mm], [30.0 * mm; 2]));
             let ground = mean([-222.0, 222.0].into_iter().map(|x| light.mean(([x * mm, 0.0], [10.0 * mm, 40.0 * mm]))));
-            // Squares of reflectance 0.03 and 0.225 on 0.9; the lens takes 8 % of the light at the outer ones.
+            // Squares of reflectance 0.03 and 0.225 on 0.9. At the outer squares the lens loses 8 % of the light.
             vec![
                 Found::is("forward", t[0].rendering.estimators == ["forward"]),
                 Found::within("black", 0.5 * (at(-160.0) + at(160.0)) / ground, 0.033, 0.01),
@@ -153,7 +160,7 @@ pub const EDGES: &[Promise] = &[
     },
 ];
 
-/// How much of the light surfaces let through by Fresnel's equation at right angles, at the d line.
+/// Returns the transmittance of all surfaces by Fresnel's equations at normal incidence, at the d line.
 pub fn fresnel(taken: &Taken) -> f64 {
     let lens = &taken.scene.lens;
     let part = |element: &spectra_lens::Element| {
@@ -163,8 +170,8 @@ pub fn fresnel(taken: &Taken) -> f64 {
     lens.elements.iter().map(part).product()
 }
 
-/// A gray card of 18 %: pi L T / (4 N^2 (1 + m)^2) in the middle, and less and less toward the corners, where a lens of 1927 wide open has
-/// far less than the fourth power of the cosine.
+/// Checks a gray card of 18 %: pi L T / (4 N^2 (1 + m)^2) in the middle, falling toward the corners. There a lens of 1927 wide open
+/// has far less light than the fourth power of the cosine.
 fn vignetting(taken: &[Taken]) -> Vec<Found> {
     let y = taken[0].channel("Y");
     let ring = |from: f64, to: f64| {
@@ -172,19 +179,20 @@ fn vignetting(taken: &[Taken]) -> Vec<Found> {
         mean(y.all().filter(|(p, _)| is_in(*p)).map(|(_, value)| value))
     };
     let rings = [ring(0.0, 3.0), ring(6.0, 9.0), ring(12.0, 15.0), ring(17.0, 19.0), ring(20.0, 22.0)];
-    let n = taken[0].scene.lens.marginal_ray().expect("it has sizes").f_number();
+    let n = taken[0].scene.lens.marginal_ray().expect("the lens has sizes").f_number();
     let m = taken[0].magnification(2000.0);
     let wanted = PI * 0.18 * 300.0 * fresnel(&taken[0]) / (4.0 * n * n * (1.0 + m) * (1.0 + m));
     let falls = rings.windows(2).map(|pair| pair[1] / pair[0]).fold(0.0, f64::max);
     vec![
-        // Oblique rays at f/1.4 lose some more to surfaces.
+        // At f/1.4, oblique rays lose slightly more at the surfaces.
         Found::near("lx in the middle", rings[0], wanted, 0.06),
         Found::below("each ring over the one inside", falls, 0.9),
         Found::below("corner over middle", rings[4] / rings[0], 0.35),
     ]
 }
 
-/// Contrast of a star, where it is within a crop: found by its darkness, and looked at where its spokes are 7 mm of the design apart.
+/// Returns the contrast of a Siemens star inside a crop. The star is located by its darkness and measured where its spokes are 7 mm
+/// of the design apart.
 fn star(light: &Plane, mm: f64, cycles: f64) -> f64 {
     let half = if cycles > 40.0 { 95.0 } else { 58.0 } * mm;
     let mut center = [0.0; 2];
@@ -194,7 +202,7 @@ fn star(light: &Plane, mm: f64, cycles: f64) -> f64 {
     light.spokes(center, cycles * 7.0 * mm / (2.0 * PI), cycles, None)
 }
 
-/// From a quarter to three quarters of three edges that run across: above, in the middle and below.
+/// Returns the widths from a quarter to three quarters of three horizontal edges: top, middle and bottom.
 fn level_edges(taken: &Taken) -> [f64; 3] {
     let y = taken.channel("Y");
     [[10.3, 0.75], [1.45, 0.5], [-10.3, 0.6]].map(|[at, half]| edge(&y.along(1, ([0.0, at], [0.7, half])))[1])
@@ -204,12 +212,12 @@ pub const SHARP: &[Promise] = &[
     Promise {
         scene: "gray-card",
         pictures: &[first(&["imager.resolution=48", "render.samples=64"])],
-        says: "vignetting, and the exposure itself",
+        says: "vignetting and absolute exposure",
         held: vignetting,
     },
     Promise {
         scene: "tilted",
-        // A strip that has level edges, with the back as it is and upright.
+        // A strip with horizontal edges, with the tilted back and with an upright one.
         pictures: &[
             first(&[
                 "source.width=0.8 m",
@@ -222,10 +230,11 @@ pub const SHARP: &[Promise] = &[
                 "render.samples=128",
             ]),
         ],
-        says: "sharp along one level line only",
+        says: "sharp along one horizontal line only",
         held: |t| {
             let [tilted, upright] = [&t[0], &t[1]].map(level_edges);
-            // 10.3 mm from the middle the film is 1.1 mm off, and a point a disk: an edge has half of its way in 0.404 of its diameter.
+            // At 10.3 mm from the middle the film is 1.1 mm out of focus and a point becomes a disk: an edge has its middle half
+            // within 0.404 of the diameter.
             let disk = 10.3 * 6_f64.to_radians().tan() / 2.0;
             let wide = |upright: f64| (0.404 * disk).hypot(upright);
             vec![
@@ -239,7 +248,7 @@ pub const SHARP: &[Promise] = &[
     },
     Promise {
         scene: "stops-and-stocks",
-        // The star of the upper right corner at f/1.5 and f/12; and red on both films at f/3.
+        // The star in the upper right corner at f/1.5 and f/12, and the red patch on both films at f/3.
         pictures: &[
             member(
                 0,
@@ -266,12 +275,12 @@ pub const SHARP: &[Promise] = &[
             let [ortho, pan] = [&t[2], &t[3]].map(|taken| {
                 let tones = taken.tones(0);
                 let patch = |column: f64, row: f64| tones.mean(([1.75 * column, -6.79 + 1.75 * row], [0.5; 2]));
-                // Red, and the gray of 9 %.
+                // The red patch and the gray of 9 %.
                 patch(-0.5, -0.5) / patch(1.5, -1.5)
             });
             vec![
                 Found::below("contrast in the corner at f/1.5", open, 0.12),
-                Found::above("at f/12", closed, 0.3),
+                Found::above("contrast in the corner at f/12", closed, 0.3),
                 Found::below("ortho: red over gray of 9 %", ortho, 0.6),
                 Found::above("panchromatic: red over gray of 9 %", pan, 1.05),
             ]
@@ -291,10 +300,13 @@ pub const SHARP: &[Promise] = &[
                 "render.samples=64",
             ]),
         ],
-        says: "sharp in the middle; outward, a curved field, astigmatism and coma blur it",
+        says: "sharp in the middle, blurred outward by field curvature, astigmatism and coma",
         held: |t| {
             let [middle, corner] = [star(&t[0].light(), 0.02616, 72.0), star(&t[1].light(), 0.02616, 36.0)];
-            vec![Found::above("contrast in the middle", middle, 0.6), Found::below("in the corner", corner, 0.1)]
+            vec![
+                Found::above("contrast in the middle", middle, 0.6),
+                Found::below("contrast in the corner", corner, 0.1),
+            ]
         },
     },
     Promise {
@@ -314,7 +326,10 @@ pub const SHARP: &[Promise] = &[
         says: "a Schmidt camera on a flat film: sharp where the curved field touches it",
         held: |t| {
             let [middle, corner] = [star(&t[0].light(), 0.0165, 72.0), star(&t[1].light(), 0.0165, 36.0)];
-            vec![Found::above("contrast in the middle", middle, 0.7), Found::below("in the corner", corner, 0.2)]
+            vec![
+                Found::above("contrast in the middle", middle, 0.7),
+                Found::below("contrast in the corner", corner, 0.2),
+            ]
         },
     },
 ];

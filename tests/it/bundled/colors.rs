@@ -1,4 +1,4 @@
-//! What films, sensors and eyes make of the patches of a ColorChecker.
+//! How films, sensors and eyes record the patches of a ColorChecker.
 
 use super::plane::{Plane, Window, mean};
 use super::taken::{Taken, first};
@@ -9,21 +9,23 @@ use spectra_spectrum::{COLOR_CHECKER, find_emission, find_reflectance};
 
 const SMALL: &[&str] = &["imager.resolution=96", "render.samples=64"];
 const ORTHO: &[&str] = &["imager.resolution=96", "render.samples=64", "film.stock=ilford-ortho-plus"];
-/// Of the resolution chart, whose patches are small.
+/// Settings for the resolution chart, whose patches are small.
 const FINE: &[&str] = &["imager.resolution=192", "render.samples=32"];
 
-/// Where the patches of a chart are: the middle of the block and the way from one to the next, mm on the film, and half a window.
+/// Positions of the patches of a chart on the film, mm: center of the block, distance between neighboring patches, and half the width
+/// of a window.
 pub struct Block {
     pub middle: [f64; 2],
     pub pitch: f64,
     pub half: f64,
 }
 
-/// A ColorChecker that fills a frame 36 mm wide: 46 of 282 mm, and a little more of it in the middle for the lens's distortion.
+/// A ColorChecker that fills a frame 36 mm wide: patches are 46 of 282 mm, slightly more in the middle because of the lens's
+/// distortion.
 const WHOLE: Block = Block { middle: [0.0, 0.0], pitch: 6.3, half: 1.3 };
-/// That of an APS-C sensor, 23.6 mm wide.
+/// A ColorChecker that fills an APS-C sensor 23.6 mm wide.
 const APS_C: Block = Block { middle: [0.0, 0.0], pitch: 4.1, half: 0.8 };
-/// The block of the resolution chart, 65 of 1500 mm each: of this chart 27 um on the film are 1 mm.
+/// The patches in the resolution chart, 65 of 1500 mm each. One mm of this chart is 27 um on the film.
 const OF_CHART: Block = Block { middle: [0.0, -6.79], pitch: 1.752, half: 0.5 };
 
 impl Block {
@@ -36,13 +38,14 @@ impl Block {
 }
 
 const GRAYS: [&str; 6] = ["white", "neutral-8", "neutral-6.5", "neutral-5", "neutral-3.5", "black"];
-/// A gray of 9 %: to the eye a red patch is lighter, and a blue one darker.
+/// A gray of 9 %: to the eye, the red patch is lighter and the blue patch darker.
 const DARK_GRAY: &str = "neutral-3.5";
-/// The patches that stand near the middle of the frame, by their numbers.
+/// Indices of the patches near the middle of the frame.
 const INNER: [usize; 12] = [7, 8, 9, 10, 13, 14, 15, 16, 19, 20, 21, 22];
 
-/// The light of patches on a channel is that of their reflectances in this light, by what the channel is sensitive to: the largest
-/// difference, as a share of white. The lens takes light from the corners as the fourth power of the cosine, 53 mm behind it.
+/// Checks that the light of the patches on each channel follows from their reflectances, the given light and the channel's
+/// sensitivity. Reports the largest difference as a share of white. The falloff is the fourth power of the cosine, from a pupil 53 mm
+/// in front of the film.
 pub fn reflected(taken: &Taken, block: &Block, light: &str) -> Found {
     let grid = &taken.scene.grid;
     let light = find_emission(light).expect("bundled").to_power(grid);
@@ -62,40 +65,41 @@ pub fn reflected(taken: &Taken, block: &Block, light: &str) -> Found {
         let scale = pairs.iter().map(|(a, b)| a * b).sum::<f64>() / pairs.iter().map(|(_, b)| b * b).sum::<f64>();
         worst = pairs.iter().map(|(a, b)| (a / scale - b).abs()).fold(worst, f64::max);
     }
-    // The more layers share the light, the noisier each of them is.
+    // With more layers to share the light, each layer is noisier.
     let most = if taken.channels().len() == 1 { 0.03 } else { 0.06 };
     Found::below("patches are off by", worst, most)
 }
 
-/// The light of one patch of the finished picture over that of another.
+/// Returns the light of one patch of the finished picture over that of another.
 fn over(tones: &Plane, block: &Block, patch: &str, other: &str) -> f64 {
     tones.mean(block.window(patch)) / tones.mean(block.window(other))
 }
 
-/// How much more light of the finished picture one patch has than another.
+/// Checks that one patch of the finished picture has at least `least` times the light of another.
 fn lighter(tones: &Plane, block: &Block, light: &str, dark: &str, least: f64) -> Found {
     Found::above(&format!("{light} over {dark}"), over(tones, block, light, dark), least)
 }
 
-/// How little.
+/// Checks that one patch of the finished picture has at most `most` times the light of another.
 fn darker(tones: &Plane, block: &Block, dark: &str, light: &str, most: f64) -> Found {
     Found::below(&format!("{dark} over {light}"), over(tones, block, dark, light), most)
 }
 
-/// What a picture on paper shows over the black of the paper itself, a density of 2.1 under a flare of 0.5 %.
+/// Returns a picture on paper without the black of the paper itself, a density of 2.1 under a flare of 0.5 %.
 fn over_paper_black(tones: &Plane) -> Plane {
     const BLACK: f64 = (0.007_943_3 + 0.005) / 1.005;
     tones.with(tones, |value, _| value - BLACK)
 }
 
-/// Grays fall from white to black: a positive.
+/// Checks that the grays fall from white to black, as in a positive.
 fn falling(tones: &Plane, block: &Block) -> Found {
     let steps = GRAYS.map(|name| tones.mean(block.window(name)));
     let least = steps.windows(2).map(|pair| pair[0] / pair[1]).fold(f64::MAX, f64::min);
     Found::above("each gray over the next", least, 1.05)
 }
 
-/// Each color of the finished picture has its own primaries, at least half as much again as of the others; and grays have little color.
+/// Checks that each color of the finished picture has at least half as much light again in its own primaries as in the others, and
+/// that grays have little color.
 fn hues(taken: &Taken, film: usize, block: &Block, tint: f64) -> Vec<Found> {
     let colors = taken.colors(film);
     let of = |name: &str| [0, 1, 2].map(|k: usize| colors[k].mean(block.window(name)));
@@ -106,7 +110,7 @@ fn hues(taken: &Taken, film: usize, block: &Block, tint: f64) -> Vec<Found> {
         let rgb = of(name);
         let side = |is_own: bool| (0..3).filter(move |k| (primaries >> k & 1 == 1) == is_own).map(|k| rgb[k]);
         let (low, high) = (side(true).fold(f64::MAX, f64::min), side(false).fold(f64::MIN, f64::max));
-        all.push(Found::above(&format!("{name}: its own light over other light"), low / high.max(1e-4), 1.5));
+        all.push(Found::above(&format!("{name}: light of its primaries over other light"), low / high.max(1e-4), 1.5));
     }
     let cast = |name: &&str| {
         let rgb = of(name);
@@ -120,7 +124,7 @@ pub const FILMS: &[Promise] = &[
     Promise {
         scene: "biotar-blue-plate",
         pictures: &[first(SMALL)],
-        says: "only blue is light, all other colors are dark",
+        says: "blue prints light and every other color dark",
         held: |t| {
             let tones = t[0].tones(0);
             let dark = ["green", "red", "yellow", "orange", "moderate-red", "yellow-green"];
@@ -139,7 +143,7 @@ pub const FILMS: &[Promise] = &[
             let to = |from_nm: u32| mean((from_nm..from_nm + 80).map(|nm| grid.interpolate(response, f64::from(nm))));
             vec![
                 lighter(&tones, &WHOLE, "red", DARK_GRAY, 1.5),
-                // To the eye green has four times the light of blue.
+                // To the eye, green has four times the luminance of blue.
                 lighter(&tones, &WHOLE, "blue", "green", 1.2),
                 Found::above("sensitive to blue over red", to(400) / to(600), 2.0),
                 reflected(&t[0], &WHOLE, "D55"),
@@ -158,7 +162,7 @@ pub const FILMS: &[Promise] = &[
     Promise {
         scene: "biotar-trix",
         pictures: &[first(SMALL), first(ORTHO)],
-        says: "panchromatic film sees red where orthochromatic film is blind",
+        says: "panchromatic film sees red, to which orthochromatic film is blind",
         held: |t| {
             let tones = t[0].tones(0);
             vec![
@@ -172,14 +176,14 @@ pub const FILMS: &[Promise] = &[
     Promise {
         scene: "three-films",
         pictures: &[first(SMALL)],
-        says: "one trace, three films; red is black on the first one only",
+        says: "one trace, three films; red is black only on the first one",
         held: |t| {
             let [red, green, blue] = t[0].colors(2).map(|plane| plane.mean(WHOLE.window("red")));
             vec![
                 darker(&t[0].tones(0), &WHOLE, "red", DARK_GRAY, 0.5),
                 lighter(&t[0].tones(1), &WHOLE, "red", DARK_GRAY, 1.15),
                 Found::above("color: red over other light of red", red / green.max(blue), 3.0),
-                // As in the chart itself in D55, by its reflectances: 1.345.
+                // The ratio of the chart itself in D55, from its reflectances, is 1.345.
                 Found::within(
                     "color: red over a dark gray",
                     over(&t[0].tones(2), &WHOLE, "red", DARK_GRAY),
@@ -224,14 +228,14 @@ pub const FILMS: &[Promise] = &[
     Promise {
         scene: "biotar-ortho",
         pictures: &[first(FINE)],
-        says: "red goes black, blue goes light: the film ends at 565 nm",
+        says: "red turns black and blue turns light: the film is blind beyond 565 nm",
         held: |t| {
             let tones = t[0].tones(0);
             let response = &t[0].scene.channels[0].response;
             let most = response.iter().copied().fold(0.0, f64::max);
             let last = response.iter().rposition(|value| *value > 0.01 * most).expect("it sees something");
             vec![
-                Found::within("ends at nm", t[0].scene.grid.wavelength_nm(last), 565.0, 5.0),
+                Found::within("sensitivity ends at nm", t[0].scene.grid.wavelength_nm(last), 565.0, 5.0),
                 darker(&over_paper_black(&tones), &OF_CHART, "red", DARK_GRAY, 0.5),
                 lighter(&tones, &OF_CHART, "blue", DARK_GRAY, 2.0),
                 reflected(&t[0], &OF_CHART, "D65"),
@@ -259,7 +263,7 @@ pub const EYES: &[Promise] = &[
         pictures: &[first(SMALL)],
         says: "by V'(lambda) red is darker than blue",
         held: |t| {
-            // To the eye by day red is 1.3 times as light as this gray, and blue two thirds as light.
+            // To the eye by day, red is 1.3 times as light as this gray, and blue two thirds as light.
             let light = t[0].channel("scotopic");
             vec![
                 darker(&light, &WHOLE, "red", DARK_GRAY, 0.7),
@@ -311,7 +315,7 @@ pub const EYES: &[Promise] = &[
             first(&["imager.resolution=48", "render.samples=200"]),
             first(&["imager.resolution=48", "render.samples=200", "lens.file=canon-35-f1.8", "lens.f-number=f/8"]),
         ],
-        says: "light reaches the corners at a slant, and they change color; a retrofocus lens does not show this",
+        says: "light reaches the corners obliquely, and they change color; a retrofocus lens does not show this",
         held: |t| {
             let [wide, retrofocus] = [&t[0], &t[1]].map(|taken| {
                 let [red, green, _] = taken.colors(0);
@@ -321,7 +325,7 @@ pub const EYES: &[Promise] = &[
             });
             vec![
                 Found::above("red over green, corners over middle", wide, 1.4),
-                Found::within("through a lens with a long back", retrofocus, 1.0, 0.1),
+                Found::within("red over green, through a retrofocus lens", retrofocus, 1.0, 0.1),
             ]
         },
     },
@@ -333,7 +337,7 @@ pub const EYES: &[Promise] = &[
     },
 ];
 
-/// A DNG: a TIFF with a version (tag 50706) whose light lies behind a mosaic of color filters (tag 262 is 32803).
+/// Checks for a DNG: a TIFF file with a version (tag 50706) and with light behind a mosaic of color filters (tag 262 is 32803).
 fn raw_file(scene: &str) -> Found {
     let folder = tempfile::tempdir().expect("a folder");
     let path = repository(&format!("scenes/{scene}.yaml"));
@@ -349,10 +353,11 @@ fn raw_file(scene: &str) -> Found {
     let entries = (0..number(begin, 2)).map(|k| begin + 2 + 12 * k);
     let tags: Vec<(usize, usize)> = entries.map(|at| (number(at, 2), number(at + 8, 2))).collect();
     let is_raw = dng.starts_with(b"II*\0") && tags.contains(&(262, 32803)) && tags.iter().any(|tag| tag.0 == 50706);
-    Found::is("a DNG of a mosaic", is_raw)
+    Found::is("the raw file is a DNG with a mosaic", is_raw)
 }
 
-/// The light of grays in each band is that of the lamp there, as a share of all: they reflect all of it alike.
+/// Checks that the share of each band in the light of the grays is the share of the lamp there: grays reflect all wavelengths
+/// equally.
 fn bands(taken: &[Taken]) -> Vec<Found> {
     let channels = taken[0].channels();
     let lamp = find_emission("FL11").expect("bundled");
@@ -367,8 +372,8 @@ fn bands(taken: &[Taken]) -> Vec<Found> {
     vec![
         Found::is("20 channels S0.390,0nm to S0.770,0nm", channels.len() == 20 && are_named),
         Found::below("bands are off by", worst, 0.02),
-        // With 435, 545 and 611 nm in them.
-        Found::above("three bands have of all light", [2, 8, 11].map(|k| found[k]).iter().sum(), 0.45),
+        // These bands contain 435, 545 and 611 nm.
+        Found::above("share of three bands in all light", [2, 8, 11].map(|k| found[k]).iter().sum(), 0.45),
     ]
 }
 

@@ -1,11 +1,12 @@
-//! Lamps out of focus, and what else is: disks, stars and rings, and what stands before them.
+//! Scenes with lamps and other things out of focus: disks, stars and rings, and objects in front of them.
 
 use super::plane::{Plane, Spot, edge, mean};
 use super::taken::{Taken, first, member};
 use super::{Found, Promise, hold};
 use std::f64::consts::TAU;
 
-/// By how much a spot has this many points: the harmonic of its light over the angle, far places counting for more.
+/// Returns how strongly a spot has this number of points: the harmonic of its light over the angle, with more weight far from the
+/// center.
 fn points(light: &Plane, spot: &Spot, many: f64) -> f64 {
     let mut sums = [0.0; 3];
     for (p, value) in light.part((spot.center, [1.2; 2])) {
@@ -20,7 +21,7 @@ fn radius(spot: &Spot) -> f64 {
     spot.center[0].hypot(spot.center[1])
 }
 
-/// Every lamp near the axis is a star of five points; toward the edge stars are smaller, as rims cut into them.
+/// Checks that every lamp near the axis is a star of five points. Toward the edge stars must be smaller, because rims cut into them.
 fn card_stars(taken: &[Taken]) -> Vec<Found> {
     let light = taken[0].light();
     let spots = light.spots(0.02 * light.quantile(0.995), 20);
@@ -31,17 +32,17 @@ fn card_stars(taken: &[Taken]) -> Vec<Found> {
         |spot: &&Spot| [3.0, 4.0, 6.0, 7.0].map(|many| points(&light, spot, many)).into_iter().fold(0.0, f64::max);
     vec![
         Found::is(&format!("{} lamps", spots.len()), spots.len() > 20 && inner.len() >= 3),
-        Found::above("five points, the least of them", least, 0.25),
-        Found::below("another number, the most", inner.iter().map(other).fold(0.0, f64::max), 0.18),
+        Found::above("weakest star of five points", least, 0.25),
+        Found::below("strongest harmonic of another number", inner.iter().map(other).fold(0.0, f64::max), 0.18),
         Found::below("stars beyond 14 mm over those within 6", area(14.0, 20.0) / area(0.0, 6.0), 0.85),
     ]
 }
 
-/// Rings in the disk of a lamp: as far apart as those on the front, 2 mm, by the size of the disk, and about where the axis meets the
-/// front, a little to the right of the disk's middle.
+/// Checks the rings in the disk of a lamp. Their period is that of the rings on the front, 2 mm, scaled to the disk. They are
+/// centered about where the axis meets the front, slightly to the right of the disk's center.
 fn onion(taken: &[Taken]) -> Vec<Found> {
     let light = taken[0].light();
-    // An even disk has a sixteenth of the square of its diameter along each axis.
+    // The variance of a uniform disk along each axis is a sixteenth of its squared diameter.
     let (_, [level, upright]) = light.moments(([0.0; 2], [2.6; 2]));
     let across = 4.0 * (0.5 * (level + upright)).sqrt();
     let period = 2.0 * across / taken[0].opening_mm();
@@ -59,12 +60,12 @@ fn onion(taken: &[Taken]) -> Vec<Found> {
     };
     vec![
         Found::near("disk, mm", across, taken[0].blur_mm(350.0, 8000.0), 0.05),
-        Found::above("rings at their distance", rings(period), 0.045),
-        Found::below("at two thirds of it, over that", rings(0.67 * period) / rings(period), 0.6),
+        Found::above("strength of the rings at their period", rings(period), 0.045),
+        Found::below("strength at two thirds of the period over that", rings(0.67 * period) / rings(period), 0.6),
     ]
 }
 
-/// Difference of neighbors over the mean: how much detail is seen.
+/// Returns the RMS difference between neighbors over the mean, a measure of visible detail.
 fn detail(light: &Plane, middle: [f64; 2], half: [f64; 2]) -> f64 {
     let window = (middle, half);
     let all: Vec<([f64; 2], f64)> = light.part(window).collect();
@@ -72,13 +73,14 @@ fn detail(light: &Plane, middle: [f64; 2], half: [f64; 2]) -> f64 {
     mean(pairs.map(|pair| (pair[1].1 - pair[0].1).powi(2))).sqrt() / light.mean(window)
 }
 
-/// The same for rows one below the other.
+/// Returns the detail between rows instead of between columns.
 fn detail_up(light: &Plane, middle: [f64; 2], half: [f64; 2]) -> f64 {
     let rows = light.along(1, (middle, half));
     mean(rows.windows(2).map(|pair| (pair[1][1] - pair[0][1]).powi(2))).sqrt() / light.mean((middle, half))
 }
 
-/// What a lamp at 12 m is drawn as: near the axis as wide as it is out of focus along one of its axes; toward the corner less.
+/// Checks how a lamp at 12 m is imaged: near the axis, the long axis of its spot is the blur diameter; toward the corner the spot is
+/// smaller.
 fn still_life(taken: &[Taken]) -> Vec<Found> {
     let largest = |taken: &Taken| {
         let y = taken.channel("Y");
@@ -96,7 +98,8 @@ fn still_life(taken: &[Taken]) -> Vec<Found> {
 
 const PULL: &[&str] = &["imager.resolution=96", "render.samples=40", "render.rays=40000", "render.reflections.order=0"];
 
-/// Where things are sharp: the cone at 0.95 m in the first frame, the ball at 2 m in the sixth (1.86 m), the post at 3 m in the last one.
+/// Checks where things are sharp: the cone at 0.95 m in the first frame, the ball at 2 m in the sixth (1.86 m), the post at 3 m in
+/// the last.
 fn pull(taken: &[Taken]) -> Vec<Found> {
     let over = |what: fn(&Plane) -> f64, a: usize, b: usize| what(&taken[a].light()) / what(&taken[b].light());
     let cone = |light: &Plane| detail(light, [-12.2, -2.1], [3.2, 1.8]);
@@ -107,18 +110,19 @@ fn pull(taken: &[Taken]) -> Vec<Found> {
         Found::above("cone, first over last frame", over(cone, 0, 2), 1.1),
         Found::above("ball, sixth over first frame", over(ball, 1, 0), 1.15),
         Found::above("ball, sixth over last frame", over(ball, 1, 2), 1.03),
-        // Beside the axis the lens's field bends: there it is as sharp in the sixth frame.
+        // Off the axis the lens has field curvature, so the post is also sharp in the sixth frame.
         Found::above("post, last over first frame", over(post, 2, 0), 1.15),
     ]
 }
 
-/// The right edge of the window at 5 m: as wide as a disk of even light is blurred, of which an edge has the middle half of its light on 0.404 of
-/// its diameter; and clean along the edge, in color, too: with 64 samples everywhere it had 14 and 27 %.
+/// Checks the right edge of the window at 5 m. It must be as wide as the blur of a uniform disk, for which an edge has its middle
+/// half within 0.404 of the diameter. It must also be clean along the edge, in color too; with 64 samples everywhere the noise was 14
+/// and 27 %.
 fn window_edge(taken: &[Taken]) -> Vec<Found> {
     let all = ([0.0; 2], [2.6, 0.9]);
     let [y, z] = ["Y", "Z"].map(|name| taken[0].channel(name));
     let wide = edge(&y.along(0, all))[1];
-    // In the blur itself, from each row to the next.
+    // Differences between neighboring rows within the blur.
     let uneven = |plane: &Plane| {
         let columns = plane.along(0, ([0.0; 2], [0.6, 0.9]));
         let off = columns.iter().flat_map(|[x, mean]| {
@@ -129,8 +133,8 @@ fn window_edge(taken: &[Taken]) -> Vec<Found> {
     };
     vec![
         Found::near("the blurred edge, mm", wide, 0.404 * taken[0].blur_mm(700.0, 5000.0), 0.15),
-        Found::below("noise along it", uneven(&y), 0.05),
-        Found::below("that of its color", uneven(&z.with(&y, |z, y| z / y)), 0.075),
+        Found::below("noise along the edge", uneven(&y), 0.05),
+        Found::below("color noise along the edge", uneven(&z.with(&y, |z, y| z / y)), 0.075),
     ]
 }
 
@@ -147,7 +151,7 @@ pub const LAMPS: &[Promise] = &[
     Promise {
         scene: "bokeh-star",
         pictures: &[first(&["imager.resolution=240", "render.rays=700000"])],
-        says: "every lamp is a star, and toward the edge of the field the rims of the lens cut into it",
+        says: "every lamp becomes a star, and toward the edge of the field the rims of the lens cut into the stars",
         held: card_stars,
     },
     Promise {
@@ -157,7 +161,7 @@ pub const LAMPS: &[Promise] = &[
             "imager={kind: xyz, width: 5.2 mm, height: 5.2 mm, shift: [1.5 mm, 0.4 mm], resolution: 84}",
             "render.rays=1200000",
         ])],
-        says: "every disk of light is an onion cut in two",
+        says: "every disk of light has onion rings",
         held: onion,
     },
     Promise {
@@ -176,7 +180,7 @@ pub const LAMPS: &[Promise] = &[
                 "render.reflections.order=0",
             ]),
         ],
-        says: "lamps are disks near the axis and lenses toward the corners",
+        says: "lamps are disks near the axis and lens shapes toward the corners",
         held: still_life,
     },
     Promise {
@@ -188,17 +192,17 @@ pub const LAMPS: &[Promise] = &[
     Promise {
         scene: "bench/noise-lights",
         pictures: &[first(&["imager.resolution=160", "render.samples=4", "render.rays=300000"])],
-        says: "lamps out of focus: disks near the axis, cat's eyes toward the corners, cut off where the head stands before them",
+        says: "lamps out of focus: disks near the axis, cat's eyes toward the corners, cut off where the head stands in front of them",
         held: |t| disks(&t[0]),
     },
     Promise {
         scene: "portrait-lights",
         pictures: &[first(&["imager.resolution=160", "render.samples=4", "render.rays=300000"])],
-        says: "lamps are traced from the source, the rest from the film, and nearer objects cover the disks of the lamps",
+        says: "lamps are traced from the source, everything else from the film, and nearer objects cover the disks of the lamps",
         held: |t| {
             let mut all = disks(&t[0]);
-            all.push(Found::is("backward and forward", t[0].rendering.estimators == ["backward", "forward"]));
-            // Hair hides all of this lamp but its rim; its disk was gone, but for a bright line along the hair.
+            all.push(Found::is("traced backward and forward", t[0].rendering.estimators == ["backward", "forward"]));
+            // Hair hides all of this lamp except its rim. Once the whole disk was missing, apart from a bright line along the hair.
             let light = t[0].light();
             let (disk, beside) = (([6.7, 5.1], [0.4; 2]), ([7.4, 6.4], [0.3; 2]));
             all.push(Found::above(
@@ -215,7 +219,7 @@ pub const LAMPS: &[Promise] = &[
             first(&["imager.resolution=96", "render.samples=48"]),
             first(&["imager.resolution=96", "render.samples=48", "source.depth=null"]),
         ],
-        says: "a portrait with depth at 1.5 m before a background at 8 m",
+        says: "a portrait with depth at 1.5 m in front of a background at 8 m",
         held: |t| {
             let [deep, flat] = [&t[0], &t[1]].map(Taken::light);
             let over = |middle: [f64; 2], half: [f64; 2]| detail(&deep, middle, half) / detail(&flat, middle, half);
@@ -241,14 +245,14 @@ pub const LAMPS: &[Promise] = &[
                 "lens.f-number=f/1.4",
             ]),
         ],
-        says: "a photograph on a plane; no lights, no depth",
+        says: "a photograph on a plane, without lights or depth",
         held: |t| {
             let [flat, deep] = [&t[0], &t[1]].map(Taken::light);
             let over = |middle: [f64; 2], half: [f64; 2]| detail(&deep, middle, half) / detail(&flat, middle, half);
             vec![
-                Found::is("backward alone", t[0].rendering.estimators == ["backward"]),
+                Found::is("traced backward only", t[0].rendering.estimators == ["backward"]),
                 Found::below(
-                    "with depth, through a long fast lens, the background has of its detail",
+                    "share of the background's detail that is left with depth, through a long fast lens",
                     over([-12.4, 4.5], [4.5, 4.0]),
                     0.7,
                 ),
@@ -257,8 +261,8 @@ pub const LAMPS: &[Promise] = &[
     },
 ];
 
-/// The Nikkor at 1.5 m, lamps at 8 m. A disk 10 mm from the axis is nearly as wide as lamps are out of focus, one in the corner is an eye;
-/// and one beside the head, which would reach 0.8 mm farther, ends there at once.
+/// Checks the disks of lamps at 8 m through the Nikkor focused at 1.5 m. A disk 10 mm from the axis has nearly the full blur
+/// diameter, and one in the corner is a cat's eye. A disk beside the head, which would reach 0.8 mm farther, ends there abruptly.
 fn disks(taken: &Taken) -> Vec<Found> {
     let light = taken.light();
     let wide = |axis: usize, [x, y]: [f64; 2]| {
@@ -278,7 +282,7 @@ fn disks(taken: &Taken) -> Vec<Found> {
     vec![
         Found::near("disk, mm", wide(1, near), taken.blur_mm(1500.0, 8000.0), 0.1),
         Found::below("width over height, corner over axis", eye / disk, 0.95),
-        Found::below("behind the head over beside it", row(-5.9) / row(-7.2), 0.15),
+        Found::below("light behind the head over light beside it", row(-5.9) / row(-7.2), 0.15),
     ]
 }
 

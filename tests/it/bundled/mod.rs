@@ -1,5 +1,5 @@
-//! Every bundled scene does what the comment at its head promises: a small picture of each is held to that by a formula, or by a
-//! comparison that the promise makes; and no word of warning about any of them.
+//! Tests that every bundled scene keeps the promise of its head comment. Small pictures are checked with a formula or with a
+//! comparison that the promise makes, and no scene may cause a warning.
 
 mod charts;
 mod colors;
@@ -17,38 +17,38 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use taken::{Take, Taken};
 
-/// Scenes of which something has to be said, and why.
+/// Scenes that may cause a warning when they are loaded, and why.
 const EXCEPTIONS: [(&str, &str); 0] = [];
 
-/// The same, once they are rendered.
+/// Scenes that may cause a warning when they are rendered, and why.
 const EXCEPTIONS_OF_RENDER: [(&str, &str); 1] =
-    [("bench/sampling-point-fl11-ortho", "a point lights a spot of its film, and all the rest is without light")];
+    [("bench/sampling-point-fl11-ortho", "a point lights only a spot of the film, and the rest stays dark")];
 
-/// What a scene promises.
+/// The promise of a scene.
 pub struct Promise {
-    /// The scene, below `scenes`.
+    /// Name of the scene, below `scenes`.
     pub scene: &'static str,
-    /// The pictures that show it.
+    /// Pictures that show whether the promise is kept.
     pub pictures: &'static [Take],
-    /// The promise, in the words of the scene where that is possible.
+    /// Text of the promise, in the words of the scene where possible.
     pub says: &'static str,
-    /// What is found on the pictures.
+    /// Measures the pictures and compares the figures with the promise.
     pub held: fn(&[Taken]) -> Vec<Found>,
 }
 
-/// A figure, and whether it is as promised.
+/// A measured figure, and whether it is as promised.
 pub struct Found {
     what: String,
     is_kept: bool,
 }
 
 impl Found {
-    /// A figure that is known to this share of itself.
+    /// Returns a figure that must be within this relative error.
     pub fn near(what: &str, found: f64, wanted: f64, share: f64) -> Self {
         Self::within(what, found, wanted, share * wanted.abs())
     }
 
-    /// A figure that is known to this much.
+    /// Returns a figure that must be within this absolute error.
     pub fn within(what: &str, found: f64, wanted: f64, error: f64) -> Self {
         Self {
             what: format!("{what} {found:.4} ({wanted:.4} +- {error:.4})"),
@@ -69,7 +69,7 @@ impl Found {
     }
 }
 
-/// All that is promised, by theme.
+/// All promises, by theme.
 const ALL: [&[Promise]; 10] = [
     colors::FILMS,
     colors::EYES,
@@ -83,13 +83,13 @@ const ALL: [&[Promise]; 10] = [
     suns::SUNS,
 ];
 
-/// Renders what these promises need, and looks whether they are kept.
+/// Renders the pictures of these promises and checks that the promises are kept.
 fn hold(promises: &[Promise]) {
     let wrong: Vec<String> = together(promises, kept).concat();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What is wrong about a promise.
+/// Returns what is wrong about a promise; empty if it is kept.
 fn kept(promise: &Promise) -> Vec<String> {
     let Promise { scene, pictures, says, held } = promise;
     let taken: Vec<Taken> = pictures.iter().map(|take| Taken::of(scene, take)).collect();
@@ -97,7 +97,7 @@ fn kept(promise: &Promise) -> Vec<String> {
     let said: Vec<&String> = taken.iter().flat_map(|taken| &taken.said).collect();
     let mut wrong = Vec::new();
     if said.is_empty() == is_exception {
-        wrong.push(format!("{scene}: said of small pictures: {said:?}"));
+        wrong.push(format!("{scene}: warnings for small pictures: {said:?}"));
     }
     for found in held(&taken) {
         println!("{scene}: {}", found.what);
@@ -108,7 +108,7 @@ fn kept(promise: &Promise) -> Vec<String> {
     wrong
 }
 
-/// Files of all scenes, with their names below `scenes`.
+/// Returns the files of all scenes with their names below `scenes`.
 fn scenes() -> Vec<(String, PathBuf)> {
     let root = repository("scenes");
     let files = |folder: &Path| -> Vec<PathBuf> {
@@ -132,11 +132,11 @@ fn every_scene_promises_something() {
     let held: BTreeSet<String> = ALL.iter().flat_map(|all| all.iter()).map(|p| p.scene.to_owned()).collect();
     let (more, fewer) = (there.difference(&held), held.difference(&there));
     let (more, fewer): (Vec<&String>, Vec<&String>) = (more.collect(), fewer.collect());
-    assert!(more.is_empty(), "held to nothing: {more:?}");
-    assert!(fewer.is_empty(), "there is no such scene: {fewer:?}");
+    assert!(more.is_empty(), "scenes without a promise: {more:?}");
+    assert!(fewer.is_empty(), "promises of scenes that do not exist: {fewer:?}");
 }
 
-/// As they are, at their full size.
+/// Checks the scenes unchanged, at their full size.
 #[test]
 fn nothing_is_said_about_any_scene() {
     let said = |(name, path): &(String, PathBuf)| {

@@ -1,9 +1,9 @@
-//! What is measured on a picture: means, places, sizes, contrasts.
+//! Measurements on a picture: means, places, sizes, contrasts.
 
 use spectra_core::frame::FrameSize;
 use std::f64::consts::PI;
 
-/// Values all over the frame, as the picture shows it: upright, x to the right and y up from its middle, mm on the film.
+/// Values over the frame as the picture shows it: upright, x to the right and y up from its center, mm on the film.
 #[derive(Clone)]
 pub struct Plane {
     width: usize,
@@ -12,14 +12,14 @@ pub struct Plane {
     pub values: Vec<f64>,
 }
 
-/// The middle of a rectangle, and half of its sides, mm.
+/// A window: the center of a rectangle and half of its sides, mm.
 pub type Window = ([f64; 2], [f64; 2]);
 
-/// A part that is lit, without gaps.
+/// A connected region of light.
 pub struct Spot {
     pub center: [f64; 2],
     pub area_mm2: f64,
-    /// Four times the standard deviation along its long and its short axis: the diameters of an ellipse.
+    /// Diameters of an ellipse, mm: four times the standard deviations along the long and the short axis.
     pub axes_mm: [f64; 2],
     pub places: Vec<[f64; 2]>,
 }
@@ -35,7 +35,7 @@ impl Plane {
         [column * self.pixel_mm[0] - 0.5 * self.size_mm[0], 0.5 * self.size_mm[1] - row * self.pixel_mm[1]]
     }
 
-    /// Whether a place is none of those at the border.
+    /// Returns whether a point lies inside the outermost pixels.
     pub fn is_inside(&self, place: [f64; 2]) -> bool {
         (0..2).all(|k| place[k].abs() < 0.5 * self.size_mm[k] - self.pixel_mm[k])
     }
@@ -44,12 +44,12 @@ impl Plane {
         self.pixel_mm[0] * self.pixel_mm[1]
     }
 
-    /// Places and values.
+    /// Returns the positions and values of all pixels.
     pub fn all(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
         self.values.iter().enumerate().map(|(at, value)| (self.place(at), *value))
     }
 
-    /// The same of a part.
+    /// Returns the positions and values of the pixels inside a window.
     pub fn part(&self, (middle, half): Window) -> impl Iterator<Item = ([f64; 2], f64)> {
         self.all().filter(move |(p, _)| (0..2).all(|k| (p[k] - middle[k]).abs() <= half[k]))
     }
@@ -58,7 +58,7 @@ impl Plane {
         mean(self.part(window).map(|(_, value)| value))
     }
 
-    /// The mean of the pixels that have any light: each color of a mosaic has some of them.
+    /// Returns the mean of the pixels that have light: each color of a mosaic fills only some of them.
     pub fn mean_of_lit(&self, window: Window) -> f64 {
         mean(self.part(window).map(|(_, value)| value).filter(|value| *value > 0.0))
     }
@@ -71,19 +71,19 @@ impl Plane {
         self.values.iter().copied().fold(f64::MIN, f64::max)
     }
 
-    /// The value that this part of the pixels is below.
+    /// Returns the value below which this share of the pixels lies.
     pub fn quantile(&self, part: f64) -> f64 {
         let mut sorted = self.values.clone();
         sorted.sort_by(f64::total_cmp);
         sorted[((sorted.len() - 1) as f64 * part) as usize]
     }
 
-    /// Where the brightest pixel is.
+    /// Returns the position of the brightest pixel.
     pub fn brightest(&self) -> [f64; 2] {
         self.all().fold(([0.0; 2], f64::MIN), |most, one| if one.1 > most.1 { one } else { most }).0
     }
 
-    /// The middle of the light in a part, and its variances along x and y, without that of a pixel.
+    /// Returns the center of the light in a window and its variances along x and y, with the variance of a pixel subtracted.
     pub fn moments(&self, window: Window) -> ([f64; 2], [f64; 2]) {
         let mut sums = [0.0; 5];
         for ([x, y], v) in self.part(window) {
@@ -107,7 +107,7 @@ impl Plane {
         Self { values: self.values.iter().zip(&other.values).map(|(a, b)| value(*a, *b)).collect(), ..self.clone() }
     }
 
-    /// Means of the columns (0) or rows (1) of a part, each with its place along that axis, rising.
+    /// Returns the means of the columns (axis 0) or rows (axis 1) of a window, each after its position along that axis, ascending.
     pub fn along(&self, axis: usize, window: Window) -> Vec<[f64; 2]> {
         let mut sums: Vec<[f64; 3]> = Vec::new();
         for (p, value) in self.part(window) {
@@ -120,22 +120,22 @@ impl Plane {
         sums.iter().map(|[at, sum, count]| [*at, sum / count]).collect()
     }
 
-    /// Area (mm2) and middle of something that has `contrast` less of the light around it, `ground`.
+    /// Returns the area, mm2, and the center of a dark shape that has `contrast` less of the light `ground` around it.
     pub fn dark(&self, window: Window, ground: f64, contrast: f64) -> (f64, [f64; 2]) {
         let dark = self.map(|value| (1.0 - value / ground) / contrast);
         let sum: f64 = dark.part(window).map(|(_, value)| value).sum();
         (sum * self.pixel_area_mm2(), dark.center(window))
     }
 
-    /// The middle of what is darker in a part than its lightest tenth.
+    /// Returns the center of the shape that is darker than the lightest tenth of a window.
     pub fn dark_middle(&self, window: Window) -> [f64; 2] {
         let mut values: Vec<f64> = self.part(window).map(|(_, value)| value).collect();
         values.sort_by(f64::total_cmp);
         self.dark(window, values[values.len() * 9 / 10], 1.0).1
     }
 
-    /// Contrast of a star's spokes on a circle; of those only that stand within so many radians of a direction or the opposite one,
-    /// if one is given.
+    /// Returns the contrast of a star's spokes on a circle. With a sector, counts only the spokes within so many radians of a
+    /// direction or its opposite.
     pub fn spokes(&self, center: [f64; 2], radius: f64, cycles: f64, sector: Option<[f64; 2]>) -> f64 {
         let mut sums = [0.0; 3];
         for (p, value) in self.all() {
@@ -150,7 +150,7 @@ impl Plane {
         2.0 * sums[1].hypot(sums[2]) / sums[0]
     }
 
-    /// Parts of more than `least` light, of so many pixels or more.
+    /// Returns the connected regions of more than `least` light and at least `pixels` pixels.
     pub fn spots(&self, least: f64, pixels: usize) -> Vec<Spot> {
         let mut is_seen: Vec<bool> = self.values.iter().map(|value| *value < least).collect();
         let (mut found, rows) = (Vec::new(), self.values.len() / self.width);
@@ -193,7 +193,8 @@ pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / count
 }
 
-/// Where a profile passes half of the way between its ends, and how far it is from a quarter to three quarters of that way.
+/// Returns where a profile passes half of the way between its ends, and the distance between a quarter and three quarters of that
+/// way.
 pub fn edge(profile: &[[f64; 2]]) -> [f64; 2] {
     let level = |part: &[[f64; 2]]| mean(part.iter().map(|[_, value]| *value));
     let ends = [level(&profile[..3]), level(&profile[profile.len() - 3..])];

@@ -1,9 +1,9 @@
-//! Points of light: where they are drawn, and as what.
+//! Scenes with points of light: where they are imaged, and as which shape.
 
 use super::taken::{Taken, first};
 use super::{Found, Promise, hold};
 
-/// A point 2 m away, 6 degrees beside the axis and 4 above it, is drawn where a lens draws things at that angle, and small.
+/// Checks that a point 2 m away, 6 degrees beside the axis and 4 above it, is imaged small and at the right place.
 fn spot(taken: &Taken) -> Vec<Found> {
     let light = taken.light();
     let brightest = light.brightest();
@@ -17,7 +17,7 @@ fn spot(taken: &Taken) -> Vec<Found> {
     ]
 }
 
-/// Points, in their own color.
+/// Promises of scenes with points of light.
 pub const POINTS: &[Promise] = &[
     Promise {
         scene: "bench/sampling-point-d65-xyz",
@@ -26,7 +26,7 @@ pub const POINTS: &[Promise] = &[
         held: |t| {
             let [x, y, z] = ["X", "Y", "Z"].map(|name| t[0].channel(name).sum());
             let mut all = spot(&t[0]);
-            // The white of D65; the glass takes some of the violet.
+            // White is that of D65; the glass absorbs part of the violet.
             all.extend([Found::near("X over Y", x / y, 0.9505, 0.03), Found::near("Z over Y", z / y, 1.089, 0.06)]);
             all
         },
@@ -53,11 +53,11 @@ pub const POINTS: &[Promise] = &[
             };
             let lengths: Vec<f64> = (0..180).step_by(5).map(long).collect();
             let [short, most] = lengths.iter().fold([f64::MAX, 0.0_f64], |[a, b], l| [a.min(*l), b.max(*l)]);
-            // From below to above it is 2.4 mm; along itself it is longer.
+            // Its height is 2.4 mm; along its own long axis it is longer.
             vec![
-                Found::within("high, mm", long(90), 2.4, 0.1),
-                Found::within("long, mm", most, 2.8, 0.1),
-                Found::below("broad over long", short / most, 0.8),
+                Found::within("height, mm", long(90), 2.4, 0.1),
+                Found::within("length, mm", most, 2.8, 0.1),
+                Found::below("width over length", short / most, 0.8),
             ]
         },
     },
@@ -66,26 +66,27 @@ pub const POINTS: &[Promise] = &[
         pictures: &[first(&["imager.resolution=96", "render.samples=256"])],
         says: "each point becomes four, 5 um apart",
         held: |t| {
-            // Of a picture over itself, moved by as much: two of four points meet along one side, one along both; without plates none.
+            // Products of the picture with a shifted copy. Of four points, two coincide after a shift along one side, and one after a
+            // shift along both; without plates none does.
             let y = t[0].channel("Y");
-            // Without the upper rows, where a bright one is cut in two.
+            // Leaves out the upper rows, where a bright point is cut in two.
             let meets = |dx: usize, dy: usize| -> f64 {
                 let (width, height) = (96, y.values.len() / 96);
                 let rows = (14..height - dy).flat_map(|row| (0..width - dx).map(move |column| (column, row)));
                 rows.map(|(c, r)| y.values[r * width + c] * y.values[(r + dy) * width + c + dx]).sum()
             };
             let whole = meets(0, 0);
-            // 0.85 mm of quartz: (ne^2 - no^2) / (ne^2 + no^2) of that, with 1.5462 and 1.5553 at 546 nm.
+            // Separation by 0.85 mm of quartz: (ne^2 - no^2) / (ne^2 + no^2) of the thickness, with 1.5462 and 1.5553 at 546 nm.
             let (o, e) = (1.5462_f64.powi(2), 1.5553_f64.powi(2));
             let apart = 850.0 * (e - o) / (e + o);
             let pixel = 1e3 * y.pixel_mm[0];
             let step = (apart / pixel).round() as usize;
             vec![
-                Found::within("apart, um", apart, 5.0, 0.1),
-                Found::above("along", meets(step, 0) / whole, 0.3),
-                Found::within("up, over along", meets(0, step) / meets(step, 0), 1.0, 0.2),
-                Found::within("along and up, over along", meets(step, step) / meets(step, 0), 0.5, 0.12),
-                Found::below("half as far", meets(step / 2, 0) / whole, 0.08),
+                Found::within("separation, um", apart, 5.0, 0.1),
+                Found::above("coincidence after a horizontal shift", meets(step, 0) / whole, 0.3),
+                Found::within("vertical over horizontal", meets(0, step) / meets(step, 0), 1.0, 0.2),
+                Found::within("diagonal over horizontal", meets(step, step) / meets(step, 0), 0.5, 0.12),
+                Found::below("coincidence after half the shift", meets(step / 2, 0) / whole, 0.08),
             ]
         },
     },

@@ -1,4 +1,5 @@
-//! Light taken apart: lines and continua through a prism, on its screen and as a figure; and a lens that parts three lines.
+//! Scenes with dispersed light: lines and continua through a prism, on its screen and as a figure, and a lens that separates three
+//! lines.
 
 use super::plane::Plane;
 use super::taken::{Taken, first};
@@ -8,27 +9,27 @@ use spectra_spectrum::{Observer, balmer, find_emission};
 
 const SCREEN: &[&str] = &["imager.resolution=40", "render.rays=200000"];
 
-/// Index of N-SF11, by the coefficients of SCHOTT's catalogue.
+/// Returns the index of N-SF11 from the coefficients of SCHOTT's catalog.
 fn n_sf11(nm: f64) -> f64 {
     let square = (1e-3 * nm).powi(2);
     let terms = [(1.73759695, 0.013188707), (0.313747346, 0.0623068142), (1.89878101, 155.23629)];
     (1.0 + terms.iter().map(|(b, c)| b * square / (square - c)).sum::<f64>()).sqrt()
 }
 
-/// Where light of a wavelength meets the screen, mm above the middle of the picture: by Snell's law at both faces of a prism of 60 degrees
-/// that light meets 15 mm from the apex, at the angle of least deviation for the d line. The screen stands 150 mm from where that line
-/// leaves, across it, and the frame 13 mm beside it.
+/// Returns where light of a wavelength meets the screen, mm above the middle of the picture. Snell's law is applied at both faces of
+/// a prism of 60 degrees, which light enters 15 mm from the apex at the angle of minimum deviation of the d line. The screen is
+/// perpendicular to the exiting d line, 150 mm from where it leaves, and the frame is shifted by 13 mm.
 fn on_screen_mm(nm: f64) -> f64 {
     let (apex, into) = (60_f64.to_radians(), 63.1713_f64.to_radians());
     let first = (into.sin() / n_sf11(nm)).asin();
     let out = (n_sf11(nm) * (apex - first).sin()).asin();
-    // From the apex, along the second face.
+    // Distance from the apex along the second face.
     let leaves = 15.0 * first.cos() / (0.5 * apex + first).sin();
     let aside = (leaves - 15.0) * out.cos() / (out - into).cos();
     150.0 * (out - into).tan() + aside - 13.0
 }
 
-/// The brightest lines of hydrogen are where they belong, and nothing is between them.
+/// Checks that the brightest lines of hydrogen are in place, with nothing between them.
 fn lines(taken: &[Taken]) -> Vec<Found> {
     let light = taken[0].light();
     let mut all = Vec::new();
@@ -41,12 +42,12 @@ fn lines(taken: &[Taken]) -> Vec<Found> {
         in_lines += light.part(window).map(|(_, value)| value).sum::<f64>();
         all.push(Found::within(&format!("{nm:.1} nm at mm"), light.center(window)[1], wanted, 0.03));
     }
-    all.push(Found::above("of the light in five lines", in_lines / light.sum(), 0.999));
+    all.push(Found::above("share of the light in five lines", in_lines / light.sum(), 0.999));
     all
 }
 
-/// A continuum: the middle of its luminance is that of the source, by V, through glass and air that reflect all colors nearly alike; and
-/// it has no gap.
+/// Checks a continuum. The center of its luminance is that of the source weighted with V, because glass and air reflect all colors
+/// nearly equally. It must have no gap.
 fn continuum(taken: &[Taken]) -> Vec<Found> {
     let y = taken[0].channel("Y");
     let light = find_emission("blackbody:5800").expect("bundled");
@@ -65,7 +66,7 @@ fn continuum(taken: &[Taken]) -> Vec<Found> {
     ]
 }
 
-/// Of the figure's last row: the light of its brightest color, and that of the violet end over it.
+/// Returns the light at the violet end of the figure's last row, as a share of full brightness.
 fn figure(scene: &str, intensity: &str) -> f64 {
     let folder = tempfile::tempdir().expect("a folder");
     let path = repository(&format!("scenes/{scene}.yaml"));
@@ -83,15 +84,15 @@ fn figure(scene: &str, intensity: &str) -> f64 {
         .map(|x| f64::from(picture.get_pixel(x, row).0.into_iter().max().unwrap_or(0)) / 255.0)
         .filter(|value| *value > 0.02)
         .collect();
-    // The violet end is on the left; its first pixel is not all covered.
+    // The violet end is on the left; its first pixel is only partly covered.
     lit[1..lit.len() / 4].iter().sum::<f64>() / (lit.len() / 4 - 1) as f64
 }
 
-/// The three lines of a picture's colors, from what X, Y and Z have of each.
+/// Separates a picture into its three spectral lines, from the share that X, Y and Z have of each.
 fn three_lines(taken: &Taken, nm: [f64; 3]) -> [Plane; 3] {
     let [x, y, z] = ["X", "Y", "Z"].map(|name| taken.channel(name));
     let m = nm.map(|nm| Observer::cie_1931_2deg().at(nm));
-    // The inverse of the matrix whose columns these are, row by row.
+    // Rows of the inverse of the matrix with these columns.
     let cross =
         |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
     let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
@@ -103,11 +104,11 @@ fn three_lines(taken: &Taken, nm: [f64; 3]) -> [Plane; 3] {
     })
 }
 
-/// The dark line that frames the chart, 17 mm from the axis and 74 um wide: in the light of each line it is as sharp as it is drawn, and
-/// beside that of the others.
+/// Checks the dark line that frames the chart, 17 mm from the axis and 74 um wide. In the light of each spectral line it is as sharp
+/// as it is drawn, but displaced from the other lines.
 fn parted(taken: &[Taken]) -> Vec<Found> {
     let seen = three_lines(&taken[0], [643.85, 546.07, 435.84]).map(|plane| {
-        // Above the arrow that stands beside it.
+        // A place above the arrow beside the line.
         let ground = plane.mean(([0.97, 0.51], [0.08, 0.08]));
         let mut sums = [0.0; 3];
         for [x, value] in plane.along(0, ([1.195, 0.51], [0.1, 0.08])) {
@@ -121,9 +122,9 @@ fn parted(taken: &[Taken]) -> Vec<Found> {
     vec![
         Found::above("um from the g line out to the e line", green - blue, 12.0),
         Found::above("um from the e line out to the C' line", red - green, 12.0),
-        // Of a line of this width with nothing blurred it is 21 um.
+        // Without any blur, a line of this width has 21 um.
         Found::below(
-            "widest of them, standard deviation in um",
+            "widest line, standard deviation in um",
             seen.iter().map(|line| line[1]).fold(0.0, f64::max),
             30.0,
         ),
@@ -145,7 +146,7 @@ pub const PRISMS: &[Promise] = &[
     Promise {
         scene: "prism-5800k-true",
         pictures: &[first(SCREEN)],
-        says: "the same, with the colors of the figure at their true relative intensity",
+        says: "a blackbody through a prism; the figure shows colors at their true relative intensity",
         held: |t| {
             let mut all = continuum(t);
             all.push(Found::below("violet in the figure", figure("prism-5800k-true", "\"true\""), 0.6));
@@ -159,7 +160,7 @@ pub const PRISMS: &[Promise] = &[
             "imager={kind: xyz, width: 3 mm, height: 1.2 mm, shift: [-15.5 mm, 0], resolution: 240}",
             "render.samples=96",
         ])],
-        says: "every color made of three lines: lateral color splits the chart into three pictures",
+        says: "every color is made of three lines; lateral color splits the picture into three",
         held: parted,
     },
 ];

@@ -1,4 +1,4 @@
-//! Streets at night: how light a lamp is, how wide and with what halo, and what haze makes of it.
+//! Streets at night: brightness, width and halo of a lamp, and the effect of haze.
 
 use super::charts::fresnel;
 use super::plane::{Plane, mean};
@@ -6,9 +6,9 @@ use super::taken::{Taken, first, member};
 use super::{Found, Promise, hold};
 use std::f64::consts::PI;
 
-/// White of a sheet of so much luminance in the middle of the frame, lx.
+/// Returns the illuminance of a white sheet of this luminance in the middle of the frame, lx.
 fn white_lx(taken: &Taken, luminance: f64, distance_mm: f64) -> f64 {
-    let n = taken.scene.lens.marginal_ray().expect("it has sizes").f_number();
+    let n = taken.scene.lens.marginal_ray().expect("the lens has sizes").f_number();
     let m = taken.magnification(distance_mm);
     PI * luminance * fresnel(taken) / (4.0 * n * n * (1.0 + m) * (1.0 + m))
 }
@@ -21,7 +21,7 @@ const HEADLAMP: &[&str] = &[
     "render.reflections.order=0",
 ];
 
-/// The brightest lamp: its middle, and its variance in all directions.
+/// Returns the center of the brightest lamp and its variance, averaged over both axes.
 fn brightest(light: &Plane) -> ([f64; 2], f64) {
     let mut center = light.brightest();
     for _ in 0..4 {
@@ -34,7 +34,7 @@ fn brightest(light: &Plane) -> ([f64; 2], f64) {
 pub const STREETS: &[Promise] = &[
     Promise {
         scene: "night-street",
-        // The Helios, and once more focused at the lamps.
+        // The Helios as in the scene, and focused at the lamps.
         pictures: &[
             member(1, HEADLAMP),
             member(
@@ -52,7 +52,7 @@ pub const STREETS: &[Promise] = &[
         says: "focused nearer than the lamps: disks; and on color film the red halo of lamps",
         held: |t| {
             let lamps = [&t[0], &t[1]].map(|taken| brightest(&taken.channel("green")));
-            // A disk has a sixteenth of the square of its diameter.
+            // The variance of a disk is a sixteenth of its squared diameter.
             let disk = 4.0 * (lamps[0].1 - lamps[1].1).max(0.0).sqrt();
             let center = lamps[0].0;
             let around = |plane: &Plane, from: f64, to: f64| {
@@ -62,7 +62,7 @@ pub const STREETS: &[Promise] = &[
             let [red, green, blue] = t[0].colors(0);
             let halo = |plane: &Plane| around(plane, 0.26, 0.34);
             vec![
-                Found::near("out of focus by mm", disk, t[0].blur_mm(5000.0, 8000.0), 0.3),
+                Found::near("blur diameter, mm", disk, t[0].blur_mm(5000.0, 8000.0), 0.3),
                 Found::above("lamp: blue over red", around(&blue, 0.0, 0.1) / around(&red, 0.0, 0.1), 0.8),
                 Found::above("halo: red over green", halo(&red) / halo(&green), 1.4),
                 Found::above("halo: red over blue", halo(&red) / halo(&blue), 2.0),
@@ -78,11 +78,12 @@ pub const STREETS: &[Promise] = &[
             "render.rays=300000",
             "lens.focus=8 m",
         ])],
-        says: "headlamps of 3000 times white, the Biotar wide open",
+        says: "headlamps 3000 times as bright as white, the Biotar wide open",
         held: |t| {
             let y = t[0].channel("Y");
             let (center, _) = brightest(&y);
-            // Their color has 0.937 of the luminance of its red; 6 mm from the axis the lens has 0.9 of the light of the middle.
+            // The color of the lamps has 0.937 of the luminance of its red. At 6 mm from the axis the lens has 0.9 of the light of
+            // the middle.
             let wanted = 3000.0 * 0.937 * 0.9 * white_lx(&t[0], 100.0, 8000.0);
             vec![Found::near("lx in the middle of a lamp", y.mean((center, [0.06; 2])), wanted, 0.1)]
         },
@@ -90,7 +91,7 @@ pub const STREETS: &[Promise] = &[
     Promise {
         scene: "hazy-street",
         pictures: &[member(0, HAZE), member(2, HAZE)],
-        says: "a lens as it left the factory, and hazy: lamps glow, and blacks turn gray",
+        says: "a lens fresh from the factory, and hazy: lamps glow, and blacks turn gray",
         held: |t| {
             let lights = [&t[0], &t[1]].map(Taken::light);
             let black = lights[0].quantile(0.15);
@@ -100,8 +101,8 @@ pub const STREETS: &[Promise] = &[
             };
             let [clean, hazy] = [&lights[0], &lights[1]].map(of_black);
             vec![
-                Found::below("blacks over what is usual, clean", clean, 0.02),
-                Found::above("with 2 % of haze", hazy, 1.0),
+                Found::below("blacks over the median, clean", clean, 0.02),
+                Found::above("blacks over the median, with 2 % of haze", hazy, 1.0),
             ]
         },
     },

@@ -1,4 +1,4 @@
-//! Scenes of one kind of surface each.
+//! Bundled scenes that each show one kind of surface.
 
 use super::plane::{Plane, mean};
 use super::taken::{Taken, first};
@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 const CHART: &[&str] = &["imager.resolution=192", "render.samples=32"];
 
-/// Mean index of a glass for what a channel sees of the scene's light.
+/// Returns the mean index of a glass, weighted with the scene's light and a channel's response.
 fn index(taken: &Taken, medium: usize, response: &[f64]) -> f64 {
     let (grid, light) = (&taken.scene.grid, taken.scene.source.spectrum());
     let n: Vec<f64> =
@@ -15,7 +15,7 @@ fn index(taken: &Taken, medium: usize, response: &[f64]) -> f64 {
     light.seen_by(&n) / light.seen_by(response)
 }
 
-/// The middles of two black squares of the resolution chart, in X and in Z.
+/// Returns the centers of two black squares of the resolution chart, in X and in Z.
 fn squares(taken: &Taken, places: [[f64; 2]; 2], half: [f64; 2]) -> [[[f64; 2]; 2]; 2] {
     ["X", "Z"].map(|name| {
         let plane = taken.channel(name);
@@ -28,13 +28,14 @@ fn squares(taken: &Taken, places: [[f64; 2]; 2], half: [f64; 2]) -> [[[f64; 2]; 
     })
 }
 
-/// Contrast of a Siemens star of 72 spokes a radius of 6 mm out: of those that run level, and of those that run upright.
+/// Returns the contrast of a Siemens star of 72 spokes at a radius of 6 mm, for the horizontal and for the vertical spokes.
 fn astigmatism(taken: &Taken) -> [f64; 2] {
     let y = taken.channel("Y");
     [0.0, FRAC_PI_2].map(|at| y.spokes([0.0; 2], 6.0, 72.0, Some([at, 0.26])))
 }
 
-/// How far a line of the grid strays from a straight one, mm: that which crosses the middle of the frame at `across`, upright.
+/// Returns how far a vertical line of the grid departs from a straight line, mm RMS. The line crosses the middle of the frame at
+/// `across`.
 fn wave(light: &Plane, across: f64) -> f64 {
     let middles: Vec<[f64; 2]> = (-9..=9)
         .map(|k| {
@@ -51,24 +52,24 @@ fn wave(light: &Plane, across: f64) -> f64 {
     mean(middles.iter().map(|m| (m[1] - x - slope * m[0]).powi(2))).sqrt()
 }
 
-/// A point behind a plate with (n - 1) 0.004 mm of coma over 12 mm, 50 mm in front of the film: rays land at a (3 r^2 (2 + cos 2t) - 2)
-/// along it and a 3 r^2 sin 2t across, where a is that times 50 over 12. All over the opening that has variances of 4.5 and 1.5 a^2, about
-/// a place a from the axis, and the point of the coma stands 2 a on its other side.
+/// Checks the image of a point behind a plate with (n - 1) 0.004 mm of coma over 12 mm, 50 mm in front of the film. Rays land at a (3
+/// r^2 (2 + cos 2t) - 2) along the comet and at 3 a r^2 sin 2t across it, where a is the coma times 50 / 12. Over the whole aperture
+/// the variances are 4.5 a^2 and 1.5 a^2 about a center at distance a from the axis. The tip of the comet lies at -2 a.
 fn coma(taken: &[Taken]) -> Vec<Found> {
     let y = taken[0].channel("Y");
     let n = taken[0].scene.lens.index(taken[0].scene.lens.elements[0].medium_after, 546.07);
     let a = (n - 1.0) * 0.004 * 50.0 / 12.0;
     let ([x, up], [along, across]) = y.moments(([0.0; 2], [0.3, 0.3]));
     vec![
-        Found::near("middle of the light along it, mm", x, a, 0.03),
-        Found::within("and across", up, 0.0, 2e-4),
-        Found::near("spread along it", along.sqrt(), (4.5 * a * a).sqrt(), 0.03),
-        Found::near("and across", across.sqrt(), (1.5 * a * a).sqrt(), 0.03),
-        Found::within("its point", y.brightest()[0], -2.0 * a, 0.006),
+        Found::near("center of the light along the comet, mm", x, a, 0.03),
+        Found::within("center across the comet, mm", up, 0.0, 2e-4),
+        Found::near("spread along the comet, mm", along.sqrt(), (4.5 * a * a).sqrt(), 0.03),
+        Found::near("spread across the comet, mm", across.sqrt(), (1.5 * a * a).sqrt(), 0.03),
+        Found::within("tip of the comet, mm", y.brightest()[0], -2.0 * a, 0.006),
     ]
 }
 
-/// A point through a cone of glass of 5 degrees, 150 mm in front of the film: a ring, wider for blue than for red.
+/// Checks the image of a point through a glass cone of 5 degrees, 150 mm in front of the film: a ring, wider in blue than in red.
 fn ring(taken: &[Taken]) -> Vec<Found> {
     let cone = 0.0874887_f64.atan();
     let medium = taken[0].scene.lens.elements[1].medium_after;
@@ -91,7 +92,8 @@ fn in_ring(light: &Plane, radius: f64) -> f64 {
     light.all().filter(|(p, _)| is_in(*p)).map(|(_, value)| value).sum::<f64>() / light.sum()
 }
 
-/// Light of g, e and C through 600 lines a mm, in order 1, and a lens of 150 mm along the way of e: a star for each of them.
+/// Checks that the lines g, e and C make a star each, with 600 lines per mm in order 1 and a lens of 150 mm whose axis is the
+/// direction of e.
 fn stars(taken: &[Taken]) -> Vec<Found> {
     let [x, y, z] = ["X", "Y", "Z"].map(|name| taken[0].channel(name));
     let turned = |nm: f64| (nm * 1e-6 * 600.0).asin();
@@ -105,7 +107,11 @@ fn stars(taken: &[Taken]) -> Vec<Found> {
         let of = |plane: &Plane| plane.part(window).map(|(_, value)| value).sum::<f64>();
         sum += of(&light);
         all.push(Found::within(&format!("{nm} nm at mm"), light.center(window)[0], at, 0.06));
-        all.push(Found::above(&format!("{nm} nm, its own color over the next one"), of(main) / of(other), 2.0));
+        all.push(Found::above(
+            &format!("{nm} nm, light of its own channel over that of the next one"),
+            of(main) / of(other),
+            2.0,
+        ));
     }
     all.push(Found::above("of the light in three stars", sum / light.sum(), 0.999));
     all
@@ -115,9 +121,9 @@ pub const SURFACES: &[Promise] = &[
     Promise {
         scene: "surfaces/biconic",
         pictures: &[first(CHART)],
-        says: "two ellipses across each other: astigmatism on the axis",
+        says: "two ellipses crossed at right angles: astigmatism on the axis",
         held: |t| {
-            // Spokes 0.52 mm apart: the film is 1.3 mm off the focus of one section, and 3.8 mm off that of the other.
+            // The spokes are 0.52 mm apart. The film is 1.3 mm off the focus of one section and 3.8 mm off the focus of the other.
             let [level, upright] = astigmatism(&t[0]);
             vec![Found::above("upright spokes", upright, 0.4), Found::below("level spokes", level, 0.15)]
         },
@@ -125,7 +131,7 @@ pub const SURFACES: &[Promise] = &[
     Promise {
         scene: "surfaces/toroid",
         pictures: &[first(CHART)],
-        says: "a spectacle lens with a cylinder: lines across are sharp where lines along are not",
+        says: "a spectacle lens with a cylinder: horizontal lines are sharp where vertical lines are not",
         held: |t| {
             let [level, upright] = astigmatism(&t[0]);
             vec![Found::above("level spokes", level, 0.6), Found::below("upright spokes", upright, 0.2)]
@@ -134,30 +140,30 @@ pub const SURFACES: &[Promise] = &[
     Promise {
         scene: "surfaces/cylinder",
         pictures: &[first(&["imager.resolution=128", "render.samples=32"])],
-        says: "an anamorphic attachment squeezes the chart by half",
+        says: "an anamorphic attachment squeezes the chart horizontally by about half",
         held: |t| {
-            // Black squares 320 mm of the chart apart across, and others 188 mm up.
+            // Two black squares are 320 mm apart horizontally on the chart, and two others 188 mm apart vertically.
             let y = t[0].channel("Y");
             let middle = |at: [f64; 2], half: [f64; 2]| y.dark_middle((at, half));
             let across = [-2.66, 2.66].map(|x| middle([x, 0.29], [1.05, 2.1])[0]);
             let up = [-8.76, 8.76].map(|x| [-2.9, 2.9].map(|y| middle([x, y], [0.6, 1.1])[1]));
             let squeeze = mean(up.iter().map(|[low, high]| high - low)) / 188.0 / ((across[1] - across[0]) / 320.0);
-            vec![Found::near("up over across", squeeze, 1.9, 0.05)]
+            vec![Found::near("vertical over horizontal scale", squeeze, 1.9, 0.05)]
         },
     },
     Promise {
         scene: "surfaces/mirrors",
         pictures: &[first(&["imager.resolution=192", "render.samples=96"])],
-        says: "a Newtonian reflector: upright, and no color anywhere",
+        says: "a Newtonian reflector: upright, and free of color errors",
         held: |t| {
             let [x, z] = squares(&t[0], [[-2.6, 0.13], [2.6, 0.13]], [1.0, 1.1]);
             let apart = (0..2).map(|k| (x[k][0] - z[k][0]).hypot(x[k][1] - z[k][1])).fold(0.0, f64::max);
-            // The patches stand below: white on the left of their last row, black on the right.
+            // The patches are at the bottom: in their last row, white is on the left and black on the right.
             let y = t[0].channel("Y");
             let patch = |column: f64| y.mean(([1.06 * (column - 2.5), -4.1 - 1.5 * 1.06], [0.3; 2]));
             vec![
-                // Behind a wedge of flint it is 0.1 mm.
-                Found::below("squares in X beside those in Z, mm", apart, 0.045),
+                // Behind a wedge of flint this is 0.1 mm.
+                Found::below("distance between squares in X and in Z, mm", apart, 0.045),
                 Found::above("white on the left over black on the right", patch(0.0) / patch(5.0), 10.0),
             ]
         },
@@ -165,7 +171,7 @@ pub const SURFACES: &[Promise] = &[
     Promise {
         scene: "surfaces/tilted-plane",
         pictures: &[first(&["imager.resolution=192", "render.samples=64"])],
-        says: "a wedge of flint: everything has a fringe upward and downward",
+        says: "a wedge of flint: everything has a color fringe at its top and bottom",
         held: |t| {
             let medium = t[0].scene.lens.elements[0].medium_after;
             let wedge = 4_f64.to_radians();
@@ -183,9 +189,10 @@ pub const SURFACES: &[Promise] = &[
     Promise {
         scene: "surfaces/porro",
         pictures: &[first(&["imager.resolution=128", "render.samples=32"])],
-        says: "a pair of Porro prisms turns a picture by half a turn",
+        says: "a pair of Porro prisms rotates the picture by half a turn",
         held: |t| {
-            // The patches stand above now; of their first row, which is the lower one, bluish green is on the left, dark skin on the right.
+            // The patches are at the top now. In their first row, which is the lower one, bluish green is on the left and dark skin
+            // on the right.
             let [x, y, z] = ["X", "Y", "Z"].map(|name| t[0].channel(name));
             let at = |plane: &Plane, column: f64, row: f64| plane.mean(([1.05 * column, 4.05 + 1.05 * row], [0.3; 2]));
             vec![
@@ -198,12 +205,12 @@ pub const SURFACES: &[Promise] = &[
     Promise {
         scene: "surfaces/sag-table",
         pictures: &[first(&["imager.resolution=180", "render.samples=32"])],
-        says: "a grid behind a window of drawn glass: its lines wave",
+        says: "a grid behind a window of drawn glass: its lines are wavy",
         held: |t| {
             let light = t[0].light();
             let lines = [-2.42, -1.21, 0.0, 1.21, 2.42].map(|across| wave(&light, across));
             vec![Found::above(
-                "the straightest line waves by um",
+                "waviness of the straightest line, um",
                 1e3 * lines.into_iter().fold(f64::MAX, f64::min),
                 50.0,
             )]

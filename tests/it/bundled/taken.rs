@@ -1,4 +1,4 @@
-//! A picture of a bundled scene, small.
+//! Small pictures of bundled scenes.
 
 use super::plane::Plane;
 use crate::common::repository;
@@ -8,41 +8,41 @@ use spectra_render::{Alone, Control, Effort, GhostRays, Renderer, Rendering};
 use spectra_scene::{Developed, LightKind, Scene, Search, Shot, load_series};
 use std::sync::{Arc, OnceLock};
 
-/// Which picture is taken, and what of its light.
+/// Selects a picture of a scene and the part of its light to render.
 pub struct Take {
     index: usize,
     set: &'static [&'static str],
-    /// Nothing but ghosts, if their rays are given.
+    /// Rays of the ghosts; if given, only ghosts are rendered.
     ghosts: Option<GhostRays>,
 }
 
-/// The first picture of a scene, with values `path=value` on top that make it small.
+/// Selects the first picture of a scene, with values `path=value` on top that make it small.
 pub const fn first(set: &'static [&'static str]) -> Take {
     member(0, set)
 }
 
-/// A picture by its place in the scene's series, from 0.
+/// Selects a picture by its index in the scene's series, from 0.
 pub const fn member(index: usize, set: &'static [&'static str]) -> Take {
     Take { index, set, ghosts: None }
 }
 
-/// Nothing but its ghosts.
+/// Selects only the ghosts of a picture.
 pub const fn ghosts(index: usize, set: &'static [&'static str], rays: GhostRays) -> Take {
     Take { index, set, ghosts: Some(rays) }
 }
 
-/// A picture.
+/// A rendered picture of a scene.
 pub struct Taken {
     pub scene: Arc<Scene>,
     pub rendering: Rendering,
-    /// Developed once somebody looks.
+    /// The developed films, made on first use.
     films: OnceLock<Vec<Developed>>,
-    /// Warnings.
+    /// Messages of all warnings.
     pub said: Vec<String>,
 }
 
 impl Taken {
-    /// What passes the lens is searched as for a first look: that has no bias, and takes a tenth of the time.
+    /// Renders a picture. The pupil search is that of a draft, which is unbiased and takes a tenth of the time.
     pub fn of(name: &str, take: &Take) -> Self {
         let path = repository(&format!("scenes/{name}.yaml"));
         let set: Vec<String> = take.set.iter().map(|text| (*text).to_owned()).collect();
@@ -62,7 +62,7 @@ impl Taken {
         if take.ghosts.is_none() {
             said.extend(rendering.warnings.iter().cloned());
             let beyond = scene.films.iter().filter_map(|film| film.film.beyond(&film.exposure(&rendering.exposure)));
-            said.extend(beyond.map(|beyond| format!("the film is {beyond:?} nearly all over")));
+            said.extend(beyond.map(|beyond| format!("nearly the whole film is {beyond:?}")));
         }
         Self { scene, rendering, films: OnceLock::new(), said }
     }
@@ -71,32 +71,32 @@ impl Taken {
         Plane::new(self.rendering.exposure.size, values.iter().map(|value| f64::from(*value)).collect())
     }
 
-    /// Light of a channel by its name.
+    /// Returns the light of a channel by its name.
     pub fn channel(&self, name: &str) -> Plane {
         let channel = self.rendering.exposure.channel(name).unwrap_or_else(|| panic!("no channel {name}"));
         self.plane(&channel.values)
     }
 
-    /// Light of all channels that the picture is made of.
+    /// Returns the sum of the light of all channels that make up the picture.
     pub fn light(&self) -> Plane {
         let all = self.channels().into_iter().map(|(plane, _)| plane);
         all.reduce(|sum, plane| sum.with(&plane, |a, b| a + b)).expect("it records something")
     }
 
-    /// Light of one kind, of all channels together; an output of the scene has to hold that kind.
+    /// Returns the light of one kind, summed over all channels. An output of the scene must contain that kind.
     pub fn layer(&self, kind: LightKind) -> Plane {
         let layer = self.rendering.layers.iter().find(|layer| layer.kind == kind).expect("an output holds it");
         let all = layer.channels.iter().map(|channel| self.plane(&channel.values));
         all.reduce(|sum, plane| sum.with(&plane, |a, b| a + b)).expect("it has channels")
     }
 
-    /// Light of the channels that the picture is made of, with what each is sensitive to.
+    /// Returns the light of each channel that makes up the picture, with its response.
     pub fn channels(&self) -> Vec<(Plane, &[f64])> {
         let one = |at: usize| (self.channel(&self.scene.channels[at].name), &self.scene.channels[at].response[..]);
         self.scene.picture_channels().into_iter().map(one).collect()
     }
 
-    /// The finished picture on one of the films: red, green and blue light of the screen, 1 is its white.
+    /// Returns the finished picture on one of the films: red, green and blue light of the screen, where 1 is its white.
     pub fn colors(&self, film: usize) -> [Plane; 3] {
         let films = self.films.get_or_init(|| {
             let times = self.scene.film_times(&self.rendering.exposure);
@@ -107,26 +107,26 @@ impl Taken {
         [0, 1, 2].map(|k| self.plane(&rgb.iter().map(|v| v[k].clamp(0.0, 1.0)).collect::<Vec<_>>()))
     }
 
-    /// The same, luminance.
+    /// Returns the luminance of the finished picture on one of the films.
     pub fn tones(&self, film: usize) -> Plane {
         let [red, green, blue] = self.colors(film);
         red.with(&green, |r, g| 0.2126 * r + 0.7152 * g).with(&blue, |a, b| a + 0.0722 * b)
     }
 
-    /// Image over object, of a flat thing that stands so far from the first vertex.
+    /// Returns image size over object size for a flat object at this distance from the first vertex.
     pub fn magnification(&self, distance_mm: f64) -> f64 {
         let first_order = self.scene.lens.first_order(self.scene.lens.reference_nm);
         first_order.efl_mm / (distance_mm + first_order.ffl_mm)
     }
 
-    /// Focal length over f-number.
+    /// Returns the diameter of the aperture, mm: focal length over f-number.
     pub fn opening_mm(&self) -> f64 {
         let lens = &self.scene.lens;
-        lens.first_order(lens.reference_nm).efl_mm / lens.marginal_ray().expect("it has sizes").f_number()
+        lens.first_order(lens.reference_nm).efl_mm / lens.marginal_ray().expect("the lens has sizes").f_number()
     }
 
-    /// How wide a point at a distance is drawn, where the lens is focused at another one: opening times magnification times the way
-    /// between them over the distance (mm).
+    /// Returns the blur diameter, mm, of a point at a distance if the lens is focused at another distance. It is aperture times
+    /// magnification times the difference of the distances over the distance of the point.
     pub fn blur_mm(&self, focus_mm: f64, distance_mm: f64) -> f64 {
         self.opening_mm() * self.magnification(focus_mm) * (distance_mm - focus_mm).abs() / distance_mm
     }

@@ -1,41 +1,41 @@
-//! Pictures over independent seeds, and what they say of each figure.
+//! Renders pictures with independent seeds and estimates figures from them.
 
 use spectra_core::Isa;
-use spectra_lens::Effort;
+use spectra_optics::Effort;
 use spectra_render::{Control, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 use std::ops::Range;
 use std::path::Path;
 
-/// A scene file with these settings, `section.key=value` each.
+/// Loads a scene file with these settings, each as `section.key=value`.
 pub fn load(path: &Path, settings: &[&str]) -> Scene {
     let settings: Vec<String> = settings.iter().map(|s| (*s).to_owned()).collect();
     spectra_scene::load(path, &settings).unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// A scene made ready once: what is searched before the first ray serves all seeds.
+/// Prepares a scene once: what is searched before the first ray serves all seeds.
 pub fn ready(scene: Scene) -> Renderer {
     Renderer::on(scene, Isa::detect(), &Threads(2)).expect("the scene can be rendered")
 }
 
-/// The same as a draft: pupils and ghosts are searched in a part of the time, so that more rays end on their way. For what does not depend
-/// on how many do.
+/// Prepares a scene as a draft. The search for pupils and ghosts takes a part of the time, so more rays are lost on their way. Use it
+/// for figures that do not depend on how many are lost.
 pub fn drafted(scene: Scene) -> Renderer {
     Renderer::with_effort(scene.into(), Isa::detect(), None, Effort::Draft, &Threads(2))
         .expect("the scene can be rendered")
 }
 
-/// All samples of a renderer, on two threads.
+/// Renders all samples on two threads.
 pub fn rendered(renderer: &Renderer) -> Rendering {
     renderer.run(&Threads(2), &Control::new()).expect("rendered")
 }
 
-/// The figures that `of` reads off the picture of each seed.
+/// Renders the picture of each seed and returns the figures that `of` computes from it.
 pub fn over_seeds(renderer: &Renderer, seeds: Range<u64>, of: impl Fn(&Rendering) -> Vec<f64>) -> Vec<Vec<f64>> {
     seeds.map(|seed| of(&rendered(&renderer.reseeded(seed)))).collect()
 }
 
-/// A figure that is known by chance.
+/// A figure with a statistical error.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimate {
     pub mean: f64,
@@ -44,7 +44,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Of independent values.
+    /// Returns the estimate from independent values.
     pub fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -52,19 +52,19 @@ impl Estimate {
         Self { mean, error: (variance / n).sqrt() }
     }
 
-    /// How far apart two are, in standard errors of the difference.
+    /// Returns the distance between two estimates in standard errors of their difference.
     pub fn apart(self, other: Self) -> f64 {
         (self.mean - other.mean).abs() / self.error.hypot(other.error)
     }
 }
 
-/// An estimate of each figure, from the figures of each seed.
+/// Returns an estimate of each figure from the figures of all seeds.
 pub fn estimates(runs: &[Vec<f64>]) -> Vec<Estimate> {
     let column = |at: usize| runs.iter().map(|run| run[at]).collect::<Vec<_>>();
     (0..runs[0].len()).map(|at| Estimate::of(&column(at))).collect()
 }
 
-/// Mean illuminance of each part of the frame, `columns` by `rows` of them, row by row.
+/// Returns the mean illuminance of each part of the frame, for `columns` by `rows` parts, row by row.
 pub fn regions(rendering: &Rendering, columns: usize, rows: usize) -> Vec<f64> {
     let frame = &rendering.exposure;
     let y = &frame.channel("Y").expect("an XYZ imager").values;
@@ -76,12 +76,12 @@ pub fn regions(rendering: &Rendering, columns: usize, rows: usize) -> Vec<f64> {
     sums.iter().map(|sum| sum / (width * height / sums.len()) as f64).collect()
 }
 
-/// Illuminance of each pixel.
+/// Returns the illuminance of each pixel.
 pub fn pixels(rendering: &Rendering) -> Vec<f64> {
     rendering.exposure.channel("Y").expect("an XYZ imager").values.iter().map(|y| f64::from(*y)).collect()
 }
 
-/// The bits of all channels.
+/// Returns the bits of all channels.
 pub fn bits(rendering: &Rendering) -> Vec<u32> {
     rendering.exposure.channels.iter().flat_map(|c| c.values.iter().map(|v| v.to_bits())).collect()
 }

@@ -1,13 +1,14 @@
-//! Ghosts: the light of two reflections in a picture is what an independent random walk of reflections brings there; the books
-//! close; and the bits are the same however the work is done.
+//! Tests ghosts: the light of reflections in a picture agrees with an independent random walk, the ledger balances, and the bits do
+//! not depend on how the work is done.
 
 mod walk;
 
 use crate::common::statistics::{self, Estimate, bits, estimates, over_seeds, ready, rendered};
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Coating, Indices, Lens, Path as LightPath, Tracer, Travel};
+use spectra_lens::{Coating, Lens};
 use spectra_render::{Control, Light as Sums, Renderer, Rendering, Threads};
 use spectra_scene::{FileResources, Scene};
+use spectra_tracer::{Indices, Path as LightPath, Tracer, Travel};
 use std::path::Path;
 use walk::Light;
 
@@ -16,9 +17,9 @@ const ROWS: usize = 3;
 const REGIONS: usize = COLUMNS * ROWS;
 const SEEDS: u64 = 4;
 
-/// A point of light of one line, through a bare lens.
+/// A point of light in one spectral line through an uncoated lens.
 pub struct Setup {
-    /// What its walk is called in the table.
+    /// Name of its random walk in the table.
     walk: &'static str,
     lens: &'static str,
     f_number: f64,
@@ -57,26 +58,26 @@ impl Setup {
         spectra_scene::load(&path, &set).unwrap_or_else(|faults| panic!("{faults}"))
     }
 
-    /// Made ready, with the numbers of the scene's own seed.
+    /// Prepares the scene with the random numbers of its own seed.
     fn ready(&self, set: &[&str]) -> Renderer {
         ready(self.scene(set))
     }
 
-    /// A picture.
+    /// Renders the picture.
     fn render(&self, set: &[&str]) -> Rendering {
         rendered(&self.ready(set))
     }
 }
 
-/// Light of each region, in any unit.
+/// Returns the light of each region, in arbitrary units.
 fn regions(rendering: &Rendering) -> Vec<f64> {
     statistics::regions(rendering, COLUMNS, ROWS)
 }
 
-/// Twelve regions of the frame agree with the walk within four standard errors.
+/// Checks that twelve regions of the frame agree with the walk within four standard errors.
 fn agrees(setup: &Setup, largest_error: f64) {
     let walked = walk::known(setup);
-    // The straight light says what a unit of the walk is worth.
+    // Direct light calibrates the unit of the walk.
     let straight = over_seeds(&setup.ready(&["render.reflections.order=0"]), 0..SEEDS, regions);
     let light: Vec<f64> = straight.iter().map(|regions| regions.iter().sum()).collect();
     let unit = Estimate::of(&light).mean / walked.total(Light::Straight).mean;
@@ -93,13 +94,13 @@ fn agrees(setup: &Setup, largest_error: f64) {
         println!("{region}: {found:?}, walk {want:?}, {apart:.2}");
         assert!(
             found.error.hypot(want.error) < largest_error * want.mean.max(0.2 * even),
-            "region {region} is known to {found:?} and {want:?} only"
+            "region {region} is known only to {found:?} and {want:?}"
         );
         worst = worst.max(apart);
     }
     assert!(worst < 4.0, "{worst} standard errors");
     if setup.order > 2 {
-        // Of four reflections alone, by the books: some thousand rays for each path.
+        // Compares only four reflections with the ledger, which has about a thousand rays per path.
         let ledger = setup.render(&["render.samples=1"]).ledger.expect("ghosts are traced");
         let four = ledger.paths.iter().filter(|path| path.surfaces.len() == 4);
         let booked = four.map(|path| path.power_w).sum::<f64>() / ledger.direct_w;
@@ -126,29 +127,30 @@ const FISHEYE: Setup = Setup {
     order: 2,
 };
 
-/// On the axis, wide open and stopped down.
+/// Setups on the axis, wide open and stopped down.
 const ON_AXIS: [Setup; 3] = [
     Setup { walk: "axis-two", field_deg: [0.0; 2], f_number: 1.5, order: 2, ..BIOTAR },
     Setup { walk: "axis-four", field_deg: [0.0; 2], f_number: 1.5, order: 4, ..BIOTAR },
     Setup { walk: "axis-four-stopped-down", field_deg: [0.0; 2], f_number: 16.0, order: 4, ..BIOTAR },
 ];
 
-/// Each walk of the table, with its rays. Little of what the large front of the fisheye takes in comes to the film, so it is a long walk that
-/// knows each region to 1 %.
+/// Returns each walk of the table with its number of rays. Little of the light that the large front of the fisheye accepts reaches
+/// the film, so its walk must be long to determine each region to 1 %.
 fn walks() -> Vec<(&'static Setup, usize)> {
     let frames = [(&BIOTAR, 180_000), (&WITH_IMAGER, 220_000), (&FOUR, 160_000), (&FOUR_WITH_IMAGER, 220_000)];
     let axis = ON_AXIS.iter().map(|setup| (setup, 200_000));
     frames.into_iter().chain([(&FISHEYE, 9_000_000)]).chain(axis).collect()
 }
 
-/// Writes the table anew, in two minutes: `cargo test --test it -- --ignored walks_are_written`.
+/// Writes the table anew, which takes two minutes: `cargo test --test it -- --ignored walks_are_written`.
 #[test]
 #[ignore = "writes tests/data/ghost-walks.csv"]
 fn walks_are_written() {
     walk::write(&walks());
 }
 
-/// A part of each walk, with other numbers, has the figures of the table: all of the light of a kind, and each region.
+/// A part of each walk, with other random numbers, reproduces the figures of the table: the total of each kind of light, and each
+/// region.
 #[test]
 fn walks_of_the_table_are_walked_again() {
     for (setup, rays) in walks() {
@@ -156,7 +158,7 @@ fn walks_of_the_table_are_walked_again() {
         for light in [Light::Straight, Light::Two, Light::Four, Light::Left] {
             let (a, b) = (known.total(light), again.total(light));
             assert!(a.mean == b.mean || a.apart(b) < 4.5, "{}: {light:?}: {a:?}, again {b:?}", setup.walk);
-            // So few rays do not know their own error where few of them bring much.
+            // Few rays underestimate their error where a few of them carry much light.
             for (region, (a, b)) in known.of(light).zip(again.of(light)).enumerate() {
                 assert!(
                     a.mean == b.mean || (a.mean - b.mean).abs() < 6.0 * b.error.max(a.error * 40_f64.sqrt()),
@@ -193,7 +195,7 @@ fn ghosts_of_a_fisheye_with_the_light_at_60_degrees() {
     agrees(&FISHEYE, 0.01);
 }
 
-/// Rays along fifteen paths of two reflections, against another program's: `xtask/ghost_rays.py`.
+/// Rays along fifteen paths of two reflections agree with those of another program: `xtask/ghost_rays.py`.
 #[test]
 fn ghost_rays_are_those_of_optiland() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
@@ -223,7 +225,7 @@ fn ghost_rays_are_those_of_optiland() {
         wide.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
         let rays = traced(&wide);
         if rays.loss(0).is_some() {
-            // Where surfaces without rims cross, Optiland goes back to the one that lies behind; no such ray is within the rims.
+            // Where surfaces without rims cross, Optiland goes back to the surface that lies behind. No such ray is within the rims.
             assert!(traced(&own).loss(0).is_some(), "{row}");
             continue;
         }
@@ -239,8 +241,9 @@ fn ghost_rays_are_those_of_optiland() {
     assert!(compared == 57 && paths.len() == 15, "{compared} rays of {} paths", paths.len());
 }
 
-/// Light along the axis, from surface `at` on forward or back, that nobody follows: what is reflected more than `order` times, and what
-/// begins with less than `least` where it is reflected more than twice. Surfaces reflect these parts along their common normal.
+/// Returns the light on the axis, starting at surface `at` in either direction, that is not traced: light reflected more than `order`
+/// times, and light that is weaker than `least` when it is reflected more than twice. `parts` are the reflectances along the common
+/// normal.
 fn beyond(
     parts: &[f64],
     (order, least): (usize, f64),
@@ -262,7 +265,7 @@ fn beyond(
     left
 }
 
-/// What is left after so many reflections, of the light that enters.
+/// Returns the share of the emitted light that is not traced after this number of reflections.
 fn left(setup: &Setup, set: &[&str]) -> f64 {
     let rendering = setup.render(&[&["render.samples=1"], set].concat());
     let ledger = rendering.ledger.expect("ghosts are traced");
@@ -272,8 +275,8 @@ fn left(setup: &Setup, set: &[&str]) -> f64 {
     ledger.not_traced_w / ledger.emitted_w
 }
 
-/// Of a thin beam along the axis of a bare Biotar two reflections leave 1.6 % and four less than 0.1 %: the sum of products of Fresnel's
-/// factors, in which the branches that are cut, with less than 1e-8, are 0.2 %.
+/// For a thin beam along the axis of an uncoated Biotar, two reflections leave 1.6 % untraced and four leave less than 0.1 %. This is
+/// the sum of products of Fresnel's factors; the branches below 1e-8, which are cut, make up 0.2 % of it.
 #[test]
 fn on_the_axis_reflections_leave_the_sum_of_products() {
     let setup = Setup { field_deg: [0.0; 2], f_number: 1.5, ..BIOTAR };
@@ -293,8 +296,8 @@ fn on_the_axis_reflections_leave_the_sum_of_products() {
     }
 }
 
-/// Wide open four reflections leave half as much again as on the axis, and it is true: an independent walk leaves as much, and without
-/// what is reflected totally no more than on the axis. Stopped down they leave less than 0.1 %.
+/// Wide open, four reflections leave half as much again as on the axis, and an independent walk confirms it. Without total
+/// reflection, the walk leaves no more than on the axis. Stopped down, less than 0.1 % is left.
 #[test]
 fn what_reflections_leave_is_what_a_random_walk_leaves() {
     for setup in &ON_AXIS {
@@ -304,7 +307,7 @@ fn what_reflections_leave_is_what_a_random_walk_leaves() {
             (left(setup, &[]), walked.total(Light::Left), walked.total(Light::LeftNotTotally).mean);
         println!("order {order}, f/{f_number}: {got:.3e}, walk {want:?}, without total reflection {without:.3e}");
         let Estimate { mean: want, error } = want;
-        // The books are some thousand rays on a net.
+        // The ledger is computed from about a thousand rays on a grid.
         assert!((got - want).abs() < 4.0 * error.hypot(0.01 * want) && error < 0.02 * want, "{got} {want} {error}");
         match (order, f_number) {
             (2, _) => assert!((0.014..0.018).contains(&got), "{got}"),
@@ -314,7 +317,7 @@ fn what_reflections_leave_is_what_a_random_walk_leaves() {
     }
 }
 
-/// Every watt is booked once.
+/// The ledger books every watt exactly once.
 #[test]
 fn the_books_close() {
     for imager in [0.0, 0.2] {
@@ -332,7 +335,7 @@ fn the_books_close() {
     }
 }
 
-/// What leaves by the front does not depend on the frame; what falls beside it does.
+/// Light that leaves through the front does not depend on the size of the frame; light that misses the frame does.
 #[test]
 fn light_out_of_the_front_is_not_light_beside_the_frame() {
     let [small, large] = [12.0, 2000.0].map(|side| {
@@ -343,7 +346,7 @@ fn light_out_of_the_front_is_not_light_beside_the_frame() {
     assert!(large.beside_w < 0.1 * large.front_w && small.beside_w > large.beside_w, "{small:?} {large:?}");
 }
 
-/// What the estimator puts on the frame is what the books say, within the errors of both.
+/// The light that the estimator puts on the frame agrees with the ledger, within the errors of both.
 #[test]
 fn the_picture_has_the_light_of_the_books() {
     let light = |set: &[&str]| over_seeds(&BIOTAR.ready(set), 0..SEEDS, |r| vec![regions(r).iter().sum()]);
@@ -365,7 +368,7 @@ fn threads_batches_and_steps_change_no_bit() {
     assert_eq!(run(&renderer(&["render.batch=40"]), 2), want);
     let scalar = Renderer::new(BIOTAR.scene(&[]), Isa::Baseline).expect("ready");
     assert_eq!(run(&scalar, 2), want);
-    // Three samples, saved, loaded, and the others.
+    // Traces three samples, saves and loads the light, then traces the rest.
     let (threads, control) = (Threads(2), Control::new());
     let mut light = whole.begin().expect("memory");
     whole.advance(&mut light, 3, &threads, &control).expect("rendered");
@@ -374,14 +377,14 @@ fn threads_batches_and_steps_change_no_bit() {
     let mut light = Sums::load(&whole, &mut &file[..]).expect("of this scene");
     whole.advance(&mut light, 64, &threads, &control).expect("rendered");
     assert_eq!(bits(&whole.look(whole.scene(), &light).expect("memory")), want);
-    // What is searched before the first ray does not depend on how many samples are to come.
+    // The search before the first ray does not depend on the number of samples.
     let fewer = renderer(&["render.samples=3", "render.rays=37500"]);
     let mut light = whole.begin().expect("memory");
     whole.advance(&mut light, 3, &threads, &control).expect("rendered");
     assert!(bits(&whole.look(whole.scene(), &light).expect("memory")) == run(&fewer, 2));
 }
 
-/// Polarization moves some percent of the light of ghosts, and no more; without reflections the bits are those without the key.
+/// Polarization changes the light of ghosts by a few per cent and no more. Without reflections the bits are those without the key.
 #[test]
 fn order_and_polarization_are_asked_for() {
     let ghosts = |set: &[&str]| BIOTAR.render(set).ledger.map(|ledger| ledger.ghosts_w);

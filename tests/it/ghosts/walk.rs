@@ -1,4 +1,4 @@
-//! An independent walk of light by reflections, and its figures as a table: `tests/data/ghost-walks.csv`.
+//! An independent random walk of light through reflections, and its results as a table: `tests/data/ghost-walks.csv`.
 
 use super::{COLUMNS, DISTANCE_MM, HE_NE_NM, REGIONS, ROWS, Setup};
 use crate::common::repository;
@@ -6,20 +6,20 @@ use crate::common::statistics::Estimate;
 use spectra_lens::Lens;
 use std::fmt::Write as _;
 
-/// Light of a walk by what became of it.
+/// Kinds of light in a walk, by what happened to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Light {
-    /// On the frame, without reflection.
+    /// Light on the frame without reflections.
     Straight,
-    /// By two reflections.
+    /// Light on the frame after two reflections.
     Two,
-    /// By four.
+    /// Light on the frame after four reflections.
     Four,
-    /// By two or four.
+    /// Light on the frame after two or four reflections.
     Ghosts,
-    /// Reflected once more and not followed, wherever it would have gone.
+    /// Light that was reflected once more and not followed, wherever it would have gone.
     Left,
-    /// Of that, what no surface reflected totally before.
+    /// The part of that light that no surface totally reflected before.
     LeftNotTotally,
 }
 
@@ -27,17 +27,18 @@ impl Light {
     const ALL: [Self; 6] = [Self::Straight, Self::Two, Self::Four, Self::Ghosts, Self::Left, Self::LeftNotTotally];
 }
 
-/// What a walk found: of each kind of light its mean over the rays, region by region; what is left, in the first.
+/// Result of a walk: the mean over the rays of each kind of light, for each region. Light that is left untraced is in the first
+/// region.
 pub struct Walked {
     figures: [[Estimate; REGIONS]; 6],
 }
 
 impl Walked {
-    /// Walks with so many rays, whose numbers follow from a seed.
+    /// Walks with this number of rays, with random numbers from a seed.
     pub fn by(setup: &Setup, rays: usize, seed: u64) -> Self {
         let mut walk = Walk::new(&setup.scene(&[]).lens, setup, seed);
         let tangent = setup.field_deg.map(|deg| DISTANCE_MM * deg.to_radians().tan());
-        // As far as a line can cross the plane of the first vertex that meets the glass behind it.
+        // Largest radius in the plane of the first vertex at which a ray can meet the glass behind it.
         let [_, c, clear, ..] = walk.surfaces[0];
         let sag = c * clear * clear / (1.0 + (1.0 - c * c * clear * clear).sqrt());
         let clear = clear + sag.abs() * tangent[0].hypot(tangent[1]) / DISTANCE_MM;
@@ -70,12 +71,12 @@ impl Walked {
         Self { figures: sums.map(|regions| regions.map(figure)) }
     }
 
-    /// Light of a kind, region by region.
+    /// Returns the light of one kind, region by region.
     pub fn of(&self, light: Light) -> impl Iterator<Item = Estimate> {
         self.figures[light as usize].into_iter()
     }
 
-    /// All of it, as if regions had nothing to do with each other.
+    /// Returns the sum over all regions, as if their errors were independent.
     pub fn total(&self, light: Light) -> Estimate {
         self.of(light).fold(Estimate { mean: 0.0, error: 0.0 }, |all, part| Estimate {
             mean: all.mean + part.mean,
@@ -88,7 +89,7 @@ const TABLE: &str = "tests/data/ghost-walks.csv";
 /// Seed of the walks in the table.
 const SEED: u64 = 7;
 
-/// The walk of a setup, as the table has it.
+/// Returns the walk of a setup from the table.
 pub fn known(setup: &Setup) -> Walked {
     let text = std::fs::read_to_string(repository(TABLE)).expect("a table");
     let mut figures = [[Estimate { mean: 0.0, error: 0.0 }; REGIONS]; 6];
@@ -104,7 +105,7 @@ pub fn known(setup: &Setup) -> Walked {
     Walked { figures }
 }
 
-/// Writes the table anew.
+/// Writes the table with new walks.
 pub fn write(walks: &[(&Setup, usize)]) {
     let mut text = String::from("walk,light,region,mean,error\n");
     for (setup, rays) in walks {
@@ -118,21 +119,22 @@ pub fn write(walks: &[(&Setup, usize)]) {
     std::fs::write(repository(TABLE), text).expect("written");
 }
 
-/// A random ray that walks between surfaces and knows no paths: at each it splits, and both parts go on. Written without the
-/// tracer: spheres by their two roots, Snell's law by the component across the normal, Fresnel's equations by both polarizations.
+/// A random ray that walks between surfaces without knowing any paths: at each surface it splits, and both parts go on. It is written
+/// without the tracer. Spheres are intersected by their two roots, Snell's law uses the component across the normal, and Fresnel's
+/// equations both polarizations.
 struct Walk {
-    /// Vertex, curvature, clear radius (mm), and the index before and behind.
+    /// Vertex, curvature and clear radius, mm and mm^-1, and the index before and behind each surface.
     surfaces: Vec<[f64; 5]>,
     image_z: f64,
     frame_mm: [f64; 2],
     imager: f64,
     order: usize,
     state: u64,
-    /// What was reflected once more and not followed: all, and what no surface reflected totally before.
+    /// Light that was reflected once more and not followed: all of it, and the part without an earlier total reflection.
     left: [f64; 2],
 }
 
-/// Of light that was reflected twice a part goes on to be reflected again, with so much more weight.
+/// Probability that light which was reflected twice goes on to be reflected again; its weight increases accordingly.
 const GOES_ON: f64 = 0.125;
 
 impl Walk {
@@ -154,7 +156,7 @@ impl Walk {
         }
     }
 
-    /// SplitMix64 (S. Vigna).
+    /// Returns a random number from 0 to 1 with SplitMix64 (S. Vigna).
     fn number(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.state;
@@ -163,7 +165,7 @@ impl Walk {
         ((z ^ z >> 31) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Whether light that is reflected once more is followed, and with what weight.
+    /// Returns the weight factor of light that is reflected once more, or `None` if it is not followed.
     fn goes_on(&mut self, bounces: usize) -> Option<f64> {
         if bounces >= self.order {
             return None;
@@ -174,7 +176,7 @@ impl Walk {
         (self.number() < GOES_ON).then_some(1.0 / GOES_ON)
     }
 
-    /// Adds what one ray brings to the regions: straight, and by reflections.
+    /// Adds the light that one ray brings to the regions, direct and by reflections.
     fn follow(&mut self, ray: Part, sums: &mut impl FnMut(usize, usize, f64)) {
         let Part { mut p, mut d, mut weight, mut gap, mut bounces, is_total } = ray;
         loop {
@@ -212,7 +214,7 @@ impl Walk {
                 if cos < 0.0 {
                     (normal, cos) = (normal.map(|v| -v), -cos);
                 }
-                // What lies across the normal grows by the ratio of the indices.
+                // The component across the normal grows by the ratio of the indices.
                 let across: [f64; 3] = std::array::from_fn(|k| (d[k] - cos * normal[k]) * n / m);
                 let sine2 = dot(across, across);
                 let inner = (1.0 - sine2).max(0.0).sqrt();
@@ -240,7 +242,7 @@ impl Walk {
     }
 }
 
-/// A part of a ray: a place, a direction, in front of surface `gap` and behind the one before.
+/// A part of a ray: its position and direction, in front of surface `gap` and behind the surface before.
 struct Part {
     p: [f64; 3],
     d: [f64; 3],
@@ -254,7 +256,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// How far along a ray it meets a sphere of this curvature, on the half about its vertex.
+/// Returns the distance along a ray to a sphere of this curvature, on the half around its vertex.
 fn meet(p: [f64; 3], d: [f64; 3], vertex: f64, c: f64) -> Option<f64> {
     if c == 0.0 {
         return Some((vertex - p[2]) / d[2]);
@@ -266,8 +268,8 @@ fn meet(p: [f64; 3], d: [f64; 3], vertex: f64, c: f64) -> Option<f64> {
     if square < 0.0 {
         return None;
     }
-    // Light goes from the medium on one side of the vertex to that on the other: into a sphere whose center lies ahead, out of one
-    // whose center lies behind.
+    // Light passes from one side of the vertex to the other: it enters a sphere whose center lies ahead, and leaves one whose center
+    // lies behind.
     let t = if (r > 0.0) == (d[2] > 0.0) { -b - square.sqrt() } else { -b + square.sqrt() };
     ((p[2] + t * d[2] - vertex).abs() < r.abs()).then_some(t)
 }

@@ -1,4 +1,4 @@
-//! A lens as a figure: glass, stop, image plane, and rays in the colors of their wavelengths.
+//! Drawings of a lens: glass, stop, image plane, and rays in the colors of their wavelengths.
 
 mod outline;
 mod rays;
@@ -10,36 +10,37 @@ pub use sheet::{Ground, Sheet};
 
 use glam::DVec3;
 use spectra_core::Loss;
-use spectra_lens::{Lens, RayPath, Section};
+use spectra_lens::{Lens, Section};
+use spectra_tracer::RayPath;
 
 /// A ray to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnRay {
-    /// Its way.
+    /// Path of the ray through the lens.
     pub path: RayPath,
-    /// Its wavelength, nm.
+    /// Wavelength, nm.
     pub wavelength_nm: f64,
     /// Brightness on a dark ground, relative to the brightest: 0 to 1.
     pub strength: f64,
 }
 
 impl DrawnRay {
-    /// Whether it goes on behind its last point: it left the lens, or met no further surface.
+    /// Whether the ray continues behind its last point: it left the lens, or met no further surface.
     #[must_use]
     pub fn goes_on(&self) -> bool {
         matches!(self.path.end, None | Some((Loss::Missed, _)))
     }
 }
 
-/// The plane that a lens is cut in: z runs to the right.
+/// The section plane of a drawing, in which z runs to the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
-    /// y or x upward.
+    /// The section shown: y (or x) points upward.
     pub section: Section,
 }
 
 impl View {
-    /// A point across the axis, in the frame of a surface.
+    /// Returns the point at this height in the section, in the frame of a surface, mm.
     #[must_use]
     pub fn across(&self, height_mm: f64, z_mm: f64) -> DVec3 {
         match self.section {
@@ -48,7 +49,7 @@ impl View {
         }
     }
 
-    /// Height of a point in the figure, mm.
+    /// Returns the height of a point in the figure, mm.
     #[must_use]
     pub fn vertical(&self, point: DVec3) -> f64 {
         match self.section {
@@ -57,14 +58,14 @@ impl View {
         }
     }
 
-    /// Place of a point in the figure, mm: right and up.
+    /// Returns the position of a point in the figure, mm: to the right (z) and up.
     #[must_use]
     pub fn place(&self, point: DVec3) -> [f64; 2] {
         [point.z, self.vertical(point)]
     }
 }
 
-/// How far from its vertex light meets each element, mm.
+/// Returns for each element the largest distance from its vertex, across its axis, at which a ray meets it, mm.
 #[must_use]
 pub fn reach_mm(lens: &Lens, rays: &[DrawnRay]) -> Vec<f64> {
     let mut reach = vec![0.0_f64; lens.elements.len()];

@@ -1,4 +1,4 @@
-//! Elements as areas: what a cut through the axis shows of the glass.
+//! Elements as areas: the section of a lens through its axis.
 
 use super::View;
 use glam::DVec3;
@@ -7,34 +7,34 @@ use spectra_core::surface::Action;
 use spectra_glass::lines;
 use spectra_lens::{Element, Lens, LensMedium, Section};
 
-/// Points along a surface from edge to edge.
+/// Number of points along a surface from edge to edge.
 const POINTS: usize = 97;
 
-/// A piece of glass, cut.
+/// The cut area of a piece of glass.
 #[derive(Clone, Debug)]
 pub struct Solid {
-    /// Around it, mm.
+    /// Closed outline, mm, frame of the lens.
     pub outline: Vec<DVec3>,
-    /// Index at the d line.
+    /// Refractive index at the d line.
     pub nd: f64,
-    /// Abbe number; 0 where it is not known.
+    /// Abbe number Vd; 0 if it is not known.
     pub vd: f64,
 }
 
-/// What a lens is made of, in one section.
+/// The parts of a lens in one section, in mm, in the frame of the lens.
 #[derive(Clone, Debug, Default)]
 pub struct Outlines {
-    /// Glass.
+    /// Pieces of glass.
     pub solids: Vec<Solid>,
-    /// Surfaces with no glass behind or in front: mirrors in air, ideal lenses, gratings.
+    /// Refracting surfaces without glass on either side, such as ideal lenses and gratings in air.
     pub sheets: Vec<Vec<DVec3>>,
-    /// Mirrors, each edge to edge with a point behind its vertex, to hatch that side.
+    /// Mirrors: the profile from edge to edge, and a point behind the vertex that marks the side to hatch.
     pub mirrors: Vec<(Vec<DVec3>, DVec3)>,
     /// The stop: two blades, each from the edge of the opening outward.
     pub stops: Vec<[DVec3; 2]>,
 }
 
-/// Cuts a lens. `reach_mm` is how high light goes at each element: it sizes what states no size.
+/// Cuts a lens in a section. `reach_mm` is the height of the light at each element; it sizes elements without a stated size.
 pub fn outlines(lens: &Lens, view: &View, reach_mm: &[f64]) -> Outlines {
     let mut all = Outlines::default();
     let sizes: Vec<f64> = (0..lens.elements.len()).map(|at| size_mm(lens, at, reach_mm)).collect();
@@ -61,7 +61,7 @@ pub fn outlines(lens: &Lens, view: &View, reach_mm: &[f64]) -> Outlines {
         } else if e.action == Action::Refract && !in_glass {
             all.sheets.push(profile(e, sizes[at], view));
         }
-        // A stop of no stated size is as wide as the light on it.
+        // A stop without a stated size is drawn as wide as the light on it.
         let open = e.semi_diameter_mm.or_else(|| reach_mm.get(at).copied().filter(|reach| *reach > 0.0));
         if e.stop
             && let Some(open) = open
@@ -76,7 +76,7 @@ pub fn outlines(lens: &Lens, view: &View, reach_mm: &[f64]) -> Outlines {
     all
 }
 
-/// Index at the d line, and Abbe number.
+/// Returns the index at the d line and the Abbe number Vd (0 without dispersion).
 fn figures(medium: &LensMedium) -> (f64, f64) {
     let nd = medium.medium.index(lines::D.wavelength_nm);
     let (nf, nc) = (medium.medium.index(lines::F.wavelength_nm), medium.medium.index(lines::C.wavelength_nm));
@@ -87,14 +87,14 @@ fn is_solid(medium: &LensMedium) -> bool {
     !matches!(medium.medium, spectra_glass::Medium::Air) && medium.label != "air"
 }
 
-/// Half the height at which an element's edge is drawn, mm.
+/// Returns the semi-diameter to which an element is drawn, mm.
 fn size_mm(lens: &Lens, at: usize, reach_mm: &[f64]) -> f64 {
     let e = &lens.elements[at];
     if let Some(size) = e.outer_semi_diameter_mm.or(e.semi_diameter_mm) {
         return size;
     }
     let stated = |e: &Element| e.outer_semi_diameter_mm.or(e.semi_diameter_mm);
-    // A cemented group shares the size of its first surface; else the other side of the same glass.
+    // Use the size of the surface before in a cemented group, else that of the other side of the same glass.
     let before = (is_solid(&lens.media[e.medium_before]) && at > 0).then(|| stated(&lens.elements[at - 1])).flatten();
     let after = is_solid(&lens.media[e.medium_after]).then(|| lens.elements.get(at + 1).and_then(stated)).flatten();
     before.or(after).unwrap_or_else(|| (1.08 * reach_mm.get(at).copied().unwrap_or(0.0)).max(1e-3))
@@ -105,16 +105,16 @@ fn sag(e: &Element, height_mm: f64, view: &View) -> f64 {
     e.surface.sag_mm(local.x, local.y).unwrap_or(0.0)
 }
 
-/// A surface from its lower to its upper edge, as far as it reaches, mm.
+/// Returns the profile of a surface from its lower to its upper edge, as far as the surface is defined, mm.
 fn profile(e: &Element, size_mm: f64, view: &View) -> Vec<DVec3> {
     let points = (0..POINTS).filter_map(|i| {
-        // Closer together toward the edges, where steep surfaces bend away.
+        // Points are closer together toward the edges, where steep surfaces bend away.
         let h = size_mm * sin(std::f64::consts::PI * (i as f64 / (POINTS - 1) as f64 - 0.5));
         let local = view.across(h, 0.0);
         e.surface.sag_mm(local.x, local.y).map(|z| e.pose.point(local + DVec3::new(0.0, 0.0, z)))
     });
     let mut points: Vec<DVec3> = points.collect();
-    // A surface that stands the other way round runs the other way only where x is cut: keep lower to upper.
+    // A reversed surface runs the other way only where x is cut: keep the order from lower to upper.
     if let (Some(first), Some(last)) = (points.first(), points.last())
         && view.vertical(*first) > view.vertical(*last)
         && e.reversed
@@ -124,7 +124,7 @@ fn profile(e: &Element, size_mm: f64, view: &View) -> Vec<DVec3> {
     points
 }
 
-/// The area between two surfaces: each within its clear size, flat annuli out to the common edge, chamfers.
+/// Returns the outline between two surfaces: each within its clear size, flat annuli out to the common edge, and chamfers.
 fn cut(front: &Element, back: &Element, [a, b]: [f64; 2], outer: f64, view: &View) -> Vec<DVec3> {
     let side = |e: &Element, size: f64| {
         let mut points = profile(e, size, view);
@@ -145,7 +145,7 @@ fn cut(front: &Element, back: &Element, [a, b]: [f64; 2], outer: f64, view: &Vie
     outline
 }
 
-/// Bevels the ends of a profile: along z by the leg, and inward by the same.
+/// Bevels both ends of a profile: by the chamfer leg along z, and by the same length inward.
 fn chamfer(points: &mut Vec<DVec3>, e: &Element, view: &View) {
     let leg = e.chamfer_mm;
     if leg == 0.0 || points.len() < 2 {

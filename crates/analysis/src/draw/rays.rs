@@ -1,42 +1,42 @@
-//! Rays to be drawn: fans of several fields, in the colors of their wavelengths.
+//! Fans of rays for a drawing, at several field angles and wavelengths.
 
 use super::DrawnRay;
-use crate::fan::FanFinder;
+use crate::fan::FieldPoint;
 use spectra_glass::DispersionError;
-use spectra_lens::{Lens, Section};
+use spectra_lens::Section;
+use spectra_optics::Optics;
 
-/// Which rays are drawn through a lens.
+/// The fans of rays drawn through a lens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fans {
     /// Field angles, degrees.
     pub fields_deg: Vec<f64>,
     /// Distance of the object from the first vertex, mm; infinity allowed.
     pub object_mm: f64,
-    /// Rays a fan and wavelength, evenly over what passes; an odd number holds the middle.
+    /// Number of rays per fan and wavelength, evenly spaced over what passes; an odd number includes the middle.
     pub rays: usize,
     /// Wavelengths, nm.
     pub wavelengths_nm: Vec<f64>,
 }
 
 impl Fans {
-    /// Traces them; a field at which nothing passes has none.
+    /// Traces the fans. A field at which no ray passes gives none.
     ///
     /// # Errors
     /// A medium has no index at one of the wavelengths.
-    pub fn trace(&self, lens: &Lens, section: Section) -> Result<Vec<DrawnRay>, DispersionError> {
+    pub fn trace(&self, optics: &Optics, section: Section) -> Result<Vec<DrawnRay>, DispersionError> {
         let mut drawn = Vec::new();
-        // The brightest color lies on top.
+        // Sort so that the brightest color is drawn last, on top.
         let mut wavelengths_nm = self.wavelengths_nm.clone();
         wavelengths_nm.sort_by(|a, b| (b - 550.0).abs().total_cmp(&(a - 550.0).abs()));
         for field_deg in &self.fields_deg {
             for wavelength_nm in &wavelengths_nm {
-                let finder = FanFinder::new(lens, section, *wavelength_nm)?;
-                let Some(fan) = finder.fan(field_deg.to_radians(), self.object_mm) else { continue };
+                let point = FieldPoint { section, field_rad: field_deg.to_radians(), object_mm: self.object_mm };
+                let Some(fan) = point.fan(optics, *wavelength_nm)? else { continue };
                 for k in 0..self.rays {
-                    // The outermost rays keep off the edge by a hundredth: they are to pass.
+                    // Keep the outermost rays 1 % of the fan's width off the edge, so that they are sure to pass.
                     let part = if self.rays > 1 { k as f64 / (self.rays - 1) as f64 } else { 0.5 };
-                    let s_mm = fan.low_mm + (fan.high_mm - fan.low_mm) * (0.01 + 0.98 * part);
-                    let path = finder.path(fan.field_rad, fan.object_mm, s_mm);
+                    let path = fan.path(0.01 + 0.98 * part);
                     drawn.push(DrawnRay { path, wavelength_nm: *wavelength_nm, strength: 1.0 });
                 }
             }

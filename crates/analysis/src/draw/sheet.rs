@@ -1,4 +1,4 @@
-//! The sheet that a lens is drawn on.
+//! The sheet on which a lens is drawn.
 
 use super::{DrawnRay, Outlines, Solid, View, outlines, reach_mm};
 use glam::DVec3;
@@ -7,35 +7,35 @@ use spectra_core::math::{log10, pow};
 use spectra_lens::Lens;
 use spectra_plot::{Anchor, Canvas, Color, Point, Rect, Stroke, TextStyle};
 
-/// Paper or darkness.
+/// The background of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
-    /// A white sheet: tinted glass, a scale, a caption.
+    /// White paper: tinted glass, a scale, a caption.
     Light,
     /// Black: white glass, and rays that add their light where they cross.
     Dark,
 }
 
-/// A sheet: size, ground and what it shows beside the lens.
+/// Layout of a drawing: its size, background and contents besides the lens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// Width, in units of a CSS pixel.
+    /// Width, in CSS pixels.
     pub width: f64,
-    /// Height; `None` fits it to the lens.
+    /// Height, in CSS pixels; `None` fits it to the lens.
     pub height: Option<f64>,
-    /// Width of what is shown, mm; `None` fits it to the lens.
+    /// Width of the shown region, mm; `None` fits it to the lens.
     pub width_mm: Option<f64>,
-    /// Its ground.
+    /// Background.
     pub ground: Ground,
-    /// The cut.
+    /// Section plane.
     pub view: View,
-    /// A line of text below the lens; none where empty.
+    /// A line of text below the lens; empty for none.
     pub caption: String,
     /// Whether the space behind the lens up to the image plane is shown.
     pub image: bool,
 }
 
-/// From mm of the cut to places on the canvas.
+/// Maps mm in the section to points on the canvas.
 struct Scale {
     factor: f64,
     origin: Point,
@@ -49,12 +49,12 @@ impl Scale {
 
 const MARGIN: f64 = 24.0;
 const CAPTION: f64 = 34.0;
-/// A drawing is at least this high, and at most this part of its width.
+/// Least height of a drawing, and its largest height in units of its width.
 const LEAST_HEIGHT: f64 = 160.0;
 const MOST_HEIGHT: f64 = 1.6;
 
 impl Sheet {
-    /// Draws a lens with rays.
+    /// Draws a lens with rays and returns the figure.
     #[must_use]
     pub fn draw(&self, lens: &Lens, rays: &[DrawnRay]) -> Canvas {
         let parts = outlines(lens, &self.view, &reach_mm(lens, rays));
@@ -104,7 +104,7 @@ impl Sheet {
         points.iter().map(|p| scale.at(self.view.place(*p))).collect()
     }
 
-    /// Lower and upper end of the image plane: what the rays reach, and some more, mm.
+    /// Lower and upper end of the image plane, mm: the range that the rays reach, with a margin.
     fn image_mm(&self, lens: &Lens, rays: &[DrawnRay]) -> [f64; 2] {
         let seen = rays.iter().filter_map(|ray| {
             let p = at_image(lens, ray)?;
@@ -115,7 +115,7 @@ impl Sheet {
         [low - more, high + more]
     }
 
-    /// Lower left and upper right of all that is shown, mm.
+    /// Lower left and upper right corner of everything shown, mm.
     fn extent_mm(&self, lens: &Lens, parts: &Outlines, rays: &[DrawnRay], image_mm: [f64; 2]) -> ([f64; 2], [f64; 2]) {
         let solids = parts.solids.iter().flat_map(|s| &s.outline);
         let sheets = parts.sheets.iter().chain(parts.mirrors.iter().map(|m| &m.0)).flatten();
@@ -137,7 +137,7 @@ impl Sheet {
         if !(low[0] <= high[0] && low[1] <= high[1]) {
             return ([-1.0; 2], [1.0; 2]);
         }
-        // Room in front for the light that comes.
+        // Leave room in front for the incoming rays.
         let size = (high[0] - low[0]).max(high[1] - low[1]).max(1e-3);
         low[0] -= if rays.is_empty() { 0.04 } else { 0.22 } * size.min(high[1] - low[1] + 0.2 * size);
         high[0] += 0.02 * size;
@@ -186,7 +186,7 @@ impl Sheet {
         }
     }
 
-    /// A mirror: a line with hatching behind it.
+    /// Draws a mirror: a line with hatching behind it.
     fn mirror(&self, canvas: &mut Canvas, scale: &Scale, points: &[DVec3], behind: DVec3) {
         const HATCHES: usize = 28;
         let places = self.places(scale, points);
@@ -199,7 +199,7 @@ impl Sheet {
         let step = places.len().saturating_sub(1).max(1) as f64 / HATCHES as f64;
         for k in 0..=HATCHES {
             let Some(p) = places.get((k as f64 * step) as usize) else { continue };
-            // Leaning, as a draughtsman has it.
+            // Slanted hatching, as in technical drawings.
             canvas.line(*p, [p[0] + out[0] + 0.5 * out[1], p[1] + out[1] - 0.5 * out[0]], &thin);
         }
     }
@@ -212,7 +212,7 @@ impl Sheet {
     fn ray(&self, canvas: &mut Canvas, scale: &Scale, lens: &Lens, ray: &DrawnRay, edge: Rect) {
         let mut points = self.places(scale, &ray.path.points);
         let Some(first) = points.first().copied() else { return };
-        // From the edge of the picture, not from wherever the trace began.
+        // Begin at the edge of the picture, not where the trace began.
         if points.len() > 1 {
             let to = points[1];
             if let Some(start) = leaves(to, [first[0] - to[0], first[1] - to[1]], edge) {
@@ -239,7 +239,7 @@ impl Sheet {
         canvas.polyline(&points, &stroke);
     }
 
-    /// Caption, and a bar of a round length.
+    /// Draws the caption and a scale bar of a round length.
     fn footer(&self, canvas: &mut Canvas, scale: &Scale, height: f64) {
         let style = TextStyle { color: self.ink(), ..TextStyle::new(12.0) };
         canvas.text([MARGIN, height - 14.0], &self.caption, &style);
@@ -258,7 +258,7 @@ impl Sheet {
     }
 }
 
-/// Where a ray that left the lens meets the image plane, mm.
+/// Returns the point where a ray that left the lens meets the image plane, mm.
 fn at_image(lens: &Lens, ray: &DrawnRay) -> Option<DVec3> {
     let last = ray.path.points.last().filter(|_| ray.path.end.is_none())?;
     let (p, d) = (lens.image_pose.local_point(*last), lens.image_pose.local_direction(ray.path.direction));
@@ -266,7 +266,7 @@ fn at_image(lens: &Lens, ray: &DrawnRay) -> Option<DVec3> {
     (t.is_finite() && t >= 0.0).then(|| *last + t * ray.path.direction)
 }
 
-/// Where a line from `from` along `way` leaves the sheet.
+/// Returns the point where a line from `from` in the direction `way` leaves the sheet.
 fn leaves(from: Point, way: [f64; 2], edge: Rect) -> Option<Point> {
     let mut nearest = f64::INFINITY;
     for (at, step, low, high) in [(from[0], way[0], edge.left, edge.right), (from[1], way[1], edge.top, edge.bottom)] {

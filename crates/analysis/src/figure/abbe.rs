@@ -1,4 +1,4 @@
-//! The Abbe diagram: index against Abbe number.
+//! The Abbe diagram: refractive index against Abbe number.
 
 use super::{entry_disc, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Point, Rect, Stroke, TextStyle};
@@ -11,12 +11,12 @@ const HEIGHT: f64 = 740.0;
 pub struct AbbeGroup {
     /// Name for the legend.
     pub name: String,
-    /// Vd and nd of each glass.
+    /// Abbe number Vd and index nd of each glass.
     pub points: Vec<[f64; 2]>,
 }
 
-/// nd against Vd, which falls to the right as is usual: each group in its color, and `named` glasses (name, [Vd, nd])
-/// marked and named on top. `axes` are the names of the Abbe number and of the index: both may hold for other lines.
+/// Draws nd against Vd, with Vd falling to the right as usual. Each group has its color; `named` glasses (name, [Vd, nd]) are marked and
+/// labeled on top. `axes` are the labels of the Abbe number and of the index, since both may refer to other lines.
 #[must_use]
 pub fn abbe(groups: &[AbbeGroup], named: &[(String, [f64; 2])], axes: &[String; 2]) -> Canvas {
     let [of_v, of_n] = axes;
@@ -44,7 +44,7 @@ pub fn abbe(groups: &[AbbeGroup], named: &[(String, [f64; 2])], axes: &[String; 
     canvas
 }
 
-/// Whole steps around all values.
+/// Returns the range of the values, widened to whole steps; `none` if there are no values.
 fn span(values: impl Iterator<Item = f64>, step: f64, none: (f64, f64)) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     if low > high {
@@ -77,7 +77,7 @@ fn mark(canvas: &mut Canvas, axes: &Axes, named: &[(String, [f64; 2])]) {
 mod tests {
     use super::*;
 
-    /// Vd falls to the right, nd rises upward: a crown is to the left and below of a flint.
+    /// Checks that Vd falls to the right and nd rises upward: a crown lies left of and below a flint.
     #[test]
     fn crowns_are_left_and_low() {
         let groups = [
@@ -86,7 +86,7 @@ mod tests {
         ];
         let pixels = abbe(&groups, &[], &["V".to_owned(), "n".to_owned()]).to_pixels(1.0);
         let place = |is: &dyn Fn([i32; 3]) -> bool| {
-            // Within the frame, below the legend.
+            // Search within the frame, below the legend.
             let found: Vec<(usize, usize)> = (60..670)
                 .flat_map(|y| (100..950).map(move |x| (x, y)))
                 .filter(|(x, y)| is(pixels.rgb[y * pixels.width_px as usize + x].map(i32::from)))

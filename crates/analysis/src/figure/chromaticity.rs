@@ -1,23 +1,23 @@
-//! The chromaticity diagram.
+//! The chromaticity diagram with locus, gamuts and named points.
 
 use super::{SAMPLE, entry, sheet as paper, shortened};
 use spectra_color::{RgbSpace, chromaticity as chromaticity_of, to_u8, uv_1976, xyz_of_xy};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Picture, Point, Rect, Stroke, TextStyle, text_width};
 use spectra_spectrum::{Emission, Observer};
 
-/// Where the locus has a direction of its own; beyond, the functions keep their ratios.
+/// Range of the drawn locus, nm. Beyond it the color matching functions keep their ratios, so the locus has no direction.
 const LOCUS_NM: (u32, u32) = (380, 700);
-/// Wavelengths that are named along the locus.
+/// Wavelengths labeled along the locus, nm.
 const NAMED_NM: [u32; 18] = [460, 470, 480, 490, 500, 510, 520, 530, 540, 550, 560, 570, 580, 590, 600, 610, 620, 650];
-/// Temperatures that are marked on the Planckian locus, K.
+/// Temperatures marked on the Planckian locus, K.
 const MARKED_K: [f64; 5] = [2000.0, 3000.0, 4000.0, 6500.0, 10_000.0];
 
 /// The coordinates of a chromaticity diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Diagram {
-    /// x, y: CIE 1931.
+    /// CIE 1931 x, y.
     Xy,
-    /// u', v': CIE 1976, where equal distances look more nearly alike.
+    /// CIE 1976 u', v', in which equal distances look more nearly equal.
     Uv,
 }
 
@@ -39,7 +39,7 @@ impl Diagram {
         }
     }
 
-    /// What is shown across and up, and how many units of the canvas are one of it.
+    /// Ranges shown across and up, and the number of canvas units per unit of coordinate.
     fn extent(self) -> ((f64, f64), (f64, f64), f64) {
         match self {
             Self::Xy => ((-0.08, 0.8), (-0.05, 0.9), 800.0),
@@ -48,7 +48,7 @@ impl Diagram {
     }
 }
 
-/// A diagram for an observer, on its frame.
+/// A diagram for an observer, with the axes of its frame.
 struct Sheet<'a> {
     axes: Axes,
     diagram: Diagram,
@@ -66,15 +66,15 @@ impl Sheet<'_> {
     }
 }
 
-/// The CIE 1931 diagram: the spectral locus, the gamuts of sRGB, Rec.2020 and ACEScg, the Planckian locus, and points
-/// with their names. The colors are as sRGB can show them, each as bright as it can be.
+/// Draws the CIE 1931 diagram: the spectral locus, the gamuts of sRGB, Rec.2020 and ACEScg, the Planckian locus, and named points (x, y).
+/// The colors are as sRGB can show them, each at its largest brightness.
 #[must_use]
 pub fn chromaticity(points: &[(String, [f64; 2])]) -> Canvas {
     chromaticity_diagram(points, Diagram::Xy, Observer::cie_1931_2deg())
 }
 
-/// The same in other coordinates or for another observer; points are x, y for that observer. Gamuts are defined for the 1931
-/// observer, and shown for it alone.
+/// Draws a chromaticity diagram in other coordinates or for another observer. Points are x, y for that observer. The gamuts are defined for
+/// the 1931 observer and shown only for it.
 #[must_use]
 pub fn chromaticity_diagram(points: &[(String, [f64; 2])], diagram: Diagram, observer: &Observer) -> Canvas {
     let (left, top) = (76.0, 22.0);
@@ -94,18 +94,18 @@ pub fn chromaticity_diagram(points: &[(String, [f64; 2])], diagram: Diagram, obs
     };
     let mut canvas = Canvas::new(frame.right + 22.0, frame.bottom + 62.0, &title);
     sheet.axes.draw_grid(&mut canvas);
-    // Tables of some observers begin at 390 nm.
+    // The tables of some observers begin at 390 nm.
     let first = LOCUS_NM.0.max((LOCUS_NM.0..400).find(|nm| observer.at(f64::from(*nm)) != [0.0; 3]).unwrap_or(400));
     let locus: Vec<Point> = (first..=LOCUS_NM.1).map(|nm| sheet.at_xy(sheet.spectral(nm))).collect();
     canvas.polygon(&locus, Paint::Picture(colors(frame, diagram)));
     canvas.outline(&locus, &Stroke::new(Color::INK, 1.5));
     let mut labels = Labels::new(frame.grown(-3.0));
-    // Names do not lie across the locus.
+    // Keep labels off the locus.
     for [x, y] in &locus {
         labels.keep_clear(Rect::new(x - 1.0, y - 1.0, x + 1.0, y + 1.0));
     }
     let style = TextStyle::new(13.5).end();
-    // Where the locus leaves room: u', v' have it below.
+    // Put text where the locus leaves room: at the top for x, y, at the bottom for u', v'.
     let top = match diagram {
         Diagram::Xy => frame.top,
         Diagram::Uv => frame.bottom - 128.0,
@@ -124,7 +124,7 @@ pub fn chromaticity_diagram(points: &[(String, [f64; 2])], diagram: Diagram, obs
     canvas
 }
 
-/// The colors of all chromaticities of the frame.
+/// Returns the colors of all chromaticities in the frame.
 fn colors(place: Rect, diagram: Diagram) -> Picture {
     let (across, up, _) = diagram.extent();
     let (width_px, height_px) = (176, 190);
@@ -134,7 +134,7 @@ fn colors(place: Rect, diagram: Diagram) -> Picture {
         let x = across.0 + (across.1 - across.0) * share(i % width_px, width_px);
         let y = up.1 - (up.1 - up.0) * share(i / width_px, height_px);
         let [x, y] = diagram.to_xy([x, y]);
-        // Only the edge of the area reaches y = 0.
+        // Keep y above 0, which only the edge of the area reaches.
         let linear = srgb.from_xyz(xyz_of_xy([x, y.max(0.002)], 1.0)).map(|v| v.max(0.0));
         let brightest = linear.into_iter().fold(1e-9, f64::max);
         srgb.encode(linear.map(|v| v / brightest)).map(to_u8)
@@ -142,7 +142,7 @@ fn colors(place: Rect, diagram: Diagram) -> Picture {
     Picture { place, width_px, height_px, rgb: rgb.collect() }
 }
 
-/// Ticks and wavelengths along the outer side of the locus.
+/// Draws ticks and wavelengths along the outer side of the locus.
 fn name_locus(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels) {
     let style = TextStyle::new(12.0).middle().halo(Color::WHITE.with_opacity(0.85));
     for nm in (LOCUS_NM.0 + 70..=650).step_by(10) {
@@ -150,7 +150,7 @@ fn name_locus(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels) {
         let (here, before, after) = (spectral(nm), spectral(nm - 2), spectral(nm + 2));
         let along = [after[0] - before[0], after[1] - before[1]];
         let length = libm::hypot(along[0], along[1]);
-        // The locus runs clockwise on the sheet: outside is to its left.
+        // Outside is to the left, since the locus runs clockwise on the sheet.
         let out = [along[1] / length, -along[0] / length];
         let off = |distance: f64| [here[0] + out[0] * distance, here[1] + out[1] * distance];
         let named = NAMED_NM.contains(&nm);
@@ -165,7 +165,7 @@ fn name_locus(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels) {
     }
 }
 
-/// The triangles and their legend, which begins at `top`; returns where that lies.
+/// Draws the gamut triangles and their legend from `top` on; returns the area of the legend.
 fn gamuts(canvas: &mut Canvas, on: &Sheet<'_>, top: f64) -> Rect {
     let axes = &on.axes;
     let dashes: [&[f64]; 3] = [&[], &[9.0, 4.0], &[2.5, 3.5]];
@@ -184,13 +184,13 @@ fn gamuts(canvas: &mut Canvas, on: &Sheet<'_>, top: f64) -> Rect {
     rect
 }
 
-/// The chromaticities of black bodies.
+/// Draws the chromaticities of black bodies.
 fn planckian(canvas: &mut Canvas, sheet: &Sheet<'_>, labels: &mut Labels, points: &[(String, [f64; 2])]) {
     let place = |kelvin: f64| {
         let light = Emission::blackbody(kelvin).ok()?;
         Some(sheet.at_xy(chromaticity_of(sheet.observer.xyz(&light))?))
     };
-    // Even steps of reciprocal temperature are nearly even steps along it: 40 000 K to 1000 K.
+    // Even steps of reciprocal temperature are nearly even steps along the locus: 40 000 K to 1000 K.
     let line: Vec<Point> = (0..=40).filter_map(|i| place(1e6 / (25.0 + 24.375 * f64::from(i)))).collect();
     canvas.polyline(&line, &Stroke::new(Color::INK, 1.2));
     for (_, xy) in points {

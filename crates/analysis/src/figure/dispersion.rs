@@ -1,4 +1,4 @@
-//! Refractive index against wavelength.
+//! Figure of refractive index against wavelength.
 
 use super::{entry, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Point, Rect, Stroke, TextStyle};
@@ -6,18 +6,18 @@ use spectra_plot::{Axes, Axis, Canvas, Color, Point, Rect, Stroke, TextStyle};
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 560.0;
 
-/// The index of a medium by wavelength.
+/// The refractive index of a medium as a function of wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IndexCurve {
     /// Name for the legend.
     pub name: String,
-    /// Wavelength (nm, rising) and index; what is not finite parts the curve.
+    /// Wavelength (nm, rising) and index; an index that is not finite interrupts the curve.
     pub points: Vec<[f64; 2]>,
-    /// Wavelengths of the data, nm: outside of them the curve is dashed. `None`: no limit.
+    /// Range of wavelengths of the data, nm; outside it the curve is dashed. `None` means no limit.
     pub range_nm: Option<(f64, f64)>,
 }
 
-/// n(lambda) of several media from `band_nm.0` to `band_nm.1`, with thin lines where `marks` (name, nm) are.
+/// Draws n(lambda) of several media from `band_nm.0` to `band_nm.1`, with thin lines at the `marks` (name, nm).
 #[must_use]
 pub fn dispersion(curves: &[IndexCurve], band_nm: (f64, f64), marks: &[(&str, f64)]) -> Canvas {
     let names: Vec<String> = curves.iter().map(|curve| shortened(&curve.name)).collect();
@@ -50,13 +50,13 @@ pub fn dispersion(curves: &[IndexCurve], band_nm: (f64, f64), marks: &[(&str, f6
     canvas
 }
 
-/// The indices that are shown, with a margin.
+/// Range of the index axis: the shown indices with a margin.
 fn span(curves: &[IndexCurve], band_nm: (f64, f64)) -> (f64, f64) {
     let inside = |p: &&[f64; 2]| p[0] >= band_nm.0 && p[0] <= band_nm.1 && p[1].is_finite();
     let known = |curve: &IndexCurve, nm: f64| curve.range_nm.is_none_or(|(from, to)| from <= nm && nm <= to);
     let mut low = f64::INFINITY;
     let mut high = f64::NEG_INFINITY;
-    // What is only extrapolated may run off: it sets the scale only where nothing else does.
+    // Extrapolated indices may leave the plot: they set the scale only if there are no others.
     for only_known in [true, false] {
         for curve in curves {
             for [nm, n] in curve.points.iter().filter(inside) {
@@ -76,7 +76,7 @@ fn span(curves: &[IndexCurve], band_nm: (f64, f64)) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Pieces of a curve within its data (true) and outside, each joined to the next.
+/// Splits a curve into pieces inside its data range (true) and outside it (false), each joined to the next.
 fn parts(curve: &IndexCurve) -> Vec<(bool, Vec<[f64; 2]>)> {
     let known = |nm: f64| curve.range_nm.is_none_or(|(from, to)| from <= nm && nm <= to);
     let mut parts: Vec<(bool, Vec<[f64; 2]>)> = Vec::new();
@@ -90,7 +90,7 @@ fn parts(curve: &IndexCurve) -> Vec<(bool, Vec<[f64; 2]>)> {
         match parts.last_mut() {
             Some((kind, points)) if !broken && *kind == of => points.push([nm, n]),
             Some((_, points)) if !broken => {
-                // Joined at the last point of the part before.
+                // Begin at the last point of the piece before, so that the two join.
                 let joint = points.last().copied();
                 parts.push((of, joint.into_iter().chain([[nm, n]]).collect()));
             }
@@ -101,7 +101,7 @@ fn parts(curve: &IndexCurve) -> Vec<(bool, Vec<[f64; 2]>)> {
     parts
 }
 
-/// Spectral lines, named above the frame.
+/// Draws spectral lines with their names above the frame.
 fn name_marks(canvas: &mut Canvas, axes: &Axes, band_nm: (f64, f64), marks: &[(&str, f64)]) {
     let style = TextStyle::new(12.0).middle();
     let mut last = f64::NEG_INFINITY;
@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(span(&[], (400.0, 800.0)), (1.0, 2.0));
     }
 
-    /// The curve lies where its values are: frame from x 92 to 876 for 400 to 800 nm.
+    /// Checks that the curve is drawn where its values are: frame from x 92 to 876 for 400 to 800 nm.
     #[test]
     fn curves_are_in_their_color() {
         let pixels = dispersion(&[curve(None)], (400.0, 800.0), &[("d", 587.6)]).to_pixels(1.0);
@@ -150,7 +150,7 @@ mod tests {
             let [r, _, b] = pixels.rgb[y * pixels.width_px as usize + column].map(i32::from);
             b - r > 90
         };
-        // n = 1.525 of a scale from 1.494 to 1.606: the frame reaches from 60.4 down to 494.
+        // Scale of n: 1.525 on an axis from 1.494 to 1.606; the frame reaches from y 60.4 down to 494.
         let y = (494.0 - (1.525 - 1.494) / 0.112 * 433.6) as usize;
         assert!((y - 3..=y + 3).any(blue), "{y}");
         assert!(!(100..y - 8).any(blue) && !(y + 8..480).any(blue));

@@ -1,25 +1,26 @@
-//! Fitted dispersion formulas, with the rows that they were fitted to.
+//! Figure of fitted dispersion formulas with the data that they were fitted to.
 
 use super::{entry, entry_disc, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 700.0;
-/// Lower edge of the indices; the deviations stand below.
+/// Lower edge of the index plot; the deviations are plotted below it.
 const MIDDLE: f64 = 430.0;
 
-/// A fitted formula.
+/// A dispersion formula fitted to measured indices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedCurve {
     /// Name for the legend.
     pub name: String,
-    /// Wavelength, nm, and index along the curve.
+    /// Points of the curve: wavelength, nm, and index.
     pub points: Vec<[f64; 2]>,
-    /// Index of the formula minus that of the row, for each row.
+    /// Index of the formula minus the measured index, for each measured row.
     pub deviations: Vec<f64>,
 }
 
-/// Measured indices (wavelength, nm, and n) as points, formulas as curves through them, and below how far each formula is from each row.
+/// Draws measured indices (wavelength, nm, and n) as points and formulas as curves through them. A second plot below shows the deviation of
+/// each formula from each row.
 #[must_use]
 pub fn glass_fit(title: &str, measured: &[[f64; 2]], curves: &[FittedCurve]) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, HEIGHT, title);
@@ -57,7 +58,7 @@ pub fn glass_fit(title: &str, measured: &[[f64; 2]], curves: &[FittedCurve]) -> 
     canvas.clip(None);
     top.draw_frame(&mut canvas);
 
-    // Deviations are some digits of the index: the power of ten that makes them readable is said once.
+    // Deviations are small parts of the index, so the axis label states one common power of ten for them.
     let largest =
         curves.iter().flat_map(|c| &c.deviations).filter(|d| d.is_finite()).fold(0.0_f64, |a, d| a.max(d.abs()));
     let power = if largest > 0.0 { libm::floor(libm::log10(largest)) as i32 } else { 0 };

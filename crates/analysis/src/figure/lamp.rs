@@ -1,4 +1,4 @@
-//! How the colors of things change from one light to another, for an eye and on film.
+//! Figure of how the colors of objects change from one light to another, for the eye and on film.
 
 use super::shortened;
 use spectra_plot::{Canvas, Color, Rect, Stroke, TextStyle, nice_ticks};
@@ -7,27 +7,28 @@ const WIDTH: f64 = 1000.0;
 const LEFT: f64 = 150.0;
 const ROW: f64 = 34.0;
 const TOP: f64 = 106.0;
-/// Where the patches end and the bars begin.
+/// Left edge of the bars, to the right of the patches.
 const BARS: f64 = 420.0;
 const RIGHT: f64 = 960.0;
 const EYE: Color = Color::PALETTE[0];
 const LAYERS: Color = Color::PALETTE[2];
 const FILM: Color = Color::PALETTE[1];
 
-/// A thing in two lights.
+/// The colors of an object in two lights.
 #[derive(Clone, Debug)]
 pub struct Patch {
-    /// What it is called.
+    /// Name of the object.
     pub name: String,
-    /// As an eye sees it in the reference light and in the lamp, sRGB, once it has adapted to either.
+    /// Colors seen by the eye in the reference light and in the lamp, sRGB, after adaptation to each light.
     pub eye: [[u8; 3]; 2],
-    /// As the finished picture has it in both, sRGB, a gray being neutral in either.
+    /// Colors of the finished picture in both lights, sRGB, balanced so that a gray is neutral in each.
     pub film: [[u8; 3]; 2],
-    /// How different the two look, CIEDE2000: to the eye, to the layers of the film, and in the picture.
+    /// Color difference between the two lights, CIEDE2000: for the eye, for the layers of the film, and in the picture.
     pub apart: [f64; 3],
 }
 
-/// Things by rows: how they look in a reference light and in a lamp, side by side, to an eye and on film, and how far apart that is.
+/// Draws objects in rows: their colors in a reference light and in a lamp side by side, for the eye and on film, and bars of the color
+/// difference.
 #[must_use]
 pub fn lamp(title: &str, below: [&str; 2], patches: &[Patch]) -> Canvas {
     let bottom = TOP + ROW * patches.len() as f64;
@@ -53,14 +54,14 @@ pub fn lamp(title: &str, below: [&str; 2], patches: &[Patch]) -> Canvas {
         canvas.line([x(*value), TOP], [x(*value), bottom], &Stroke::new(Color::PALE, 0.8));
         canvas.text([x(*value), bottom + 18.0], &ticks.label(*value), &small.clone().middle());
     }
-    let about = "CIEDE2000 between the two lights: how far a color parts";
+    let about = "color difference between the two lights / CIEDE2000";
     canvas.text([0.5 * (BARS + RIGHT), bottom + 42.0], about, &TextStyle::new(13.5).middle());
     for (i, patch) in patches.iter().enumerate() {
         let top = TOP + ROW * i as f64;
         canvas.text([LEFT - 12.0, top + 0.5 * ROW + small.half_cap()], &shortened(&patch.name), &small.clone().end());
         for (left, colors) in [(LEFT, patch.eye), (LEFT + 128.0, patch.film)] {
             let place = Rect::new(left, top + 2.0, left + 112.0, top + ROW - 2.0);
-            // Side by side without a line between: what matches is one patch.
+            // The two halves touch without a line between them, so that equal colors look like one patch.
             canvas.rectangle(place, Color::from(colors[0]));
             canvas.rectangle(Rect { left: left + 56.0, ..place }, Color::from(colors[1]));
         }

@@ -1,4 +1,4 @@
-//! Whole figures of spectra, their colors, and of glasses.
+//! Figures of spectra, their colors, and glasses.
 
 mod abbe;
 mod chromaticity;
@@ -21,7 +21,7 @@ pub(crate) use lines::{order, palette, stroke};
 
 use spectra_plot::{Canvas, Color, Point, Rect, Stroke, TextStyle, text_width};
 
-/// Longest name in a legend, letters; more would push the others off the sheet.
+/// Longest name in a legend, in characters; a longer one would push the others off the sheet.
 const LONGEST_NAME: usize = 48;
 
 fn shortened(name: &str) -> String {
@@ -32,8 +32,8 @@ fn shortened(name: &str) -> String {
     format!("{start}...")
 }
 
-/// Entries of a legend in rows from the left, each with a piece of its line: the place of each entry's base line, and
-/// how many rows there are.
+/// Lays out the entries of a legend in rows from the left, each with a piece of its line. Returns the baseline start of each entry and the
+/// number of rows.
 pub(crate) fn rows(names: &[String], start: Point, right: f64, style: &TextStyle) -> (Vec<Point>, usize) {
     const GAP: f64 = 24.0;
     let mut at = start;
@@ -52,7 +52,7 @@ pub(crate) fn rows(names: &[String], start: Point, right: f64, style: &TextStyle
     (places, rows)
 }
 
-/// Length of a line's piece in a legend, with the gap to its name.
+/// Length of the piece of line in a legend entry, with the gap to the name.
 const SAMPLE: f64 = 30.0;
 
 pub(crate) fn entry(canvas: &mut Canvas, at: Point, name: &str, stroke: &Stroke, style: &TextStyle) {
@@ -61,13 +61,13 @@ pub(crate) fn entry(canvas: &mut Canvas, at: Point, name: &str, stroke: &Stroke,
     canvas.text([at[0] + SAMPLE, at[1]], name, style);
 }
 
-/// As [`entry`], with a disc in place of a line.
+/// Draws an entry like [`entry`], with a disc instead of a line.
 fn entry_disc(canvas: &mut Canvas, at: Point, name: &str, color: Color, style: &TextStyle) {
     canvas.disc([at[0] + 0.5 * (SAMPLE - 7.0), at[1] - style.half_cap()], 4.0, color);
     canvas.text([at[0] + SAMPLE, at[1]], name, style);
 }
 
-/// A sheet behind a legend.
+/// Draws a white sheet behind a legend.
 fn sheet(canvas: &mut Canvas, rect: Rect) {
     canvas.rectangle(rect, Color::WHITE.with_opacity(0.85));
     canvas.outline(&rect.corners(), &Stroke::new(Color::PALE, 0.8));
@@ -87,7 +87,7 @@ mod tests {
         (name.to_owned(), find(name).expect("known"))
     }
 
-    /// The figure's frame: from x 92 to 876 for 350 to 830 nm, its lower edge at y 434.
+    /// Frame of the figure: from x 92 to 876 for 350 to 830 nm, lower edge at y 434.
     #[test]
     fn wavelengths_have_their_colors_under_the_curve() {
         let pixels = spectrum(&[found("E")]).to_pixels(1.0);
@@ -96,14 +96,14 @@ mod tests {
         assert!(r > 200 && g < 90 && b < 90, "{r} {g} {b}");
         assert!(g1 > 200 && r1 < 160 && b1 < 120, "{r1} {g1} {b1}");
         assert!(b2 > 200 && r2 < 150 && g2 < 120, "{r2} {g2} {b2}");
-        // A dark line stands at its wavelength, and there is nothing beside it.
+        // A dark line is drawn at its wavelength, and there is nothing next to it.
         let pixels = spectrum(&[found("line:632.8")]).to_pixels(1.0);
         let at = |nm: f64| pixel(&pixels, [92.0 + (nm - 350.0) / 480.0 * 784.0, 395.0]);
         assert!(at(632.8)[1] < 120 && at(632.8)[0] > 150, "{:?}", at(632.8));
         assert!(at(637.0).iter().all(|v| *v > 200), "{:?}", at(637.0));
     }
 
-    /// 800 units of the canvas a unit of x or y; x -0.08 is at 76, y 0.9 at 22.
+    /// Scale of the figure: 800 canvas units per unit of x or y; x -0.08 is at 76, y 0.9 at 22.
     #[test]
     fn chromaticities_have_their_colors() {
         let pixels = chromaticity(&[]).to_pixels(1.0);
@@ -115,7 +115,7 @@ mod tests {
         // Just on the warm side of sRGB's white: 255, 244, 228 by its matrix and curve.
         let near = |(a, b): (i32, i32)| (a - b).abs() <= 4;
         assert!(at(0.33, 0.345).into_iter().zip([255, 244, 228]).all(near), "{:?}", at(0.33, 0.345));
-        // Nothing outside of the locus, and points where they belong.
+        // Outside the locus there is nothing, and points lie where they belong.
         assert_eq!(at(0.53, 0.555), [255; 3]);
         let pixels = chromaticity(&[("here".to_owned(), [0.53, 0.555])]).to_pixels(1.0);
         assert!(pixel(&pixels, [76.0 + 800.0 * 0.61, 22.0 + 800.0 * 0.345])[0] < 128);

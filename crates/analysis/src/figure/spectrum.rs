@@ -1,4 +1,4 @@
-//! The spectrum plot.
+//! Figure of spectra against wavelength.
 
 use super::{entry, order, palette, rows, shortened, stroke};
 use spectra_color::{RgbSpace, spectral_color_linear, to_u8};
@@ -7,21 +7,21 @@ use spectra_spectrum::{BAND, Found, Grid, Kind, Line, Tabulated};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 500.0;
-/// Half nanometres: finer than the sheet shows.
+/// Grid of half nanometers, finer than the figure can show.
 const GRID: Grid = Grid { start_nm: 350.0, step_nm: 0.5, count: 961 };
 
-/// Spectra over 350-830 nm, with the colors of the wavelengths under them.
+/// Draws spectra over 350-830 nm, with the colors of the wavelengths below the curves.
 ///
-/// The power of lights is relative: the highest point of a continuum is 1, and so is the strongest of its lines in that
-/// band. What matter passes or throws back, and what a detector makes of light, is shown as it is. Lines stand as such;
-/// a figure of one light says where its strongest lie.
+/// The power of lights is relative: the highest point of a continuum is 1, and so is the strongest of its lines in that band.
+/// Transmittance, reflectance and sensitivity are shown as they are. Spectral lines are drawn as vertical lines; a figure of one light
+/// labels the wavelengths of its strongest ones.
 #[must_use]
 pub fn spectrum(spectra: &[(String, Found)]) -> Canvas {
     spectrum_and_functions(spectra, &[])
 }
 
-/// The same with functions of the wavelength that are neither light nor matter nor a detector, and may be negative: those of
-/// color matching, and components that spectra are summed of. They are shown as they are.
+/// Draws spectra as [`spectrum`] does, and other functions of wavelength that may be negative, such as color matching functions or the
+/// components that spectra are summed from. The functions are shown as they are.
 #[must_use]
 pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String, Tabulated)]) -> Canvas {
     let all_names = spectra.iter().map(|(name, _)| name).chain(functions.iter().map(|(name, _)| name));
@@ -52,7 +52,7 @@ pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String,
     }
     canvas.clip(Some(frame));
     let alone = curves.len() == 1;
-    // Many curves need a quiet ground.
+    // Use a paler background behind many curves.
     let opacity = match curves.len() {
         1 => 0.92,
         2..=7 => 0.4,
@@ -125,7 +125,7 @@ fn quantity(spectra: &[(String, Found)]) -> &'static str {
     }
 }
 
-/// Upper end of the scale: 1 where shares are shown, with room for names above lines.
+/// Upper end of the scale: at least 1 if any spectrum is not a sensitivity, with room for labels above lines.
 fn top(spectra: &[(String, Found)], curves: &[Curve]) -> f64 {
     let values = curves.iter().flat_map(|c| c.continuum.iter().flatten()).copied();
     let highest = values.fold(0.0, f64::max);
@@ -142,7 +142,7 @@ fn points(axes: &Axes, values: &[f64]) -> Vec<Point> {
     GRID.wavelengths_nm().zip(values).map(|(nm, value)| axes.at(nm, *value)).collect()
 }
 
-/// The colors of the wavelengths, under whichever curve is highest.
+/// Fills the area under the highest curve with the colors of the wavelengths.
 fn fill(canvas: &mut Canvas, axes: &Axes, curves: &[Curve], opacity: f64) {
     let mut highest = vec![0.0_f64; GRID.count];
     for values in curves.iter().filter_map(|c| c.continuum.as_ref()) {
@@ -164,7 +164,7 @@ fn fill(canvas: &mut Canvas, axes: &Axes, curves: &[Curve], opacity: f64) {
     canvas.polygon(&area, Paint::Gradient { from, to, stops });
 }
 
-/// The color of a wavelength on paper: it falls off toward the ends of what is seen, to grey beyond.
+/// Returns the color of a wavelength on paper. It fades to gray toward the ends of the visible range and beyond.
 fn shown(wavelength_nm: f64) -> Color {
     const GREY: f64 = 0.2;
     let smooth = |from: f64, to: f64| {
@@ -176,7 +176,7 @@ fn shown(wavelength_nm: f64) -> Color {
     RgbSpace::srgb().encode(linear.map(|v| GREY + (v - GREY) * seen)).map(to_u8).into()
 }
 
-/// The wavelengths of the strongest lines above them, as far as there is room.
+/// Writes the wavelengths of the strongest lines above them, as far as there is room.
 fn name_lines(canvas: &mut Canvas, axes: &Axes, lines: &[Line]) {
     const WEAKEST: f64 = 0.05;
     let style = TextStyle::new(11.5).middle();

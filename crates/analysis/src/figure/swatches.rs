@@ -7,11 +7,11 @@ const LEFT: f64 = 24.0;
 /// Height of a row of patches, and of the line of text above it.
 const ROW: f64 = 34.0;
 const TEXT: f64 = 24.0;
-/// Letters of a name that fit above a row.
+/// Number of characters of a name that fit above a row.
 const LONGEST: usize = 110;
 
-/// Rows of colors (sRGB) under their names, each row over the whole width, so that what belongs together stands one
-/// below the other.
+/// Draws rows of colors (sRGB, 8 bit) under their names. Each row has the full width, so that patches of the same index in rows of equal
+/// length are one below the other.
 #[must_use]
 pub fn swatches(title: &str, rows: &[(String, Vec<[u8; 3]>)]) -> Canvas {
     let height = 46.0 + rows.len() as f64 * (ROW + TEXT + 6.0) + 8.0;
@@ -28,7 +28,7 @@ pub fn swatches(title: &str, rows: &[(String, Vec<[u8; 3]>)]) -> Canvas {
         let width = place.width() / colors.len().max(1) as f64;
         for (i, color) in colors.iter().enumerate() {
             let left = place.left + width * i as f64;
-            // A hair wider than it is: no paper shows between two patches. The last one ends with the row.
+            // Make the patch half a unit wider, so that no paper shows between two patches. The last one ends with the row.
             let right = (left + width + 0.5).min(place.right);
             canvas.rectangle(Rect::new(left, place.top, right, place.bottom), Color::from(*color));
         }

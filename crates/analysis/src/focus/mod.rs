@@ -1,4 +1,4 @@
-//! What is in focus, by real rays.
+//! The object point in focus at an image point, by real rays.
 
 mod conjugate;
 

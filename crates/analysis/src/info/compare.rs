@@ -1,57 +1,58 @@
-//! Several lenses side by side.
+//! Comparison of several lenses side by side.
 
 use super::LensReport;
 use super::field::{FREQUENCY_PER_MM, NEAR_AXIS_RAD, distortion};
 use crate::Light;
 use serde::Serialize;
-use spectra_lens::{Beam, Lens, ObjectPoint};
+use spectra_optics::{Beam, ObjectPoint, Optics};
 use std::fmt;
 
-/// Lenses side by side, in the order that they were named.
+/// Several lenses side by side, in the order in which they were named.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Each of them.
+    /// Figures of each lens.
     pub lenses: Vec<Compared>,
-    /// Spatial frequency of the contrasts, line pairs a mm.
+    /// Spatial frequency of the contrasts, line pairs per mm.
     pub contrast_frequency_per_mm: f64,
-    /// Field angle of the contrasts and of distortion beside the axis: the same for all, 0.7 of the smallest of their largest
-    /// fields; `None` where a lens has none.
+    /// Field angle of the off-axis contrasts and of distortion, degrees: the same for all lenses, 0.7 of the smallest of their largest
+    /// fields. `None` if the largest field of a lens is not known.
     pub field_deg: Option<f64>,
 }
 
-/// One lens among others.
+/// Figures of one lens in a comparison.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Compared {
-    /// All that `lens info` says of it.
+    /// Full report of the lens, as in `lens info`.
     pub info: LensReport,
-    /// Diameter of the picture that the largest field draws.
+    /// Image circle: diameter of the picture at the largest field, mm.
     pub image_circle_mm: Option<f64>,
-    /// Geometrical contrast on the axis where it is highest.
+    /// Geometrical contrast on the axis in the plane where it is highest.
     pub axial_contrast: Option<f64>,
-    /// Geometrical contrast at the field in the same plane.
+    /// Geometrical contrast at the field angle, in the same plane.
     pub field_contrast: Option<f64>,
-    /// Image height at the field over that of a picture as large as the middle of this one without distortion, less one.
+    /// Distortion at the field angle: image height divided by that of a distortion-free picture with the central scale of this one, less
+    /// one.
     pub distortion: Option<f64>,
 }
 
-/// Part of the field that all lenses cover at which they are compared.
+/// Fraction of the common field at which lenses are compared.
 const PART: f64 = 0.7;
-/// Rays across the beam of a contrast.
+/// Number of rays across the beam for a contrast.
 const CELLS: usize = 96;
 
 impl Comparison {
-    /// Looks at lenses, as they are focused and stopped, each at its own reference line or all in one light.
+    /// Computes the figures of several lenses, as they are focused and stopped, all in one light or each at its own reference line.
     #[must_use]
-    pub fn of(lenses: &[Lens], light: Option<Light>) -> Self {
-        let light = |lens: &Lens| light.unwrap_or(Light::Wavelength(lens.reference_nm));
+    pub fn of(lenses: &[Optics], light: Option<Light>) -> Self {
+        let light = |lens: &Optics| light.unwrap_or(Light::Wavelength(lens.reference_nm));
         let reports: Vec<LensReport> = lenses.iter().map(|lens| LensReport::of(lens, light(lens))).collect();
         let largest: Option<Vec<f64>> = reports.iter().map(|r| r.max_field_deg).collect();
         let field_deg = largest.and_then(|all| all.into_iter().reduce(f64::min)).map(|deg| PART * deg);
         let each = lenses.iter().zip(reports).map(|(lens, info)| {
-            let held = light(lens).hold(lens.clone());
+            let held = Optics::new(light(lens).hold(lens));
             let beam = |field_rad: f64| {
                 let point = ObjectPoint::on_plane(&held, held.focused_mm, field_rad);
-                Beam::of(&held, point, &[(held.reference_nm, 1.0)], CELLS).ok().flatten()
+                Beam::trace(&held, point, &[(held.reference_nm, 1.0)], CELLS).ok().flatten()
             };
             let axis = beam(0.0);
             let z_mm = axis.as_ref().and_then(|b| b.best_contrast_z_mm(FREQUENCY_PER_MM));
@@ -71,7 +72,7 @@ impl Comparison {
     }
 }
 
-/// Contrast that a perfect lens with a round pupil has at a part of its cutoff frequency, 1 / (wavelength times f-number).
+/// Contrast of a perfect lens with a round pupil at a fraction of its cutoff frequency, 1 / (wavelength times f-number).
 fn diffraction_limit(part: f64) -> f64 {
     if part >= 1.0 {
         return 0.0;
@@ -80,7 +81,7 @@ fn diffraction_limit(part: f64) -> f64 {
     std::f64::consts::FRAC_2_PI * (spectra_core::math::atan2(root, part) - part * root)
 }
 
-/// A row of the table: what it says, and how a lens answers.
+/// A row of the table: its label, and the function that formats the value of a lens.
 type Row = (String, Box<dyn Fn(&Compared) -> String>);
 
 impl fmt::Display for Comparison {
@@ -107,7 +108,7 @@ impl fmt::Display for Comparison {
             row(&format!("geometrical contrast at {per_mm} lp/mm, axis, best focus"), |l| {
                 l.axial_contrast.map(|c| format!("{c:.3}"))
             }),
-            row("  diffraction's limit", move |l| {
+            row("  diffraction limit", move |l| {
                 let (n, nm) = l.info.f_number.zip(l.info.wavelength_nm)?;
                 Some(format!("{:.3}", diffraction_limit(per_mm * n * nm * 1e-6)))
             }),
@@ -154,7 +155,7 @@ impl fmt::Display for Comparison {
 mod tests {
     use super::diffraction_limit;
 
-    /// At 587.56 nm and 30 lp/mm, f/5, f/16 and f/22.
+    /// Known values at 587.56 nm and 30 lp/mm, for f/5, f/16 and f/22.
     #[test]
     fn diffraction_limits_contrast() {
         for (n, wanted) in [(5.0, 0.888), (16.0, 0.646), (22.0, 0.519)] {

@@ -1,33 +1,37 @@
-//! The field of a lens in figures.
+//! The field of a lens in figures: field angle, image height, distortion, astigmatism, illuminance.
 
 use super::illuminance::relative_illuminance;
 use serde::Serialize;
 use spectra_core::math::atan2;
-use spectra_lens::{ChiefRay, Criterion, FocusSearch, Indices, Lens};
+use spectra_optics::{ChiefRay, Criterion, FocusSearch, Optics};
+use spectra_tracer::Indices;
 
-/// One field point: its chief ray, where it is sharp, and how bright.
+/// Figures of one field point: its chief ray, where it is in focus, and how bright it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldReport {
-    /// Field angle.
+    /// Field angle, degrees.
     pub field_deg: f64,
-    /// Angle behind the lens to the normal of the image plane; 0 all over the field in a lens that is telecentric there.
+    /// Angle of the chief ray behind the lens to the normal of the image plane, degrees; 0 all over the field if the lens is telecentric
+    /// there.
     pub angle_deg: f64,
-    /// Where it meets the image plane, from the middle.
+    /// Distance from the center at which the chief ray meets the image plane, mm.
     pub image_height_mm: f64,
-    /// Image height over that of a picture as large as the middle of this one without distortion, less one; `None` on the axis, and at 90
-    /// degrees and beyond.
+    /// Distortion: image height divided by that of a distortion-free picture with the central scale of this one, less one. `None` on the
+    /// axis, and at 90 degrees and beyond.
     pub distortion: Option<f64>,
-    /// How far behind the image plane the rays close to the chief ray meet in the sagittal (x-z) section; `None` where they are parallel.
+    /// Sagittal focus: distance behind the image plane at which rays close to the chief ray meet in the x-z section, mm. `None` if they are
+    /// parallel.
     pub sagittal_focus_mm: Option<f64>,
-    /// The same in the tangential (y-z) section.
+    /// Tangential focus: distance behind the image plane at which rays close to the chief ray meet in the y-z section, mm. `None` if they
+    /// are parallel.
     pub tangential_focus_mm: Option<f64>,
-    /// Illuminance of the film there over that in the middle, from a field that is equally bright all over, by real rays through every rim;
-    /// `None` where no light comes to the middle.
+    /// Relative illuminance: illuminance of the film at this point divided by that at the center, for a uniformly bright field, by real
+    /// rays through every rim. `None` if no light reaches the center.
     pub relative_illuminance: Option<f64>,
 }
 
 impl FieldReport {
-    fn new(held: &Lens, ray: &ChiefRay, near: Option<&ChiefRay>, relative_illuminance: Option<f64>) -> Self {
+    fn new(held: &Optics, ray: &ChiefRay, near: Option<&ChiefRay>, relative_illuminance: Option<f64>) -> Self {
         let [sagittal_focus_mm, tangential_focus_mm] = ray.foci_mm;
         Self {
             field_deg: ray.field_rad.to_degrees(),
@@ -41,12 +45,13 @@ impl FieldReport {
     }
 }
 
-/// A field so near to the axis that distortion, which goes by its square, is below a millionth there, rad.
+/// Field angle, rad, so near the axis that distortion, which grows with its square, is below a millionth.
 pub(super) const NEAR_AXIS_RAD: f64 = 1e-3;
 
-/// Image height over that of a picture without distortion, less one; that picture has the scale of a ray `near` the axis.
-pub(super) fn distortion(held: &Lens, ray: &ChiefRay, near: &ChiefRay) -> Option<f64> {
-    // In front: the tangent of the field, or the height on the object plane.
+/// Returns image height divided by that of a distortion-free picture, less one. The chief ray `near` the axis sets the scale of that
+/// picture.
+pub(super) fn distortion(held: &Optics, ray: &ChiefRay, near: &ChiefRay) -> Option<f64> {
+    // Object coordinate: the tangent of the field angle, or the height on the object plane.
     let ahead = |ray: &ChiefRay| match held.focused_mm.is_finite() {
         true => ray.start_mm.y - (held.focused_mm + ray.start_mm.z) * ray.direction.y / ray.direction.z,
         false => ray.direction.y / ray.direction.z,
@@ -56,45 +61,45 @@ pub(super) fn distortion(held: &Lens, ray: &ChiefRay, near: &ChiefRay) -> Option
     before.then(|| scale(ray) / scale(near) - 1.0).filter(|d| d.is_finite())
 }
 
-/// What limits the field.
+/// The surface that limits the field, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LimitReport {
-    /// Why the last light ends.
+    /// Why the last rays end.
     pub cause: &'static str,
-    /// The surface where it does, from 1.
+    /// Number of the surface at which they end, from 1.
     pub surface: u32,
 }
 
-/// Fields shown, from the axis to the largest.
+/// Number of field points from the axis to the largest field.
 const FIELDS: usize = 11;
-/// Largest field shown where nothing limits it: that of a normal lens.
+/// Largest field shown if nothing limits it, degrees: that of a normal lens.
 const NORMAL_FIELD_DEG: f64 = 20.0;
-/// Parts of an image height that is asked for at which the field is shown.
+/// Fractions of a requested image height at which the field is shown.
 pub(super) const PARTS: [f64; 4] = [0.0, 0.5, 0.7, 1.0];
-/// Where nothing limits the field, an image height is looked for up to this field: 80 degrees.
+/// Largest field searched for an image height if nothing limits the field: 80 degrees.
 const UNLIMITED_FIELD_RAD: f64 = 1.4;
-/// Fields that are looked at for a height, and how often closer: to 1e-9 rad.
+/// Number of fields in one search step for an image height, and number of refining steps: to 1e-9 rad.
 const LOOKED_AT: usize = 60;
 const CLOSER: usize = 6;
-/// Spatial frequency of the focus by contrast, line pairs a mm.
+/// Spatial frequency of the focus by contrast, line pairs per mm.
 pub(super) const FREQUENCY_PER_MM: f64 = 30.0;
 
-/// A field as wide as this, of a picture that reaches beyond twice the corner of 135 film, is not what the lens was made for: nothing but
-/// the size of its surfaces ends it.
+/// A field of this angle or more is not what the lens was made for if its picture reaches beyond twice the corner of 135 film: only the
+/// size of its surfaces ends it.
 const WIDE_DEG: f64 = 80.0;
-/// From the middle of 135 film to its corner, mm.
+/// Distance from the center of 135 film to its corner, mm.
 const CORNER_MM: f64 = 21.633;
 
-/// The largest field that is worth a look, rad, of a lens that passes light up to `largest_rad`: that one, or the corner of 135 film, where no
-/// rim keeps the field within what is of use.
+/// Returns the largest useful field, rad, of a lens that passes light up to `largest_rad`. This is `largest_rad`, or the field at the
+/// corner of 135 film if no rim limits the field to a useful size.
 #[must_use]
-pub fn useful_field_rad(lens: &Lens, largest_rad: f64) -> f64 {
+pub fn useful_field_rad(lens: &Optics, largest_rad: f64) -> f64 {
     if largest_rad < WIDE_DEG.to_radians() {
         return largest_rad;
     }
     match fields_at_heights(lens, &[CORNER_MM, 2.0 * CORNER_MM]) {
         Ok(fields) => fields.first().map_or(largest_rad, |corner| corner.min(largest_rad)),
-        // Chief rays are there, and none of them lands so far out: a fisheye.
+        // Chief rays exist, but none lands so far from the center: a fisheye.
         Err(height_mm) if height_mm > 0.0 => largest_rad,
         Err(_) => {
             let efl_mm = lens.first_order(lens.reference_nm).efl_mm.abs();
@@ -104,20 +109,20 @@ pub fn useful_field_rad(lens: &Lens, largest_rad: f64) -> f64 {
     }
 }
 
-/// How far a lens sees, and how.
+/// The field of a lens: its size and its field points.
 pub(super) struct Field {
-    /// Largest field angle, degrees.
+    /// Largest field angle, degrees; `None` if it is not known.
     pub largest_deg: Option<f64>,
-    /// What limits it.
+    /// Surface that limits the field.
     pub limit: Option<LimitReport>,
-    /// Field points from the axis to there, or to the corner of 135 film, where no rim limits the field.
+    /// Field points from the axis to the largest field, or to the corner of 135 film if no rim limits the field.
     pub points: Vec<FieldReport>,
-    /// Whether they end before the largest field.
+    /// Whether the field points end before the largest field.
     pub is_cut: bool,
 }
 
-/// The field of a lens in one light; `held` is the same lens with the indices of that light.
-pub(super) fn field(lens: &Lens, held: &Lens, indices: Indices) -> Field {
+/// Computes the field of a lens in one light; `held` is the same lens with its indices fixed for that light.
+pub(super) fn field(lens: &Optics, held: &Optics, indices: Indices) -> Field {
     let reach = held.field_limit(held.focused_mm).ok().flatten();
     let limit = reach.and_then(|r| r.limit).map(|(cause, surface)| LimitReport { cause: cause.name(), surface });
     let largest_rad = reach.map_or(NORMAL_FIELD_DEG.to_radians(), |r| useful_field_rad(held, r.field_rad));
@@ -127,8 +132,8 @@ pub(super) fn field(lens: &Lens, held: &Lens, indices: Indices) -> Field {
     Field { largest_deg: reach.map(|r| r.field_rad.to_degrees()), limit, points, is_cut }
 }
 
-/// These fields (rad, rising from 0), those of them that have a chief ray.
-pub(super) fn field_points(lens: &Lens, held: &Lens, indices: Indices, fields_rad: &[f64]) -> Vec<FieldReport> {
+/// Computes field points at these fields (rad, rising from 0). Fields without a chief ray are left out.
+pub(super) fn field_points(lens: &Optics, held: &Optics, indices: Indices, fields_rad: &[f64]) -> Vec<FieldReport> {
     let rays = held.chief_rays(held.focused_mm, fields_rad).unwrap_or_default();
     let rays: Vec<ChiefRay> = rays.into_iter().flatten().collect();
     let near = held.chief_rays(held.focused_mm, &[NEAR_AXIS_RAD]).ok().and_then(|mut rays| rays.pop()?);
@@ -138,8 +143,9 @@ pub(super) fn field_points(lens: &Lens, held: &Lens, indices: Indices, fields_ra
     rays.iter().enumerate().map(|(i, ray)| FieldReport::new(held, ray, near.as_ref(), at(i))).collect()
 }
 
-/// The fields (rad) whose chief rays land at these parts of an image height, mm; else the largest height at which one lands.
-pub(super) fn fields_at_heights(held: &Lens, heights_mm: &[f64]) -> Result<Vec<f64>, f64> {
+/// Returns the fields (rad) whose chief rays land at these image heights, mm. If one of them is not reached, the error is the largest
+/// height at which a chief ray lands, mm.
+pub(super) fn fields_at_heights(held: &Optics, heights_mm: &[f64]) -> Result<Vec<f64>, f64> {
     let reach = held.field_limit(held.focused_mm).ok().flatten();
     let largest_rad = reach.map_or(UNLIMITED_FIELD_RAD, |r| r.field_rad);
     let looked_at = |low: f64, high: f64| -> Vec<(f64, f64)> {
@@ -164,9 +170,9 @@ pub(super) fn fields_at_heights(held: &Lens, heights_mm: &[f64]) -> Result<Vec<f
         .collect()
 }
 
-/// How far behind the image plane the axial image is by this measure, mm.
-pub(super) fn focus_shift_mm(held: &Lens, criterion: Criterion) -> Option<f64> {
+/// Distance of the axial image behind the image plane by this criterion, mm.
+pub(super) fn focus_shift_mm(held: &Optics, criterion: Criterion) -> Option<f64> {
     let light = vec![(held.reference_nm, 1.0)];
     let search = FocusSearch { object_mm: held.focused_mm, field_rad: 0.0, criterion, light };
-    held.best_focus_shift_mm(&search).ok().filter(|z| z.is_finite())
+    search.shift_mm(held).ok().filter(|z| z.is_finite())
 }

@@ -1,29 +1,34 @@
-//! How bright a lens draws an evenly bright field on the image plane.
+//! Relative illuminance: how bright a lens draws a uniformly bright field over the image plane.
 
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
 use spectra_core::workers::Alone;
 use spectra_core::{Isa, RayBatch};
-use spectra_lens::{Effort, Indices, Lens, RearPupil, Tracer, Travel};
+use spectra_optics::Optics;
+use spectra_optics::{Effort, RearPupil};
+use spectra_tracer::{Indices, Travel};
 
-/// The pupil as a point sees it, in a square of so many cells by so many, a ray in the middle of each.
+/// Number of cells per side of a square over the pupil as a point sees it, with a ray at the center of each cell.
 const CELLS: usize = 80;
-/// A cell at an edge of what passes has so many rays by so many: as right as a square of all of these, within 0.3 %, with an eighth of the rays.
+/// Number of rays per side in a cell at the edge of the pupil. This is as accurate, within 0.3 %, as a square with this density throughout,
+/// with an eighth of the rays.
 const PARTS: usize = 4;
-/// Rays that are traced at a time, so that their columns stay in the caches.
+/// Number of rays traced at a time, so that their columns stay in the caches.
 const BATCH: usize = 1024;
 
-/// The illuminance at each point of the image plane (mm, frame of the plane) over that at the first one, from a field that is equally
-/// bright all over. The integral of the radiance over projected solid angle, by real rays from each point back through the lens: the exit pupil as
-/// it is seen from there, cut by every rim, with what coatings and glass leave. `None` where no light comes to the first point, or no
-/// surface states a size.
-pub(super) fn relative_illuminance(lens: &Lens, indices: Indices, points_mm: &[[f64; 2]]) -> Option<Vec<f64>> {
+/// Returns the illuminance at each point of the image plane (mm, frame of the plane) divided by that at the first point, for a uniformly
+/// bright field.
+///
+/// It is the integral of the radiance over projected solid angle, from real rays traced from each point back through the lens. They sample
+/// the exit pupil as seen from the point, cut by every rim, with the losses of coatings and glass. `None` if no light reaches the first
+/// point, or no surface states a size.
+pub(super) fn relative_illuminance(lens: &Optics, indices: Indices, points_mm: &[[f64; 2]]) -> Option<Vec<f64>> {
     let wavelength_nm = match indices {
         Indices::At(nm) => nm,
         Indices::Band { .. } | Indices::Stated => lens.reference_nm,
     };
     let isa = Isa::detect();
-    let tracer = Tracer::new(lens, indices, isa).ok()?;
+    let tracer = lens.tracer(indices).ok()?;
     let points: Vec<DVec3> = points_mm.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect();
     let pupil = RearPupil::search_by(lens, &tracer, &points, [wavelength_nm; 2], &Alone, Effort::Draft)?;
     let middle = |i: usize, of: usize| (i as f64 + 0.5) / of as f64;
@@ -32,7 +37,7 @@ pub(super) fn relative_illuminance(lens: &Lens, indices: Indices, points_mm: &[[
     let rays = RayBatch::new(BATCH);
     let mut rays = if tracer.polarizes() { rays.with_polarization() } else { rays };
     let mut work = tracer.work_in_place(BATCH);
-    // The weight of what passes, of each ray.
+    // Returns the weight of each ray that passes, `None` for the others.
     let mut traced = |point: &DVec3, places: &[[f64; 2]]| {
         let mut weights = Vec::with_capacity(places.len());
         for places in places.chunks(BATCH) {

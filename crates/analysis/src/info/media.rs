@@ -1,25 +1,25 @@
-//! What is assumed of the media of a lens: dispersion of those known by figures, absorption that is borrowed.
+//! Assumptions about the media of a lens: modeled dispersion, and absorption borrowed from similar glasses.
 
 use serde::Serialize;
 use spectra_glass::{Lender, Medium};
 use spectra_lens::Lens;
 use std::fmt;
 
-/// A medium of which something is assumed.
+/// A medium with assumed properties.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssumedMedium {
-    /// As the lens file names it.
+    /// Name of the medium in the lens file.
     pub medium: String,
-    /// At how many lines its index is stated, where no formula is known: its dispersion is then that of ordinary glasses
-    /// with these figures. `None` where a formula is known.
+    /// Number of lines at which its index is stated, if no formula is known. The dispersion is then that of ordinary glasses with these
+    /// figures. `None` if a formula is known.
     pub modeled_from_lines: Option<usize>,
-    /// The glass whose absorption stands in; `None` where its own is known, or none is near.
+    /// Glass whose absorption is used instead; `None` if the absorption is known, or no similar glass is.
     pub absorption_of: Option<String>,
-    /// Index and Abbe number of that glass less its own.
+    /// Index and Abbe number of that glass minus those of the medium.
     pub absorption_delta: Option<[f64; 2]>,
 }
 
-/// The media of a lens of which something is assumed, in the order of the light.
+/// Lists the media of a lens with assumed properties, in the order of the light.
 pub(super) fn assumed(lens: &Lens) -> Vec<AssumedMedium> {
     let each = lens.media.iter().filter_map(|m| {
         let modeled = match &m.medium {
@@ -41,7 +41,7 @@ pub(super) fn assumed(lens: &Lens) -> Vec<AssumedMedium> {
     each.collect()
 }
 
-/// The lines of the report on them; none where nothing is assumed.
+/// Writes the lines of the report about these media; writes nothing if nothing is assumed.
 pub(super) fn write(media: &[AssumedMedium], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let list = |media: Vec<String>| media.join("; ");
     let modeled: Vec<String> =

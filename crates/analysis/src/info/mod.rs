@@ -1,4 +1,4 @@
-//! A lens in figures.
+//! Figures of a lens: first-order data, pupils, field, prescription, mounts, and comparisons of lenses.
 
 mod compare;
 mod field;

@@ -1,30 +1,31 @@
-//! Lens mounts of cameras, and which of them a lens fits through.
+//! Lens mounts of cameras, and the test which of them a lens fits.
 //!
-//! Flange focal distances (mounting flange to image plane) are the makers' nominal figures; screw mounts give the diameter of
-//! their thread, bayonets the diameter of the throat. C and CS: 0.69 inch and 5 mm less, thread 1 inch. ARRI PL and LPL: ARRI's
-//! mount drawings; Canon, Nikon Z, Sony E, L-Mount, Fujifilm X and G: the makers' system pages; the others as the makers'
-//! manuals give them, collected in the camera-wiki's and Wikipedia's lists of mounts and, for throats, in N. Mansurov, "What is
-//! a lens mount" (photographylife.com) and "Lens mounts: a reference for using adapters" (photobuilds.com). Minolta SR: 43.50 mm
-//! by most lists; 43.72 mm, which some give, is within the play of its adapters and changes no answer here.
+//! Flange focal distances (mounting flange to image plane) are the nominal values of the makers. For screw mounts the diameter of the
+//! thread is given, for bayonets that of the throat. C-mount has a flange focal distance of 0.69 inch, CS-mount 5 mm less; both have a
+//! thread of 1 inch.
+//! Sources: ARRI PL and LPL: ARRI's mount drawings; Canon, Nikon Z, Sony E, L-Mount, Fujifilm X and G: the makers' system pages; the others
+//! as the makers' manuals give them, collected in the camera-wiki's and Wikipedia's lists of mounts and, for throats, in N. Mansurov, "What
+//! is a lens mount" (photographylife.com) and "Lens mounts: a reference for using adapters" (photobuilds.com). Minolta SR: 43.50 mm by most
+//! lists; the 43.72 mm that some give is within the play of its adapters and changes no answer here.
 //!
-//! Glass may stand behind the flange of a reflex camera, as far as the mirror lets it. No maker publishes where the mirror sweeps;
-//! what is known is how near the film the glass of their own lenses comes. Canon FD: 32.7 mm (JP 1988-081312, 50 mm f/1.8), M42:
-//! 38.0 mm (Helios-44), Minolta SR: 37.3 mm (US 4256373 at 16 mm), rounded down to half millimeters. Other mounts for 24 x 36 mm
-//! with a mirror are taken to clear 37.5 mm, as M42 does. In mounts without a mirror, and of other formats, glass is kept in front of the flange:
-//! nothing is known of their shutters and baffles here.
+//! Glass may reach behind the flange of a reflex camera, as far as the mirror allows. No maker publishes where the mirror sweeps. What is
+//! known is how close to the film the glass of the makers' own lenses comes. Canon FD: 32.7 mm (JP 1988-081312, 50 mm f/1.8), M42: 38.0 mm
+//! (Helios-44), Minolta SR: 37.3 mm (US 4256373 at 16 mm), rounded down to half millimeters. Other mounts for 24 x 36 mm with a mirror are
+//! assumed to clear 37.5 mm, as M42 does. In mounts without a mirror, and of other formats, glass must stay in front of the flange, because
+//! nothing is known here of their shutters and baffles.
 
 use serde::Serialize;
 
-/// A lens mount.
+/// A lens mount of a camera system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mount {
-    /// Its name.
+    /// Name of the mount.
     pub name: &'static str,
-    /// Mounting flange to image plane, mm.
+    /// Flange focal distance: mounting flange to image plane, mm.
     pub flange_mm: f64,
-    /// Diameter of throat or thread, mm; `None` where none is published.
+    /// Diameter of the throat or thread, mm; `None` if none is published.
     pub throat_mm: Option<f64>,
-    /// How near the image plane the swinging mirror lets glass come, mm; `None` where glass is kept in front of the flange.
+    /// Distance from the image plane at which the swinging mirror lets glass stand, mm; `None` if glass must stay in front of the flange.
     pub mirror_mm: Option<f64>,
 }
 
@@ -40,12 +41,12 @@ const fn reflex(name: &'static str, flange_mm: f64, throat_mm: f64, mirror_mm: f
     Mount { name, flange_mm, throat_mm: Some(throat_mm), mirror_mm: Some(mirror_mm) }
 }
 
-/// How near the film glass may come in a 24 x 36 mm reflex camera of whose own lenses none is known here, mm.
+/// Least distance of glass from the film in a 24 x 36 mm reflex camera for which no lens of its maker is known here, mm.
 const MIRROR_MM: f64 = 37.5;
-/// What the barrel takes of the throat all round, mm.
+/// Thickness of the lens barrel within the throat, mm.
 const BARREL_MM: f64 = 1.5;
 
-/// Mounts, by falling flange distance.
+/// All known mounts, by falling flange focal distance.
 pub const MOUNTS: [Mount; 36] = [
     flange("Pentax 67", 84.95),
     flange("Hasselblad V", 74.90),
@@ -85,7 +86,7 @@ pub const MOUNTS: [Mount; 36] = [
     mount("CS-mount", 12.526, 25.4),
 ];
 
-/// Mounts of the cameras that most lenses are made for or adapted to today, still and cinema.
+/// Mounts that most lenses are made for or adapted to today, still and cinema.
 const COMMON: [&str; 14] = [
     "ARRI PL",
     "Nikon F",
@@ -103,38 +104,38 @@ const COMMON: [&str; 14] = [
     "Nikon Z",
 ];
 
-/// A mount that a lens fits.
+/// A mount that a lens fits, with its clearance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MountReport {
-    /// The mount.
+    /// Name of the mount.
     pub name: &'static str,
-    /// Mounting flange to image plane.
+    /// Flange focal distance: mounting flange to image plane, mm.
     pub flange_mm: f64,
-    /// Diameter of throat or thread.
+    /// Diameter of the throat or thread, mm; `None` if none is published.
     pub throat_mm: Option<f64>,
-    /// From the rearmost glass to the flange; negative where glass stands behind it, in the mirror box.
+    /// Distance from the rearmost glass to the flange, mm; negative if glass stands behind it, in the mirror box.
     pub clearance_mm: f64,
 }
 
 impl MountReport {
-    /// Whether it is among those that most lenses are made for or adapted to today.
+    /// Whether this mount is among those that most lenses are made for or adapted to today.
     #[must_use]
     pub fn is_common(&self) -> bool {
         COMMON.contains(&self.name)
     }
 }
 
-/// One surface of glass, as a mount sees it.
+/// Position and size of one glass surface, for the test against mounts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glass {
-    /// From its rearmost point, vertex or rim, to the image plane, mm.
+    /// Distance from the rearmost point of the surface, vertex or rim, to the image plane, mm.
     pub nearest_mm: f64,
-    /// Its semi-diameter, mm; 0 where it is not known.
+    /// Semi-diameter, mm; 0 if it is not known.
     pub semi_diameter_mm: f64,
 }
 
-/// The mounts that a lens with these surfaces fits: no glass nearer the image than the mirror (or the flange) lets it, and what
-/// stands behind the flange goes through the throat with its barrel.
+/// Returns the mounts that a lens with these surfaces fits. No glass may be closer to the image than the mirror (or the flange) allows, and
+/// glass behind the flange must pass the throat with its barrel.
 #[must_use]
 pub fn cleared(glass: &[Glass]) -> Vec<MountReport> {
     let nearest_mm = glass.iter().map(|g| g.nearest_mm).fold(f64::INFINITY, f64::min);
@@ -168,9 +169,9 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), MOUNTS.len());
         assert!(COMMON.iter().all(|common| names.contains(common)));
-        // A screw of 42 mm does not go through a flange of 39.
+        // Catch typing errors in the table: throats are between 10 and 100 mm.
         assert!(MOUNTS.iter().all(|m| m.throat_mm.is_none_or(|t| t > 10.0 && t < 100.0)));
-        // A mirror stands behind the flange, and glass that passes it goes through a throat that is known.
+        // A mirror stands behind the flange, and glass that passes it goes through a throat of known size.
         assert!(MOUNTS.iter().all(|m| m.mirror_mm.is_none_or(|mirror| mirror < m.flange_mm && m.throat_mm.is_some())));
     }
 
@@ -184,15 +185,15 @@ mod tests {
         assert!(cleared(&at(10.0)).is_empty() && cleared(&[]).is_empty());
     }
 
-    /// Glass in the mirror box: as far as the mirror, and only through the throat.
+    /// Glass may reach into the mirror box as far as the mirror, and only through the throat.
     #[test]
     fn glass_dips_as_far_as_the_mirror_and_through_the_throat() {
         let rear = |nearest_mm: f64, semi_diameter_mm: f64| [Glass { nearest_mm, semi_diameter_mm }];
         assert!(names(&rear(38.0, 13.0)).contains(&"M42") && !names(&rear(37.4, 13.0)).contains(&"M42"));
         assert!(names(&rear(32.6, 14.0)).contains(&"Canon FD") && !names(&rear(32.4, 14.0)).contains(&"Canon FD"));
-        // 45 mm of glass do not go through a throat of 48 with a barrel round them, nor 42 through M42.
+        // Glass of 46 mm with a barrel around it does not pass a throat of 48 mm, nor one of 42 mm that of M42.
         assert!(!names(&rear(40.0, 23.0)).contains(&"Canon FD") && !names(&rear(40.0, 21.0)).contains(&"M42"));
-        // A wide front does not matter: it stands in front of the flange.
+        // A wide front does not matter, since it stands in front of the flange.
         let both = [rear(60.0, 40.0)[0], rear(38.5, 12.0)[0]];
         assert!(names(&both).contains(&"M42") && names(&both).contains(&"Canon EF"));
     }

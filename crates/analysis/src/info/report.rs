@@ -1,4 +1,4 @@
-//! First-order figures, pupils and prescription of a lens.
+//! Report of a lens: first-order figures, pupils and prescription.
 
 use super::field::{
     FREQUENCY_PER_MM, FieldReport, LimitReport, PARTS, field, field_points, fields_at_heights, focus_shift_mm,
@@ -7,156 +7,156 @@ use super::mounts::{Glass, MountReport, cleared};
 use crate::Light;
 use glam::DVec3;
 use serde::Serialize;
-use spectra_core::Isa;
 use spectra_core::surface::Action;
-use spectra_lens::{Criterion, Element, FirstOrder, Indices, Lens, MarginalRay, Rims, Section, Tracer};
+use spectra_lens::{Element, FirstOrder, Lens, Rims, Section};
+use spectra_optics::{Criterion, MarginalRay, Optics};
+use spectra_tracer::Indices;
 
-/// A lens in figures, all in one light. Places along the axis (`..._z_mm`) are measured from the first
-/// vertex, +z toward the image. What a lens does not have (a pupil without a stop, a focal length
-/// without power) is `None`, or infinite, which JSON writes as `null`.
+/// Report of a lens in one light. Positions along the axis (`..._z_mm`) are measured from the first vertex, +z toward the image. What a
+/// lens does not have (a pupil without a stop, a focal length without power) is `None`, or infinite, which JSON writes as `null`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LensReport {
-    /// Name for people.
+    /// Name of the lens.
     pub name: String,
     /// Year of design.
     pub year: Option<i32>,
-    /// Maker.
+    /// Maker or designer.
     pub maker: Option<String>,
-    /// Patent and example.
+    /// Number of the patent, and of the example in it.
     pub patent: Option<String>,
-    /// Where the figures come from.
+    /// Source of the prescription.
     pub source: Option<String>,
-    /// Doubts, choices of glass.
+    /// Remarks on the prescription: doubts, choices of glass.
     pub remark: Option<String>,
-    /// Where the semi-diameters come from.
+    /// Origin of the semi-diameters.
     pub rims: Option<Rims>,
-    /// Wavelength in air; `None` at the stated indices.
+    /// Wavelength in air, nm; `None` at the stated indices.
     pub wavelength_nm: Option<f64>,
-    /// Name of the spectral line there.
+    /// Name of the spectral line at this wavelength.
     pub line: Option<&'static str>,
-    /// Effective focal length.
+    /// Effective focal length, mm.
     pub efl_mm: f64,
-    /// Effective focal length in the x-z section, where it is another one.
+    /// Effective focal length in the x-z section, mm, if it differs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub efl_x_mm: Option<f64>,
-    /// Back focal length: last vertex to the rear focal point.
+    /// Back focal length, mm: from the last vertex to the rear focal point.
     pub bfl_mm: f64,
-    /// Front focal length: first vertex to the front focal point, negative in front of it.
+    /// Front focal length, mm: from the first vertex to the front focal point, negative in front of it.
     pub ffl_mm: f64,
-    /// 1 / (2 sin theta') of the real marginal ray of an axial object at infinity.
+    /// F-number: 1 / (2 sin theta') of the real marginal ray of an axial object at infinity.
     pub f_number: Option<f64>,
-    /// The f-number over the square root of the transmittance: what the exposure goes by.
+    /// T-number: the f-number divided by the square root of the transmittance. Exposure depends on it.
     pub t_number: Option<f64>,
-    /// Part of the light of the axial beam that reaches the image: coatings, mirrors, absorption, obstructions.
+    /// Part of the light of the axial beam that reaches the image, after losses by coatings, mirrors, absorption and obstructions.
     pub transmittance: Option<f64>,
-    /// What of coatings and absorption is counted, and what of it is assumed, in words.
+    /// Description of the coatings and absorption included in the transmittance, and of what is assumed for them.
     pub losses: String,
-    /// The f-number in its name.
+    /// Nominal f-number in the name of the lens.
     pub nominal_f_number: Option<f64>,
-    /// Entrance pupil, paraxial.
+    /// Position of the paraxial entrance pupil, mm from the first vertex.
     pub entrance_pupil_z_mm: Option<f64>,
-    /// Diameter of the beam that the lens takes in from an axial object at infinity: twice the height of
-    /// the real marginal ray.
+    /// Entrance pupil diameter, mm: diameter of the beam that the lens accepts from an axial object at infinity, twice the height of the
+    /// real marginal ray.
     pub entrance_pupil_diameter_mm: Option<f64>,
-    /// Exit pupil, paraxial.
+    /// Position of the paraxial exit pupil, mm from the first vertex.
     pub exit_pupil_z_mm: Option<f64>,
-    /// Diameter of the same beam in the plane of the exit pupil: by the real marginal ray, or where the lens is not round about one
-    /// axis by the magnification.
+    /// Diameter of the same beam in the plane of the exit pupil, mm: from the real marginal ray, or from the pupil magnification if the
+    /// lens is not rotationally symmetric about one axis.
     pub exit_pupil_diameter_mm: Option<f64>,
-    /// Exit pupil over entrance pupil, paraxial.
+    /// Paraxial pupil magnification: exit pupil over entrance pupil.
     pub pupil_magnification: Option<f64>,
-    /// Front principal plane.
+    /// Position of the front principal plane, mm from the first vertex.
     pub front_principal_z_mm: f64,
-    /// Rear principal plane.
+    /// Position of the rear principal plane, mm from the first vertex.
     pub rear_principal_z_mm: f64,
-    /// Front nodal point.
+    /// Position of the front nodal point, mm from the first vertex.
     pub front_nodal_z_mm: f64,
-    /// Rear nodal point.
+    /// Position of the rear nodal point, mm from the first vertex.
     pub rear_nodal_z_mm: f64,
-    /// Distance from the first vertex that it is focused at; infinite unless asked for.
+    /// Object distance from the first vertex at which the lens is focused, mm; infinite by default.
     pub focus_distance_mm: f64,
-    /// Size of the image over that of the object there, paraxial, negative upside down.
+    /// Paraxial magnification at that distance: image size over object size, negative for an inverted image.
     pub magnification: f64,
-    /// How far behind the image plane the paraxial image of the axial point there lies.
+    /// Distance of the paraxial image of the axial point in focus behind the image plane, mm.
     pub paraxial_focus_shift_mm: Option<f64>,
-    /// How far behind the image plane its spot is smallest (root mean square, real rays).
+    /// Distance behind the image plane at which the axial spot is smallest (root mean square radius, real rays), mm.
     pub rms_focus_shift_mm: Option<f64>,
-    /// How far behind the image plane contrast is highest (geometrical, real rays).
+    /// Distance behind the image plane at which the axial contrast is highest (geometrical, real rays), mm.
     pub contrast_focus_shift_mm: Option<f64>,
-    /// Spatial frequency of that contrast, line pairs a mm.
+    /// Spatial frequency of that contrast, line pairs per mm.
     pub contrast_frequency_per_mm: f64,
-    /// Largest field angle from which any real ray passes.
+    /// Largest field angle from which any real ray passes, degrees.
     pub max_field_deg: Option<f64>,
-    /// What ends the last light beyond it.
+    /// Surface that ends the last rays beyond the largest field.
     pub max_field_limit: Option<LimitReport>,
-    /// Field points, by their chief rays: real ones through the center of the stop, from the axis to the largest field, or to the image height
-    /// that was asked for; to the corner of 135 film where no rim keeps the field within what is of use.
+    /// Field points, by real chief rays through the center of the stop. They range from the axis to the largest field or to the requested
+    /// image height. If no rim limits the field to a useful size, they end at the corner of 135 film.
     pub chief_ray_exit_angle_deg: Vec<FieldReport>,
-    /// Mounts that it fits, by the distances of its glass from the image plane.
+    /// Mounts that the lens fits, judged by the distances of its glass from the image plane.
     pub mounts: Vec<MountReport>,
-    /// Whether the text names all of them, and not only the common ones.
+    /// Whether the text report lists all mounts instead of only the common ones.
     #[serde(skip)]
     pub every_mount: bool,
     /// Whether the field points end at the corner of 135 film, before the largest field.
     #[serde(skip)]
     pub is_cut: bool,
-    /// First vertex to image plane, along the axis.
+    /// Distance from the first vertex to the image plane along the axis, mm.
     pub total_track_mm: f64,
-    /// First vertex to last, along the axis.
+    /// Distance from the first vertex to the last along the axis, mm.
     pub vertex_length_mm: f64,
-    /// Last vertex to image plane, along the axis.
+    /// Distance from the last vertex to the image plane along the axis, mm.
     pub image_distance_mm: f64,
-    /// Whether it has a stop.
+    /// Whether the lens has a stop.
     pub has_stop: bool,
-    /// Clear semi-diameter of the stop, as it is set; `None` where it is open, and rims alone limit the light.
+    /// Clear semi-diameter of the stop as it is set, mm; `None` if it is open, so that only rims limit the light.
     pub stop_semi_diameter_mm: Option<f64>,
-    /// The surfaces, in the order of the light.
+    /// Surfaces in the order of the light.
     pub surfaces: Vec<SurfaceReport>,
-    /// Veiling glare, where it was asked for.
+    /// Veiling glare, if it was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub glare: Option<crate::glare::Glare>,
-    /// Media of which something is assumed.
+    /// Media with assumed properties.
     pub assumed_media: Vec<super::media::AssumedMedium>,
-    /// What is worth knowing of how it is set.
+    /// Notes on how the lens is set.
     pub notes: Vec<String>,
-    /// What a person should know of the file.
+    /// Warnings about the lens file.
     pub warnings: Vec<String>,
 }
 
-/// One surface.
+/// One surface of a lens in a report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SurfaceReport {
-    /// Its number, from 1.
+    /// Number of the surface, from 1.
     pub number: usize,
-    /// Its kind.
+    /// Kind of the surface, as in a lens file.
     pub kind: String,
-    /// Vertex, from the first.
+    /// Position of the vertex, mm from the first vertex.
     pub z_mm: f64,
-    /// Radius of curvature at the vertex (in the y-z plane); `None` where it is flat.
+    /// Radius of curvature at the vertex in the y-z plane, mm; `None` if flat.
     pub radius_mm: Option<f64>,
-    /// Radius of curvature at the vertex in the x-z plane, where it is curved there by another radius; `None` elsewhere.
+    /// Radius of curvature at the vertex in the x-z plane, mm, if the surface is curved there with a different radius; `None` otherwise.
     pub radius_x_mm: Option<f64>,
-    /// Distance to the next vertex; of the last surface, to the image plane.
+    /// Distance to the next vertex, mm; for the last surface, to the image plane.
     pub thickness_mm: f64,
-    /// Clear semi-diameter; `None` clips nothing.
+    /// Clear semi-diameter, mm; `None` if the surface clips nothing.
     pub semi_diameter_mm: Option<f64>,
-    /// Medium behind it.
+    /// Name of the medium behind the surface.
     pub medium: String,
-    /// Its refractive index in this light.
+    /// Refractive index of that medium in this light.
     pub index: f64,
-    /// Whether it is a mirror.
+    /// Whether the surface is a mirror.
     pub mirror: bool,
 }
 
 impl LensReport {
-    /// Looks at a lens, as it is focused and stopped, in one light.
+    /// Computes the report of a lens, as it is focused and stopped, in one light.
     #[must_use]
-    pub fn of(lens: &Lens, light: Light) -> Self {
-        let held = light.hold(lens.clone());
+    pub fn of(lens: &Optics, light: Light) -> Self {
+        let held = Optics::new(light.hold(lens));
         let first_order = held.first_order(held.reference_nm);
         let marginal = held.marginal_ray().ok();
         let efl_x_mm = held.first_order_in(Section::X, held.reference_nm).efl_mm;
-        // Without power there is no image: what rounding leaves of its place, and of the f-number, means nothing.
+        // Skip the f-number and the focus of a lens without power: it has no image, and the values are rounding errors.
         let images = first_order.efl_mm.is_finite();
         let f_number = marginal.map(|ray| ray.f_number()).filter(|n| n.is_finite() && images);
         let shift_mm = |criterion| focus_shift_mm(&held, criterion).filter(|_| images);
@@ -191,7 +191,7 @@ impl LensReport {
                 if held.has_axis_of_revolution() {
                     diameter_at_mm(&held, ray, z)
                 } else {
-                    // Behind a fold no plane of z is that of the pupil.
+                    // Behind a fold no plane of constant z is the plane of the pupil.
                     pupil_magnification(&first_order).map(|magnification| 2.0 * ray.height_mm * magnification)
                 }
             }),
@@ -202,7 +202,8 @@ impl LensReport {
             rear_nodal_z_mm: first_order.rear_nodal_z_mm,
             focus_distance_mm: lens.focused_mm,
             magnification: magnification(&held),
-            // First order follows the axis; where the image plane stands beside it, the distance to it means nothing.
+            // Give no paraxial shift if the image plane is off the axis: first-order optics follows the axis, and the distance has no
+            // meaning.
             paraxial_focus_shift_mm: Some(paraxial).filter(|z| z.is_finite() && lens.image_pose.is_on_axis()),
             rms_focus_shift_mm: shift_mm(Criterion::Rms),
             contrast_focus_shift_mm: shift_mm(Criterion::Contrast { per_mm: FREQUENCY_PER_MM }),
@@ -215,7 +216,7 @@ impl LensReport {
             is_cut: field.is_cut,
             total_track_mm: if lens.image_pose.is_on_axis() { lens.image_z_mm() } else { lens.image_along_axis_mm },
             vertex_length_mm: lens.elements.last().map_or(0.0, |e| e.along_axis_mm),
-            // Behind the last surface the axis may bend, too.
+            // The axis may bend behind the last surface, too.
             image_distance_mm: if lens.image_breaks.is_empty() {
                 lens.image_gap_mm()
             } else {
@@ -236,12 +237,12 @@ impl LensReport {
 }
 
 impl LensReport {
-    /// The same with the field shown at the middle and at 0.5, 0.7 and 1 of an image height, mm above 0.
+    /// Replaces the field points by points at the center and at 0.5, 0.7 and 1 of an image height, mm, above 0.
     ///
     /// # Errors
-    /// No chief ray lands so far out: the largest height at which one does, mm.
-    pub fn to_image_height(mut self, lens: &Lens, light: Light, height_mm: f64) -> Result<Self, f64> {
-        let held = light.hold(lens.clone());
+    /// No chief ray lands at this height. The error is the largest height at which one lands, mm.
+    pub fn to_image_height(mut self, lens: &Optics, light: Light, height_mm: f64) -> Result<Self, f64> {
+        let held = Optics::new(light.hold(lens));
         let fields = fields_at_heights(&held, &PARTS.map(|part| part * height_mm))?;
         self.chief_ray_exit_angle_deg = field_points(lens, &held, indices(light), &fields);
         self.is_cut = false;
@@ -249,33 +250,34 @@ impl LensReport {
     }
 }
 
-/// Which indices a tracer takes in this light.
+/// Refractive indices that a tracer uses in this light.
 fn indices(light: Light) -> Indices {
     light.wavelength_nm().map_or(Indices::Stated, Indices::At)
 }
 
-/// The image plane may lie this part of the focal length from the image: published last distances are for other focus, or rounded.
+/// Largest plausible distance of the image plane from the image, in focal lengths: published last distances may belong to another focus or
+/// be rounded.
 const FAR: f64 = 0.1;
 
-/// A doubt where the image plane of a straight lens lies far from the image: a scene focuses anew, but whoever looks at a prescription wants to
-/// know.
+/// Returns a warning if the image plane of a straight lens lies far from the image. A scene refocuses the lens, but a reader of the
+/// prescription wants to know.
 fn misplaced_image(lens: &Lens, first_order: &FirstOrder, defocus_mm: f64) -> Option<String> {
     let images = lens.image_pose.is_on_axis() && first_order.efl_mm > 0.0 && first_order.bfl_mm > 0.0;
     (images && defocus_mm.abs() > FAR * first_order.efl_mm).then(|| {
         format!(
-            "the image lies {:.2} mm {} the image plane: is a radius, its sign or a thickness wrong?",
+            "the image lies {:.2} mm {} the image plane: check the radii, their signs and the thicknesses",
             defocus_mm.abs(),
             if defocus_mm > 0.0 { "behind" } else { "in front of" }
         )
     })
 }
 
-/// At infinity everything is imaged without size.
-fn magnification(held: &Lens) -> f64 {
+/// Paraxial magnification; 0 for an object at infinity.
+fn magnification(held: &Optics) -> f64 {
     if held.focused_mm == f64::INFINITY { 0.0 } else { held.paraxial_magnification(held.focused_mm, held.reference_nm) }
 }
 
-/// The surfaces of glass, as a mount sees them; `None` where the axis is folded.
+/// Returns the glass surfaces for the test against mounts; `None` if the axis is folded.
 fn glass(lens: &Lens) -> Option<Vec<Glass>> {
     if !lens.image_pose.is_on_axis() || lens.elements.iter().any(|e| e.action == Action::Reflect) {
         return None;
@@ -296,16 +298,16 @@ fn pupil_magnification(first_order: &FirstOrder) -> Option<f64> {
     Some((exit / entrance).abs()).filter(|p| p.is_finite())
 }
 
-/// Twice the distance from the axis at which the marginal ray, behind the lens, crosses the plane `z_mm`.
-fn diameter_at_mm(held: &Lens, ray: MarginalRay, z_mm: f64) -> Option<f64> {
-    let tracer = Tracer::new(held, Indices::At(held.reference_nm), Isa::Baseline).ok()?;
+/// Returns twice the distance from the axis at which the marginal ray, behind the lens, crosses the plane `z_mm`, mm.
+fn diameter_at_mm(held: &Optics, ray: MarginalRay, z_mm: f64) -> Option<f64> {
+    let tracer = held.tracer(Indices::At(held.reference_nm)).ok()?;
     let path = tracer.path(DVec3::new(0.0, ray.height_mm, 0.0), DVec3::Z, held.reference_nm);
     let last = path.points.last().filter(|_| path.end.is_none())?;
     let y = last.y + (z_mm - last.z) * path.direction.y / path.direction.z;
     Some(2.0 * y.abs()).filter(|d| d.is_finite())
 }
 
-fn surfaces(held: &Lens) -> Vec<SurfaceReport> {
+fn surfaces(held: &Optics) -> Vec<SurfaceReport> {
     let each = held.elements.iter().enumerate().map(|(at, e)| {
         let (curvature_x, curvature) = e.vertex_curvature_per_mm();
         SurfaceReport {

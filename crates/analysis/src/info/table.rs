@@ -1,15 +1,15 @@
-//! The report as a person reads it.
+//! The report of a lens as text.
 
 use super::{LensReport, MountReport};
 use std::fmt;
 
-/// In place of a figure that the lens does not have.
+/// Text for a figure that the lens does not have.
 const UNKNOWN: &str = "unknown";
 
-/// A length, or why there is none.
+/// Formats a length in mm, or says why there is none.
 fn mm(value: Option<f64>) -> String {
     match value {
-        // Rounding leaves no sign of a zero.
+        // Write no sign for a value that rounds to zero.
         Some(value) if value.abs() < 5e-5 => "0.0000 mm".to_owned(),
         Some(value) if value.is_finite() => format!("{value:.4} mm"),
         Some(_) => "infinite".to_owned(),
@@ -110,7 +110,7 @@ impl LensReport {
             ("  best contrast", mm(self.contrast_focus_shift_mm), &contrast),
         ]);
         for (name, value, remark) in rows {
-            // A remark says how a figure is counted; where there is none, it only misleads. That of T is on the losses.
+            // Drop the remark of an unknown figure, which would mislead. The remark of the T-number is on the losses and stays.
             let remark = if value == UNKNOWN && name != "T-number" { "" } else { remark };
             let line = format!("{name:<22} {value:>16}   {remark}");
             writeln!(f, "{}", line.trim_end())?;
@@ -149,7 +149,7 @@ impl LensReport {
         }
         writeln!(
             f,
-            "field points (sagittal, tangential: where close rays meet, from the image plane; light: over the middle's)"
+            "field points (sagittal, tangential: focus of close rays from the image plane; light: relative to the center)"
         )?;
         writeln!(
             f,
@@ -157,7 +157,7 @@ impl LensReport {
             "field", "exit angle", "image height", "distortion", "sagittal", "tangential", "light"
         )?;
         let percent = |part: Option<f64>, digits: usize, sign: bool| match part.map(|part| 100.0 * part) {
-            // Rounding leaves no sign of a zero.
+            // Write no sign for a value that rounds to zero.
             Some(percent) if percent.abs() < 0.5 * 0.1_f64.powi(digits as i32) => format!("{:.digits$} %", 0.0),
             Some(percent) if sign => format!("{percent:+.digits$} %"),
             Some(percent) => format!("{percent:.digits$} %"),
@@ -178,7 +178,7 @@ impl LensReport {
             )?;
         }
         if self.is_cut {
-            writeln!(f, "  to the corner of 135 film: no rim keeps the field within what is of use")?;
+            writeln!(f, "  shown to the corner of 135 film: no rim limits the field to a useful size")?;
         }
         writeln!(f)
     }

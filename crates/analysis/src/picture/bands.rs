@@ -1,40 +1,41 @@
-//! Bands of a spectral picture.
+//! Spectral bands of a picture.
 
 use spectra_spectrum::Observer;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 
-/// A band of a spectral picture, of which a channel holds the mean spectral irradiance, W m^-2 nm^-1.
+/// A band of a spectral picture. Its channel holds the mean spectral irradiance, W m^-2 nm^-1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
-    /// Number of the channel in the file.
+    /// Index of the channel in the file.
     pub channel: usize,
-    /// Where it begins and ends, nm.
+    /// Lower and upper edge, nm.
     pub edges_nm: [f64; 2],
-    /// CIE XYZ (1931), lx, of a mean of 1 W m^-2 nm^-1.
+    /// CIE XYZ (1931), lx, of a mean of 1 W m^-2 nm^-1 in the band.
     pub xyz: [f64; 3],
 }
 
-/// The middle of the band that a channel holds, nm, by its name (`S0.550,0nm`): A. Fichet, R. Pacanowski and A. Wilkie, "An OpenEXR
-/// layout for spectral images", J. Computer Graphics Techniques 10 (2021). Only light that is not polarized (`S0`), in nm.
+/// Reads the center of the band, nm, from the name of its channel (`S0.550,0nm`): A. Fichet, R. Pacanowski and A. Wilkie, "An OpenEXR
+/// layout for spectral images", J. Computer Graphics Techniques 10 (2021). Only unpolarized light (`S0`) in nm is read.
 pub(super) fn middle_nm(name: &str) -> Option<f64> {
     let number = name.strip_prefix("S0.")?.strip_suffix("nm")?.replace(',', ".");
     number.parse().ok().filter(|nm: &f64| nm.is_finite() && *nm > 0.0)
 }
 
-/// As the imager names a band with this middle.
+/// Returns the number by which the imager names a band with this center.
 fn called(middle_nm: f64) -> String {
     format!("{middle_nm:.1}")
 }
 
-/// Edges of bands with these middles, which rise, nm. Names hold a tenth of a nanometre, so bands of equal width between whole nanometres
-/// are found by what they would be called; else an edge lies in the middle between neighbors. `None` of fewer than two.
+/// Returns the edges of bands with these rising centers, nm; `None` for fewer than two bands. Names are rounded to a tenth of a nanometer.
+/// Bands of equal width whose outer edges lie on tenths of a nanometer are therefore found by comparing the names that they would have.
+/// Otherwise an edge lies midway between neighbors.
 pub(super) fn edges_nm(middles_nm: &[f64]) -> Option<Vec<f64>> {
     let [first, .., last] = *middles_nm else { return None };
     let count = middles_nm.len();
     let width = (last - first) / (count - 1) as f64;
     let [start, end] = [first - 0.5 * width, last + 0.5 * width].map(|nm| (10.0 * nm).round_ties_even() / 10.0);
     let names: Vec<String> = middles_nm.iter().map(|nm| called(*nm)).collect();
-    // The tenth nearest to the end, or one beside it; whole nanometres first, which people write.
+    // Try the nearest tenths to this edge, whole nanometers first, because people write those.
     let near = |nm: f64| {
         let mut all: Vec<f64> = (-2..=2).map(|i| (10.0 * nm + f64::from(i)).round_ties_even() / 10.0).collect();
         all.sort_by_key(|nm| nm.fract() != 0.0);
@@ -53,7 +54,7 @@ pub(super) fn edges_nm(middles_nm: &[f64]) -> Option<Vec<f64>> {
     Some(std::iter::once(ends[0]).chain(between).chain([ends[1]]).collect())
 }
 
-/// XYZ, lx, of 1 W m^-2 nm^-1 between these edges.
+/// Computes XYZ, lx, of 1 W m^-2 nm^-1 between these edges.
 pub(super) fn xyz_of_band(edges_nm: [f64; 2]) -> [f64; 3] {
     const STEP_NM: f64 = 0.1;
     let [from, to] = edges_nm;
@@ -88,7 +89,7 @@ mod tests {
         assert_eq!([middle_nm("S0.409,4nm"), middle_nm("S1.409,4nm"), middle_nm("S0.x")], [Some(409.4), None, None]);
     }
 
-    /// The integral of y-bar, 106.857 nm (CIE 1931, sums of 1 nm from 360 to 830 nm).
+    /// The integral of y-bar is 106.857 nm (CIE 1931, sums of 1 nm from 360 to 830 nm).
     #[test]
     fn a_watt_is_683_lumens_times_v() {
         let y = xyz_of_band([360.0, 830.0])[1];

@@ -1,22 +1,22 @@
-//! A picture in its colors.
+//! View of a picture in its own colors.
 
 use super::measured::{Measured, NotMeasured};
 use super::view::{Shown, sheet};
 use spectra_color::{Gamut, RgbSpace, into_gamut, to_u8};
 use spectra_plot::Canvas;
 
-/// The picture as a screen shows it: sRGB, with `white` (the Y of white in the picture's unit; that of the picture itself where absent)
-/// as full white. What no screen shows is brought into sRGB at its hue.
+/// Draws the picture as a screen shows it, in sRGB. `white` is the Y of full white in the picture's unit; if `None`, [`Measured::white`] is
+/// used. Colors outside sRGB are brought into it at constant hue.
 ///
 /// # Errors
-/// The picture has no colors, or nothing in it is lit.
+/// The picture has no colors, or no pixel of it is lit.
 pub fn color(picture: &Measured, white: Option<f64>, title: &str) -> Result<Canvas, NotMeasured> {
     if picture.colors.is_none() {
         return Err(picture.without_colors());
     }
     let white = white.or_else(|| picture.white()).ok_or_else(super::field::dark)?;
     let srgb = RgbSpace::srgb();
-    // Light adds up: what is shown smaller is the mean of linear light.
+    // Average linear light, which adds up: a reduced picture shows means.
     let [x, y, z] = [0, 1, 2].map(|i| {
         let shown = Shown::of(picture, false, &|pixel| picture.xyz_under_d65(pixel).map_or(f64::NAN, |xyz| xyz[i]));
         (shown.values, shown.frame, shown.columns, shown.rows)

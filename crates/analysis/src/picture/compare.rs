@@ -1,4 +1,4 @@
-//! Two pictures against each other.
+//! Comparison of two pictures.
 
 use super::field::{Field, said};
 use super::measured::{Measured, NotMeasured, Unit};
@@ -8,48 +8,48 @@ use spectra_color::{RgbSpace, ciede2000, lab};
 /// Side of the blocks whose means are compared, pixels.
 const BLOCK_PX: usize = 16;
 
-/// How one quantity of two pictures differs.
+/// Differences between two pictures in one quantity.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Differs {
-    /// The channel, or `Y`.
+    /// Name of the channel, or `Y`.
     pub name: String,
-    /// Its unit; empty where it has none.
+    /// Unit; empty if there is none.
     pub unit: String,
-    /// Mean of the first and of the second picture.
+    /// Means of the first and of the second picture.
     pub means: [f64; 2],
-    /// Mean of second minus first, over the mean of both.
+    /// Mean of second minus first, divided by the mean of both; `None` if that mean is 0.
     pub relative_mean: Option<f64>,
-    /// Standard error of that, if the noise of each pixel were its own.
+    /// Standard error of `relative_mean`, if the noise of the pixels is independent.
     pub relative_standard_error: Option<f64>,
-    /// Root mean square of the differences over the mean of both.
+    /// Root mean square of the differences divided by the mean of both.
     pub relative_rms: Option<f64>,
-    /// Noise of a pixel in one picture, over the mean: the standard deviation of the differences over the square root of 2, if both
-    /// pictures are of one scene, with as much noise.
+    /// Relative noise of a pixel in one picture: the standard deviation of the differences over the square root of 2, divided by the mean.
+    /// This assumes that both pictures show one scene with the same noise.
     pub relative_noise: Option<f64>,
-    /// Largest of the differences.
+    /// Difference of the largest size, second minus first.
     pub largest: f64,
-    /// Where it is: column and row.
+    /// Column and row of the largest difference.
     pub largest_at: [u32; 2],
-    /// Share of the blocks of 16 x 16 pixels whose means differ by more than 3 standard errors, by the differences within each.
-    /// Of noise alone some 0.3 %; `None` where there is no whole block.
+    /// Share of the blocks of 16 x 16 pixels whose means differ by more than 3 standard errors, estimated from the differences within each
+    /// block. Noise alone gives about 0.3 %. `None` if there is no whole block.
     pub blocks_beyond_3: Option<f64>,
-    /// Values that are no number in either picture and are left out.
+    /// Number of pixels left out because the value of one picture is not finite.
     pub not_finite: usize,
 }
 
-/// Two pictures of one size against each other.
+/// Comparison of two pictures of the same size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// Y first, where both pictures have colors; then the channels that both have.
+    /// Differences of Y first, if both pictures have colors, then of each channel that both have.
     pub channels: Vec<Differs>,
-    /// CIEDE2000 of each pixel; `None` where a picture has no colors.
+    /// CIEDE2000 color difference of each pixel; `None` if a picture has no colors.
     pub delta_e: Option<Vec<f64>>,
-    /// White of both pictures in words, for CIEDE2000.
+    /// Description of the common white used for CIEDE2000.
     pub white: Option<String>,
 }
 
 impl Difference {
-    /// Mean, median, 95th percentile and largest of CIEDE2000, and where the largest is.
+    /// Returns mean, median, 95th percentile and maximum of CIEDE2000, and the column and row of the maximum. `None` without colors.
     #[must_use]
     pub fn delta_e_figures(&self, width: u32) -> Option<([f64; 4], [u32; 2])> {
         let all = self.delta_e.as_ref()?;
@@ -58,7 +58,7 @@ impl Difference {
             return None;
         }
         let mean = finite.iter().map(|(v, _)| v).sum::<f64>() / finite.len() as f64;
-        // Of equals the first in the picture.
+        // Of equal values take the first in the picture.
         finite.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         let at = |quantile: f64| finite[((quantile * finite.len() as f64).ceil() as usize).clamp(1, finite.len()) - 1];
         let (most, pixel) = at(1.0);
@@ -66,7 +66,7 @@ impl Difference {
         Some(([mean, at(0.5).0, at(0.95).0, most], place))
     }
 
-    /// CIEDE2000 of each pixel as a view.
+    /// Returns CIEDE2000 of each pixel as a field to view; `None` without colors.
     #[must_use]
     pub fn field(&self) -> Option<Field> {
         let values = self.delta_e.clone()?;
@@ -75,17 +75,18 @@ impl Difference {
     }
 }
 
-/// Compares two pictures of one size, pixel by pixel. Colors are seen against one white of D65 for both, whose Y is `white`, or else
-/// that of the first picture ([`Measured::white`]); the white of a file's primaries is brought there.
+/// Compares two pictures of the same size pixel by pixel. Colors are seen relative to one D65 white for both, whose Y is `white`. If it is
+/// `None`, [`Measured::white`] of the first picture is used, or else of the second. Colors of primaries with another white are adapted to
+/// it.
 ///
 /// # Errors
-/// Pictures of other sizes or units, or that have nothing in common.
+/// The pictures differ in size or unit, or have nothing in common.
 pub fn compare(first: &Measured, second: &Measured, white: Option<f64>) -> Result<Difference, NotMeasured> {
     let size = |p: &Measured| [p.planes.width, p.planes.height];
     if size(first) != size(second) {
         let [[a, b], [c, d]] = [size(first), size(second)];
         let text = format!("the pictures have {a} x {b} and {c} x {d} pixels");
-        return Err(NotMeasured::new(text, "render both in one `resolution`"));
+        return Err(NotMeasured::new(text, "render both at the same `resolution`"));
     }
     let both_colored = first.colors.is_some() && second.colors.is_some();
     if both_colored && first.unit != second.unit {
@@ -96,7 +97,7 @@ pub fn compare(first: &Measured, second: &Measured, white: Option<f64>) -> Resul
             Unit::Unknown => "of no stated unit",
         };
         let text = format!("the first picture is {}, the second {}", word(first.unit), word(second.unit));
-        return Err(NotMeasured::new(text, "compare pictures by one kind of imager, or two finished ones"));
+        return Err(NotMeasured::new(text, "compare two pictures from the same kind of imager, or two finished ones"));
     }
     let pixels = first.planes.pixels();
     let mut channels = Vec::new();
@@ -114,7 +115,7 @@ pub fn compare(first: &Measured, second: &Measured, white: Option<f64>) -> Resul
         channels.push(differs(&channel.name, &channel.unit, first, &values));
     }
     if channels.is_empty() {
-        let text = "the pictures have neither colors nor a channel of one name and unit in common";
+        let text = "the pictures share neither colors nor a channel of the same name and unit";
         return Err(NotMeasured::new(text, "`spectra picture info` shows what each holds"));
     }
     let white = if both_colored { white.or_else(|| first.white()).or_else(|| second.white()) } else { None };
@@ -155,7 +156,7 @@ fn differs(name: &str, unit: &str, picture: &Measured, values: &dyn Fn(usize) ->
             let n = all.len() as f64;
             let mean = all.iter().sum::<f64>() / n;
             let variance = all.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0);
-            // Where both are dark there is nothing to compare.
+            // Skip blocks that are dark in both pictures.
             if variance > 0.0 || mean != 0.0 {
                 blocks += 1;
                 beyond += usize::from(mean.abs() > 3.0 * (variance / n).sqrt());
@@ -184,7 +185,7 @@ mod tests {
     use spectra_pictures::read::{Plane, Planes};
     use spectra_pictures::write::LinearSpace;
 
-    /// Colors of linear sRGB, written in a space.
+    /// Builds a picture with colors given in linear sRGB, written in another color space.
     fn picture(space: LinearSpace, chromaticities: [[f64; 2]; 4]) -> Measured {
         let colors = [[1.0, 1.0, 1.0], [0.18, 0.18, 0.18], [0.8, 0.05, 0.1], [0.02, 0.3, 0.6]];
         let matrix = space.from_srgb();
@@ -204,8 +205,7 @@ mod tests {
         .expect("colors")
     }
 
-    /// One picture in five spaces: no color differs, also where the white of the primaries is that of ACES, and where the values
-    /// are XYZ.
+    /// One picture in five spaces: no color differs, even if the white of the primaries is that of ACES, or the values are XYZ.
     #[test]
     fn one_picture_in_several_spaces_does_not_differ() {
         let of = |space: &RgbSpace| {

@@ -1,4 +1,4 @@
-//! A cut as a figure.
+//! Figure of a cut through a picture.
 
 use super::cut::Cut;
 use super::measured::NotMeasured;
@@ -7,13 +7,13 @@ use spectra_plot::{Axes, Axis, Canvas, Rect, TextStyle};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 500.0;
-/// On a logarithmic scale, the least is this part of the most.
+/// Smallest value of a logarithmic scale, relative to the largest.
 const DEEPEST: f64 = 1e-6;
 
-/// The curves of a cut, over millimetres on the film where they are known, else over pixels; by powers of ten where `is_log`.
+/// Draws the curves of a cut against millimeters on the film if known, else against pixels. With `is_log` the scale is logarithmic.
 ///
 /// # Errors
-/// Nothing is defined along the cut, or nothing is above 0 where its logarithm is wanted.
+/// No value along the cut is defined, or none is above 0 on a logarithmic scale.
 pub fn curve(cut: &Cut, is_log: bool, title: &str) -> Result<Canvas, NotMeasured> {
     let shown = |value: f64| match value {
         v if !v.is_finite() => None,
@@ -24,9 +24,9 @@ pub fn curve(cut: &Cut, is_log: bool, title: &str) -> Result<Canvas, NotMeasured
     let most = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if all.is_empty() {
         let (text, hint) = if is_log {
-            ("nothing along the cut is above 0, so a logarithm shows nothing", "leave `--log` out")
+            ("no value along the cut is above 0, so a logarithmic scale shows nothing", "leave `--log` out")
         } else {
-            ("nothing is defined along the cut", "another place, or another `--quantity`")
+            ("no value is defined along the cut", "choose another line or another `--quantity`")
         };
         return Err(NotMeasured::new(text, hint));
     }
@@ -56,7 +56,7 @@ pub fn curve(cut: &Cut, is_log: bool, title: &str) -> Result<Canvas, NotMeasured
     canvas.clip(Some(frame));
     let order = order(&cut.labels);
     for (i, values) in order.iter().zip(&cut.values) {
-        // What is undefined interrupts the line.
+        // Undefined values interrupt the line.
         let points: Vec<_> = x.iter().zip(values).map(|(x, v)| shown(*v).map(|v| axes.at(*x, v))).collect();
         for run in points.split(Option::is_none).filter(|run| !run.is_empty()) {
             let run: Vec<_> = run.iter().flatten().copied().collect();
@@ -76,7 +76,7 @@ pub fn curve(cut: &Cut, is_log: bool, title: &str) -> Result<Canvas, NotMeasured
     Ok(canvas)
 }
 
-/// The unit that all of the labels end with.
+/// Returns the unit that all labels end with; `None` if they differ.
 fn in_one_unit(labels: &[String]) -> Option<&str> {
     let (_, first) = labels.first()?.rsplit_once(" / ")?;
     let ends = |label: &String| label.rsplit_once(" / ").is_some_and(|(_, unit)| unit == first);

@@ -4,43 +4,43 @@ use super::field::Field;
 use super::measured::{Measured, NotMeasured};
 use std::fmt::Write;
 
-/// Where a cut goes.
+/// The line of a cut through a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way {
     /// Along a row, counted from 0 at the top.
     Row(u32),
     /// Along a column, counted from 0 at the left.
     Column(u32),
-    /// From one place to another, in columns and rows; the middle of the first pixel is at 0.5, 0.5.
+    /// Along a straight line from one point to another, given as columns and rows; the center of the first pixel is at 0.5, 0.5.
     Line {
-        /// Where it begins.
+        /// Start of the line.
         from: [f64; 2],
-        /// Where it ends.
+        /// End of the line.
         to: [f64; 2],
     },
 }
 
-/// Quantities along a line.
+/// Values of quantities at points along a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut {
     /// Name and unit of each quantity.
     pub labels: Vec<String>,
-    /// Where each point lies: column and row, in pixels.
+    /// Position of each point: column and row, in pixels.
     pub places_px: Vec<[f64; 2]>,
-    /// Distance of each point from the beginning, in pixels.
+    /// Distance of each point from the start, in pixels.
     pub distance_px: Vec<f64>,
-    /// The same on the film, mm, where the size of the film is known.
+    /// Distance of each point from the start on the film, mm; `None` if the size of the film is not known.
     pub distance_mm: Option<Vec<f64>>,
-    /// For each quantity its value at each point; NaN where it is undefined.
+    /// Values of each quantity at each point; NaN where it is undefined.
     pub values: Vec<Vec<f64>>,
 }
 
 impl Cut {
-    /// Quantities along `way`. Along a row or a column each point is a pixel; a line has a point a pixel of its length, each with
-    /// the values of its four neighbors in between.
+    /// Samples quantities along `way`. A row or column has one point per pixel. A line has about one point per pixel of its length,
+    /// interpolated between the four nearest pixels; a hue takes the value of the nearest.
     ///
     /// # Errors
-    /// The way leaves the picture, or has no length.
+    /// The line leaves the picture, or has no length.
     pub fn of(picture: &Measured, fields: &[Field], way: Way) -> Result<Self, NotMeasured> {
         let [width, height] = [picture.planes.width, picture.planes.height];
         let outside = |what: String| {
@@ -56,13 +56,13 @@ impl Cut {
                 let size = [f64::from(width), f64::from(height)];
                 for place in [from, to] {
                     if !(0..2).all(|i| (0.0..=size[i]).contains(&place[i])) {
-                        return Err(outside(format!("the place {}, {}", place[0], place[1])));
+                        return Err(outside(format!("the point {}, {}", place[0], place[1])));
                     }
                 }
                 let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
                 if length <= 0.0 {
-                    let hint = "two places: COLUMN,ROW,COLUMN,ROW";
-                    return Err(NotMeasured::new("a line from a place to itself has no length", hint));
+                    let hint = "write two different points: COLUMN,ROW,COLUMN,ROW";
+                    return Err(NotMeasured::new("the line starts and ends at the same point", hint));
                 }
                 let steps = length.ceil();
                 let at = |i: usize| [0, 1].map(|k| from[k] + (to[k] - from[k]) * i as f64 / steps);
@@ -84,8 +84,8 @@ impl Cut {
         })
     }
 
-    /// As a table: `column,row,distance_px`, `distance_mm` where it is known, and the quantities. Columns and rows are those of the middle
-    /// of a pixel: 0.5 is that of the first.
+    /// Returns the cut as CSV: `column,row,distance_px`, `distance_mm` if it is known, and the quantities. Columns and rows count from the
+    /// corner of the picture, so that the center of the first pixel is at 0.5. Undefined values are empty.
     #[must_use]
     pub fn to_csv(&self) -> String {
         let mut out = String::from("column,row,distance_px");
@@ -112,12 +112,12 @@ impl Cut {
     }
 }
 
-/// A field of a CSV file.
+/// Quotes a field of a CSV file if it needs quotes.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
-/// A field between the middles of pixels; at those exactly theirs.
+/// Interpolates a field between the centers of pixels; at a center it returns exactly the value of the pixel.
 fn at(picture: &Measured, field: &Field, [column, row]: [f64; 2]) -> f64 {
     let [width, height] = [picture.planes.width as usize, picture.planes.height as usize];
     let split = |at: f64, count: usize| {
@@ -126,7 +126,7 @@ fn at(picture: &Measured, field: &Field, [column, row]: [f64; 2]) -> f64 {
     };
     let ((x, right), (y, below)) = (split(column, width), split(row, height));
     let value = |x: usize, y: usize| field.values[y.min(height - 1) * width + x.min(width - 1)];
-    // An angle has no mean: the nearest.
+    // Take the nearest pixel for an angle, which has no mean.
     if field.is_hue {
         return value(if right < 0.5 { x } else { x + 1 }, if below < 0.5 { y } else { y + 1 });
     }

@@ -3,7 +3,7 @@
 use super::measured::{Measured, NotMeasured, Unit};
 use spectra_color::{RgbSpace, lab};
 
-/// What is asked of each pixel.
+/// A quantity that can be computed for each pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Illuminance, lx.
@@ -12,20 +12,20 @@ pub enum Quantity {
     Exposure,
     /// Irradiance within the recorded bands, W m^-2.
     Irradiance,
-    /// Luminance relative to white.
+    /// Luminance relative to white; plain Y if the picture is not relative to white.
     Luminance,
     /// CIE L*.
     Lightness,
     /// CIE chroma C*ab.
     Chroma,
-    /// CIE hue angle h_ab, degrees; undefined for grays.
+    /// CIE hue angle h_ab, degrees, 0 to 360; undefined for grays.
     Hue,
-    /// The values of a channel.
+    /// Values of the channel with this name.
     Channel(String),
 }
 
 impl Quantity {
-    /// Those that have a name of their own.
+    /// Quantities that have a fixed name, with these names.
     pub const NAMED: [(&'static str, Self); 7] = [
         ("illuminance", Self::Illuminance),
         ("exposure", Self::Exposure),
@@ -36,7 +36,8 @@ impl Quantity {
         ("hue", Self::Hue),
     ];
 
-    /// By its name, or the channel of that name; `L*` is lightness.
+    /// Returns the quantity of this name, or the channel of this name, which takes precedence; `L*` means lightness. `None` if there is no
+    /// such quantity.
     #[must_use]
     pub fn named(name: &str, picture: &Measured) -> Option<Self> {
         if picture.planes.channel(name).is_some() {
@@ -46,7 +47,8 @@ impl Quantity {
         Self::NAMED.into_iter().find(|(own, _)| *own == name).map(|(_, quantity)| quantity)
     }
 
-    /// What one looks at first: the light in absolute units as far as the picture knows it; without colors its first channel.
+    /// Returns the default quantity: illuminance or exposure if the picture knows its light in absolute units, else luminance. A picture
+    /// without colors shows its first channel.
     #[must_use]
     pub fn usual(picture: &Measured) -> Self {
         match picture.unit {
@@ -60,30 +62,30 @@ impl Quantity {
     }
 }
 
-/// A quantity at each pixel.
+/// Values of one quantity at each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// What it is, without unit.
+    /// Name of the quantity, without unit.
     pub name: String,
-    /// Its unit; empty where it has none, or none is known.
+    /// Unit; empty if the quantity has none or none is known.
     pub unit: String,
-    /// Row by row from the top; NaN where it is undefined.
+    /// Values row by row from the top; NaN where undefined.
     pub values: Vec<f64>,
-    /// Whether it is an angle of 0 to 360 degrees.
+    /// Whether the quantity is an angle of 0 to 360 degrees.
     pub is_hue: bool,
-    /// What white is, where the quantity refers to one, in words.
+    /// Description of the reference white, for quantities relative to one.
     pub white: Option<String>,
 }
 
-/// Chroma below which hue says nothing.
+/// Chroma below which a hue is undefined.
 const GRAY_CHROMA: f64 = 1.0;
 
 impl Field {
-    /// A quantity of a picture; lightness, chroma and hue against a white of D65 whose Y is `white`, or else
-    /// [`Measured::white`].
+    /// Computes a quantity at each pixel of a picture. Lightness, chroma and hue are relative to a D65 white whose Y is `white`; if `None`,
+    /// [`Measured::white`] is used.
     ///
     /// # Errors
-    /// What the picture does not say.
+    /// The picture does not contain what the quantity needs.
     pub fn of(picture: &Measured, quantity: &Quantity, white: Option<f64>) -> Result<Self, NotMeasured> {
         let pixels = 0..picture.planes.pixels();
         let colors = || picture.colors.as_ref().map(|_| ()).ok_or_else(|| picture.without_colors());
@@ -108,7 +110,7 @@ impl Field {
             Quantity::Exposure => {
                 colors()?;
                 if picture.unit != Unit::LuxSeconds {
-                    let hint = "`--quantity illuminance`, or an imager with `exposure: 1/60 s`";
+                    let hint = "use `--quantity illuminance`, or give the imager an `exposure: 1/60 s`";
                     return Err(NotMeasured::new("the picture has no exposure in lx s", hint));
                 }
                 plain("exposure", "lx s", times(1.0))
@@ -116,7 +118,7 @@ impl Field {
             Quantity::Irradiance => {
                 if picture.bands().is_none() {
                     let hint = "`imager: {kind: spectral, bands: 40}` records it";
-                    return Err(NotMeasured::new("the picture does not say its power by wavelength", hint));
+                    return Err(NotMeasured::new("the picture does not record its power by wavelength", hint));
                 }
                 let irradiance = |p: usize| picture.irradiance_w_m2(p).unwrap_or(f64::NAN);
                 plain("irradiance", "W/m^{2}", pixels.map(irradiance).collect())
@@ -152,26 +154,26 @@ impl Field {
         })
     }
 
-    /// Smallest and largest of what is finite; `None` where nothing is.
+    /// Smallest and largest finite value; `None` if no value is finite.
     #[must_use]
     pub fn range(&self) -> Option<[f64; 2]> {
         let finite = self.values.iter().filter(|v| v.is_finite());
         finite.fold(None, |range: Option<[f64; 2]>, v| Some(range.map_or([*v; 2], |[a, b]| [a.min(*v), b.max(*v)])))
     }
 
-    /// Name and unit, as they stand beside a scale.
+    /// Name and unit, as written along a scale.
     #[must_use]
     pub fn label(&self) -> String {
         if self.unit.is_empty() { self.name.clone() } else { format!("{} / {}", self.name, self.unit) }
     }
 }
 
-/// White in words.
+/// Describes a white in words.
 pub(super) fn said(white: f64, unit: Unit) -> String {
     format!("white: Y = {} {}", short(white), unit.symbol()).trim_end().to_owned()
 }
 
-/// Four digits.
+/// Formats a number with four digits.
 pub(super) fn short(value: f64) -> String {
     if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
         let whole = format!("{:.0}", value.abs()).len();
@@ -183,18 +185,18 @@ pub(super) fn short(value: f64) -> String {
 }
 
 pub(super) fn dark() -> NotMeasured {
-    NotMeasured::new("nothing in the picture is lit", "`--white` says what is shown as white")
+    NotMeasured::new("no pixel of the picture is lit", "set what is shown as white with `--white`")
 }
 
 fn no_lux(picture: &Measured) -> NotMeasured {
     match picture.unit {
         Unit::OfWhite => NotMeasured::new(
             "the picture is relative to its white, not in lux",
-            "`--quantity luminance`; the linear exposure of the same render is in lx s",
+            "use `--quantity luminance`; the linear exposure of the same render is in lx s",
         ),
-        Unit::LuxSeconds => NotMeasured::new("the file does not say how long light fell", "`--quantity exposure`"),
+        Unit::LuxSeconds => NotMeasured::new("the file does not state the exposure time", "use `--quantity exposure`"),
         Unit::Lux | Unit::Unknown => {
-            NotMeasured::new("the file does not say the unit of its values", "`--quantity luminance`")
+            NotMeasured::new("the file does not state the unit of its values", "use `--quantity luminance`")
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What a picture file says of its light.
+//! A picture file with the physical meaning of its channels.
 
 use super::bands::{Band, edges_nm, middle_nm, xyz_of_band};
 use spectra_color::matrix::{Matrix, apply};
@@ -12,14 +12,14 @@ pub enum Unit {
     Lux,
     /// Y is exposure, lx s.
     LuxSeconds,
-    /// Y is relative to white, which is 1.
+    /// Y is relative to white, whose Y is 1.
     OfWhite,
-    /// Y is on a scale that the file does not say.
+    /// Y is on a scale that the file does not state.
     Unknown,
 }
 
 impl Unit {
-    /// As it stands behind a number; empty of what has none.
+    /// Symbol of the unit as written behind a number; empty if there is none.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -30,41 +30,41 @@ impl Unit {
     }
 }
 
-/// How a pixel's XYZ (CIE 1931) follow from its channels.
+/// The channels from which the XYZ (CIE 1931) of a pixel are computed.
 #[derive(Clone, Debug)]
 pub enum Colors {
-    /// They are channels: their numbers.
+    /// X, Y and Z are channels; these are their indices.
     Xyz([usize; 3]),
-    /// From linear red, green and blue of a space: the numbers of the channels.
+    /// Linear red, green and blue of a color space: the indices of the channels, and the space.
     Rgb([usize; 3], Box<RgbSpace>),
-    /// From bands of the spectrum.
+    /// Bands of a spectrum.
     Bands(Vec<Band>),
 }
 
-/// A picture whose light can be asked for.
+/// A picture whose light can be measured: its channels and what they mean.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// As the file has it.
+    /// Channels as the file stores them.
     pub planes: Planes,
-    /// Its colors; `None` where the channels say none, such as those of a film's layers.
+    /// Source of the colors; `None` if the channels define none, such as those of a film's layers.
     pub colors: Option<Colors>,
     /// The unit of XYZ.
     pub unit: Unit,
-    /// Width and height on the film, mm.
+    /// Width and height on the film, mm; `None` if the file does not state them.
     pub size_mm: Option<[f64; 2]>,
-    /// How long light fell, s.
+    /// Exposure time, s; `None` if the file does not state it.
     pub exposure_time_s: Option<f64>,
-    /// From XYZ to XYZ under a white of D65, where the primaries have another one.
+    /// Matrix from XYZ to XYZ under a D65 white; `None` if the primaries have this white already.
     to_d65: Option<Matrix>,
 }
 
-/// What a picture cannot say, and what could.
+/// A measurement that a picture does not allow, and what to do instead.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{text}")]
 pub struct NotMeasured {
-    /// What is missing.
+    /// Description of what is missing.
     pub text: String,
-    /// What to do about it.
+    /// Hint that says what to write.
     pub hint: String,
 }
 
@@ -75,10 +75,10 @@ impl NotMeasured {
 }
 
 impl Measured {
-    /// Finds out what the channels of a picture are, by their names and units and what the header says.
+    /// Finds out what the channels of a picture mean, from their names, their units and the header.
     ///
     /// # Errors
-    /// Bands of a spectrum that are named twice.
+    /// Two channels hold the same band of a spectrum.
     pub fn of(planes: Planes) -> Result<Self, Trouble> {
         let number = |name: &str| planes.channels.iter().position(|c| c.name == name);
         let all = |names: [&str; 3]| Some([number(names[0])?, number(names[1])?, number(names[2])?]);
@@ -118,7 +118,7 @@ impl Measured {
         Ok(Self { planes, colors, unit, size_mm, exposure_time_s, to_d65 })
     }
 
-    /// XYZ of a pixel in the picture's unit; `None` where the picture has no colors.
+    /// XYZ (CIE 1931) of a pixel in the picture's unit; `None` if the picture has no colors.
     #[must_use]
     pub fn xyz(&self, pixel: usize) -> Option<[f64; 3]> {
         let value = |channel: usize| f64::from(self.planes.channels[channel].values[pixel]);
@@ -136,14 +136,14 @@ impl Measured {
         })
     }
 
-    /// XYZ of a pixel as it looks under a white of D65: where the primaries have another white, it is brought there by CAT02.
+    /// XYZ of a pixel adapted to a D65 white by CAT02 if the primaries have another white; `None` if the picture has no colors.
     #[must_use]
     pub fn xyz_under_d65(&self, pixel: usize) -> Option<[f64; 3]> {
         let xyz = self.xyz(pixel)?;
         Some(self.to_d65.as_ref().map_or(xyz, |matrix| apply(matrix, xyz)))
     }
 
-    /// Irradiance of a pixel within the bands, W m^-2; `None` where no bands were recorded.
+    /// Irradiance of a pixel within the bands, W m^-2; `None` if no bands were recorded.
     #[must_use]
     pub fn irradiance_w_m2(&self, pixel: usize) -> Option<f64> {
         let bands = self.bands()?;
@@ -153,14 +153,14 @@ impl Measured {
         Some(bands.iter().map(power).sum())
     }
 
-    /// The bands, by wavelength, where they were recorded.
+    /// Bands by rising wavelength; `None` if none were recorded.
     #[must_use]
     pub fn bands(&self) -> Option<&[Band]> {
         if let Some(Colors::Bands(bands)) = &self.colors { Some(bands) } else { None }
     }
 
-    /// The value of red, green or blue from which on a pixel counts as clipped: where integers end, or white. `None` where the file
-    /// says neither.
+    /// The value of red, green or blue at which a pixel counts as clipped: the largest integer of the file's format, or white. `None` if
+    /// the file defines neither.
     #[must_use]
     pub fn clips_at(&self) -> Option<f64> {
         if !matches!(self.colors, Some(Colors::Rgb(..))) {
@@ -169,7 +169,7 @@ impl Measured {
         self.planes.clipped_at.map(f64::from).or((self.unit == Unit::OfWhite).then_some(1.0))
     }
 
-    /// Whether a pixel is beyond what the picture holds: red, green or blue where integers end, or above white.
+    /// Whether a pixel is clipped: red, green or blue is at the largest integer, or above white.
     #[must_use]
     pub fn is_clipped(&self, pixel: usize) -> bool {
         let (Some(Colors::Rgb(at, _)), Some(limit)) = (&self.colors, self.clips_at()) else { return false };
@@ -180,7 +180,7 @@ impl Measured {
         })
     }
 
-    /// What makes lux of the picture's Y; `None` where the file does not say.
+    /// Factor from the picture's Y to lux; `None` if the file does not define it.
     #[must_use]
     pub fn lux_per_y(&self) -> Option<f64> {
         match self.unit {
@@ -190,15 +190,15 @@ impl Measured {
         }
     }
 
-    /// Area of a pixel on the film, m^2.
+    /// Area of a pixel on the film, m^2; `None` if the size of the film is not known.
     #[must_use]
     pub fn pixel_area_m2(&self) -> Option<f64> {
         let [width, height] = self.size_mm?;
         Some(1e-6 * width * height / self.planes.pixels() as f64)
     }
 
-    /// The Y that a screen shows as white: 1 where the picture is relative to white; else as the picture is shown under automatic
-    /// exposure, where the 99th percentile of what is lit is 0.9 of white. `None` without light or colors.
+    /// Returns the Y that a screen shows as white. It is 1 if the picture is relative to white. Otherwise it is chosen as by automatic
+    /// exposure: the 99th percentile of the lit pixels is shown as 0.9 of white. `None` without light or colors.
     #[must_use]
     pub fn white(&self) -> Option<f64> {
         const QUANTILE: f64 = 0.99;
@@ -211,39 +211,39 @@ impl Measured {
         if lit.is_empty() {
             return None;
         }
-        // Nearest rank: the smallest value that this share of all does not exceed.
+        // Nearest rank: the smallest value that at least this share of all values does not exceed.
         let rank = ((QUANTILE * lit.len() as f64).ceil() as usize).clamp(1, lit.len());
         let (_, anchor, _) = lit.select_nth_unstable_by(rank - 1, f64::total_cmp);
         Some(*anchor / SHOWN_AS)
     }
 
-    /// Why the picture has no colors.
+    /// Returns the error that says why the picture has no colors.
     #[must_use]
     pub fn without_colors(&self) -> NotMeasured {
         let names: Vec<_> = self.planes.channels.iter().take(8).map(|c| format!("`{}`", c.name)).collect();
-        let text = format!("the picture's channels {} say no color", names.join(", "));
+        let text = format!("the channels {} of the picture do not define a color", names.join(", "));
         NotMeasured::new(
             text,
-            "pictures by `imager: {kind: xyz}` or `spectral` do, and finished ones: `{kind: exr, holds: picture}`",
+            "render with `imager: {kind: xyz}` or `spectral`, or write the finished picture: `{kind: exr, holds: picture}`",
         )
     }
 }
 
-/// `36 x 24 mm`.
+/// Parses a size such as `36 x 24 mm`.
 fn size_mm(text: &str) -> Option<[f64; 2]> {
     let (width, height) = text.strip_suffix(" mm")?.split_once(" x ")?;
     let number = |text: &str| text.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0);
     Some([number(width)?, number(height)?])
 }
 
-/// The bands of a spectral picture, by wavelength; `None` where there are fewer than two.
+/// Finds the bands of a spectral picture, by rising wavelength; `None` if there are fewer than two.
 fn bands(planes: &Planes) -> Result<Option<Vec<Band>>, Trouble> {
     let named = planes.channels.iter().enumerate();
     let mut middles: Vec<(f64, usize)> = named.filter_map(|(i, c)| Some((middle_nm(&c.name)?, i))).collect();
     middles.sort_by(|a, b| a.0.total_cmp(&b.0));
     if let Some(pair) = middles.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         let text = format!("two channels hold the band around {} nm", pair[0].0);
-        return Err(Trouble { key: "file", text, hint: Some("each band once".to_owned()) });
+        return Err(Trouble { key: "file", text, hint: Some("keep one channel for each band".to_owned()) });
     }
     let nm: Vec<f64> = middles.iter().map(|(nm, _)| *nm).collect();
     let Some(edges) = edges_nm(&nm) else { return Ok(None) };

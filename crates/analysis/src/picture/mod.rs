@@ -1,10 +1,10 @@
-//! A picture measured: what its file says of the light that is in it.
+//! Measurements on a picture file: the light that it records.
 //!
-//! - [`Measured`]: the picture with its colors, its size on the film and its exposure time, as far as the file says them;
+//! - [`Measured`]: the picture with its colors, its size on the film and its exposure time, as far as the file states them;
 //! - [`Summary`]: power, luminous flux, illuminance, colors that screens cannot show;
-//! - [`Field`]: one quantity at each pixel, as a view ([`view()`]) or a cut ([`Cut`]), or its colors ([`color()`]);
-//! - [`Area`]: the mean of a rectangle, with its spectrum where bands were recorded;
-//! - [`Difference`]: two pictures against each other.
+//! - [`Field`]: one quantity at each pixel, drawn as a view ([`view()`]) or sampled along a line ([`Cut`]); [`color()`] draws the colors;
+//! - [`Area`]: the mean of a rectangle, with its spectrum if bands were recorded;
+//! - [`Difference`]: a comparison of two pictures.
 
 mod area;
 mod bands;

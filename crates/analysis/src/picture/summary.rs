@@ -1,47 +1,47 @@
-//! A picture in figures.
+//! Summary of a picture in figures.
 
 use super::measured::Measured;
 use serde::Serialize;
 use spectra_color::RgbSpace;
 
-/// A channel in figures.
+/// Statistics of one channel of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChannelFigures {
-    /// Its name.
+    /// Name of the channel.
     pub name: String,
-    /// Its unit; empty where the file says none.
+    /// Unit; empty if the file states none.
     pub unit: String,
-    /// Smallest of what is finite; `None` where nothing is.
+    /// Smallest finite value; `None` if no value is finite.
     pub minimum: Option<f64>,
-    /// Mean of what is finite.
+    /// Mean of the finite values.
     pub mean: Option<f64>,
-    /// Largest of what is finite.
+    /// Largest finite value.
     pub maximum: Option<f64>,
-    /// Pixels whose value is infinite or undefined.
+    /// Number of pixels whose value is infinite or NaN.
     pub not_finite: usize,
 }
 
 /// Illuminance on the frame, lx.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Illuminance {
-    /// Smallest.
+    /// Smallest illuminance, lx.
     pub minimum: f64,
-    /// Mean.
+    /// Mean illuminance, lx.
     pub mean: f64,
-    /// Largest.
+    /// Largest illuminance, lx.
     pub maximum: f64,
 }
 
-/// How much of a picture a color space cannot show.
+/// Part of a picture that a color space cannot show.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outside {
-    /// The space.
+    /// Name of the color space.
     pub space: &'static str,
-    /// Share of the lit pixels whose color has a negative part in it, 0 to 1.
+    /// Share of the lit pixels whose color has a negative component in this space, 0 to 1.
     pub share: f64,
 }
 
-/// A picture in figures. What it does not say is `None`.
+/// Statistics of a picture. Quantities that its file does not define are `None`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// All channels in the order of the file.
@@ -56,21 +56,21 @@ pub struct Summary {
     pub band_nm: Option<[f64; 2]>,
     /// Mean XYZ (CIE 1931) in the picture's unit.
     pub mean_xyz: Option<[f64; 3]>,
-    /// Its chromaticity.
+    /// Chromaticity x, y of the mean XYZ.
     pub mean_xy: Option<[f64; 2]>,
-    /// Share of the pixels with light, 0 to 1.
+    /// Share of the pixels that receive light, 0 to 1.
     pub lit_share: Option<f64>,
-    /// What sRGB, Display P3 and Rec. 2020 cannot show.
+    /// Shares of colors outside sRGB, Display P3 and Rec. 2020.
     pub out_of_gamut: Vec<Outside>,
-    /// Share of the pixels at or above white, where white is known, 0 to 1.
+    /// Share of the clipped pixels, 0 to 1: at the end of an integer scale, or above white. `None` if neither is known.
     pub clipped_share: Option<f64>,
 }
 
-/// A negative part this small against the largest is rounding of single precision.
+/// Negative components smaller than this, relative to the largest, are rounding errors of single precision.
 const ROUNDING: f64 = 1e-6;
 
 impl Summary {
-    /// Of a picture.
+    /// Computes the summary of a picture.
     #[must_use]
     pub fn of(picture: &Measured) -> Self {
         let planes = &picture.planes;
@@ -120,7 +120,7 @@ impl Summary {
     }
 }
 
-/// Whether a color has a negative part in a space.
+/// Whether a color has a negative component in a color space.
 pub(super) fn is_outside(space: &RgbSpace, xyz: [f64; 3]) -> bool {
     let rgb = space.from_xyz(xyz);
     let largest = rgb.iter().fold(0.0_f64, |a, v| a.max(*v));

@@ -1,4 +1,4 @@
-//! A quantity of a picture as a view with a scale.
+//! View of one quantity of a picture with a color scale.
 
 use super::field::Field;
 use super::measured::{Measured, NotMeasured};
@@ -6,30 +6,30 @@ use super::summary::is_outside;
 use spectra_color::{Gamut, RgbSpace, into_gamut, to_u8, xyz_of_oklab};
 use spectra_plot::{Axes, Axis, Canvas, Color, Paint, Picture, Rect, Stop, Stroke, TextStyle, nice_ticks, text_width};
 
-/// Longest side of the picture on the sheet.
+/// Longest side of the picture on the sheet, canvas units.
 const SIDE: f64 = 760.0;
-/// Most pixels along a side that are kept; a larger picture is shown by means.
+/// Largest number of pixels along a side; a larger picture is reduced by averaging.
 const MOST_PX: usize = 1520;
-/// Where the picture begins.
+/// Left and upper edge of the picture on the sheet.
 const LEFT: f64 = 78.0;
 const TOP: f64 = 44.0;
-/// From the picture to the scale, its width, and what its labels take.
+/// Gap between picture and scale bar, width of the bar, and width of its labels.
 const GAP: f64 = 22.0;
 const BAR: f64 = 18.0;
 const LABELS: f64 = 92.0;
-/// On a logarithmic scale, the least is this part of the most unless something else is asked for.
+/// Smallest value of a logarithmic scale, relative to the largest, unless a range is given.
 const DEEPEST: f64 = 1e-6;
 
-/// From what to what a view goes, and how.
+/// Range and kind of the scale of a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale {
-    /// By powers of ten.
+    /// Whether the scale is logarithmic.
     pub is_log: bool,
-    /// Lower and upper end; the smallest and the largest value where absent.
+    /// Lower and upper end; if `None`, the range of the values (a linear scale starts at 0 or below).
     pub range: Option<[f64; 2]>,
 }
 
-/// What a scale runs over.
+/// The resolved ends of a scale.
 struct Ends {
     low: f64,
     high: f64,
@@ -40,8 +40,8 @@ impl Ends {
     fn of(field: &Field, scale: Scale) -> Result<Self, NotMeasured> {
         let Some([least, most]) = field.range() else {
             return Err(NotMeasured::new(
-                format!("{} is defined nowhere in the picture", field.name),
-                "another `--quantity`",
+                format!("{} is undefined in the whole picture", field.name),
+                "choose another `--quantity`",
             ));
         };
         if field.is_hue {
@@ -57,10 +57,10 @@ impl Ends {
             None => [least.min(0.0), most],
         };
         if is_log && !(low > 0.0 && high > 0.0) {
-            let text = format!("{} is nowhere above 0, so a logarithm shows nothing", field.name);
-            return Err(NotMeasured::new(text, "leave `--log` out, or a `--range` above 0"));
+            let text = format!("{} is nowhere above 0, so a logarithmic scale shows nothing", field.name);
+            return Err(NotMeasured::new(text, "leave `--log` out, or give a `--range` above 0"));
         }
-        // Something that is the same everywhere has a scale, too.
+        // Widen an empty range: a quantity that is the same everywhere needs a scale too.
         let high = match high {
             h if h > low => h,
             h if is_log => h * 1.01,
@@ -73,11 +73,11 @@ impl Ends {
     fn share(&self, value: f64) -> f64 {
         let at = |v: f64| if self.is_log { libm::log10(v) } else { v };
         let share = (at(value) - at(self.low)) / (at(self.high) - at(self.low));
-        // What is not above 0 lies below any logarithm.
+        // Values of 0 and below are at the low end of a logarithmic scale.
         if self.is_log && value <= 0.0 { 0.0 } else { share.clamp(0.0, 1.0) }
     }
 
-    /// Ticks and their labels.
+    /// Returns the ticks and their labels.
     fn marks(&self, is_hue: bool) -> Vec<(f64, String)> {
         if is_hue {
             return (0..=6).map(|i| (60.0 * f64::from(i), (60 * i).to_string())).collect();
@@ -101,7 +101,7 @@ impl Ends {
     }
 }
 
-/// A number of a linear scale; powers of ten where it would be long.
+/// Label of a tick of a linear scale; a long number becomes a multiple of a power of ten.
 fn label(value: f64, plain: String) -> String {
     if value != 0.0 && (value.abs() >= 1e6 || value.abs() < 1e-4) {
         let power = libm::floor(libm::log10(value.abs())) as i32;
@@ -123,14 +123,14 @@ fn signed(power: i32) -> String {
     power.to_string().replace('-', "\u{2212}")
 }
 
-/// The color of a share of a scale: lightness in Oklab rises evenly, from a dark blue by green to a light yellow.
+/// Returns the color of a share (0 to 1) of a scale: Oklab lightness rises evenly from dark blue through green to light yellow.
 fn shade(share: f64) -> [u8; 3] {
     let hue = (285.0 - 180.0 * share).to_radians();
     let chroma = 0.09 + 0.06 * share;
     oklab(0.22 + 0.72 * share, chroma, hue)
 }
 
-/// The color of a hue: the angle of CIE h as one of Oklab, of the same lightness all around.
+/// Returns the color of a hue angle, degrees: the angle of CIE h is used in Oklab, at the same lightness all around.
 fn wheel(degrees: f64) -> [u8; 3] {
     oklab(0.72, 0.13, degrees.to_radians())
 }
@@ -141,13 +141,13 @@ fn oklab(lightness: f64, chroma: f64, hue: f64) -> [u8; 3] {
     srgb.encode(into_gamut(srgb.from_xyz(xyz), srgb, Gamut::Perceptual)).map(to_u8)
 }
 
-/// What has no value, such as the hue of a gray.
+/// Color of pixels without a value, such as the hue of a gray.
 const UNDEFINED: [u8; 3] = [128, 128, 128];
 
-/// The picture of one quantity, with rows and columns beside it and its scale.
+/// Draws one quantity of a picture, with its rows and columns along the frame and a scale bar.
 ///
 /// # Errors
-/// There is nothing to show: the quantity is defined nowhere, or nowhere above 0 where its logarithm is wanted.
+/// There is nothing to show: the quantity is defined nowhere, or is nowhere above 0 on a logarithmic scale.
 pub fn view(picture: &Measured, field: &Field, scale: Scale, title: &str) -> Result<Canvas, NotMeasured> {
     let ends = Ends::of(field, scale)?;
     let table: Vec<[u8; 3]> = (0..=1023).map(|i| shade(f64::from(i) / 1023.0)).collect();
@@ -164,10 +164,10 @@ pub fn view(picture: &Measured, field: &Field, scale: Scale, title: &str) -> Res
     Ok(canvas)
 }
 
-/// Where a picture leaves what a screen can show: brightness in gray, above it what lies beyond white, outside of sRGB, or is no number.
+/// Draws what a screen cannot show: brightness in gray, with pixels marked in color that are beyond white, outside sRGB, or not a number.
 ///
 /// # Errors
-/// The picture has no colors, or nothing in it is lit.
+/// The picture has no colors, or no pixel of it is lit.
 pub fn clipping(picture: &Measured, white: Option<f64>, title: &str) -> Result<Canvas, NotMeasured> {
     const OVER: [u8; 3] = [0xe0, 0x3c, 0x28];
     const OUTSIDE: [u8; 3] = [0x2a, 0x6f, 0xdb];
@@ -189,7 +189,7 @@ pub fn clipping(picture: &Measured, white: Option<f64>, title: &str) -> Result<C
             (true, true) => 2.0,
             (true, false) => 0.0,
             (false, true) => 1.0,
-            // Gray by lightness: below 0, told from the kinds.
+            // Gray by brightness, coded as a negative number to tell it from the kinds.
             (false, false) => -1.0 - srgb.encode([(xyz[1] / white).clamp(0.0, 1.0); 3])[0],
         }
     };
@@ -197,13 +197,13 @@ pub fn clipping(picture: &Measured, white: Option<f64>, title: &str) -> Result<C
     let mut counts = [0_usize; 4];
     let kinds: Vec<f64> = (0..picture.planes.pixels()).map(kind).collect();
     kinds.iter().filter(|k| **k >= 0.0).for_each(|k| counts[*k as usize] += 1);
-    // The first of a block that is marked stands for it: a single pixel must not vanish.
+    // Show the highest kind in each block, so that a single marked pixel does not vanish.
     let shown = Shown::worst(picture, &|pixel| kinds[pixel]);
     let rgb = shown.values.iter().map(|v| if *v >= 0.0 { colors[*v as usize] } else { [to_u8(0.85 * (-1.0 - v)); 3] });
     let note = super::field::said(white, picture.unit);
     let mut canvas = sheet(picture, title, Some(&note), &shown, rgb.collect());
     let style = TextStyle::new(13.0);
-    let words = ["beyond white", "outside of sRGB", "both", "no number"];
+    let words = ["beyond white", "outside sRGB", "both", "not a number"];
     let mut y = shown.frame.top + 12.0;
     for ((color, word), count) in colors.into_iter().zip(words).zip(counts) {
         let x = shown.frame.right + GAP;
@@ -217,7 +217,7 @@ pub fn clipping(picture: &Measured, white: Option<f64>, title: &str) -> Result<C
     Ok(canvas)
 }
 
-/// A picture's values as the sheet shows them.
+/// Values of a picture, reduced to the pixels on the sheet.
 pub(super) struct Shown {
     pub(super) frame: Rect,
     pub(super) columns: usize,
@@ -226,7 +226,7 @@ pub(super) struct Shown {
 }
 
 impl Shown {
-    /// Means of the finite values of blocks where the picture has more pixels than are shown; of angles the first.
+    /// Reduces a picture to the shown pixels by the mean of the finite values of each block; angles use the first finite value.
     pub(super) fn of(picture: &Measured, is_angle: bool, value: &dyn Fn(usize) -> f64) -> Self {
         let mean = |block: &mut dyn Iterator<Item = f64>| {
             let mut finite = block.filter(|v| v.is_finite());
@@ -239,7 +239,7 @@ impl Shown {
         Self::blocks(picture, value, &mean)
     }
 
-    /// The largest value of each block.
+    /// Reduces a picture to the shown pixels by the largest value of each block.
     fn worst(picture: &Measured, value: &dyn Fn(usize) -> f64) -> Self {
         Self::blocks(picture, value, &|block| block.fold(f64::NEG_INFINITY, f64::max))
     }
@@ -261,13 +261,13 @@ impl Shown {
         let values = values.collect();
         let aspect = width as f64 * picture.planes.pixel_aspect / height as f64;
         let [across, down] = if aspect > 1.0 { [SIDE, SIDE / aspect] } else { [SIDE * aspect, SIDE] };
-        // A picture of one row is still to be seen.
+        // Keep a picture of one row visible.
         let (across, down) = (across.max(40.0), down.max(40.0));
         Self { frame: Rect::new(LEFT, TOP, LEFT + across, TOP + down), columns, rows, values }
     }
 }
 
-/// The sheet with title, picture, rows and columns.
+/// Draws the sheet with title, picture, rows and columns.
 pub(super) fn sheet(picture: &Measured, title: &str, note: Option<&str>, shown: &Shown, rgb: Vec<[u8; 3]>) -> Canvas {
     let frame = shown.frame;
     let mut canvas = Canvas::new(frame.right + GAP + BAR + LABELS + 24.0, frame.bottom + 62.0, title);
@@ -277,7 +277,7 @@ pub(super) fn sheet(picture: &Measured, title: &str, note: Option<&str>, shown: 
         let at = [frame.left + text_width(title, style.size) * 1.06 + 22.0, frame.top - 16.0];
         canvas.text(at, note, &TextStyle::new(12.5).color(Color::GREY));
     }
-    // Each pixel as a square with sharp edges, as far as the sheet's own pixels go.
+    // Draw each pixel as a square with sharp edges, as far as the resolution of the sheet allows.
     let sharp = (2.0 * SIDE / shown.columns.max(shown.rows) as f64).floor().clamp(1.0, 64.0) as usize;
     let (columns, rows) = (shown.columns * sharp, shown.rows * sharp);
     let fine = (0..columns * rows).map(|i| rgb[i / columns / sharp * shown.columns + i % columns / sharp]);
@@ -289,7 +289,7 @@ pub(super) fn sheet(picture: &Measured, title: &str, note: Option<&str>, shown: 
     canvas
 }
 
-/// The scale of a view, right of it.
+/// Draws the scale bar of a view, to the right of it.
 fn bar(canvas: &mut Canvas, frame: &Rect, field: &Field, ends: &Ends) {
     let left = frame.right + GAP;
     let place = Rect::new(left, frame.top, left + BAR, frame.bottom);
@@ -318,7 +318,7 @@ fn bar(canvas: &mut Canvas, frame: &Rect, field: &Field, ends: &Ends) {
 mod tests {
     use super::*;
 
-    /// Each color is lighter than the one before, so that the scale reads in gray, too.
+    /// Each color is lighter than the one before, so that the scale can be read in gray too.
     #[test]
     fn the_scale_gets_lighter() {
         let luminance = |share: f64| {

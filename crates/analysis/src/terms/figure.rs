@@ -1,4 +1,4 @@
-//! A chain of terms as a figure: the product and its terms, and how estimates of its integral scatter.
+//! Figure of a chain of Gaussian terms: the product and its terms, and the scatter of estimates of its integral.
 
 use super::{Chain, Scatter};
 use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke, TextStyle, text_width};
@@ -8,14 +8,15 @@ const WIDTH: f64 = 1080.0;
 const HEIGHT: f64 = 500.0;
 const LEFT: Rect = Rect { left: 84.0, top: 96.0, right: 520.0, bottom: 432.0 };
 const RIGHT: Rect = Rect { left: 640.0, top: 96.0, right: 1050.0, bottom: 432.0 };
-/// How many of the product's terms are shown, the largest.
+/// Number of terms of the product that are shown: the largest ones.
 const SHOWN: usize = 16;
 const POINTS: u32 = 961;
 const POSITIVE: Color = Color::PALETTE[2];
 const NEGATIVE: Color = Color::PALETTE[1];
 
-/// The product of the spectra and of the terms, with the largest of its terms by sign, on the left; on the right the relative error of
-/// estimates by samples: one term of every factor as measured (dots) and as computed, and wavelengths.
+/// Draws a chain. The left plot shows the product of the spectra, that of the terms, and the largest of its terms by sign. The right plot
+/// shows the relative error of estimates against the number of samples: one term of every factor as measured (dots) and as computed, and
+/// sampled wavelengths.
 #[must_use]
 pub fn figure(chain: &Chain) -> Canvas {
     let names: Vec<&str> = chain.factors.iter().map(|f| f.name.as_str()).collect();
@@ -37,7 +38,7 @@ fn product(canvas: &mut Canvas, chain: &Chain) {
     let curve = |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..POINTS).map(|i| f(nm(i))).collect() };
     let shape = chain.factors[1..].iter().fold(chain.factors[0].shape.clone(), |all: Shape, f| all.times(&f.shape));
     let spectra = curve(&|w| shape.at(w));
-    // Factor by factor: as many evaluations as they have terms, not as the product has.
+    // Evaluate factor by factor: that takes as many evaluations as the factors have terms, not as the product has.
     let terms = curve(&|w| chain.factors.iter().map(|f| f.mixture.at(w)).product());
     let height = spectra.iter().chain(&terms).copied().fold(0.0, f64::max);
     let mut largest: Vec<_> = chain.product.terms().to_vec();
@@ -46,7 +47,7 @@ fn product(canvas: &mut Canvas, chain: &Chain) {
     largest.truncate(SHOWN);
     let values: Vec<Vec<f64>> = largest.iter().map(|t| curve(&|w| t.at(w) / height)).collect();
     let all = || values.iter().flatten().copied();
-    // Terms that cancel may be far higher than what is left of them.
+    // Clip the scale: terms that cancel may be far higher than their sum.
     let (low, high) = (all().fold(0.0, f64::min).max(-4.0), all().fold(1.0, f64::max).min(4.0));
     let room = 0.06 * (high - low);
     let y = Axis::new("relative to the product's peak", low - room, high + room).ticks(6, 2);

@@ -1,8 +1,8 @@
-//! Gaussian terms through a whole chain of light, filters, surfaces and film.
+//! Gaussian terms for a whole chain of light, filters, surfaces and film.
 //!
-//! Each factor is a signed sum of Gaussian terms, known as such or fitted; their product is one with as many terms as there are
-//! choices of one term of each factor, and its integral is exact. To follow one term of every factor estimates that integral
-//! without any wavelength; how far such an estimate scatters is computed here, and measured.
+//! Each factor is a signed sum of Gaussian terms, known exactly or fitted. The product of the factors is again such a sum, with one term
+//! for each choice of one term from every factor, and its integral is exact. Following one term of every factor estimates that integral
+//! without any wavelength. This module computes the scatter of such an estimate and measures it.
 
 mod figure;
 
@@ -14,33 +14,33 @@ use spectra_core::numbers::Numbers;
 use spectra_core::spectral::Grid;
 use spectra_spectrum::{Found, GaussianMixture, OneTerm, Shape, fit_gaussians};
 
-/// Most terms of a product that are written out.
+/// Largest number of terms of a product.
 pub const MOST_TERMS: f64 = 1_000_000.0;
 /// Numbers of samples at which the scatter is measured.
 const SAMPLES: [usize; 6] = [4, 16, 64, 256, 1024, 4096];
-/// Seeds of each.
+/// Number of seeds for each number of samples.
 const SEEDS: u64 = 200;
 /// Widest panel of a quadrature, nm.
 const PANEL_NM: f64 = 0.5;
 
-/// One factor as Gaussian terms.
+/// One factor of a chain as a sum of Gaussian terms.
 #[derive(Clone, Debug, Serialize)]
 pub struct Factor {
-    /// What it is called.
+    /// Name of the factor.
     pub name: String,
-    /// What it is.
+    /// Kind of spectrum: `emission`, `transmittance`, `reflectance` or `sensitivity`.
     pub kind: &'static str,
-    /// How many terms stand for it.
+    /// Number of terms.
     pub terms: usize,
-    /// Whether it is made of Gaussians and nothing was fitted.
+    /// Whether the factor is defined by Gaussians, so that nothing was fitted.
     pub exact: bool,
-    /// Relative L2 error of the terms; 0 if exact.
+    /// Relative L2 error of the fitted terms; 0 if exact.
     pub relative_l2: f64,
-    /// Relative error of their integral; 0 if exact.
+    /// Relative error of the integral of the terms; 0 if exact.
     pub integral_error: f64,
-    /// How much the terms cancel.
+    /// Cancellation of the terms: sum of the sizes of their integrals divided by the size of the sum.
     pub kappa: f64,
-    /// The terms.
+    /// The Gaussian terms of the factor.
     #[serde(skip)]
     pub mixture: GaussianMixture,
     /// The spectrum itself.
@@ -48,96 +48,96 @@ pub struct Factor {
     pub shape: Shape,
 }
 
-/// Relative errors of estimates of the integral of the product of terms by a number of samples.
+/// Relative errors of estimates of the integral of the product of terms, for one number of samples.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Scatter {
-    /// Samples of one estimate.
+    /// Number of samples of one estimate.
     pub samples: usize,
-    /// One term of every factor, root mean square over the seeds.
+    /// Error with one term of every factor: measured root mean square over the seeds.
     pub one_term_measured: f64,
-    /// The same as computed from all choices.
+    /// Error with one term of every factor, computed from all choices.
     pub one_term: f64,
-    /// Wavelengths drawn evenly over the band, as computed.
+    /// Error with wavelengths drawn evenly over the band, as computed.
     pub even: f64,
-    /// Wavelengths drawn in proportion to the first factor, as computed.
+    /// Error with wavelengths drawn in proportion to the first factor, as computed.
     pub first_factor: f64,
 }
 
-/// A product of factors.
+/// A product of factors, each a sum of Gaussian terms.
 #[derive(Clone, Debug, Serialize)]
 pub struct Chain {
-    /// The factors.
+    /// Factors in their order.
     pub factors: Vec<Factor>,
-    /// The band, nm.
+    /// First and last wavelength of the band, nm.
     pub band_nm: [f64; 2],
-    /// Terms of the product.
+    /// Number of terms of the product.
     pub terms: usize,
-    /// Its integral over the band, exact: the sum of those of its terms.
+    /// Exact integral of the product of terms over the band: the sum of the integrals of its terms.
     pub integral: f64,
-    /// The same by quadrature of the product of the sums of terms.
+    /// Integral of the product of the sums of terms by quadrature.
     pub quadrature: f64,
-    /// The difference of both over the sum of the sizes of all terms' integrals.
+    /// Size of `integral` - `quadrature` divided by the sum of the sizes of all terms' integrals.
     pub difference: f64,
     /// Integral of the product of the spectra themselves, by quadrature.
     pub of_spectra: f64,
-    /// What the fits make of it: `integral` over that, less 1.
+    /// Relative error due to the fits: `integral` / `of_spectra` - 1.
     pub fit_error: f64,
-    /// Sum of the sizes of the integrals of all terms over the integral.
+    /// Cancellation of the product: sum of the sizes of the integrals of all terms divided by the size of the integral.
     pub kappa: f64,
-    /// Mean of one-term estimates by all choices: the integral.
+    /// Mean of one-term estimates over all choices; equal to the integral.
     pub one_term_mean: f64,
-    /// Relative standard deviation of one such estimate, by all choices.
+    /// Relative standard deviation of one such estimate, from all choices.
     pub one_term_deviation: f64,
-    /// Estimates that each error is measured by.
+    /// Number of estimates from which each error is measured.
     pub seeds: u64,
-    /// Errors by numbers of samples.
+    /// Errors for several numbers of samples.
     pub scatter: Vec<Scatter>,
-    /// The terms of the product.
+    /// The product as a sum of terms.
     #[serde(skip)]
     pub product: GaussianMixture,
 }
 
-/// Why there is no chain.
+/// Why a chain could not be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ChainError {
-    /// A factor whose light is lines.
-    #[error("`{0}` has spectral lines, which are no Gaussian terms")]
+    /// A factor emits spectral lines.
+    #[error("`{0}` has spectral lines, which are not Gaussian terms")]
     Lines(String),
-    /// A factor to which no terms can be fitted.
+    /// Gaussian terms cannot be fitted to a factor.
     #[error("`{name}` cannot be fitted: {reason}")]
     Fit {
-        /// Its name.
+        /// Name of the factor.
         name: String,
-        /// Why.
+        /// Reason why the fit failed.
         reason: String,
     },
-    /// Two lights, or two detectors.
-    #[error("`{first}` and `{second}` are both of kind {kind}: a chain has one light and one detector at most")]
+    /// The chain has two lights, or two detectors.
+    #[error("`{first}` and `{second}` are both of kind {kind}: a chain has at most one light and one detector")]
     Twice {
-        /// The first.
+        /// Name of the first one.
         first: String,
-        /// The second.
+        /// Name of the second one.
         second: String,
-        /// What both are.
+        /// Kind of both.
         kind: &'static str,
     },
-    /// More terms than can be written out.
-    #[error("the product has {terms} terms, more than {MOST_TERMS}")]
+    /// The product has too many terms.
+    #[error("the product has {terms} terms, at most {MOST_TERMS} are supported")]
     TooMany {
-        /// How many.
+        /// Number of terms of the product.
         terms: f64,
     },
-    /// Nothing is left of the light on the band.
-    #[error("nothing passes all factors on the band")]
+    /// No light is left on the band.
+    #[error("no light passes all factors within the band")]
     Dark,
 }
 
 impl Chain {
-    /// The product of `factors`, each by its name, over the band of `grid`; what is not made of Gaussians is fitted by `terms` of
-    /// them on that grid.
+    /// Builds the product of `factors` (name and spectrum) over the band of `grid`. A factor not defined by Gaussians is fitted by `terms`
+    /// of them on that grid.
     ///
     /// # Errors
-    /// [`ChainError`].
+    /// [`ChainError`]. At most [`MOST_TERMS`] terms, one light and one detector are allowed.
     pub fn new(factors: &[(String, Found)], terms: usize, grid: &Grid, isa: Isa) -> Result<Self, ChainError> {
         for (i, (second, found)) in factors.iter().enumerate() {
             let is_end = matches!(found, Found::Emission(_) | Found::Sensitivity(_));
@@ -147,7 +147,7 @@ impl Chain {
                 return Err(ChainError::Twice { first, second, kind: found.kind().word() });
             }
         }
-        // Before anything is fitted.
+        // Check the number of terms before anything is fitted.
         let terms_of = |found: &Found| shape_of(found).and_then(Shape::as_mixture).map_or(terms, |m| m.terms().len());
         let count = factors.iter().map(|(_, found)| terms_of(found) as f64).product::<f64>();
         if count > MOST_TERMS {
@@ -175,7 +175,7 @@ impl Chain {
         }
         let (mean, deviation) = one_term.moments();
         let relative = deviation / integral.abs();
-        // Of the product of terms, so that all estimate the same integral.
+        // Use the product of terms, so that all methods estimate the same integral.
         let wavelengths = |density: &Shape| {
             let all = density.integral(min_nm, max_nm, PANEL_NM);
             let second = of_terms.times(&of_terms).over(density).integral(min_nm, max_nm, PANEL_NM) * all;
@@ -215,7 +215,7 @@ impl Chain {
         })
     }
 
-    /// The factors and the errors as a table for a spreadsheet.
+    /// Returns the errors for each number of samples as CSV.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut out = "samples,one_term_measured,one_term,even_wavelengths,wavelengths_by_first_factor\n".to_owned();
@@ -254,7 +254,7 @@ fn factor(name: &str, found: &Found, terms: usize, grid: &Grid) -> Result<Factor
     })
 }
 
-/// The function of the wavelength; `None` of light that has lines alone.
+/// Returns the spectrum as a function of wavelength; `None` for light that consists of lines alone.
 fn shape_of(found: &Found) -> Option<&Shape> {
     match found {
         Found::Emission(light) => light.continuum(),
@@ -264,14 +264,14 @@ fn shape_of(found: &Found) -> Option<&Shape> {
     }
 }
 
-/// Relative root-mean-square error over the seeds.
+/// Measures the relative root-mean-square error of one-term estimates over the seeds.
 fn measured(one_term: &OneTerm, integral: f64, samples: usize, isa: Isa) -> f64 {
     let factors = one_term.numbers();
     let mut columns = vec![vec![0.0; samples]; factors];
     let mut choice = vec![0.0; factors];
     let mut squares = 0.0;
     for seed in 0..SEEDS {
-        // A stream for each number of samples, so that none shares its numbers with another.
+        // Use a stream for each number of samples, so that none shares its numbers with another.
         let numbers = Numbers::random(seed + 1);
         for (dimension, column) in columns.iter_mut().enumerate() {
             numbers.fill(isa, samples as u64, 0, dimension as u32, column);
@@ -307,7 +307,7 @@ mod tests {
         assert!(chain.difference < 1e-12, "{:e}", chain.difference);
         assert!((chain.one_term_mean / chain.integral - 1.0).abs() < 1e-9 * chain.kappa);
         assert!(chain.kappa >= 1.0 && chain.one_term_deviation > 0.0);
-        // Four thousand samples follow the computed scatter; fewer miss rare choices.
+        // Four thousand samples agree with the computed scatter; fewer miss rare choices.
         let last = chain.scatter.last().expect("errors");
         let ratio = last.one_term_measured / last.one_term;
         assert!((0.7..1.3).contains(&ratio), "{ratio}");

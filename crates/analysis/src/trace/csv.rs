@@ -1,4 +1,4 @@
-//! Numbers from CSV, row by row, by the names of their columns.
+//! Reads rows of numbers from CSV by the names of their columns.
 
 use super::TraceError;
 use std::io::{BufRead, Read};
@@ -6,21 +6,20 @@ use std::io::{BufRead, Read};
 /// Longest line that is read, bytes: a file without line ends must not fill the memory.
 const LONGEST_LINE: u64 = 64 * 1024;
 
-/// Reads rows of numbers. Columns are found by the names in the first row, in any order; others are
-/// passed over, and so are empty lines.
+/// Reader of rows of numbers. It finds columns by the names in the first row, in any order, and skips other columns and empty lines.
 pub(crate) struct NumberRows<R> {
     input: R,
     file: String,
     line: usize,
     text: Vec<u8>,
-    /// Names of the wanted columns.
+    /// Names of the columns to read.
     wanted: Vec<&'static str>,
-    /// For each column of the file, which of the wanted it is.
+    /// Index in `wanted` of the name of each column of the file; `None` for columns to skip.
     columns: Vec<Option<usize>>,
 }
 
 impl<R: BufRead> NumberRows<R> {
-    /// Reads the first row.
+    /// Reads and checks the first row.
     pub(crate) fn new(input: R, file: &str, wanted: &[&'static str]) -> Result<Self, TraceError> {
         let mut rows = Self {
             input,
@@ -45,7 +44,7 @@ impl<R: BufRead> NumberRows<R> {
         for (column, name) in fields(text) {
             let which = self.wanted.iter().position(|wanted| *wanted == name);
             if which.is_some_and(|which| std::mem::replace(&mut seen[which], true)) {
-                return Err(self.fault(column, format!("the column `{name}` comes twice")));
+                return Err(self.fault(column, format!("the column `{name}` appears twice")));
             }
             columns.push(which);
         }
@@ -69,7 +68,7 @@ impl<R: BufRead> NumberRows<R> {
         ))
     }
 
-    /// Reads the next row into `values`, one for each wanted column; false at the end of the file.
+    /// Reads the next row into `values`, one value for each wanted column; returns false at the end of the file.
     pub(crate) fn next_row(&mut self, values: &mut [f64]) -> Result<bool, TraceError> {
         if !self.next_line()? {
             return Ok(false);
@@ -85,13 +84,13 @@ impl<R: BufRead> NumberRows<R> {
         }
         if count != self.columns.len() {
             let expected = self.columns.len();
-            let hint = if count > expected { "; a number has a decimal point, not a comma" } else { "" };
+            let hint = if count > expected { "; write numbers with a decimal point, not a comma" } else { "" };
             return Err(self.fault(1, format!("found {count} columns where the first row has {expected}{hint}")));
         }
         Ok(true)
     }
 
-    /// A fault in the row that was read last, at a column that has a name.
+    /// Returns an error in the row that was read last, at the column with this name.
     pub(crate) fn fault_at(&self, name: &str, message: &str) -> TraceError {
         let which = self.wanted.iter().position(|wanted| *wanted == name);
         let at = self.columns.iter().position(|column| column.is_some() && *column == which);
@@ -100,7 +99,7 @@ impl<R: BufRead> NumberRows<R> {
         self.fault(column, message.to_owned())
     }
 
-    /// Reads the next line that is not empty; false at the end of the file.
+    /// Reads the next line that is not empty; returns false at the end of the file.
     fn next_line(&mut self) -> Result<bool, TraceError> {
         loop {
             self.text.clear();
@@ -109,7 +108,7 @@ impl<R: BufRead> NumberRows<R> {
             self.line += 1;
             if read as u64 == LONGEST_LINE && self.text.last() != Some(&b'\n') {
                 return Err(
-                    self.fault(1, format!("a line of more than {LONGEST_LINE} bytes: this is no table of rays"))
+                    self.fault(1, format!("a line of more than {LONGEST_LINE} bytes: this is not a table of rays"))
                 );
             }
             if read == 0 {
@@ -129,7 +128,7 @@ impl<R: BufRead> NumberRows<R> {
     fn utf8(&self) -> Result<&str, TraceError> {
         std::str::from_utf8(&self.text).map_err(|error| {
             let column = String::from_utf8_lossy(&self.text[..error.valid_up_to()]).chars().count() + 1;
-            self.fault(column, "found bytes that are no text (UTF-8)".to_owned())
+            self.fault(column, "found bytes that are not UTF-8 text".to_owned())
         })
     }
 
@@ -138,14 +137,14 @@ impl<R: BufRead> NumberRows<R> {
     }
 }
 
-/// The fields of a row with the column, in characters from 1, where each starts. A field may stand in quotes.
+/// Iterates over the fields of a row, each with the column (in characters, from 1) where it starts. A field may be quoted.
 fn fields(row: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut rest = Some(row);
     let mut column = 1;
     std::iter::from_fn(move || {
         let text = rest?;
         let lead = text.len() - text.trim_start().len();
-        // A comma inside of quotes separates nothing.
+        // A comma inside quotes does not separate fields.
         let from = match text[lead..].strip_prefix('"').and_then(|quoted| quoted.find('"')) {
             Some(end) => lead + end + 2,
             None => 0,
@@ -161,7 +160,7 @@ fn fields(row: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// A finite number, or what was found in its place.
+/// Parses a finite number, or says what was found instead.
 fn number(field: &str) -> Result<f64, String> {
     match field.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -171,7 +170,7 @@ fn number(field: &str) -> Result<f64, String> {
     }
 }
 
-/// A user's text on one short line.
+/// Makes a user's text fit on one short line.
 fn shown(text: &str) -> String {
     let safe: String = text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(41).collect();
     if safe.chars().count() > 40 { safe.chars().take(40).chain("...".chars()).collect() } else { safe }
@@ -212,9 +211,9 @@ mod tests {
             ("x,y\n1\n", "rays.csv:2:1: found 1 columns where the first row has 2"),
             (
                 "x,y\n1,5,2\n",
-                "rays.csv:2:1: found 3 columns where the first row has 2; a number has a decimal point, not a comma",
+                "rays.csv:2:1: found 3 columns where the first row has 2; write numbers with a decimal point, not a comma",
             ),
-            ("x,x,y\n", "rays.csv:1:3: the column `x` comes twice"),
+            ("x,x,y\n", "rays.csv:1:3: the column `x` appears twice"),
             ("x\n", "rays.csv:1:1: the column `y` is missing in the first row"),
             (
                 "x;y\n",
@@ -229,10 +228,7 @@ mod tests {
     #[test]
     fn bytes_that_are_no_text_and_endless_lines_are_faults() {
         let mut rows = NumberRows::new(&b"x,y\n1,\xff\n"[..], "r", &["x", "y"]).expect("a header");
-        assert_eq!(
-            rows.next_row(&mut [0.0; 2]).unwrap_err().to_string(),
-            "r:2:3: found bytes that are no text (UTF-8)"
-        );
+        assert_eq!(rows.next_row(&mut [0.0; 2]).unwrap_err().to_string(), "r:2:3: found bytes that are not UTF-8 text");
         let endless = std::io::BufReader::new(std::io::repeat(b'1'));
         let Err(error) = NumberRows::new(endless, "r", &["x", "y"]) else { panic!("endless") };
         assert!(error.to_string().starts_with("r:1:1: a line of more than"), "{error}");

@@ -1,14 +1,16 @@
-//! Rays as CSV through a lens, and where they end as CSV.
+//! Traces rays given as CSV through a lens and writes where they end as CSV.
 //!
-//! In: columns `x_mm, y_mm, z_mm` (a point of the ray before the first surface, frame of the lens: its
-//! vertex is the origin, +z toward the image), `l, m, n` (unit direction) and `wavelength_nm`, by name
-//! and in any order. Out, a row for each:
-//! `status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm`. A `hit` is where the ray
-//! meets the image plane, in the frame of the lens, with its direction there, the part of its light that glass and coatings left, and
-//! index times length from its start, with what gratings and ideal lenses add ([`spectra_core::surface::Surface::phase_mm`]); a ray that ended on the way
-//! gives `missed`, `vignetted`, `tir` or `absorbed` and the number of the surface, and its other fields are
-//! empty. A ray that leaves along the image plane has `missed` it: one surface more than the lens has.
-//! On request there is a row `passed` before it for each surface that the ray went through, and the number of the ray before each.
+//! Input columns, found by name and in any order: `x_mm, y_mm, z_mm` (a point of the ray in front of the first surface, in the frame of the
+//! lens: origin at its vertex, +z toward the image), `l, m, n` (unit direction) and `wavelength_nm`.
+//!
+//! Output, one row for each ray: `status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm`.
+//! A `hit` gives the point where the ray meets the image plane and its direction there, both in the frame of the lens. `transmittance` is
+//! the part of the light that glass and coatings leave. `optical_path_mm` is index times length from the start of the ray, plus what
+//! gratings and ideal lenses add ([`spectra_core::surface::Surface::phase_mm`]).
+//! A ray that ends on the way gives `missed`, `vignetted`, `tir` or `absorbed` and the number of the surface; its other fields are empty. A
+//! ray that leaves parallel to the image plane has `missed` it: its surface number is one more than the lens has surfaces.
+//! On request a row `passed` for each surface that the ray went through comes before the last row, and every row begins with the number of
+//! the ray.
 
 mod csv;
 mod row;
@@ -20,84 +22,86 @@ use row::Light as Left;
 use row::{Fate, Row};
 use spectra_core::quantity::light_nm;
 use spectra_core::spectral::BAND;
-use spectra_core::{Isa, Loss, LossCounts, RayBatch};
-use spectra_lens::{Indices, Lens, Path, Pose, Tracer, Travel, Work};
+use spectra_core::{Loss, LossCounts, RayBatch};
+use spectra_lens::Pose;
+use spectra_optics::Optics;
+use spectra_tracer::{Indices, Path, Tracer, Travel, Work};
 use std::io::{BufRead, Write};
+use std::sync::Arc;
 
 pub use row::Format;
 
 /// Why rays could not be traced.
 #[derive(Debug, thiserror::Error)]
 pub enum TraceError {
-    /// Something is wrong in the table of rays.
+    /// The table of rays is faulty.
     #[error("{file}:{line}:{column}: {message}")]
     Input {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// Row of the file, from 1.
+        /// Line of the file, from 1.
         line: usize,
         /// Column in characters, from 1.
         column: usize,
-        /// What was found and what is expected.
+        /// Message: what was found and what was expected.
         message: String,
     },
     /// The table of rays cannot be read.
     #[error("{file}: cannot be read: {cause}")]
     Read {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// The system's word.
+        /// The error of the operating system.
         cause: std::io::Error,
     },
     /// The result cannot be written.
     #[error("the result cannot be written: {0}")]
     Write(#[source] std::io::Error),
-    /// A medium of the lens has no index in some light.
+    /// A medium of the lens has no index at some wavelength.
     #[error("the lens cannot be traced: {0}")]
     Lens(#[from] spectra_glass::DispersionError),
 }
 
-/// What became of the rays of a table.
+/// Summary of the traced rays of a table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TraceSummary {
-    /// Rays traced.
+    /// Number of rays traced.
     pub rays: u64,
-    /// Rays that reached the image plane.
+    /// Number of rays that reached the image plane.
     pub hits: u64,
-    /// The others, by cause and surface.
+    /// Number of other rays, by cause and surface.
     pub losses: LossCounts,
-    /// What a person should know: glasses used beyond their data.
+    /// Warnings for the user: glasses used outside the range of their data.
     pub warnings: Vec<String>,
 }
 
-/// Rays a batch.
+/// Number of rays in a batch.
 const BATCH: usize = 1024;
-/// How far the length of a direction may be from 1; nearer ones are scaled to it.
+/// Largest deviation of the length of a direction from 1. Directions within it are scaled to unit length.
 const UNIT_TOLERANCE: f64 = 1e-6;
 const COLUMNS: [&str; 7] = ["x_mm", "y_mm", "z_mm", "l", "m", "n", "wavelength_nm"];
 
-/// How a table of rays is traced and written.
+/// Settings for tracing a table of rays and writing the result.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tracing<'a> {
-    /// The light of all rays; each has a wavelength of its own where there is none.
+    /// Light of all rays; if `None`, each ray has its own wavelength in the table.
     pub light: Option<Light>,
-    /// The path that they take; straight through where there is none.
+    /// Path that all rays follow; straight through the lens if `None`.
     pub path: Option<&'a Path>,
-    /// How the result is written.
+    /// Format of the result.
     pub format: Format,
-    /// Whether every surface gets a row.
+    /// Whether each surface that a ray passes gets a row.
     pub every_surface: bool,
 }
 
-/// Traces the rays of `input` (called `file` in messages) and writes a row for each to `output`, in the
-/// order of the input. Memory does not grow with the number of rays.
+/// Traces the rays of `input` (called `file` in messages) through a lens and writes one row for each to `output`, in the order of the
+/// input. With `every_surface` a ray has one row more for each surface it passes. Memory use does not depend on the number of rays.
 ///
 /// # Errors
 /// [`TraceError`]; rows before the faulty one are written.
 pub fn trace(
-    lens: &Lens,
+    lens: &Optics,
     tracing: Tracing<'_>,
-    isa: Isa,
     input: impl BufRead,
     file: &str,
     output: &mut impl Write,
@@ -105,7 +109,7 @@ pub fn trace(
     let Tracing { light, path, format, every_surface } = tracing;
     let wanted = if light.is_some() { &COLUMNS[..6] } else { &COLUMNS[..] };
     let mut rows = NumberRows::new(input, file, wanted)?;
-    let mut bench = Bench::new(lens, light, path, every_surface, isa)?;
+    let mut bench = Bench::new(lens, light, path, every_surface)?;
     let mut text = format.header(every_surface);
     let mut more = true;
     while more {
@@ -120,27 +124,24 @@ pub fn trace(
     Ok(bench.summary())
 }
 
-/// A batch of so many rays, with what is asked of each.
+/// Creates an empty batch of `rays` rays with optical path, and with polarization if the lens polarizes.
 fn room_for(rays: usize, tracer: &Tracer) -> RayBatch {
     let batch = RayBatch::with_optical_path(rays);
     if tracer.polarizes() { batch.with_polarization() } else { batch }
 }
 
-/// A batch of rays in front of a lens.
+/// State of tracing a table batch by batch.
 struct Bench<'a> {
-    lens: &'a Lens,
+    lens: &'a Optics,
     light: Option<Light>,
-    isa: Isa,
     path: Path,
-    tracer: Tracer,
+    tracer: Arc<Tracer>,
     work: Work,
     rays: RayBatch,
-    /// Rows of the batch whose wavelength lies outside of the band that the tracer was made for.
+    /// Indices in the batch of rays whose wavelength lies outside the band of the tracer.
     outside: Vec<usize>,
-    /// The tracer of the last of them.
-    single: Option<(f64, Tracer)>,
     start: Vec<[f64; 7]>,
-    /// Whether every surface gets a row.
+    /// Whether each surface gets a row.
     every_surface: bool,
     seen_nm: Option<(f64, f64)>,
     summary: TraceSummary,
@@ -148,36 +149,34 @@ struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     fn new(
-        lens: &'a Lens,
+        lens: &'a Optics,
         light: Option<Light>,
         path: Option<&Path>,
         every_surface: bool,
-        isa: Isa,
     ) -> Result<Self, TraceError> {
         let indices = match light {
             Some(Light::Stated) => Indices::Stated,
             Some(Light::Wavelength(nm)) => Indices::At(nm),
             None => Indices::Band { min_nm: BAND.start_nm, max_nm: BAND.end_nm() },
         };
-        let tracer = Tracer::new(lens, indices, isa)?;
+        let tracer = lens.tracer(indices)?;
         Ok(Self {
             lens,
             light,
-            isa,
             path: path.cloned().unwrap_or_else(|| Path::through(tracer.surfaces(), Travel::Forward)),
             work: tracer.work_in_place(BATCH),
             rays: room_for(BATCH, &tracer),
             tracer,
             every_surface,
             outside: Vec::new(),
-            single: None,
             start: Vec::with_capacity(BATCH),
             seen_nm: light.and_then(Light::wavelength_nm).map(|nm| (nm, nm)),
             summary: TraceSummary::default(),
         })
     }
 
-    /// How far a point lies behind the first surface and its vertex, within its rim.
+    /// Returns how far a point lies behind the first surface (and behind its vertex), mm, if it is within its rim and more than 1e-6 mm
+    /// behind it.
     fn behind_front_mm(&self, [x, y, z]: [f64; 3]) -> Option<f64> {
         let first = self.lens.elements.first()?;
         let pose = if first.reversed { first.pose.reversed() } else { first.pose };
@@ -190,7 +189,7 @@ impl<'a> Bench<'a> {
         Some(z - front).filter(|mm| *mm > 1e-6)
     }
 
-    /// Reads a batch; false where the table ended.
+    /// Reads a batch of rays and checks them; returns false if the table has ended.
     fn fill(&mut self, rows: &mut NumberRows<impl BufRead>) -> Result<bool, TraceError> {
         self.start.clear();
         self.outside.clear();
@@ -204,7 +203,7 @@ impl<'a> Bench<'a> {
             }
             let [.., l, m, n, nm] = ray;
             let length = (l * l + m * m + n * n).sqrt();
-            // False too for a length that overflowed.
+            // This is false also if the length overflowed.
             let is_unit = (length - 1.0).abs() <= UNIT_TOLERANCE;
             if !is_unit {
                 return Err(rows.fault_at(
@@ -219,7 +218,7 @@ impl<'a> Bench<'a> {
                 return Err(rows.fault_at(
                     "z_mm",
                     &format!(
-                        "the ray begins {mm:.3} mm behind the first surface, expected a point of it in front of the lens, where z_mm is \
+                        "the ray begins {mm:.3} mm behind the first surface, expected a point in front of the lens, where z_mm is \
                          0 or negative"
                     ),
                 ));
@@ -249,11 +248,11 @@ impl<'a> Bench<'a> {
         Ok(())
     }
 
-    /// Traces the batch.
+    /// Traces the batch and returns the rows to write.
     fn trace(&mut self) -> Result<Vec<Row>, TraceError> {
         let len = self.start.len();
         self.rays.restart(len);
-        // What an index that is held is held for, coatings and glass pass at.
+        // Fixed indices belong to one wavelength; coatings and absorption use the same wavelength.
         let held = self.light.map(|light| light.wavelength_nm().unwrap_or(self.lens.reference_nm));
         let c = self.rays.columns_mut();
         for (i, ray) in self.start.iter_mut().enumerate() {
@@ -287,20 +286,16 @@ impl<'a> Bench<'a> {
         Ok(rows)
     }
 
-    /// One ray at the formulas' own indices for its wavelength.
+    /// Traces one ray whose wavelength is outside the band, with the indices that the formulas give at that wavelength.
     fn trace_outside(&mut self, ray: [f64; 7]) -> Result<Vec<Fate>, TraceError> {
         let nm = ray[6];
-        let tracer = match self.single.take() {
-            Some((made_for, tracer)) if made_for == nm => tracer,
-            _ => Tracer::new(self.lens, Indices::At(nm), self.isa)?,
-        };
+        let tracer = self.lens.tracer(Indices::At(nm))?;
         let mut rays = room_for(1, &tracer);
         rays.restart(1);
         let c = rays.columns_mut();
         [c.x[0], c.y[0], c.z[0], c.l[0], c.m[0], c.n[0], c.wavelength_nm[0]] = ray;
         let followed = Followed { lens: self.lens, path: &self.path, wavelengths: &[nm], is_stated: false };
         let mut fates = followed.fates(&tracer, &mut rays, &mut tracer.work_in_place(1), self.every_surface);
-        self.single = Some((nm, tracer));
         Ok(fates.swap_remove(0))
     }
 
@@ -309,7 +304,7 @@ impl<'a> Bench<'a> {
             for medium in &self.lens.media {
                 if let (false, Some((from, to))) = (medium.medium.covers(low, high), medium.medium.range_nm()) {
                     let message =
-                        format!("{} is measured from {from} to {to} nm; rays beyond went by its formula", medium.label);
+                        format!("{} is measured from {from} to {to} nm; rays outside used its formula", medium.label);
                     if !self.summary.warnings.contains(&message) {
                         self.summary.warnings.push(message);
                     }
@@ -320,18 +315,19 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// A batch on its way.
+/// Context for tracing a batch of rays along a path.
 struct Followed<'a> {
-    lens: &'a Lens,
+    lens: &'a Optics,
     path: &'a Path,
-    /// Of each ray, nm.
+    /// Wavelength of each ray, nm.
     wavelengths: &'a [f64],
-    /// Whether every medium has the index that the prescription states.
+    /// Whether every medium has the index stated in the prescription.
     is_stated: bool,
 }
 
 impl Followed<'_> {
-    /// What became of each ray: where it ended, last, and before it each surface that it passed, where that is asked for.
+    /// Traces the rays and returns what became of each: its end as the last entry and, with `every_surface`, each surface that it passed
+    /// before.
     fn fates(&self, tracer: &Tracer, rays: &mut RayBatch, work: &mut Work, every_surface: bool) -> Vec<Vec<Fate>> {
         let mut fates: Vec<Vec<Fate>> = vec![Vec::new(); rays.len()];
         tracer.follow_each(&tracer.route(self.path), rays, work, |at, rays| {
@@ -350,7 +346,7 @@ impl Followed<'_> {
         fates
     }
 
-    /// What became of ray `i`, which left the tracer in the frame of the image plane.
+    /// Returns the end of ray `i`, which left the tracer in the frame of the image plane.
     fn end_of(&self, rays: &RayBatch, i: usize, surfaces: u32) -> Fate {
         if let Some((cause, surface)) = rays.loss(i) {
             return Fate::Lost { cause, surface };
@@ -371,14 +367,15 @@ impl Followed<'_> {
     }
 }
 
-/// What is left of ray `i`, whose place is given in the frame of `pose`; carried on by a distance, mm, in a medium of some index.
+/// Returns the state of ray `i`, whose position is in the frame of `pose`. `on` carries it to the plane z = 0: a distance, mm, and the
+/// index of the medium.
 fn left_of(rays: &RayBatch, i: usize, pose: &Pose, on: Option<(f64, f64)>) -> Left {
     let [x, y, z] = rays.positions().map(|column| column[i]);
     let [l, m, n] = rays.directions().map(|column| column[i]);
     let path = rays.optical_path_mm().map_or(f64::NAN, |column| column[i]);
     let (point, more) = match on {
         None => (DVec3::new(x, y, z), 0.0),
-        // On the plane itself.
+        // Set z to exactly 0: the point is on the plane.
         Some((distance, index)) => (DVec3::new(x + distance * l, y + distance * m, 0.0), distance * index),
     };
     Left {

@@ -1,19 +1,19 @@
-//! One row of the result.
+//! Rows of the result of a trace.
 
 use spectra_core::Loss;
 use std::fmt::Write;
 
-/// How the result is written.
+/// Format of the result of a trace.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Format {
     /// Comma-separated values with a first row of names.
     #[default]
     Csv,
-    /// One JSON object a line, with the same names; what is empty there is `null` here.
+    /// One JSON object per line, with the same names. Fields that are empty in CSV are `null`.
     JsonLines,
 }
 
-/// Names of the columns. Rows of every surface have the number of the ray before them.
+/// Names of the columns. The first one, `ray`, is written only if every surface gets a row.
 const COLUMNS: [&str; 12] = [
     "ray",
     "status",
@@ -38,39 +38,39 @@ impl Format {
     }
 }
 
-/// Where a ray is, and what is left of it.
+/// State of a ray at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Light {
     pub point_mm: [f64; 3],
     pub direction: [f64; 3],
-    /// Part of the light that is left.
+    /// Part of the light that is left, 0 to 1.
     pub transmittance: f64,
-    /// Index times length from the start of the ray.
+    /// Optical path, mm: index times length from the start of the ray.
     pub optical_path_mm: f64,
 }
 
-/// What became of a ray.
+/// What became of a ray at a surface or at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fate {
-    /// It went on behind a surface.
+    /// The ray passed a surface, counted from 1, and continued.
     Passed { surface: u32, light: Light },
-    /// It met the image plane.
+    /// The ray met the image plane.
     Hit(Light),
-    /// It ended at a surface.
+    /// The ray ended at a surface.
     Lost { cause: Loss, surface: u32 },
 }
 
 /// One row of the result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
-    /// Its number in the table, from 1, where it is written.
+    /// Number of the ray in the table, from 1; `None` if it is not written.
     pub ray: Option<u64>,
     pub wavelength_nm: f64,
     pub fate: Fate,
 }
 
 impl Row {
-    /// Appends the row. Numbers have as many digits, up to 17, as it takes to read back the same f64.
+    /// Appends the row to `out`. Numbers have as many digits, up to 17, as needed to read back the same f64.
     pub(super) fn write(&self, format: Format, out: &mut String) {
         let number = |v: f64| Some(format!("{v:?}"));
         let (status, surface, light) = match self.fate {

@@ -1,16 +1,15 @@
-//! What can be written after `spectra build`.
+//! Command-line arguments of `spectra build`.
 
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// `spectra build`.
+/// Arguments of `spectra build`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Build a version of the program that includes your plugins.\n\n\
         Each plugin is a crate like the ones that `spectra new plugin` creates. Cargo builds a generated program with \
-        the built-in stages and those of the plugins; then the stages that each plugin added are listed. The sources \
-        of `spectra` itself are included in this program; cargo downloads any other crates that it does not have \
-        yet.\n\n\
+        the built-in stages and those of the plugins, and the stages that each plugin added are listed. The sources of \
+        `spectra` itself are included in this program; cargo downloads any other crates that it does not have yet.\n\n\
         The first build compiles everything (a few minutes), later ones only the changes. Build files are kept in \
         CARGO_TARGET_DIR, or else in the cache: SPECTRA_CACHE, or the system's cache folder.",
     after_long_help = "Example: two plugins\n  \
@@ -38,7 +37,7 @@ pub(crate) struct BuildArguments {
     pub profile: Profile,
 }
 
-/// A profile of cargo.
+/// Build profile of cargo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Profile {
     /// Optimized, for rendering.
@@ -48,7 +47,7 @@ pub(crate) enum Profile {
 }
 
 impl Profile {
-    /// Cargo's name of it.
+    /// Name of this profile for cargo.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Release => "release",

@@ -1,4 +1,4 @@
-//! Cargo, as a program to run.
+//! Runs cargo as a separate program.
 
 use super::metadata::Metadata;
 use crate::console;
@@ -11,7 +11,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Cargo.
+/// The cargo program, and whether it may use the network.
 #[derive(Debug)]
 pub(crate) struct Cargo {
     program: OsString,
@@ -19,7 +19,7 @@ pub(crate) struct Cargo {
 }
 
 impl Cargo {
-    /// `$CARGO`, or the one on the path.
+    /// Finds cargo: `$CARGO`, or the one on the path. Fails if it cannot be run.
     pub(super) fn find(offline: bool) -> Result<Self, Failure> {
         let program = std::env::var_os("CARGO").filter(|p| !p.is_empty()).unwrap_or_else(|| "cargo".into());
         let found = Command::new(&program).arg("--version").stdin(Stdio::null()).output();
@@ -33,7 +33,7 @@ impl Cargo {
             Err(error) => {
                 let fault = Fault::new(format!("`{}` cannot be run: {error}", program.display()));
                 Err(fault
-                    .hint("plugins are compiled: install Rust (https://rustup.rs), or set CARGO to its cargo")
+                    .hint("plugins must be compiled: install Rust (https://rustup.rs), or set CARGO to its cargo")
                     .into())
             }
         }
@@ -41,7 +41,7 @@ impl Cargo {
 
     fn command(&self, verb: &str, manifest: &Path) -> Command {
         let mut command = Command::new(&self.program);
-        // A toolchain file beside the plugin has its say, as when its author calls cargo there.
+        // A toolchain file in the plugin's folder applies, as if its author ran cargo there.
         if let Some(folder) = manifest.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             command.current_dir(folder);
         }
@@ -52,7 +52,7 @@ impl Cargo {
         command
     }
 
-    /// What a manifest says, without looking at its dependencies.
+    /// Reads the metadata of a manifest without resolving its dependencies.
     pub(super) fn metadata_alone(&self, manifest: &Path) -> Result<Metadata, String> {
         self.metadata(manifest, &["--no-deps"])
     }
@@ -67,7 +67,7 @@ impl Cargo {
         serde_json::from_slice(&output.stdout).map_err(|error| format!("its output cannot be read: {error}"))
     }
 
-    /// The crates of the program at a manifest, all of which share one `spectra-core`, ours.
+    /// Resolves the crates of the program at a manifest. Fails if they do not all share one `spectra-core`, that of `sources`.
     pub(super) fn check_graph(&self, program: &Path, sources: &Sources) -> Result<Metadata, Failure> {
         let metadata = self.metadata(program, &["--filter-platform", env!("SPECTRA_TARGET")]).map_err(|text| {
             if text.contains("links to the native library `spectra-core`") || text.contains("links to native library `spectra-core`") {
@@ -80,7 +80,7 @@ impl Cargo {
             let hint = if self.offline {
                 "without --offline, cargo can download missing crates"
             } else {
-                "cargo could not find a crate that a plugin depends on, or no version of it that suits all of them"
+                "cargo could not find a crate that a plugin depends on, or a version of it that suits all of them"
             };
             Fault::new(format!("cargo cannot resolve the program's dependencies\n{text}")).hint(hint).into()
         })?;
@@ -99,17 +99,18 @@ impl Cargo {
         }
     }
 
-    /// Builds the program of that name and manifest, in `target` where nothing else is said; cargo's words go to standard error as they come.
+    /// Builds the program with the given name, profile and manifest, and returns its executable. Cargo builds in `$CARGO_TARGET_DIR`, or
+    /// else in `target`; its messages go to standard error as they come.
     pub(super) fn build(&self, [name, profile]: [&str; 2], [manifest, target]: [&Path; 2]) -> Result<PathBuf, Failure> {
         let mut command = self.command("build", manifest);
-        // The compiler's words come as JSON, so that it is known whose they are, and are shown as they are.
+        // Messages of the compiler come as JSON, which names the crate, and are shown unchanged.
         let colored = console::stderr_is_colored();
         let format = if colored { "json-diagnostic-rendered-ansi" } else { "json" };
         command.args(["--profile", profile, "--message-format", format]);
         if std::env::var_os("CARGO_TARGET_DIR").is_none_or(|folder| folder.is_empty()) {
             command.arg("--target-dir").arg(target);
         } else if let Some(folder) = std::env::var_os("CARGO_TARGET_DIR") {
-            // Relative to where the user is, not to the generated crate.
+            // The path is relative to the user's working folder, not to the generated crate.
             command.arg("--target-dir").arg(std::path::absolute(&folder).unwrap_or_else(|_| folder.into()));
         }
         let failed = |error: std::io::Error| Failure::Failed(format!("cargo cannot be run: {error}"));
@@ -133,7 +134,7 @@ impl Cargo {
     }
 }
 
-/// What cargo says in JSON lines.
+/// Result of a build, from the JSON lines that cargo writes.
 #[derive(Debug, Default)]
 struct Report {
     executable: Option<PathBuf>,

@@ -1,13 +1,13 @@
-//! What `cargo metadata` says.
+//! Output of `cargo metadata`.
 
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// The part of `cargo metadata` that is asked for.
+/// The parts of `cargo metadata` that are used here.
 #[derive(Debug, Deserialize)]
 pub(super) struct Metadata {
     pub packages: Vec<Package>,
-    /// What depends on what; not asked for where a manifest is read alone.
+    /// Graph of dependencies; `None` if only the manifest itself was read.
     #[serde(default)]
     pub resolve: Option<Resolve>,
 }
@@ -30,7 +30,7 @@ pub(super) struct Link {
     pub dep_kinds: Vec<LinkKind>,
 }
 
-/// For what: `None` for the code itself, else tests or the build script.
+/// Purpose of a dependency: `None` for the code itself, otherwise tests or the build script.
 #[derive(Debug, Deserialize)]
 pub(super) struct LinkKind {
     pub kind: Option<String>,
@@ -43,7 +43,7 @@ pub(super) struct Package {
     pub version: String,
     pub manifest_path: PathBuf,
     pub license: Option<String>,
-    /// A file with terms of its own, where no usual license is named.
+    /// File with the terms, if the manifest names one instead of a usual license.
     pub license_file: Option<PathBuf>,
     #[serde(default)]
     pub targets: Vec<Target>,
@@ -60,7 +60,7 @@ pub(super) struct Target {
 }
 
 impl Package {
-    /// Whether its code runs in the compiler and is not linked.
+    /// Whether the package is a procedural macro, whose code runs in the compiler and is not linked.
     pub(super) fn is_macro(&self) -> bool {
         self.targets.iter().any(|target| target.kind.iter().any(|kind| kind == "proc-macro"))
     }

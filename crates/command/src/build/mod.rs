@@ -1,8 +1,11 @@
-//! `spectra build`: this program, with plugins of strangers in it.
+//! `spectra build`: builds a version of this program that includes third-party plugins.
 //!
-//! Plugins are linked, not loaded: cargo builds a small generated crate that names the command, the built-in plugins and the
-//! given ones. Before cargo is asked, what can be known about a plugin is checked; afterwards the new program is asked which
-//! stages it knows, and only if each plugin brought some is it given its name.
+//! Plugins are linked, not loaded: cargo builds a small generated crate that depends on the command, the built-in plugins and the given
+//! ones. Everything that can be checked about a plugin is checked before cargo runs. Afterwards the new program is asked for its stages. It
+//! gets its final name only if each plugin added some.
+//!
+//! The sources are those that the program carries, unpacked once into the user's cache, or a checkout. The manifest of a plugin asks for a
+//! version of `spectra-core`. A `[patch]` section states where that lies, and that of the generated crate takes precedence.
 
 mod arguments;
 mod cargo;
@@ -25,7 +28,7 @@ use spectra_files::copy_atomically;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Builds it.
+/// Builds a program with plugins and lists the stages that they add.
 pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant) -> Outcome {
     let output = output(&arguments.output, arguments.force)?;
     let sources = Sources::find(arguments.core.as_deref(), unpack)?;
@@ -54,14 +57,14 @@ pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant
     Ok(DONE)
 }
 
-/// All plugins, or everything that is wrong with any of them.
+/// Reads all plugins, or returns every fault in any of them.
 fn plugins(with: &[PathBuf], cargo: &Cargo, sources: &Sources) -> Result<Vec<Plugin>, Failure> {
     let mut faults = Faults::new();
     let mut plugins: Vec<Plugin> = Vec::new();
     for path in with {
         let Some(plugin) = faults.take(Plugin::read(path, cargo, sources)) else { continue };
         match plugins.iter().find(|other| other.package == plugin.package) {
-            // The same one named twice is no harm.
+            // A plugin may be named twice.
             Some(other) if other.folder == plugin.folder => {}
             Some(other) => faults.push(
                 Fault::new(format!(
@@ -79,7 +82,8 @@ fn plugins(with: &[PathBuf], cargo: &Cargo, sources: &Sources) -> Result<Vec<Plu
     Ok(faults.into_result(plugins)?)
 }
 
-/// Where the program goes; on Windows with its ending.
+/// Returns the path of the program to write, with the extension `.exe` on Windows. Fails if it cannot be written or if an existing file
+/// must be kept.
 fn output(path: &Path, force: bool) -> Result<PathBuf, Failure> {
     let mut path = path.to_owned();
     let ending = std::env::consts::EXE_EXTENSION;
@@ -105,15 +109,15 @@ fn output(path: &Path, force: bool) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
-/// What every program of ours holds: its version, and this.
+/// Text that every program built from these sources contains, so that it can be recognized.
 const MARK: &[u8] = b"spectra-program-made-by-spectra-build";
 
-/// Whether a file is a program with spectra in it. It is not run: nobody knows what it does.
+/// Whether a file is a program that contains spectra. The file is only read, because running an unknown program is not safe.
 fn is_ours(path: &Path) -> bool {
     use std::io::Read;
     let mut head = [0; 4];
     let is_program = |head: &[u8; 4]| {
-        // ELF; Mach-O of 64 bits, and of several machines; Windows.
+        // ELF; Mach-O, 64-bit and universal; Windows.
         matches!(
             head,
             [0x7f, b'E', b'L', b'F'] | [0xcf, 0xfa, 0xed, 0xfe] | [0xca, 0xfe, 0xba, 0xbe] | [b'M', b'Z', ..]
@@ -124,13 +128,13 @@ fn is_ours(path: &Path) -> bool {
         return false;
     }
     let mut bytes = Vec::new();
-    // A program of ours is some ten MB.
+    // A program with spectra has some tens of MB.
     let read = file.take(1 << 30).read_to_end(&mut bytes);
-    // The mark as it stands in this program's data is what is looked for.
+    // `black_box` keeps the mark in this program's data, where another run looks for it.
     read.is_ok() && bytes.windows(MARK.len()).any(|window| window == std::hint::black_box(MARK))
 }
 
-/// Gives the program its name, once it is whole.
+/// Copies the finished program to its final name.
 fn install(built: &Path, output: &Path) -> Result<(), Failure> {
     Ok(copy_atomically(built, output)?)
 }

@@ -1,4 +1,4 @@
-//! The licenses of the crates that plugins bring into a program, with their texts.
+//! Collects the licenses, with their texts, of the crates that plugins add to a program.
 
 use super::metadata::{Metadata, Package};
 use super::program::Program;
@@ -8,21 +8,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Longest text that is read, bytes: the longest usual license has 35 kB.
+/// Longest license text that is read, bytes; the longest usual license has 35 kB.
 const LONGEST: u64 = 256 << 10;
-/// What the names of files with terms begin with, in capitals.
+/// Beginnings of the names of license files, in capitals.
 const FILES: [&str; 5] = ["LICENSE", "LICENCE", "COPYING", "UNLICENSE", "NOTICE"];
 
-/// What is said about crates that `spectra` itself does not have.
+/// License notices of crates that `spectra` itself does not contain.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Notices {
-    /// Each crate with its license, then each text once.
+    /// Text of the notices: each crate with its license, then each license text once.
     pub text: String,
     /// Crates that state neither a license nor a file with one, as `name version`.
     pub unlicensed: Vec<String>,
 }
 
-/// The notices of all crates that are linked into the program, but for those of `spectra` and those that it has anyway.
+/// Returns the notices of all crates linked into the program, except those of `spectra` and the crates that it contains anyway.
 pub(super) fn of(graph: &Metadata, program: &Program, sources: &Sources) -> Notices {
     let ours = plain(sources.folder());
     let linked = linked(graph, &program.name);
@@ -35,7 +35,8 @@ pub(super) fn of(graph: &Metadata, program: &Program, sources: &Sources) -> Noti
     written(&packages)
 }
 
-/// Packages whose code is in the program: its dependencies and theirs, without build scripts, tests and procedural macros.
+/// Returns the packages whose code is in the program: all direct and indirect dependencies, without those of build scripts and tests,
+/// and without procedural macros.
 fn linked<'a>(graph: &'a Metadata, program: &str) -> BTreeSet<&'a str> {
     let packages: BTreeMap<&str, &Package> = graph.packages.iter().map(|p| (p.id.as_str(), p)).collect();
     let nodes = graph.resolve.iter().flat_map(|resolve| &resolve.nodes);
@@ -81,7 +82,7 @@ fn written(packages: &[&Package]) -> Notices {
     notices
 }
 
-/// The files in a package's folder that hold its terms, by name.
+/// Returns the license files in a package's folder, sorted by name.
 fn files(package: &Package) -> Vec<PathBuf> {
     let folder = package.manifest_path.parent().unwrap_or(Path::new("."));
     let is_terms = |path: &PathBuf| {
@@ -94,7 +95,7 @@ fn files(package: &Package) -> Vec<PathBuf> {
     found.into_iter().collect()
 }
 
-/// A text with tidy ends of lines; `None` where it cannot be read or is too long.
+/// Reads a text without trailing spaces; `None` if it cannot be read, is too long or empty.
 fn read(path: &Path) -> Option<String> {
     if std::fs::metadata(path).ok()?.len() > LONGEST {
         return None;
@@ -119,8 +120,7 @@ mod tests {
         })
     }
 
-    /// A plugin that brings two crates under the same terms; a macro, a crate for tests and one that every program has are
-    /// left out.
+    /// A plugin that adds two crates under the same terms. A macro, a crate for tests and one that every program has are left out.
     #[test]
     fn plugins_and_what_they_bring_are_listed() {
         let folder = tempfile::tempdir().unwrap();
@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(notices.text, wanted);
     }
 
-    /// A crate that every program has, with its version.
+    /// Returns a crate that every program contains, with its version.
     fn a_known_crate() -> (&'static str, &'static str) {
         let mut lines = include_str!("../notices.txt").lines();
         lines.find_map(|line| line.split_once(": ")?.0.split_once(' ')).expect("notices")

@@ -1,4 +1,4 @@
-//! What a plugin's manifest says, as cargo reads it.
+//! Reads and checks the manifest of a plugin.
 
 use super::cargo::Cargo;
 use super::metadata::{Dependency, Metadata, Target};
@@ -7,24 +7,24 @@ use semver::{Version, VersionReq};
 use spectra_core::params::{Fault, Faults};
 use std::path::{Path, PathBuf};
 
-/// A plugin's crate.
+/// The crate of a plugin.
 #[derive(Debug)]
 pub(crate) struct Plugin {
     /// Name of the package.
     pub package: String,
-    /// Its version.
+    /// Version of the package.
     pub version: String,
-    /// Name of its library as Rust code has it.
+    /// Name of the library in Rust code, with underscores.
     pub library: String,
-    /// Its folder, absolute.
+    /// Absolute path of the crate's folder.
     pub folder: PathBuf,
 }
 
-/// Where `spectra-core` is asked for as a plugin should.
+/// Prefix of a dependency's source if it comes from a registry, as `spectra-core` should.
 const REGISTRY: &str = "registry+";
 
 impl Plugin {
-    /// The plugin at a folder, or at a `Cargo.toml`.
+    /// Reads the plugin at a folder or a `Cargo.toml`. Fails with all that is wrong with it.
     pub(super) fn read(path: &Path, cargo: &Cargo, sources: &Sources) -> Result<Self, Faults> {
         let manifest = manifest(path)?;
         let metadata = cargo.metadata_alone(&manifest).map_err(|text| {
@@ -66,9 +66,9 @@ impl Plugin {
     }
 }
 
-/// The manifest at a path that is it, or its folder.
+/// Returns the manifest for a path that is either the manifest or its folder.
 fn manifest(path: &Path) -> Result<PathBuf, Fault> {
-    let hint = "the folder of a plugin's crate, or its Cargo.toml";
+    let hint = "give the folder of a plugin's crate, or its Cargo.toml";
     if path.is_dir() {
         let manifest = path.join("Cargo.toml");
         return if manifest.is_file() {
@@ -84,7 +84,7 @@ fn manifest(path: &Path) -> Result<PathBuf, Fault> {
     }
 }
 
-/// The plugin's `spectra-core` must be the one that the program is built with.
+/// Checks that the plugin uses the `spectra-core` that the program is built with.
 fn check_core(core: &Dependency, manifest: &str, sources: &Sources) -> Result<(), Fault> {
     let ours = Version::parse(crate::version::VERSION).expect("cargo checks the version of a package");
     let write = format!("write `spectra-core = \"{}.{}\"` among its dependencies", ours.major, ours.minor);
@@ -106,7 +106,7 @@ fn check_core(core: &Dependency, manifest: &str, sources: &Sources) -> Result<()
     }
     let text = format!("{manifest}: it was written for spectra-core {}, this program has {ours}", core.req);
     Err(Fault::new(text)
-        .hint(format!("{write}and fix what the compiler reports; or build with that version: --core PATH")))
+        .hint(format!("{write} and fix what the compiler reports, or build with that version: --core PATH")))
 }
 
 #[cfg(test)]

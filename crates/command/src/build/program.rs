@@ -1,4 +1,4 @@
-//! The generated crate: manifest, lock file, `main.rs`.
+//! Writes the generated crate: manifest, lock file, `main.rs`.
 
 use super::plugin::Plugin;
 use crate::outcome::Failure;
@@ -6,33 +6,33 @@ use crate::sources::{Sources, cache, profiles, target, toml, toml_path};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// A crate whose program holds the built-in stages and those of some plugins.
+/// A generated crate whose program contains the built-in stages and those of some plugins.
 #[derive(Debug)]
 pub(super) struct Program {
-    /// Name of package and program, one a set of plugins.
+    /// Name of the package and the program, unique for a set of plugins.
     pub name: String,
-    /// Its manifest.
+    /// Path of the manifest.
     pub manifest: PathBuf,
-    /// Where cargo puts what it builds, if the user does not say so himself.
+    /// Target folder for cargo, unless the user sets another one.
     pub target: PathBuf,
 }
 
-/// What the program depends on, among our own crates.
+/// Crates of `spectra` that the program depends on, with their folders.
 const OURS: [(&str, &str); 3] = [
     ("spectra-command", "crates/command"),
     ("spectra-plugins", "plugins/all"),
     ("spectra-workspace", "crates/workspace"),
 ];
 
-/// Crates that no program holds: cargo would warn of a patch that it does not use.
+/// Crates that no program contains. A patch for them would make cargo warn that it is unused.
 const NOT_IN_PROGRAMS: [&str; 2] = ["spectra-testing", "spectra-plugin-oiio"];
 
-/// The notices of the crates that the plugins bring, beside `main.rs`.
+/// File in the folder of `main.rs` with the licenses of the crates that the plugins add.
 const NOTICES: &str = "notices.txt";
 
 impl Program {
-    /// Writes it to the cache, one folder a set of plugins; what already exists and equal is left alone, so that cargo
-    /// finds nothing changed.
+    /// Writes the crate to the cache, in one folder per set of plugins. Files that are already the same are not touched, so that
+    /// cargo sees no change.
     pub(super) fn write(sources: &Sources, plugins: &[Plugin]) -> Result<Self, Failure> {
         let mut key = sources.folder().display().to_string();
         for plugin in plugins {
@@ -58,7 +58,7 @@ impl Program {
         Ok(Self { name, manifest, target: target()? })
     }
 
-    /// Gives it the notices of the crates that its plugins bring.
+    /// Writes the licenses of the crates that the plugins add.
     pub(super) fn set_notices(&self, text: &str) -> Result<(), Failure> {
         write_if_other(&self.manifest.with_file_name("src").join(NOTICES), text)
     }
@@ -101,7 +101,7 @@ fn main_text(plugins: &[Plugin]) -> String {
     text
 }
 
-/// Writes a file by way of a temporary one, unless it holds that text already.
+/// Writes a file atomically, unless it already holds that text.
 fn write_if_other(path: &Path, text: &str) -> Result<(), Failure> {
     if std::fs::read_to_string(path).is_ok_and(|old| old == text) {
         return Ok(());
@@ -118,7 +118,7 @@ fn fnv1a(bytes: &[u8]) -> u64 {
 mod tests {
     use super::*;
 
-    /// Vectors of the function's authors: <http://www.isthe.com/chongo/tech/comp/fnv/>.
+    /// Test vectors by the function's authors: <http://www.isthe.com/chongo/tech/comp/fnv/>.
     #[test]
     fn hashes_are_fnv1a() {
         assert_eq!([fnv1a(b""), fnv1a(b"a")], [0xcbf2_9ce4_8422_2325, 0xaf63_dc4c_8601_ec8c]);

@@ -1,4 +1,4 @@
-//! What a program that was just built knows.
+//! Asks a newly built program for its stages.
 
 use super::plugin::Plugin;
 use crate::outcome::Failure;
@@ -7,7 +7,7 @@ use spectra_core::params::Fault;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// The part of `spectra list --json` that is asked for.
+/// The parts of `spectra list --json` that are used here.
 #[derive(Debug, Deserialize)]
 struct Listed {
     stage: String,
@@ -15,7 +15,7 @@ struct Listed {
     package: String,
 }
 
-/// Runs the program, and gives the stages of each plugin, as `stage name`.
+/// Runs the program and returns the stages of each plugin, as text like "surface `axicon`". Fails if a plugin registers none.
 pub(super) fn added(program: &Path, plugins: &[Plugin]) -> Result<Vec<Vec<String>>, Failure> {
     let output = Command::new(program).args(["list", "--json"]).stdin(Stdio::null()).output();
     let output = output.map_err(|error| Failure::Failed(format!("{} cannot be run: {error}", program.display())))?;
@@ -23,7 +23,7 @@ pub(super) fn added(program: &Path, plugins: &[Plugin]) -> Result<Vec<Vec<String
         let text = String::from_utf8_lossy(&output.stderr);
         let text = text.trim().trim_start_matches("error: ");
         let fault = Fault::new(format!("the program was built, but does not start: {text}"));
-        return Err(fault.hint("a stage's name must be its own: rename it in `register!`").into());
+        return Err(fault.hint("the name of each stage must be unique: rename it in `register!`").into());
     }
     let listed: Vec<Listed> = serde_json::from_slice(&output.stdout)
         .map_err(|error| Failure::Failed(format!("the output of {} cannot be read: {error}", program.display())))?;
@@ -35,7 +35,7 @@ pub(super) fn added(program: &Path, plugins: &[Plugin]) -> Result<Vec<Vec<String
         if own.is_empty() {
             let fault = Fault::new(format!("the crate `{}` was built in, but registers no stage", plugin.package));
             faults.push(fault.hint(format!(
-                "`spectra_core::register!(...)` is missing, or stands in a file that {} does not name with `mod`",
+                "`spectra_core::register!(...)` is missing, or is in a file that {} does not include with `mod`",
                 plugin.folder.join("src/lib.rs").display()
             )));
         }

@@ -1,4 +1,4 @@
-//! `spectra film cube`: a stock as a look-up table for other programs.
+//! `spectra film cube`: writes a stock as a look-up table for other programs.
 
 use super::arguments::FilmCube;
 use super::{called, keys};
@@ -11,14 +11,14 @@ use spectra_session::{Cube, RANDOM_COLORS};
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Writes the table, and says how far it is from the film.
+/// Writes the table, and prints its error against the film.
 pub(super) fn cube(arguments: &FilmCube) -> Outcome {
     let stock = called(&arguments.stock)?;
     let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.cube", keys::stem(&stock))));
-    // Before anything is computed: a wrong ending is found out at once.
+    // A wrong extension is reported before anything is computed.
     if !output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("cube")) {
-        let text = format!("{}: a look-up table is written as .cube", output.display());
-        return Err(Fault::new(text).hint("`-o film.cube`").into());
+        let text = format!("{}: the name of a look-up table must end in .cube", output.display());
+        return Err(Fault::new(text).hint("write `-o film.cube`").into());
     }
     let cube = Cube {
         settings: keys::settings(&arguments.keys, &arguments.stock, &stock),

@@ -1,4 +1,4 @@
-//! `spectra film develop`: a picture on a film, without a scene file.
+//! `spectra film develop`: develops a picture on a film without a scene file.
 
 use super::arguments::{FilmDevelop, MeterWhich, Switch};
 use super::keys::{self, set};
@@ -10,7 +10,7 @@ use spectra_core::Isa;
 use spectra_session::{Develop, Setting, picture_ending};
 use std::time::Instant;
 
-/// Develops pictures; with `--json` a failure is an event as well.
+/// Develops pictures. With `--json`, a failure is also written as an event.
 pub(super) fn develop(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
     told(developed(arguments, isa, started), arguments.json)
 }
@@ -41,7 +41,7 @@ fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
     Ok(face.code(ended))
 }
 
-/// What the options say, by the keys of a scene.
+/// Returns the settings of all options, by the keys of a scene.
 fn settings(arguments: &FilmDevelop, stock: &str) -> Result<Vec<Setting>, Failure> {
     keys::stops(&arguments.keys)?;
     let mut all = keys::settings(&arguments.keys, &arguments.stock, stock);

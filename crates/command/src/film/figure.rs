@@ -1,4 +1,4 @@
-//! A stock as a sheet draws it.
+//! Draws a stock in the manner of a maker's data sheet.
 
 use super::info::{points, sensitivity};
 use spectra_core::math::log10;
@@ -9,11 +9,11 @@ use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 760.0;
 const PANEL: f64 = 360.0;
-/// Layers sensitive to these colors are drawn in them.
+/// Drawing colors of layers with these names.
 const COLORS: [(&str, Color); 3] =
     [("red", Color::new(0xc8, 0x2a, 0x2a)), ("green", Color::new(0x1f, 0x8a, 0x3b)), ("blue", Color::BLUE)];
 
-/// Sensitivities above, curves below, dyes under them where there are any.
+/// Draws the sheet of a stock: sensitivities, then curves, then dyes if the stock has any.
 pub(super) fn sheet(stock: &Stock) -> Canvas {
     let dyed = stock.layers.iter().any(|l| l.dye.is_some());
     let panels = if dyed { 3 } else { 2 };
@@ -68,7 +68,7 @@ fn sensitivities(canvas: &mut Canvas, stock: &Stock, frame: Rect) {
 }
 
 fn curves(canvas: &mut Canvas, stock: &Stock, frame: Rect) {
-    // Layers of color film are developed alike: one curve each. Silver: one for each development.
+    // All layers of a color film share one development, so each has one curve. Silver film has one curve per development.
     let all: Vec<(String, Color, Vec<[f64; 2]>)> = if let [layer] = &stock.layers[..] {
         let one = |(i, d): (usize, &spectra_film::stock::Development)| {
             let assumed = if d.assumed { " (assumed)" } else { "" };
@@ -96,7 +96,7 @@ fn curves(canvas: &mut Canvas, stock: &Stock, frame: Rect) {
         canvas.polyline(&line, &Stroke::new(*color, 1.8));
     }
     axes.draw_frame(canvas);
-    // A reversal film is clear to the right, where its names would stand else.
+    // The curves of a reversal film fall, so its names go to the right, where the plot is empty.
     let falling = all.iter().any(|(.., p)| p.first().map(|p| p[1]) > p.last().map(|p| p[1]));
     let corner = if falling { Rect::new(frame.right - 190.0, frame.top, frame.right, frame.bottom) } else { frame };
     for (i, (text, color, _)) in all.iter().enumerate() {

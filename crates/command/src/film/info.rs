@@ -1,4 +1,4 @@
-//! `spectra film info`.
+//! `spectra film info`: shows the data of a stock.
 
 use super::arguments::FilmInfo;
 use super::load;
@@ -14,7 +14,7 @@ use spectra_film::stock::{ISO_6_SPAN, Layer, MeterResponse, Process, Reciprocity
 use spectra_spectrum::illuminant;
 use std::fmt::Write;
 
-/// Shows a stock.
+/// Writes the data of a stock to standard output, as text or JSON.
 pub(crate) fn info(arguments: &FilmInfo) -> Outcome {
     let stock = load(&arguments.name)?;
     if arguments.json {
@@ -25,7 +25,7 @@ pub(crate) fn info(arguments: &FilmInfo) -> Outcome {
     Ok(DONE)
 }
 
-/// What the stock is for.
+/// Returns the process of the stock: negative, reversal or print.
 pub(super) fn process(stock: &Stock) -> &'static str {
     match stock.process {
         Process::Negative => "negative",
@@ -34,7 +34,7 @@ pub(super) fn process(stock: &Stock) -> &'static str {
     }
 }
 
-/// Wavelengths and logarithms of a layer's sensitivity to equal energy, 0 at its peak, where it sees anything.
+/// Returns pairs of wavelength (nm) and log10 of a layer's sensitivity to equal energy, 0 at its peak, where it is above zero.
 pub(super) fn sensitivity(layer: &Layer, step_nm: usize) -> Vec<[f64; 2]> {
     let all: Vec<[f64; 2]> = BAND.wavelengths_nm().map(|w| [w, layer.sensitivity.at(w)]).collect();
     let peak = all.iter().fold(0.0_f64, |a, p| a.max(p[1]));
@@ -42,7 +42,7 @@ pub(super) fn sensitivity(layer: &Layer, step_nm: usize) -> Vec<[f64; 2]> {
     seen.map(|[w, s]| [w, log10(s / peak)]).collect()
 }
 
-/// Points of a curve, a tenth of log10 exposure apart.
+/// Returns evenly spaced points (log10 exposure in lx s, density) of a curve, at most `step` apart in log10 exposure.
 pub(super) fn points(curve: &CharacteristicCurve, step: f64) -> Vec<[f64; 2]> {
     let (low, high) = curve.span();
     let steps = ((high - low) / step).ceil().max(1.0) as usize;
@@ -55,7 +55,7 @@ fn peak_nm(layer: &Layer) -> Option<f64> {
     BAND.wavelengths_nm().max_by(|a, b| peak(*a, *b))
 }
 
-/// How much faster the layer is in daylight than in tungsten light, both of ISO 7589 through the standard lens.
+/// Returns the ratio of the layer's speed in daylight to that in tungsten light, both of ISO 7589 through the standard lens.
 fn daylight_over_tungsten(layer: &Layer) -> Option<f64> {
     let day = illuminant("iso-7589-sensitometric-daylight").ok()?;
     let tungsten = illuminant("iso-7589-sensitometric-studio-tungsten").ok()?;
@@ -164,27 +164,27 @@ fn layer_json(stock: &Stock, layer: &Layer) -> Value {
     })
 }
 
-/// What its emulsion and its developer do to fine detail.
+/// Returns the modulation of fine detail by a layer's emulsion and developer; `None` if it cannot be fitted.
 fn modulation(layer: &Layer) -> Option<Modulation> {
     Modulation::measured(&layer.mtf).ok()
 }
 
-/// Whether the speed point of ISO 6 means anything on its curves.
+/// Whether the stock is a silver negative, so that the speed point of ISO 6 applies to its curves.
 fn silver_negative(stock: &Stock) -> bool {
     stock.process == Process::Negative && stock.layers.len() == 1
 }
 
-/// The speed, what kind it is, and what that means.
+/// Returns the speed as text, with its kind and what the kind means.
 fn speed(stock: &Stock) -> Option<String> {
     let tungsten = stock.iso_tungsten.map_or(String::new(), |t| format!(", in tungsten light {t}"));
     let kind = match stock.speed_kind {
         SpeedKind::Iso | SpeedKind::Assumed => "",
-        SpeedKind::ExposureIndex => "; the maker's exposure index, which meters are set to",
+        SpeedKind::ExposureIndex => "; the maker's exposure index, to which meters are set",
     };
     stock.speed_text().map(|speed| format!("{speed}{tungsten}{kind}"))
 }
 
-/// The speed of the curves by ISO 6, against the stated one.
+/// Returns the speed that the curves have by ISO 6, compared with the stated speed.
 fn iso_6(stock: &Stock) -> Option<String> {
     let (stated, found) = (stock.iso?, stock.iso_6()?);
     let stops = log10(found.speed / stated) / log10(2.0);
@@ -215,8 +215,8 @@ fn text(stock: &Stock) -> String {
         row("metered", Some("by the film's own sensitivity".to_owned()));
     }
     row("mid gray", stock.iso.map(|iso| format!("{:.4} lx s", metered_exposure_lx_s(iso))));
-    row("lux-seconds of", Some(stock.reference_illuminant.clone()));
-    row("densities", Some(stock.densitometry.name().to_owned()));
+    row("reference light", Some(stock.reference_illuminant.clone()));
+    row("densitometry", Some(stock.densitometry.name().to_owned()));
     for base in &stock.bases {
         let assumed = if base.assumed { " (assumed)" } else { "" };
         let index = base.index.map_or(String::new(), |n| format!(", index {n}"));

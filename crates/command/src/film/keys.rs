@@ -1,4 +1,4 @@
-//! The keys of a scene's film, as options.
+//! Converts command-line options to settings of a scene's film.
 
 use super::arguments::FilmKeys;
 use super::load;
@@ -7,22 +7,22 @@ use spectra_core::params::Fault;
 use spectra_session::Setting;
 use std::path::Path;
 
-/// What an option says at a path of a scene.
+/// Returns the setting of an option's value at a path of a scene.
 pub(super) fn set(path: &str, option: &str, value: &str) -> Setting {
     Setting { path: path.to_owned(), value: value.to_owned(), said: format!("{option} {value}") }
 }
 
-/// The same where the value follows from what is written.
+/// Returns a setting whose value follows from what the user wrote, `said`.
 fn following(path: &str, said: String, value: &str) -> Setting {
     Setting { path: path.to_owned(), value: value.to_owned(), said }
 }
 
-/// What the stock is called in names of files.
+/// Returns the name of the stock for use in file names.
 pub(super) fn stem(stock: &str) -> String {
     Path::new(stock).file_stem().map_or_else(|| stock.to_owned(), |s| s.to_string_lossy().into_owned())
 }
 
-/// The light that the scene is in: gray is gray, as it is to whoever takes the film that suits the light, unless another is named.
+/// Returns the light of the scene: `--illuminant`, or else the light that the stock is made for, in which gray stays gray.
 pub(super) fn illuminant(keys: &FilmKeys, said: &str, stock: &str) -> Result<Setting, Failure> {
     Ok(match &keys.illuminant {
         Some(light) => set("source.illuminant", "--illuminant", light),
@@ -30,20 +30,20 @@ pub(super) fn illuminant(keys: &FilmKeys, said: &str, stock: &str) -> Result<Set
     })
 }
 
-/// That the exposure is said in stops: photographers think of a time first.
+/// Checks that `--exposure` is in stops. Photographers may give an exposure time instead; the error has a hint for that.
 pub(super) fn stops(keys: &FilmKeys) -> Result<(), Failure> {
     let Some(said) = &keys.exposure else { return Ok(()) };
     let time = said.trim().trim_end_matches('s').trim_end();
     let is_time = time.len() < said.trim().len() || time.starts_with("1/");
     if is_time && time.trim_start_matches("1/").parse::<f64>().is_ok_and(|value| value > 0.0) {
-        let text = format!("`--exposure` takes stops over or under what the meter says, and `{said}` is a time");
-        let hint = format!("`--exposure=+1`, or the time itself: `--set film.exposure=\"{time} s\"`");
+        let text = format!("`--exposure` takes stops over or under the metered exposure, but `{said}` is a time");
+        let hint = format!("write `--exposure=+1`, or set the time itself: `--set film.exposure=\"{time} s\"`");
         return Err(Fault::new(text).hint(hint).into());
     }
     Ok(())
 }
 
-/// What the options say, by the keys of a scene; `said` is how the person named `stock`.
+/// Returns the settings of all film options, by the keys of a scene. `said` is the user's own name for `stock`.
 pub(super) fn settings(keys: &FilmKeys, said: &str, stock: &str) -> Vec<Setting> {
     let mut all = vec![following("film.stock", format!("--stock {said}"), stock)];
     for (path, option, value) in [
@@ -58,7 +58,7 @@ pub(super) fn settings(keys: &FilmKeys, said: &str, stock: &str) -> Vec<Setting>
     ] {
         all.extend(value.as_ref().map(|value| set(path, option, value)));
     }
-    // A scale is one of scans.
+    // Only a scan has a scale, so `--scan` alone implies the view `scan`.
     if let (Some(scale), None) = (&keys.scan, &keys.view) {
         all.push(following("film.view", format!("--scan {scale}"), "scan"));
     }

@@ -1,4 +1,4 @@
-//! `spectra film lamp`: how colors change on film and to the eye from one light to another.
+//! `spectra film lamp`: compares how colors change from one light to another, on film and to the eye.
 
 use super::arguments::FilmLamp;
 use super::keys::set;
@@ -21,17 +21,17 @@ use spectra_spectrum::{Emission, Observer, Reflectance, find_emission_in, find_r
 use std::fmt::Write;
 use std::path::Path;
 
-/// The ColorChecker's patches that are compared.
+/// Bundled table of the ColorChecker patches that are compared.
 const CHART: &str = "colorchecker";
 
-/// A surface in a light, XYZ under D65 with 1 for white: as the eye has it, as the layers of the film got it, and as the picture shows it.
+/// Colors of a surface in a light: to the eye, in the layers of the film, and in the picture. All are XYZ under D65 with Y = 1 for white.
 struct Seen {
     eye: [f64; 3],
     layers: [f64; 3],
     film: [f64; 3],
 }
 
-/// A light by its name.
+/// A light source with its name.
 struct Named<'a> {
     light: Emission,
     name: &'a str,
@@ -39,11 +39,11 @@ struct Named<'a> {
 
 impl Named<'_> {
     fn dark(&self) -> Failure {
-        Failure::Input(format!("`{}` has no light that the film and the eye see", self.name))
+        Failure::Input(format!("`{}` has no light that both the film and the eye can see", self.name))
     }
 }
 
-/// Compares two lights by what they make of a chart, for the eye and on a film.
+/// Compares how the colors of a chart look in two lights, to the eye and on a film, and prints the result.
 pub(crate) fn lamp(arguments: &FilmLamp) -> Outcome {
     if let Some(path) = &arguments.output {
         Format::of(path).map_err(failure)?;
@@ -121,16 +121,16 @@ pub(crate) fn lamp(arguments: &FilmLamp) -> Outcome {
         let named =
             |row: &&LampPatch| format!("{} ({:.1} on film, {:.1} to the eye)", row.name, row.apart[2], row.apart[0]);
         let all: Vec<String> = parting.iter().map(named).collect();
-        let _ = writeln!(out, "\n  what parts on film more than to the eye: {}", all.join(", "));
+        let _ = writeln!(out, "\n  colors that differ more on film than to the eye: {}", all.join(", "));
     }
     console::out(&out)?;
     Ok(DONE)
 }
 
-/// How many of the colors that part are named.
+/// Largest number of patches named in the summary.
 const NAMED: usize = 5;
 
-/// The colors that part on film by at least one CIEDE2000 more than to the eye, the worst first.
+/// Returns the patches that change on film by at least one CIEDE2000 more than to the eye, the worst first, at most [`NAMED`].
 fn parting(rows: &[LampPatch]) -> Vec<&LampPatch> {
     let by = |row: &&LampPatch| row.apart[2] - row.apart[0];
     let mut parting: Vec<&LampPatch> = rows.iter().filter(|row| by(row) >= 1.0).collect();
@@ -139,7 +139,7 @@ fn parting(rows: &[LampPatch]) -> Vec<&LampPatch> {
     parting
 }
 
-/// The film as it is developed and shown.
+/// Returns the film with its development and view.
 fn film(arguments: &FilmLamp, stock: &Stock) -> Result<FilmInLight, Failure> {
     let called = called(&arguments.stock)?;
     let mut settings = vec![set("film.stock", "STOCK", &called)];
@@ -149,7 +149,7 @@ fn film(arguments: &FilmLamp, stock: &Stock) -> Result<FilmInLight, Failure> {
     Ok(FilmInLight::new(&settings, &made_for)?)
 }
 
-/// All that is seen of surfaces in a light.
+/// Computes how surfaces look in a light to the eye, to the layers and in the picture.
 fn seen(
     light: &Named<'_>,
     stock: &Stock,
@@ -170,7 +170,7 @@ fn seen(
     surfaces.iter().zip(pictures).map(one).collect()
 }
 
-/// A surface to an eye that has adapted to the light.
+/// Returns the color of a surface to an eye adapted to the light, as XYZ under D65 with Y = 1 for white.
 fn to_eye(light: &Named<'_>, surface: &Reflectance) -> Result<[f64; 3], Failure> {
     let observer = Observer::cie_1931_2deg();
     let white = xyz_of_light(&light.light, observer).ok_or_else(|| light.dark())?;
@@ -178,10 +178,10 @@ fn to_eye(light: &Named<'_>, surface: &Reflectance) -> Result<[f64; 3], Failure>
     Ok(to_d65(xyz, white))
 }
 
-/// The fidelity index of samples that were seen in two ways: by the mean of their differences in CAM02-UCS, on the scale of TM-30.
+/// Returns the fidelity index between two renderings of the samples, on the scale of TM-30, from their mean difference in CAM02-UCS.
 fn fidelity_of(test: &[[f64; 3]], reference: &[[f64; 3]]) -> f64 {
     let white = RgbSpace::srgb().white_xyz().map(|v| 100.0 * v);
-    // Light that no surface sends, a hair below 0 by the numbers of a film, is black.
+    // Values slightly below 0, which the data of a film can give, count as black.
     let place = |xyz: &[f64; 3]| cam02_ucs(xyz.map(|v| (100.0 * v).max(0.0)), white);
     let apart = |(a, b): (&[f64; 3], &[f64; 3])| {
         let (a, b) = (place(a), place(b));
@@ -203,7 +203,7 @@ fn patches(files: &FileResources) -> Result<Vec<(String, Reflectance)>, Failure>
     columns.into_iter().map(one).collect()
 }
 
-/// What each layer gets of a surface in a light; of the light itself without one.
+/// Returns the exposure of each layer by a surface in a light, or by the light itself if there is no surface.
 fn exposures(stock: &Stock, light: &Emission, surface: Option<&Reflectance>) -> [f64; 3] {
     let light = surface.map_or_else(|| light.clone(), |surface| light * surface);
     let power = light.to_power(&BAND);
@@ -214,14 +214,15 @@ fn exposures(stock: &Stock, light: &Emission, surface: Option<&Reflectance>) -> 
     })
 }
 
-/// From a surface's XYZ in a light to what an eye adapted to D65 would see alike, 1 for white.
+/// Converts a surface's XYZ in a light to the XYZ that looks the same to an eye adapted to D65, with Y = 1 for white.
 fn to_d65(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     let unit = |xyz: [f64; 3]| xyz.map(|v| v / white[1]);
     Adaptation::Cat16.adapt(unit(xyz), unit(white), RgbSpace::srgb().white_xyz())
 }
 
-/// The matrix from the layers' exposures over white's to XYZ under D65 that is best for the chart in the reference light, with white kept:
-/// what a laboratory's timing and masks come to, so that only what the lamp changes is left.
+/// Fits the matrix from the layers' exposures relative to white to XYZ under D65, best for the chart in the reference light with white
+/// kept. It stands for a laboratory's timing and masks, so that only the changes due to the lamp are left. Fails if the layers do not
+/// separate colors.
 fn layers_matrix(stock: &Stock, reference: &Named<'_>, chart: &[&Reflectance]) -> Result<[[f64; 3]; 3], Failure> {
     let white = exposures(stock, &reference.light, None);
     if white.iter().any(|e| !(*e > 0.0 && e.is_finite())) {
@@ -239,11 +240,11 @@ fn layers_matrix(stock: &Stock, reference: &Named<'_>, chart: &[&Reflectance]) -
     for surface in chart {
         let exposed = exposures(stock, &reference.light, Some(surface));
         let from = [0, 1, 2].map(|i| exposed[i] / white[i]);
-        // Dark patches count as light ones do.
+        // Dark patches count as much as light ones.
         let weight = 1.0 / from.iter().sum::<f64>().max(1e-3);
         add(from, to_eye(reference, surface)?, weight);
     }
-    // White by far the most.
+    // White has by far the largest weight.
     add([1.0; 3], RgbSpace::srgb().white_xyz(), 1e4);
     let inverse = matrix::inverse(&squares);
     let mut out = [[0.0; 3]; 3];
@@ -253,7 +254,7 @@ fn layers_matrix(stock: &Stock, reference: &Named<'_>, chart: &[&Reflectance]) -
         }
     }
     if out.iter().flatten().any(|v| !v.is_finite()) {
-        return Err(Failure::Input(format!("the layers of `{}` see colors alike", stock.name)));
+        return Err(Failure::Input(format!("the layers of `{}` do not separate colors", stock.name)));
     }
     Ok(out)
 }

@@ -1,4 +1,4 @@
-//! `spectra film`: a stock's sensitivities and curves, and pictures developed on it.
+//! `spectra film`: shows the data of film stocks, and develops pictures on them.
 
 mod arguments;
 mod cube;
@@ -36,17 +36,17 @@ pub(crate) fn film(command: &FilmCommand, isa: Isa, started: Instant) -> Outcome
     }
 }
 
-/// A stock file, or a bundled stock.
+/// Loads a stock from a file or a bundled stock.
 fn load(name: &str) -> Result<Stock, Failure> {
     Ok(Stock::load(&called(name)?, &FileResources::beside(Path::new("")))?)
 }
 
-/// The whole name of a stock, or its file, and what it says.
+/// Returns the full name of a stock, or its file, together with the loaded stock.
 pub(crate) fn stock_called(name: &str) -> Result<(String, Stock), Failure> {
     Ok((called(name)?, load(name)?))
 }
 
-/// The file, or the whole name of the bundled stock, that `name` stands for.
+/// Returns the file, or the full name of the bundled stock, that `name` stands for. Fails with a hint if there is none.
 pub(crate) fn called(name: &str) -> Result<String, Failure> {
     let is_file = name.ends_with(".yaml") || name.ends_with(".yml") || name.contains(['/', '\\']);
     let found = if is_file { Ok(name.to_owned()) } else { Bundled::Stock.find(name) };
@@ -63,17 +63,17 @@ pub(crate) fn called(name: &str) -> Result<String, Failure> {
     })
 }
 
-/// What to do with a table that is asked for as a stock.
+/// Returns a hint for a table (`.csv`) that was given as a stock.
 fn table_hint(name: &str) -> String {
     let stem = Path::new(name).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     format!(
-        "a table belongs to a stock's file: `spectra new film {stem}` writes one, whose layers name it by `sensitivity: {{file: {name}}}`"
+        "a table is part of a stock file: `spectra new film {stem}` writes one, whose layers use it by `sensitivity: {{file: {name}}}`"
     )
 }
 
 fn plot(arguments: &FilmPlot) -> Outcome {
     let output = &arguments.output.clone().unwrap_or_else(|| figure_of(&arguments.name));
-    // Before anything is computed: a wrong ending is found out at once.
+    // A wrong extension is reported before anything is computed.
     Format::of(output).map_err(failure)?;
     let stock = load(&arguments.name)?;
     figure::sheet(&stock).write(output).map_err(failure)?;

@@ -1,4 +1,4 @@
-//! Which pictures are meant by what is written, and which files become of them.
+//! Finds the pictures that the arguments name, and the output files for them.
 
 use crate::folder::Target;
 use crate::outcome::Failure;
@@ -7,17 +7,17 @@ use spectra_session::{Names, PICTURES, Plate, is_picture, last_number};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A numbered name: `plate.####.exr`, `plate.%04d.exr`.
+/// A numbered file name: `plate.####.exr`, `plate.%04d.exr`.
 struct Numbered {
     folder: PathBuf,
     before: String,
     after: String,
-    /// Least digits of a number.
+    /// Smallest number of digits.
     digits: usize,
 }
 
 impl Numbered {
-    /// What a path says, if its last part holds the place of a number.
+    /// Parses a path; `None` if its file name has no placeholder for a number.
     fn of(path: &str) -> Option<Self> {
         let path = Path::new(path);
         let name = path.file_name()?.to_str()?;
@@ -39,20 +39,20 @@ impl Numbered {
         Some(of(from, from + 2 + digits.len(), count))
     }
 
-    /// The number of a file that is called so.
+    /// Returns the number in a file name, or `None` if the name does not match.
     fn number(&self, name: &str) -> Option<u64> {
         let digits = name.strip_prefix(self.before.as_str())?.strip_suffix(self.after.as_str())?;
         let is_number = digits.len() >= self.digits && digits.bytes().all(|b| b.is_ascii_digit());
         is_number.then(|| digits.parse().ok()).flatten()
     }
 
-    /// The name of the file of a number.
+    /// Returns the file name with a number.
     fn name(&self, number: u64) -> String {
         format!("{}{number:0digits$}{}", self.before, self.after, digits = self.digits)
     }
 }
 
-/// Names of the files in a folder.
+/// Returns the sorted names of all files in a folder.
 fn names_in(folder: &Path) -> Result<Vec<String>, Failure> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let entries =
@@ -62,10 +62,10 @@ fn names_in(folder: &Path) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// A file, and its number if its name has one.
+/// A picture file, and the number in its name if it has one.
 type Numbering = (PathBuf, Option<u64>);
 
-/// The files that one argument names, with their numbers; and whether it may name several.
+/// Returns the files that one argument names, with their numbers, and whether the argument can name several.
 fn files(argument: &str) -> Result<(Vec<Numbering>, bool), Failure> {
     let path = Path::new(argument);
     if path.is_dir() {
@@ -73,7 +73,7 @@ fn files(argument: &str) -> Result<(Vec<Numbering>, bool), Failure> {
         let names: Vec<String> = names_in(path)?.into_iter().filter(is_picture).collect();
         if names.is_empty() {
             let fault = Fault::new(format!("there are no pictures in `{argument}`"));
-            return Err(fault.hint(format!("files that end in .{}", PICTURES.join(", ."))).into());
+            return Err(fault.hint(format!("pictures are files that end in .{}", PICTURES.join(", ."))).into());
         }
         let all = names.into_iter().map(|name| {
             let stem = Path::new(&name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
@@ -90,29 +90,29 @@ fn files(argument: &str) -> Result<(Vec<Numbering>, bool), Failure> {
         names_in(&numbered.folder)?.into_iter().filter_map(|name| Some((numbered.number(&name)?, name))).collect();
     all.sort();
     if all.is_empty() {
-        let text = format!("no file is called `{argument}`, with a number in place of the sign");
+        let text = format!("no numbered file matches `{argument}`");
         return Err(Fault::new(text)
-            .hint(format!("such as `{}`", numbered.folder.join(numbered.name(1)).display()))
+            .hint(format!("a file would match if it were named `{}`", numbered.folder.join(numbered.name(1)).display()))
             .into());
     }
     Ok((all.into_iter().map(|(number, name)| (numbered.folder.join(name), Some(number))).collect(), true))
 }
 
-/// Pictures that are meant, and what becomes of them.
+/// Pictures to develop and their output files.
 pub(super) struct Found {
-    /// Where the files go.
+    /// Folder and names of the output files.
     pub target: Target,
-    /// The pictures.
+    /// Pictures to develop, in order.
     pub plates: Vec<Plate>,
-    /// Whether several are asked for, however many are found.
+    /// Whether the arguments ask for several pictures, however many are found.
     pub is_series: bool,
-    /// Numbers that a sequence leaves out, in words.
+    /// Message about frame numbers missing from a sequence.
     pub missing: Option<String>,
 }
 
-/// The frames that a sequence of numbers leaves out, in words.
+/// Returns a message about the frames that are missing from a sequence of numbers; `None` if none are missing.
 fn missing(mut numbers: Vec<u64>) -> Option<String> {
-    /// Most gaps that are named.
+    /// Largest number of gaps that are named.
     const NAMED: usize = 4;
     numbers.sort_unstable();
     let gaps: Vec<(u64, u64)> =
@@ -133,11 +133,11 @@ fn missing(mut numbers: Vec<u64>) -> Option<String> {
     Some(format!("frames {before}{last} are missing"))
 }
 
-/// How files end that are not named.
+/// Function that returns the file extension for output files without a given name.
 pub(super) type Ending<'a> = &'a dyn Fn() -> Result<String, Failure>;
 
-/// Where the files go and which pictures become which of them; `suffix` tells the output of a single picture from it, where no
-/// output is named.
+/// Finds the pictures and decides their output files. Without an output name, `suffix` is added to the name of a single picture, so
+/// that the output file differs from it.
 pub(super) fn of(
     arguments: &[String],
     output: Option<&str>,
@@ -165,7 +165,7 @@ pub(super) fn of(
         let plates = vec![Plate { file: shown(file), output: name, number: *own }];
         return apart(Found { target, plates, is_series: false, missing: None });
     }
-    // Numbers that do not tell pictures apart are none.
+    // Numbers are used only if each picture has its own.
     let mut known = BTreeMap::new();
     found.iter().for_each(|(_, number)| *known.entry(*number).or_insert(0) += 1);
     let is_numbered = !known.contains_key(&None) && known.values().all(|count| *count == 1);
@@ -182,8 +182,8 @@ pub(super) fn of(
         (None, Some(folder)) => {
             let path = Path::new(folder);
             if path.is_file() || (!path.is_dir() && Names::of_picture(path).is_some()) {
-                let text = format!("`{folder}` is one picture, and there are {} to develop", found.len());
-                return Err(Fault::new(text).hint("`-o out/`, or a numbered sequence: `-o out/####.png`").into());
+                let text = format!("`{folder}` names one picture, but there are {} to develop", found.len());
+                return Err(Fault::new(text).hint("write `-o out/`, or a numbered sequence: `-o out/####.png`").into());
             }
             path.to_owned()
         }
@@ -207,10 +207,10 @@ pub(super) fn of(
     for plate in &plates {
         if let Some(other) = outputs.insert(&plate.output, &plate.file) {
             let text = format!("`{other}` and `{}` would both be written as `{}`", plate.file, plate.output);
-            return Err(Fault::new(text).hint("a numbered output: `-o out/####.png`").into());
+            return Err(Fault::new(text).hint("number the output files: `-o out/####.png`").into());
         }
     }
-    // Files that are named one by one are a choice; those of a folder are a sequence where only numbers tell them apart.
+    // Files given one by one are a selection, not a sequence. Files of a folder are a sequence if they differ only in their numbers.
     let before = |file: &Path| stem(file).trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
     let is_sequence = is_numbered
         && arguments.len() == 1
@@ -219,7 +219,8 @@ pub(super) fn of(
     apart(Found { target: Target { folder, names: Names::of_scene() }, plates, is_series: true, missing })
 }
 
-/// The name of the file of a picture alone, where `output` is a file or a numbered sequence.
+/// Returns the output file name of a single picture, where `output` is a file or a numbered sequence. Fails if the picture has no
+/// number for a numbered sequence.
 fn name_of(picture: &Path, number: Option<u64>, output: &Path) -> Result<String, Failure> {
     let plain = || output.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let Some(numbered) = Numbered::of(&output.to_string_lossy()) else { return Ok(plain()) };
@@ -231,17 +232,17 @@ fn name_of(picture: &Path, number: Option<u64>, output: &Path) -> Result<String,
     })
 }
 
-/// The folder of a file.
+/// Returns the folder of a file, `.` if the path has none.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 fn unknown(path: &Path) -> Failure {
-    let text = format!("no picture is written as `{}`", path.display());
+    let text = format!("a picture cannot be written as `{}`", path.display());
     Fault::new(text).hint("name a file that ends in .png, .jpg, .tiff or .exr, or a folder: `-o out/`").into()
 }
 
-/// No picture is written over one that is read.
+/// Checks that no output file overwrites an input picture.
 fn apart(found: Found) -> Result<Found, Failure> {
     let Found { target, plates, .. } = &found;
     let real = |path: &Path| std::fs::canonicalize(path).ok();
@@ -249,10 +250,10 @@ fn apart(found: Found) -> Result<Found, Failure> {
         let written = real(&target.folder.join(&plate.output));
         if written.is_some() && plates.iter().any(|other| real(Path::new(&other.file)) == written) {
             let text = format!(
-                "`{}` would be written over a picture that is read",
+                "`{}` is an input picture and would be overwritten",
                 target.folder.join(&plate.output).display()
             );
-            return Err(Fault::new(text).hint("another folder or file at `-o`").into());
+            return Err(Fault::new(text).hint("choose another folder or file with `-o`").into());
         }
     }
     Ok(found)

@@ -1,4 +1,4 @@
-//! What can be written after `spectra glass`.
+//! Command-line arguments of `spectra glass`.
 
 use crate::quantity::wavelength;
 use clap::{Args, Subcommand, ValueEnum};
@@ -6,13 +6,13 @@ use spectra_core::params::Wavelength;
 use spectra_glass::{Category, Era, LineTriple};
 use std::path::PathBuf;
 
-/// `spectra glass`.
+/// Arguments of `spectra glass`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Inspect glass: refractive index, Abbe diagram, nearest glass to the values in a patent, fits.\n\n\
         NAME is MAKER/NAME (SCHOTT/N-BK7), or the name alone if only one maker has it; a substance or a common name \
         (water, fused silica, PMMA, air); or a file of your own: FILE.yaml (a formula, a table, nd and vd), FILE.csv \
-        (wavelength_nm,n,k), FILE.agf#NAME. Indices are relative to air at 20 C and 101 325 Pa, wavelengths are in \
+        (wavelength_nm,n,k), FILE.agf#NAME. Indices are relative to air at 20 C and 101 325 Pa; wavelengths are in \
         air.",
     after_long_help = "Examples:\n  spectra glass info N-BK7\n  \
         spectra glass match --nd 1.64329 --vd 48 --era 1927\n  \
@@ -25,7 +25,7 @@ pub(crate) struct GlassArguments {
     pub command: GlassCommand,
 }
 
-/// The commands on glass.
+/// The commands of `spectra glass`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum GlassCommand {
     /// Show the data of a glass: indices, Abbe numbers, transmittance.
@@ -34,7 +34,7 @@ pub(crate) enum GlassCommand {
     List(GlassList),
     /// Plot n(lambda) of several media, or an Abbe diagram.
     Plot(GlassPlot),
-    /// Find the real glasses closest to an index and an Abbe number.
+    /// Find the real glasses nearest to an index and an Abbe number.
     Match(GlassMatch),
     /// Fit a dispersion formula to a table of wavelengths and indices.
     Fit(GlassFit),
@@ -42,7 +42,7 @@ pub(crate) enum GlassCommand {
     Check(GlassCheck),
 }
 
-/// `--catalogue`.
+/// Argument `--catalogue`, shared by several commands.
 #[derive(Debug, Args)]
 pub(crate) struct OwnCatalogues {
     /// Your own glass catalogue file (AGF); the file name is used as the maker of its glasses. Can be repeated.
@@ -50,14 +50,14 @@ pub(crate) struct OwnCatalogues {
     pub files: Vec<PathBuf>,
 }
 
-/// `spectra glass info`.
+/// Arguments of `spectra glass info`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Show the data of a glass: index at spectral lines, Abbe numbers, internal transmittance of 10 mm, \
         reflection.\n\n\
         With a name, --nd and --vd give the measured values of a melt of that glass. Without a name, they describe an \
-        unknown glass, which gets the partial dispersions of an ordinary glass with the same Abbe number; nine out of \
-        ten glasses are within 0.0002 of it at r, 0.0004 at g, 0.0009 at h.",
+        unknown glass, which gets the partial dispersions of an ordinary glass with the same Abbe number. Nine out of \
+        ten glasses are within 0.0002 of it in index at r, 0.0004 at g and 0.0009 at h.",
     after_long_help = "Examples:\n  spectra glass info SCHOTT/SF6 --temperature-c 40 --absolute\n  \
         spectra glass info N-BK7 --nd 1.51712 --vd 64.01 --wavelength-nm 632.8 --json"
 )]
@@ -71,18 +71,18 @@ pub(crate) struct GlassInfo {
     /// Abbe number that goes with --nd.
     #[arg(long, visible_alias = "v", value_name = "V", requires = "nd")]
     pub vd: Option<f64>,
-    /// Reference line of --nd and --vd without a name: d and D go with F and C, e with F' and C'; or three lines from blue to red
-    /// (F,e,C or 450,580,680), the index at the middle one.
+    /// Reference line of --nd and --vd if no name is given: d and D go with F and C, e with F' and C'. Or three lines from blue to red
+    /// (F,e,C or 450,580,680), with the index at the middle one.
     #[arg(long, value_name = "LINE|BLUE,MIDDLE,RED", default_value = "d", value_parser = reference, conflicts_with = "name")]
     pub line: LineTriple,
-    /// Also show the index at this wavelength in air.
+    /// Show the index at this wavelength in air, too.
     #[arg(long, value_name = "NM", value_parser = wavelength)]
     pub wavelength_nm: Option<Wavelength>,
-    /// Also show the Abbe number of these three lines, the index at the middle one: names or wavelengths in nm (F',e,C' or
+    /// Show the Abbe number for these three lines, too, with the index at the middle one: names or wavelengths in nm (F',e,C' or
     /// 450,580,680).
     #[arg(long, value_name = "BLUE,MIDDLE,RED", value_parser = three_lines)]
     pub lines: Option<LineTriple>,
-    /// Temperature of glass and air in degrees Celsius; the catalogue's if not given.
+    /// Temperature of glass and air in degrees Celsius; that of the catalogue if not given.
     #[arg(long, value_name = "C", allow_hyphen_values = true, value_parser = temperature)]
     pub temperature_c: Option<f64>,
     /// Show indices relative to vacuum.
@@ -95,7 +95,7 @@ pub(crate) struct GlassInfo {
     pub json: bool,
 }
 
-/// `spectra glass list`.
+/// Arguments of `spectra glass list`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "List glasses and other media by name, with nd, Vd, kind, and the years of the catalogues that list \
@@ -122,7 +122,7 @@ pub(crate) struct GlassList {
     pub json: bool,
 }
 
-/// `spectra glass plot`.
+/// Arguments of `spectra glass plot`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Plot n(lambda) of several media; with --abbe, plot nd against Vd for all optical glasses and mark \
@@ -140,7 +140,7 @@ pub(crate) struct GlassPlot {
     /// Plot the Abbe diagram.
     #[arg(long)]
     pub abbe: bool,
-    /// The lines of the Abbe diagram: d, D or e, or three lines from blue to red (F',e,C' or 450,580,680).
+    /// Spectral lines of the Abbe diagram: d, D or e, or three lines from blue to red (F',e,C' or 450,580,680).
     #[arg(long, value_name = "LINE|BLUE,MIDDLE,RED", default_value = "d", value_parser = reference, requires = "abbe")]
     pub lines: LineTriple,
     /// Show only these makers in the Abbe diagram, each in its own color.
@@ -156,12 +156,12 @@ pub(crate) struct GlassPlot {
     pub own: OwnCatalogues,
 }
 
-/// `spectra glass match`.
+/// Arguments of `spectra glass match`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Find the real glasses closest to an index and an Abbe number, nearest first.\n\n\
-        The distance is in units of the usual catalogue tolerance: 1 is 0.0005 in n, or 0.5 % in V. With --lens, it \
-        lists the nearest glasses for each medium of a lens.",
+    long_about = "Find the real glasses nearest to an index and an Abbe number, nearest first.\n\n\
+        The distance is in units of the usual catalogue tolerance: 1 is 0.0005 in n, or 0.5 % in V. With --lens, the \
+        nearest glasses are listed for each medium of a lens.",
     after_long_help = "Examples:\n  spectra glass match --nd 1.64329 --vd 48 --maker SCHOTT --era 1927\n  \
         spectra glass match --nd 1.6242 --vd 53.1 --line e --era modern\n  \
         spectra glass match --nd 1.6200 --vd 36.0 --line 450,580,680\n  \
@@ -177,14 +177,14 @@ pub(crate) struct GlassMatch {
     /// Match every medium of this lens, by its stated index and Abbe number.
     #[arg(long, value_name = "LENS", conflicts_with_all = ["nd", "vd", "line"])]
     pub lens: Option<String>,
-    /// Reference line of both: d and D go with F and C, e with F' and C'; or three lines from blue to red (F,e,C or 450,580,680), the
-    /// index at the middle one.
+    /// Reference line of --nd and --vd: d and D go with F and C, e with F' and C'. Or three lines from blue to red (F,e,C or
+    /// 450,580,680), with the index at the middle one.
     #[arg(long, value_name = "LINE|BLUE,MIDDLE,RED", default_value = "d", value_parser = reference)]
     pub line: LineTriple,
-    /// Only glasses of this maker; can be repeated.
+    /// List only glasses of this maker; can be repeated.
     #[arg(long = "maker", value_name = "MAKER", value_delimiter = ',')]
     pub makers: Vec<String>,
-    /// Only glasses of this era: historical (listed by 1983), modern, or a year; before 1940 without rare earths.
+    /// List only glasses of this era: historical (listed by 1983), modern, or a year; before 1940 without rare earths.
     #[arg(long, value_name = "ERA")]
     pub era: Option<Era>,
     /// Include plastics, crystals, filters and other media.
@@ -200,7 +200,7 @@ pub(crate) struct GlassMatch {
     pub json: bool,
 }
 
-/// Formulas that can be fitted.
+/// Dispersion formula that can be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Model {
     /// n = A + B / L^2, from pairs of neighboring rows, averaged.
@@ -217,27 +217,27 @@ pub(crate) enum Model {
     Herzberger,
 }
 
-/// `spectra glass fit`.
+/// Arguments of `spectra glass fit`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Fit a dispersion formula to a table of wavelengths and indices.\n\n\
-        The table has columns wavelength_nm (or wavelength_um) and n, and `material` if it holds several. The output \
-        is the coefficients and the deviations of the formula from the rows: mean, root mean square and largest. \
-        Without --model, Cauchy's formula is fitted both from neighboring rows and by least squares. --rows adds what each \
-        row gives: Cauchy's A and B from it and the next one, and how far each formula is from it. -o writes the first formula as a \
+        The table has columns wavelength_nm (or wavelength_um) and n, and `material` if it holds several materials. The \
+        output has the coefficients and the deviations of the formula from the rows: mean, root mean square and largest. \
+        Without --model, Cauchy's formula is fitted both from neighboring rows and by least squares. --rows adds one line per \
+        row: Cauchy's A and B from this row and the next one, and the deviation of each formula. -o writes the first formula as a \
         glass file.",
     after_long_help = "Example:\n  spectra glass fit melt.csv --model sellmeier --terms 2\n\n\
-        The table by row, the curve, and a glass of it:\n\n    \
+        The results row by row, a plot of the curve, and a glass file:\n\n    \
         spectra glass fit melt.csv --rows --plot melt.svg -o melt.yaml"
 )]
 pub(crate) struct GlassFit {
-    /// CSV file of the table; FILE.csv#MATERIAL is one of several materials; `-` reads standard input.
+    /// CSV file of the table; FILE.csv#MATERIAL selects one of several materials; `-` reads standard input.
     #[arg(value_name = "FILE.csv")]
     pub file: PathBuf,
-    /// Glass file to write, FILE.yaml, of one material by the first formula.
+    /// Glass file to write, FILE.yaml, for one material with the first formula.
     #[arg(short, long, value_name = "FILE.yaml")]
     pub output: Option<PathBuf>,
-    /// Figure to write, FILE.svg or FILE.png: rows, curves and deviations of one material.
+    /// Figure to write, FILE.svg or FILE.png, with the rows, curves and deviations of one material.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// Show every row: wavelength, index, Cauchy's A and B, deviation of each formula.
@@ -246,7 +246,7 @@ pub(crate) struct GlassFit {
     /// The formula to fit; can be repeated.
     #[arg(long = "model", value_enum, value_name = "MODEL", value_delimiter = ',')]
     pub models: Vec<Model>,
-    /// Number of terms: for Cauchy by least squares 1 to 6, 2 if not given; for Sellmeier 1 to 3, 3 if not given.
+    /// Number of terms: 1 to 6 for Cauchy by least squares (2 if not given), 1 to 3 for Sellmeier (3 if not given).
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u8).range(1..=6))]
     pub terms: Option<u8>,
     /// Write a JSON list to standard output, one object per material.
@@ -254,7 +254,7 @@ pub(crate) struct GlassFit {
     pub json: bool,
 }
 
-/// `spectra glass check`.
+/// Arguments of `spectra glass check`.
 #[derive(Debug, Args)]
 #[command(long_about = "Compare the catalogue's computed nd and Vd with the values that makers list.\n\n\
         All media that differ by more than 1e-4 in nd or 0.1 in Vd are listed.")]
@@ -279,13 +279,13 @@ fn range(text: &str) -> Result<(f64, f64), String> {
     }
 }
 
-/// The lines of `--lines`.
+/// Parses the lines of `--lines`.
 fn three_lines(text: &str) -> Result<LineTriple, String> {
     let expected = "expected three lines or wavelengths in nm from blue to red, such as F',e,C' or 450,580,680";
     LineTriple::read(text).filter(|_| text.contains(',')).ok_or_else(|| expected.to_owned())
 }
 
-/// The lines of `--line`.
+/// Parses the lines of `--line`.
 fn reference(text: &str) -> Result<LineTriple, String> {
     let expected =
         "expected d, D or e, or three lines or wavelengths in nm from blue to red, such as F',e,C' or 450,580,680";

@@ -1,4 +1,4 @@
-//! `spectra glass check`.
+//! `spectra glass check`: compares computed indices with the values that makers list.
 
 use super::arguments::GlassCheck;
 use super::catalogue;
@@ -8,17 +8,17 @@ use serde::Serialize;
 use spectra_glass::{LISTED_TOLERANCE_ND, LISTED_TOLERANCE_VD, ListedCheck};
 use std::fmt::Write;
 
-/// What was found.
+/// Result of the check.
 #[derive(Debug, Serialize)]
 struct Report {
-    /// Media with listed nd and Vd, and coefficients.
+    /// Number of media that have listed nd and Vd as well as coefficients.
     listed: usize,
     tolerance_nd: f64,
     tolerance_vd: f64,
     deviating: Vec<Row>,
 }
 
-/// A medium whose coefficients contradict its listed values.
+/// A medium whose computed values differ from the listed ones.
 #[derive(Debug, Serialize)]
 struct Row {
     name: String,
@@ -28,7 +28,7 @@ struct Row {
     vd: f64,
 }
 
-/// Holds computed values against listed ones.
+/// Compares computed values with listed ones, and writes the result to standard output.
 pub(crate) fn check(arguments: &GlassCheck) -> Outcome {
     let report = report(catalogue(&arguments.own)?.check_listed());
     if arguments.json {

@@ -1,4 +1,4 @@
-//! `spectra glass fit`.
+//! `spectra glass fit`: fits dispersion formulas to tables.
 
 use super::arguments::{GlassFit, Model};
 use super::read;
@@ -24,27 +24,27 @@ use std::path::{Path, PathBuf};
 struct Report {
     material: Option<String>,
     samples: usize,
-    /// First and last wavelength.
+    /// Shortest and longest wavelength.
     range_nm: [f64; 2],
     fits: Vec<FitReport>,
     #[serde(skip)]
     rows: Vec<Sample>,
 }
 
-/// One formula.
+/// Fit of one formula.
 #[derive(Debug, Serialize)]
 struct FitReport {
-    /// As `--model` has it.
+    /// Name of the formula as in `--model`.
     model: &'static str,
-    /// n as a function of the wavelength L in micrometres.
+    /// Formula of n as a function of the wavelength L in micrometers.
     formula: &'static str,
-    /// By name; wavelengths in nm where the name says so, in micrometres otherwise.
+    /// Coefficients by name; for wavelengths in nm if the name says so, in micrometers otherwise.
     #[serde(skip_serializing_if = "Map::is_empty")]
     coefficients: Map<String, Value>,
     mean_deviation: Option<f64>,
     rms_deviation: Option<f64>,
     max_deviation: Option<f64>,
-    /// Why there are no coefficients.
+    /// Reason why there are no coefficients.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
     #[serde(skip)]
@@ -54,19 +54,19 @@ struct FitReport {
     deviations: Vec<f64>,
     #[serde(skip)]
     found: Option<Formula>,
-    /// Cauchy's A and B (nm^2) of each row, where the formula is made of them.
+    /// Cauchy's A and B (nm^2) of each row, if the formula is their mean.
     #[serde(skip)]
     by_rows: Option<(Vec<f64>, Vec<f64>)>,
 }
 
-/// Fits formulas to tables.
+/// Fits formulas to the materials of a table, writes the requested files, and prints the results.
 pub(crate) fn fit(arguments: &GlassFit) -> Outcome {
     if let Some(plot) = &arguments.plot {
-        // Before anything is read: a wrong ending is found out at once.
+        // A wrong extension is reported before anything is read.
         Format::of(plot).map_err(not_drawn)?;
     }
     if let Some(output) = arguments.output.as_ref().filter(|path| !is_yaml(path)) {
-        return Err(Failure::Input(format!("{}: a glass is written as .yaml", output.display())));
+        return Err(Failure::Input(format!("{}: the name of a glass file must end in .yaml", output.display())));
     }
     let (file, material) = one_of(&arguments.file);
     let name = arguments.file.display().to_string();
@@ -80,18 +80,22 @@ pub(crate) fn fit(arguments: &GlassFit) -> Outcome {
         if materials.is_empty() {
             let listed =
                 if known.is_empty() { "the file has no column `material`".to_owned() } else { known.join(", ") };
-            return Err(Fault::new(format!("{}: no material is called `{wanted}`", file.display()))
-                .hint(listed)
-                .into());
+            return Err(Fault::new(format!("{}: there is no material `{wanted}`", file.display())).hint(listed).into());
         }
     }
     let alone = arguments.output.is_some() || arguments.plot.is_some();
     if alone && materials.len() > 1 {
         let named: Vec<&str> = materials.iter().filter_map(|m| m.name.as_deref()).collect();
-        let fault =
-            Fault::new(format!("{name}: the table holds {} materials, and -o and --plot take one", materials.len()));
+        let fault = Fault::new(format!(
+            "{name}: the table holds {} materials, but -o and --plot take only one",
+            materials.len()
+        ));
         return Err(fault
-            .hint(format!("`{name}#{}`; there are {}", named.first().unwrap_or(&""), named.join(", ")))
+            .hint(format!(
+                "name one, such as `{name}#{}`; there are {}",
+                named.first().unwrap_or(&""),
+                named.join(", ")
+            ))
             .into());
     }
     let models =
@@ -116,7 +120,7 @@ pub(crate) fn fit(arguments: &GlassFit) -> Outcome {
     }
 }
 
-/// The file, and which of its materials; a file whose own name has a `#` is itself.
+/// Splits FILE#MATERIAL into the file and the material. A path that exists, even with a `#`, is the file itself.
 fn one_of(path: &Path) -> (PathBuf, Option<String>) {
     let text = path.to_string_lossy();
     match text.rsplit_once('#') {
@@ -136,7 +140,7 @@ fn not_drawn(error: PlotError) -> Failure {
     }
 }
 
-/// The glass file and the figure.
+/// Writes the glass file and the figure, if requested.
 fn write_files(arguments: &GlassFit, file: &Path, report: &Report) -> Result<(), Failure> {
     let stem = file.file_stem().map_or_else(|| "glass".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let called = report.material.clone().unwrap_or(stem);
@@ -163,7 +167,7 @@ fn write_files(arguments: &GlassFit, file: &Path, report: &Report) -> Result<(),
     Ok(())
 }
 
-/// A glass file of a fit, all digits kept. Cauchy's coefficients are in nm, as tables have them.
+/// Returns the text of a glass file with the fit, with all digits. Cauchy's coefficients are in nm, as usual in tables.
 fn glass_file(called: &str, from: &str, report: &Report, fit: &FitReport) -> String {
     let quoted = |text: &str| Value::String(text.to_owned()).to_string();
     let formula = match fit.model {
@@ -174,7 +178,7 @@ fn glass_file(called: &str, from: &str, report: &Report, fit: &FitReport) -> Str
     let is_cauchy = formula == "cauchy";
     let mut micrometers = fit.found.as_ref().map(Formula::coefficients).unwrap_or_default();
     if fit.model == "sellmeier" {
-        // One and two terms come with the constant of their form, which is 0; the form with three takes them with zeros.
+        // Fits with one and two terms include a constant, which is 0. The form with three terms takes them without it, padded with zeros.
         if micrometers.len() % 2 == 1 {
             micrometers.remove(0);
         }
@@ -266,7 +270,7 @@ fn describe(model: Model) -> (&'static str, &'static str) {
     }
 }
 
-/// The coefficients with their names. Cauchy's are those of wavelengths in nm, as tables have them.
+/// Returns the coefficients with their names. Cauchy's are for wavelengths in nm, as usual in tables.
 fn named(model: Model, c: &[f64]) -> Vec<(String, f64)> {
     const LETTERS: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
     match model {
@@ -281,7 +285,7 @@ fn named(model: Model, c: &[f64]) -> Vec<(String, f64)> {
             out
         }
         Model::Sellmeier => {
-            // One and two terms come with the constant of their form, which is 0.
+            // Fits with one and two terms include a constant, which is 0.
             let c = if c.len() % 2 == 1 { &c[1..] } else { c };
             let name =
                 |k: usize| if k.is_multiple_of(2) { format!("k{}", k / 2 + 1) } else { format!("m{}_um2", k / 2 + 1) };
@@ -292,7 +296,7 @@ fn named(model: Model, c: &[f64]) -> Vec<(String, f64)> {
     }
 }
 
-/// The rows: wavelength, index, Cauchy's A and B, and what each formula makes of it.
+/// Formats the rows: wavelength, index, Cauchy's A and B, and the deviation of each formula.
 fn show_rows(report: &Report) -> String {
     let by_rows = report.fits.iter().find_map(|fit| fit.by_rows.as_ref());
     let mut out = format!("\n  {:>10}  {:>9}", "nm", "n");

@@ -1,4 +1,4 @@
-//! `spectra glass info`.
+//! `spectra glass info`: shows the data of a glass.
 
 use super::arguments::GlassInfo;
 use super::{catalogue, named, own_file, unknown};
@@ -10,10 +10,10 @@ use spectra_glass::interface::{brewster_angle, critical_angle, fresnel};
 use spectra_glass::{Beside, Catalogue, Category, Formula, Glass, LineTriple, Medium, ModelGlass, lines};
 use std::fmt::Write;
 
-/// Thickness for which internal transmittances are stated.
+/// Thickness for which internal transmittances are stated, mm.
 const THICKNESS_MM: f64 = 10.0;
 
-/// Values by the names of spectral lines, from short wavelengths to long ones.
+/// Values with the names of their spectral lines, from short to long wavelengths.
 #[derive(Debug)]
 struct ByLine(Vec<(&'static str, f64)>);
 
@@ -23,45 +23,45 @@ impl Serialize for ByLine {
     }
 }
 
-/// A medium in figures. What is not known is `None`.
+/// Data of a medium. Unknown values are `None`.
 #[derive(Debug, Serialize)]
 struct Report {
     name: String,
     maker: Option<String>,
     category: Option<&'static str>,
     status: Option<&'static str>,
-    /// First and last catalogue in which it was found.
+    /// Years of the first and the last catalogue that list the glass.
     years: Option<(u16, u16)>,
     formula: Option<&'static str>,
     coefficients: Option<Vec<f64>>,
-    /// By how much the index of the formula may differ from the maker's, where the formula is a coarse fit.
+    /// Expected difference between the index of the formula and that of the maker, if the formula is a coarse fit.
     expected_error: Option<&'static str>,
     range_nm: Option<(f64, f64)>,
-    /// `air` or `vacuum`.
+    /// Medium that indices are relative to: `air` or `vacuum`.
     relative_to: &'static str,
-    /// Of glass and air.
+    /// Temperature of glass and air.
     temperature_c: f64,
     nd: Option<f64>,
     vd: Option<f64>,
     ne: Option<f64>,
     ve: Option<f64>,
-    /// Of the lines that are asked for, from blue to red, nm, and the Abbe number.
+    /// Wavelengths of the requested lines, from blue to red; `v_lines` is their Abbe number.
     lines_nm: Option<[f64; 3]>,
     v_lines: Option<f64>,
     listed_nd: Option<f64>,
     listed_vd: Option<f64>,
-    /// At the lines within the measured range.
+    /// Indices at the lines within the measured range.
     n: ByLine,
     wavelength_nm: Option<f64>,
     n_at: Option<f64>,
-    /// Of 10 mm, without reflections, at the lines where absorption is known.
+    /// Transmittance of 10 mm without reflections, at the lines where absorption is known.
     internal_transmittance_10mm: Option<ByLine>,
     internal_transmittance_10mm_at: Option<f64>,
-    /// Of one bare surface to air at normal incidence, d line.
+    /// Reflectance of one bare surface to air at normal incidence, d line.
     reflectance: Option<f64>,
-    /// Total reflection in the medium begins here, d line.
+    /// Angle in the medium at which total reflection begins, d line.
     critical_angle_deg: Option<f64>,
-    /// Light from air is not reflected in p, d line.
+    /// Angle in air at which p-polarized light is not reflected, d line.
     brewster_angle_deg: Option<f64>,
     /// Change of the index per kelvin from 20 to 40 C at the e line, relative to air, times 1e6.
     dn_dt_relative_1e6: Option<f64>,
@@ -70,7 +70,7 @@ struct Report {
     warnings: Vec<String>,
 }
 
-/// Shows a glass in figures.
+/// Writes the data of a glass to standard output, as text or JSON.
 pub(crate) fn info(arguments: &GlassInfo) -> Outcome {
     let catalogue = catalogue(&arguments.own)?;
     let medium = medium(arguments, &catalogue)?;
@@ -180,7 +180,8 @@ fn report(medium: &Medium, arguments: &GlassInfo) -> Report {
     }
 }
 
-/// Index at a wavelength (nm). Relative indices are at the catalogue's temperature unless one is asked for.
+/// Returns the index at a wavelength (nm). Relative indices are for the catalogue's temperature unless another one is requested
+/// (`asked_c`).
 fn index(medium: &Medium, nm: f64, asked_c: Option<f64>, temperature_c: f64, absolute: bool) -> f64 {
     let air_at = AirConditions { temperature_c, ..CATALOGUE_AIR };
     match (medium, absolute) {
@@ -205,7 +206,7 @@ fn warnings(medium: &Medium, glass: Option<&Glass>, arguments: &GlassInfo) -> Ve
     }
     let solid = glass.is_some_and(|g| g.thermal.is_none()) || matches!(medium, Medium::Model(_));
     if arguments.temperature_c.is_some() && solid {
-        warnings.push(format!("{name}: no data on temperature; only the air around it is taken into account"));
+        warnings.push(format!("{name} has no temperature data; only the temperature of the air is taken into account"));
     }
     let research = glass.is_some_and(|g| {
         use spectra_glass::Category::{Crystal, Inorganic, Mixed, Organic};
@@ -213,14 +214,15 @@ fn warnings(medium: &Medium, glass: Option<&Glass>, arguments: &GlassInfo) -> Ve
     });
     if arguments.absolute && research {
         warnings.push(format!(
-            "{name}: its data are assumed relative to air; leave out --absolute if they are relative to vacuum, as for gases"
+            "the data of {name} are assumed to be relative to air; leave out --absolute if they are relative to vacuum, as for gases"
         ));
     }
     warnings
 }
 
-/// How good a coarse description of a glass is, where it is one. Two terms of Buchdahl's form, fitted to 240 glasses of SCHOTT from 400 to
-/// 700 nm, leave 3.2e-5 at the median and 6.6e-5 at the 95th percentile; the figures of an index and an Abbe number are those of the guide.
+/// Returns the expected error of a glass that is described coarsely; `None` for others. Two terms of Buchdahl's form, fitted to 240 glasses
+/// of SCHOTT from 400 to 700 nm, leave 3.2e-5 at the median and 6.6e-5 at the 95th percentile. The errors for an index and an Abbe number
+/// are those stated in the guide.
 fn expected_error(medium: &Medium) -> Option<&'static str> {
     let model = match medium {
         Medium::Model(model) => Some(model),
@@ -234,10 +236,10 @@ fn expected_error(medium: &Medium) -> Option<&'static str> {
         _ => None,
     };
     let is_coarse = model.is_some_and(|model| model.stated_lines() == 1);
-    is_coarse.then_some("2e-4 in n at r, 4e-4 at g, 9e-4 at h for nine of ten glasses")
+    is_coarse.then_some("2e-4 in n at r, 4e-4 at g, 9e-4 at h for nine out of ten glasses")
 }
 
-/// The report as a person reads it.
+/// Formats the report as text.
 fn text(report: &Report) -> String {
     let mut out = format!("{}{}\n\n", report.name, report.category.map_or(String::new(), |c| format!(": {c}")));
     let mut row = |name: &str, value: Option<String>| {
@@ -264,11 +266,13 @@ fn text(report: &Report) -> String {
     row("ne", report.ne.map(|n| format!("{n:.6}")));
     row("Ve", report.ve.map(|v| format!("{v:.2}")));
     if let Some([blue, middle, red]) = report.lines_nm {
-        let value = report.v_lines.map_or_else(|| "outside of the measured range".to_owned(), |v| format!("{v:.2}"));
+        let value = report.v_lines.map_or_else(|| "outside the measured range".to_owned(), |v| format!("{v:.2}"));
         row(&format!("V {blue} {middle} {red} nm"), Some(value));
     }
     if let (Some(nm), Some(n)) = (report.wavelength_nm, report.n_at) {
-        let tau = report.internal_transmittance_10mm_at.map_or(String::new(), |t| format!("  (10 mm pass {t:.4})"));
+        let tau = report
+            .internal_transmittance_10mm_at
+            .map_or(String::new(), |t| format!("  (internal transmittance of 10 mm: {t:.4})"));
         row(&format!("n at {nm} nm"), Some(format!("{n:.6}{tau}")));
     }
     let slopes = report.dn_dt_relative_1e6.zip(report.dn_dt_absolute_1e6);

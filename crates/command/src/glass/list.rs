@@ -1,4 +1,4 @@
-//! `spectra glass list`.
+//! `spectra glass list`: lists media by name.
 
 use super::arguments::GlassList;
 use super::{catalogue, makers};
@@ -13,17 +13,17 @@ use std::fmt::Write;
 struct Row {
     name: String,
     category: &'static str,
-    /// Null where the data do not reach the lines.
+    /// Index at d; null if the data do not reach the line.
     nd: Option<f64>,
     vd: Option<f64>,
     range_nm: (f64, f64),
     status: &'static str,
     years: Option<(u16, u16)>,
-    /// Whether its absorption is known.
+    /// Whether the absorption is known.
     absorption: bool,
 }
 
-/// Lists media by name.
+/// Lists media by name, maker and category on standard output.
 pub(crate) fn list(arguments: &GlassList) -> Outcome {
     let catalogue = catalogue(&arguments.own)?;
     let makers = makers(&arguments.makers, &catalogue)?;
@@ -42,7 +42,9 @@ pub(crate) fn list(arguments: &GlassList) -> Outcome {
     } else {
         console::out(&text(&rows))?;
         if rows.is_empty() {
-            console::note("no glass has such a name; `spectra glass match --nd N --vd V` finds a glass by its figures");
+            console::note(
+                "no glass has this name; `spectra glass match --nd N --vd V` finds a glass by its index and Abbe number",
+            );
         }
     }
     Ok(DONE)

@@ -1,4 +1,4 @@
-//! `spectra glass`: refractive index.
+//! `spectra glass`: inspects, compares and fits the refractive index of glasses and other media.
 
 mod arguments;
 mod check;
@@ -21,7 +21,7 @@ use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
 
-/// Runs a command on glass.
+/// Runs one of the commands of `spectra glass`.
 pub(crate) fn glass(command: &GlassCommand) -> Outcome {
     match command {
         GlassCommand::Info(arguments) => info::info(arguments),
@@ -33,10 +33,10 @@ pub(crate) fn glass(command: &GlassCommand) -> Outcome {
     }
 }
 
-/// Largest file that is read, bytes: makers' catalogues have some hundred thousand.
+/// Largest file that is read, bytes. Makers' catalogues have some hundred thousand.
 const MAX_BYTES: u64 = 16 << 20;
 
-/// The bundled catalogue, with the user's own glasses; what of those is not understood is told.
+/// Returns the bundled catalogue together with the user's own glasses. Warns about lines in those files that are not understood.
 fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalogue>, Failure> {
     let mut catalogue = Cow::Borrowed(Catalogue::bundled());
     for path in &own.files {
@@ -45,7 +45,7 @@ fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalogue>, Failure> {
     Ok(catalogue)
 }
 
-/// The glasses of a catalogue file (AGF), one at least; what is not understood is told.
+/// Reads the glasses of a catalogue file (AGF). Warns about lines that are not understood. Fails if there is no glass.
 pub(crate) fn own_glasses(path: &Path) -> Result<Vec<Glass>, Failure> {
     let bytes = read(path)?;
     let maker = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
@@ -60,7 +60,7 @@ pub(crate) fn own_glasses(path: &Path) -> Result<Vec<Glass>, Failure> {
     Ok(read.glasses)
 }
 
-/// The medium of a name: a file in the working folder, or one of the catalogue.
+/// Returns the medium of a name: a file in the working folder, or a medium of the catalogue.
 fn named(name: &str, catalogue: &Catalogue) -> Result<Medium, Failure> {
     match own_file(name)? {
         Some(glass) => Ok(glass.into()),
@@ -77,12 +77,12 @@ fn named(name: &str, catalogue: &Catalogue) -> Result<Medium, Failure> {
     }
 }
 
-/// A name that is nobody's, or that of several.
+/// Converts the error for an unknown or ambiguous name.
 fn unknown(error: FindError) -> Failure {
     Failure::Faults(Fault::new(error.message()).hint(error.hint()).into())
 }
 
-/// The glass of a file in the working folder; `None` for a name of the catalogue.
+/// Loads the glass of a file in the working folder; `None` if `name` is a name of the catalogue.
 fn own_file(name: &str) -> Result<Option<Glass>, Failure> {
     if !file::is_file(name) {
         return Ok(None);
@@ -90,7 +90,7 @@ fn own_file(name: &str) -> Result<Option<Glass>, Failure> {
     Ok(Some(file::load(name, &FileResources::beside(Path::new("")))?))
 }
 
-/// A whole file, or standard input for `-`.
+/// Reads a whole file, or standard input for `-`. Fails above [`MAX_BYTES`].
 fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let refuse = |text: String| Failure::Input(format!("{}: {text}", path.display()));
     let mut bytes = Vec::new();
@@ -107,7 +107,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// The makers' names as the catalogue writes them.
+/// Returns the makers' names as written in the catalogue. Fails if one is unknown.
 fn makers(asked: &[String], catalogue: &Catalogue) -> Result<Vec<String>, Failure> {
     let known = catalogue.makers();
     let find = |name: &String| {
@@ -115,7 +115,7 @@ fn makers(asked: &[String], catalogue: &Catalogue) -> Result<Vec<String>, Failur
         known.iter().find(|k| k.eq_ignore_ascii_case(name)).cloned().ok_or_else(|| {
             let near = near_words(name, known.iter().map(String::as_str));
             let hint = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-            Failure::Input(format!("no maker `{name}`{hint}"))
+            Failure::Input(format!("unknown maker `{name}`{hint}"))
         })
     };
     asked.iter().map(find).collect()

@@ -1,4 +1,4 @@
-//! `spectra glass match`.
+//! `spectra glass match`: finds the glasses nearest to an index and an Abbe number.
 
 use super::arguments::GlassMatch;
 use super::{catalogue, makers};
@@ -11,16 +11,16 @@ use spectra_scene::FileResources;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The glasses nearest to one pair of figures.
+/// The glasses nearest to one index and Abbe number.
 #[derive(Debug, Serialize)]
 struct Report {
-    /// How the lens names the medium; null where figures were given.
+    /// Name of the medium in the lens; null if `--nd` was given.
     medium: Option<String>,
     /// Surfaces of the lens in front of the medium, from 1.
     surfaces: Vec<usize>,
-    /// The middle line: its name, or its wavelength.
+    /// Name or wavelength of the middle line.
     line: String,
-    /// All three, from blue to red, nm.
+    /// Wavelengths of all three lines, from blue to red.
     lines_nm: [f64; 3],
     #[serde(skip)]
     called: [String; 2],
@@ -29,7 +29,7 @@ struct Report {
     matches: Vec<Row>,
 }
 
-/// A glass.
+/// A glass of the catalogue and its distance from the wanted values.
 #[derive(Debug, Serialize)]
 struct Row {
     name: String,
@@ -37,15 +37,15 @@ struct Row {
     n: f64,
     v: f64,
     delta_n: f64,
-    /// Null where no Abbe number was given.
+    /// Difference of the Abbe number; null if none was given.
     delta_v: Option<f64>,
-    /// 1 is the usual tolerance of a catalogue.
+    /// Distance in units of the usual catalogue tolerance.
     distance: f64,
     status: &'static str,
     years: Option<(u16, u16)>,
 }
 
-/// A medium of a lens: label, surfaces, index, Abbe number.
+/// Values to match: those of a medium of a lens with its label and surfaces, or those given on the command line.
 struct Wanted {
     label: Option<String>,
     surfaces: Vec<usize>,
@@ -53,7 +53,7 @@ struct Wanted {
     v: Option<f64>,
 }
 
-/// Finds the nearest glasses.
+/// Finds the nearest glasses and writes them to standard output.
 pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
     let catalogue = catalogue(&arguments.own)?;
     let (lines, wanted) = match &arguments.lens {
@@ -66,10 +66,10 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
             let n = arguments.nd.unwrap_or(f64::NAN);
             let refuse = |what: &str| Err(Failure::Input(what.to_owned()));
             if !(1.0..=4.0).contains(&n) {
-                return refuse("--nd: an index lies between 1 and 4");
+                return refuse("--nd: the index must be between 1 and 4");
             }
             if arguments.vd.is_some_and(|v| !(1.0..=1000.0).contains(&v)) {
-                return refuse("--vd: an Abbe number lies between 1 and 1000");
+                return refuse("--vd: the Abbe number must be between 1 and 1000");
             }
             (arguments.line, vec![Wanted { label: None, surfaces: Vec::new(), n, v: arguments.vd }])
         }
@@ -104,7 +104,7 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
     Ok(DONE)
 }
 
-/// The media of a lens but air, each once, with the surfaces in front of them.
+/// Returns the media of a lens except air, each once, with the numbers of the surfaces in front of them.
 fn media(lens: &Lens, lines: LineTriple) -> Vec<Wanted> {
     let surfaces = |medium: usize| -> Vec<usize> {
         let after = |(i, e): (usize, &spectra_lens::Element)| {
@@ -190,7 +190,7 @@ fn text(report: &Report) -> String {
     out
 }
 
-/// Two decimals, without zeros at the end.
+/// Formats a number with at most two decimals, without trailing zeros.
 fn rounded(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -1,4 +1,4 @@
-//! `spectra glass plot`.
+//! `spectra glass plot`: plots indices or an Abbe diagram.
 
 use super::arguments::GlassPlot;
 use super::{catalogue, makers, named};
@@ -9,19 +9,19 @@ use spectra_glass::{Catalogue, Category, LineTriple, Medium, Query, lines};
 use spectra_plot::{Canvas, Format, PlotError};
 use std::path::PathBuf;
 
-/// Spectral lines that are marked in a drawing.
+/// Spectral lines that are marked in the plot.
 const MARKED: [&str; 9] = ["i", "h", "g", "F", "e", "d", "C", "r", "s"];
-/// Points of a curve.
+/// Number of steps of a curve.
 const POINTS: usize = 600;
 
-/// Draws indices or the Abbe diagram.
+/// Plots the indices of media, or an Abbe diagram, and writes the figure to a file.
 pub(crate) fn plot(arguments: &GlassPlot) -> Outcome {
     let default = || PathBuf::from(if arguments.abbe { "abbe.svg" } else { "dispersion.svg" });
     let output = arguments.output.clone().unwrap_or_else(default);
-    // Before anything is computed: a wrong ending is found out at once.
+    // A wrong extension is reported before anything is computed.
     Format::of(&output).map_err(failure)?;
     let catalogue = catalogue(&arguments.own)?;
-    // One of several materials of a file is known by its own name.
+    // A material of a file with several is labeled by its own name.
     let label = |name: &str| match name.rsplit_once('#') {
         Some((_, material)) if spectra_glass::file::is_file(name) => material.trim().to_owned(),
         _ => name.trim().to_owned(),
@@ -79,17 +79,17 @@ fn abbe(arguments: &GlassPlot, catalogue: &Catalogue, media: &[(String, Medium)]
     for (name, medium) in media {
         let (n, v) = (medium.index(lines.mid.wavelength_nm), medium.abbe_number(lines));
         if !visible(&[v, n]) {
-            return Err(Failure::Input(format!("{name} has no Abbe number that a diagram can show")));
+            return Err(Failure::Input(format!("{name} has no Abbe number that the diagram can show")));
         }
         named.push((name.clone(), [v, n]));
     }
     for group in groups.iter().filter(|g| g.points.is_empty()) {
-        console::warning(&format!("no optical glass of {} fits", group.name));
+        console::warning(&format!("no optical glass matches for {}", group.name));
     }
     Ok(figure::abbe(&groups, &named, &axes(lines)))
 }
 
-/// How its axes are called: the Abbe number, and the index.
+/// Returns the labels of the axes of an Abbe diagram: the Abbe number and the index.
 fn axes(lines: LineTriple) -> [String; 2] {
     let of = |symbol: &str| format!("{symbol}_{{{}}}", lines.mid.label());
     let usual = LineTriple::of_reference(lines.mid) == Some(lines);
@@ -97,7 +97,7 @@ fn axes(lines: LineTriple) -> [String; 2] {
     [format!("Abbe number {}{for_lines}", of("V")), format!("refractive index {}", of("n"))]
 }
 
-/// What an Abbe diagram has room for.
+/// Whether a point (Abbe number, index) lies inside the Abbe diagram.
 fn visible([v, n]: &[f64; 2]) -> bool {
     (1.0..=4.0).contains(n) && (5.0..=130.0).contains(v)
 }

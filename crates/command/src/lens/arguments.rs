@@ -1,13 +1,13 @@
-//! What can be written after `spectra lens`.
+//! Command-line arguments of `spectra lens`.
 
 use crate::glass::OwnCatalogues;
 use crate::quantity::{parse, wavelength};
 use clap::{Args, Subcommand};
 use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Ratio, Wavelength};
-use spectra_lens::Criterion;
+use spectra_optics::Criterion;
 use std::path::PathBuf;
 
-/// `spectra lens`.
+/// Arguments of `spectra lens`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Example:\n  spectra lens info zeiss-biotar-50-f1.4")]
 pub(crate) struct LensArguments {
@@ -16,7 +16,7 @@ pub(crate) struct LensArguments {
     pub command: LensCommand,
 }
 
-/// The commands on lenses.
+/// The commands of `spectra lens`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum LensCommand {
     /// Show the data of a lens: focal lengths, pupils, f-number, prescription.
@@ -25,34 +25,34 @@ pub(crate) enum LensCommand {
     Compare(LensCompare),
     /// Draw a lens: glass, stop, and rays from several field angles in their spectral colors.
     Draw(LensDraw),
-    /// List the ghosts of a lens: energy, focus, size and color of each pair of reflections.
+    /// List the ghosts of a lens: energy, focus, size and color for each pair of reflections.
     Ghosts(LensGhosts),
     /// Trace rays through a lens: CSV in, CSV out.
     Trace(LensTrace),
-    /// Convert a lens file from another program, or a table as patents print it: .zmx, .seq, .csv or .txt.
+    /// Convert a lens file from another program, or a table as printed in patents: .zmx, .seq, .csv or .txt.
     Import(LensImport),
-    /// Write a lens at another size, such as a patent for a focal length of 100 at 50 mm.
+    /// Write a lens at another size, for example a patent with a focal length of 100 as a 50 mm lens.
     Scale(LensScale),
-    /// Export a lens for other programs, as .zmx.
+    /// Export a lens to other programs, as .zmx.
     Export(LensExport),
 }
 
-/// `spectra lens scale`.
+/// Arguments of `spectra lens scale`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Write a lens at another size: all lengths times a factor, so that f-number, angles and glasses stay.\n\n\
-        Patents state many lenses for a focal length of 1 or 100.",
+    long_about = "Write a lens at another size: all lengths are multiplied by a factor; f-number, angles and glasses stay the same.\n\n\
+        Many patents state lenses for a focal length of 1 or 100.",
     after_long_help = "Examples:\n  spectra lens scale zeiss-biotar-100-f1.4 --to 50mm -o biotar.yaml\n  \
         spectra lens scale cooke-triplet-50-f5 --by 0.5"
 )]
 pub(crate) struct LensScale {
-    /// A lens file of any kind that is read, or the name of a bundled lens.
+    /// A lens file in any supported format, or the name of a bundled lens.
     #[arg(value_name = "LENS")]
     pub lens: String,
-    /// The focal length that it is to have (85mm).
+    /// Focal length of the scaled lens (85mm).
     #[arg(long, value_name = "LENGTH", value_parser = parse::<Positive<Length>>, conflicts_with = "by", required_unless_present = "by")]
     pub to: Option<Positive<Length>>,
-    /// What all lengths are multiplied by.
+    /// Factor that all lengths are multiplied by.
     #[arg(long, value_name = "FACTOR")]
     pub by: Option<f64>,
     /// Output file, .yaml; standard output if not given.
@@ -66,7 +66,7 @@ pub(crate) struct LensScale {
     pub json: bool,
 }
 
-/// `spectra lens compare`.
+/// Arguments of `spectra lens compare`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Compare lenses side by side: focal length, f-number, T-number, field, size, contrast on axis and \
@@ -74,7 +74,7 @@ pub(crate) struct LensScale {
         Contrast is geometrical, at 30 lp/mm, in the plane where it is highest on axis. The off-axis field is the \
         same for all lenses: 0.7 of the field of the narrowest one. A lens that cannot reach --f-number stays wide \
         open, with a note.",
-    after_long_help = "Example: both at f/2\n  spectra lens compare zeiss-biotar-50-f1.4 helios-44-58-f2 --f-number f/2"
+    after_long_help = "Example: two lenses, both at f/2\n  spectra lens compare zeiss-biotar-50-f1.4 helios-44-58-f2 --f-number f/2"
 )]
 pub(crate) struct LensCompare {
     /// Two or more lens files, or names of bundled lenses (see `spectra list lens`).
@@ -89,7 +89,7 @@ pub(crate) struct LensCompare {
     pub json: bool,
 }
 
-/// `spectra lens draw`.
+/// Arguments of `spectra lens draw`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Draw a lens: glass tinted by its index and dispersion, stop, image plane, and rays from several \
@@ -124,12 +124,12 @@ pub(crate) struct LensDraw {
     /// Width of the drawing; a .png is twice as many pixels wide.
     #[arg(long, value_name = "UNITS", default_value = "900", value_parser = clap::value_parser!(u16).range(100..=8000))]
     pub width: u16,
-    /// White glass and additively blended rays on a black background.
+    /// Draw white glass and additively blended rays on a black background.
     #[arg(long)]
     pub dark: bool,
 }
 
-/// The plane of a drawing.
+/// Plane of the cross-section in a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum CutArgument {
     /// The y-z plane, y up.
@@ -140,21 +140,21 @@ pub(crate) enum CutArgument {
     X,
 }
 
-/// The number of a surface, counted from 1.
+/// Parses the number of a surface, counted from 1.
 fn surface(text: &str) -> Result<usize, String> {
     text.trim().parse().map_err(|_| "surfaces are whole numbers, counted from 1, such as 7,3".to_owned())
 }
 
-/// A part of something: from 0 to 1.
+/// Parses a fraction from 0 to 1.
 fn share(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
-    value.ok_or_else(|| "a part from 0 to 1, such as 1e-8".to_owned())
+    value.ok_or_else(|| "expected a fraction from 0 to 1, such as 1e-8".to_owned())
 }
 
-/// An angle that light can come from in front.
+/// Parses a field angle in degrees, between -90 and 90.
 fn field(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| v.abs() < 90.0);
-    value.ok_or_else(|| "degrees between -90 and 90".to_owned())
+    value.ok_or_else(|| "expected degrees between -90 and 90".to_owned())
 }
 
 fn wavelength_or_line(text: &str) -> Result<f64, String> {
@@ -164,7 +164,7 @@ fn wavelength_or_line(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A lens, and how it is set.
+/// A lens and its settings.
 #[derive(Debug, Args)]
 pub(crate) struct LensSetting {
     /// A lens file, or the name of a bundled lens (see `spectra list lens`).
@@ -174,7 +174,7 @@ pub(crate) struct LensSetting {
     pub options: LensOptions,
 }
 
-/// How a lens is set.
+/// Settings of a lens: focus, f-number, coating and absorption.
 #[derive(Debug, Args)]
 pub(crate) struct LensOptions {
     /// Focus at this distance from the first surface (2m, 77cm, inf); as in the file if not given.
@@ -183,14 +183,14 @@ pub(crate) struct LensOptions {
     /// Focus distance as a plain number in millimeters.
     #[arg(long, value_name = "MM", value_parser = parse::<OrInfinity<Positive<Length>>>, conflicts_with = "focus")]
     pub focus_mm: Option<OrInfinity<Positive<Length>>>,
-    /// What --focus optimizes, at the lens's reference line, on axis and at the chosen aperture.
+    /// Measure that --focus optimizes, at the lens's reference line, on axis and at the chosen aperture.
     #[arg(long, value_name = "MEASURE", value_enum, default_value_t = FocusMeasure::Contrast)]
     pub focus_by: FocusMeasure,
-    /// Set the stop to this f-number (f/2), measured with the real marginal ray; as in the file if not given.
+    /// Set the stop to this f-number (f/2), which is measured with the real marginal ray; as in the file if not given.
     #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
     pub f_number: Option<FNumber>,
-    /// Coating of all surfaces: ideal (no reflection), bare, single-layer, three-layer, another of `spectra list coating` that
-    /// has no required parameters, or a file; as in the lens file if not given.
+    /// Coating of all surfaces: ideal (no reflection), bare, single-layer, three-layer, any other of `spectra list coating` without
+    /// required parameters, or a file; as in the lens file if not given.
     #[arg(long, value_name = "COATING")]
     pub coating: Option<String>,
     /// Whether glass absorbs light: true or false; as in the file if not given.
@@ -198,20 +198,20 @@ pub(crate) struct LensOptions {
     pub absorption: Option<bool>,
 }
 
-/// What a focused lens is best at.
+/// Measure that focusing optimizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum FocusMeasure {
-    /// Highest contrast at 30 line pairs per mm, with real rays, as scenes on a 135 frame are focused.
+    /// Highest contrast at 30 line pairs per mm, with real rays. Scenes on a 135 frame are focused in this way.
     Contrast,
     /// Smallest RMS spot, with real rays.
     #[value(alias = "rms")]
     Spot,
-    /// No search: from infinity, as in the file, by first-order optics; what the file leaves between image plane and paraxial image stays.
+    /// First-order optics without a search. The distance between image plane and paraxial image stays as in the file, at infinity.
     Paraxial,
 }
 
 impl FocusMeasure {
-    /// What real rays are searched by.
+    /// Returns the criterion of the search with real rays; `None` for paraxial focus.
     pub(crate) fn criterion(self) -> Option<Criterion> {
         match self {
             Self::Contrast => Some(Criterion::Contrast { per_mm: 30.0 }),
@@ -221,7 +221,7 @@ impl FocusMeasure {
     }
 }
 
-/// One light for all.
+/// Options that select one wavelength for all glasses.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 pub(crate) struct OneLight {
@@ -236,7 +236,7 @@ pub(crate) struct OneLight {
     pub nd: bool,
 }
 
-/// Wavelength of a spectral line, nm.
+/// Parses the name of a spectral line; returns its wavelength, nm.
 fn line(name: &str) -> Result<f64, String> {
     spectra_glass::lines::by_name(name).map(|line| line.wavelength_nm).ok_or_else(|| {
         let known: Vec<&str> = spectra_glass::lines::ALL.iter().map(|line| line.name).collect();
@@ -244,31 +244,32 @@ fn line(name: &str) -> Result<f64, String> {
     })
 }
 
-/// A part of the light: `4 %`, `0.04`.
+/// Parses a fraction of the light: `4 %`, `0.04`.
 fn part(text: &str) -> Result<f64, String> {
     let part = parse::<Ratio>(text)?.number();
-    if (0.0..=1.0).contains(&part) { Ok(part) } else { Err("expected a part from 0 to 100 %".to_owned()) }
+    if (0.0..=1.0).contains(&part) { Ok(part) } else { Err("expected a value from 0 to 100 %".to_owned()) }
 }
 
-/// `spectra lens info`.
+/// Arguments of `spectra lens info`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Show the data of a lens: focal lengths, principal planes, pupils, f-number, T-number, focus, field, \
-        the mounts it leaves room for, and prescription.\n\n\
+        the mounts that it leaves room for, and prescription.\n\n\
         Values are for the reference line of the lens's patent, unless a line or wavelength is given. The f-number \
         and pupil diameters come from the real marginal ray; the positions of planes and pupils are paraxial; focus \
         shifts, the largest field and the field points come from real rays. The T-number includes coatings, mirrors and \
-        absorption; a note beside it lists these and what is assumed: coatings typical of the lens's time, unless its \
-        file or --coating says otherwise.\n\n\
-        Each field point has its chief ray (through the center of the stop); distortion; where rays close to the chief ray meet in the \
-        sagittal and in the tangential section, from the image plane, which shows curvature of field and astigmatism; and the illuminance \
-        of the film under an evenly bright field, with every rim, coatings and glass, over that in the middle.\n\n\
+        absorption. A note lists these and what is assumed: coatings typical of the lens's time, unless the lens file or \
+        --coating says otherwise.\n\n\
+        Each field point has its chief ray (through the center of the stop), the distortion, the sagittal and tangential foci, and \
+        the relative illuminance. The foci are where rays close to the chief ray meet, measured from the image plane; they show \
+        field curvature and astigmatism. The illuminance is that on the film under an evenly bright field relative to the middle, \
+        with all rims, coatings and glass.\n\n\
         --glare adds the veiling glare index by the integral method of ISO 9358: the light in the middle of a black disk \
-        within an endless white field, over that without the disk. The image of the disk is a tenth as large as the diagonal of \
-        a 36 x 24 mm frame; its middle half is looked at, in the light of the report. Light is reflected by every surface any number \
-        of times, and scattered by black paint on barrel, rims, edges of the glass and blades.",
-    after_long_help = "Examples: the same lens in blue light; its field to the corner of a 36 x 24 mm frame; its veiling glare with a \
-        single layer on each surface\n  \
+        within an endless white field, relative to the light there without the disk. The image of the disk is a tenth as large as \
+        the diagonal of a 36 x 24 mm frame; its middle half is measured, at the wavelength of the report. Light is reflected any \
+        number of times by every surface, and scattered by black paint on the barrel, the rims, the edges of the glass and the blades.",
+    after_long_help = "Examples: a lens in blue light; its field to the corner of a 36 x 24 mm frame; its veiling glare with a \
+        single-layer coating on each surface\n  \
         spectra lens info zeiss-biotar-50-f1.4 --line g\n  \
         spectra lens info zeiss-biotar-50-f1.4 --f-number f/4 --image-height 21.6mm\n  \
         spectra lens info zeiss-biotar-50-f1.4 --f-number f/2 --coating single-layer --glare"
@@ -278,19 +279,19 @@ pub(crate) struct LensInfo {
     pub setting: LensSetting,
     #[command(flatten)]
     pub light: OneLight,
-    /// Show the field at the middle and at 0.5, 0.7 and 1 of this image height (21.6mm), not in ten steps to the largest field.
+    /// Show the field in the middle and at 0.5, 0.7 and 1 of this image height (21.6mm), instead of in ten steps to the largest field.
     #[arg(long, value_name = "LENGTH", value_parser = parse::<Positive<Length>>)]
     pub image_height: Option<Positive<Length>>,
     /// List every mount that the lens fits, not only the common ones.
     #[arg(long)]
     pub mounts: bool,
-    /// Work out the veiling glare index (some seconds).
+    /// Compute the veiling glare index (takes some seconds).
     #[arg(long)]
     pub glare: bool,
     /// Diffuse reflectance of the black paint, for --glare; 4 % if not given.
     #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
     pub paint: Option<f64>,
-    /// Diffuse reflectance of the film or sensor, for --glare; none if not given, as ISO 9358 looks at the lens alone.
+    /// Diffuse reflectance of the film or sensor, for --glare; 0 if not given, because ISO 9358 measures the lens alone.
     #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
     pub film_reflectance: Option<f64>,
     /// Write a JSON object to standard output.
@@ -298,18 +299,19 @@ pub(crate) struct LensInfo {
     pub json: bool,
 }
 
-/// `spectra lens ghosts`.
+/// Arguments of `spectra lens ghosts`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "List the ghosts of a lens: light that two surfaces reflect on its way to the film, or four.\n\n\
-        For light from infinity on the axis, at the reference line: energy relative to the straight light; distance of the ghost's focus \
-        from the image plane, positive beyond it, and its focal length (both paraxial); the diameter of its disk on the image plane; \
-        and its energy at C', e and F' over that at e. Surfaces are counted from 1, in the order in which they reflect. Coatings are those \
-        of the lens file, or typical of its time, unless --coating says otherwise.\n\n\
-        Paths of four reflections (--order 4) are searched by following the light: whatever a path begins with less than --share of the \
-        straight light is cut there, since nothing further on can add to it. What is not followed is said.\n\n\
+    long_about = "List the ghosts of a lens: light that reaches the film after reflections at two surfaces, or at four.\n\n\
+        Values are for light from infinity on the axis, at the reference line: the energy relative to the straight light, which is not \
+        reflected; the distance of the ghost's focus from the image plane, positive behind it, and its focal length (both paraxial); the \
+        diameter of its disk on the image plane; and its energy at C', e and F' relative to that at e. Surfaces are counted from 1 and \
+        listed in the order in which they reflect. Coatings are those of the lens file, or typical of its time, unless --coating says \
+        otherwise.\n\n\
+        Paths of four reflections (--order 4) are found by following the light. A path is cut as soon as it carries less than --share of \
+        the straight light, because nothing further on can add to it. The light that is not followed is reported.\n\n\
         With -o the lens is drawn with the rays of a ghost: the one that is brightest on the film, or that of --path.",
-    after_long_help = "Examples: what a single layer does; the brightest ghost; one of those with the light from 20 degrees\n  \
+    after_long_help = "Examples: the effect of a single-layer coating; the brightest ghost; a chosen ghost with light from 20 degrees\n  \
         spectra lens ghosts zeiss-biotar-50-f1.4 --coating single-layer\n  \
         spectra lens ghosts zeiss-biotar-50-f1.4 -o ghost.svg\n  \
         spectra lens ghosts zeiss-biotar-50-f1.4 -o ghost.svg --path 7,3 --field 20"
@@ -317,35 +319,35 @@ pub(crate) struct LensInfo {
 pub(crate) struct LensGhosts {
     #[command(flatten)]
     pub setting: LensSetting,
-    /// Reflections at most: 2, or 4.
+    /// Largest number of reflections: 2 or 4.
     #[arg(long, value_name = "N", default_value = "2", value_parser = ["2", "4"])]
     pub order: String,
-    /// Leave out paths of four reflections that begin with less than this part of the straight light.
+    /// Leave out paths of four reflections once they carry less than this fraction of the straight light.
     #[arg(long, value_name = "PART", default_value = "1e-8", value_parser = share)]
     pub share: f64,
-    /// Draw the lens with the rays of a ghost: the one brightest on the film, or that of --path. To .svg or .png.
+    /// Draw the lens with the rays of a ghost to this file, .svg or .png: the ghost brightest on the film, or that of --path.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// The ghost to draw: the surfaces that reflect it, counted from 1, in the order of the light.
     #[arg(long, value_name = "A,B", value_delimiter = ',', value_parser = surface, requires = "output")]
     pub path: Vec<usize>,
-    /// Field angle of the light that is drawn, degrees.
+    /// Field angle of the light in the drawing, degrees.
     #[arg(long, value_name = "DEG", default_value = "0", allow_negative_numbers = true, requires = "output",
         value_parser = field)]
     pub field: f64,
-    /// Number of rays that are drawn.
+    /// Number of rays in the drawing.
     #[arg(long, value_name = "N", default_value = "11", requires = "output",
         value_parser = clap::value_parser!(u16).range(1..=1001))]
     pub rays: u16,
-    /// Show all of them, not only the brightest.
+    /// Show all ghosts, not only the brightest.
     #[arg(long)]
     pub all: bool,
-    /// Write a JSON object to standard output, with all of them.
+    /// Write a JSON object with all ghosts to standard output.
     #[arg(long)]
     pub json: bool,
 }
 
-/// `spectra lens trace`.
+/// Arguments of `spectra lens trace`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Trace rays through a lens: CSV in, CSV out.\n\n\
@@ -354,11 +356,11 @@ pub(crate) struct LensGhosts {
         all rays. Columns are found by name, in any order.\n\n\
         Output, one row per ray: status,surface,x_mm,y_mm,z_mm,l,m,n,wavelength_nm,transmittance,optical_path_mm. A \
         `hit` is where the ray meets the image plane, in the same coordinates; a ray that ends earlier is `missed`, \
-        `vignetted`, `tir` or `absorbed`, with the number of the surface, counted from 1. `transmittance` is what \
-        coatings and glass leave of the light, `optical_path_mm` the index times the length from the start of the ray, with what gratings and ideal lenses add. \
-        --every-surface has a row `passed` for each surface as well, with the direction behind it, and the number of the \
-        ray first. Surfaces clip only at stated semi-diameters, unless --f-number sets the stop; the lens is not \
-        refocused unless --focus is given.",
+        `vignetted`, `tir` or `absorbed`, with the number of the surface, counted from 1. `transmittance` is the fraction \
+        of the light that coatings and glass leave. `optical_path_mm` is the index times the length from the start of the ray, \
+        including what gratings and ideal lenses add. --every-surface adds a row `passed` for each surface, with the \
+        direction behind it, and puts the number of the ray first. Surfaces clip only at stated semi-diameters, unless \
+        --f-number sets the stop; the lens is not refocused unless --focus is given.",
     after_long_help = "Example:\n  spectra lens trace zeiss-biotar-50-f1.4 --rays rays.csv --nd -o hits.csv"
 )]
 pub(crate) struct LensTrace {
@@ -369,7 +371,7 @@ pub(crate) struct LensTrace {
     /// CSV file of rays; `-` reads standard input.
     #[arg(long, value_name = "FILE")]
     pub rays: PathBuf,
-    /// Follow the path that these surfaces reflect, counted from 1, in the order of the light: 7,3 is a ghost.
+    /// Follow the path that reflects at these surfaces, counted from 1, in the order of the light: 7,3 is a ghost.
     #[arg(long, value_name = "A,B", value_delimiter = ',', value_parser = surface)]
     pub path: Vec<usize>,
     /// Write a row for every surface that a ray passes.
@@ -383,7 +385,7 @@ pub(crate) struct LensTrace {
     pub json: bool,
 }
 
-/// `spectra lens import`.
+/// Arguments of `spectra lens import`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Convert a lens file from another program: .zmx (Zemax OpticStudio, sequential), .seq (CODE V) or \
@@ -394,8 +396,8 @@ pub(crate) struct LensTrace {
         them first.\n\n\
         The columns of a .csv are radius (or curvature), thickness, glass, nd, vd, semi-diameter (or diameter), type, conic, \
         a2, a4 and so on, surface, lens and comment; lengths are in mm unless a unit follows, as in `radius [in]`.\n\n\
-        A glass that is in no bundled catalogue is taken from a catalogue file of a maker or a design program (--agf), to which \
-        the lens file then refers.",
+        A glass that is not in a bundled catalogue is taken from a catalogue file of a maker or a design program (--agf); the lens \
+        file then refers to that file.",
     after_long_help = "Examples:\n  spectra lens import tessar.zmx -o tessar.yaml\n  \
         spectra lens import tessar.zmx --agf old-glasses.agf -o old.yaml"
 )]
@@ -416,10 +418,10 @@ pub(crate) struct LensImport {
     pub json: bool,
 }
 
-/// `spectra lens export`.
+/// Arguments of `spectra lens export`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Export a lens for other programs, as .zmx (Zemax OpticStudio and programs that read its files).\n\n\
+    long_about = "Export a lens to other programs, as .zmx (Zemax OpticStudio and programs that read its files).\n\n\
         Catalogue glasses are written by name, others by nd and Vd. Anything that cannot be converted is listed on \
         standard error.",
     after_long_help = "Example:\n  spectra lens export zeiss-biotar-50-f1.4 -o biotar.zmx"

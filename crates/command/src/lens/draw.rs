@@ -1,4 +1,4 @@
-//! `spectra lens draw`.
+//! `spectra lens draw`: draws a lens with its rays.
 
 use super::arguments::{CutArgument, LensDraw};
 use super::load;
@@ -6,19 +6,20 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::words::figure_of;
 use spectra_analysis::draw::{Fans, Ground, Sheet, View};
-use spectra_analysis::fan::FanFinder;
+use spectra_analysis::fan::largest_field_rad;
 use spectra_analysis::info::useful_field_rad;
-use spectra_lens::{Lens, Section};
+use spectra_lens::Section;
+use spectra_optics::Optics;
 use spectra_plot::{Format, PlotError};
 
-/// Fields beyond this are drawn only when asked for, degrees.
+/// Largest field angle that is drawn by default, degrees.
 const WIDEST_DEG: f64 = 85.0;
-/// Fields that are drawn unless said otherwise, as parts of the largest.
+/// Default fields besides the axis, as fractions of the largest field angle.
 const PARTS: [f64; 2] = [0.6, 0.95];
 
-/// Draws a lens.
+/// Draws a lens with fans of rays and writes the drawing to a file.
 pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
-    // Before anything is computed: a wrong ending is found out at once.
+    // A wrong extension is reported before anything is computed.
     let output = arguments.output.clone().unwrap_or_else(|| figure_of(&arguments.setting.lens));
     Format::of(&output).map_err(failure)?;
     let lens = load(&arguments.setting)?;
@@ -35,7 +36,7 @@ pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
     };
     let rays = fans.trace(&lens, section).map_err(|e| Failure::Input(format!("{}: {e}", arguments.setting.lens)))?;
     if rays.is_empty() && arguments.rays > 0 {
-        console::warning("no ray passes this lens at these fields: the drawing shows glass alone");
+        console::warning("no ray passes this lens at these field angles: the drawing shows only the glass");
     }
     let ground = if arguments.dark { Ground::Dark } else { Ground::Light };
     let sheet = Sheet {
@@ -52,7 +53,7 @@ pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
     Ok(DONE)
 }
 
-fn fields_deg(arguments: &LensDraw, lens: &Lens, section: Section) -> Result<Vec<f64>, Failure> {
+fn fields_deg(arguments: &LensDraw, lens: &Optics, section: Section) -> Result<Vec<f64>, Failure> {
     if !arguments.fields.is_empty() {
         return match arguments.fields.iter().find(|f| !(f.abs() < 180.0)) {
             Some(bad) => Err(Failure::Input(format!("--fields: {bad} degrees is not a field angle; use -180 to 180"))),
@@ -60,16 +61,15 @@ fn fields_deg(arguments: &LensDraw, lens: &Lens, section: Section) -> Result<Vec
         };
     }
     let refuse = |e| Failure::Input(format!("{}: {e}", arguments.setting.lens));
-    let finder = FanFinder::new(lens, section, lens.reference_nm).map_err(refuse)?;
-    let largest = finder.largest_field_rad(arguments.object.mm(), WIDEST_DEG.to_radians());
+    let largest = largest_field_rad(lens, section, arguments.object.mm(), WIDEST_DEG.to_radians()).map_err(refuse)?;
     let largest = largest.map(|rad| useful_field_rad(lens, rad));
-    // What passes at the very edge says more of the rims than of the lens: keep inside.
+    // The beam at the very edge of the field shows the rims more than the lens, so the default fields stay inside.
     Ok(std::iter::once(0.0)
         .chain(largest.filter(|f| *f > 0.0).into_iter().flat_map(|f| PARTS.map(|part| part * f.to_degrees())))
         .collect())
 }
 
-fn caption(lens: &Lens) -> String {
+fn caption(lens: &Optics) -> String {
     let mut text = lens.name.clone();
     let origin = [lens.patent.clone(), lens.year.map(|y| y.to_string())];
     let origin: Vec<String> = origin.into_iter().flatten().collect();

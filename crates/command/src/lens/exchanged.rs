@@ -1,4 +1,4 @@
-//! What import and export have in common: a file that is not written over, and the list of what was left out.
+//! Common parts of import and export: protection of existing files, and the list of what was left out.
 
 use crate::console;
 use crate::folder::apart;
@@ -10,10 +10,10 @@ use spectra_files::write_atomically;
 use std::io::Write;
 use std::path::Path;
 
-/// The file to write to; `None` is standard output.
+/// Returns the file to write to; `None` means standard output.
 ///
 /// # Errors
-/// It exists, and nobody said to write over it; or it is the one that is read.
+/// Fails if the file exists and `force` is not set, or if it is the input file.
 pub(super) fn target<'a>(output: Option<&'a Path>, read: &Path, force: bool) -> Result<Option<&'a Path>, Failure> {
     let output = output.filter(|path| *path != Path::new("-"));
     output.map_or(Ok(()), |output| apart(output, &[read]))?;
@@ -29,7 +29,7 @@ pub(super) fn target<'a>(output: Option<&'a Path>, read: &Path, force: bool) -> 
     Ok(output)
 }
 
-/// Writes the bytes and says what was left out.
+/// Writes a converted lens and reports what was left out.
 pub(super) fn deliver(
     name: &str,
     surfaces: usize,
@@ -62,7 +62,7 @@ pub(super) fn deliver(
         return Ok(DONE);
     }
     if !left_out.is_empty() {
-        console::note("not carried (! marks what changes the path of light):");
+        console::note("not converted (! marks what changes the path of light):");
         for note in left_out {
             console::note(&format!("  {} {note}", if note.alters { "!" } else { "-" }));
         }

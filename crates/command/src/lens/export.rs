@@ -1,14 +1,15 @@
-//! `spectra lens export`.
+//! `spectra lens export`: writes a lens for another program.
 
 use super::arguments::LensExport;
 use super::exchanged::{deliver, target};
 use crate::outcome::{Failure, Outcome};
 use spectra_core::resources::Resources;
 use spectra_exchange::{Format, SystemAperture, yaml, zmx};
+use spectra_optics::Optics;
 use spectra_scene::FileResources;
 use std::path::Path;
 
-/// Writes a lens for another program.
+/// Writes a lens as a .zmx file.
 pub(crate) fn export(arguments: &LensExport) -> Outcome {
     let output = target(arguments.output.as_deref(), Path::new(&arguments.lens), arguments.force)?;
     if let Some(path) = output
@@ -18,13 +19,13 @@ pub(crate) fn export(arguments: &LensExport) -> Outcome {
     }
     let resources = FileResources::beside(Path::new(""));
     let document = resources.document(&arguments.lens, &["lenses"], &[".yaml"])?;
-    // All that is wrong with the lens is found here.
+    // Parsing finds all faults of the lens.
     let real = spectra_lens::parse(&document, &resources)?;
     let mut lens = yaml::read(&document)?;
     let states_stop = lens.surfaces().any(|surface| surface.stop && surface.semi_diameter_mm.is_some());
     if lens.system_aperture.is_none() && !states_stop {
-        // Rims limit the light: other programs take the beam by its width in front of the lens.
-        let width = real.marginal_ray().ok().map(|ray| 2.0 * ray.height_mm);
+        // Here only rims limit the light. Other programs define the beam by its width in front of the lens.
+        let width = Optics::new(real).marginal_ray().ok().map(|ray| 2.0 * ray.height_mm);
         lens.system_aperture = width.map(SystemAperture::EntrancePupilDiameter);
     }
     let written = zmx::write(&lens);

@@ -1,4 +1,4 @@
-//! `spectra lens ghosts`.
+//! `spectra lens ghosts`: lists the ghosts of a lens.
 
 use super::arguments::LensGhosts;
 use super::load;
@@ -9,14 +9,14 @@ use crate::words::counted;
 use serde_json::json;
 use spectra_analysis::draw::{Ground, Sheet, View};
 use spectra_analysis::ghosts::{Ghost, GhostSearch, Ghosts, ghost_rays, ghosts as find};
-use spectra_core::Isa;
 use spectra_lens::{Lens, Section};
+use spectra_optics::Optics;
 use spectra_plot::{Format, PlotError};
 use std::path::Path;
 
 /// Lists the ghosts of a lens, and draws one.
-pub(crate) fn ghosts(arguments: &LensGhosts, isa: Isa) -> Outcome {
-    // Before anything is computed: a wrong ending is found out at once.
+pub(crate) fn ghosts(arguments: &LensGhosts) -> Outcome {
+    // A wrong extension is reported before anything is computed.
     if let Some(output) = &arguments.output {
         Format::of(output).map_err(failure)?;
     }
@@ -25,11 +25,10 @@ pub(crate) fn ghosts(arguments: &LensGhosts, isa: Isa) -> Outcome {
     let asked = path.as_ref().map(|path| path.reflections().count());
     let order = if arguments.order == "4" || asked == Some(4) { 4 } else { 2 };
     if asked.is_some_and(|count| count > 4) {
-        return Err(Failure::Input("--path: two surfaces, or four".to_owned()));
+        return Err(Failure::Input("--path: name two surfaces, or four".to_owned()));
     }
     let search = GhostSearch { wavelength_nm: lens.reference_nm, order, share: arguments.share };
-    let all =
-        find(&lens, search, isa).map_err(|error| Failure::Input(format!("{}: {error}", arguments.setting.lens)))?;
+    let all = find(&lens, search).map_err(|error| Failure::Input(format!("{}: {error}", arguments.setting.lens)))?;
     if arguments.json {
         console::pretty_json(&json!({
             "lens": lens.name,
@@ -50,7 +49,7 @@ pub(crate) fn ghosts(arguments: &LensGhosts, isa: Isa) -> Outcome {
 }
 
 fn sum(ghosts: &[Ghost]) -> f64 {
-    // The sum of none would be -0.
+    // `sum` of an empty list would be -0.
     ghosts.iter().fold(0.0, |sum, ghost| sum + ghost.energy)
 }
 
@@ -65,7 +64,7 @@ fn table(lens: &Lens, found: &Ghosts, order: usize, is_whole: bool) -> String {
         100.0 * sum(all),
         lens.reference_nm
     );
-    let more = if order > 2 { "more often, or on paths that begin with less than was asked" } else { "more often" };
+    let more = if order > 2 { "more often, or on paths with less light than --share" } else { "more often" };
     text.push_str(&format!("{} of the light that enters is reflected {more}\n", percent(found.not_traced)));
     let width = if order > 2 { 14 } else { 8 };
     if !all.is_empty() {
@@ -84,7 +83,7 @@ fn table(lens: &Lens, found: &Ghosts, order: usize, is_whole: bool) -> String {
     text
 }
 
-/// Two digits, however little.
+/// Formats a fraction as a percentage with at least two digits.
 fn percent(part: f64) -> String {
     let percent = 100.0 * part;
     match percent {
@@ -94,7 +93,7 @@ fn percent(part: f64) -> String {
     }
 }
 
-/// Paths listed unless all are asked for.
+/// Number of paths listed without `--all`.
 const MOST: usize = 15;
 
 fn names(surfaces: &[usize]) -> String {
@@ -117,7 +116,7 @@ fn row(ghost: &Ghost, width: usize) -> String {
 /// Draws the lens with the rays of a ghost.
 fn draw(
     arguments: &LensGhosts,
-    lens: &Lens,
+    lens: &Optics,
     all: &Ghosts,
     asked: Option<Vec<usize>>,
     output: &Path,
@@ -135,7 +134,7 @@ fn draw(
     let rays = ghost_rays(lens, &reflections, lens.reference_nm, field_rad, section, arguments.rays.into());
     let rays = rays.map_err(|error| Failure::Input(format!("{}: {error}", arguments.setting.lens)))?;
     if rays.is_empty() {
-        console::warning("no ray comes to the image plane by this path: the drawing shows glass alone");
+        console::warning("no ray reaches the image plane along this path: the drawing shows only the glass");
     }
     let at = if arguments.field == 0.0 { String::new() } else { format!(", light from {} degrees", arguments.field) };
     let energy =
@@ -155,7 +154,7 @@ fn draw(
     Ok(())
 }
 
-/// Width of the drawing, in units of a CSS pixel.
+/// Width of the drawing, CSS pixels.
 const WIDTH: f64 = 900.0;
 
 fn failure(error: PlotError) -> Failure {

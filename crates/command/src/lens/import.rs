@@ -1,4 +1,4 @@
-//! `spectra lens import`.
+//! `spectra lens import`: converts a lens file from another program.
 
 use super::arguments::LensImport;
 use super::exchanged::{deliver, target};
@@ -10,7 +10,7 @@ use spectra_exchange::{Format, MAX_BYTES, OwnCatalogue, read_with, yaml};
 use spectra_scene::FileResources;
 use std::path::{Component, Path, absolute};
 
-/// Makes a lens file of one of another program.
+/// Converts a lens file of another program to a lens file of `spectra`.
 pub(crate) fn import(arguments: &LensImport) -> Outcome {
     let name = arguments.file.display().to_string();
     let Some(format) = Format::of_name(&name) else {
@@ -30,11 +30,11 @@ pub(crate) fn import(arguments: &LensImport) -> Outcome {
     let text = yaml::write(&lens, short.as_deref());
     let title = if lens.name.is_empty() { name.clone() } else { lens.name.clone() };
     let code = deliver(&title, lens.surfaces().count(), output, text.as_bytes(), &lens.left_out, arguments.json)?;
-    // A file that was written and cannot be loaded: better told now.
+    // If the converted file cannot be loaded, the user should know now.
     let written = output.unwrap_or(&arguments.file).display().to_string();
     match spectra_lens::load(&written, &resources) {
         Err(faults) => {
-            console::warning("the lens file must be completed before it can be used:");
+            console::warning("the lens file must be completed before use:");
             console::faults(&faults);
         }
         Ok(lens) => lens.glass_doubts().iter().for_each(|doubt| console::warning(doubt)),
@@ -42,7 +42,8 @@ pub(crate) fn import(arguments: &LensImport) -> Outcome {
     Ok(code)
 }
 
-/// How a lens file of that name, or one that goes to standard output, names another file: by the way from its own folder.
+/// Returns the path of `file` as the lens file `lens` should name it: relative to its own folder. A lens file on standard output (`None`)
+/// names it as given.
 fn seen_from(lens: Option<&Path>, file: &Path) -> String {
     let plain = || file.display().to_string();
     let Some(lens) = lens else { return plain() };
@@ -51,7 +52,7 @@ fn seen_from(lens: Option<&Path>, file: &Path) -> String {
     let parts: Vec<Component<'_>> = file.components().collect();
     let common = folder.iter().zip(&parts).take_while(|(a, b)| a == b).count();
     if common == 0 {
-        // Another drive.
+        // The files are on different drives.
         return file.display().to_string();
     }
     let up = std::iter::repeat_n("..".into(), folder.len() - common);

@@ -1,4 +1,4 @@
-//! `spectra lens info`.
+//! `spectra lens info`: shows the data of a lens.
 
 use super::arguments::LensInfo;
 use super::{load, one_light};
@@ -8,11 +8,11 @@ use spectra_analysis::Light;
 use spectra_analysis::glare::{GlareTask, glare};
 use spectra_analysis::info::LensReport;
 use spectra_glass::Medium;
-use spectra_lens::Lens;
+use spectra_optics::Optics;
 use spectra_scene::stop_hint_of;
 use spectra_session::Threads;
 
-/// Shows a lens in figures.
+/// Writes the report on a lens to standard output, as text or JSON.
 pub(crate) fn info(arguments: &LensInfo) -> Outcome {
     let lens = load(&arguments.setting)?;
     let light = one_light(&arguments.light).unwrap_or(Light::Wavelength(lens.reference_nm));
@@ -39,7 +39,7 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
         let by = lender.full_name;
         report.notes.push(format!(
             "the absorption of {medium} is not known; that of {by} is assumed, which darkens the lens by {stops:.1} stops \
-             at {:.0} nm (--absorption false: clear)",
+             at {:.0} nm (`--absorption false` leaves out absorption)",
             lens.reference_nm
         ));
     }
@@ -59,11 +59,11 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
     Ok(DONE)
 }
 
-/// Between these wavelengths, h and r, a glass of which only an index and an Abbe number are known is like others of such figures.
+/// Range between the lines h and r, nm, in which a glass with a known index and Abbe number is close to other glasses with the same values.
 const MODEL_NM: std::ops::RangeInclusive<f64> = 404.0..=707.0;
 
-/// Media whose index at a wavelength nobody measured, each once.
-fn extrapolated(lens: &Lens, nm: f64) -> Vec<String> {
+/// Returns a note for each medium whose index at a wavelength (nm) is extrapolated.
+fn extrapolated(lens: &Optics, nm: f64) -> Vec<String> {
     let mut notes = Vec::new();
     for medium in &lens.media {
         let label = &medium.label;
@@ -72,7 +72,7 @@ fn extrapolated(lens: &Lens, nm: f64) -> Vec<String> {
                 format!("{label} was measured from {from:.0} to {to:.0} nm: its index at {nm} nm is extrapolated")
             }
             (None, Medium::Model(_)) if !MODEL_NM.contains(&nm) => {
-                format!("{label} is known by an index and an Abbe number only: its index at {nm} nm is extrapolated")
+                format!("{label} is known only by an index and an Abbe number: its index at {nm} nm is extrapolated")
             }
             _ => continue,
         };
@@ -83,15 +83,15 @@ fn extrapolated(lens: &Lens, nm: f64) -> Vec<String> {
     notes
 }
 
-/// What is taken of a lens in whose file no surface is the stop, and what to write. Nothing is said of one without power: a prism, a
-/// grating.
-fn no_stop(lens: &Lens, name: &str) -> Option<String> {
+/// Returns a note for a lens without a stop: what is assumed, and what to add to its file. `None` for a lens with a stop, and for one
+/// without power, such as a prism or a grating.
+fn no_stop(lens: &Optics, name: &str) -> Option<String> {
     if lens.stop().is_some() || !lens.first_order(lens.reference_nm).efl_mm.is_finite() {
         return None;
     }
     let limit = match lens.axial_rim() {
         Some(rim) => {
-            format!("the f-number is by the rim of surface {} (r = {:.2} mm), ", rim.surface, rim.semi_diameter_mm)
+            format!("the f-number is that of the rim of surface {} (r = {:.2} mm), ", rim.surface, rim.semi_diameter_mm)
         }
         None => String::new(),
     };

@@ -1,4 +1,4 @@
-//! `spectra lens`: the lens as an optical engineer looks at it.
+//! `spectra lens`: analyzes, draws, traces and converts lenses.
 
 mod arguments;
 mod compare;
@@ -16,37 +16,37 @@ pub(crate) use arguments::LensArguments;
 use crate::outcome::{Failure, Outcome};
 use arguments::{LensCommand, LensOptions, LensSetting, OneLight};
 use spectra_analysis::Light;
-use spectra_core::Isa;
 use spectra_core::params::{FNumber, Fault};
-use spectra_lens::{ApertureError, Coating, FocusSearch, Lens};
+use spectra_lens::{Coating, Lens};
+use spectra_optics::{ApertureError, FocusSearch, Optics, stop_down};
 use spectra_scene::{FileResources, size_hint_of, stop_hint_of};
 use std::path::Path;
 
-/// Runs a command on a lens.
-pub(crate) fn lens(command: &LensCommand, isa: Isa) -> Outcome {
+/// Runs one of the commands of `spectra lens`.
+pub(crate) fn lens(command: &LensCommand) -> Outcome {
     match command {
         LensCommand::Compare(compare) => compare::compare(compare),
         LensCommand::Draw(draw) => draw::draw(draw),
-        LensCommand::Ghosts(ghosts) => ghosts::ghosts(ghosts, isa),
+        LensCommand::Ghosts(ghosts) => ghosts::ghosts(ghosts),
         LensCommand::Info(info) => info::info(info),
-        LensCommand::Trace(trace) => trace::trace(trace, isa),
+        LensCommand::Trace(trace) => trace::trace(trace),
         LensCommand::Scale(scale) => scale::scale(scale),
         LensCommand::Import(import) => import::import(import),
         LensCommand::Export(export) => export::export(export),
     }
 }
 
-/// The lens, coated, stopped and focused as asked.
-fn load(setting: &LensSetting) -> Result<Lens, Failure> {
-    set(load_file(&setting.lens)?, &setting.lens, &Setting::of(&setting.options))
+/// Loads a lens and sets its coating, stop and focus as requested.
+fn load(setting: &LensSetting) -> Result<Optics, Failure> {
+    set(load_file(&setting.lens)?, &setting.lens, &Setting::of(&setting.options)).map(Optics::new)
 }
 
-/// The lens as its file has it.
+/// Loads a lens as it is in its file.
 fn load_file(name: &str) -> Result<Lens, Failure> {
     Ok(spectra_lens::load(name, &FileResources::beside(Path::new("")))?)
 }
 
-/// What is asked of a lens.
+/// Requested settings of a lens; the f-number is separate, so that a command can leave it out.
 struct Setting<'a> {
     options: &'a LensOptions,
     f_number: Option<FNumber>,
@@ -66,7 +66,7 @@ fn set(mut lens: Lens, name: &str, setting: &Setting<'_>) -> Result<Lens, Failur
     }
     lens.absorption = options.absorption.unwrap_or(lens.absorption);
     if let Some(f_number) = setting.f_number {
-        lens = lens.at_f_number(f_number.number()).map_err(|e| aperture_fault(name, &e))?;
+        lens = stop_down(lens, f_number.number()).map_err(|e| aperture_fault(name, &e))?;
     }
     if let Some(focus) = options.focus.or(options.focus_mm) {
         let object_mm = focus.mm();
@@ -74,14 +74,14 @@ fn set(mut lens: Lens, name: &str, setting: &Setting<'_>) -> Result<Lens, Failur
         if let Some(criterion) = options.focus_by.criterion() {
             let light = vec![(lens.reference_nm, 1.0)];
             let search = FocusSearch { object_mm, field_rad: 0.0, criterion, light };
-            let hint = "`--focus-by paraxial` needs no light";
-            lens = lens.focused_by(&search).map_err(|e| refuse(format!("--focus: {e}\nhint: {hint}")))?;
+            let hint = "`--focus-by paraxial` focuses without tracing light";
+            lens = search.focus(lens).map_err(|e| refuse(format!("--focus: {e}\nhint: {hint}")))?;
         }
     }
     Ok(lens)
 }
 
-/// Why a lens is not set to `--f-number`, and what to write in its file where that says too little.
+/// Returns the error for a lens that cannot be set to `--f-number`, with a hint what to add to its file if that is the cause.
 fn aperture_fault(name: &str, error: &ApertureError) -> Failure {
     let fault = Fault::new(format!("{name}: --f-number: {error}"));
     let hint = match error {
@@ -92,7 +92,7 @@ fn aperture_fault(name: &str, error: &ApertureError) -> Failure {
     Failure::Faults(fault.hint(hint).into())
 }
 
-/// The light asked for, if one is.
+/// Returns the requested light; `None` if the options name none.
 fn one_light(light: &OneLight) -> Option<Light> {
     match (light.line, light.wavelength_nm) {
         _ if light.nd => Some(Light::Stated),

@@ -1,4 +1,4 @@
-//! `spectra lens scale`.
+//! `spectra lens scale`: writes a lens at another size.
 
 use super::arguments::LensScale;
 use super::exchanged::{deliver, target};
@@ -9,7 +9,7 @@ use spectra_exchange::{ApertureShape, Shape, yaml};
 use spectra_scene::FileResources;
 use std::path::Path;
 
-/// Writes a lens at another size.
+/// Writes a lens with all lengths multiplied by a factor.
 pub(crate) fn scale(arguments: &LensScale) -> Outcome {
     let output = target(arguments.output.as_deref(), Path::new(&arguments.lens), arguments.force)?;
     let resources = FileResources::beside(Path::new(""));
@@ -24,30 +24,32 @@ pub(crate) fn scale(arguments: &LensScale) -> Outcome {
         }),
     });
     if let Some(kind) = unknown {
-        let text =
-            format!("{}: it has a `{kind}`, and how that scales is not known; scale its file by hand", arguments.lens);
+        let text = format!("{}: it is not known how a `{kind}` scales; scale the file by hand", arguments.lens);
         return Err(Failure::Input(text));
     }
     let efl_mm = real.first_order(real.reference_nm).efl_mm;
     let factor = match (&arguments.to, arguments.by) {
         (Some(to), _) => {
             if !efl_mm.is_finite() {
-                return Err(Failure::Input(format!("{}: it has no focal length; write --by FACTOR", arguments.lens)));
+                return Err(Failure::Input(format!(
+                    "{}: the lens has no focal length; use --by FACTOR",
+                    arguments.lens
+                )));
             }
             to.mm() / efl_mm.abs()
         }
         (None, Some(by)) => by,
-        (None, None) => return Err(Failure::Input("write --to LENGTH, such as --to 85mm, or --by FACTOR".to_owned())),
+        (None, None) => return Err(Failure::Input("use --to LENGTH, such as --to 85mm, or --by FACTOR".to_owned())),
     };
     if !(factor.is_finite() && (1e-4..=1e4).contains(&factor)) {
-        return Err(Failure::Input(format!("a factor of {factor}: 0.0001 to 10000")));
+        return Err(Failure::Input(format!("a factor of {factor} is out of range: 0.0001 to 10000")));
     }
     let mut scaled = lens.scaled(factor);
     let [before, after] = [efl_mm, efl_mm * factor].map(|mm| format!("{mm:.4} mm"));
     scaled.remarks.push(format!("scaled by {factor:.6}: the focal length was {before} and is {after}"));
     let text = yaml::write(&scaled, None);
     if output.is_some() {
-        console::note(&format!("focal length {before} -> {after}, all lengths times {factor:.6}"));
+        console::note(&format!("focal length {before} -> {after}, all lengths multiplied by {factor:.6}"));
     }
     deliver(&scaled.name, scaled.surfaces().count(), output, text.as_bytes(), &scaled.left_out, arguments.json)
 }

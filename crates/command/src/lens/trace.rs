@@ -1,4 +1,4 @@
-//! `spectra lens trace`.
+//! `spectra lens trace`: traces a table of rays through a lens.
 
 use super::arguments::LensTrace;
 use super::{load, one_light};
@@ -6,16 +6,17 @@ use crate::folder::apart;
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, words};
 use spectra_analysis::trace::{Format, TraceError, TraceSummary, Tracing, trace as trace_rays};
+use spectra_core::Loss;
 use spectra_core::surface::Action;
-use spectra_core::{Isa, Loss};
 use spectra_files::{WriteFault, write_atomically};
-use spectra_lens::{Lens, Path as LightPath, Travel};
+use spectra_lens::Lens;
+use spectra_tracer::{Path as LightPath, Travel};
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 
-/// Traces a table of rays.
-pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
+/// Traces a table of rays and writes the result as CSV or JSON lines.
+pub(crate) fn trace(arguments: &LensTrace) -> Outcome {
     let lens = load(&arguments.setting)?;
     let light = one_light(&arguments.light);
     let format = if arguments.json { Format::JsonLines } else { Format::Csv };
@@ -26,7 +27,7 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
     let run = |output: &mut dyn Write| {
         let rays = BufReader::new(input);
         let tracing = Tracing { light, path: path.as_ref(), format, every_surface: arguments.every_surface };
-        trace_rays(&lens, tracing, isa, rays, &name, &mut BufWriter::new(output))
+        trace_rays(&lens, tracing, rays, &name, &mut BufWriter::new(output))
     };
     let summary = match output {
         None => run(&mut console::Out).map_err(|error| failure(error, None))?,
@@ -44,7 +45,7 @@ pub(crate) fn trace(arguments: &LensTrace, isa: Isa) -> Outcome {
     Ok(DONE)
 }
 
-/// The path by reflections that is asked for.
+/// Returns the light path that reflects at the given surfaces (counted from 1); `None` if there are none. Fails if no such path exists.
 pub(super) fn path_of(surfaces: &[usize], lens: &Lens) -> Result<Option<LightPath>, Failure> {
     if surfaces.is_empty() {
         return Ok(None);
@@ -52,7 +53,7 @@ pub(super) fn path_of(surfaces: &[usize], lens: &Lens) -> Result<Option<LightPat
     let refuse = |text: String| Failure::Input(format!("--path: {text}"));
     if surfaces.len() % 2 == 1 {
         return Err(refuse(
-            "an odd number of reflections leads out of the front; name two surfaces, as in 7,3".to_owned(),
+            "an odd number of reflections leads back out of the front; name two surfaces, as in 7,3".to_owned(),
         ));
     }
     let count = lens.elements.len();
@@ -60,7 +61,7 @@ pub(super) fn path_of(surfaces: &[usize], lens: &Lens) -> Result<Option<LightPat
         return Err(refuse("surfaces are counted from 1".to_owned()));
     };
     if let Some(other) = at.iter().find(|at| lens.elements.get(**at).is_some_and(|e| e.action != Action::Refract)) {
-        return Err(refuse(format!("surface {} does not refract: nothing is reflected there unwanted", other + 1)));
+        return Err(refuse(format!("surface {} does not refract, so it makes no ghost reflection", other + 1)));
     }
     LightPath::reflected(count, Travel::Forward, &at).map(Some).map_err(|error| refuse(error.to_string()))
 }
@@ -77,7 +78,7 @@ fn open(path: &Path) -> Result<(Box<dyn Read>, String), Failure> {
     Ok((Box::new(file), name))
 }
 
-/// A file appears under its name only when all rays are traced; a device is written as it goes.
+/// Traces to a file, which appears under its name only when all rays are traced. A device is written as the trace goes on.
 fn to_file(
     path: &Path,
     run: impl FnOnce(&mut dyn Write) -> Result<TraceSummary, TraceError>,
@@ -91,7 +92,7 @@ fn to_file(
         let outcome = run(file);
         let good = outcome.is_ok();
         result = Some(outcome);
-        // Taken back below: what went wrong is in `result`.
+        // This error only discards the file; the real one is in `result` and returned below.
         if good { Ok(()) } else { Err(WriteFault::Format(String::new())) }
     });
     match (result, written) {
@@ -115,7 +116,7 @@ fn failure(error: TraceError, output: Option<&Path>) -> Failure {
     }
 }
 
-/// `1 540 rays, 912 hit, 520 vignetted`.
+/// Returns a summary such as `1 540 rays, 912 hit, 520 vignetted`.
 fn describe(summary: &TraceSummary) -> String {
     let mut text = format!("{}, {} hit", words::counted(summary.rays, "ray"), words::count(summary.hits));
     for cause in Loss::ALL {

@@ -1,4 +1,4 @@
-//! Filled templates, written all or not at all.
+//! Fills templates and writes all files of a folder, or none.
 
 use super::name::camel_case;
 use crate::outcome::Failure;
@@ -6,12 +6,12 @@ use spectra_core::params::Fault;
 use spectra_files::write_folder;
 use std::path::{Path, PathBuf};
 
-/// A template with a name in place of `my-stage` and `MyStage`.
+/// Returns a template with `my-stage` and `MyStage` replaced by a name.
 pub(super) fn filled(template: &str, name: &str) -> String {
     template.replace("my-stage", name).replace("MyStage", &camel_case(name))
 }
 
-/// A path as a person types it: without `./` before it, in quotes where a shell needs them.
+/// Returns a path as a user would type it: without a leading `./`, and in quotes if a shell needs them.
 pub(super) fn typed(path: &Path) -> String {
     let plain: PathBuf = path.components().filter(|c| *c != std::path::Component::CurDir).collect();
     let text = plain.display().to_string();
@@ -19,7 +19,7 @@ pub(super) fn typed(path: &Path) -> String {
     if text.chars().all(safe) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
 
-/// Files that are to lie in a folder.
+/// A folder to write, with its files.
 pub(super) struct Folder {
     path: PathBuf,
     files: Vec<(&'static str, String)>,
@@ -30,12 +30,12 @@ impl Folder {
         Self { path, files: Vec::new() }
     }
 
-    /// Adds a file; the name may have folders before it.
+    /// Adds a file; its name may include folders.
     pub(super) fn file(&mut self, name: &'static str, text: String) {
         self.files.push((name, text));
     }
 
-    /// Says so where there is no such folder to make something in.
+    /// Fails if the folder to create something in does not exist.
     pub(super) fn must_exist(parent: &Path) -> Result<(), Failure> {
         if parent.is_dir() {
             return Ok(());
@@ -43,7 +43,7 @@ impl Folder {
         Err(Fault::new(format!("--path {}: there is no such folder", parent.display())).hint("create it first").into())
     }
 
-    /// Writes all of it, or nothing.
+    /// Writes the whole folder, or nothing.
     pub(super) fn write(self) -> Result<(), Failure> {
         write_folder(&self.path, &self.files).map_err(|error| Failure::Failed(error.to_string()))
     }

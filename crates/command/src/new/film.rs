@@ -1,4 +1,4 @@
-//! `spectra new film`: a stock file that is like another one.
+//! `spectra new film`: creates a stock file based on another stock.
 
 use super::arguments::NewFilm;
 use super::written;
@@ -8,7 +8,7 @@ use crate::outcome::{DONE, Outcome};
 use spectra_film::stock::{Process, Stock};
 use std::fmt::Write;
 
-/// Writes it.
+/// Writes the stock file and prints the next steps.
 pub(super) fn film(arguments: &NewFilm) -> Outcome {
     let (like, stock) = stock_called(&arguments.like)?;
     let name = arguments.name.strip_suffix(".yaml").unwrap_or(&arguments.name);
@@ -20,11 +20,11 @@ pub(super) fn film(arguments: &NewFilm) -> Outcome {
     Ok(DONE)
 }
 
-/// The file: the other stock's figures that most sheets state, each to be overwritten, and the keys of the others as comments.
+/// Returns the text of the file: the other stock's values that most data sheets state, to be overwritten, and further keys as comments.
 fn text(name: &str, like: &str, stock: &Stock) -> String {
     let mut out = format!(
-        "# A film of your own: overwrite what its data sheet says otherwise, and delete the rest; what is not stated is that of\n\
-         # {like}. Look at it with\n#   spectra film info {name}.yaml\n#   spectra film plot {name}.yaml -o {name}.svg\n\
+        "# A film of your own: overwrite the values that its data sheet gives, and delete the rest; values that are left out are\n\
+         # those of {like}. Look at it with\n#   spectra film info {name}.yaml\n#   spectra film plot {name}.yaml -o {name}.svg\n\
          # and name it in a scene: film: {{kind: stock, stock: {name}.yaml}}. All keys: spectra doc stock\n\
          spectra: 1\nname: {name}\nlike: {like}\n"
     );
@@ -34,8 +34,8 @@ fn text(name: &str, like: &str, stock: &Stock) -> String {
     }
     if stock.process != Process::Print {
         out.push_str(
-            "# exposure: relative   # the sheet's axis says relative log exposure: the curves are slid to the speed\n\
-             # granularity: {rms: 11}   # of silver; 1000 times the deviation at density 1 through 48 um\n",
+            "# exposure: relative   # for a sheet with an axis of relative log exposure: the curves are slid to the speed\n\
+             # granularity: {rms: 11}   # for silver film; 1000 times the standard deviation at density 1 through a 48 um aperture\n",
         );
     }
     out.push_str("layers:\n");

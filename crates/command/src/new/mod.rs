@@ -1,4 +1,4 @@
-//! `spectra new`: a plugin, a scene, a lens or a film to start from, which works as it is.
+//! `spectra new`: creates a plugin, a scene, a lens or a film to start from, which works without changes.
 
 mod arguments;
 mod files;
@@ -19,7 +19,7 @@ use std::path::Path;
 const SCENE: &str = include_str!("templates/scene.yaml");
 const LENS: &str = include_str!("templates/lens.yaml");
 
-/// Makes it.
+/// Creates what the arguments name, and prints the next steps.
 pub(crate) fn new(arguments: &NewArguments, unpack: Unpack) -> Outcome {
     match &arguments.command {
         NewCommand::Plugin(arguments) => plugin::plugin(arguments, unpack),
@@ -40,13 +40,13 @@ pub(crate) fn new(arguments: &NewArguments, unpack: Unpack) -> Outcome {
     }
 }
 
-/// Writes one file; returns its path as a person types it.
+/// Writes a file from a template; returns its path as a user would type it.
 fn file(arguments: &NewFile, template: &str) -> Result<String, Failure> {
     let name = arguments.name.strip_suffix(".yaml").unwrap_or(&arguments.name);
     written(name, &arguments.path, &filled(template, name))
 }
 
-/// Writes a text as `NAME.yaml` into a folder; returns its path as a person types it.
+/// Writes a text as `NAME.yaml` into a folder; returns its path as a user would type it. Fails if the file exists.
 fn written(name: &str, folder: &Path, text: &str) -> Result<String, Failure> {
     name::check(name)?;
     let path = folder.join(format!("{name}.yaml"));

@@ -4,10 +4,10 @@ use crate::outcome::Failure;
 use spectra_core::params::Fault;
 use spectra_core::registry;
 
-/// Longest name.
+/// Length of the longest allowed name, bytes.
 const LONGEST: usize = 64;
 
-/// Words of Rust that no crate can be called by (The Rust Reference, "Keywords"), and crates that every program has.
+/// Names that a crate cannot have: keywords of Rust (The Rust Reference, "Keywords"), and crates that every program contains.
 const RESERVED: [&str; 60] = [
     "abstract",
     "alloc",
@@ -71,10 +71,10 @@ const RESERVED: [&str; 60] = [
     "spectra",
 ];
 
-/// Checks a name: kebab-case.
+/// Checks that a name is in kebab-case and not too long.
 pub(super) fn check(name: &str) -> Result<(), Failure> {
     let fault = |text: String| {
-        Err(Failure::from(Fault::new(text).hint("lower-case letters, digits and hyphens, such as `ripple-glass`")))
+        Err(Failure::from(Fault::new(text).hint("use lower-case letters, digits and hyphens, such as `ripple-glass`")))
     };
     let shown: String = name.chars().take(LONGEST).collect();
     if name.is_empty() || name.len() > LONGEST {
@@ -100,16 +100,18 @@ pub(super) fn check(name: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks a name for a plugin of this stage: also a word that Rust leaves free, and that nobody has taken.
+/// Checks a name for a plugin of this stage: besides [`check`], it must not be reserved or already registered.
 pub(super) fn check_plugin(name: &str, stage: &str) -> Result<(), Failure> {
     check(name)?;
     if RESERVED.contains(&name) {
         let fault = Fault::new(format!("`{name}` cannot be the name of a crate: Rust reserves it"));
-        return Err(fault.hint(format!("such as `my-{name}`")).into());
+        return Err(fault.hint(format!("choose another name, such as `my-{name}`")).into());
     }
     if name.starts_with("spectra-") {
         let fault = Fault::new(format!("`{name}`: names like this are reserved for the crates of spectra"));
-        return Err(fault.hint(format!("such as `{}`", name.trim_start_matches("spectra-"))).into());
+        return Err(fault
+            .hint(format!("choose another name, such as `{}`", name.trim_start_matches("spectra-")))
+            .into());
     }
     if let Some(taken) = registry::list().into_iter().find(|l| l.stage == stage && l.name == name) {
         let text = format!("{stage} `{name}` already exists, in crate {} {}", taken.package, taken.version);
@@ -120,7 +122,7 @@ pub(super) fn check_plugin(name: &str, stage: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The name as a Rust type has it: `even-asphere` is `EvenAsphere`.
+/// Converts a name to that of a Rust type: `even-asphere` becomes `EvenAsphere`.
 pub(super) fn camel_case(name: &str) -> String {
     let mut out = String::new();
     for word in name.split('-') {

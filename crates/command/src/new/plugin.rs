@@ -1,4 +1,4 @@
-//! `spectra new plugin`.
+//! `spectra new plugin`: creates the crate of a plugin.
 
 use super::arguments::{NewPlugin, Stage};
 use super::files::{Folder, filled, typed};
@@ -10,7 +10,7 @@ use spectra_core::params::Fault;
 
 const README: &str = include_str!("templates/README.md");
 
-/// Source, scene, and, where the scene needs one of its own, lens; `layers` asks for the film that has layers.
+/// Returns the templates of the source, the scene and, if the scene needs it, the lens. `layers` selects the film with layers.
 fn templates(stage: Stage, layers: bool) -> (&'static str, &'static str, Option<&'static str>) {
     match stage {
         Stage::Surface => (
@@ -33,19 +33,19 @@ fn templates(stage: Stage, layers: bool) -> (&'static str, &'static str, Option<
     }
 }
 
-/// Makes it.
+/// Creates the crate and prints the next steps.
 pub(super) fn plugin(arguments: &NewPlugin, unpack: Unpack) -> Outcome {
     let NewPlugin { name, stage, layers, path, core } = arguments;
     if layers.is_some() && *stage != Stage::Film {
         let fault = Fault::new(format!("--layers: a {} has no layers", stage.noun()));
-        return Err(fault.hint("only with --stage film").into());
+        return Err(fault.hint("use --layers only with --stage film").into());
     }
     name::check_plugin(name, stage.word())?;
     Folder::must_exist(path)?;
     let folder = path.join(name);
     if folder.symlink_metadata().is_ok() {
         let fault = Fault::new(format!("{} already exists", folder.display()));
-        return Err(fault.hint("choose another name, or another folder by --path").into());
+        return Err(fault.hint("choose another name, or another folder with --path").into());
     }
     let sources = Sources::find(core.as_deref(), unpack)?;
     let (source, scene, lens) = templates(*stage, layers.is_some());
@@ -118,7 +118,8 @@ fn manifest(name: &str, stage: Stage, sources: &Sources) -> Result<String, Failu
     ))
 }
 
-/// Where cargo builds: the folder of `spectra build`, so that crates with the same features are compiled once.
+/// Returns the cargo configuration of the plugin. It sets the target folder of `spectra build`, so that crates with the same features
+/// are compiled only once.
 fn cargo_config() -> Result<String, Failure> {
     Ok(format!(
         "# The folder that `spectra build` uses too. It exists on this machine only, so git ignores this file.\n[build]\ntarget-dir = {}\n",

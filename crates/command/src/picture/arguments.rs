@@ -1,17 +1,17 @@
-//! What can be written after `spectra picture`.
+//! Command-line arguments of `spectra picture`.
 
 use crate::eye::EyeName;
 use clap::{Args, Subcommand};
 use spectra_analysis::picture::Rectangle;
 use std::path::PathBuf;
 
-/// `spectra picture`.
+/// Arguments of `spectra picture`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Measure pictures: power and flux, false-color views, cuts, spectra, differences.\n\n\
-        FILE is an OpenEXR file, first of all one that `spectra run` wrote: the linear exposure (XYZ in lx or lx s, bands of the \
+        FILE is an OpenEXR file, usually one written by `spectra run`: the linear exposure (XYZ in lx or lx s, bands of the \
         spectrum, the layers of a film) or the finished picture. PNG, TIFF and JPEG files are read as sRGB.",
-    after_long_help = "Examples, where a.exr and b.exr are yours:\n\n    \
+    after_long_help = "Examples, with your own a.exr and b.exr:\n\n    \
         spectra picture info a.exr\n    \
         spectra picture plot a.exr --quantity illuminance --log -o a-lux.png\n    \
         spectra picture cut a.exr --row 120 -o a-row.svg\n    \
@@ -24,29 +24,29 @@ pub(crate) struct PictureArguments {
     pub command: PictureCommand,
 }
 
-/// The commands on pictures.
+/// The commands of `spectra picture`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum PictureCommand {
-    /// Show a picture in figures: channels, power, luminous flux, illuminance, gamut, and where it came from.
+    /// Show the figures of a picture: channels, power, luminous flux, illuminance, gamut, and its origin.
     Info(PictureInfo),
     /// Plot one quantity of a picture in false color, with its scale.
     Plot(PicturePlot),
     /// Plot quantities along a row, a column or a line.
     Cut(PictureCut),
-    /// Show the mean color of an area; write its spectrum where bands were recorded.
+    /// Show the mean color of an area, and write its spectrum if bands were recorded.
     Spectrum(PictureSpectrum),
     /// Compare two pictures: difference, noise, CIEDE2000.
     Compare(PictureCompare),
 }
 
-/// `spectra picture info`.
+/// Arguments of `spectra picture info`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show a picture in figures: channels, power, luminous flux, illuminance, gamut, and where it came from.\n\n\
+    long_about = "Show the figures of a picture: channels, power, luminous flux, illuminance, gamut, and its origin.\n\n\
         Luminous flux (lm) is illuminance times the area of the frame; exposures in lx s are divided by the exposure time that the \
-        file states. Radiant power (W) needs the spectrum: a picture by `imager: {kind: spectral}`, and counts its bands only. \
-        `out of sRGB` is the share of the lit pixels whose color has a negative part in that space. --json has the scene as well.",
-    after_long_help = "Example, where a.exr is yours:\n\n    spectra picture info a.exr --json"
+        file states. Radiant power (W) is shown only for a spectral picture (`imager: {kind: spectral}`), and counts only its bands. \
+        `out of sRGB` is the fraction of the lit pixels whose color has a negative component in that space. --json includes the scene.",
+    after_long_help = "Example, with your own a.exr:\n\n    spectra picture info a.exr --json"
 )]
 pub(crate) struct PictureInfo {
     /// The picture.
@@ -57,25 +57,25 @@ pub(crate) struct PictureInfo {
     pub json: bool,
 }
 
-/// What is shown of each pixel, and against which white.
+/// Option for the reference white of a picture.
 #[derive(Debug, Args)]
 pub(crate) struct White {
-    /// The Y that counts as white for lightness, chroma, hue, clipping and CIEDE2000, in the unit of the picture. If not given, 1
-    /// of a finished picture, and of light what automatic exposure shows as white.
+    /// The Y that counts as white for lightness, chroma, hue, clipping and CIEDE2000, in the unit of the picture. If not given, 1 for a
+    /// finished picture; for linear exposure, the value that automatic exposure shows as white.
     #[arg(long, value_name = "Y", value_parser = positive)]
     pub white: Option<f64>,
 }
 
-/// `spectra picture plot`.
+/// Arguments of `spectra picture plot`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Plot one quantity of a picture in false color, with its scale, or the picture in its colors.\n\n\
         QUANTITY is illuminance (lx), exposure (lx s), irradiance (W/m2, of spectral pictures), luminance, lightness (L*), chroma (C*), \
-        hue, clipping, color, or the name of a channel, such as Y or ortho. `color` is the picture as a screen shows it. `clipping` shows brightness in gray, and marks what is beyond white, \
-        outside of sRGB, or no number. Lightness, chroma and hue are CIE Lab against a white of D65. \
-        --seen-by shows the picture as an eye without one kind of cones has it (Machado, Oliveira and Fernandes 2009, in full); with \
-        another --quantity it does so with the false colors.",
-    after_long_help = "Examples, where a.exr is yours:\n\n    \
+        hue, clipping, color, or the name of a channel, such as Y or ortho. `color` is the picture as a screen shows it. `clipping` \
+        shows brightness in gray, and marks pixels beyond white, outside sRGB, or without a finite value. Lightness, chroma and hue are \
+        CIE Lab with a white of D65. --seen-by shows the picture as seen by an eye that lacks one kind of cones (Machado, Oliveira and \
+        Fernandes 2009, in full); with another --quantity it converts the false colors.",
+    after_long_help = "Examples, with your own a.exr:\n\n    \
         spectra picture plot a.exr --log\n    spectra picture plot a.exr --quantity hue -o a-hue.png\n    \
         spectra picture plot a.exr --seen-by deutan -o a-deutan.png"
 )]
@@ -83,16 +83,16 @@ pub(crate) struct PicturePlot {
     /// The picture.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// What to show; if not given, illuminance, else what comes nearest to it, or with --seen-by the color.
+    /// Quantity to show. If not given, illuminance or the quantity nearest to it; with --seen-by, color.
     #[arg(long, value_name = "QUANTITY")]
     pub quantity: Option<String>,
-    /// A scale by powers of ten.
+    /// Use a logarithmic scale.
     #[arg(long)]
     pub log: bool,
     /// Ends of the scale; the smallest (or 0) and the largest value if not given.
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = range)]
     pub range: Option<[f64; 2]>,
-    /// Show it as an eye has it that lacks one kind of cones.
+    /// Show the figure as seen by an eye that lacks one kind of cones.
     #[arg(long, value_enum, value_name = "EYE")]
     pub seen_by: Option<EyeName>,
     #[command(flatten)]
@@ -102,13 +102,13 @@ pub(crate) struct PicturePlot {
     pub output: Option<PathBuf>,
 }
 
-/// `spectra picture cut`.
+/// Arguments of `spectra picture cut`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Plot quantities along a row, a column or a line through a picture, or write them as a table.\n\n\
-        Rows and columns count from 0 at the upper left. Along a line, given in columns and rows (0.5,0.5 is the middle of the first \
-        pixel), values between pixels are interpolated. Distances are in mm on the film where the file states its size.",
-    after_long_help = "Examples, where a.exr is yours:\n\n    \
+        Rows and columns count from 0 at the upper left. A line is given in columns and rows (0.5,0.5 is the middle of the first \
+        pixel); values between pixels are interpolated. Distances are in mm on the film if the file states its size.",
+    after_long_help = "Examples, with your own a.exr:\n\n    \
         spectra picture cut a.exr --row 120 -o a-row.svg\n    \
         spectra picture cut a.exr --line 10,10,200,90 --quantity X,Y,Z --log -o a-line.csv"
 )]
@@ -118,10 +118,10 @@ pub(crate) struct PictureCut {
     pub file: PathBuf,
     #[command(flatten)]
     pub way: WayArguments,
-    /// Quantities or channels, as `spectra picture plot` has them.
+    /// Quantities or channels to show, named as for `spectra picture plot`.
     #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
     pub quantity: Vec<String>,
-    /// Show the logarithm; a table holds the values themselves.
+    /// Use a logarithmic scale; a table always holds the values themselves.
     #[arg(long)]
     pub log: bool,
     #[command(flatten)]
@@ -131,28 +131,29 @@ pub(crate) struct PictureCut {
     pub output: Option<PathBuf>,
 }
 
-/// Where a cut goes.
+/// Options for the path of a cut.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 pub(crate) struct WayArguments {
-    /// Along this row.
+    /// Cut along this row.
     #[arg(long, value_name = "ROW")]
     pub row: Option<u32>,
-    /// Along this column.
+    /// Cut along this column.
     #[arg(long, value_name = "COLUMN")]
     pub column: Option<u32>,
-    /// From one place to another.
+    /// Cut from one point to another.
     #[arg(long, value_name = "COLUMN,ROW,COLUMN,ROW", value_parser = line)]
     pub line: Option<[f64; 4]>,
 }
 
-/// `spectra picture spectrum`.
+/// Arguments of `spectra picture spectrum`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show the mean color of areas of a picture; write their spectrum where bands were recorded.\n\n\
-        A picture by `imager: {kind: spectral}` holds the spectrum: -o writes that of the area as a spectrum file (`kind: histogram`), \
-        which a scene takes back as a light by its name. --diagram marks the chromaticities of the areas in the CIE 1931 diagram.",
-    after_long_help = "Examples, where spectral.exr is yours:\n\n    \
+    long_about = "Show the mean color of areas of a picture, and write their spectrum if bands were recorded.\n\n\
+        A spectral picture (`imager: {kind: spectral}`) holds the spectrum. -o writes that of one area as a spectrum file \
+        (`kind: histogram`), which a scene can use as a light by its file name. --diagram marks the chromaticities of the areas in the \
+        CIE 1931 diagram.",
+    after_long_help = "Examples, with your own spectral.exr:\n\n    \
         spectra picture spectrum spectral.exr --area 10,10,20,20 -o measured.yaml\n    \
         spectra picture spectrum spectral.exr --area 0,0,8,8 --area 40,20,8,8 --diagram areas.svg"
 )]
@@ -160,10 +161,10 @@ pub(crate) struct PictureSpectrum {
     /// The picture.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// An area: first column and row, width and height in pixels; can be repeated. The whole picture if not given.
+    /// Area to measure: first column and row, width and height in pixels; can be repeated. The whole picture if not given.
     #[arg(long = "area", value_name = "COLUMN,ROW,WIDTH,HEIGHT", value_parser = rectangle)]
     pub areas: Vec<Rectangle>,
-    /// Spectrum file to write, FILE.yaml, of one area.
+    /// Spectrum file to write, FILE.yaml, for one area.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Chromaticity diagram to write, FILE.svg or FILE.png.
@@ -174,15 +175,15 @@ pub(crate) struct PictureSpectrum {
     pub json: bool,
 }
 
-/// `spectra picture compare`.
+/// Arguments of `spectra picture compare`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Compare two pictures of one size: difference, noise, CIEDE2000.\n\n\
-        Differences are second minus first, relative to the mean of both. `noise` is what each picture has if both show one scene with as \
-        many samples (the standard deviation of the differences over the square root of 2). Where only noise tells them apart, the means \
-        differ by a few standard errors at most, and some 0.3 % of the blocks of 16 x 16 pixels by more than 3. CIEDE2000 is \
-        taken in CIE Lab against one white of D65 for both.",
-    after_long_help = "Example, where a.exr and b.exr are yours:\n\n    \
+    long_about = "Compare two pictures of the same size: difference, noise, CIEDE2000.\n\n\
+        Differences are second minus first, relative to the mean of both. `noise` is the noise of each picture if both show the same \
+        scene with the same number of samples (the standard deviation of the differences divided by the square root of 2). If they \
+        differ only by noise, the means differ by a few standard errors at most, and about 0.3 % of the blocks of 16 x 16 pixels by \
+        more than 3. CIEDE2000 is computed from CIE Lab with the same white of D65 for both.",
+    after_long_help = "Example, with your own a.exr and b.exr:\n\n    \
         spectra picture compare a.exr b.exr -o difference.png"
 )]
 pub(crate) struct PictureCompare {
@@ -194,7 +195,7 @@ pub(crate) struct PictureCompare {
     pub second: PathBuf,
     #[command(flatten)]
     pub white: White,
-    /// A view of CIEDE2000 to write, FILE.png or FILE.svg.
+    /// Map of CIEDE2000 to write, FILE.png or FILE.svg.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Write a JSON object to standard output.
@@ -208,24 +209,24 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     all?.try_into().ok()
 }
 
-/// The number of `--white`.
+/// Parses the number of `--white`.
 fn positive(text: &str) -> Result<f64, String> {
     let [value] = numbers(text).filter(|[v]| *v > 0.0).ok_or("expected a number above 0, such as 0.4")?;
     Ok(value)
 }
 
-/// The numbers of `--range`.
+/// Parses the numbers of `--range`.
 fn range(text: &str) -> Result<[f64; 2], String> {
     let rises = |[from, to]: &[f64; 2]| from < to;
-    numbers(text).filter(rises).ok_or_else(|| "expected two numbers that rise, such as 0.1,100".to_owned())
+    numbers(text).filter(rises).ok_or_else(|| "expected two increasing numbers, such as 0.1,100".to_owned())
 }
 
-/// The numbers of `--line`.
+/// Parses the numbers of `--line`.
 fn line(text: &str) -> Result<[f64; 4], String> {
     numbers(text).ok_or_else(|| "expected four numbers: column and row of each end, such as 10,10,200,90".to_owned())
 }
 
-/// The numbers of `--area`.
+/// Parses the numbers of `--area`.
 fn rectangle(text: &str) -> Result<Rectangle, String> {
     let all: Option<Vec<u32>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
     match all.as_deref() {

@@ -1,4 +1,4 @@
-//! `spectra picture compare`.
+//! `spectra picture compare`: compares two pictures.
 
 use super::arguments::PictureCompare;
 use super::{load, not_written, percent, refuse, significant, stem};
@@ -11,20 +11,20 @@ use spectra_core::params::Fault;
 use spectra_plot::Format;
 use std::fmt::Write as _;
 
-/// CIEDE2000 in figures.
+/// Statistics of CIEDE2000 between two pictures.
 #[derive(Debug, Serialize)]
 struct DeltaE {
     mean: f64,
     median: f64,
     percentile_95: f64,
     maximum: f64,
-    /// Column and row.
+    /// Column and row of the maximum.
     maximum_at: [u32; 2],
-    /// White of both pictures, in words.
+    /// White of both pictures, as text.
     white: Option<String>,
 }
 
-/// Two pictures against each other.
+/// Result of comparing two pictures.
 #[derive(Debug, Serialize)]
 struct Report {
     first: String,
@@ -33,7 +33,7 @@ struct Report {
     channels: Vec<Differs>,
 }
 
-/// Compares two pictures.
+/// Compares two pictures and writes the result to standard output, and a map of CIEDE2000 if requested.
 pub(super) fn compare(arguments: &PictureCompare) -> Outcome {
     let [first_path, second_path] = [&arguments.first, &arguments.second];
     if let Some(output) = &arguments.output {
@@ -78,10 +78,10 @@ pub(super) fn compare(arguments: &PictureCompare) -> Outcome {
     Ok(DONE)
 }
 
-/// Most channels that are shown one by one.
+/// Largest number of channels that are shown one by one.
 const MOST_CHANNELS: usize = 12;
 
-/// The report as a person reads it.
+/// Formats the report as text.
 fn text(report: &Report) -> String {
     let mut out = format!("{} and {}\n\n", report.first, report.second);
     if let Some(e) = &report.delta_e_2000 {

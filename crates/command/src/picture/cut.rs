@@ -1,4 +1,4 @@
-//! `spectra picture cut`.
+//! `spectra picture cut`: plots quantities along a line through a picture.
 
 use super::arguments::PictureCut;
 use super::{field, load, not_written, output, quantity, refuse, stem};
@@ -11,14 +11,14 @@ use spectra_plot::Format;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Draws quantities along a line, or writes them as a table.
+/// Plots quantities along a row, a column or a line, or writes them as a table.
 pub(super) fn cut(arguments: &PictureCut) -> Outcome {
     let path = &arguments.file;
     let output = output(arguments.output.as_ref(), path, "cut.svg");
     apart(&output, &[path])?;
     let is_table = ending_is_csv(&output);
     if !is_table && Format::of(&output).is_err() {
-        let text = format!("{}: a cut is written as .svg, .png or .csv", output.display());
+        let text = format!("{}: the name of a cut must end in .svg, .png or .csv", output.display());
         return Err(Failure::Input(text));
     }
     let picture = load(path)?;
@@ -39,8 +39,8 @@ pub(super) fn cut(arguments: &PictureCut) -> Outcome {
         (_, _, Some([x, y, to_x, to_y])) => {
             (Way::Line { from: [x, y], to: [to_x, to_y] }, format!("from {x}, {y} to {to_x}, {to_y}"))
         }
-        // The parser asks for one of the three.
-        _ => return Err(Failure::Input("--row, --column or --line says where to cut".to_owned())),
+        // The parser requires one of the three.
+        _ => return Err(Failure::Input("say where to cut with --row, --column or --line".to_owned())),
     };
     let cut = Cut::of(&picture, &fields, way).map_err(|error| refuse(path, error))?;
     if is_table {

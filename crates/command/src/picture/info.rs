@@ -1,4 +1,4 @@
-//! `spectra picture info`.
+//! `spectra picture info`: shows the figures of a picture.
 
 use super::arguments::PictureInfo;
 use super::{load, percent, significant};
@@ -10,7 +10,7 @@ use spectra_analysis::picture::{Colors, Measured, Summary, Unit};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// A picture in figures.
+/// Figures of a picture.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     file: String,
@@ -20,18 +20,18 @@ struct Report<'a> {
     pixel_aspect: f64,
     film_size_mm: Option<[f64; 2]>,
     exposure_time_s: Option<f64>,
-    /// How colors follow from the channels: `xyz`, `rgb` or `bands`.
+    /// Kind of channels that colors are computed from: `xyz`, `rgb` or `bands`.
     colors: Option<&'static str>,
-    /// The unit of XYZ.
+    /// Unit of XYZ.
     unit: &'static str,
     chromaticities: Option<[[f64; 2]; 4]>,
     #[serde(flatten)]
     summary: Summary,
-    /// All texts of the header.
+    /// All text attributes of the header.
     attributes: BTreeMap<&'a str, &'a str>,
 }
 
-/// Shows a picture in figures.
+/// Writes the figures of a picture to standard output, as text or JSON.
 pub(super) fn info(arguments: &PictureInfo) -> Outcome {
     let picture = load(&arguments.file)?;
     let summary = Summary::of(&picture);
@@ -62,10 +62,10 @@ pub(super) fn info(arguments: &PictureInfo) -> Outcome {
     Ok(DONE)
 }
 
-/// Most channels that are shown one by one.
+/// Largest number of channels that are shown one by one.
 const MOST_CHANNELS: usize = 12;
 
-/// The report as a person reads it.
+/// Formats the report as text.
 fn text(report: &Report<'_>, picture: &Measured) -> String {
     let summary = &report.summary;
     let mut out = format!("{}: {}, {} x {} pixels\n\n", report.file, report.format, report.width_px, report.height_px);
@@ -77,7 +77,7 @@ fn text(report: &Report<'_>, picture: &Measured) -> String {
         let [low, mean, high] = [channel.minimum, channel.mean, channel.maximum].map(number);
         let broken = match channel.not_finite {
             0 => String::new(),
-            n => format!("  ({n} values are no numbers)"),
+            n => format!("  ({n} values are not finite)"),
         };
         let row = format!("  {:<width$}  {low:>12}  {mean:>12}  {high:>12}  {}{broken}", channel.name, channel.unit);
         let _ = writeln!(out, "{}", row.trim_end());
@@ -120,7 +120,7 @@ fn text(report: &Report<'_>, picture: &Measured) -> String {
                 row(key, Some(format!("{} of YAML (--json shows all)", counted(value.lines().count() as u64, "line"))))
             }
             "film size" | "film coordinates" => {}
-            // Illuminance has no time.
+            // Illuminance does not depend on the exposure time.
             "exposure time" if picture.unit == Unit::Lux => {}
             _ => row(key, Some((*value).to_owned())),
         }
@@ -128,7 +128,7 @@ fn text(report: &Report<'_>, picture: &Measured) -> String {
     out
 }
 
-/// What colors follow from, in words.
+/// Returns a text that says what colors are computed from.
 fn colors(picture: &Measured) -> String {
     let unit = match picture.unit {
         Unit::Lux => "Y in lx",
@@ -143,6 +143,6 @@ fn colors(picture: &Measured) -> String {
         }
         Some(Colors::Rgb(..)) => format!("linear RGB in the primaries of sRGB, {unit}"),
         Some(Colors::Bands(bands)) => format!("{} bands of the spectrum", bands.len()),
-        None => "none: the channels are no primaries".to_owned(),
+        None => "none: the channels are not primaries".to_owned(),
     }
 }

@@ -1,4 +1,4 @@
-//! `spectra picture`: what was rendered, measured.
+//! `spectra picture`: measures rendered pictures.
 
 mod arguments;
 mod compare;
@@ -20,7 +20,7 @@ use spectra_pictures::read::{Choice, Trouble, planes};
 use spectra_plot::PlotError;
 use std::path::{Path, PathBuf};
 
-/// Runs a command on pictures.
+/// Runs one of the commands of `spectra picture`.
 pub(crate) fn picture(command: &PictureCommand) -> Outcome {
     match command {
         PictureCommand::Info(arguments) => info::info(arguments),
@@ -31,7 +31,7 @@ pub(crate) fn picture(command: &PictureCommand) -> Outcome {
     }
 }
 
-/// Reads a picture and finds out what it holds.
+/// Reads a picture and identifies its colors and unit. Warns about doubtful content.
 fn load(path: &Path) -> Result<Measured, Failure> {
     let shown = path.display().to_string();
     if !path.is_file() {
@@ -52,12 +52,12 @@ fn load(path: &Path) -> Result<Measured, Failure> {
     Ok(picture)
 }
 
-/// A fault of a picture, by its name.
+/// Converts an error of a measurement, with the name of the picture.
 fn refuse(path: &Path, error: NotMeasured) -> Failure {
     Fault::new(format!("{}: {}", path.display(), error.text)).hint(error.hint).into()
 }
 
-/// What `--quantity` names.
+/// Returns the quantity that `--quantity` names. `also` lists further words that the caller accepts, for the hint.
 fn quantity(name: &str, picture: &Measured, also: &[&str]) -> Result<Quantity, Failure> {
     let name = name.trim();
     Quantity::named(name, picture).ok_or_else(|| {
@@ -72,17 +72,17 @@ fn quantity(name: &str, picture: &Measured, also: &[&str]) -> Result<Quantity, F
     })
 }
 
-/// A quantity of a picture at each pixel.
+/// Computes a quantity at each pixel of a picture.
 fn field(path: &Path, picture: &Measured, quantity: &Quantity, white: Option<f64>) -> Result<Field, Failure> {
     Field::of(picture, quantity, white).map_err(|error| refuse(path, error))
 }
 
-/// The name of a file without its ending.
+/// Returns the name of a file without its extension.
 fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "picture".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// The file of a figure: as given, or in the working folder by the name of the picture.
+/// Returns the output file: the given one, or `NAME-REST` in the working folder, after the name of the picture.
 fn output(given: Option<&PathBuf>, path: &Path, rest: &str) -> PathBuf {
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
     given.cloned().unwrap_or_else(|| format!("{}-{rest}", stem(path)).chars().map(plain).collect::<String>().into())
@@ -95,20 +95,20 @@ fn not_written(error: PlotError) -> Failure {
     }
 }
 
-/// Six digits, with a power of ten where the number is large or small.
+/// Formats a number with six digits, with a power of ten if it is large or small.
 fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
     let shown = format!("{value:.5e}");
-    // Its power of ten after rounding.
+    // The power of ten is taken after rounding.
     match shown.split_once('e').and_then(|(_, power)| power.parse::<i32>().ok()) {
         Some(power @ -4..=5) => format!("{value:.*}", (5 - power) as usize),
         _ => shown,
     }
 }
 
-/// A share as a percentage; what is not quite 0 is not shown as 0.
+/// Formats a fraction as a percentage; a value that is not quite 0 is not shown as 0.
 fn percent(share: f64) -> String {
     match 100.0 * share {
         p if p > 0.0 && p < 0.01 => "< 0.01 %".to_owned(),

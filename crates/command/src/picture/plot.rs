@@ -1,4 +1,4 @@
-//! `spectra picture plot`: a quantity in false color, or the picture in its colors.
+//! `spectra picture plot`: plots a quantity in false color, or the picture in its colors.
 
 use super::arguments::PicturePlot;
 use super::{field, load, not_written, output, quantity, refuse, stem};
@@ -8,26 +8,27 @@ use crate::outcome::{DONE, Outcome};
 use spectra_analysis::picture::{Quantity, Scale, clipping, color, view};
 use spectra_plot::Format;
 
-/// The words that are no quantity of a pixel alone.
+/// Word of `--quantity` for the view of clipped pixels.
 const CLIPPING: &str = "clipping";
+/// Word of `--quantity` for the picture in its colors.
 const COLOR: &str = "color";
 
-/// Draws a picture in false color.
+/// Plots a picture in false color or in its colors, and writes the figure to a file.
 pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
     let path = &arguments.file;
     if let Some(given) = &arguments.output {
-        // Before anything is read: a wrong ending is found out at once.
+        // A wrong extension is reported before anything is read.
         Format::of(given).map_err(not_written)?;
     }
     let picture = load(path)?;
     let asked = arguments.quantity.as_deref().map(str::trim);
     let white = arguments.white.white;
     let eye = arguments.seen_by;
-    // The picture itself is what an eye is asked about, if nothing else is.
+    // With --seen-by alone, the picture itself is shown.
     let asked = asked.or(eye.map(|_| COLOR));
     let (canvas, name) = if asked == Some(COLOR) && picture.planes.channel(COLOR).is_none() {
         let title = match eye {
-            Some(eye) => format!("{}: as {} has it", stem(path), eye.eye()),
+            Some(eye) => format!("{}: as {} sees it", stem(path), eye.eye()),
             None => format!("{}: color", stem(path)),
         };
         (color(&picture, white, &title).map_err(|error| refuse(path, error))?, COLOR.to_owned())

@@ -1,4 +1,4 @@
-//! `spectra picture spectrum`.
+//! `spectra picture spectrum`: shows the mean color and the spectrum of areas.
 
 use super::arguments::PictureSpectrum;
 use super::{load, not_written, refuse, significant, stem};
@@ -14,10 +14,10 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// An area in figures.
+/// Figures of an area of a picture.
 #[derive(Debug, Serialize)]
 struct Report {
-    /// Column, row, width and height, pixels.
+    /// Column, row, width and height of the area, pixels.
     area_px: [u32; 4],
     /// Mean XYZ (CIE 1931) in `unit`.
     xyz: Option<[f64; 3]>,
@@ -25,17 +25,17 @@ struct Report {
     xy: Option<[f64; 2]>,
     cct_k: Option<f64>,
     duv: Option<f64>,
-    /// Against a white of D65; below 0 for a purple, whose complementary wavelength it is.
+    /// Dominant wavelength with a white of D65. For a purple, the complementary wavelength with a negative sign.
     dominant_wavelength_nm: Option<f64>,
     purity: Option<f64>,
-    /// Mean irradiance of each band, W m^-2 nm^-1, and its edges, nm.
+    /// Mean irradiance of each band, W m^-2 nm^-1; `edges_nm` has the edges of the bands.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     irradiance_w_m2_nm: Vec<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     edges_nm: Vec<f64>,
 }
 
-/// Shows the mean of areas, and writes spectra and a diagram of them.
+/// Shows the mean colors of areas, and writes a spectrum and a diagram of them if requested.
 pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
     let path = &arguments.file;
     if let Some(diagram) = &arguments.diagram {
@@ -43,10 +43,10 @@ pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
     }
     if let Some(output) = &arguments.output {
         if !is_yaml(output) {
-            return Err(Failure::Input(format!("{}: a spectrum is written as .yaml", output.display())));
+            return Err(Failure::Input(format!("{}: the name of a spectrum file must end in .yaml", output.display())));
         }
         if arguments.areas.len() > 1 {
-            return Err(Failure::Input("-o writes the spectrum of one area: name one `--area`".to_owned()));
+            return Err(Failure::Input("-o writes the spectrum of only one area: give `--area` once".to_owned()));
         }
     }
     let picture = load(path)?;
@@ -88,7 +88,7 @@ fn is_yaml(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("yaml") || e.eq_ignore_ascii_case("yml"))
 }
 
-/// An area as it is written on the command line.
+/// Formats an area as it is written on the command line.
 fn written(area: Rectangle) -> String {
     let Rectangle { from: [x, y], size: [width, height] } = area;
     format!("{x},{y},{width},{height}")
@@ -114,7 +114,7 @@ fn report(area: Area, picture: &Measured) -> Report {
     }
 }
 
-/// The report as a person reads it.
+/// Formats the report as text.
 fn text(report: &Report) -> String {
     let [x, y, width, height] = report.area_px;
     let mut out = format!("area {x},{y},{width},{height}\n");

@@ -1,4 +1,4 @@
-//! `spectra run`: from a scene file to pictures.
+//! `spectra run`: renders a scene file to pictures.
 
 mod progress;
 
@@ -18,15 +18,15 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How often the progress is looked at, and Ctrl-C with it.
+/// Interval between updates of the progress and checks for Ctrl-C.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Renders a scene; with `--json` a failure is an event as well.
+/// Renders a scene. With `--json`, a failure is also written as an event.
 pub(crate) fn run(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     told(render_scene(arguments, isa, started), arguments.json)
 }
 
-/// With `--json` a failure is an event as well.
+/// Writes a failure as a JSON event if `is_json`; returns the outcome unchanged.
 pub(crate) fn told(outcome: Outcome, is_json: bool) -> Outcome {
     if let (true, Err(failure)) = (is_json, &outcome) {
         let event = match failure {
@@ -36,7 +36,7 @@ pub(crate) fn told(outcome: Outcome, is_json: bool) -> Outcome {
             Failure::Input(text) | Failure::Failed(text) => json!({ "event": "error", "message": text, "faults": [] }),
             Failure::ReaderGone => return outcome,
         };
-        // A reader that has gone away misses the event, not the picture.
+        // If the reader has gone away, only the event is lost.
         let _ = console::json(&event);
     }
     outcome
@@ -68,7 +68,7 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     Ok(face.code(ended))
 }
 
-/// All that is set on the command line, as texts `path=value`; the options come after what `--set` says.
+/// Returns all values set on the command line, as texts `path=value`. Options come last, so they take precedence over `--set`.
 fn overrides(arguments: &Run) -> Vec<String> {
     let mut all = arguments.set.overrides.clone();
     all.extend(arguments.seed.map(|seed| format!("render.seed={seed}")));
@@ -80,14 +80,14 @@ fn overrides(arguments: &Run) -> Vec<String> {
     all
 }
 
-/// How a command says what goes on.
+/// How a command reports its progress: as JSON events, not at all, or else as text.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Speaks {
     pub json: bool,
     pub quiet: bool,
 }
 
-/// The command as the one who has pictures rendered.
+/// Host of a session for the command line: its threads, folders, signals and progress.
 pub(crate) struct Face {
     target: Target,
     threads: usize,
@@ -96,15 +96,15 @@ pub(crate) struct Face {
     deadline: Option<Instant>,
     set_up: SetUp,
     progress: Mutex<Progress>,
-    /// Of the picture that is rendered.
+    /// Control of the current picture.
     control: Mutex<Arc<Control>>,
-    /// Whether light is traced at this moment.
+    /// Whether light is being traced at this moment.
     is_tracing: AtomicBool,
     interrupt: OnceLock<Interrupt>,
 }
 
 impl Face {
-    /// For files that go to `target`.
+    /// Creates a host that writes files to `target`. Uses all processors if `threads` is not given.
     pub(crate) fn new(
         target: Target,
         threads: Option<u16>,
@@ -127,7 +127,7 @@ impl Face {
         }
     }
 
-    /// The exit code of a job that ended so.
+    /// Exit code of a job that ended in this way.
     pub(crate) fn code(&self, ended: Ended) -> u8 {
         self.interrupt.get().filter(|_| ended == Ended::Stopped).map_or(DONE, Interrupt::code)
     }
@@ -147,18 +147,18 @@ impl Face {
     }
 }
 
-/// Threads of the command: while they work, the one that asked looks after the progress.
+/// Runs work on the render threads. Meanwhile the calling thread updates the progress.
 impl Workers for Face {
     fn each(&self, work: &(dyn Fn() + Sync)) {
         std::thread::scope(|scope| {
             let (end, ended) = mpsc::channel::<()>();
             let worker = std::thread::Builder::new().name("render 0".to_owned()).spawn_scoped(scope, move || {
-                // Dropped at the end, also by a panic: that is what ends the wait below.
+                // Dropped at the end, even after a panic; this ends the wait below.
                 let _end = end;
                 Threads(self.threads).each(work);
             });
             let Ok(worker) = worker else {
-                // Where the system gives no thread, this one works, and nobody looks after the progress.
+                // If no thread can be started, this thread does the work, and the progress is not updated.
                 work();
                 return;
             };

@@ -1,4 +1,4 @@
-//! What is said while a scene renders.
+//! Progress messages while a scene renders.
 
 use crate::{console, words};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -9,39 +9,39 @@ use spectra_scene::{Scene, diagnostics};
 use spectra_session::{Control, Event, Pace, Place, Report, films};
 use std::time::{Duration, Instant};
 
-/// Who listens.
+/// Form of the messages, by their reader.
 enum Listener {
-    /// A person at a terminal.
+    /// A person at a terminal: a moving bar and messages.
     Bar(ProgressBar),
-    /// A file or a pipe: whole lines, few of them.
+    /// A file or a pipe: a few whole lines.
     Lines,
-    /// A program.
+    /// A program: JSON events on standard output.
     Json,
-    /// Nobody.
+    /// No reader: nothing is written.
     Quiet,
 }
 
-/// Says what goes on, to whoever listens.
+/// Reports the progress of a render in the form that the reader needs.
 pub(crate) struct Progress {
     listener: Listener,
     deadline: Option<Instant>,
     begun: Instant,
     said: Instant,
     stopping: bool,
-    /// Of several pictures, which one is rendered.
+    /// Number of the current picture in a series; `None` for a single picture.
     place: Option<Place>,
 }
 
-/// One JSON event in this time.
+/// Time between JSON progress events.
 const JSON_EVERY: Duration = Duration::from_millis(200);
-/// One plain line in this time.
+/// Time between plain progress lines.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 
-/// Length of the bar: finer than any terminal shows it.
+/// Number of steps of the bar, more than any terminal can show.
 const BAR_STEPS: u32 = 1000;
 
 impl Progress {
-    /// Nothing is said yet.
+    /// Creates the progress report without writing anything yet.
     pub(super) fn new(is_json: bool, is_quiet: bool, deadline: Option<Instant>) -> Self {
         let listener = if is_quiet {
             Listener::Quiet
@@ -55,7 +55,7 @@ impl Progress {
         Self { listener, deadline, begun: Instant::now(), said: Instant::now(), stopping: false, place: None }
     }
 
-    /// Says what goes on.
+    /// Reports an event of the session.
     pub(super) fn hear(&mut self, event: Event<'_>, threads: usize, isa: Isa) {
         match event {
             Event::Checked { done, of } => self.checking(done, of),
@@ -72,12 +72,12 @@ impl Progress {
         }
     }
 
-    /// `3 of 6: `, where there are several.
+    /// Returns the prefix `3 of 6: `, or an empty text for a single picture.
     fn place(&self) -> String {
         self.place.map_or(String::new(), |place| format!("{} of {}: ", place.index + 1, place.of))
     }
 
-    /// An event; a reader that has gone away misses it, and the picture is finished all the same.
+    /// Writes a JSON event. If the reader has gone away, the event is lost but the picture is still finished.
     fn event(&self, mut value: Value) {
         if let (Some(place), Value::Object(map)) = (self.place, &mut value) {
             map.insert("number".to_owned(), place.number.into());
@@ -87,18 +87,18 @@ impl Progress {
         let _ = console::json(&value);
     }
 
-    /// A remark on what is going to be made, or was.
+    /// Writes a remark on the series, as text or as a JSON event.
     fn series(&self, text: &str, event: Value) {
         match &self.listener {
             Listener::Json => self.event(event),
             Listener::Quiet => {}
-            // Above the bar, which is drawn again below it.
+            // The text goes above the bar, which is drawn again below it.
             Listener::Bar(bar) => bar.suspend(|| console::note(text)),
             Listener::Lines => console::note(text),
         }
     }
 
-    /// What a person should know before believing the picture.
+    /// Writes a warning about something that may make the picture wrong.
     fn warning(&self, warning: &Warning) {
         match &self.listener {
             Listener::Json => {
@@ -111,7 +111,7 @@ impl Progress {
         }
     }
 
-    /// How far the check of all pictures is, before any is rendered.
+    /// Shows the progress of the check of all pictures, before any is rendered.
     fn checking(&mut self, done: usize, of: usize) {
         if of < 2 {
             return;
@@ -134,7 +134,7 @@ impl Progress {
         }
     }
 
-    /// Before the first ray.
+    /// Shows that the lens is searched for where light passes, before the first ray.
     fn preparing(&self) {
         if let Listener::Bar(bar) = &self.listener {
             bar.set_message("finding where light passes the lens");
@@ -142,7 +142,7 @@ impl Progress {
         }
     }
 
-    /// What is worth knowing of how the scene is taken.
+    /// Writes a note on how the scene is interpreted.
     fn note(&self, text: &str) {
         match &self.listener {
             Listener::Json => self.event(json!({ "event": "note", "message": text })),
@@ -151,7 +151,7 @@ impl Progress {
         }
     }
 
-    /// Light is traced from now on.
+    /// Announces the start of tracing: scene, size, lens, film, direction and threads.
     fn start(&mut self, scene: &Scene, threads: usize, isa: Isa) {
         self.begun = Instant::now();
         self.said = self.begun;
@@ -183,14 +183,14 @@ impl Progress {
                 ));
             }
         }
-        // The bar of the picture before is gone; below the words about this one it begins anew.
+        // The bar of the previous picture is gone; a new one starts below the line about this picture.
         if let (Listener::Bar(bar), Some(_)) = (&self.listener, self.place) {
             bar.set_message(self.place());
             bar.reset();
         }
     }
 
-    /// Called many times a second.
+    /// Updates the progress; called many times a second.
     pub(super) fn tick(&mut self, control: &Control, interrupted: bool) {
         if interrupted && !self.stopping {
             self.stopping = true;
@@ -238,7 +238,7 @@ impl Progress {
         Pace::of(control, self.begun.elapsed().as_secs_f64(), self.deadline.map(until))
     }
 
-    /// How much of the time limit is over, from 0 to 1; 0 without one.
+    /// Returns the fraction of the time limit that has passed, from 0 to 1; 0 without a limit.
     fn time_used(&self) -> f64 {
         let Some(limit) = self.deadline.map(|deadline| deadline.saturating_duration_since(self.begun)) else {
             return 0.0;
@@ -246,10 +246,10 @@ impl Progress {
         if limit.is_zero() { 1.0 } else { (self.begun.elapsed().as_secs_f64() / limit.as_secs_f64()).min(1.0) }
     }
 
-    /// A remark beside the progress.
+    /// Writes a remark about stopping without disturbing the progress bar.
     fn say(&self, text: &str) {
         match &self.listener {
-            // Above the bar, which is drawn again below it.
+            // The text goes above the bar, which is drawn again below it.
             Listener::Bar(bar) => bar.suspend(|| console::note(text)),
             Listener::Lines => console::note(text),
             Listener::Json => self.event(json!({ "event": "stopping", "message": text })),
@@ -257,14 +257,14 @@ impl Progress {
         }
     }
 
-    /// No more light is traced.
+    /// Removes the bar, because no more light is traced.
     fn finish(&self) {
         if let Listener::Bar(bar) = &self.listener {
             bar.finish_and_clear();
         }
     }
 
-    /// Files are complete.
+    /// Reports files that are complete.
     fn written(&self, paths: &[String]) {
         match &self.listener {
             Listener::Json => {
@@ -273,7 +273,7 @@ impl Progress {
                 }
             }
             Listener::Quiet => {}
-            // A reader that has gone away misses the names, not the files.
+            // If the reader has gone away, only the names are lost, not the files.
             Listener::Bar(_) | Listener::Lines if !paths.is_empty() => {
                 drop(console::out(&format!("wrote {}\n", words::files(paths))));
             }
@@ -281,7 +281,7 @@ impl Progress {
         }
     }
 
-    /// The end.
+    /// Reports that a picture is done, with its time and number of rays.
     fn done(&self, report: &Report<'_>, interrupted: bool) {
         let rendering = report.rendering;
         match &self.listener {

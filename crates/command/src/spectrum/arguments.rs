@@ -1,20 +1,21 @@
-//! What can be written after `spectra spectrum`.
+//! Command-line arguments of `spectra spectrum`.
 
 use crate::eye::EyeName;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
-/// `spectra spectrum`.
+/// Arguments of `spectra spectrum`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Inspect spectra: color values, plots, fits, color models.\n\n\
         NAME is a bundled spectrum (see `spectra list spectrum`), a column of one (`colorchecker#red`), a table \
         (.csv, .txt, .dat, .tsv) or YAML file, or an expression: blackbody:5800, daylight:5500 and 5600K (K), line:C' \
         or line:632.8, lines:404.66=1,e=2 (with powers), gaussian:550,20 (center and standard deviation, nm), \
-        rectangle:500,600 (nm), constant:1, FdC and F'eC' (sets of lines), rgb-lines (three lines that make white), rgb:#ff8040 (a color, by a color model if not the \
-        default: 'rgb:#ff8040 by gaussians'), srgb-r, srgb-g, srgb-b and srgb-w, function:exp(-((w-550)/20)^4) (a formula of the \
-        wavelength w in nm); and algebra of these with + - * / ^ and parentheses, with spaces around + - and /: \
-        'D65 + 5000 * line:e', '1 - wratten-25', 'D65 / A / 10', 'wratten-12^2'.",
+        rectangle:500,600 (nm), constant:1, FdC and F'eC' (sets of lines), rgb-lines (three lines that make white), \
+        rgb:#ff8040 (a color by the default color model, or by another one: 'rgb:#ff8040 by gaussians'), srgb-r, srgb-g, \
+        srgb-b and srgb-w, function:exp(-((w-550)/20)^4) (a formula of the wavelength w in nm). These can be combined with \
+        + - * / ^ and parentheses, with spaces around + - and /: 'D65 + 5000 * line:e', '1 - wratten-25', 'D65 / A / 10', \
+        'wratten-12^2'.",
     after_long_help = "Examples:\n  spectra spectrum info D65\n  \
         spectra spectrum plot A D65 blackbody:5800 -o lights.svg\n  \
         spectra spectrum plot D50 LED-B3 line:e --chromaticity -o diagram.png\n  \
@@ -27,18 +28,18 @@ pub(crate) struct SpectrumArguments {
     pub command: SpectrumCommand,
 }
 
-/// The commands on spectra.
+/// The commands of `spectra spectrum`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum SpectrumCommand {
     /// Show the color values of a spectrum: color, temperature, dominant wavelength.
     Info(SpectrumInfo),
-    /// Plot spectra, or their chromaticities.
+    /// Plot spectra or their chromaticities.
     Plot(SpectrumPlot),
     /// Fit signed Gaussian terms to a spectrum.
     Fit(SpectrumFit),
-    /// Multiply spectra as Gaussian terms: exact integrals, and estimates by one term of each.
+    /// Multiply spectra as sums of Gaussian terms: exact integrals, and estimates from one term of each.
     Product(SpectrumProduct),
-    /// Draw wavelengths of a light as renders do, each with its weight.
+    /// Draw wavelengths of a light in the same way as a render, each with its weight.
     Draw(SpectrumDraw),
     /// Convert a color to a spectrum with each color model, and back to a color.
     Color(SpectrumColor),
@@ -48,7 +49,7 @@ pub(crate) enum SpectrumCommand {
     List(SpectrumList),
 }
 
-/// Whose eye sees.
+/// Standard observer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ObserverName {
     /// CIE 1931, 2 degrees.
@@ -65,55 +66,55 @@ pub(crate) enum ObserverName {
     Cie2015Wide,
 }
 
-/// Coordinates of a chromaticity.
+/// Coordinates of the chromaticity diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum DiagramName {
-    /// x, y.
+    /// CIE 1931 x, y.
     #[value(name = "1931")]
     Cie1931,
-    /// u', v'.
+    /// CIE 1976 u', v'.
     #[value(name = "1976")]
     Cie1976,
 }
 
-/// What a spectrum is.
+/// Kind of spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum KindName {
-    /// Light.
+    /// Spectrum of a light source.
     Emission,
-    /// A filter.
+    /// Transmittance of a filter.
     Transmittance,
-    /// A surface.
+    /// Reflectance of a surface.
     Reflectance,
-    /// A detector.
+    /// Sensitivity of a detector.
     Sensitivity,
 }
 
-/// `spectra spectrum info`.
+/// Arguments of `spectra spectrum info`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Show a spectrum in figures: peak, centroid, width, color, temperature, dominant wavelength; of a light its power, \
-        luminous efficacy and color rendering (CIE Ra and TM-30 Rf).\n\n\
-        A light is shown at Y = 100; a transmittance or a reflectance under an illuminant whose white has Y = 100; a \
-        sensitivity has no color. Lab, dominant wavelength and purity are relative to the white of the illuminant, \
-        even for lights. Correlated color temperature, dominant wavelength, purity and sRGB always use the CIE 1931 \
-        observer, whatever --observer says.",
+    long_about = "Show the figures of a spectrum: peak, centroid, width, color, temperature, dominant wavelength; for a light also \
+        power, luminous efficacy and color rendering (CIE Ra and TM-30 Rf).\n\n\
+        A light is scaled to Y = 100. A transmittance or a reflectance is shown under an illuminant whose white has \
+        Y = 100. A sensitivity has no color. Lab, dominant wavelength and purity are relative to the white of the \
+        illuminant, even for lights. Correlated color temperature, dominant wavelength, purity and sRGB always use the \
+        CIE 1931 observer, whatever --observer says.",
     after_long_help = "Example: a patch in the light of a lamp\n  spectra spectrum info colorchecker#red --illuminant A"
 )]
 pub(crate) struct SpectrumInfo {
     /// A bundled spectrum, a CSV file, or an expression (blackbody:5800).
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Kind of spectrum, whatever a header such as `wavelength_nm,transmittance` says; a file that states `kind` keeps it.
+    /// Kind of spectrum, overriding a header such as `wavelength_nm,transmittance`; a file that states `kind` keeps it.
     #[arg(long = "as", value_enum, value_name = "KIND")]
     pub kind: Option<KindName>,
     /// Observer for XYZ, xy and Lab.
     #[arg(long, value_enum, value_name = "YEAR", default_value = "1931")]
     pub observer: ObserverName,
-    /// The light on a surface or behind a filter, and the reference white for Lab.
+    /// Light on a surface or behind a filter, and reference white for Lab.
     #[arg(long, value_name = "NAME", default_value = "D65")]
     pub illuminant: String,
-    /// Wavelengths at which to show its value, nm or letters of lines: 546.07,C'.
+    /// Wavelengths at which to show the value of the spectrum, in nm or as letters of lines: 546.07,C'.
     #[arg(long, value_name = "NM", value_delimiter = ',')]
     pub wavelength_nm: Vec<String>,
     /// Write a JSON object to standard output; values that do not apply to the spectrum are null.
@@ -121,15 +122,15 @@ pub(crate) struct SpectrumInfo {
     pub json: bool,
 }
 
-/// `spectra spectrum plot`.
+/// Arguments of `spectra spectrum plot`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Plot spectra over 350-830 nm, with the colors of the wavelengths below the curves.\n\n\
-        A table of several curves is plotted with all of them: the matching functions of an observer (cie-1931-2deg), with their \
+        A table with several curves is plotted with all of them: the matching functions of an observer (cie-1931-2deg), also with \
         negative lobes (srgb-1931-2deg, cie-rgb-1931), and cones (cone-fundamentals-2deg). Up to 28 curves differ in color or dashes.\n\n\
-        With --chromaticity, plot the spectra as points in the CIE 1931 diagram, with the gamuts of sRGB, Rec. 2020 \
-        and ACEScg, and the chromaticities of black bodies; or in that of 1976 (--diagram), or for another observer (--observer). \
-        There a NAME can also be a point of your own: xy:0.31,0.33, or uv:0.198,0.468 of CIE 1976.",
+        --chromaticity plots the spectra as points in the CIE 1931 diagram, with the gamuts of sRGB, Rec. 2020 and ACEScg, and the \
+        chromaticities of black bodies. --diagram selects the diagram of 1976, --observer another observer. A NAME can then also be \
+        a point of your own: xy:0.31,0.33, or uv:0.198,0.468 for CIE 1976.",
     after_long_help = "Examples:\n  spectra spectrum plot mercury -o mercury.png\n  \
         spectra spectrum plot --chromaticity --diagram 1976 D65 FL2 rgb:#ff8040 xy:0.31,0.33 -o diagram.png"
 )]
@@ -146,13 +147,13 @@ pub(crate) struct SpectrumPlot {
     /// Plot the chromaticity diagram instead of the spectra.
     #[arg(long)]
     pub chromaticity: bool,
-    /// The light on surfaces and behind filters in the chromaticity diagram.
+    /// Light on surfaces and behind filters in the chromaticity diagram.
     #[arg(long, value_name = "NAME", default_value = "D65", requires = "chromaticity")]
     pub illuminant: String,
-    /// Coordinates of the chromaticity diagram: x, y of 1931, or u', v' of 1976.
+    /// Coordinates of the chromaticity diagram: x, y of CIE 1931, or u', v' of CIE 1976.
     #[arg(long, value_enum, value_name = "YEAR", default_value = "1931", requires = "chromaticity")]
     pub diagram: DiagramName,
-    /// Show the figure in the colors that an eye without one kind of cones sees.
+    /// Show the figure in the colors seen by an eye that lacks one kind of cones.
     #[arg(long, value_enum, value_name = "EYE")]
     pub seen_by: Option<EyeName>,
     /// Observer of the chromaticity diagram.
@@ -160,15 +161,15 @@ pub(crate) struct SpectrumPlot {
     pub observer: ObserverName,
 }
 
-/// `spectra spectrum fit`.
+/// Arguments of `spectra spectrum fit`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Fit signed Gaussian terms to a spectrum by least squares, and show how good the fit is: relative L2 \
         error, largest error, error of the integral, smallest value, and kappa, the sum of the terms' absolute \
         integrals divided by the sum of their signed ones.\n\nThe file that -o writes is an ordinary spectrum: \
         scenes, strategies and these commands accept it by name. Spectral lines are not fitted; the file lists them \
-        along with the terms.\n\nWith --at, the one Gaussian that touches the spectrum at a wavelength is shown, or why there is \
-        none: where the logarithm does not bend down, no Gaussian has that slope and curvature.",
+        along with the terms.\n\n--at shows the one Gaussian that touches the spectrum at a wavelength, or the reason why there is \
+        none: if the logarithm of the spectrum does not curve downward, no Gaussian has its slope and curvature.",
     after_long_help = "Example:\n  spectra spectrum fit D65 --terms 8 -o d65-terms.yaml\n  \
         spectra spectrum plot D65 d65-terms.yaml -o both.png"
 )]
@@ -182,10 +183,11 @@ pub(crate) struct SpectrumFit {
     /// Wavelength range of the fit, nm.
     #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 1..=2, default_value = "350,830")]
     pub band: Vec<f64>,
-    /// Spacing of the fitted points, nm; 1 if not given. With --at the distance of the differences; the table's own, or 1, if not given.
+    /// Spacing of the fitted points, nm; 1 if not given. With --at, step of the finite differences; the spacing of the table, or 1, if
+    /// not given.
     #[arg(long, value_name = "NM")]
     pub step: Option<f64>,
-    /// Show the Gaussian that has the spectrum's value, slope and curvature at this wavelength, nm, and fit nothing.
+    /// Show only the Gaussian that has the spectrum's value, slope and curvature at this wavelength, nm.
     #[arg(long, value_name = "NM", allow_negative_numbers = true, conflicts_with_all = ["terms", "band"])]
     pub at: Option<f64>,
     /// Output file, FILE.yaml.
@@ -196,22 +198,22 @@ pub(crate) struct SpectrumFit {
     pub json: bool,
 }
 
-/// `spectra spectrum product`.
+/// Arguments of `spectra spectrum product`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Multiply spectra as sums of signed Gaussian terms: a light, filters, surfaces, a film.\n\n\
-        What is not made of Gaussians is fitted. The product has a term for each choice of one term of every factor, and its \
-        integral is exact; it is compared with a quadrature. Shown are kappa (how much the terms cancel), and the error of \
-        estimates of the integral: by following one term of every factor, which needs no wavelength, as computed from all \
-        choices and as measured; and by drawing wavelengths evenly, or by the first factor.\n\n\
-        What can be of any kind (a Gaussian, a constant) is light where it comes first, and a filter elsewhere.",
+        Factors that are not made of Gaussians are fitted. The product has a term for each choice of one term of every factor. Its \
+        integral is exact; it is compared with a quadrature. The output has kappa (how much the terms cancel), and the errors of \
+        estimates of the integral. One estimate follows one term of every factor and needs no wavelength; its error is computed from \
+        all choices and also measured. The others draw wavelengths evenly, or by the first factor.\n\n\
+        A factor that can be of any kind (a Gaussian, a constant) is a light if it comes first, and a filter elsewhere.",
     after_long_help = "Example:\n  spectra spectrum product D65 colorchecker#red wratten-12 ilford-ortho-plus --terms 6 -o terms.svg -o terms.csv"
 )]
 pub(crate) struct SpectrumProduct {
     /// The factors: bundled spectra, files or expressions.
     #[arg(value_name = "NAME", required = true)]
     pub names: Vec<String>,
-    /// Number of terms of each factor that is fitted, 1 to 32.
+    /// Number of terms of each fitted factor, 1 to 32.
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=32))]
     pub terms: u8,
     /// Wavelength range, nm.
@@ -225,27 +227,27 @@ pub(crate) struct SpectrumProduct {
     pub json: bool,
 }
 
-/// Kinds of random numbers.
+/// Kind of random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum NumbersName {
     /// Independent numbers.
     Random,
     /// The scrambled Sobol sequence of renders.
     Sobol,
-    /// A lattice.
+    /// A rank-1 lattice with a random shift.
     Lattice,
-    /// One number in each of as many equal parts.
+    /// One random number in each of N equal intervals, for N numbers.
     Stratified,
 }
 
-/// `spectra spectrum draw`.
+/// Arguments of `spectra spectrum draw`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Draw wavelengths of a light with a sampling strategy, by the same density that renders prepare.\n\n\
-        Writes a CSV table: `wavelength_nm`; `line`, the number of the spectral line, empty for the continuum; `weight`, one over the \
-        density in nm, or over the probability of the line; `light`, the light's power there, per nm or of the line; `response`, that of \
-        --on, or 1; `density`, per nm, or the probability of the line. The mean of weight x light x response is the integral of light \
-        and response, whatever the strategy.",
+    long_about = "Draw wavelengths of a light with a sampling strategy, from the same density that a render uses.\n\n\
+        The output is a CSV table with these columns: `wavelength_nm`; `line`, the number of the spectral line, empty for the continuum; \
+        `weight`, one over the density per nm, or over the probability of the line; `light`, the power of the light there, per nm or of \
+        the line; `response`, the sensitivity of --on, or 1; `density`, per nm, or the probability of the line. The mean of \
+        weight x light x response is the integral of light and response, whatever the strategy.",
     after_long_help = "Examples:\n  spectra spectrum draw D65 --strategy uniform -n 5\n  \
         spectra spectrum draw FdC --strategy lines -n 5 --seed 7\n  \
         spectra spectrum draw D65 --on ilford-ortho-plus --strategy 'truncated-gaussian{center: 540, sigma: 60}' -n 100000 -o draws.csv"
@@ -257,10 +259,10 @@ pub(crate) struct SpectrumDraw {
     /// The strategy, as NAME or NAME{key: value, ...}; `spectra list wavelengths` lists them.
     #[arg(long, value_name = "NAME", default_value = "source-times-response")]
     pub strategy: String,
-    /// What records the light: a sensitivity; all wavelengths alike if not given.
+    /// Sensitivity that records the light; equal at all wavelengths if not given.
     #[arg(long, value_name = "NAME")]
     pub on: Option<String>,
-    /// How many wavelengths are drawn, 1 to 10000000.
+    /// Number of wavelengths to draw, 1 to 10000000.
     #[arg(short, long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub number: u32,
     /// Seed of the random numbers.
@@ -280,10 +282,10 @@ pub(crate) struct SpectrumDraw {
     pub json: bool,
 }
 
-/// `spectra spectrum color`.
+/// Arguments of `spectra spectrum color`.
 #[derive(Debug, Args)]
 #[command(
-    long_about = "Convert a color to a spectrum with each color model, and back: the color of that spectrum for the \
+    long_about = "Convert a color to a spectrum with each color model, and back to a color: that of the spectrum for the \
         CIE 1931 observer, as sRGB.",
     after_long_help = "Examples:\n  spectra spectrum color 255 128 64\n  \
         spectra spectrum color '#ff8040' --model 'fraunhofer{secondary: [F, D]}'"
@@ -303,7 +305,7 @@ pub(crate) struct SpectrumColor {
     pub json: bool,
 }
 
-/// `spectra spectrum models`.
+/// Arguments of `spectra spectrum models`.
 #[derive(Debug, Args)]
 #[command(
     long_about = "Measure how well each color model preserves colors: the largest and the mean difference after \
@@ -329,11 +331,11 @@ pub(crate) struct SpectrumModels {
     pub json: bool,
 }
 
-/// `spectra spectrum list`.
+/// Arguments of `spectra spectrum list`.
 #[derive(Debug, Args)]
 #[command(long_about = "List the bundled spectra, by kind of data.\n\n\
-        A name behind # is a column of its file: `colorchecker#red`. Of a file of many columns the first and the last are shown, \
-        unless --all asks for every one.")]
+        A name after # is a column of the file: `colorchecker#red`. For a file with many columns only the first and the last are \
+        shown, unless --all is given.")]
 pub(crate) struct SpectrumList {
     /// Show every column of files that have many, such as the 99 samples of TM-30.
     #[arg(long)]

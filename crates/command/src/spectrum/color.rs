@@ -1,4 +1,4 @@
-//! `spectra spectrum color` and `spectra spectrum models`: from a color to a spectrum, and back to what is seen of it.
+//! `spectra spectrum color` and `spectra spectrum models`: convert colors to spectra and back to colors.
 
 use super::arguments::{SpectrumColor, SpectrumModels};
 use super::{files, load_illuminant};
@@ -16,7 +16,7 @@ use spectra_scene::yaml;
 use spectra_spectrum::{BAND, LineColor, Observer, named_line};
 use std::fmt::Write as _;
 
-/// A model by the name under which it is shown.
+/// A color model with the name under which it is shown.
 struct Model {
     name: String,
     model: Box<dyn ColorModel>,
@@ -25,12 +25,12 @@ struct Model {
 
 fn entries() -> Vec<&'static Entry<dyn ColorModel>> {
     let mut entries = <dyn ColorModel as Stage>::entries();
-    // The one that scenes take by themselves first.
+    // The default model of scenes comes first.
     entries.sort_by_key(|e| (!e.default, e.name));
     entries
 }
 
-/// The models asked for: names, or names with their keys in braces; all registered ones for `all`.
+/// Builds the requested models. `wanted` has names, with keys in braces if any; `all` means every registered model.
 fn models(wanted: &[String], illuminant: &str) -> Result<Vec<Model>, Failure> {
     let light = load_illuminant(illuminant)?.to_power(&BAND);
     let all = || entries().iter().map(|e| e.name.to_owned()).collect::<Vec<_>>();
@@ -54,14 +54,14 @@ fn models(wanted: &[String], illuminant: &str) -> Result<Vec<Model>, Failure> {
 
 fn round_trip(model: &Model) -> Result<RoundTrip<'_>, Failure> {
     RoundTrip::new(model.model.as_ref())
-        .ok_or_else(|| Failure::Input(format!("--model {}: its white has no visible light", model.name)))
+        .ok_or_else(|| Failure::Input(format!("--model {}: the white of this model has no visible light", model.name)))
 }
 
-/// A color's round trip by one model.
+/// Round trip of a color through one model: to a spectrum and back.
 #[derive(Debug, Serialize)]
 struct Trip {
     model: String,
-    /// Code values of 0 to 255, clipped, not rounded.
+    /// Code values on the scale of 0 to 255, clipped but not rounded.
     back: [f64; 3],
     srgb: [u8; 3],
     srgb_linear: [f64; 3],
@@ -71,7 +71,7 @@ struct Trip {
     lines: usize,
 }
 
-/// Shows what a color is as a spectrum, by each model, and what comes back.
+/// Converts a color to a spectrum and back with each model, and writes the results to standard output.
 pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
     let rgb = rgb(&arguments.color)?;
     let srgb = RgbSpace::srgb();
@@ -129,10 +129,10 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
     Ok(DONE)
 }
 
-/// `255 128 64`, or `#ff8040`.
+/// Parses a color: `255 128 64`, or `#ff8040`.
 fn rgb(words: &[String]) -> Result<[u8; 3], Failure> {
     let wrong = || {
-        let text = format!("`{}` is not a color: write three values of 0 to 255, or #ff8040", words.join(" "));
+        let text = format!("`{}` is not a color: write three values from 0 to 255, or #ff8040", words.join(" "));
         Failure::Input(text)
     };
     match words {
@@ -152,21 +152,21 @@ fn rgb(words: &[String]) -> Result<[u8; 3], Failure> {
     }
 }
 
-/// A model's worst and mean round trip.
+/// Largest and mean difference of a model's round trips.
 #[derive(Debug, Serialize)]
 struct Measured {
     model: String,
     default: bool,
-    /// 255ths.
+    /// Largest difference, in 255ths.
     largest: f64,
     mean: f64,
     worst: [u8; 3],
     worst_back: [f64; 3],
-    /// Largest code value of green of a pure red, which has none.
+    /// Largest green code value that a pure red has after the round trip.
     phantom_green: f64,
 }
 
-/// Measures every model over 8-bit colors, and draws what comes back.
+/// Measures the round trips of every model over 8-bit colors, writes the results, and plots them if requested.
 pub(crate) fn measure(arguments: &SpectrumModels) -> Outcome {
     if let Some(path) = &arguments.output {
         Format::of(path).map_err(|e| Failure::Input(e.to_string()))?;
@@ -193,7 +193,7 @@ pub(crate) fn measure(arguments: &SpectrumModels) -> Outcome {
     }
     let width = measured.iter().map(|m| m.model.len() + 10).max().unwrap_or(0);
     let mut out = format!(
-        "8-bit colors in steps of {}, under {}: to a spectrum, to what is seen, and back; 255ths\n\n",
+        "8-bit colors in steps of {}, under {}: to a spectrum and back to a color; differences in 255ths\n\n",
         arguments.step,
         arguments.illuminant.trim()
     );
@@ -213,13 +213,14 @@ pub(crate) fn measure(arguments: &SpectrumModels) -> Outcome {
     Ok(DONE)
 }
 
-/// A row of the picture: its name, and the colors of its patches.
+/// A row of the picture: its label and the colors of its patches.
 type Row = (String, Vec<[u8; 3]>);
 
-/// Patches in a row of the picture.
+/// Number of patches in a row of the picture.
 const PATCHES: usize = 60;
 
-/// The hues at full value, then from red to black and to white, as given and as each model brings them back.
+/// Returns the rows of the picture. Each row has the hues at full value, then red from black to white; first the original colors, then
+/// the results of each model.
 fn rows(models: &[Model]) -> Result<Vec<Row>, Failure> {
     let colors: Vec<[u8; 3]> = (0..PATCHES).map(patch).collect();
     let mut rows = vec![("as given".to_owned(), colors.clone())];
@@ -242,14 +243,14 @@ fn rows(models: &[Model]) -> Result<Vec<Row>, Failure> {
     Ok(rows)
 }
 
-/// Lines with secondaries that are split between their neighbors on the way back.
+/// Returns a model of primary lines C', e and g with secondary lines F and D, which are split between their neighbors on the way back.
 fn study() -> Option<LineColor> {
     let nm = |symbol| named_line(symbol).map(|l| l.nominal_nm);
     let [red, green, blue, f, d] = [nm("C'")?, nm("e")?, nm("g")?, nm("F")?, nm("D")?];
     LineColor::new([red, green, blue], &[f, d], [380.0, 780.0]).ok()
 }
 
-/// Two thirds of the row are hues, the rest goes from black over red to white.
+/// Returns the color of a patch: two thirds of the row are hues, the rest goes from black through red to white.
 fn patch(i: usize) -> [u8; 3] {
     let hues = PATCHES * 2 / 3;
     if i < hues {
@@ -258,7 +259,7 @@ fn patch(i: usize) -> [u8; 3] {
             let h = (hue + from) % 6.0;
             (2.0 - (h - 3.0).abs()).clamp(0.0, 1.0)
         };
-        // Red, green and blue are two apart on a circle of six.
+        // Red, green and blue are two units apart on a circle of six.
         return [value(3.0), value(1.0), value(5.0)].map(to_u8);
     }
     let t = 2.0 * (i - hues) as f64 / (PATCHES - hues - 1) as f64;

@@ -1,8 +1,8 @@
-//! Tables of the bundled data.
+//! Access to the bundled tables of spectra.
 
 use spectra_spectrum::table::Table;
 
-/// A bundled table.
+/// Loads a bundled table; `None` if there is none at this path.
 pub(crate) fn bundled(path: &str) -> Option<Table> {
     Table::parse_bytes(path, spectra_data::get(path)?, None).ok()
 }

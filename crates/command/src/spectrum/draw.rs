@@ -1,4 +1,4 @@
-//! `spectra spectrum draw`.
+//! `spectra spectrum draw`: draws wavelengths of a light with a sampling strategy.
 
 use super::arguments::{NumbersName, SpectrumDraw};
 use super::{files, refuse_name, tell_reading};
@@ -19,7 +19,7 @@ use spectra_spectrum::{find_emission_in, find_sensitivity_in};
 use std::fmt::Write as _;
 use std::io::Write as _;
 
-/// Draws wavelengths of a light as renders do, and prints each with its weight.
+/// Draws wavelengths of a light in the same way as a render, and writes each with its weight.
 pub(crate) fn draw(arguments: &SpectrumDraw) -> Outcome {
     let grid = super::fit::grid(&arguments.band, 1.0)?;
     let resources = files();
@@ -83,7 +83,7 @@ pub(crate) fn draw(arguments: &SpectrumDraw) -> Outcome {
     Ok(DONE)
 }
 
-/// What records the light: the stated sensitivity, or all wavelengths alike.
+/// Returns the channel that records the light: the sensitivity of `--on`, or 1 at all wavelengths.
 fn channel(arguments: &SpectrumDraw, grid: &Grid) -> Result<Channel, Failure> {
     let response = match &arguments.on {
         None => vec![1.0; grid.count],
@@ -95,7 +95,7 @@ fn channel(arguments: &SpectrumDraw, grid: &Grid) -> Result<Channel, Failure> {
     Ok(Channel { name: arguments.on.clone().unwrap_or_else(|| "all".to_owned()), unit: String::new(), response })
 }
 
-/// The strategy, made as a scene makes it.
+/// Builds the sampler of `--strategy` in the same way as in a scene.
 fn sampler(arguments: &SpectrumDraw, grid: &Grid) -> Result<Box<dyn WavelengthSampler>, Failure> {
     let all = parse_list(&arguments.strategy)?;
     let [Strategy { kind, keys }] = &all[..] else {
@@ -104,7 +104,7 @@ fn sampler(arguments: &SpectrumDraw, grid: &Grid) -> Result<Box<dyn WavelengthSa
     let mut map = format!("{{kind: {kind}");
     match keys {
         Some(keys) => map.push_str(&format!(", {keys}")),
-        // In proportion to this light, where nothing else is said.
+        // By default this strategy samples in proportion to the light itself.
         None if kind == "inverse-transform" => {
             map.push_str(&format!(", spectrum: \"{}\"", arguments.name.replace(['"', '\\'], "")));
         }

@@ -1,4 +1,4 @@
-//! `spectra spectrum fit`.
+//! `spectra spectrum fit`: fits Gaussian terms to a spectrum.
 
 use super::arguments::SpectrumFit;
 use super::load;
@@ -12,17 +12,17 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// A term as JSON has it.
+/// A Gaussian term of the fit.
 #[derive(Debug, Serialize)]
 struct Term {
     amplitude: f64,
     center_nm: f64,
     sigma_nm: f64,
-    /// Over the band.
+    /// Integral over the band.
     integral: f64,
 }
 
-/// A fit in figures.
+/// Terms of a fit and their errors.
 #[derive(Debug, Serialize)]
 struct Report {
     name: String,
@@ -34,14 +34,14 @@ struct Report {
     integral: f64,
     smallest: f64,
     kappa: f64,
-    /// Lines that are no part of the fit; the file that is written has them beside it.
+    /// Number of spectral lines, which are not fitted; the written file lists them after the terms.
     lines: usize,
 }
 
-/// Largest number of points that are fitted.
+/// Largest number of points to fit.
 const MOST_POINTS: f64 = 10_000.0;
 
-/// Fits Gaussian terms, shows how well they stand for the spectrum, and writes them.
+/// Fits Gaussian terms to a spectrum, shows the quality of the fit, and writes the terms if requested.
 pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
     if let Some(path) = &arguments.output {
         yaml_ending(path)?;
@@ -50,7 +50,7 @@ pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
     let name = arguments.name.trim();
     if let Some(at_nm) = arguments.at {
         if arguments.output.is_some() {
-            let text = "--at shows a Gaussian and writes no file: leave --output away".to_owned();
+            let text = "--at shows a Gaussian and writes no file: leave out --output".to_owned();
             return Err(Failure::Input(text));
         }
         let shape = match &found {
@@ -59,13 +59,13 @@ pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
             Found::Reflectance(surface) => Some(surface.shape()),
             Found::Sensitivity(detector) => Some(detector.shape()),
         };
-        let none = || Failure::Input(format!("`{name}` has spectral lines only: a line is no Gaussian"));
+        let none = || Failure::Input(format!("`{name}` has only spectral lines, which have no local Gaussian"));
         return local(arguments, at_nm, shape.ok_or_else(none)?);
     }
     let grid = grid(&arguments.band, arguments.step.unwrap_or(1.0))?;
     let (values, lines) = match &found {
         Found::Emission(light) if light.continuum().is_none() => {
-            let text = format!("`{name}` has spectral lines only: they are taken as lines, not as Gaussians");
+            let text = format!("`{name}` has only spectral lines, which are not fitted by Gaussians");
             return Err(Failure::Input(text));
         }
         Found::Emission(light) => (light.on_grid(&grid), light.lines().to_vec()),
@@ -84,9 +84,9 @@ pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
     if report.smallest < 0.0 {
         let below = format!("the terms fall to {:.2} % of the peak below 0", -100.0 * report.smallest);
         let then = if report.smallest < -0.1 {
-            "more than the 10 % up to which a scene takes them as 0: take more terms, or another band"
+            "this is beyond the 10 % up to which a scene counts them as 0: use more terms or another band"
         } else {
-            "a scene takes them as 0 there"
+            "a scene counts them as 0 there"
         };
         console::warning(&format!("{below}; {then}"));
     }
@@ -101,20 +101,22 @@ pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
 fn yaml_ending(path: &Path) -> Result<(), Failure> {
     match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
         Some("yaml" | "yml") => Ok(()),
-        _ => Err(Failure::Input(format!("{}: terms are written as .yaml", path.display()))),
+        _ => Err(Failure::Input(format!("{}: the name of a file of terms must end in .yaml", path.display()))),
     }
 }
 
 pub(super) fn grid(band: &[f64], step: f64) -> Result<Grid, Failure> {
     let [from, to] = *band else {
-        return Err(Failure::Input("--band: two wavelengths in nm, such as 380,780".to_owned()));
+        return Err(Failure::Input("--band: expected two wavelengths in nm, such as 380,780".to_owned()));
     };
     let good = from.is_finite() && to.is_finite() && step.is_finite() && from > 0.0 && step > 0.0;
     if !good || to <= from || (to - from) / step > MOST_POINTS || to > 1e6 {
-        let text = format!("--band {from},{to} by {step} nm: wavelengths that rise, at most {MOST_POINTS} of them");
+        let text = format!(
+            "--band {from},{to} in steps of {step} nm: expected increasing wavelengths, at most {MOST_POINTS} of them"
+        );
         return Err(Failure::Input(text));
     }
-    // As many whole steps as fit.
+    // The grid has as many whole steps as fit into the band.
     let count = ((to - from) / step + 1e-9).floor() as usize + 1;
     if count < 2 {
         return Err(Failure::Input(format!("--band {from},{to} is narrower than the step of {step} nm")));
@@ -145,7 +147,7 @@ fn report(name: &str, found: &Found, grid: &Grid, fit: &GaussianFit, lines: usiz
     }
 }
 
-/// The report as a person reads it.
+/// Formats the report as text.
 fn text(report: &Report) -> String {
     let [from, to] = report.band_nm;
     let mut out =
@@ -169,12 +171,12 @@ fn text(report: &Report) -> String {
     row("smallest value", format!("{:.6} of the peak", report.smallest));
     row("kappa", format!("{:.4}  (sum |w| / |sum w|: how much the terms cancel)", report.kappa));
     if report.lines > 0 {
-        row("lines beside them", report.lines.to_string());
+        row("spectral lines", report.lines.to_string());
     }
     out
 }
 
-/// The terms as a scene reads them, all digits kept.
+/// Returns the terms and lines as a spectrum file for scenes, with all digits.
 fn file(report: &Report, mixture: &GaussianMixture, lines: &[Line]) -> String {
     let [from, to] = report.band_nm;
     let mut out = format!(
@@ -205,7 +207,7 @@ fn file(report: &Report, mixture: &GaussianMixture, lines: &[Line]) -> String {
     out
 }
 
-/// A text in double quotes, as YAML and JSON share them.
+/// Returns a text in double quotes, valid in YAML and JSON.
 fn quoted(text: &str) -> String {
     serde_json::Value::String(text.to_owned()).to_string()
 }

@@ -1,4 +1,4 @@
-//! `spectra spectrum info`.
+//! `spectra spectrum info`: shows the figures of a spectrum.
 
 use super::arguments::{ObserverName, SpectrumInfo};
 use super::{files, load_as, load_illuminant, tell_reading};
@@ -15,10 +15,10 @@ use spectra_spectrum::{
 };
 use std::fmt::Write;
 
-/// About the least that an eye sees after an hour in the dark, cd/m2.
+/// Approximate smallest luminance that an eye sees after an hour in the dark, cd/m2.
 const DARK_CD_M2: f64 = 1e-6;
 
-/// A spectrum in figures. What it does not have is `None`.
+/// Figures of a spectrum. Those that do not apply are `None`.
 #[derive(Debug, Serialize)]
 struct Report {
     name: String,
@@ -27,12 +27,12 @@ struct Report {
     source: Option<String>,
     license: Option<String>,
     conditions: Option<String>,
-    /// Of a lamp's lines: measured, computed or estimated.
+    /// Origin of the strengths of a lamp's lines: measured, computed or estimated.
     strengths: Option<&'static str>,
     notes: Vec<String>,
     range_nm: Option<[f64; 2]>,
     observer: &'static str,
-    /// The light that matter is seen in, and the white of `lab`, `dominant_wavelength_nm` and `purity`.
+    /// Light on a surface or behind a filter; also the white of `lab`, `dominant_wavelength_nm` and `purity`.
     illuminant: String,
     xyz: Option<[f64; 3]>,
     xy: Option<[f64; 2]>,
@@ -41,34 +41,34 @@ struct Report {
     /// Distance from the Planckian locus, CIE 1960.
     duv: Option<f64>,
     dominant_wavelength_nm: Option<f64>,
-    /// Of a purple, which has no dominant one.
+    /// Complementary wavelength of a purple, which has no dominant wavelength.
     complementary_wavelength_nm: Option<f64>,
     purity: Option<f64>,
-    /// Of a light: cd/m2 where its unit is W m^-2 sr^-1 nm^-1, relative otherwise.
+    /// Luminance of a light: cd/m2 if its unit is W m^-2 sr^-1 nm^-1, relative otherwise.
     luminance: Option<f64>,
     peak_nm: Option<f64>,
-    /// Mean wavelength on 350-830 nm, by power or value; lines included.
+    /// Mean wavelength over 350-830 nm, weighted by power or value, including lines.
     centroid_nm: Option<f64>,
-    /// Where it has fallen to half of its peak, on both sides, and how far that is apart.
+    /// Wavelengths on both sides where the spectrum has fallen to half of its peak; `width_nm` is their distance.
     half_height_nm: Option<[f64; 2]>,
     width_nm: Option<f64>,
-    /// Of a light, over 350-830 nm, lines included: W where its unit is W/nm.
+    /// Power of a light over 350-830 nm, including lines: W if its unit is W/nm.
     power: Option<f64>,
     luminous_efficacy_lm_per_w: Option<f64>,
     /// CIE 1976 u', v'.
     uv_1976: Option<[f64; 2]>,
-    /// CIE 13.3 general index, and the special ones R1 to R14; of lights with a color temperature.
+    /// CIE 13.3 general color rendering index of a light with a color temperature; `cie_r` has the special indices R1 to R14.
     cie_ra: Option<f64>,
     cie_r: Option<Vec<f64>>,
     /// CIE 224 and TM-30 fidelity index.
     tm30_rf: Option<f64>,
-    /// Values at the wavelengths asked for.
+    /// Values at the requested wavelengths.
     values: Vec<At>,
     srgb: Option<[u8; 3]>,
     srgb_linear: Option<[f64; 3]>,
 }
 
-/// The value at a wavelength: of light the continuum.
+/// Value of a spectrum at a wavelength; for a light that of the continuum.
 #[derive(Debug, Serialize)]
 struct At {
     wavelength_nm: f64,
@@ -78,7 +78,7 @@ struct At {
     lines: Option<f64>,
 }
 
-/// Shows a spectrum in figures.
+/// Writes the figures of a spectrum to standard output, as text or JSON.
 pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
     if let Some((kind, function)) = function_in(&arguments.name, &files())
         && find_in(&arguments.name, &files()).is_err()
@@ -151,12 +151,14 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
     Ok(DONE)
 }
 
-/// What is asked for by `--wavelength-nm`: numbers or letters of lines.
+/// Parses the wavelengths of `--wavelength-nm`, numbers or letters of lines; returns nm.
 fn wavelengths(texts: &[String]) -> Result<Vec<f64>, Failure> {
     let one = |text: &String| {
         let nm = named_line(text).map(|line| line.nominal_nm).or_else(|| text.trim().parse().ok());
         let wrong = || {
-            Failure::Input(format!("--wavelength-nm: `{text}` is no wavelength: write nm or a line, such as 546.07,C'"))
+            Failure::Input(format!(
+                "--wavelength-nm: `{text}` is not a wavelength: write nm or a line, such as 546.07,C'"
+            ))
         };
         let nm = nm.filter(|nm: &f64| nm.is_finite() && *nm > 0.0 && *nm <= 1e6).ok_or_else(wrong)?;
         light_nm(nm).map_err(|wrong| Failure::Input(format!("--wavelength-nm: {wrong}: {}", wrong.hint())))
@@ -164,7 +166,7 @@ fn wavelengths(texts: &[String]) -> Result<Vec<f64>, Failure> {
     texts.iter().map(one).collect()
 }
 
-/// The function of matter and detectors, and the continuum of light.
+/// Returns the curve of a filter, a surface or a detector, or the continuum of a light; `None` for a light with lines alone.
 fn shape_of(found: &Found) -> Option<&Shape> {
     match found {
         Found::Emission(light) => light.continuum(),
@@ -174,7 +176,7 @@ fn shape_of(found: &Found) -> Option<&Shape> {
     }
 }
 
-/// Of light with lines nothing is half as high as the highest of them: they have no height.
+/// Returns the wavelengths at half height. `None` for a light with lines, because lines have no height to compare with.
 fn half_height_nm(found: &Found) -> Option<[f64; 2]> {
     match found {
         Found::Emission(light) if !light.lines().is_empty() => None,
@@ -194,7 +196,7 @@ fn value_at(found: &Found, wavelength_nm: f64) -> At {
     At { wavelength_nm, value, lines }
 }
 
-/// Shows a function of the wavelength that is neither light nor matter nor a detector: where it is highest and lowest.
+/// Writes where a function of wavelength is highest and lowest, if it is not a light, a filter, a surface or a detector.
 fn show_function(arguments: &SpectrumInfo, kind: Kind, function: &Tabulated) -> Outcome {
     let values = BAND.wavelengths_nm().map(|nm| (nm, function.at(nm)));
     let values: Vec<(f64, f64)> = values.collect();
@@ -252,11 +254,12 @@ fn xyz(found: &Found, illuminant: &Emission, observer: &Observer) -> Option<[f64
     }
 }
 
-/// What is defined on the CIE 1931 observer only.
+/// Color values that are defined only for the CIE 1931 observer.
 struct Color {
     xy: Option<[f64; 2]>,
     dominant: Option<Dominant>,
-    /// Linear sRGB of 0 to 1. Of a light its most brilliant; of matter with the illuminant's white brought to D65.
+    /// Linear sRGB from 0 to 1. A light is scaled so that its largest component is 1; for matter the white of the illuminant is adapted
+    /// to D65.
     linear: [f64; 3],
 }
 
@@ -279,7 +282,7 @@ impl Color {
     }
 }
 
-/// Values on the band, by whole nanometres; of light the continuum.
+/// Returns the values on the band at whole nanometers; for a light those of the continuum.
 fn on_band(found: &Found) -> Vec<f64> {
     match found {
         Found::Emission(light) => light.on_grid(&BAND),
@@ -289,7 +292,8 @@ fn on_band(found: &Found) -> Vec<f64> {
     }
 }
 
-/// Wavelength of the highest value on the band, the first of equals; of the strongest line where there is no continuum.
+/// Returns the wavelength (nm) of the highest value on the band, the first of equal ones. Without a continuum, returns that of the
+/// strongest line.
 fn peak_nm(found: &Found) -> Option<f64> {
     let values = on_band(found);
     let best = BAND.wavelengths_nm().zip(values).fold((0.0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
@@ -305,10 +309,10 @@ fn peak_nm(found: &Found) -> Option<f64> {
 /// Distance from the Planckian locus up to which the CIE's color rendering index is defined (CIE 13.3-1995, 5.3).
 const RENDERING_DUV: f64 = 5.4e-3;
 
-/// What estimated strengths of lines are good for.
+/// Text shown for estimated strengths of lines.
 const ESTIMATED: &str = "estimated by eye: lines far apart are not comparable, so the colors below are a guess";
 
-/// The report as a person reads it.
+/// Formats the report as text.
 fn text(report: &Report, found: &Found) -> String {
     let matter = matches!(found, Found::Transmittance(_) | Found::Reflectance(_));
     let title = report.title.as_deref().filter(|title| *title != report.name);
@@ -354,14 +358,14 @@ fn text(report: &Report, found: &Found) -> String {
     row("dominant wavelength", report.dominant_wavelength_nm.map(|nm| format!("{nm:.2} nm")));
     row("complementary", report.complementary_wavelength_nm.map(|nm| format!("{nm:.2} nm")));
     row("excitation purity", report.purity.map(|p| format!("{:.2} %", 100.0 * p)));
-    // Of a black body the unit is known.
+    // The unit of a black body is known, so its luminance can be compared with the limit of vision.
     let is_dark = report.name.starts_with("blackbody") && report.luminance.is_some_and(|l| l < DARK_CD_M2);
     row("light", is_dark.then(|| "too little between 350 and 830 nm to see".to_owned()));
     row("luminance", report.luminance.map(|l| format!("{} cd/m2, if its unit is W/(m2 sr nm)", significant(l))));
     row("power", report.power.map(|p| format!("{} W over 350-830 nm, if its unit is W/nm", significant(p))));
     row("luminous efficacy", report.luminous_efficacy_lm_per_w.map(|e| format!("{e:.2} lm/W over 350-830 nm")));
     let far = if report.duv.is_some_and(|duv| duv.abs() > RENDERING_DUV) {
-        "; too far from white for it to mean much"
+        "; of little meaning so far from white"
     } else {
         ""
     };
@@ -377,7 +381,7 @@ fn text(report: &Report, found: &Found) -> String {
     out
 }
 
-/// The peak of the values on the band, or that the band ends before there is one, or that nothing rises above the rest.
+/// Returns the peak as text, or says that the band ends before there is a peak, or that all values are equal.
 fn peak_in_words(nm: f64, values: &[f64]) -> String {
     let highest = values.iter().copied().fold(0.0, f64::max);
     let stays = highest > 0.0 && values.last() == Some(&highest);
@@ -386,7 +390,7 @@ fn peak_in_words(nm: f64, values: &[f64]) -> String {
         nm if nm >= BAND.end_nm() => format!("none: rises to the end of the band, {nm} nm"),
         nm if stays && nm > BAND.start_nm => format!("none: rises to {nm} nm and stays there to the end of the band"),
         nm if nm <= BAND.start_nm => format!("none: falls from the start of the band, {nm} nm"),
-        // What is computed has more digits than mean anything.
+        // Computed values have more digits than are meaningful.
         nm => format!("{} nm", (nm * 1000.0).round_ties_even() / 1000.0),
     }
 }
@@ -396,7 +400,7 @@ fn numbers(values: &[f64], decimals: usize) -> String {
     shown.join("  ")
 }
 
-/// Six digits, with a power of ten where the number is large or small.
+/// Formats a number with six digits, with a power of ten if it is large or small.
 fn significant(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
         let whole = format!("{:.0}", value.abs()).len();
@@ -421,7 +425,7 @@ mod tests {
         );
         assert_eq!(peak_in_words(350.0, &[1.0, 0.5, 0.0]), "none: falls from the start of the band, 350 nm");
         assert_eq!(peak_in_words(350.0, &[1.0, 1.0, 1.0]), "none: the same over the whole band");
-        // Of lines alone there is no continuum.
+        // A light with lines alone has no continuum.
         assert_eq!(peak_in_words(546.0, &[0.0, 0.0, 0.0]), "546 nm");
     }
 

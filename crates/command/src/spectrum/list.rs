@@ -1,4 +1,4 @@
-//! `spectra spectrum list`.
+//! `spectra spectrum list`: lists the bundled spectra.
 
 use super::arguments::SpectrumList;
 use super::describe::bundled;
@@ -8,24 +8,24 @@ use serde::Serialize;
 use spectra_spectrum::bundled_spectra;
 use std::fmt::Write;
 
-/// A bundled spectrum, or several of one file.
+/// A bundled spectrum, or a file with several spectra.
 #[derive(Debug, Serialize)]
 struct Item {
     name: &'static str,
     title: Option<String>,
     kind: &'static str,
     range_nm: Option<[f64; 2]>,
-    /// What can stand after `#`; empty where the file holds one spectrum.
+    /// Names of columns, written after `#`; empty if the file holds one spectrum.
     columns: Vec<String>,
     source: Option<String>,
     license: Option<String>,
     file: &'static str,
 }
 
-/// Most columns of a file that are shown one by one: a chart of 24 patches is.
+/// Largest number of columns of a file that are listed one by one. A chart of 24 patches is.
 const MOST_COLUMNS: usize = 30;
 
-/// Shows the list.
+/// Writes the list of bundled spectra to standard output.
 pub(crate) fn list(arguments: &SpectrumList) -> Outcome {
     let items: Vec<Item> = bundled_spectra().filter_map(|(name, path)| item(name, path)).collect();
     if arguments.json {
@@ -74,8 +74,8 @@ fn table(items: &[Item], all: bool) -> String {
         out.push_str("\n--all shows every column of files that have many\n");
     }
     out.push_str(
-        "\nwritten out: blackbody:5800  daylight:5500  line:C'  line:632.8  gaussian:550,20  rectangle:500,600  FdC  F'eC'  rgb-lines  rgb:#ff8040\n\
-         algebra of them with + - * / ^ and parentheses: 'D65 + 5000 * line:e', '1 - wratten-25'; or a CSV or YAML file of your own\n",
+        "\nexpressions: blackbody:5800  daylight:5500  line:C'  line:632.8  gaussian:550,20  rectangle:500,600  FdC  F'eC'  rgb-lines  rgb:#ff8040\n\
+         combined with + - * / ^ and parentheses: 'D65 + 5000 * line:e', '1 - wratten-25'; or a CSV or YAML file of your own\n",
     );
     out
 }

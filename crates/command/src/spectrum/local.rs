@@ -8,15 +8,15 @@ use spectra_core::quantity::light_nm;
 use spectra_spectrum::{GaussianTerm, Shape};
 use std::fmt::Write as _;
 
-/// How far the Gaussian may be off where it still stands for the spectrum.
+/// Relative error up to which the Gaussian counts as close to the spectrum.
 const CLOSE: f64 = 0.01;
 
-/// A spectrum at a wavelength, and the Gaussian there.
+/// A spectrum at a wavelength, and its local Gaussian there.
 #[derive(Debug, Serialize)]
 struct Report {
     name: String,
     wavelength_nm: f64,
-    /// Over which slope and curvature are differences.
+    /// Step of the finite differences for slope and curvature.
     step_nm: f64,
     value: f64,
     slope_per_nm: f64,
@@ -26,20 +26,20 @@ struct Report {
     amplitude: Option<f64>,
     center_nm: Option<f64>,
     sigma_nm: Option<f64>,
-    /// From where to where it is within 1 % of the spectrum.
+    /// Range in which the Gaussian is within 1 % of the spectrum.
     close_nm: Option<[f64; 2]>,
     none_because: Option<String>,
 }
 
-/// Shows the local Gaussian, or why there is none.
+/// Writes the local Gaussian of a spectrum to standard output, or the reason why there is none.
 pub(super) fn local(arguments: &SpectrumFit, at_nm: f64, shape: &Shape) -> Outcome {
-    // A table that is straight between its points bends only from one to the next.
+    // A table is linear between its points, so the step must be at least their spacing to see its curvature.
     let step_nm = arguments.step.unwrap_or_else(|| shape.spacing_nm().max(1.0));
     if !(step_nm.is_finite() && step_nm > 0.0 && step_nm <= 100.0) {
-        return Err(Failure::Input(format!("--step {step_nm}: a step of up to 100 nm, such as 5")));
+        return Err(Failure::Input(format!("--step {step_nm}: expected a step of up to 100 nm, such as 5")));
     }
     if !(at_nm.is_finite() && at_nm > step_nm && at_nm <= 1e5) {
-        return Err(Failure::Input(format!("--at {at_nm}: a wavelength in nm, such as 550")));
+        return Err(Failure::Input(format!("--at {at_nm}: expected a wavelength in nm, such as 550")));
     }
     light_nm(at_nm).map_err(|wrong| Failure::Input(format!("--at: {wrong}: {}", wrong.hint())))?;
     let [below, value, above] = [-step_nm, 0.0, step_nm].map(|d| shape.at(at_nm + d));
@@ -69,7 +69,7 @@ pub(super) fn local(arguments: &SpectrumFit, at_nm: f64, shape: &Shape) -> Outco
     Ok(DONE)
 }
 
-/// The wavelengths around `at_nm` over which the term is close to the spectrum.
+/// Returns the range of wavelengths around `at_nm` in which the term is close to the spectrum, nm.
 fn close(shape: &Shape, term: &GaussianTerm, at_nm: f64) -> [f64; 2] {
     const STEP_NM: f64 = 0.1;
     const FARTHEST: u32 = 5000;
@@ -88,7 +88,7 @@ fn text(report: &Report) -> String {
         let _ = writeln!(out, "  {name:<22}{value}");
     };
     row("f", format!("{:.6e}", report.value));
-    row("f'", format!("{:.6e} per nm, by differences over {} nm either way", report.slope_per_nm, report.step_nm));
+    row("f'", format!("{:.6e} per nm, by differences over {} nm to each side", report.slope_per_nm, report.step_nm));
     row("f''", format!("{:.6e} per nm^2", report.curvature_per_nm2));
     row("(ln f)''", format!("{:.6e} per nm^2", report.log_curvature_per_nm2));
     match (&report.none_because, report.amplitude, report.center_nm, report.sigma_nm, report.close_nm) {

@@ -1,4 +1,4 @@
-//! `spectra spectrum`: light and matter by wavelength.
+//! `spectra spectrum`: inspects spectra of light, filters, surfaces and detectors.
 
 mod arguments;
 mod color;
@@ -22,7 +22,7 @@ use spectra_scene::bundled::{Bundled, meanings, other_kind};
 use spectra_spectrum::{Emission, Found, Kind, SpectrumError, find_as_in, find_emission_in, find_in, notes_in};
 use std::path::Path;
 
-/// Runs a command on spectra.
+/// Runs one of the commands of `spectra spectrum`.
 pub(crate) fn spectrum(command: &SpectrumCommand) -> Outcome {
     match command {
         SpectrumCommand::Info(arguments) => info::info(arguments),
@@ -36,7 +36,7 @@ pub(crate) fn spectrum(command: &SpectrumCommand) -> Outcome {
     }
 }
 
-/// Files are named from the working directory.
+/// Returns resources that find files relative to the working folder.
 fn files() -> FileResources {
     FileResources::beside(Path::new(""))
 }
@@ -45,7 +45,7 @@ fn load(name: &str) -> Result<Found, Failure> {
     find_in(name, &files()).map_err(|error| refuse_name(name, error))
 }
 
-/// As what it is said to be on the command line, if anything is.
+/// Loads a spectrum as the kind given by `--as`, or as its own kind if none is given.
 fn load_as(name: &str, kind: Option<KindName>) -> Result<Found, Failure> {
     let Some(kind) = kind else { return load(name) };
     let kind = match kind {
@@ -57,7 +57,7 @@ fn load_as(name: &str, kind: Option<KindName>) -> Result<Found, Failure> {
     find_as_in(name, kind, &files()).map_err(|error| refuse_name(name, error))
 }
 
-/// Says what was made of a table that is not written as the bundled ones are.
+/// Reports how a table was interpreted if it is not in the format of the bundled ones.
 fn tell_reading(name: &str) {
     let notes = notes_in(name, &files());
     if !notes.is_empty() {
@@ -65,11 +65,11 @@ fn tell_reading(name: &str) {
     }
 }
 
-/// A name that is no spectrum's may be that of something else.
+/// Converts the error for an unknown spectrum. If the name is that of something else, the hint says so.
 fn refuse_name(name: &str, error: SpectrumError) -> Failure {
     let other = match &error {
         SpectrumError::Unknown { candidates, .. } => {
-            // Names of glasses are short: a near spectrum is the likelier one.
+            // Names of glasses are short, so a spectrum with a similar name is the likelier one.
             let is_glass = meanings(name).first().is_some_and(|(kind, _)| *kind == Bundled::Glass);
             other_kind(name, Bundled::Spectrum).filter(|_| candidates.is_empty() || !is_glass)
         }

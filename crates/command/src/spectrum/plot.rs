@@ -1,4 +1,4 @@
-//! `spectra spectrum plot`.
+//! `spectra spectrum plot`: plots spectra or their chromaticities.
 
 use super::arguments::{DiagramName, SpectrumPlot};
 use super::info::observer;
@@ -11,11 +11,11 @@ use spectra_color::{chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_trans
 use spectra_plot::{Format, PlotError};
 use spectra_spectrum::{BAND, Emission, Found, Observer, SpectrumError, find_in, function_in};
 
-/// Draws spectra, or their chromaticities.
+/// Plots spectra or their chromaticities, and writes the figure to a file.
 pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
     let name = arguments.names.first().map_or("", String::as_str);
     let output = &arguments.output.clone().unwrap_or_else(|| figure_of(name));
-    // Before anything is computed: a wrong ending is found out at once.
+    // A wrong extension is reported before anything is computed.
     Format::of(output).map_err(failure)?;
     let (mut spectra, mut functions, mut own) = (Vec::new(), Vec::new(), Vec::new());
     for name in &columns(&arguments.names, arguments.chromaticity)? {
@@ -63,7 +63,7 @@ fn failure(error: PlotError) -> Failure {
     }
 }
 
-/// A chromaticity that is written out: `xy:0.31,0.33` or `uv:0.198,0.468` (CIE 1976); `None` where it is none.
+/// Parses a chromaticity, `xy:0.31,0.33` or `uv:0.198,0.468` (CIE 1976), and returns it as x, y. `None` if the text has another form.
 fn own_point(text: &str) -> Option<Result<[f64; 2], String>> {
     let (head, values) = text.split_once(':')?;
     let is_uv = match head.trim() {
@@ -72,7 +72,7 @@ fn own_point(text: &str) -> Option<Result<[f64; 2], String>> {
         _ => return None,
     };
     let values: Vec<f64> = values.split(',').filter_map(|v| v.trim().parse().ok()).collect();
-    let wrong = || format!("`{text}` is no chromaticity: write xy:0.3127,0.3290, or uv:0.1978,0.4683 of CIE 1976");
+    let wrong = || format!("`{text}` is not a chromaticity: write xy:0.3127,0.3290, or uv:0.1978,0.4683 for CIE 1976");
     let xy = match values[..] {
         [u, v] if is_uv => {
             let divisor = 6.0 * u - 16.0 * v + 12.0;
@@ -85,9 +85,9 @@ fn own_point(text: &str) -> Option<Result<[f64; 2], String>> {
     Some(if is_good { Ok(xy) } else { Err(wrong()) })
 }
 
-/// Names of tables as the names of all their columns, where curves are plotted.
+/// Replaces names of tables by the names of all their columns, unless chromaticities are plotted. Fails if there are too many curves.
 fn columns(names: &[String], chromaticity: bool) -> Result<Vec<String>, Failure> {
-    /// More than any observer or camera has.
+    /// Largest number of columns of a table that is expanded, more than any observer or camera has.
     const MOST: usize = 8;
     let mut all = Vec::new();
     for name in names {
@@ -99,12 +99,12 @@ fn columns(names: &[String], chromaticity: bool) -> Result<Vec<String>, Failure>
         }
     }
     if all.len() > MOST_CURVES {
-        return Err(Failure::Input(format!("{} curves in one figure: {MOST_CURVES} at most", all.len())));
+        return Err(Failure::Input(format!("{} curves are too many for one figure: at most {MOST_CURVES}", all.len())));
     }
     Ok(all)
 }
 
-/// As many as differ in color or dashes.
+/// Largest number of curves that differ in color or dashes.
 const MOST_CURVES: usize = 28;
 
 fn xy(name: &str, found: &Found, illuminant: &Emission, observer: &Observer) -> Result<[f64; 2], Failure> {
@@ -113,11 +113,11 @@ fn xy(name: &str, found: &Found, illuminant: &Emission, observer: &Observer) -> 
         Found::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),
         Found::Reflectance(surface) => xyz_of_reflectance(surface, illuminant, observer),
         Found::Sensitivity(_) => {
-            return Err(Failure::Input(format!("`{name}` is a sensitivity: it has no chromaticity")));
+            return Err(Failure::Input(format!("`{name}` is a sensitivity and has no chromaticity")));
         }
     };
     let xy = xyz.and_then(chromaticity);
-    xy.ok_or_else(|| Failure::Input(format!("`{name}` has no chromaticity: nothing of it is seen")))
+    xy.ok_or_else(|| Failure::Input(format!("`{name}` has no chromaticity, because it has no visible light")))
 }
 
 fn is_dark(found: &Found) -> bool {

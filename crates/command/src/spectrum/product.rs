@@ -1,4 +1,4 @@
-//! `spectra spectrum product`.
+//! `spectra spectrum product`: multiplies spectra as sums of Gaussian terms.
 
 use super::arguments::SpectrumProduct;
 use super::{files, refuse_name, tell_reading};
@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Multiplies spectra as Gaussian terms, and shows how exact the product is and how estimates of its integral scatter.
+/// Multiplies spectra as sums of Gaussian terms. Shows how exact the product is, and the errors of estimates of its integral.
 pub(crate) fn product(arguments: &SpectrumProduct) -> Outcome {
     for path in &arguments.output {
         if !is_csv(path) {
@@ -48,7 +48,7 @@ fn is_csv(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
 }
 
-/// What can be of any kind is a light where it comes first, and a filter behind that.
+/// Loads a factor. One that can be of any kind is a light if it comes first, and a filter otherwise.
 fn factor(name: &str, is_first: bool) -> Result<Found, Failure> {
     if is_first {
         return find_in(name, &files()).map_err(|error| refuse_name(name, error));
@@ -62,15 +62,15 @@ fn factor(name: &str, is_first: bool) -> Result<Found, Failure> {
 
 fn failure(error: ChainError) -> Failure {
     let hint = match &error {
-        ChainError::TooMany { .. } => "; take fewer terms (--terms) or fewer factors",
-        ChainError::Lines(_) => "; name a light without them, such as D65",
-        ChainError::Dark => "; take another band (--band) or other factors",
+        ChainError::TooMany { .. } => "; use fewer terms (--terms) or fewer factors",
+        ChainError::Lines(_) => "; use a light without lines, such as D65",
+        ChainError::Dark => "; use another band (--band) or other factors",
         ChainError::Fit { .. } | ChainError::Twice { .. } => "",
     };
     Failure::Input(format!("{error}{hint}"))
 }
 
-/// The chain as a person reads it.
+/// Formats the product of the factors as text.
 fn text(chain: &Chain) -> String {
     let [from, to] = chain.band_nm;
     let width = chain.factors.iter().map(|f| f.name.chars().count()).max().unwrap_or(0).max(6);
@@ -96,16 +96,16 @@ fn text(chain: &Chain) -> String {
     };
     row("terms of the product", chain.terms.to_string());
     row("integral, exact", format!("{:.12e}", chain.integral));
-    let relative = format!("{:.1e} of the sizes of all terms apart", chain.difference);
+    let relative = format!("differs by {:.1e} of the sum of the terms' sizes", chain.difference);
     row("by quadrature", format!("{:.12e}  ({relative})", chain.quadrature));
     row(
         "of the spectra",
-        format!("{:.12e}  (the fits make {:+.3} % of it)", chain.of_spectra, 100.0 * chain.fit_error),
+        format!("{:.12e}  (the fits change it by {:+.3} %)", chain.of_spectra, 100.0 * chain.fit_error),
     );
     row("kappa", format!("{:.4}  (sum |w| / |sum w|: how much the terms cancel)", chain.kappa));
     row(
         "one term of each",
-        format!("{:.4} times the integral is the standard deviation of one sample", chain.one_term_deviation),
+        format!("{:.4} of the integral is the standard deviation of one sample", chain.one_term_deviation),
     );
     out.push_str("\n  relative error of the integral by samples\n");
     let _ = writeln!(
@@ -120,7 +120,8 @@ fn text(chain: &Chain) -> String {
     }
     let _ = writeln!(
         out,
-        "\n  one term: of every factor, root mean square over {} seeds; even nm, by 1st factor: wavelengths drawn so, as computed",
+        "\n  one term: follows one term of every factor, root mean square over {} seeds; as computed: its expected error\n  \
+         even nm, by 1st factor: wavelengths drawn evenly, or in proportion to the first factor; expected errors",
         chain.seeds
     );
     out

@@ -1,4 +1,4 @@
-//! The transform of polygons against quadratures, and round ones against Airy's pattern.
+//! Tests the transform of polygons against quadratures, and that of round ones against Airy's pattern.
 
 use spectra_diffraction::{Polygon, Wings};
 use std::f64::consts::{PI, TAU};
@@ -57,7 +57,7 @@ fn amplitudes_are_those_of_a_quadrature() {
         let normals: Vec<f64> = Wings::new(&opening).fans().iter().map(|f| f.normal[1].atan2(f.normal[0])).collect();
         for far in [0.0, 1e-18, 1e-12, 1e-7, 1e-4, 1e-2, 0.3, 1.0, 3.7, 11.0, 24.0] {
             let random = (0..12).map(|i| 0.37 + f64::from(i) * 0.61);
-            // Straight across an edge, and next to it.
+            // Exactly across an edge, and next to that.
             let across = normals.iter().flat_map(|a| [0.0, 1e-14, 1e-9, 1e-5, 1e-2].map(|off| a + off));
             for angle in random.chain(across) {
                 let k = [far * angle.cos(), far * angle.sin()];
@@ -70,7 +70,7 @@ fn amplitudes_are_those_of_a_quadrature() {
     }
 }
 
-/// An f/16 opening in direction cosines, of the area of its circle.
+/// An opening in direction cosines with the area of the circle of this f-number.
 fn stop(blades: u32, f_number: f64) -> Polygon {
     let half = PI / f64::from(blades);
     let radius = 0.5 / f_number * (half / (half.sin() * half.cos())).sqrt();
@@ -97,7 +97,7 @@ fn seven_blades_make_fourteen_spikes_and_eight_make_eight() {
     }
 }
 
-/// The mean of the exact intensity over square cells of some fringes, out to 10 mm.
+/// Compares the wings with the mean of the exact intensity over square cells of some fringes, out to 10 mm.
 #[test]
 fn wings_are_the_mean_over_fringes() {
     for (blades, f_number) in [(7, 16.0), (8, 16.0), (7, 5.6)] {
@@ -118,7 +118,7 @@ fn wings_are_the_mean_over_fringes() {
                     sum += opening.intensity([TAU / GREEN_MM * x, TAU / GREEN_MM * y]);
                 }
                 let exact = sum / f64::from(n * n) * opening.area() / GREEN_MM.powi(2);
-                // The wings fall by some percent across the square.
+                // The wings fall by a few percent across the square.
                 let part = |i: i32| {
                     let at = |k: i32| half * ((f64::from(k) + 0.5) / 8.0 - 1.0);
                     let place = [center[0] + at(i % 16), center[1] + at(i / 16)];
@@ -155,7 +155,7 @@ fn a_round_opening_makes_airys_pattern() {
         assert!((inside / share - 1.0).abs() < 0.005, "{inside} {share}");
     }
     let wings = Wings::new(&opening);
-    // What lies beyond r: 2 / (pi^2 r) in wavelengths times f-number.
+    // The fraction beyond r is 2 / (pi^2 r), with r in wavelengths times f-number.
     let r = 100.0 * GREEN_MM * 16.0;
     assert!((wings.beyond(r, GREEN_MM) / (2.0 / (PI * PI * 100.0)) - 1.0).abs() < 1e-3);
 }
@@ -168,7 +168,7 @@ fn what_lies_within_a_convex_polygon_is_cut_out() {
     assert!(square.within(&[[3.0, 0.0], [4.0, 0.0], [4.0, 1.0]]).is_none());
 }
 
-/// The lattice has the values of its places, and corners on a line may go.
+/// The lattice has the values at its places, and corners on a line may be removed.
 #[test]
 fn the_lattice_is_the_closed_form() {
     let sides = |opening: &Polygon| {

@@ -1,4 +1,4 @@
-//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+//! Tests of the public interface of this crate, in one program so that dependencies are linked only once.
 
 mod closed_form;
 mod pixels;

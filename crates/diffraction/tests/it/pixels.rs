@@ -13,7 +13,7 @@ fn stop(blades: u32, f_number: f64) -> Polygon {
     Polygon::regular(blades, radius, 0.1)
 }
 
-/// Contrast of a grating of so many cycles a pixel across and down.
+/// Contrast of a grating with this many cycles per pixel across and down.
 fn contrast(kernel: &PixelSpread, [across, down]: [f64; 2]) -> f64 {
     let r = kernel.radius() as isize;
     let mut sum = 0.0;
@@ -25,13 +25,13 @@ fn contrast(kernel: &PixelSpread, [across, down]: [f64; 2]) -> f64 {
     sum
 }
 
-/// (2 / pi) (acos s - s sqrt(1 - s^2)), s in parts of the cut-off, one over wavelength times f-number (J. W. Goodman, "Introduction to
-/// Fourier optics", 6.4).
+/// Checks the contrast (2 / pi) (acos s - s sqrt(1 - s^2)), with s relative to the cutoff frequency, one over wavelength times f-number (J.
+/// W. Goodman, "Introduction to Fourier optics", 6.4).
 #[test]
 fn a_perfect_lens_has_the_contrast_of_the_closed_form() {
     for (f_number, pitch_mm) in [(8.0, 0.002), (16.0, 0.004), (16.0, 0.002)] {
         let opening = Polygon::regular(360, 0.5 / f_number, 0.0);
-        // What fades out toward the edge of the kernel blurs nothing that fine.
+        // The fade toward the edge of the kernel does not blur anything this fine.
         let elsewhere = Wings::new(&opening).beyond(0.78 * 128.0 * pitch_mm, GREEN_MM);
         let kernel = PixelSpread::new(&opening, &Light::line(GREEN_NM), [pitch_mm; 2], 128, elsewhere);
         let mut worst = 0.0_f64;
@@ -49,7 +49,7 @@ fn a_perfect_lens_has_the_contrast_of_the_closed_form() {
     }
 }
 
-/// What is left for the middle pixel of a square of 20 mm, when all others have what the pattern brings, is what it gets itself.
+/// The light left for the middle pixel of a square of 20 mm, when all others have their share of the pattern, is its own share.
 #[test]
 fn pixels_of_a_square_of_20_mm_hold_all_light() {
     for (blades, f_number) in [(7, 16.0), (8, 5.6)] {
@@ -76,7 +76,7 @@ fn point(column: usize, row: usize) -> Vec<f32> {
     plane
 }
 
-/// The star of one pixel is the pattern, averaged over fringes: on its spikes, between them, near and far; and no light is made or lost.
+/// The star of one pixel is the pattern, averaged over fringes: on its spikes, between them, near and far. No light is gained or lost.
 #[test]
 fn the_star_of_a_point_is_the_pattern() {
     for blades in [7, 8] {
@@ -89,10 +89,10 @@ fn the_star_of_a_point_is_the_pattern() {
         let all: f64 = plane.iter().map(|v| f64::from(*v)).sum::<f64>() / 1e6;
         assert!((all + account.left - 1.0).abs() < 1e-6, "{all} {}", account.left);
         let wings = Wings::new(&opening);
-        // Beside the frame lies what is beyond a circle between its sides.
+        // Outside the frame lies what is beyond a circle between its sides.
         let [far, near] = [3.6, 6.5].map(|r| wings.beyond(r, GREEN_MM));
         assert!((near..far).contains(&account.left), "{near} {} {far}", account.left);
-        // Light of a ring along a spike, against what the edge sends there.
+        // Light of a ring along a spike, compared with what the edge sends there.
         let pitch = 0.012;
         for (number, fan) in wings.fans().iter().enumerate() {
             for side in [-1.0, 1.0] {
@@ -152,8 +152,8 @@ fn light_is_cut_into_equal_parts() {
     assert_eq!(Light::of(&[[500.0, 0.0]]), None);
 }
 
-/// A frame whose pixels see one opening makes one kernel. It is the picture of zones that are kept apart, where one corner sees an opening
-/// that is larger by a five-hundredth: within a hundredth of the brightest pixel. An opening that changes over the frame is not merged.
+/// A frame whose pixels see one opening makes one kernel. The result matches, within a hundredth of the brightest pixel, that of separate
+/// zones, in which one corner sees an opening larger by a five-hundredth. An opening that changes over the frame is not merged.
 #[test]
 fn one_opening_makes_the_picture_of_many() {
     let size = FrameSize { width_px: 64, height_px: 48, width_mm: 0.128, height_mm: 0.096 };

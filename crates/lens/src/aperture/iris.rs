@@ -1,40 +1,40 @@
-//! The opening between the blades of a stop.
+//! The opening between the blades of an iris.
 
 use spectra_core::batch::Columns;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
 use spectra_core::math;
 
-/// Blades that close a stop.
+/// The blades of an iris that close a stop.
 ///
 /// The opening has one corner between two blades; each side is an arc of the blade's radius, or straight. While the
-/// blade's radius is that of the opening, as wide open on most lenses, it is a circle; stopped down it turns into a
-/// polygon with bulging sides. The semi-diameter of the stop is that of the circle of the same area, so that an
-/// f-number means the same light whatever the blades.
+/// blade's radius equals that of the opening, as wide open on most lenses, the opening is a circle. Stopped down it becomes a
+/// polygon with bulging sides. The semi-diameter of the stop is that of the circle of equal area, so an
+/// f-number means the same amount of light whatever the blades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iris {
     /// Number of blades, at least 3.
     pub blades: u32,
-    /// Radius of each blade's edge, mm; infinite for straight blades. Smaller than the opening it is taken as round.
+    /// Radius of curvature of each blade's edge, mm; infinite for straight blades. A radius smaller than the opening counts as round.
     pub blade_radius_mm: f64,
-    /// Turns the opening counter-clockwise (seen with +x right and +y up), rad; at 0 a corner lies on +y.
+    /// Rotation of the opening, rad, counterclockwise seen with +x right and +y up; at 0 a corner lies on +y.
     pub rotation_rad: f64,
 }
 
-/// The opening of an iris at one size: where all its disks overlap (or, with straight blades, all its half-planes).
+/// The opening of an iris at one size: the area where all its disks overlap (or, with straight blades, all its half-planes).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opening {
     /// Unit vectors from the center to the middle of each side.
     sides: Vec<[f64; 2]>,
-    /// Center of each side's arc, as distance along its unit vector (zero or negative), mm, and radius; infinite
-    /// radius: straight, at `apothem_mm`.
+    /// Center of each side's arc, as a distance along its unit vector (zero or negative), mm, and its radius, mm. `None` if the sides are
+    /// straight, at `apothem_mm`.
     arc: Option<(f64, f64)>,
     apothem_mm: f64,
     corner_mm: f64,
 }
 
 impl Iris {
-    /// The opening whose area is that of a circle of this radius, mm.
+    /// Returns the opening whose area equals that of a circle of this radius, mm.
     #[must_use]
     pub fn opening(&self, semi_diameter_mm: f64) -> Opening {
         let corner_mm = self.corner_radius_mm(semi_diameter_mm);
@@ -58,7 +58,7 @@ impl Iris {
         if self.blade_radius_mm <= semi_diameter_mm {
             return semi_diameter_mm;
         }
-        // The polygon of three blades, the longest, has its corners at 1.56 times the circle's radius.
+        // The triangle of three blades, the longest polygon, has its corners at 1.56 times the circle's radius.
         let (mut low, mut high) = (semi_diameter_mm, 1.6 * semi_diameter_mm);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -71,7 +71,7 @@ impl Iris {
         0.5 * (low + high)
     }
 
-    /// Area with the corners at this distance from the center, mm^2: a polygon, and a segment of a disk on each side.
+    /// Area of the opening with its corners at this distance from the center, mm^2: a polygon, and a circular segment on each side.
     fn area_mm2(&self, corner_mm: f64) -> f64 {
         let n = f64::from(self.blades);
         let half = std::f64::consts::PI / n;
@@ -86,7 +86,7 @@ impl Iris {
 }
 
 impl Opening {
-    /// Whether a point lies in it, mm from its center.
+    /// Whether a point, mm from the center, lies in the opening.
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
         if x_mm * x_mm + y_mm * y_mm > self.corner_mm * self.corner_mm {
@@ -101,7 +101,7 @@ impl Opening {
         })
     }
 
-    /// Its edge, counter-clockwise, mm from its center: each side as so many pieces.
+    /// Returns the edge of the opening as points, counterclockwise, mm from its center; each side is cut into this many pieces.
     #[must_use]
     pub fn outline(&self, pieces: u32) -> Vec<[f64; 2]> {
         let half = std::f64::consts::PI / self.sides.len() as f64;
@@ -123,14 +123,14 @@ impl Opening {
         outline
     }
 
-    /// Distance of its corners from the center, mm.
+    /// Distance of the corners of the opening from its center, mm.
     #[must_use]
     pub fn corner_radius_mm(&self) -> f64 {
         self.corner_mm
     }
 }
 
-/// Ends rays that blades stop; says how many.
+/// Kernel that ends the rays that blades stop and returns their number.
 pub(super) struct Blades<'a> {
     pub opening: &'a Opening,
     pub center_mm: [f64; 2],
@@ -140,7 +140,7 @@ pub(super) struct Blades<'a> {
     pub columns: Columns<'a>,
 }
 
-/// Rays that are held against a side at once.
+/// Number of rays that are tested against one side at once.
 const AT_ONCE: usize = 64;
 
 impl Vectorized for Blades<'_> {
@@ -165,10 +165,11 @@ impl Vectorized for Blades<'_> {
 }
 
 impl Opening {
-    /// As [`Opening::contains`] says of some points, at most [`AT_ONCE`], around a center: 1 of those inside, 0 of others.
+    /// Tests several points, at most [`AT_ONCE`], like [`Opening::contains`], relative to a center, mm: 1 for those inside, 0 for the
+    /// others.
     #[inline(always)]
     fn contain(&self, x_mm: &[f64], y_mm: &[f64], [x0, y0]: [f64; 2]) -> [u64; AT_ONCE] {
-        // Where there are fewer points, the others are at the center.
+        // If there are fewer points, the rest are at the center.
         let (mut x, mut y, mut inside) = ([0.0; AT_ONCE], [0.0; AT_ONCE], [1_u64; AT_ONCE]);
         x.iter_mut().zip(x_mm).for_each(|(own, x)| *own = x - x0);
         y.iter_mut().zip(y_mm).for_each(|(own, y)| *own = y - y0);
@@ -204,7 +205,7 @@ mod tests {
         inside as f64 / f64::from(n * n) * 4.0 * half_mm * half_mm
     }
 
-    /// The area is that of the stop's circle, by counting points, whatever the blades; and by the outline.
+    /// Counting points, the area of the opening equals that of the stop's circle, whatever the blades.
     #[test]
     fn the_area_is_the_circles() {
         for blades in [3, 5, 6, 9, 15] {
@@ -218,7 +219,7 @@ mod tests {
         }
     }
 
-    /// The outline runs along the edge of what it holds.
+    /// The outline runs along the edge of the opening.
     #[test]
     fn the_outline_is_the_edge() {
         for blade_radius_mm in [5.0, 7.0, f64::INFINITY] {
@@ -235,7 +236,7 @@ mod tests {
         }
     }
 
-    /// Many points at once are held as each alone.
+    /// Testing many points at once gives the same result as testing each alone.
     #[test]
     fn points_are_held_at_once_as_alone() {
         for blade_radius_mm in [5.0, 7.0, f64::INFINITY] {
@@ -252,7 +253,7 @@ mod tests {
         }
     }
 
-    /// A blade of the opening's own radius makes a circle; straight blades a regular polygon with a corner on +y.
+    /// Blades with the radius of the opening make a circle; straight blades make a regular polygon with a corner on +y.
     #[test]
     fn round_wide_open_and_straight_when_it_should() {
         let round = Iris { blades: 6, blade_radius_mm: 5.0, rotation_rad: 0.0 }.opening(5.0);

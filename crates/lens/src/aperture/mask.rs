@@ -1,34 +1,34 @@
-//! A picture as an aperture.
+//! Masks: pictures used as apertures.
 
 use std::sync::Arc;
 
-/// A picture in the plane of a surface: white passes, black stops.
+/// A picture in the plane of a surface that works as an aperture: white passes light, black stops it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mask {
     width_px: usize,
     height_px: usize,
     pitch_mm: f64,
-    /// Rows from the top (+y), each from the left (-x): 0 to 1.
+    /// Transmittances, 0 to 1: rows from the top (+y), each from the left (-x).
     transmittances: Arc<[f32]>,
 }
 
 impl Mask {
-    /// A mask of this many pixels, as wide as `width_mm`, its rows from the top, each from the left.
+    /// Creates a mask of this many pixels, `width_mm` wide. The rows run from the top, each from the left; values are 0 to 1.
     ///
     /// # Panics
-    /// If the number of values is not that of the pixels: the reader counted them.
+    /// If the number of values is not the number of pixels; the reader has counted them.
     #[must_use]
     pub fn new(width_px: usize, height_px: usize, width_mm: f64, transmittances: Arc<[f32]>) -> Self {
         assert_eq!(transmittances.len(), width_px * height_px);
         Self { width_px, height_px, pitch_mm: width_mm / width_px as f64, transmittances }
     }
 
-    /// With all lengths times `factor`.
+    /// Returns the mask with all lengths multiplied by `factor`.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         Self { pitch_mm: self.pitch_mm * factor, ..self.clone() }
     }
 
-    /// Transmittance of the pixel at a point, mm from the center of the picture; 0 beside it.
+    /// Transmittance of the pixel at a point, mm from the center of the picture; 0 outside the picture.
     #[must_use]
     pub fn transmittance(&self, x_mm: f64, y_mm: f64) -> f64 {
         let column = x_mm / self.pitch_mm + 0.5 * self.width_px as f64;
@@ -39,7 +39,7 @@ impl Mask {
         f64::from(self.transmittances[row as usize * self.width_px + column as usize])
     }
 
-    /// Half the diagonal, mm.
+    /// Half the diagonal of the picture, mm.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
         let (w, h) = (self.width_px as f64, self.height_px as f64);

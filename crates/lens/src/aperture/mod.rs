@@ -1,6 +1,6 @@
-//! What limits the light at a surface besides its round rim: rectangles, polygons, the blades of an iris, masks.
+//! Apertures that limit the light at a surface besides its round rim: rectangles, polygons, the blades of an iris, masks.
 //!
-//! An aperture is flat: it looks at x and y of the point where the light meets its surface, in the surface's frame.
+//! An aperture is flat: it looks only at x and y of the point where light meets its surface, in the frame of the surface.
 
 mod iris;
 mod mask;
@@ -16,21 +16,21 @@ use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::{Isa, RayBatch};
 use spectra_masks::Drawing;
 
-/// Limits the light at a surface.
+/// An aperture that limits the light at a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aperture {
-    /// Its form.
+    /// Shape of the aperture.
     pub shape: Shape,
-    /// Its center in the frame of the surface, mm.
+    /// Center of the aperture in the frame of the surface, mm.
     pub center_mm: [f64; 2],
-    /// Whether it stops what falls inside of it, in place of what falls outside.
+    /// Whether the aperture stops light that falls inside it. If false, it stops light that falls outside.
     pub obscures: bool,
 }
 
-/// Form of an aperture, about its center.
+/// The shape of an aperture, about its center.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// Between two circles; `inner_mm` may be 0, `outer_mm` infinite.
+    /// The area between two circles; `inner_mm` may be 0, `outer_mm` infinite.
     Ring {
         /// Inner radius, mm.
         inner_mm: f64,
@@ -39,31 +39,31 @@ pub enum Shape {
     },
     /// A rectangle along x and y.
     Rectangle {
-        /// Half its width, mm.
+        /// Half the width of the rectangle, mm.
         half_width_mm: f64,
-        /// Half its height, mm.
+        /// Half the height of the rectangle, mm.
         half_height_mm: f64,
     },
     /// An ellipse along x and y.
     Ellipse {
-        /// Half its width, mm.
+        /// Half the width of the ellipse, mm.
         half_width_mm: f64,
-        /// Half its height, mm.
+        /// Half the height of the ellipse, mm.
         half_height_mm: f64,
     },
-    /// A polygon, by the even-odd rule: corners in order, mm.
+    /// A polygon, filled by the even-odd rule: corners in order, mm.
     Polygon(Vec<[f64; 2]>),
-    /// The blades of a stop; sized by the surface's semi-diameter.
+    /// The opening between the blades of a stop, sized by the surface's semi-diameter.
     Iris(Iris),
-    /// A picture: white passes, black stops, gray passes in part.
+    /// A picture: white passes light, black stops it, gray passes a part.
     Mask(Mask),
-    /// A drawing: outlines that pass.
+    /// A drawing whose outlines pass light.
     Drawing(Drawing),
 }
 
 impl Aperture {
-    /// The part of the light that passes at a point of the surface, mm: 0 or 1, between them for a gray mask.
-    /// `semi_diameter_mm` is the surface's, which sizes an iris.
+    /// Fraction of the light that passes at a point of the surface, mm: 0 or 1, or a value between for a gray mask.
+    /// `semi_diameter_mm` is the semi-diameter of the surface, which sizes an iris.
     #[must_use]
     pub fn transmittance(&self, x_mm: f64, y_mm: f64, semi_diameter_mm: Option<f64>) -> f64 {
         let (x, y) = (x_mm - self.center_mm[0], y_mm - self.center_mm[1]);
@@ -87,14 +87,15 @@ impl Aperture {
         if self.obscures { 1.0 - inside } else { inside }
     }
 
-    /// Whether it looks the same from all azimuths.
+    /// Whether the aperture is symmetric about the axis.
     #[must_use]
     pub fn is_round(&self) -> bool {
         self.center_mm == [0.0; 2] && matches!(self.shape, Shape::Ring { .. })
     }
 
-    /// Its edge in the frame of the surface as closed rings, outer ones counter-clockwise and holes clockwise, with curves and sides in
-    /// some `pieces` each. `None` for what has no edge (a gray mask) or one that is not closed within itself.
+    /// Returns the edge of the aperture in the frame of the surface, mm, as closed rings: outer ones counterclockwise, holes clockwise.
+    /// Each side, or a 24th of a circle, is cut into `pieces`; each side of an iris into twice as many. Returns `None` for a gray mask,
+    /// which has no edge, and for an edge that is not closed or not finite.
     #[must_use]
     pub fn rings(&self, semi_diameter_mm: Option<f64>, pieces: u32) -> Option<Vec<Vec<[f64; 2]>>> {
         let around = |a: f64, b: f64| -> Vec<[f64; 2]> {
@@ -151,7 +152,7 @@ impl Aperture {
         Some(rings)
     }
 
-    /// Radius about the vertex outside of which nothing passes, mm.
+    /// Radius about the vertex outside which nothing passes, mm; infinite if the aperture obscures or is an iris.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
         if self.obscures {
@@ -170,17 +171,17 @@ impl Aperture {
         reach + (x * x + y * y).sqrt()
     }
 
-    /// What the blades leave open, if it is an iris of a surface of this size.
-    pub(crate) fn opening(&self, semi_diameter_mm: Option<f64>) -> Option<Opening> {
+    /// Returns the opening between the blades if the aperture is an iris and the surface has a semi-diameter, mm.
+    pub fn opening(&self, semi_diameter_mm: Option<f64>) -> Option<Opening> {
         match &self.shape {
             Shape::Iris(iris) => semi_diameter_mm.map(|size| iris.opening(size)),
             _ => None,
         }
     }
 
-    /// Ends the living rays of the batch, in the frame of the surface, that it stops, and weighs the others. Returns
-    /// how many ended.
-    pub(crate) fn clip(&self, rays: &mut RayBatch, number: u32, semi_diameter_mm: Option<f64>) -> usize {
+    /// Ends the live rays of the batch that the aperture stops, and multiplies the weight of the others by its transmittance. The rays are
+    /// in the frame of the surface; `number` is the number of the surface, recorded in the rays that end. Returns how many ended.
+    pub fn clip(&self, rays: &mut RayBatch, number: u32, semi_diameter_mm: Option<f64>) -> usize {
         let stopped = Loss::Vignetted.state(number);
         let c = rays.columns_mut();
         let mut ended = 0;
@@ -199,15 +200,16 @@ impl Aperture {
         ended
     }
 
-    /// The same by what its blades leave open.
-    pub(crate) fn clip_by(&self, opening: &Opening, rays: &mut RayBatch, number: u32, isa: Isa) -> usize {
+    /// Ends the live rays of the batch that an iris stops, like [`Aperture::clip`], using the opening from [`Aperture::opening`]. Returns
+    /// how many ended.
+    pub fn clip_by(&self, opening: &Opening, rays: &mut RayBatch, number: u32, isa: Isa) -> usize {
         let Self { center_mm, obscures, .. } = *self;
         let stopped = Loss::Vignetted.state(number);
         isa.run(Blades { opening, center_mm, obscures, stopped, columns: rays.columns_mut() })
     }
 }
 
-/// Even-odd rule (M. Shimrat, "Algorithm 112", Comm. ACM 5, 1962).
+/// Tells by the even-odd rule whether a point lies inside a polygon (M. Shimrat, "Algorithm 112", Comm. ACM 5, 1962).
 fn is_inside(corners: &[[f64; 2]], x: f64, y: f64) -> bool {
     let mut inside = false;
     let mut before = corners.len() - 1;
@@ -226,7 +228,7 @@ mod tests {
     use super::*;
     use spectra_core::math;
 
-    /// The share of a square of points that passes is the share of the area, within three standard errors.
+    /// Returns the area that passes, mm^2, counted on a square grid of points.
     fn share(aperture: &Aperture, half_mm: f64) -> f64 {
         let n = 400;
         let at = |i: usize| ((i as f64 + 0.5) / n as f64 * 2.0 - 1.0) * half_mm;

@@ -1,4 +1,4 @@
-//! Apertures as a lens file writes them.
+//! Reads apertures as a lens file writes them.
 
 use super::{Aperture, Iris, Mask, Shape};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -14,20 +14,20 @@ use std::sync::Arc;
 
 spectra_core::declare!(ApertureEntry, Shape, "aperture", "A registered shape of apertures.", "shape");
 
-/// Keys of every aperture; the others belong to its shape.
+/// The keys that every aperture has; all other keys belong to its shape.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct ApertureKeys {
-    /// Its center, mm if bare.
+    /// Center of the aperture, [x, y], mm if bare; the vertex of the surface if absent.
     center: Option<[Length; 2]>,
-    /// Stops what is inside, in place of what is outside.
+    /// Whether the aperture stops the light inside it; if false, it stops the light outside.
     #[serde(default)]
     obscures: bool,
 }
 
-/// What lies between two circles.
+/// A ring: the area between two circles.
 ///
-/// A clear aperture without blades, or, as what `obscures`, the secondary mirror of a telescope.
+/// Use it for a clear aperture without blades or, with `obscures`, for the secondary mirror of a telescope.
 ///
 /// # Example
 /// ```yaml
@@ -42,9 +42,9 @@ struct Ring {
     outer: Option<LengthOrInfinity>,
 }
 
-/// What lies within a rectangle along x and y.
+/// A rectangle along x and y.
 ///
-/// A slit, a gate, a prism cut to size; a tall one squeezes highlights as an anamorphic lens does.
+/// Use it for a slit, a gate, or a prism cut to size. A tall one squeezes highlights as an anamorphic lens does.
 ///
 /// # Example
 /// ```yaml
@@ -59,9 +59,9 @@ struct Rectangle {
     half_height: Positive<Length>,
 }
 
-/// What lies within an ellipse along x and y.
+/// An ellipse along x and y.
 ///
-/// The opening of lenses whose highlights are oval, and of mirrors at an angle.
+/// Use it for lenses whose highlights are oval, and for mirrors at an angle.
 ///
 /// # Example
 /// ```yaml
@@ -76,9 +76,10 @@ struct Ellipse {
     half_height: Positive<Length>,
 }
 
-/// What lies within a polygon.
+/// A polygon of any form.
 ///
-/// By the even-odd rule, so a line that crosses itself leaves its middle closed. Stars, arrows and blades of any form.
+/// It is filled by the even-odd rule, so a line that crosses itself leaves its middle closed. Use it for stars, arrows and blades of any
+/// form.
 ///
 /// # Example
 /// ```yaml
@@ -87,15 +88,15 @@ struct Ellipse {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Polygon {
-    /// Corners in order around it, mm if bare, 3 to 10000.
+    /// Corners of the polygon in order, each [x, y], mm if bare, 3 to 10000.
     #[schemars(length(min = 3, max = 10_000))]
     points: Vec<[Length; 2]>,
 }
 
-/// What the blades of a diaphragm leave open.
+/// The opening between the blades of an iris diaphragm.
 ///
-/// Its size is that of the stop: it closes with the f-number, and its area is that of the circle which it replaces. Straight blades leave
-/// a polygon; bent ones are round while their radius is that of the opening.
+/// The stop sets its size: it closes with the f-number, and its area is that of the circle that it replaces. Straight blades leave
+/// a polygon; curved ones leave a circle while their radius equals that of the opening.
 ///
 /// # Example
 /// ```yaml
@@ -106,15 +107,16 @@ struct Polygon {
 struct IrisBlades {
     /// Number of blades.
     blades: Whole<3, 100>,
-    /// Radius of each blade's edge, mm if bare; straight if absent.
+    /// Radius of curvature of each blade's edge, mm if bare; straight if absent.
     blade_radius: Option<Positive<Length>>,
-    /// Turn of the opening, degrees if bare.
+    /// Rotation of the opening, degrees if bare, counterclockwise; at 0, the value if absent, a corner lies on +y.
     rotation: Option<Angle>,
 }
 
-/// What a picture or a drawing leaves open.
+/// A picture or a drawing as an aperture.
 ///
-/// Highlights out of focus take its form: hearts, stars, the bubbles of a dirty filter. A drawing (SVG) has edges at any magnification.
+/// Out-of-focus highlights take its shape: hearts, stars, the bubbles of a dirty filter. A drawing (SVG) has sharp edges at any
+/// magnification.
 ///
 /// # Example
 /// ```yaml
@@ -123,16 +125,17 @@ struct IrisBlades {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MaskParams {
-    /// A picture (PNG, JPEG, TIFF): white passes, black stops. Or a drawing (SVG): what is filled passes.
+    /// File name: a picture (PNG, JPEG, TIFF), in which white passes light and black stops it, or a drawing (SVG), in which filled areas
+    /// pass.
     file: String,
-    /// Width of the picture or of the drawing's page, mm if bare; of a drawing it may be left out, if it states one itself.
+    /// Width of the picture or of the drawing's page, mm if bare; may be omitted for a drawing that states its own width.
     width: Option<Positive<Length>>,
-    /// Of a drawing: `filled`, whatever is painted passes (the default); or `white`, as of a picture: white passes, black
-    /// stops, gray passes in part.
+    /// For a drawing only. `filled` (the default): everything painted passes. `white`, as in a picture: white passes, black
+    /// stops, gray passes a part.
     open: Option<Open>,
 }
 
-/// What an aperture is written as: one, or a list.
+/// The schema of `aperture` in a lens file: one aperture, or a list of them.
 pub struct ApertureForm;
 
 impl JsonSchema for ApertureForm {
@@ -162,7 +165,7 @@ const MAX_MASK_SIDE: u32 = 8192;
 /// Reads one aperture or a list of them, as lens files and scenes write them.
 ///
 /// # Errors
-/// What is wrong with them, placed; what is wrong with a drawing, placed in it.
+/// Faults in the apertures, each with its place; faults in a drawing, with their place in the drawing.
 pub fn read(node: &StageNode, resources: &dyn Resources) -> Result<Vec<Aperture>, Faults> {
     let Value::Seq(items) = &node.node().value else {
         return one(node.node(), node.path(), resources).map(|aperture| vec![aperture]);
@@ -240,12 +243,12 @@ fn mask(params: &Params, context: &Context<'_>) -> Result<Box<Shape>, Faults> {
         return drawn.map(|drawn| Box::new(Shape::Drawing(drawn))).map_err(|faults| params.place_at("file", faults));
     }
     if open == Some(Open::Filled) {
-        let fault = params.fault("open", "of a picture the white passes: nothing in it is filled");
+        let fault = params.fault("open", "`filled` is only for a drawing: in a picture white passes");
         return Err(fault.hint("leave `open` out, or draw an SVG").into());
     }
     let Some(width) = p.width else {
-        let fault = params.fault_here("how large is the picture? `width` is missing");
-        return Err(fault.hint("`width: 24 mm`").into());
+        let fault = params.fault_here("missing key `width`: how large is the picture?");
+        return Err(fault.hint("add `width: 24 mm`").into());
     };
     let mut reader = image::ImageReader::new(std::io::Cursor::new(&found.bytes[..]))
         .with_guessed_format()

@@ -1,30 +1,33 @@
-//! What a surface does to polarized light: complex amplitudes of the two linear states.
+//! The effect of a surface on polarized light: complex amplitudes of the two linear states.
 //!
-//! Born and Wolf, Principles of Optics, sections 1.5 and 1.6; the time factor is exp(i omega t). The s field lies across the plane
-//! of incidence, along d x d' (of the directions before and after); the p field along d x s before and d' x s after.
+//! Follows Born and Wolf, Principles of Optics, sections 1.5 and 1.6, with the time factor exp(i omega t). The s field lies across the
+//! plane of incidence, along d x d' (the directions before and after). The p field lies along d x s before and d' x s after.
 
 use super::stack::{Complex, Stack, StackLayer};
 use super::{Coating, Transmittance};
 use std::borrow::Cow;
 
-/// What becomes of light in terms of power: the part of s light, that of p light, and the product of the amplitude of s and the
-/// conjugate of that of p, which U + i V of the light is multiplied by.
+/// The effect of a surface on light, in terms of power: the fractions of s and p light, and the product of the s amplitude and the
+/// conjugate of the p amplitude. The quantity U + i V of the light is multiplied by that product.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Polarizing {
+pub struct Polarizing {
+    /// Fraction of the power of s light.
     pub s: f64,
+    /// Fraction of the power of p light.
     pub p: f64,
+    /// Amplitude of s times the conjugate amplitude of p: real and imaginary parts.
     pub mixed: [f64; 2],
 }
 
 impl Polarizing {
-    /// This part of all light, whatever its state; `mirrored` where it is sent back.
-    pub(crate) fn evenly(part: f64, mirrored: bool) -> Self {
-        // A perfect conductor turns the phase of s light by half a wave; that of p light not, since its axis turns.
+    /// Returns an effect that leaves this fraction of light in any state of polarization; `mirrored` if the light is reflected.
+    pub fn evenly(part: f64, mirrored: bool) -> Self {
+        // A perfect conductor shifts the phase of s light by half a wave, but not that of p light, because its axis turns.
         Self { s: part, p: part, mixed: [if mirrored { -part } else { part }, 0.0] }
     }
 
-    /// With this part of the light that meets something else beside it.
-    pub(crate) fn beside(self, part: f64, other: Self) -> Self {
+    /// Mixes two effects: the fraction `part` of the light meets `other`, the rest this one.
+    pub fn beside(self, part: f64, other: Self) -> Self {
         let between = |a: f64, b: f64| a + part * (b - a);
         Self {
             s: between(self.s, other.s),
@@ -33,7 +36,7 @@ impl Polarizing {
         }
     }
 
-    /// Parts of power, without a difference of phase.
+    /// Creates an effect from fractions of power, without a phase difference.
     fn of_parts(parts: Transmittance, mirrored: bool) -> Self {
         let both = (parts.s * parts.p).sqrt();
         Self { s: parts.s, p: parts.p, mixed: [if mirrored { -both } else { both }, 0.0] }
@@ -45,16 +48,18 @@ impl Polarizing {
     }
 }
 
-/// A coating in the form that amplitudes are computed from.
-pub(crate) enum Amplitudes<'a> {
-    /// Layers, or none.
+/// A coating in a form from which amplitudes are computed.
+pub enum Amplitudes<'a> {
+    /// A stack of layers, possibly empty.
     Stack(Cow<'a, Stack>),
-    /// What knows of powers alone.
+    /// A coating that gives only powers, without phases.
     Powers(&'a Coating),
 }
 
 impl<'a> Amplitudes<'a> {
-    pub(crate) fn of(coating: &'a Coating) -> Self {
+    /// Converts a coating to this form.
+    #[must_use]
+    pub fn of(coating: &'a Coating) -> Self {
         match coating {
             Coating::Bare => Self::Stack(Cow::Owned(Stack::new(Vec::new()))),
             Coating::Layer { index, thickness_nm } => {
@@ -65,9 +70,9 @@ impl<'a> Amplitudes<'a> {
         }
     }
 
-    /// Of light that passes from a medium of index `n` into one of index `n_after`, at this cosine of the angle of incidence and
-    /// wavelength, nm.
-    pub(crate) fn through(&self, n: f64, n_after: f64, cosine: f64, wavelength_nm: f64) -> Polarizing {
+    /// Computes the effect on light that passes from a medium of index `n` into one of index `n_after`, at this cosine of the angle of
+    /// incidence and wavelength, nm.
+    pub fn through(&self, n: f64, n_after: f64, cosine: f64, wavelength_nm: f64) -> Polarizing {
         match self {
             Self::Stack(stack) => {
                 let passes = stack.amplitudes([n, n_after], cosine, wavelength_nm).map(|[through, _]| through);
@@ -79,12 +84,13 @@ impl<'a> Amplitudes<'a> {
         }
     }
 
-    /// The same of light that is reflected. Total reflection turns the states against each other.
-    pub(crate) fn back(&self, n: f64, n_after: f64, cosine: f64, wavelength_nm: f64) -> Polarizing {
+    /// Computes the effect on light that is reflected in a medium of index `n` from one of index `n_after`, at this cosine of the angle of
+    /// incidence and wavelength, nm. Total reflection shifts the phases of s and p light against each other.
+    pub fn back(&self, n: f64, n_after: f64, cosine: f64, wavelength_nm: f64) -> Polarizing {
         match self {
             Self::Stack(stack) => {
                 let [s, p] = stack.amplitudes([n, n_after], cosine, wavelength_nm).map(|[_, back]| back);
-                // Of the tangential fields; the axis of p light turns round.
+                // These amplitudes are of the tangential fields; the axis of p light turns round.
                 Polarizing::of_amplitudes([s, p.negated()])
             }
             Self::Powers(coating) => Polarizing::of_parts(coating.reflectance(n, n_after, cosine, wavelength_nm), true),
@@ -97,8 +103,8 @@ mod tests {
     use super::*;
     use spectra_core::math;
 
-    /// Fresnel's rhomb (Born and Wolf, 1.5.4): at n = 1.51 total reflection turns s and p against each other by 45 degrees at 48
-    /// degrees 37 minutes and 54 degrees 37 minutes; in between by tan(delta / 2) = cos(t) sqrt(sin(t)^2 - 1 / n^2) / sin(t)^2.
+    /// Fresnel's rhomb (Born and Wolf, 1.5.4): at n = 1.51 total reflection shifts s and p against each other by 45 degrees at 48 degrees
+    /// 37 minutes and at 54 degrees 37 minutes. At other angles the shift is tan(delta / 2) = cos(t) sqrt(sin(t)^2 - 1 / n^2) / sin(t)^2.
     #[test]
     fn total_reflection_turns_the_phase() {
         let bare = Amplitudes::of(&Coating::Bare);
@@ -117,8 +123,8 @@ mod tests {
         }
     }
 
-    /// Powers are those of the coating, and a layer's amplitudes are the sum over all bounces (Born and Wolf 1.6.4, eq. 55 and
-    /// 56) in fields along and across the plane of incidence.
+    /// Powers match those of the coating. A layer's amplitudes match the sum over all bounces (Born and Wolf 1.6.4, eq. 55 and
+    /// 56), in fields along and across the plane of incidence.
     #[test]
     fn a_layer_is_the_sum_of_its_bounces() {
         let complex = |re, im| Complex { re, im };
@@ -136,7 +142,7 @@ mod tests {
                 let c = [cosine, cos(n1), cos(n2)];
                 let turn = 4.0 * std::f64::consts::PI * n1 * c[1] * nm / 550.0;
                 let bounce = complex(math::cos(turn), -math::sin(turn));
-                // Fields as Fresnel's equations have them; r of p light is that of its magnetic field.
+                // Fields as in Fresnel's equations; r of p light refers to its magnetic field.
                 let bounces = |r01: f64, r12: f64| {
                     (complex(r01, 0.0) + complex(r12, 0.0) * bounce)
                         / (complex(1.0, 0.0) + complex(r01 * r12, 0.0) * bounce)
@@ -151,7 +157,7 @@ mod tests {
                     deny(s(n0, c[0], n1, c[1]), s(n1, c[1], n2, c[2])),
                     deny(p(n0, c[0], n1, c[1]), p(n1, c[1], n2, c[2])),
                 );
-                // t is real over these denominators, times the same turn for both.
+                // t is a real number divided by these denominators, times the same phase for both.
                 let size = (through.s * through.p).sqrt() * (ds.size2() * dp.size2()).sqrt();
                 let want = complex(size, 0.0) / (ds * dp.conjugate());
                 assert!((through.mixed[0] - want.re).abs() < 1e-12 && (through.mixed[1] - want.im).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! Kinds of coatings that a program knows.
+//! The registry of the kinds of coatings.
 
 use super::Coating;
 

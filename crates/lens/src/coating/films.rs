@@ -1,37 +1,37 @@
-//! Clear layers and bare glass for whole batches: the closed forms of this folder, written so that a ray costs few roots and
+//! Clear layers and bare glass for whole batches: the closed forms of this folder, written so that each ray takes few square roots and
 //! divisions.
 //!
-//! Let n and n' be the indices on both sides, q the cosine between the directions, h = 1 - q and d = n' - n. The normal is parallel
-//! to n' d' - n d, whose length is G with G^2 = d^2 + 2 n n' h; so cos(theta) = |u| / G and cos(theta') = |v| / G, with
-//! u = d - n' h and v = d + n h, which have one sign. Fresnel's equations are of degree zero in the cosines, and G cancels.
+//! Let n and n' be the indices on both sides, q the cosine of the angle between the directions, h = 1 - q and d = n' - n. The normal is
+//! parallel to n' d' - n d, whose length is G with G^2 = d^2 + 2 n n' h. Hence cos(theta) = |u| / G and cos(theta') = |v| / G, with
+//! u = d - n' h and v = d + n h, which have the same sign. Fresnel's equations are of degree zero in the cosines, so G cancels.
 //!
-//! A layer's matrix holds cos(delta), sin(delta) / eta and eta sin(delta). All are even in delta, so they are entire
-//! functions of delta^2 = (2 pi d / lambda)^2 (N^2 - n^2 sin^2(theta)): power series without root or case, true as well where
-//! light does not run in the layer but decays. The series are taken at delta / 2^H, and the angle is doubled H times.
+//! A layer's matrix holds cos(delta), sin(delta) / eta and eta sin(delta). All are even in delta, so they are entire functions of
+//! delta^2 = (2 pi d / lambda)^2 (N^2 - n^2 sin^2(theta)): power series without roots or cases, which also hold where
+//! light decays in the layer. The series are evaluated at delta / 2^H, and the angle is doubled H times.
 
 use std::f64::consts::TAU;
 use std::ops::{Add, Mul, Sub};
 
-/// Largest square of delta / 2^H for which the series are good: the first terms left out are 6e-15 (cosine) and 7e-14 (sine).
+/// Largest square of delta / 2^H for which the series hold: the first omitted terms are 6e-15 (cosine) and 7e-14 (sine).
 const SERIES_REACH: f64 = 1.5;
 
-/// Angles are halved no more often: each doubling makes an error four times as large, 1e-13 in all.
+/// Largest number of halvings: each doubling makes an error four times as large, 1e-13 in all.
 const MOST_HALVINGS: u32 = 5;
 
-/// `N` clear layers of one index at all wavelengths, the first one next to the medium of the lower index.
+/// A stack of `N` clear layers, each with the same index at all wavelengths. The first one is next to the medium of the lower index.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Films<const N: usize> {
-    /// Square of the index.
+pub struct Films<const N: usize> {
+    /// Square of the index of each layer.
     pub(super) square: [f64; N],
-    /// One over that.
+    /// One over the square of the index of each layer.
     pub(super) per_square: [f64; N],
-    /// 2 pi times the thickness, nm.
+    /// The thickness of each layer times 2 pi, nm.
     pub(super) turn_nm: [f64; N],
 }
 
-/// What a batch kernel needs to know of the two sides of a surface: see the head of this file.
+/// The quantities that a batch kernel needs about the two sides of a surface: see the head of this file.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sides {
+pub struct Sides {
     n: f64,
     n_after: f64,
     h: f64,
@@ -40,28 +40,28 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// Of light that is bent by an angle of this versine, h.
+    /// Creates the quantities from both indices and `h`, the versine of the angle by which light is bent.
     #[inline(always)]
-    pub(crate) fn of(n: f64, n_after: f64, h: f64) -> Self {
+    pub fn of(n: f64, n_after: f64, h: f64) -> Self {
         let step = n_after - n;
         Self { n, n_after, h, u: step - n_after * h, v: step + n * h }
     }
 
-    /// How far the indices are apart.
+    /// Absolute difference of the two indices.
     #[inline(always)]
-    pub(crate) fn step(&self) -> f64 {
+    pub fn step(&self) -> f64 {
         (self.n_after - self.n).abs()
     }
 
-    /// Cosine of the angle of incidence.
-    pub(crate) fn cosine(&self) -> f64 {
+    /// Cosine of the angle of incidence, at most 1.
+    pub fn cosine(&self) -> f64 {
         let step = self.n_after - self.n;
         (self.u * self.u / (step * step + 2.0 * self.n * self.n_after * self.h)).sqrt().min(1.0)
     }
 
-    /// What bare glass passes of unpolarized light: [`super::bare`], of which both numerators are the same.
+    /// Fraction of unpolarized light that bare glass transmits: the formula of [`super::bare`], whose two numerators are equal.
     #[inline(always)]
-    pub(crate) fn bare(&self) -> f64 {
+    pub fn bare(&self) -> f64 {
         let Self { n, n_after, u, v, .. } = *self;
         let (s, p) = (n * u + n_after * v, n_after * u + n * v);
         let (s, p) = (s * s, p * p);
@@ -70,15 +70,15 @@ impl Sides {
 }
 
 impl<const N: usize> Films<N> {
-    /// Layers by index and thickness, nm.
-    pub(crate) fn new(layers: &[[f64; 2]; N]) -> Self {
+    /// Creates a stack from the index and the thickness, nm, of each layer.
+    pub fn new(layers: &[[f64; 2]; N]) -> Self {
         let square = layers.map(|[index, _]| index * index);
         Self { square, per_square: square.map(|s| 1.0 / s), turn_nm: layers.map(|[_, nm]| TAU * nm) }
     }
 
-    /// How often the angle must be halved for the series to be good, for light of this wavelength, nm, or longer, between media
-    /// of which the lower index is `low`; `None` if that makes no sense.
-    pub(crate) fn halvings(&self, shortest_nm: f64, low: f64) -> Option<u32> {
+    /// Returns how often the angle must be halved for the series to hold, for light of this wavelength, nm, or longer, between media
+    /// of which the lower index is `low`. Returns `None` if that takes more than 5 halvings or a value is not a number.
+    pub fn halvings(&self, shortest_nm: f64, low: f64) -> Option<u32> {
         let largest = self.square.iter().zip(&self.turn_nm).map(|(square, turn_nm)| {
             let turn = turn_nm / shortest_nm;
             turn * turn * f64::max(low * low - square, *square)
@@ -87,12 +87,12 @@ impl<const N: usize> Films<N> {
         (0..=MOST_HALVINGS).find(good)
     }
 
-    /// What passes of unpolarized light, at one over the wavelength, 1/nm, with the angle halved `H` times: the mean of
-    /// T = 4 eta eta' / ((eta a + eta' d)^2 + (eta eta' x + y)^2) for both polarizations, where [a, i x; i y, d] is the product of
-    /// the layers' matrices from the lower index on. For light in the plane of incidence numerator and denominator are taken
-    /// times the cosines.
+    /// Fraction of unpolarized light that the layers transmit, at one over the wavelength, 1/nm, with the angle halved `H` times. It is the
+    /// mean of T = 4 eta eta' / ((eta a + eta' d)^2 + (eta eta' x + y)^2) for both polarizations. [a, i x; i y, d] is the product of the
+    /// layers' matrices from the lower index on. For light in the plane of incidence, numerator and denominator are both multiplied by the
+    /// cosines.
     #[inline(always)]
-    pub(crate) fn passes<const H: usize>(&self, sides: &Sides, per_nm: f64) -> f64 {
+    pub fn passes<const H: usize>(&self, sides: &Sides, per_nm: f64) -> f64 {
         let Sides { n, n_after, h, u, v } = *sides;
         let (both, step) = (n * n_after, n_after - n);
         let per_g2 = 1.0 / (step * step + 2.0 * both * h);
@@ -122,7 +122,7 @@ impl<const N: usize> Films<N> {
     }
 }
 
-/// The product of two matrices [a, i x; i y, d] of real a, x, y and d.
+/// Multiplies two matrices [a, i x; i y, d] with real a, x, y and d.
 #[inline(always)]
 pub(super) fn times<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>>(
     [a, x, y, d]: [T; 4],
@@ -131,7 +131,7 @@ pub(super) fn times<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T
     [a * a2 - x * y2, a * x2 + x * d2, y * a2 + d * y2, d * d2 - y * x2]
 }
 
-/// cos(delta) and sin(delta) / delta by the square of delta, which may be negative; good up to 1.5 * 4^H.
+/// Computes cos(delta) and sin(delta) / delta from the square of delta, which may be negative; valid up to 1.5 * 4^H.
 #[inline(always)]
 fn cos_and_sinc<const H: usize>(square: f64) -> (f64, f64) {
     let z = square * const { 1.0 / (1_u64 << (2 * H)) as f64 };
@@ -152,19 +152,19 @@ fn cos_and_sinc<const H: usize>(square: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transmission::versine;
+    use crate::coating::versine;
     use crate::{Coating, Stack, StackLayer};
     use spectra_core::math;
     use std::sync::Arc;
 
-    /// Directions in one plane, before and behind a surface along z; `None` on total reflection.
+    /// Returns directions in one plane, in front of and behind a surface along z; `None` on total reflection.
     fn directions(n: f64, n_after: f64, angle_deg: f64) -> Option<[[f64; 3]; 2]> {
         let (sin, cos) = (math::sin(angle_deg.to_radians()), math::cos(angle_deg.to_radians()));
         let after = n / n_after * sin;
         (after < 1.0).then(|| [[sin, 0.0, cos], [after, 0.0, (1.0 - after * after).sqrt()]])
     }
 
-    /// Every pair of media, every angle and wavelength of the band against [`Coating::transmittance`].
+    /// Compares every pair of media, angle and wavelength of the band with [`Coating::transmittance`].
     fn agrees<const N: usize, const H: usize>(coating: &Coating, layers: &[[f64; 2]; N], shortest_nm: f64) {
         let films = Films::new(layers);
         let mut worst = 0.0_f64;
@@ -199,7 +199,7 @@ mod tests {
         let three = [quarter(1.38), [2.1, 122.6], quarter(1.72)];
         agrees::<3, 2>(&stack(&three), &three, 400.0);
         agrees::<3, 3>(&stack(&three), &three, 200.0);
-        // So thick that many orders lie in the band, and of so low an index that light decays in it.
+        // Layers so thick that many orders lie in the band, and of so low an index that light decays in them.
         agrees::<1, 5>(&stack(&[[1.5, 1500.0]]), &[[1.5, 1500.0]], 380.0);
         agrees::<1, 3>(&stack(&[[1.0, 400.0]]), &[[1.0, 400.0]], 380.0);
         assert_eq!(Films::new(&[[1.5, 1e6]]).halvings(380.0, 1.0), None);

@@ -1,4 +1,4 @@
-//! `kind: layer` and `kind: stack`: what is evaporated on the glass, written out.
+//! `kind: layer` and `kind: stack`: the layers evaporated on the glass, written out.
 
 use super::{Coating, CoatingEntry, Stack, StackLayer};
 use schemars::JsonSchema;
@@ -9,10 +9,10 @@ use spectra_core::resources::Resources;
 use spectra_glass::{Medium, file};
 use std::sync::Arc;
 
-/// One layer of a dielectric.
+/// One dielectric layer of constant index.
 ///
-/// Of one index at all wavelengths; its thickness is stated, or such that it is a quarter of a wave thick at a wavelength. A
-/// coating that names no kind and has a `layer` is one.
+/// Its index is the same at all wavelengths. Its thickness is stated directly, or as a quarter of a wave at a given wavelength. A
+/// coating without `kind` that has a `layer` is of this kind.
 ///
 /// # Example
 /// ```yaml
@@ -26,13 +26,13 @@ struct OneLayer {
     layer: f64,
     /// Thickness, nm if bare.
     thickness: Option<Wavelength>,
-    /// Wavelength at which it is a quarter of a wave thick, nm if bare.
+    /// Wavelength at which the layer is a quarter of a wave thick, nm if bare.
     quarter_wave_at: Option<Wavelength>,
 }
 
 /// Any number of layers, each of a material or of a stated index.
 ///
-/// Materials disperse and absorb as the catalogue or their file says. A coating that names no kind and has `layers` is one.
+/// Materials disperse and absorb as the catalogue or their file says. A coating without `kind` that has `layers` is of this kind.
 ///
 /// # Example
 /// ```yaml
@@ -47,29 +47,29 @@ struct OneLayer {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct StackParams {
-    /// The layers, the one next to the air first, 1 to 500; without any it is `bare`.
+    /// Layers of the stack, the one next to the air first, 1 to 500; for glass without layers write `bare`.
     #[schemars(length(min = 1, max = 500))]
     layers: Vec<Part<LayerOfStack>>,
 }
 
-/// A layer of a stack.
+/// One layer of a stack.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct LayerOfStack {
-    /// A medium of the catalogue, or a glass file.
+    /// Material of the layer: a medium in the catalogue, or a glass file.
     material: Option<String>,
-    /// Refractive index in place of a material, 0.01 to 10, the same at all wavelengths.
+    /// Refractive index, 0.01 to 10, the same at all wavelengths; instead of `material`.
     #[schemars(range(min = 0.01, max = 10))]
     index: Option<f64>,
-    /// Extinction coefficient beside `index`.
+    /// Extinction coefficient k, together with `index`; 0 if absent.
     k: Option<NonNegative<f64>>,
     /// Thickness, nm if bare.
     thickness: Option<Wavelength>,
-    /// Wavelength at which it is a quarter of a wave thick, nm if bare.
+    /// Wavelength at which the layer is a quarter of a wave thick, nm if bare.
     quarter_wave_at: Option<Wavelength>,
 }
 
-/// Thickest layer, nm.
+/// Largest thickness of a layer, nm.
 const MAX_NM: f64 = 1e5;
 
 spectra_core::register!(CoatingEntry, "layer" (default): OneLayer, layer);
@@ -120,7 +120,7 @@ fn layer_of_stack(
     }
 }
 
-/// Thickness, nm; `at` is the path of the layer.
+/// Computes the thickness of a layer, nm; `at` is the path of the layer in the file.
 fn thickness(
     params: &Params,
     at: &str,
@@ -133,7 +133,7 @@ fn thickness(
         (Some(thickness), None) => (thickness, thickness.nm(), "thickness"),
         (None, Some(wave)) => (wave, 0.25 * wave.nm() / index(wave.nm()), "quarter-wave-at"),
         _ => {
-            let text = "a layer has either a `thickness` or is `quarter-wave-at` a wavelength";
+            let text = "a layer needs either a `thickness` or a wavelength `quarter-wave-at`";
             let fault = if at.is_empty() { params.fault_here(text) } else { params.fault(at, text) };
             return Err(fault.hint("such as {layer: 1.38, quarter-wave-at: 550 nm}"));
         }
@@ -144,7 +144,7 @@ fn thickness(
     Ok(nm)
 }
 
-/// n and k of a medium, held at the ends of what is known of it.
+/// Complex index n, k of a medium. Outside the measured range the end values are used.
 fn n_and_k(medium: &Medium) -> impl Fn(f64) -> [f64; 2] + '_ {
     move |nm| {
         let n = medium.range_nm().map_or(nm, |(from, to)| nm.clamp(from, to));

@@ -1,28 +1,28 @@
-//! A coating of which only a measurement is known.
+//! Measured coatings: coatings of which only a curve of transmittance or reflectance is known.
 
 use super::Transmittance;
 use spectra_core::spectral::Grid;
 use spectra_spectrum::table::Table;
 use spectra_spectrum::{Kind, SpectrumError};
 
-/// What passes a coated surface by wavelength, whatever the angle: a maker's curve says no more.
+/// A measured transmittance by wavelength, used at every angle: a maker's curve says no more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredCoating {
-    /// By nanometer, on [`GRID`].
+    /// Transmittance for each nanometer, on [`GRID`].
     passes: Vec<f64>,
 }
 
-/// Where measurements are tabulated: 200 to 2500 nm.
+/// Grid on which measurements are tabulated: 200 to 2500 nm.
 const GRID: Grid = Grid { start_nm: 200.0, step_nm: 1.0, count: 2301 };
 
 impl MeasuredCoating {
-    /// From what passes by wavelength, nm: 0 to 1.
+    /// Tabulates a transmittance given by wavelength, nm; values are clamped to 0 to 1.
     #[must_use]
     pub fn new(passes: impl Fn(f64) -> f64) -> Self {
         Self { passes: GRID.wavelengths_nm().map(|nm| passes(nm).clamp(0.0, 1.0)).collect() }
     }
 
-    /// What passes at a wavelength, nm.
+    /// Transmittance at a wavelength, nm, interpolated linearly; the same for s and p light.
     #[must_use]
     pub fn transmittance(&self, wavelength_nm: f64) -> Transmittance {
         let place = (wavelength_nm - GRID.start_nm).clamp(0.0, (GRID.count - 2) as f64 + 1.0);
@@ -31,8 +31,8 @@ impl MeasuredCoating {
         Transmittance { s: passes, p: passes }
     }
 
-    /// From a table: a column `reflectance` (what does not pass) or `transmittance`, or the kind that its front matter
-    /// states. Beyond its ends the nearest value holds.
+    /// Reads a column of a table: named `reflectance` (the light that does not pass) or `transmittance`, or of the kind that the table's
+    /// front matter states. Beyond the ends of the table the nearest value is used.
     pub(super) fn from_table(name: &str, bytes: &[u8], column: Option<&str>) -> Result<Self, SpectrumError> {
         let table = Table::parse_bytes(name, bytes, Some(Kind::Reflectance))?;
         let at = match column {

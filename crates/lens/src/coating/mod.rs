@@ -1,11 +1,12 @@
-//! What a refracting surface lets through: bare glass by Fresnel's equations, or under one thin layer.
+//! Coatings: the light that a refracting surface lets through, for bare glass (Fresnel's equations), thin layers or a measured curve.
 //!
-//! Born and Wolf, Principles of Optics, sections 1.5.2 and 1.6.4. With eta = n cos(theta) for the electric field across
-//! the plane of incidence (s) and cos(theta) / n in it (p), a layer of phase thickness delta transmits
-//! T = 4 eta eta' / ((eta + eta')^2 cos^2(delta) + (eta eta' / eta_1 + eta_1)^2 sin^2(delta)). It is the same from both
-//! sides, and without a layer (delta = 0) it is Fresnel's.
+//! The formulas are from Born and Wolf, Principles of Optics, sections 1.5.2 and 1.6.4. Let eta = n cos(theta) for the electric field
+//! across the plane of incidence (s) and cos(theta) / n in it (p). A layer of phase thickness delta transmits T = 4 eta eta' / ((eta +
+//! eta')^2 cos^2(delta) + (eta eta' / eta_1 + eta_1)^2 sin^2(delta)). T is the same from both sides. Without a layer (delta = 0) it reduces
+//! to Fresnel's formula.
 
 mod amplitude;
+mod angles;
 mod entry;
 mod films;
 mod layers;
@@ -16,56 +17,57 @@ mod standard;
 mod swift;
 mod v_coat;
 
-pub(crate) use amplitude::{Amplitudes, Polarizing};
+pub use amplitude::{Amplitudes, Polarizing};
+pub use angles::{SAME_INDEX, cosine_of_mirrored, cross, dot, versine};
 pub use entry::CoatingEntry;
-pub(crate) use films::{Films, Sides};
+pub use films::{Films, Sides};
 pub use measured::MeasuredCoating;
 pub(crate) use params::CoatingKeys;
 pub use params::{CoatingForm, StatedCoating, read_coating, read_stated_coating};
 pub use stack::{Stack, StackLayer};
-pub(crate) use swift::{CHUNK, Singles, Swift};
+pub use swift::{CHUNK, Singles, Swift};
 
 use spectra_core::math;
 use std::sync::Arc;
 
-/// Coating of a refracting surface.
+/// The coating of a refracting surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Coating {
-    /// Everything passes.
+    /// A perfect coating: all light passes.
     #[default]
     Ideal,
-    /// None: Fresnel's equations.
+    /// No coating: Fresnel's equations.
     Bare,
-    /// One layer of a dielectric.
+    /// One dielectric layer.
     Layer {
-        /// Its refractive index, at all wavelengths.
+        /// Refractive index of the layer, the same at all wavelengths.
         index: f64,
-        /// Its thickness, nm.
+        /// Thickness of the layer, nm.
         thickness_nm: f64,
     },
     /// Any number of layers.
     Stack(Arc<Stack>),
-    /// What was measured of it, at every angle alike.
+    /// A measured curve, the same at every angle.
     Measured(Arc<MeasuredCoating>),
 }
 
-/// Transmittance (or reflectance) by polarization: parts of the power.
+/// The transmittance (or reflectance) by polarization: fractions of the power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transmittance {
-    /// Electric field perpendicular to the plane of incidence.
+    /// Fraction for the electric field perpendicular to the plane of incidence.
     pub s: f64,
-    /// Electric field in the plane of incidence.
+    /// Fraction for the electric field in the plane of incidence.
     pub p: f64,
 }
 
-/// Reflectance by polarization: parts of the power.
+/// The reflectance by polarization: fractions of the power.
 pub type Reflectance = Transmittance;
 
 impl Transmittance {
-    /// Everything.
+    /// The transmittance 1: everything passes.
     pub const FULL: Self = Self { s: 1.0, p: 1.0 };
 
-    /// Of unpolarized light.
+    /// Returns the transmittance of unpolarized light: the mean of both.
     #[must_use]
     #[inline(always)]
     pub fn mean(self) -> f64 {
@@ -74,14 +76,14 @@ impl Transmittance {
 }
 
 impl Coating {
-    /// A layer that is a quarter of a wave thick at a wavelength, nm, at normal incidence.
+    /// Returns a layer that is a quarter of a wave thick at a wavelength, nm, at normal incidence.
     #[must_use]
     pub fn quarter_wave(index: f64, wavelength_nm: f64) -> Self {
         Self::Layer { index, thickness_nm: 0.25 * wavelength_nm / index }
     }
 
     /// Transmittance from a medium of index `n` into one of index `n_after`, at this cosine of the angle of incidence
-    /// (0 to 1) and wavelength in air, nm. Nothing passes on total reflection; `Ideal` passes everything else.
+    /// (0 to 1) and wavelength in air, nm. It is 0 on total reflection; otherwise `Ideal` passes everything.
     #[must_use]
     pub fn transmittance(&self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Transmittance {
         let sine = n * (1.0 - cos_incidence * cos_incidence).max(0.0).sqrt();
@@ -101,8 +103,8 @@ impl Coating {
 }
 
 impl Coating {
-    /// Reflectance, in the same terms as [`Coating::transmittance`]: 1 on total reflection, else what neither passes nor is
-    /// absorbed in the coating. Of a measured coating all that does not pass is reflected.
+    /// Reflectance, with arguments as for [`Coating::transmittance`]. It is 1 on total reflection, otherwise the fraction that is neither
+    /// transmitted nor absorbed in the coating. A measured coating reflects everything that it does not transmit.
     #[must_use]
     pub fn reflectance(&self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Reflectance {
         let cos_square = cos_square_beyond(n, n_after, cos_incidence);
@@ -129,30 +131,30 @@ fn cos_square_beyond(n: f64, n_after: f64, cos_incidence: f64) -> f64 {
     1.0 - sine * sine / (n_after * n_after)
 }
 
-/// [`Coating::reflectance`] of bare glass.
+/// Reflectance of bare glass; the same as [`Coating::reflectance`] of [`Coating::Bare`].
 #[inline(always)]
-pub(crate) fn bare_reflectance(n: f64, n_after: f64, cos_incidence: f64) -> Reflectance {
+pub fn bare_reflectance(n: f64, n_after: f64, cos_incidence: f64) -> Reflectance {
     let cos_square = cos_square_beyond(n, n_after, cos_incidence);
     let is_total = cos_square <= 0.0;
-    // Of total reflection no number.
+    // On total reflection this root is not a number.
     let (c, c_after) = (cos_incidence, cos_square.sqrt());
     let s = (n * c - n_after * c_after) / (n * c + n_after * c_after);
     let p = (n_after * c - n * c_after) / (n_after * c + n * c_after);
     Reflectance { s: if is_total { 1.0 } else { s * s }, p: if is_total { 1.0 } else { p * p } }
 }
 
-/// Fresnel: indices and cosines on both sides.
+/// Transmittance by Fresnel's equations from the indices and cosines on both sides.
 fn bare([n, n_after]: [f64; 2], [c, c_after]: [f64; 2]) -> Transmittance {
     let pass = |a: f64, b: f64| 4.0 * a * b / ((a + b) * (a + b));
     Transmittance { s: pass(n * c, n_after * c_after), p: pass(n_after * c, n * c_after) }
 }
 
-/// Square of `n_1 cos(theta_1)` in a layer; negative where the light does not run in it but decays.
+/// Square of `n_1 cos(theta_1)` in a layer; negative if light does not propagate in the layer but decays.
 fn layer_square(index: f64, n: f64, c: f64) -> f64 {
     index * index - n * n * (1.0 - c * c)
 }
 
-/// A layer in which the light runs: `in_layer` is n_1 cos(theta_1), `waves` its thickness over the wavelength.
+/// Transmittance of a layer in which light propagates: `in_layer` is n_1 cos(theta_1), `waves` the thickness divided by the wavelength.
 fn running_layer(
     [n, n_after]: [f64; 2],
     [c, c_after]: [f64; 2],
@@ -173,13 +175,13 @@ fn running_layer(
     }
 }
 
-/// A layer of any kind; in a thin one of low index between two glasses the light may decay, and some of it tunnels.
+/// Transmittance of any layer. In a thin layer of low index between two glasses light may decay, and some of it tunnels through.
 fn layer([n, n_after]: [f64; 2], [c, c_after]: [f64; 2], index: f64, waves: f64) -> Transmittance {
     let square = layer_square(index, n, c);
     if square > 0.0 {
         return running_layer([n, n_after], [c, c_after], index, square.sqrt(), waves);
     }
-    // eta_1 and delta turn imaginary: cos to cosh, sin to i sinh.
+    // eta_1 and delta become imaginary: cos turns into cosh, sin into i sinh.
     let decay = (-square).sqrt();
     let depth = std::f64::consts::TAU * decay * waves;
     if depth > 300.0 {
@@ -187,7 +189,7 @@ fn layer([n, n_after]: [f64; 2], [c, c_after]: [f64; 2], index: f64, waves: f64)
     }
     let (up, down) = (math::exp(depth), math::exp(-depth));
     let (sinh, cosh) = (0.5 * (up - down), 0.5 * (up + down));
-    // sinh over eta_1; at the critical angle itself both vanish, and their ratio is that of their slopes.
+    // sinh divided by eta_1; at the critical angle both vanish, and the ratio is that of their slopes.
     let pass = |a: f64, b: f64, scale: f64| {
         let layer = decay / scale;
         let ratio = if decay > 0.0 { sinh / layer } else { std::f64::consts::TAU * waves * scale };
@@ -206,7 +208,7 @@ mod tests {
         (1.0 - t.s, 1.0 - t.p)
     }
 
-    /// Textbook values at n = 1.5, six decimals.
+    /// Reflectances match textbook values at n = 1.5, to six decimals.
     #[test]
     fn bare_glass_by_angle() {
         for (angle, s, p) in [
@@ -222,7 +224,7 @@ mod tests {
         assert!(reflectance(&Coating::Bare, 1.5, math::atan(1.5).to_degrees(), 550.0).1.abs() < 1e-15);
     }
 
-    /// Normal incidence: (n - 1)^2 / (n + 1)^2, (n1^2 - n)^2 / (n1^2 + n)^2 for a quarter wave, and Airy's sum for 99.6 nm.
+    /// At normal incidence: (n - 1)^2 / (n + 1)^2, (n1^2 - n)^2 / (n1^2 + n)^2 for a quarter wave, and Airy's sum for 99.6 nm.
     #[test]
     fn one_layer_at_normal_incidence() {
         let quarter = Coating::quarter_wave(1.38, 587.56);
@@ -238,7 +240,7 @@ mod tests {
         }
     }
 
-    /// Amplitudes of the three-media sum in complex numbers (Born and Wolf 1.6.4, eq. 55 to 58), by hand: r + t apart.
+    /// Computes R and T from the amplitudes of three media in complex numbers (Born and Wolf 1.6.4, eq. 55 to 58), written out separately.
     fn airy(n: [f64; 3], cos0: f64, waves: f64, p: bool) -> (f64, f64) {
         let cosine = |k: usize| (1.0 - (n[0] / n[k]).powi(2) * (1.0 - cos0 * cos0)).sqrt();
         let c = [cos0, cosine(1), cosine(2)];
@@ -259,7 +261,7 @@ mod tests {
         (up / down, through)
     }
 
-    /// R and T of the sum over all bounces add up to one, and T is ours, at every angle, thickness and polarization.
+    /// R and T of the sum over all bounces add up to one, and T matches the code under test, at every angle, thickness and polarization.
     #[test]
     fn a_layer_keeps_energy() {
         for n in [[1.0, 1.38, 1.5168], [1.0, 2.1, 1.9], [1.7, 1.38, 1.0], [1.6, 1.5, 1.7]] {
@@ -284,7 +286,7 @@ mod tests {
         }
     }
 
-    /// Light passes as well backward, along the same path.
+    /// The same fraction of light passes backward along the same path.
     #[test]
     fn both_ways_alike() {
         for coating in
@@ -308,8 +310,8 @@ mod tests {
         }
     }
 
-    /// A gap of air between two prisms beyond the critical angle: nothing through a wide one, everything through none, and
-    /// for equal glasses T = 1 / (1 + (a sinh(depth))^2) (frustrated total reflection, s light: a = (q^2 + e^2) / (2 q e)).
+    /// Beyond the critical angle a wide gap of air between two prisms passes nothing, and no gap passes everything. For equal
+    /// glasses T = 1 / (1 + (a sinh(depth))^2) (frustrated total reflection, s light: a = (q^2 + e^2) / (2 q e)).
     #[test]
     fn light_tunnels_through_a_thin_gap() {
         let (n, cos) = (1.5_f64, 0.6_f64);

@@ -1,4 +1,4 @@
-//! Coatings as lens files, scenes and files of their own write them.
+//! Reads coatings as lens files, scenes and files of their own write them.
 
 use super::layers::{StackParams, stack};
 use super::{Coating, MeasuredCoating};
@@ -11,34 +11,34 @@ use spectra_core::resources::{Resources, beside};
 use spectra_core::spectral::BAND;
 use std::sync::Arc;
 
-/// What a coating says of itself, whatever its kind; a file that holds one may say more.
+/// The keys that every coating may have, whatever its kind; a file that holds a coating may have more of them.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct CoatingKeys {
-    /// Version of the format.
+    /// Version of the file format.
     #[expect(dead_code, reason = "its schema allows one version")]
     spectra: Option<Whole<1, 1>>,
-    /// Name for people.
+    /// Name of the coating, for people.
     #[expect(dead_code, reason = "for the reader of the file")]
     name: Option<String>,
-    /// Where the figures come from.
+    /// Source of the figures.
     #[expect(dead_code, reason = "for the reader of the file")]
     source: Option<String>,
-    /// Terms under which they came.
+    /// License of the figures.
     #[expect(dead_code, reason = "for the reader of the file")]
     license: Option<String>,
-    /// The same, as older files write it.
+    /// License of the figures, as older files spell it.
     #[expect(dead_code, reason = "for the reader of the file")]
     licence: Option<String>,
-    /// What else is worth knowing.
+    /// Remark for the reader of the file.
     #[expect(dead_code, reason = "for the reader of the file")]
     remark: Option<String>,
-    /// Whether it is assumed of the lens, not known.
+    /// Whether the coating is assumed for the lens, and not known.
     #[serde(default)]
     assumed: bool,
 }
 
-/// What a coating is written as: the name of a kind or of a file, or a map.
+/// The schema of `coating` in a file: the name of a kind or of a file, or a map.
 pub struct CoatingForm;
 
 impl JsonSchema for CoatingForm {
@@ -51,7 +51,7 @@ impl JsonSchema for CoatingForm {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        // A map that has `layers` is a stack, whether it says so or not.
+        // A map that has `layers` is a stack, with or without `kind`.
         let shared = CoatingKeys::json_schema(generator);
         let kinds = vec![("stack", StackParams::json_schema(generator))];
         let stack = Kinds { key: "kind", kinds, default: Some("stack"), shared: Some(&shared), by_name: false };
@@ -68,31 +68,31 @@ impl JsonSchema for CoatingForm {
     }
 }
 
-/// Largest measurement that is read, bytes.
+/// Largest file of a measurement that is read, bytes.
 const MAX_BYTES: u64 = 4 << 20;
 
-/// A coating, and whether it is known of the lens.
+/// A coating, and whether it is assumed or known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatedCoating {
-    /// The coating.
+    /// Coating that the file states.
     pub coating: Coating,
-    /// Whether it is assumed, as of lenses of the time.
+    /// Whether the coating is assumed, as usual for lenses of its time.
     pub assumed: bool,
 }
 
-/// Reads the name of a kind that needs no more (`bare`, `three-layer`), a map, or the name of a file: `my-stack.yaml` with a
-/// coating, or `my-coating.csv` with a measured reflectance or transmittance.
+/// Reads a coating: the name of a kind without parameters (`bare`, `three-layer`), a map, or the name of a file. A file `my-stack.yaml`
+/// holds a coating, `my-coating.csv` a measured reflectance or transmittance.
 ///
 /// # Errors
-/// What is wrong with it, placed; what is wrong with the file, placed there.
+/// Faults in the coating, each with its place; faults in the file, with their place in the file.
 pub fn read_coating(node: &StageNode, resources: &dyn Resources) -> Result<Coating, Faults> {
     Ok(read_stated_coating(node, resources)?.coating)
 }
 
-/// The same, with what is said of how it is known.
+/// Reads a coating like [`read_coating`], and whether it is marked as assumed.
 ///
 /// # Errors
-/// As [`read_coating`].
+/// Fails like [`read_coating`].
 pub fn read_stated_coating(node: &StageNode, resources: &dyn Resources) -> Result<StatedCoating, Faults> {
     match node.node().as_str() {
         Some(name) if !known().contains(&name) => {
@@ -103,10 +103,10 @@ pub fn read_stated_coating(node: &StageNode, resources: &dyn Resources) -> Resul
 }
 
 impl Coating {
-    /// The coating that is called so: a kind that needs no more, or a file.
+    /// Returns the coating of this name: a kind without parameters, or a file. Faults quote it as the command-line option `--coating`.
     ///
     /// # Errors
-    /// Nothing is; what is wrong with the file.
+    /// A fault if there is no such kind or file; faults in the file.
     pub fn named(name: &str, resources: &dyn Resources) -> Result<Self, Faults> {
         let file = Arc::new(SourceFile::new(format!("--coating {name}"), name));
         let node = Node::new(Value::String(name.to_owned()), Span::default(), file);
@@ -114,7 +114,7 @@ impl Coating {
     }
 }
 
-/// The coating of a map, or of a kind by its name.
+/// Reads the coating of a map, or of a kind by its name.
 fn of_params(params: &Params, resources: &dyn Resources) -> Result<StatedCoating, Faults> {
     let (keys, own) = params.split(&keys_of::<CoatingKeys>());
     let context = Context::new(resources, BAND);
@@ -129,14 +129,14 @@ fn of_params(params: &Params, resources: &dyn Resources) -> Result<StatedCoating
     Ok(StatedCoating { coating: *coating, assumed: keys.assumed })
 }
 
-/// Names of the kinds, sorted.
+/// Names of the registered kinds, sorted.
 fn known() -> Vec<&'static str> {
     let mut names: Vec<&str> = Coating::entries().iter().map(|entry| entry.name).collect();
     names.sort_unstable();
     names
 }
 
-/// The coating of a file.
+/// Reads the coating of a file. A fault if `name` is not the name of a file.
 fn named(name: &str, node: &StageNode, resources: &dyn Resources) -> Result<Coating, Faults> {
     let (path, column) = match name.rsplit_once('#') {
         Some((file, column)) => (file.trim(), Some(column.trim())),
@@ -172,7 +172,7 @@ fn named(name: &str, node: &StageNode, resources: &dyn Resources) -> Result<Coat
     }
 }
 
-/// A file that is not found has no place: the value that names it has.
+/// Gives faults without a place the place of the value that names the file, for a file that was not found.
 fn placed(faults: Faults, node: &StageNode) -> Faults {
     let place = |fault: Fault| {
         if fault.place.is_some() {

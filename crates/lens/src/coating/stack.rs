@@ -1,10 +1,10 @@
-//! Any stack of thin layers, by the characteristic matrix.
+//! Any stack of thin layers, computed with the characteristic matrix.
 //!
-//! F. Abeles; as in H. A. Macleod, "Thin-Film Optical Filters", chapter 2, and Born and Wolf, section 1.6.2: each layer of
+//! The method is by F. Abeles, as in H. A. Macleod, "Thin-Film Optical Filters", chapter 2, and Born and Wolf, section 1.6.2. Each layer of
 //! complex index N = n - i k has the phase thickness delta = 2 pi N d cos(theta) / lambda and the matrix
-//! [[cos delta, i sin delta / eta], [i eta sin delta, cos delta]], with eta = N cos(theta) for the electric field across the
+//! [[cos delta, i sin delta / eta], [i eta sin delta, cos delta]]. Here eta = N cos(theta) for the electric field across the
 //! plane of incidence and N / cos(theta) in it. (B, C) is the product of all matrices times (1, eta'), and
-//! T = 4 eta eta' / |eta B + C|^2. It is the same from both sides, absorbing layers included.
+//! T = 4 eta eta' / |eta B + C|^2. T is the same from both sides, absorbing layers included.
 
 use super::{Reflectance, Transmittance};
 use spectra_core::math;
@@ -12,27 +12,27 @@ use std::ops::{Add, Div, Mul};
 
 /// First wavelength of the tables of indices, nm.
 const FROM_NM: f64 = 200.0;
-/// Last one, nm.
+/// Last wavelength of the tables of indices, nm.
 const TO_NM: f64 = 2500.0;
-/// Phase whose imaginary part is larger lets nothing through.
+/// Imaginary part of the phase above which a layer lets nothing through.
 const OPAQUE: f64 = 300.0;
 
 /// One layer of a stack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StackLayer {
     thickness_nm: f64,
-    /// n and k by nanometer from [`FROM_NM`]; one pair where both are the same at all wavelengths.
+    /// n and k for each nanometer from [`FROM_NM`]; one pair if both are the same at all wavelengths.
     index: Vec<[f64; 2]>,
 }
 
 impl StackLayer {
-    /// A layer of this thickness, nm, of the same index n - i k at all wavelengths.
+    /// Creates a layer of this thickness, nm, with the same index n - i k at all wavelengths.
     #[must_use]
     pub fn constant(thickness_nm: f64, n: f64, k: f64) -> Self {
         Self { thickness_nm, index: vec![[n, k]] }
     }
 
-    /// A layer of this thickness, nm, whose n and k are asked for at each wavelength, nm.
+    /// Creates a layer of this thickness, nm, and tabulates its n and k by wavelength, nm.
     #[must_use]
     pub fn dispersive(thickness_nm: f64, n_and_k: impl Fn(f64) -> [f64; 2]) -> Self {
         let count = (TO_NM - FROM_NM) as usize + 1;
@@ -49,33 +49,33 @@ impl StackLayer {
     }
 }
 
-/// Layers on a surface, the first one next to the air: to the medium of the lower index.
+/// The layers on a surface. The first one is next to the air, that is, to the medium of the lower index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stack {
     layers: Vec<StackLayer>,
 }
 
 impl Stack {
-    /// Layers in order, the first one next to the air.
+    /// Creates a stack of layers in order, the first one next to the air.
     #[must_use]
     pub fn new(layers: Vec<StackLayer>) -> Self {
         Self { layers }
     }
 
-    /// Number of layers.
+    /// Number of layers in the stack.
     #[must_use]
     pub fn len(&self) -> usize {
         self.layers.len()
     }
 
-    /// Whether there is none: bare glass.
+    /// Whether the stack has no layers: bare glass.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.layers.is_empty()
     }
 
-    /// Index and thickness, nm, of each layer where there are `N`, none of which absorbs or disperses.
-    pub(crate) fn clear_layers<const N: usize>(&self) -> Option<[[f64; 2]; N]> {
+    /// Returns the index and the thickness, nm, of each layer if there are `N` layers and none of them absorbs or disperses.
+    pub fn clear_layers<const N: usize>(&self) -> Option<[[f64; 2]; N]> {
         let clear = |layer: &StackLayer| match layer.index[..] {
             [[n, 0.0]] => Some([n, layer.thickness_nm]),
             _ => None,
@@ -84,11 +84,11 @@ impl Stack {
         layers.try_into().ok()
     }
 
-    /// Transmittance between two media of these indices, with the cosines of the angles in them, at a wavelength, nm.
+    /// Transmittance between two media of these indices at a wavelength, nm. The cosines are those of the angles in the two media.
     #[must_use]
     pub fn transmittance(&self, [n, n_after]: [f64; 2], [c, c_after]: [f64; 2], wavelength_nm: f64) -> Transmittance {
         let tangential = n * n * (1.0 - c * c);
-        // Light that comes out of the glass meets the last layer first; what passes is the same either way.
+        // Light that comes out of the glass meets the last layer first, but the same fraction passes in both directions.
         let (n, c, n_after, c_after) = if n <= n_after { (n, c, n_after, c_after) } else { (n_after, c_after, n, c) };
         let (front, back) = (ends(n, c), ends(n_after, c_after));
         let Some([s, p]) = self.admittance(self.layers.iter().rev(), tangential, back.map(real), wavelength_nm) else {
@@ -101,31 +101,31 @@ impl Stack {
         Transmittance { s: through(s, front[0], back[0]), p: through(p, front[1], back[1]) }
     }
 
-    /// Reflectance for light that arrives in the medium of index `n`, in the terms of [`Stack::transmittance`]: an absorbing stack
-    /// reflects differently by side.
+    /// Reflectance for light that arrives in the medium of the first index, with arguments as for [`Stack::transmittance`]. An absorbing
+    /// stack has different reflectances on its two sides.
     #[must_use]
     pub fn reflectance(&self, indices: [f64; 2], [c, _]: [f64; 2], wavelength_nm: f64) -> Reflectance {
         let [s, p] = self.amplitudes(indices, c, wavelength_nm).map(|[_, back]| back.size2());
         Reflectance { s, p }
     }
 
-    /// What passes and what comes back, of s and of p light that arrives in a medium of index `n` at this cosine: amplitudes of
-    /// the tangential fields, those of what passes scaled so that their squares are parts of the power. Nothing passes on total
-    /// reflection.
+    /// Computes the amplitudes of transmitted and reflected light, for s and for p light that arrives in a medium of index `n` at this
+    /// cosine. They are amplitudes of the tangential fields. Transmitted amplitudes are scaled so that their squares are fractions of the
+    /// power; they are 0 on total reflection.
     pub(super) fn amplitudes(&self, [n, n_after]: [f64; 2], c: f64, wavelength_nm: f64) -> [[Complex; 2]; 2] {
         let tangential = n * n * (1.0 - c * c);
-        // N cos(theta) behind; where the light only decays, in this direction.
+        // N cos(theta) behind the stack; the conjugate makes an evanescent wave decay in this direction.
         let along = real(n_after * n_after - tangential).sqrt().conjugate();
         let front = ends(n, c);
         let back =
             if along.size2() > 0.0 { [along, real(n_after * n_after) / along] } else { ends(n_after, 0.0).map(real) };
-        // The layers from the far side on; the one next to the air is the first.
+        // The layers are taken from the far side; the first layer is the one next to the air.
         let sums = if n <= n_after {
             self.admittance(self.layers.iter().rev(), tangential, back, wavelength_nm)
         } else {
             self.admittance(self.layers.iter(), tangential, back, wavelength_nm)
         };
-        // An opaque layer: what lies behind it does not matter, and its own admittance would be needed. It is black here.
+        // With an opaque layer nothing behind it matters, but its own admittance would be needed. It counts as black here.
         let Some([s, p]) = sums else { return [[real(0.0); 2]; 2] };
         let of = |[b, c]: [Complex; 2], eta: f64, eta_after: Complex| {
             let down = b * real(eta) + c;
@@ -135,7 +135,7 @@ impl Stack {
         [of(s, front[0], back[0]), of(p, front[1], back[1])]
     }
 
-    /// (B, C) of both polarizations in front of the layers, which are given from the far side on; `None` where one is opaque.
+    /// Computes (B, C) of both polarizations in front of the layers, which are given from the far side on; `None` if a layer is opaque.
     fn admittance<'a>(
         &self,
         layers: impl Iterator<Item = &'a StackLayer>,
@@ -148,7 +148,7 @@ impl Stack {
         for layer in layers {
             let index = layer.at(wavelength_nm);
             let square = index * index;
-            // N cos(theta): the sign of the root does not matter, since all that follows is even in it.
+            // N cos(theta): the sign of the root does not matter, because everything that follows is even in it.
             let along = (square + real(-tangential)).sqrt();
             let turn = std::f64::consts::TAU * layer.thickness_nm / wavelength_nm;
             let delta = Complex { re: along.re * turn, im: along.im * turn };
@@ -165,7 +165,7 @@ impl Stack {
     }
 }
 
-/// Admittances of a medium of index `n` for a ray of this cosine: s and p.
+/// Admittances of a medium of index `n` for a ray of this cosine: for s and for p light.
 fn ends(n: f64, c: f64) -> [f64; 2] {
     [n * c, n / c.max(1e-12)]
 }
@@ -174,7 +174,7 @@ fn real(re: f64) -> Complex {
     Complex { re, im: 0.0 }
 }
 
-/// The matrix of a layer times (B, C): `over` is sin(delta) / eta, `times` is eta sin(delta).
+/// Multiplies (B, C) by the matrix of a layer: `over` is sin(delta) / eta, `times` is eta sin(delta).
 fn pass([b, c]: [Complex; 2], cos: Complex, over: Complex, times: Complex) -> [Complex; 2] {
     [cos * b + over.turned() * c, times.turned() * b + cos * c]
 }
@@ -198,12 +198,12 @@ impl Complex {
         Self { re: -self.re, im: -self.im }
     }
 
-    /// Times i.
+    /// Multiplies the number by i.
     fn turned(self) -> Self {
         Self { re: -self.im, im: self.re }
     }
 
-    /// The root with a real part that is not negative.
+    /// Returns the square root whose real part is not negative.
     fn sqrt(self) -> Self {
         let size = self.size2().sqrt();
         let re = (0.5 * (size + self.re)).max(0.0).sqrt();
@@ -251,7 +251,7 @@ mod tests {
         (square > 0.0).then(|| [c, square.sqrt()])
     }
 
-    /// One layer is the closed form of one layer; none is Fresnel's; in glass that the light only decays in, too.
+    /// One layer matches the closed form of one layer, and no layer matches Fresnel's equations; also if light only decays in the layer.
     #[test]
     fn one_layer_and_none() {
         for (n, n_after) in [(1.0, 1.5168), (1.7, 1.0), (1.5, 1.5)] {
@@ -271,8 +271,8 @@ mod tests {
         }
     }
 
-    /// Quarter waves: a mirror of p pairs reflects ((1 - Y) / (1 + Y))^2 with Y = (high / low)^(2 p) high^2 / n' where the
-    /// high index lies on both sides (Macleod, section 5.1, eq. 5.1): 2.35 and 1.35 on 1.52, four pairs and one more.
+    /// A quarter-wave mirror of p pairs with the high index on both sides reflects ((1 - Y) / (1 + Y))^2 with Y = (high / low)^(2 p) high^2
+    /// / n' (Macleod, section 5.1, eq. 5.1). Here 2.35 and 1.35 on 1.52, four pairs and one more layer.
     #[test]
     fn a_quarter_wave_mirror() {
         let (high, low, glass, wave) = (2.35_f64, 1.35_f64, 1.52, 550.0);
@@ -287,8 +287,8 @@ mod tests {
         assert!((got - want).abs() < 1e-12, "{got} {want}");
     }
 
-    /// A thin film of silver absorbs: 20 nm of n = 0.055, k = 3.32 between air and glass of 1.52 at 550 nm, by the
-    /// sum over all bounces in complex numbers (Born and Wolf 1.6.4, eq. 58), computed apart with 30 digits.
+    /// A thin film of silver absorbs: 20 nm of n = 0.055, k = 3.32 between air and glass of 1.52 at 550 nm. The reference is the
+    /// sum over all bounces in complex numbers (Born and Wolf 1.6.4, eq. 58), computed separately with 30 digits.
     #[test]
     fn metal_absorbs_and_passes_alike_from_both_sides() {
         let silver = Stack::new(vec![StackLayer::constant(20.0, 0.055, 3.32)]);

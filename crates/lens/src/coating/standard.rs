@@ -1,9 +1,9 @@
-//! Coatings as lenses of a time had them, for lenses of which no more is known than their year.
+//! Standard coatings: those that lenses of a period usually had, for lenses of which only the year is known.
 //!
-//! Evaporated layers of magnesium fluoride came into production around 1940 (A. Smakula, German patent DE 685767, 1935; C. H.
-//! Cartwright and A. F. Turner, Physical Review 55, 1939, 675), three layers around 1970 (J. T. Cox, G. Hass and A. Thelen,
-//! "Triple-layer antireflection coatings on glass for the visible and near infrared", JOSA 52, 1962, 965; Asahi's
-//! Super-Multi-Coating of 1971).
+//! A lens that states no coating gets the coating of its year, marked as assumed. Evaporated layers of magnesium fluoride came into
+//! production around 1940 (A. Smakula, German patent DE 685767, 1935; C. H. Cartwright and A. F. Turner, Physical Review 55, 1939, 675),
+//! three layers around 1970 (J. T. Cox, G. Hass and A. Thelen, "Triple-layer antireflection coatings on glass for the visible and near
+//! infrared", JOSA 52, 1962, 965; Asahi's Super-Multi-Coating of 1971).
 
 use super::{Coating, CoatingEntry, Stack, StackLayer};
 use schemars::JsonSchema;
@@ -16,17 +16,17 @@ const MAGNESIUM_FLUORIDE: f64 = 1.38;
 const ZIRCONIUM_OXIDE: f64 = 2.10;
 /// Index of a layer of magnesium oxide.
 const MAGNESIUM_OXIDE: f64 = 1.72;
-/// Wavelength of the single layer, nm: where the eye sees most.
+/// Design wavelength of the single layer, nm: near the peak of the eye's sensitivity.
 const SINGLE_NM: f64 = 550.0;
-/// Wavelength of the three layers, nm: in the middle of 430 to 650 nm by wave number.
+/// Design wavelength of the three layers, nm: the middle of 430 to 650 nm by wave number.
 const THREE_NM: f64 = 515.0;
 
 /// First year of the single layer.
 const SINGLE_FROM: i32 = 1940;
-/// First year of three layers.
+/// First year of the three layers.
 const THREE_FROM: i32 = 1970;
 
-/// Registers a coating that has no parameters.
+/// Registers a kind of coating that has no parameters.
 macro_rules! coating {
     ($(#[$doc:meta])* $name:literal, $params:ident, $coating:expr) => {
         $(#[$doc])*
@@ -41,9 +41,9 @@ macro_rules! coating {
 }
 
 coating! {
-    /// All light passes, nothing is reflected.
+    /// A perfect coating: all light passes, nothing is reflected.
     ///
-    /// For a lens whose losses do not matter, and to see what they are worth.
+    /// Use it for a lens whose losses do not matter, or to see how much the losses cost.
     ///
     /// # Example
     /// ```yaml
@@ -52,9 +52,9 @@ coating! {
     "ideal", Ideal, Coating::Ideal
 }
 coating! {
-    /// Glass as it is: Fresnel's formulas.
+    /// Uncoated glass, by Fresnel's formulas.
     ///
-    /// What lenses made before 1940 have; 4 % are lost at each surface of ordinary glass, more at heavy flint.
+    /// Lenses made before 1940 have no coating. Each surface of ordinary glass loses 4 % of the light, heavy flint more.
     ///
     /// # Example
     /// ```yaml
@@ -65,7 +65,7 @@ coating! {
 coating! {
     /// A quarter wave of magnesium fluoride at 550 nm.
     ///
-    /// What lenses from 1940 to 1970 have as a rule: 1.3 % are lost at ordinary glass, and the lens shines purple.
+    /// Lenses from 1940 to 1970 usually have it. Ordinary glass loses 1.3 % of the light at each surface, and reflections look purple.
     ///
     /// # Example
     /// ```yaml
@@ -76,7 +76,7 @@ coating! {
 coating! {
     /// Three layers: a quarter wave of index 1.38, half a wave of 2.10, a quarter wave of 1.72, at 515 nm.
     ///
-    /// What lenses from 1970 on have as a rule: below 0.5 % of loss from 430 to 650 nm.
+    /// Lenses from 1970 on usually have it. The loss stays below 0.5 % from 430 to 650 nm.
     ///
     /// # Example
     /// ```yaml
@@ -89,14 +89,14 @@ coating! {
 }
 
 impl Coating {
-    /// A quarter wave of magnesium fluoride at 550 nm: 1.3 % of reflectance on glass of 1.52, 0.4 % on 1.7.
+    /// Returns a quarter wave of magnesium fluoride at 550 nm: its reflectance is 1.3 % on glass of index 1.52 and 0.4 % on 1.7.
     #[must_use]
     pub fn single_layer() -> Self {
         Self::quarter_wave(MAGNESIUM_FLUORIDE, SINGLE_NM)
     }
 
-    /// A quarter wave of 1.38, half a wave of 2.10 and a quarter wave of 1.72 at 515 nm: below 0.5 % of reflectance from
-    /// 430 to 650 nm on glass of 1.51 to 1.78.
+    /// Returns a quarter wave of index 1.38, half a wave of 2.10 and a quarter wave of 1.72 at 515 nm: the reflectance is below 0.5 % from
+    /// 430 to 650 nm on glass of index 1.51 to 1.78.
     #[must_use]
     pub fn three_layer() -> Self {
         let layer = |waves: f64, index: f64| StackLayer::constant(waves * THREE_NM / index, index, 0.0);
@@ -104,8 +104,8 @@ impl Coating {
         Self::Stack(Arc::new(Stack::new(layers)))
     }
 
-    /// What lenses of a year had as a rule: none before 1940, one layer before 1970, then three. Without a year bare glass:
-    /// nothing is taken for granted.
+    /// Returns the usual coating of lenses of a year: none before 1940, one layer before 1970, then three. Without a year the glass is
+    /// bare, because nothing is taken for granted.
     #[must_use]
     pub fn of_year(year: Option<i32>) -> Self {
         match year {
@@ -115,7 +115,7 @@ impl Coating {
         }
     }
 
-    /// In a few words: `bare`, `a single layer`, `three layers`.
+    /// Describes the coating in a few words: `bare`, `a single layer of MgF2`, `three layers`.
     #[must_use]
     pub fn words(&self) -> String {
         match self {
@@ -140,7 +140,7 @@ mod tests {
         1.0 - coating.transmittance(1.0, n, 1.0, nm).mean()
     }
 
-    /// Three layers stay below 0.5 % over 430 to 650 nm on the usual glasses, by the characteristic matrix; one does not.
+    /// Three layers reflect less than 0.5 % from 430 to 650 nm on the usual glasses, by the characteristic matrix; a single layer does not.
     #[test]
     fn three_layers_stay_below_half_a_percent() {
         for n in [1.5168, 1.55, 1.5891, 1.62, 1.6727, 1.72, 1.755, 1.78] {

@@ -1,29 +1,33 @@
-//! What clear layers pass, in single precision, for rendering: twice as many rays an instruction as by [`Films`].
+//! Transmission of clear layers in single precision, for rendering: twice as many rays per instruction as with [`Films`].
 //!
-//! The formulas are those of [`Films`], but it is the part *reflected* that is worked out,
-//! R = ((eta a - eta' d)^2 + (eta eta' x - y)^2) / ((eta a + eta' d)^2 + (eta eta' x + y)^2), and the weight loses that part of itself.
-//! R is small, and so is its error: what passes is within [`SWIFT_ERROR`] of the exact formula, which the tests hold. Where R is large
-//! (grazing light, layers of many orders) the layers are left to [`Films`].
+//! The formulas are those of [`Films`], but the *reflected* fraction is computed and subtracted from the weight:
+//! R = ((eta a - eta' d)^2 + (eta eta' x - y)^2) / ((eta a + eta' d)^2 + (eta eta' x + y)^2).
+//! Because R is small, its error is small, too: the transmission is within 1e-6 of the exact formula, as tests check. Where R is large
+//! (grazing light, layers of many orders) [`Films`] is used, which is within 1e-10.
+//!
+//! Polynomials in wavelength and angle of that accuracy would have as many terms as the closed form has operations. Tables would wait for
+//! memory.
 
 use super::Films;
 use super::films::times;
 
-/// What passes differs from the exact formula by less than this.
+/// Upper limit of the error of the transmission.
 #[cfg(test)]
-pub(crate) const SWIFT_ERROR: f64 = 1e-6;
+pub const SWIFT_ERROR: f64 = 1e-6;
 
-/// Largest square of delta / 2^H for which the polynomials of [`cos_and_sinc`] are good.
+/// Largest square of delta / 2^H for which the polynomials of [`cos_and_sinc`] hold.
 const REACH: f64 = 6.25;
-/// Each halving makes the error four times as large.
+/// Largest number of halvings. Each one makes the error four times as large.
 const MOST_HALVINGS: u32 = 1;
 
-/// Rays that are worked out side by side.
-pub(crate) const CHUNK: usize = 64;
-pub(crate) type Singles = [f32; CHUNK];
+/// Number of rays that are computed side by side.
+pub const CHUNK: usize = 64;
+/// A column of [`CHUNK`] values in single precision.
+pub type Singles = [f32; CHUNK];
 
-/// [`Films`] in single precision.
+/// Clear layers as in [`Films`], in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Swift<const N: usize> {
+pub struct Swift<const N: usize> {
     square: [f32; N],
     per_square: [f32; N],
     turn_nm: [f32; N],
@@ -33,9 +37,9 @@ pub(crate) struct Swift<const N: usize> {
 }
 
 impl<const N: usize> Swift<N> {
-    /// For light of this wavelength, nm, or longer, between media of which the lower index is `low`; `None` where single precision
-    /// would not do.
-    pub(crate) fn of(films: &Films<N>, shortest_nm: f64, low: f64) -> Option<Self> {
+    /// Converts layers for light of this wavelength, nm, or longer, between media of which the lower index is `low`. Returns `None` if
+    /// single precision is not accurate enough.
+    pub fn of(films: &Films<N>, shortest_nm: f64, low: f64) -> Option<Self> {
         let largest = |h: u32| REACH * f64::from(1_u32 << (2 * h));
         let good = |h: &u32| {
             (0..N).all(|k| {
@@ -49,10 +53,10 @@ impl<const N: usize> Swift<N> {
         Some(Self { square, per_square, turn_nm, scale: 1.0 / (1_u32 << (2 * halvings)) as f32, halvings })
     }
 
-    /// The part of unpolarized light that is reflected: h and the indices as in the head of `films.rs`, and one over the wavelength,
-    /// 1/nm.
+    /// Computes the fraction of unpolarized light that is reflected. `h` and the indices are defined at the head of `films.rs`; `per_nm` is
+    /// one over the wavelength, 1/nm.
     #[inline(always)]
-    pub(crate) fn reflects(&self, n: f32, n_after: f32, h: f32, per_nm: f32) -> f32 {
+    pub fn reflects(&self, n: f32, n_after: f32, h: f32, per_nm: f32) -> f32 {
         let step = n_after - n;
         let (u, v) = (step - n_after * h, step + n * h);
         let both = n * n_after;
@@ -74,7 +78,7 @@ impl<const N: usize> Swift<N> {
             let next_p = [cos, along2 * over * self.per_square[k], self.square[k] * over, cos];
             (s, p) = if k == 0 { (next_s, next_p) } else { (times(s, next_s), times(p, next_p)) };
         }
-        // Of the sum and of the difference, the square.
+        // Squares of the sum and of the difference.
         let squares = |re: [f32; 2], im: [f32; 2]| {
             let (re_sum, im_sum) = (re[0] + re[1], im[0] + im[1]);
             let (re_less, im_less) = (re[0] - re[1], im[0] - im[1]);
@@ -88,8 +92,8 @@ impl<const N: usize> Swift<N> {
     }
 }
 
-/// cos(delta) and sin(delta) / delta by the square of delta, from 0 to [`REACH`]: interpolated at Chebyshev's nodes, within 6e-8 and
-/// 5e-9 but for rounding.
+/// Computes cos(delta) and sin(delta) / delta from the square of delta, 0 to [`REACH`]. The polynomials interpolate at Chebyshev's nodes
+/// and are within 6e-8 and 5e-9, apart from rounding.
 #[inline(always)]
 fn cos_and_sinc(z: f32) -> (f32, f32) {
     let cos = 0.999_999_95
@@ -108,8 +112,8 @@ mod tests {
     use spectra_core::math;
     use std::sync::Arc;
 
-    /// Every pair of media, every angle and wavelength of the band against [`Coating::transmittance`]; the largest difference and the
-    /// mean one.
+    /// Compares every pair of media, angle and wavelength of the band with [`Coating::transmittance`]. Returns the largest difference and
+    /// the mean difference.
     fn differences<const N: usize>(layers: [[f64; 2]; N], shortest_nm: f64) -> (f64, f64) {
         let films = Films::new(&layers);
         let stack = layers.iter().map(|[index, nm]| StackLayer::constant(*nm, *index, 0.0)).collect();
@@ -148,12 +152,12 @@ mod tests {
             differences([quarter(1.38), quarter(1.72)], 350.0),
             differences(three, 350.0),
         ] {
-            // Rounding has no preference.
+            // Rounding errors have no bias.
             assert!(worst < SWIFT_ERROR && mean.abs() < 0.1 * SWIFT_ERROR, "{worst:e}, {mean:e} in the mean");
         }
     }
 
-    /// Thick layers, and those in which light may decay, are left to double precision.
+    /// Thick layers, and layers in which light may decay, are left to double precision.
     #[test]
     fn what_single_precision_is_no_good_for() {
         let swift =

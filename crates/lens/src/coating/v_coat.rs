@@ -1,10 +1,10 @@
-//! `kind: v-coat`: two layers that reflect nothing at one wavelength.
+//! `kind: v-coat`: two layers that together reflect nothing at one wavelength.
 //!
-//! H. A. Macleod, "Thin-Film Optical Filters", chapter 3, antireflection coatings of two layers: with indices n1 next to the air
-//! and n2 next to the glass n', a stack of phase thicknesses delta1 and delta2 reflects nothing at normal incidence where
-//! tan^2 delta1 = (n' - 1) (n2^2 - n') n1^2 / ((n1^2 n' - n2^2) (n' - n1^2)),
-//! tan^2 delta2 = (n' - 1) (n' - n1^2) n2^2 / ((n1^2 n' - n2^2) (n2^2 - n')),
-//! and tan delta1 tan delta2 = n1 n2 (n' - 1) / (n1^2 n' - n2^2) says which of their angles belong together.
+//! From H. A. Macleod, "Thin-Film Optical Filters", chapter 3, antireflection coatings of two layers. With index n1 next to the air
+//! and n2 next to the glass n', a stack of phase thicknesses delta1 and delta2 reflects nothing at normal incidence if
+//! tan^2 delta1 = (n' - 1) (n2^2 - n') n1^2 / ((n1^2 n' - n2^2) (n' - n1^2)) and
+//! tan^2 delta2 = (n' - 1) (n' - n1^2) n2^2 / ((n1^2 n' - n2^2) (n2^2 - n')).
+//! The product tan delta1 tan delta2 = n1 n2 (n' - 1) / (n1^2 n' - n2^2) determines which pairs of angles belong together.
 
 use super::{Coating, CoatingEntry, Stack, StackLayer};
 use schemars::JsonSchema;
@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 /// Two layers that reflect nothing at one wavelength, on glass of one index.
 ///
-/// For lenses of one light: lasers, narrow filters, a line of hydrogen. Beside its wavelength it reflects more than a single layer; on
-/// glass of another index a little remains. The inner layer is of high index, both are as thin as they can be.
+/// Use it for lenses that see one wavelength: lasers, narrow filters, a hydrogen line. At other wavelengths it reflects more than a single
+/// layer; on glass of another index a little reflection remains. The inner layer has the high index; both are as thin as possible.
 ///
 /// # Example
 /// ```yaml
@@ -30,16 +30,16 @@ use std::sync::Arc;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct VCoat {
-    /// Where nothing is reflected, nm if bare.
+    /// Wavelength at which nothing is reflected, nm if bare.
     at: Positive<Wavelength>,
-    /// Index of the glass there, 1.1 to 4.
+    /// Index of the glass at that wavelength, 1.1 to 4.
     #[schemars(range(min = 1.1, max = 4))]
     glass: f64,
-    /// Index of the layer next to the air, 1.1 to 5: magnesium fluoride.
+    /// Index of the layer next to the air, 1.1 to 5; the default is magnesium fluoride.
     #[serde(default = "magnesium_fluoride")]
     #[schemars(range(min = 1.1, max = 5))]
     low: f64,
-    /// Index of the layer next to the glass, 1.1 to 5: zirconium oxide.
+    /// Index of the layer next to the glass, 1.1 to 5; the default is zirconium oxide.
     #[serde(default = "zirconium_oxide")]
     #[schemars(range(min = 1.1, max = 5))]
     high: f64,
@@ -58,17 +58,17 @@ spectra_core::register!(CoatingEntry, "v-coat": VCoat, build);
 fn build(params: &Params, _: &Context<'_>) -> Result<Box<Coating>, Faults> {
     let p: VCoat = params.parse()?;
     let Some([outer, inner]) = waves(p.low, p.high, p.glass) else {
-        let text = format!("layers of {} and {} cannot take away what glass of {} reflects", p.low, p.high, p.glass);
+        let text = format!("layers of {} and {} cannot cancel the reflection of glass of {}", p.low, p.high, p.glass);
         return Err(params
             .fault("glass", text)
-            .hint("`low` above the root of the glass's index, and `high` above `low` times that root")
+            .hint("choose `low` above the square root of the glass's index, and `high` above `low` times that root")
             .into());
     };
     let layer = |waves: f64, index: f64| StackLayer::constant(waves * p.at.nm() / index, index, 0.0);
     Ok(Box::new(Coating::Stack(Arc::new(Stack::new(vec![layer(outer, p.low), layer(inner, p.high)])))))
 }
 
-/// Optical thicknesses of both layers in wavelengths, the thinner pair; `None` where there is none.
+/// Computes the optical thicknesses of both layers in wavelengths, for the thinner pair; `None` if there is no solution.
 fn waves(low: f64, high: f64, glass: f64) -> Option<[f64; 2]> {
     let (low2, high2) = (low * low, high * high);
     let (above, below, cross) = (high2 - glass, glass - low2, low2 * glass - high2);
@@ -91,8 +91,8 @@ fn waves(low: f64, high: f64, glass: f64) -> Option<[f64; 2]> {
 mod tests {
     use super::*;
 
-    /// By the characteristic matrix, which knows nothing of these formulas: nothing is reflected at the wavelength, on every glass; and
-    /// beside it the curve is the V that has given it its name.
+    /// By the characteristic matrix, which is independent of these formulas, nothing is reflected at the wavelength on any glass. Beside
+    /// it the curve has the V shape that gives the coating its name.
     #[test]
     fn nothing_is_reflected_at_its_wavelength() {
         let mut found = 0;
@@ -111,12 +111,12 @@ mod tests {
         assert_eq!(found, 12);
     }
 
-    /// What a single layer can do: on glass of the square of its index no second layer is needed.
+    /// On glass whose index is the square of the layer's index a single layer suffices, and the second layer vanishes.
     #[test]
     fn a_perfect_single_layer_needs_no_second() {
         let [outer, inner] = waves(1.38, 2.1, 1.38 * 1.38 - 1e-12).expect("a coating");
         assert!((outer - 0.25).abs() < 1e-5 && inner < 1e-5, "{outer} {inner}");
-        // Between two low layers there is none on such glass.
+        // Two layers of low index have no solution on such glass.
         assert_eq!(waves(1.2, 1.3, 1.9), None);
     }
 }

@@ -1,41 +1,42 @@
-//! How groups move when a lens is focused.
+//! Focusing laws: how groups of surfaces move when a lens is focused.
 
-/// The motion of one group.
+/// The motion of one group in focusing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FocusLaw {
-    /// The group: index into [`crate::Lens::groups`].
+    /// Group that moves: index into [`crate::Lens::groups`].
     pub group: usize,
-    /// How it moves.
+    /// How the group moves.
     pub travel: GroupTravel,
 }
 
-/// How a group moves.
+/// The way a group moves in focusing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GroupTravel {
-    /// This many times the common travel, toward the object where positive. The travel follows from the distance.
+    /// The group moves this many times the common travel, toward the object if positive. The common travel follows from the object
+    /// distance.
     Factor(f64),
-    /// As a table says.
+    /// The group moves as a table says.
     Table(FocusTable),
-    /// As far as it takes to have lines across in focus, too: the x-z section of a lens with cylinders, where the y-z section is
-    /// in focus by the other groups, or by the whole lens.
+    /// The group moves until lines across are in focus, too. These belong to the x-z section of a lens with cylinders; the y-z section is
+    /// focused by the other groups, or by the whole lens.
     SectionX,
 }
 
-/// Shift of a group by the distance of the object: a monotone cubic in one over the distance, through every point.
+/// The shift of a group as a function of the object distance: a monotone cubic in one over the distance, through every point.
 ///
 /// F. N. Fritsch and J. Butland, "A method for constructing local monotone piecewise cubic interpolants", SIAM J. Sci.
 /// Stat. Comput. 5 (1984), 300.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FocusTable {
-    /// One over the distance, 1/mm, rising.
+    /// One over the object distance, 1/mm, ascending.
     vergence: Vec<f64>,
     shift_mm: Vec<f64>,
     slope: Vec<f64>,
 }
 
 impl FocusTable {
-    /// From points (distance of the object from the first vertex, mm, falling, infinity allowed; shift toward the object,
-    /// mm). `None` unless there are two or more, in order.
+    /// Creates a table from points: the distance of the object from the first vertex, mm, descending, infinity allowed, and the shift
+    /// toward the object, mm. Returns `None` unless there are two or more points in order.
     #[must_use]
     pub fn new(points: &[(f64, f64)]) -> Option<Self> {
         let vergence: Vec<f64> = points.iter().map(|(distance_mm, _)| 1.0 / distance_mm).collect();
@@ -64,7 +65,7 @@ impl FocusTable {
         Some(Self { vergence, shift_mm, slope })
     }
 
-    /// With all lengths times `factor`.
+    /// Returns the table with all lengths multiplied by `factor`.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         let times = |all: &[f64], factor: f64| all.iter().map(|v| v * factor).collect();
         Self {
@@ -74,13 +75,13 @@ impl FocusTable {
         }
     }
 
-    /// Nearest and farthest distance, mm.
+    /// Nearest and farthest object distance of the table, mm.
     #[must_use]
     pub fn range_mm(&self) -> (f64, f64) {
         (1.0 / self.vergence[self.vergence.len() - 1], 1.0 / self.vergence[0])
     }
 
-    /// Shift toward the object, mm, for an object at this distance, mm; `None` beyond the table.
+    /// Shift toward the object, mm, for an object at this distance, mm; `None` outside the range of the table.
     #[must_use]
     pub fn shift_mm(&self, object_mm: f64) -> Option<f64> {
         let v = 1.0 / object_mm;
@@ -93,7 +94,7 @@ impl FocusTable {
         let t = (v - self.vergence[i]) / h;
         let (a, b) = (self.shift_mm[i], self.shift_mm[i + 1]);
         let (p, q) = (self.slope[i] * h, self.slope[i + 1] * h);
-        // Hermite's cubic about its left end.
+        // Hermite's cubic, expanded about its left end.
         Some(a + t * (p + t * ((3.0 * (b - a) - 2.0 * p - q) + t * (2.0 * (a - b) + p + q))))
     }
 }
@@ -121,7 +122,7 @@ mod tests {
         assert!(FocusTable::new(&[(500.0, 1.0), (2000.0, 0.4)]).is_none());
     }
 
-    /// A shift in proportion to 1/distance is a straight line.
+    /// A shift proportional to 1/distance stays a straight line.
     #[test]
     fn a_line_stays_a_line() {
         let line = |d: f64| 700.0 / d + 0.1;

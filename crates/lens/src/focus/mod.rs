@@ -1,72 +1,71 @@
-//! Focusing: by moving the whole lens, or groups of it by laws; by paraxial optics, or by a search with real rays.
+//! Focusing: the whole lens, or groups of it by their focusing laws, move so that the paraxial image stays sharp.
 //!
-//! The prescription's last gap is the designer's focus for infinity, which on a fast lens is not the
-//! paraxial one. Focusing at a distance moves the lens by the paraxial extension from there, as its
-//! helicoid does, so that infinity stays exactly where the patent puts it. With laws for groups the image plane stays
+//! The last gap in the prescription is the designer's focus for infinity. On a fast lens this is not the paraxial focus.
+//! Without focusing laws, focusing at a distance moves the whole lens forward from there by the paraxial extension, as its helicoid does.
+//! Infinity thus stays exactly where the patent puts it. With focusing laws for groups the image plane stays
 //! too, and groups move until the paraxial image is as far from it as it was at infinity.
 
 mod law;
-mod rings;
-mod search;
 mod travel;
 
 pub use law::{FocusLaw, FocusTable, GroupTravel};
-pub use search::{Criterion, FocusSearch};
 
 use crate::Lens;
 
-/// Why a distance cannot be focused.
+/// The reason why a lens cannot be focused at a distance.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FocusError {
-    /// The object is at or inside of the front focal point: there is no real image.
+    /// The object lies at or inside the front focal point, so there is no real image.
     #[error("an object nearer than {nearest_mm:.1} mm to the first surface has no real image")]
     TooNear {
-        /// The front focal point, mm in front of the first vertex.
+        /// Distance of the front focal point in front of the first vertex, mm.
         nearest_mm: f64,
     },
-    /// The table of a group ends before this distance.
+    /// The distance lies outside the focusing table of a group.
     #[error("the focusing table of group `{group}` goes from {nearest_mm} to {farthest_mm} mm")]
     BeyondTable {
-        /// The group.
+        /// Name of the group whose table ends.
         group: String,
-        /// Its nearest distance, mm.
+        /// Nearest distance in the table, mm.
         nearest_mm: f64,
-        /// Its farthest, mm; may be infinite.
+        /// Farthest distance in the table, mm; may be infinite.
         farthest_mm: f64,
     },
-    /// A group runs into its neighbor.
+    /// A group would run into its neighbor.
     #[error("group `{group}` would run into surface {surface}")]
     Collision {
-        /// The group.
+        /// Name of the group that moves.
         group: String,
-        /// Number of the surface in its way, from 1.
+        /// Number of the surface in the way, from 1.
         surface: usize,
     },
-    /// No travel of the groups focuses there.
-    #[error("no travel of the focusing groups gives an image of what is {object_mm} mm in front of the first surface")]
+    /// No travel of the groups focuses an object at this distance.
+    #[error(
+        "no travel of the focusing groups brings an object {object_mm} mm in front of the first surface into focus"
+    )]
     NoTravel {
-        /// The object, mm in front of the first vertex.
+        /// Distance of the object in front of the first vertex, mm.
         object_mm: f64,
     },
-    /// No light to search with.
-    #[error("no light from {object_mm} mm, {field_deg} degrees off the axis, passes the lens")]
+    /// No light passes the lens, so the focus cannot be searched.
+    #[error("no light from an object at {object_mm} mm, {field_deg} degrees off the axis, passes the lens")]
     NoLight {
-        /// The object, mm in front of the first vertex.
+        /// Distance of the object in front of the first vertex, mm.
         object_mm: f64,
-        /// Its field angle, degrees.
+        /// Field angle of the object, degrees.
         field_deg: f64,
     },
-    /// A medium without an index in the light of the search.
+    /// A medium has no index at a wavelength of the search.
     #[error(transparent)]
     Medium(#[from] spectra_glass::DispersionError),
 }
 
 impl Lens {
-    /// Distance from the last vertex to the image plane, mm, that focuses an object `object_mm` in
-    /// front of the first vertex (infinity allowed) by moving the whole lens.
+    /// Returns the distance from the last vertex to the image plane, mm, that focuses an object by moving the whole lens. The object lies
+    /// `object_mm` in front of the first vertex (infinity allowed).
     ///
     /// # Errors
-    /// [`FocusError::TooNear`].
+    /// [`FocusError::TooNear`] if the object lies at or inside the front focal point.
     pub fn focused_gap_mm(&self, object_mm: f64) -> Result<f64, FocusError> {
         let infinity = self.paraxial_image_gap_mm(f64::INFINITY, self.reference_nm);
         let near = -self.first_order(self.reference_nm).ffl_mm;
@@ -76,11 +75,11 @@ impl Lens {
         Ok(self.image_gap_mm() + self.paraxial_image_gap_mm(object_mm, self.reference_nm) - infinity)
     }
 
-    /// The same lens, which stands as its file has it, focused: by its laws if it has any (see [`FocusLaw`]), otherwise
-    /// as a whole (see [`Lens::focused_gap_mm`]).
+    /// Focuses the lens at an object `object_mm` in front of the first vertex (infinity allowed). The lens must stand as its file has it.
+    /// Its groups move by their focusing laws (see [`FocusLaw`]); without any the whole lens moves (see [`Lens::focused_gap_mm`]).
     ///
     /// # Errors
-    /// [`FocusError`].
+    /// [`FocusError`] if the lens cannot be focused at this distance.
     pub fn focused_at(self, object_mm: f64) -> Result<Self, FocusError> {
         let mut lens = if self.focus_laws.is_empty() {
             let gap = self.focused_gap_mm(object_mm)?;

@@ -1,4 +1,4 @@
-//! Moving groups by their laws.
+//! Moves groups by their focusing laws and searches for the travel that focuses.
 
 use super::{FocusError, FocusLaw, GroupTravel};
 use crate::Lens;
@@ -6,17 +6,17 @@ use crate::first_order::Section;
 use spectra_core::surface::Action;
 use std::ops::Range;
 
-/// Steps of the search for the travel, a part of the focal length each, to both sides.
+/// Step of the search for the travel, to both sides, as a fraction of the focal length.
 const STEP: f64 = 1.0 / 200.0;
-/// Longest travel looked at, in focal lengths: twice is life size.
+/// Longest travel that is searched, in focal lengths: twice the travel of life size.
 const FARTHEST: f64 = 3.0;
 const HALVINGS: usize = 80;
-/// Turns in which two sections are focused one after the other, and how near both must come, mm.
+/// Largest number of rounds in which two sections are focused one after the other. Both must come within [`STANDS_MM`].
 const TURNS: usize = 40;
 const STANDS_MM: f64 = 1e-7;
 
 impl Lens {
-    /// Moves elements toward the object (negative: away) along their own axis, mm, and nothing else. To be followed by
+    /// Moves elements toward the object (negative: away) along their own axis, mm, and nothing else. The caller must then call
     /// [`Lens::arrange`].
     pub(crate) fn shift_elements(&mut self, range: Range<usize>, toward_object_mm: f64) {
         if range.is_empty() {
@@ -30,11 +30,11 @@ impl Lens {
         self.elements[range.end - 1].thickness_mm += toward_object_mm;
     }
 
-    /// The same lens with its groups moved on by a common travel, mm; as a whole where no group has a factor.
+    /// Returns the lens with its groups moved by a common travel, mm. If no group has a factor, the whole lens moves.
     ///
     /// # Errors
-    /// [`FocusError::Collision`].
-    pub(super) fn moved_on(&self, travel_mm: f64) -> Result<Self, FocusError> {
+    /// [`FocusError::Collision`] if a group would run into its neighbor.
+    pub fn moved_on(&self, travel_mm: f64) -> Result<Self, FocusError> {
         let factor = |law: &FocusLaw| match law.travel {
             GroupTravel::Factor(factor) => Some((law.group, factor * travel_mm)),
             GroupTravel::Table(_) | GroupTravel::SectionX => None,
@@ -46,12 +46,12 @@ impl Lens {
         self.with_groups_shifted(&shifts)
     }
 
-    /// Whether some group moves in proportion to a common travel.
-    pub(super) fn has_factors(&self) -> bool {
+    /// Whether any group moves in proportion to a common travel.
+    pub fn has_factors(&self) -> bool {
         self.focus_laws.iter().any(|law| matches!(law.travel, GroupTravel::Factor(_)))
     }
 
-    /// The groups that follow the section across.
+    /// Lists the groups that follow the x-z section.
     fn follows_across(&self) -> impl Iterator<Item = usize> {
         self.focus_laws.iter().filter(|law| law.travel == GroupTravel::SectionX).map(|law| law.group)
     }
@@ -62,7 +62,7 @@ impl Lens {
             lens.shift_elements(self.groups[*group].elements.clone(), *shift_mm);
         }
         lens.arrange();
-        // Behind a mirror the sign of a gap says nothing.
+        // Behind a mirror the sign of a gap does not reveal a collision.
         if lens.elements.iter().all(|e| e.action != Action::Reflect) {
             for (group, _) in shifts {
                 let range = &self.groups[*group].elements;
@@ -83,7 +83,7 @@ impl Lens {
         Ok(lens)
     }
 
-    /// See [`Lens::focused_at`].
+    /// Focuses the lens by its focusing laws; see [`Lens::focused_at`].
     pub(super) fn focused_by_laws(self, object_mm: f64) -> Result<Self, FocusError> {
         if object_mm <= 0.0 {
             return Err(FocusError::TooNear { nearest_mm: 0.0 });
@@ -113,7 +113,7 @@ impl Lens {
         if across.is_empty() {
             return Ok(lens);
         }
-        // Each section moves the other a little: in turns, until both stand.
+        // Focusing one section moves the other a little, so they take turns until both are in focus.
         let aside = |lens: &Self| defocus(lens, Section::X, object_mm) - wanted[1];
         let shifted = |lens: &Self, travel_mm: f64| {
             lens.with_groups_shifted(&across.iter().map(|group| (*group, travel_mm)).collect::<Vec<_>>())
@@ -128,7 +128,7 @@ impl Lens {
         Err(none)
     }
 
-    /// The lens moved on to where `miss` is zero, the nearest such place to either side; `None` without one.
+    /// Moves the lens to the nearest travel, to either side, at which `miss` is zero; `None` if there is none.
     fn nearest_zero(
         &self,
         moved: impl Fn(&Self, f64) -> Result<Self, FocusError>,
@@ -146,7 +146,7 @@ impl Lens {
                 let Some(before) = end.1 else { continue };
                 let next = sign * scale_mm * STEP * step as f64;
                 let after = miss(next);
-                // A pole changes the sign too, but is no zero: there the values are far from it.
+                // A pole changes the sign, too, but is no zero: near a pole the values are large.
                 if after
                     .is_some_and(|after| (before <= 0.0) != (after <= 0.0) && (before - after).abs() < 2.0 * scale_mm)
                 {

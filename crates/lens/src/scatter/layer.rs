@@ -1,21 +1,21 @@
-//! What lies on a surface, and what it leaves of light.
+//! Layers of haze, dust or scratches on a surface, and how much light they leave.
 
 use super::Lobe;
 use crate::Aperture;
 
-/// What lies on a surface.
+/// The kind of a layer on a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Soil {
     /// A film of fine droplets or grains.
     Haze,
-    /// Grains that stop light.
+    /// Grains that stop and diffract light.
     Dust,
-    /// Lines that stop light.
+    /// Lines that stop and diffract light.
     Scratches,
 }
 
 impl Soil {
-    /// Its key in a lens file.
+    /// Returns the key of this kind of layer in a lens file.
     #[must_use]
     pub fn key(self) -> &'static str {
         match self {
@@ -26,39 +26,39 @@ impl Soil {
     }
 }
 
-/// One layer on a surface.
+/// One layer on a surface that stops and scatters light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// What it is.
+    /// Kind of the layer.
     pub soil: Soil,
-    /// Part of the light that it stops, where it lies.
+    /// Fraction of the light that the layer stops where it lies.
     pub stopped: f64,
-    /// Part of the light that it scatters, where it lies.
+    /// Fraction of the light that the layer scatters where it lies.
     pub scattered: f64,
-    /// Where it lies: all over the surface, or where all of these let light pass.
+    /// Where the layer lies: all over the surface if empty, otherwise where all of these apertures let light pass.
     pub places: Vec<Aperture>,
-    /// Whereto it scatters.
+    /// Distribution of the steps by which the layer changes the direction of light.
     pub lobe: Lobe,
 }
 
 impl Layer {
-    /// How much of it lies at a place of the surface, mm: 0 to 1.
+    /// Density of the layer at a point of the surface, mm: 0 to 1.
     fn there(&self, x_mm: f64, y_mm: f64, semi_diameter_mm: Option<f64>) -> f64 {
         self.places.iter().map(|place| place.transmittance(x_mm, y_mm, semi_diameter_mm)).product()
     }
 }
 
-/// What the layers of a surface do to light at a place of it.
+/// The fractions of light that the layers of a surface leave at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Shares {
-    /// Part that no layer stops.
+pub struct Shares {
+    /// Fraction that no layer stops.
     pub open: f64,
-    /// Part that goes on as it came.
+    /// Fraction that no layer stops or scatters.
     pub straight: f64,
 }
 
 impl Shares {
-    /// Of layers at a place, mm.
+    /// Computes the fractions that these layers leave at a point of the surface, mm.
     pub fn at(layers: &[Layer], [x, y]: [f64; 2], semi_diameter_mm: Option<f64>) -> Self {
         let mut all = Self { open: 1.0, straight: 1.0 };
         for layer in layers {
@@ -70,15 +70,16 @@ impl Shares {
         all
     }
 
-    /// The most that layers scatter anywhere.
+    /// Returns the largest fraction that these layers can scatter anywhere.
     pub fn most_scattered(layers: &[Layer]) -> f64 {
-        // Of two layers that stop light the one may leave less for the other.
+        // Of two layers that stop light, one may leave less for the other to scatter.
         1.0 - layers.iter().map(|layer| 1.0 - layer.scattered).product::<f64>()
     }
 }
 
-/// The layer that scatters a ray at a place, by a number in [0, 1).
-pub(crate) fn which(layers: &[Layer], [x, y]: [f64; 2], semi_diameter_mm: Option<f64>, number: f64) -> Option<&Layer> {
+/// Selects the layer that scatters a ray at a point of the surface, mm, by a random number in [0, 1). Returns `None` if no layer scatters
+/// there.
+pub fn which(layers: &[Layer], [x, y]: [f64; 2], semi_diameter_mm: Option<f64>, number: f64) -> Option<&Layer> {
     let part = |layer: &Layer| layer.scattered * layer.there(x, y, semi_diameter_mm);
     let mut left = number * layers.iter().map(part).sum::<f64>();
     let mut last = None;

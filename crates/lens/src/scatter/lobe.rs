@@ -1,71 +1,71 @@
-//! How far and whereto scattered light goes.
+//! Lobes: how far and in which direction light is scattered.
 //!
-//! A lobe is a distribution of steps of the direction cosines along the surface, each times the index of refraction: what
-//! refraction keeps. Steps depend neither on the direction nor on the place and are as likely one way as back, so the etendue is
-//! kept and light of either sense of travel keeps its weight (J. E. Harvey, "Light-scattering characteristics of optical
-//! surfaces", thesis, University of Arizona, 1976).
+//! A lobe is a distribution of steps of the direction cosines along the surface, each multiplied by the index of refraction: the quantity
+//! that refraction conserves. Steps depend neither on the direction nor on the place, and a step and its opposite are equally likely. So
+//! the etendue is kept, and light of either direction of travel keeps its weight (J. E. Harvey, "Light-scattering characteristics of
+//! optical surfaces", thesis, University of Arizona, 1976).
 
 use spectra_core::math::{exp, j0, j1, log, pow, sin_cos_turns};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// What scattered light is spread by.
+/// The distribution of the steps by which a layer scatters light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Lobe {
-    /// Harvey and Shack's function of three parameters: proportional to (1 + (step / shoulder)^2)^(slope / 2), for steps up to 1.
-    /// A slope of -3 is the function of Henyey and Greenstein (Astrophys. J. 93, 70 (1941)) with shoulder = (1 - g) / sqrt(g).
+    /// Harvey and Shack's three-parameter function: proportional to (1 + (step / shoulder)^2)^(slope / 2), for steps up to 1.
+    /// A slope of -3 is the Henyey-Greenstein function (Astrophys. J. 93, 70 (1941)) with shoulder = (1 - g) / sqrt(g).
     Harvey {
-        /// Step at which it begins to fall.
+        /// Step at which the function begins to fall.
         shoulder: f64,
-        /// Its power far out, negative.
+        /// Exponent of the function far out, negative.
         slope: f64,
     },
-    /// Diffraction of opaque disks: by Babinet's principle the pattern of round openings (G. B. Airy, Trans. Cambridge Phil. Soc. 5,
+    /// Diffraction by opaque disks: by Babinet's principle the pattern of round openings (G. B. Airy, Trans. Cambridge Phil. Soc. 5,
     /// 283 (1835)).
     Disks {
-        /// Median of their diameters, weighted with their areas, nm.
+        /// Median of the diameters, weighted by area, nm.
         diameter_nm: f64,
         /// Standard deviation of the logarithm of the diameter.
         spread: f64,
-        /// Of one disk.
+        /// Diffraction pattern of one disk.
         pattern: Pattern,
     },
-    /// Diffraction of opaque lines: the pattern of slits, across each line.
+    /// Diffraction by opaque lines: the pattern of slits, across each line.
     Lines {
-        /// Their width, nm.
+        /// Width of the lines, nm.
         width_nm: f64,
-        /// Which way they run.
+        /// Direction in which the lines run.
         run: Run,
-        /// Of one line.
+        /// Diffraction pattern of one line.
         pattern: Pattern,
     },
 }
 
-/// Which way lines on a surface run.
+/// The direction in which lines on a surface run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Run {
-    /// All ways alike.
+    /// All directions are equally likely.
     Any,
-    /// Around the axis, as a cloth that is turned leaves them.
+    /// The lines run around the axis, as left by a turning cloth.
     Around,
-    /// This way: a unit vector along x and y.
+    /// All lines run along this unit vector (x, y).
     Along([f64; 2]),
 }
 
 impl Lobe {
-    /// Disks of this diameter, nm.
+    /// Creates a lobe of disks with this median diameter, nm. `spread` is the standard deviation of the logarithm of the diameter.
     #[must_use]
     pub fn disks(diameter_nm: f64, spread: f64) -> Self {
         Self::Disks { diameter_nm, spread, pattern: Pattern::disk() }
     }
 
-    /// Lines of this width, nm.
+    /// Creates a lobe of lines with this width, nm.
     #[must_use]
     pub fn lines(width_nm: f64, run: Run) -> Self {
         Self::Lines { width_nm, run, pattern: Pattern::slit() }
     }
 
-    /// A step along x and y of the surface at a place of it, mm, by four numbers in [0, 1).
+    /// Draws a step along x and y of the surface, at a point of the surface (mm), from four random numbers in [0, 1).
     #[must_use]
     pub fn step(&self, [u, v]: [f64; 2], [a, b]: [f64; 2], wavelength_nm: f64, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = sin_cos_turns(v);
@@ -99,20 +99,20 @@ impl Lobe {
     }
 }
 
-/// The step below which a share `u` of Harvey and Shack's function lies.
+/// Returns the step below which a fraction `u` of Harvey and Shack's function lies.
 fn harvey_step(shoulder: f64, slope: f64, u: f64) -> f64 {
-    // The integral over a disk is ((1 + (step / shoulder)^2)^power - 1) / power but for a factor; a logarithm where power is 0.
+    // Up to a factor, the integral over a disk is ((1 + (step / shoulder)^2)^power - 1) / power; a logarithm where power is 0.
     let (power, most) = (1.0 + 0.5 * slope, log(1.0 + 1.0 / (shoulder * shoulder)));
     let grown = if power.abs() < 1e-9 { exp(u * most) } else { pow(1.0 + u * (exp(power * most) - 1.0), 1.0 / power) };
     shoulder * (grown - 1.0).max(0.0).sqrt()
 }
 
-/// A pattern of diffraction in its own unit, pi times size times step over wavelength: which part of the light lies within.
+/// A cumulative diffraction pattern: the fraction of light within a distance x. The unit is x = pi times size times step over wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
-    /// At 0, [`CELL`], 2 [`CELL`] ... [`END`]; between them it is linear.
+    /// Fractions at 0, [`CELL`], 2 [`CELL`] ... [`END`], with linear interpolation between them.
     within: Arc<[f64]>,
-    /// Beyond the end, 1 less this over the place is within: fringes, which no film resolves there, are left out.
+    /// Beyond the end the fraction within x is 1 - tail / x. Fringes, which no film resolves there, are left out.
     tail: f64,
 }
 
@@ -121,7 +121,7 @@ const CELLS: usize = 6000;
 const END: f64 = CELL * CELLS as f64;
 
 impl Pattern {
-    /// Of a round opening: 1 - J0^2 - J1^2 (Lord Rayleigh, Phil. Mag. 11, 214 (1881)).
+    /// Tabulates the pattern of a round opening: 1 - J0^2 - J1^2 (Lord Rayleigh, Phil. Mag. 11, 214 (1881)).
     #[must_use]
     pub fn disk() -> Self {
         let within = |k: usize| {
@@ -131,7 +131,7 @@ impl Pattern {
         Self { within: (0..=CELLS).map(within).collect(), tail: 2.0 / PI }
     }
 
-    /// Of a slit: the integral of (sin x / x)^2, by Simpson's rule within each cell.
+    /// Tabulates the pattern of a slit: the integral of (sin x / x)^2, by Simpson's rule within each cell.
     #[must_use]
     pub fn slit() -> Self {
         let density = |x: f64| {
@@ -148,7 +148,7 @@ impl Pattern {
         Self { within: within.into(), tail: 1.0 / PI }
     }
 
-    /// The part within a place.
+    /// Returns the fraction of light within the distance `x`.
     #[must_use]
     pub fn within(&self, x: f64) -> f64 {
         if x >= END {
@@ -159,7 +159,7 @@ impl Pattern {
         self.within[cell] + (at - cell as f64) * (self.within[cell + 1] - self.within[cell])
     }
 
-    /// The place that a part of the light lies within.
+    /// Returns the distance within which a fraction `part` of the light lies.
     #[must_use]
     pub fn quantile(&self, part: f64) -> f64 {
         if part >= self.within[CELLS] {
@@ -179,8 +179,8 @@ impl Pattern {
 mod tests {
     use super::*;
 
-    /// Rings of the Airy pattern hold 83.8, 91.0 and 93.8 % (Born and Wolf, "Principles of Optics", table 8.2 and 8.5.2), the
-    /// middle of a slit's pattern 90.28 %; a quantile is the inverse of the part within; tails are those of the closed forms.
+    /// The rings of the Airy pattern contain 83.8, 91.0 and 93.8 % of the light (Born and Wolf, "Principles of Optics", table 8.2 and
+    /// 8.5.2), the middle of a slit's pattern 90.28 %. A quantile is the inverse of the fraction within; the tails match the closed forms.
     #[test]
     fn patterns_hold_what_tables_say() {
         let (disk, slit) = (Pattern::disk(), Pattern::slit());
@@ -197,7 +197,7 @@ mod tests {
         }
     }
 
-    /// The share of steps within a radius is the closed form, for slopes on both sides of -2 and there.
+    /// The fraction of steps within a radius matches the closed form, for slopes on both sides of -2 and at -2.
     #[test]
     fn harvey_steps_follow_the_closed_form() {
         let shoulder: f64 = 0.02;
@@ -216,7 +216,7 @@ mod tests {
         }
     }
 
-    /// Henyey and Greenstein's function of the angle, at normal incidence, where a step is the chord 2 sin(angle / 2).
+    /// The Henyey-Greenstein function of the angle at normal incidence, where a step is the chord 2 sin(angle / 2).
     #[test]
     fn a_slope_of_three_is_henyey_and_greenstein() {
         let g: f64 = 0.97;

@@ -1,38 +1,41 @@
-//! Light that haze, dust and scratches on surfaces scatter.
+//! Scattering by haze, dust and scratches on surfaces.
 //!
-//! What lies on a surface is a thin layer on its side of lower index: there light is stopped, or its direction makes a
-//! step ([`Lobe`]), or it goes on. A [`crate::Tracer`] traces one of two kinds of light: what goes on everywhere, which is only
-//! dimmed and needs no chance, or ([`crate::Tracer::scattering`]) what is scattered at least once.
+//! Each is a thin layer on the side of the surface with the lower index. There light is stopped, or its direction makes a step ([`Lobe`]),
+//! or it continues unchanged. A tracer traces one of two kinds of light: light that no layer scatters, which is only dimmed and needs no
+//! random numbers, or light that is scattered at least once.
+//!
+//! A step changes the direction cosines along the surface, each multiplied by the index. It depends neither on the direction nor on the
+//! place, so the etendue is kept and both directions of travel have the same weights. If light meets the layer before the glass, the
+//! transmission of the coating is evaluated again for the direction behind the step, so that both directions of travel give a path the
+//! same weight.
 
 mod layer;
 mod lobe;
 mod params;
-mod trace;
 
-pub use layer::{Layer, Soil};
-pub(crate) use layer::{Shares, which};
+pub use layer::{Layer, Shares, Soil, which};
+
 pub use lobe::{Lobe, Pattern, Run};
 pub use params::{DustForm, HazeForm, ScratchesForm, read_layers};
-pub(crate) use trace::{Meeting, Place, dim, scatter};
 
 use crate::{Element, Lens};
 use spectra_core::surface::Action;
 
 impl Lens {
-    /// Whether anything on it scatters light.
+    /// Whether any layer on the lens scatters light.
     #[must_use]
     pub fn scatters(&self) -> bool {
         self.elements.iter().flat_map(|e| &e.layers).any(|layer| layer.scattered > 0.0)
     }
 
-    /// Whether all that scatters light on it is haze, whose light has no rings or streaks.
+    /// Whether the lens scatters light, and only by haze, whose light has no rings or streaks.
     #[must_use]
     pub fn scatters_smoothly(&self) -> bool {
         let is_smooth = |layer: &Layer| layer.scattered <= 0.0 || matches!(layer.lobe, Lobe::Harvey { .. });
         self.scatters() && self.elements.iter().flat_map(|e| &e.layers).all(is_smooth)
     }
 
-    /// The same lens with this layer on all outer surfaces, where glass or a mirror meets a gas, whatever they state of its kind.
+    /// Puts this layer on all outer surfaces, where glass or a mirror meets a gas, and removes other layers of its kind everywhere.
     #[must_use]
     pub fn with_layer(mut self, layer: &Layer) -> Self {
         for at in 0..self.elements.len() {
@@ -42,7 +45,7 @@ impl Lens {
         self
     }
 
-    /// Puts a layer on all outer surfaces that state none of its kind.
+    /// Puts a layer on all outer surfaces that have no layer of its kind.
     pub(crate) fn add_layer(&mut self, layer: &Layer) {
         for at in 0..self.elements.len() {
             let e = &self.elements[at];

@@ -1,4 +1,4 @@
-//! Haze, dust and scratches as lens files and scenes write them.
+//! Reads haze, dust and scratches as lens files and scenes write them.
 
 use super::{Layer, Lobe, Run, Soil};
 use crate::aperture::{ApertureForm, read as read_apertures};
@@ -9,63 +9,65 @@ use spectra_core::params::{Angle, Faults, Length, NonNegative, Params, Part, Pos
 use spectra_core::resources::Resources;
 use std::f64::consts::TAU;
 
-/// Haze on a surface: fine droplets or grains, such as oil that has settled. It scatters a share of the light by Harvey and
+/// Haze on a surface: fine droplets or grains, for example oil that has settled. It scatters a fraction of the light by Harvey and
 /// Shack's function.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(inline)]
 pub struct HazeForm {
-    /// Share of the light that it scatters at each passage, 0 to 1.
+    /// Fraction of the light that the haze scatters at each passage, 0 to 1.
     #[schemars(range(max = 1))]
     share: NonNegative<Ratio>,
-    /// Angle to which the scattered light is even, degrees if bare, up to 60: small grains scatter wide. 1 degree if absent.
+    /// Angle up to which the scattered light is nearly uniform, degrees if bare, up to 60; small grains scatter wide. 1 degree if absent.
     #[schemars(range(max = 60))]
     shoulder: Option<Positive<Angle>>,
-    /// Power of the angle by which it falls beyond, -6 to 0; -2 if absent. -3 is Henyey and Greenstein's function.
+    /// Exponent by which the scattered light falls with the angle beyond the shoulder, -6 to 0; -2 if absent. -3 is the Henyey-Greenstein
+    /// function.
     #[schemars(range(min = -6, max = 0))]
     slope: Option<f64>,
-    /// Where it lies: one aperture or a list, as in `aperture`, where what passes is what is covered. All over the surface if absent.
+    /// Where the haze lies: one aperture or a list, written as in `aperture`. It covers what these let pass. All over the surface if
+    /// absent.
     #[serde(rename = "where")]
     place: Option<Part<ApertureForm>>,
 }
 
-/// Dust on a surface: grains that stop as much light as they cover, and diffract as much (Babinet).
+/// Dust on a surface: grains that stop as much light as they cover and diffract the same amount (Babinet's principle).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(inline)]
 pub struct DustForm {
-    /// Share of the surface that grains cover, 0 to 0.5.
+    /// Fraction of the surface that grains cover, 0 to 0.5.
     #[schemars(range(max = 0.5))]
     coverage: NonNegative<Ratio>,
-    /// Median of their diameters, mm if bare, 1 um to 5 mm.
+    /// Median diameter of the grains, mm if bare, 1 um to 5 mm.
     #[schemars(range(min = 0.001, max = 5))]
     diameter: Positive<Length>,
-    /// Standard deviation of the logarithm of the diameter, 0 to 2; 0.4 if absent. Of grains that are all alike, 0, the pattern has rings.
+    /// Standard deviation of the logarithm of the diameter, 0 to 2; 0.4 if absent. If all grains are alike (0), the pattern has rings.
     #[schemars(range(min = 0, max = 2))]
     spread: Option<f64>,
-    /// Where it lies, as of `haze`.
+    /// Where the dust lies, written as for `haze`. All over the surface if absent.
     #[serde(rename = "where")]
     place: Option<Part<ApertureForm>>,
 }
 
-/// Scratches on a surface: lines that stop as much light as they cover, and diffract as much to both sides (Babinet).
+/// Scratches on a surface: lines that stop as much light as they cover and diffract the same amount to both sides (Babinet's principle).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(inline)]
 pub struct ScratchesForm {
-    /// Share of the surface that they cover, 0 to 0.5. With `where` it may be left out: then half of the light that meets what is drawn is
-    /// stopped and half of it diffracted.
+    /// Fraction of the surface that scratches cover, 0 to 0.5. With `where` it may be omitted: then half of the light that meets the drawn
+    /// scratches is stopped and half of it is diffracted.
     #[schemars(range(max = 0.5))]
     coverage: Option<NonNegative<Ratio>>,
     /// Width of a scratch, mm if bare, 1 um to 5 mm.
     #[schemars(range(min = 0.001, max = 5))]
     width: Positive<Length>,
-    /// Which way they run, degrees if bare, counter-clockwise from x; all ways alike if absent.
+    /// Direction in which the scratches run, degrees if bare, counterclockwise from x. All directions are equally likely if absent.
     direction: Option<Angle>,
-    /// Whether they run around the axis, as a cloth that is turned leaves them.
+    /// Whether the scratches run around the axis, as left by a turning cloth.
     #[serde(default)]
     around: bool,
-    /// Where they are, as of `haze`: a drawing (SVG) or a picture of them.
+    /// Where the scratches are, written as for `haze`: a drawing (SVG) or a picture of them. All over the surface if absent.
     #[serde(rename = "where")]
     place: Option<Part<ApertureForm>>,
 }
@@ -73,7 +75,7 @@ pub struct ScratchesForm {
 const SHOULDER_DEG: f64 = 1.0;
 const SLOPE: f64 = -2.0;
 const SPREAD: f64 = 0.4;
-/// By Babinet's principle an opaque body takes twice the light that falls on it.
+/// By Babinet's principle an opaque body removes twice the light that falls on it: it stops half and diffracts half.
 const MOST_COVERED: f64 = 0.5;
 const NM_PER_MM: f64 = 1e6;
 
@@ -87,7 +89,7 @@ fn places(place: Option<&Part<ApertureForm>>, resources: &dyn Resources) -> Resu
     place.map_or(Ok(Vec::new()), |node| read_apertures(node, resources))
 }
 
-/// Haze, as it is written.
+/// Reads a layer of haze.
 fn haze(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Faults> {
     let (_, p) = parsed::<HazeForm>(node)?;
     let shoulder = sin(p.shoulder.map_or(SHOULDER_DEG.to_radians(), |angle| angle.rad()));
@@ -100,7 +102,7 @@ fn haze(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Faults> {
     })
 }
 
-/// Dust, as it is written.
+/// Reads a layer of dust.
 fn dust(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Faults> {
     let (_, p) = parsed::<DustForm>(node)?;
     Ok(Layer {
@@ -112,7 +114,7 @@ fn dust(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Faults> {
     })
 }
 
-/// Scratches, as they are written.
+/// Reads a layer of scratches.
 fn scratches(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Faults> {
     let (params, p) = parsed::<ScratchesForm>(node)?;
     let coverage = match (p.coverage, &p.place) {
@@ -120,7 +122,7 @@ fn scratches(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Fault
         (None, Some(_)) => MOST_COVERED,
         (None, None) => {
             let fault = params.fault_here("how many scratches are there? `coverage` or `where` is missing");
-            return Err(fault.hint("`coverage: 1 %`, or `where: {shape: mask, file: scratches.svg}`").into());
+            return Err(fault.hint("add `coverage: 1 %`, or `where: {shape: mask, file: scratches.svg}`").into());
         }
     };
     let run = match (p.direction, p.around) {
@@ -145,7 +147,7 @@ fn scratches(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Fault
     })
 }
 
-/// The layers that are written there.
+/// Reads the layers of haze, dust and scratches that are given, in this order. Faults are added to `faults`.
 pub fn read_layers(
     [haze_form, dust_form, scratches_form]: [Option<&StageNode>; 3],
     resources: &dyn Resources,

@@ -1,9 +1,14 @@
-//! Where the light of lights goes: straight to the imager, to it by reflections, or elsewhere.
+//! Books where the light of the bright lights goes: directly to the imager, to it by reflections, or elsewhere.
 //!
-//! One set of rays, spread evenly over the front, follows the straight path, and those of one reflection, two, and more if asked for.
-//! What leaves a path at a surface by reflection is what the path that turns there gets; so every watt is booked once, and the books
-//! close but for rounding. It is also all that any path has which goes on from there: where that is less than [`SHARE`] of the light,
-//! a branch of more than two reflections is cut. What is cut, and what is reflected more often, is not traced.
+//! One set of rays, spread evenly over the front, follows the straight path and the paths with one reflection, two, and more if requested.
+//! Light that leaves a path at a surface by reflection is exactly what the path that turns there receives. Every watt is therefore booked
+//! once, and the books balance up to rounding: emitted = detected + lost + not traced.
+//!
+//! **Four reflections.** That light is also an upper limit for all paths that go on from there, because no coating, rim or total reflection
+//! adds light. If it is less than [`SHARE`] of the light, a branch with more than two reflections is cut. A product of the largest
+//! reflectances would be no useful limit: any surface reflects all light that grazes it. Light that is cut or reflected more often is
+//! booked as not traced. After four reflections in the bare Biotar, this is 0.09 % of the light along the axis, by Fresnel's factors alone.
+//! Wide open it is 0.16 %, because total reflection keeps light between the surfaces.
 
 use super::Ghosts;
 use crate::Workers;
@@ -12,86 +17,90 @@ use crate::pipeline::ThreadState;
 use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::workers::each_of;
-use spectra_lens::{Act, Branches, Ledger, Lens, Path, StepLedger, Travel};
+use spectra_lens::Lens;
+use spectra_tracer::{Act, Branches, Ledger, Path, StepLedger, Travel};
 
-/// Rays for each path, where there are pairs of reflections only and where there are more, and of a batch.
+/// Number of rays for each path if no path has more than two reflections.
 const RAYS: usize = 16_384;
+/// Number of rays for each path if there are paths with more than two reflections.
 const RAYS_OF_MORE: usize = 4096;
+/// Number of rays in a batch.
 const BATCH: usize = 256;
 const MM2_PER_M2: f64 = 1e6;
-/// Paths of more than two reflections begin with this part of the light at least.
+/// Smallest fraction of the light with which a path of more than two reflections is followed.
 const SHARE: f64 = 1e-8;
 
-/// Where the light of a source's lights goes that enters the lens, W in the band of the scene.
+/// Ledger of the light from the bright lights that enters the lens, W in the band of the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightLedger {
-    /// Enters the clear part of the first surface.
+    /// Light that enters the clear part of the first surface, W.
     pub emitted_w: f64,
-    /// Falls on the frame straight, less what the imager sends back.
+    /// Light that falls directly on the frame, less what the imager reflects, W.
     pub direct_w: f64,
-    /// Falls on it by reflections, less what the imager sends back.
+    /// Light that falls on the frame by reflections, less what the imager reflects, W.
     pub ghosts_w: f64,
-    /// Ends at rims, stops and blades.
+    /// Light that ends at rims, stops and blades, W.
     pub rims_w: f64,
-    /// Is absorbed by glass, coatings and mirrors.
+    /// Light absorbed by glass, coatings and mirrors, W.
     pub absorbed_w: f64,
-    /// Is scattered by haze, dust and scratches: it is traced apart.
+    /// Light scattered by haze, dust and scratches, W; it is traced separately.
     pub scattered_w: f64,
-    /// Leaves by the front.
+    /// Light that leaves through the front, W.
     pub front_w: f64,
-    /// Falls beside the frame.
+    /// Light that falls outside the frame, W.
     pub beside_w: f64,
-    /// Is reflected more often than `order`, or begins a path of more than two reflections with too little: no path follows it.
+    /// Light that no path follows, W: it is reflected more often than `order`, or begins a path of more than two reflections with too
+    /// little light.
     pub not_traced_w: f64,
-    /// Reflections of a path at most.
+    /// Largest number of reflections of a path.
     pub order: u32,
-    /// The paths by two reflections, and by more, brightest first.
+    /// Paths with two reflections or more, brightest first.
     pub paths: Vec<GhostPath>,
 }
 
-/// What a path by reflections brings to the frame.
+/// The light that one ghost path brings to the frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GhostPath {
-    /// The surfaces that reflect, in the order of the light, counted from 1; one more than the lens has is the imager.
+    /// Surfaces that reflect, in the order of the light, counted from 1. The imager is one more than the last surface of the lens.
     pub surfaces: Vec<usize>,
-    /// On the frame, W.
+    /// Light of the path on the frame, W.
     pub power_w: f64,
 }
 
 impl LightLedger {
-    /// On the frame.
+    /// Returns the light that falls on the frame, W.
     #[must_use]
     pub fn detected_w(&self) -> f64 {
         self.direct_w + self.ghosts_w
     }
 
-    /// Surfaces of so many paths that bring light to the frame, brightest first; fewer where there are fewer.
+    /// Returns the surfaces of the strongest `many` paths that bring light to the frame, brightest first; fewer if there are fewer.
     pub(super) fn strongest(&self, many: usize) -> Vec<Vec<usize>> {
         let lit = self.paths.iter().filter(|path| path.power_w > 0.0);
         lit.take(many).map(|path| path.surfaces.clone()).collect()
     }
 
-    /// Ends elsewhere.
+    /// Returns the light that ends elsewhere than on the frame, W.
     #[must_use]
     pub fn lost_w(&self) -> f64 {
         self.rims_w + self.absorbed_w + self.scattered_w + self.front_w + self.beside_w
     }
 }
 
-/// What one path did with its light.
+/// Where the light of one path goes.
 struct Account {
     ledger: Ledger,
-    /// Of what arrived: on the frame.
+    /// The part of the light that arrived on the frame.
     on_frame: f64,
-    /// What the last reflection sent on this path.
+    /// Light that the last reflection sent along this path.
     entered: f64,
-    /// Lost from there on.
+    /// Losses from the last reflection on.
     lost: StepLedger,
-    /// Of that, at the imager beside the frame.
+    /// The part of these losses at the imager outside the frame.
     beside: f64,
 }
 
-/// The ledger of a scene, with paths of so many reflections at most.
+/// Computes the ledger of a scene, with paths of at most `order` reflections.
 pub(super) fn of(
     ghosts: &Ghosts,
     lens: &Lens,
@@ -133,9 +142,9 @@ pub(super) fn of(
 }
 
 impl LightLedger {
-    /// Books a path by reflections, to which `came` at the last of them.
+    /// Books a ghost path, to which the light `came` came at its last reflection.
     fn book(&mut self, path: &Path, came: f64, account: &Account, imager: usize) {
-        // What neither passed there nor was reflected: coatings of metal absorb it, and beside the frame is no imager.
+        // Light that neither passed nor was reflected there: metal coatings absorb it, and there is no imager outside the frame.
         let kept = came - account.entered;
         let reflections: Vec<usize> = path.reflections().collect();
         *(if reflections.last() == Some(&imager) { &mut self.beside_w } else { &mut self.absorbed_w }) += kept;
@@ -154,7 +163,7 @@ impl LightLedger {
         self.paths.push(GhostPath { surfaces, power_w: account.on_frame });
     }
 
-    /// Adds what was booked apart.
+    /// Adds another ledger's entries to this one.
     fn add(&mut self, other: Self) {
         self.ghosts_w += other.ghosts_w;
         self.rims_w += other.rims_w;
@@ -183,12 +192,12 @@ impl LightLedger {
     }
 }
 
-/// The step at which a path turns last; 0 where it does not.
+/// Returns the step of a path's last reflection; 0 if it has none.
 fn last_turn(path: &Path) -> usize {
     path.steps().iter().rposition(|step| step.act == Act::Reflect).unwrap_or(0)
 }
 
-/// Rays all over the front, as they enter the lens: all paths share them.
+/// Starts rays all over the front, as they enter the lens. All paths share them.
 fn started(ghosts: &Ghosts, many: usize) -> Vec<RayBatch> {
     let everywhere = vec![super::Guide::everywhere(); ghosts.plan.zones.count()];
     let mut state = ghosts.state(BATCH);

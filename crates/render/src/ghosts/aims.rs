@@ -1,4 +1,4 @@
-//! Where on the front of the lens the rays of a batch go.
+//! The points on the front of the lens where the rays of a batch are aimed.
 
 use super::Landed;
 use super::density::ABREAST;
@@ -6,20 +6,20 @@ use super::guide::{Aim, Guide};
 use glam::DVec3;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::{Loss, RayBatch};
-use spectra_lens::FrontOpening;
+use spectra_optics::FrontOpening;
 
-/// The aims of rays, column by column.
+/// The aims of the rays of a batch, stored as columns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Aims {
     zones: Vec<usize>,
     places: [Vec<f64>; 2],
     densities: Vec<f64>,
-    /// Where around the axis rays begin, where that was noted.
+    /// Directions around the axis from which rays start, if they were noted.
     azimuths: Vec<[f64; 2]>,
 }
 
 impl Aims {
-    /// Drawn by two numbers for each ray, by the guide of its zone.
+    /// Draws the aims by two random numbers for each ray, from the guide of its zone.
     pub fn drawn(guides: &[Guide], zones: Vec<usize>, numbers: [&[f64]; 2], isa: Isa) -> Self {
         let len = zones.len();
         let mut own =
@@ -28,26 +28,26 @@ impl Aims {
         own
     }
 
-    /// At these places.
+    /// Creates aims at the given places.
     pub fn at(places: &[[f64; 2]]) -> Self {
         let axis = |axis: usize| places.iter().map(|place| place[axis]).collect();
         let len = places.len();
         Self { zones: vec![0; len], places: [axis(0), axis(1)], densities: vec![0.25; len], azimuths: Vec::new() }
     }
 
-    /// Where a ray goes in: its zone, its place, and where around the axis its source lies, if it was noted.
+    /// Returns where a ray enters the lens: its zone, its position, and the direction of its source around the axis, if that was noted.
     pub fn landed(&self, ray: usize) -> Landed {
         let azimuth = self.azimuths.get(ray).copied().unwrap_or([0.0, 1.0]);
         Landed { zone: self.zones[ray], place: [self.places[0][ray], self.places[1][ray]], azimuth }
     }
 
-    /// Notes where around the axis rays begin.
+    /// Notes the directions around the axis from which rays start.
     pub fn note_azimuths(&mut self, rays: &RayBatch) {
         let [x, y, _] = rays.positions();
         self.azimuths = x.iter().zip(y).map(|(x, y)| azimuth(*x, *y)).collect();
     }
 
-    /// Of light that sets its directions itself: its own numbers.
+    /// Creates aims for light that sets its directions itself, from the random numbers of the rays.
     pub fn of_numbers([a, b]: [&[f64]; 2]) -> Self {
         let place = |numbers: &[f64]| numbers.iter().map(|number| 2.0 * number - 1.0).collect();
         Self {
@@ -58,13 +58,13 @@ impl Aims {
         }
     }
 
-    /// The zone and the aim of each ray.
+    /// Iterates over the zone and the aim of each ray.
     pub fn each(&self) -> impl Iterator<Item = (usize, Aim)> {
         let aim = |i: usize| Aim { place: [self.places[0][i], self.places[1][i]], density: self.densities[i] };
         self.zones.iter().enumerate().map(move |(i, zone)| (*zone, aim(i)))
     }
 
-    /// Takes rays from the source to where they are aimed at.
+    /// Moves rays from the source to the places where they are aimed.
     pub fn send(&self, rays: &mut RayBatch, opening: FrontOpening, isa: Isa) {
         let c = rays.columns_mut();
         isa.run(Send {
@@ -94,7 +94,7 @@ impl Vectorized for Draw<'_> {
         for first in (0..len).step_by(ABREAST) {
             let (mut own, mut places, mut density) = ([&guides[0]; ABREAST], [[0.0; ABREAST]; 2], [0.0; ABREAST]);
             for k in 0..ABREAST {
-                // The last one once more where there are too few.
+                // Repeat the last ray if there are too few.
                 let i = if first + k < len { first + k } else { len - 1 };
                 own[k] = &guides[aims.zones[i]];
                 (places[0][k], places[1][k]) = (a[i], b[i]);
@@ -138,7 +138,7 @@ impl Vectorized for Send<'_> {
     }
 }
 
-/// Columns are separate arguments, so the compiler knows that none overlaps another.
+/// Columns are separate arguments, so the compiler knows that they do not overlap.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "columns")]
 fn send(
@@ -153,7 +153,7 @@ fn send(
     weight: &mut [f64],
     state: &mut [u64],
 ) {
-    // In front of the glass itself: no light of a lens that has room for a subject.
+    // The source point is within the opening: a lens with room for a subject gets no light from there.
     let inside = Loss::Vignetted.state(1);
     let len = state.len();
     let (right, up, density) = (&right[..len], &up[..len], &density[..len]);
@@ -166,7 +166,7 @@ fn send(
         let way = at - point;
         let distance2 = way.length_squared();
         let direction = way / distance2.sqrt();
-        // The solid angle that the ray stands for.
+        // The solid angle that the ray stands for, sr.
         let stands_for = disk.radial.length_squared() * direction.dot(disk.sight) / (distance2 * density[i]);
         x[i] = if is_outside { at.x } else { x[i] };
         y[i] = if is_outside { at.y } else { y[i] };
@@ -179,7 +179,7 @@ fn send(
     }
 }
 
-/// Where around the axis a point lies: a unit vector.
+/// Returns the direction of a point around the axis, a unit vector.
 #[inline]
 pub(super) fn azimuth(x: f64, y: f64) -> [f64; 2] {
     let away = (x * x + y * y).sqrt();

@@ -1,36 +1,37 @@
-//! A density over the unit square to draw places from, by the cells of a [`Tree`](super::tree::Tree).
+//! A probability density over the unit square from which places are drawn, given by the cells of a [`Tree`](super::tree::Tree).
 
-/// How many places are drawn side by side.
+/// Number of places that are drawn side by side.
 pub(super) const ABREAST: usize = 16;
-/// A number for each of them.
+/// One number for each place drawn side by side.
 pub(super) type Each = [f64; ABREAST];
 
 /// The largest number below 1.
 const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
-/// A cell. Those of a path are read for some rays and then not for a while, so they are small: four to a line of the cache.
+/// A cell. The cells of a path are read for some rays and then not for a while, so they are small: four fit into a cache line.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    /// The first of its four parts: lower left, lower right, upper left, upper right. 0 where it is not cut.
+    /// Index of the first of the four parts: lower left, lower right, upper left, upper right. 0 if the cell is not cut.
     first: u32,
-    /// What of its rays goes to the lower half, and within each half to the left.
+    /// Fraction of the cell's rays that goes to the lower half, and within each half to the left.
     lower: f32,
     left: [f32; 2],
 }
 
-/// A density over the unit square, 1 in the mean.
+/// A density over the unit square, with mean 1.
 #[derive(Clone, Debug)]
 pub(super) struct Density {
     cells: Vec<Cell>,
 }
 
 impl Density {
+    /// Creates a uniform density.
     pub fn even() -> Self {
         Self { cells: vec![Cell { first: 0, lower: 0.5, left: [0.5; 2] }] }
     }
 
-    /// Of cells, each behind what it is a part of: the number of the first of its four parts, or 0; and how dense rays are in those that are
-    /// not cut, but for a factor.
+    /// Builds a density from cells, each listed after the cell that it is a part of. Each gives the index of the first of its four parts,
+    /// or 0 if it is not cut. An uncut cell also gives its ray density, up to a common factor.
     pub fn of(cells: &[(u32, f64)]) -> Self {
         let mut own = vec![Cell { first: 0, lower: 0.5, left: [0.5; 2] }; cells.len()];
         let mut means: Vec<f64> = cells.iter().map(|(_, density)| *density).collect();
@@ -43,7 +44,8 @@ impl Density {
         Self { cells: own }
     }
 
-    /// Draws a place by two numbers in [0, 1): neighbors to neighbors, so strata survive. The place, and how dense rays are there.
+    /// Draws a place by two numbers in [0, 1). Neighboring numbers give neighboring places, so strata survive. Returns the place and the
+    /// ray density there.
     #[inline]
     pub fn draw(&self, mut u: f64, mut v: f64) -> ([f64; 2], f64) {
         let (mut cell, mut low, mut side, mut density) = (&self.cells[0], [0.0; 2], 1.0, 1.0);
@@ -58,9 +60,9 @@ impl Density {
         ([low[0] + u * side, low[1] + v * side], density)
     }
 
-    /// [`Density::draw`] of several side by side: by itself each step waits for the cell that the one before it found. Each kind of
-    /// work has a loop of its own, so that all but the looks at the cells runs in vectors. Writes the places over the numbers, and
-    /// how dense rays are there.
+    /// Draws several places side by side, like [`Density::draw`]. A single draw would wait at each step for the cell that the step before
+    /// found. Each kind of work has its own loop, so that everything except reading the cells is vectorized. Writes the places over the
+    /// numbers, and the ray densities.
     #[inline(always)]
     pub fn draw_abreast(own: [&Self; ABREAST], places: &mut [Each; 2], density: &mut Each) {
         let [x, y] = places;
@@ -79,7 +81,7 @@ impl Density {
                 break;
             }
             for k in 0..ABREAST {
-                // Who has arrived stays.
+                // A draw that has arrived stays where it is.
                 let goes_on = first[k] != 0;
                 let (smaller, lower) = (0.5 * side[k], f64::from(lower[k]));
                 let is_upper = y[k] >= lower;
@@ -103,7 +105,7 @@ impl Density {
         }
     }
 
-    /// How dense rays are at a place.
+    /// Returns the ray density at a place.
     #[inline]
     pub fn at(&self, place: [f64; 2]) -> f64 {
         let (mut cell, mut density, mut steps) = (&self.cells[0], 1.0, Steps::to(place));
@@ -117,7 +119,7 @@ impl Density {
     }
 }
 
-/// The way to a place of the unit square by halves of halves: its binary digits.
+/// The steps to a place of the unit square by repeated halving: its binary digits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steps([u32; 2]);
 
@@ -127,7 +129,7 @@ impl Steps {
         Self(place.map(|number| (number * 4_294_967_296.0) as u32))
     }
 
-    /// Whether the next step is to the right, 0 or 1, and whether it is up.
+    /// Returns the next step: 1 to the right or 0 to the left, and 1 up or 0 down.
     #[inline]
     pub fn next(&mut self) -> [usize; 2] {
         let step = self.0.map(|digits| (digits >> 31) as usize);
@@ -136,7 +138,8 @@ impl Steps {
     }
 }
 
-/// Which part of the interval from 0 to 1 holds a number, 0 below `edge` or 1, and how long that part is; the number becomes the place in it.
+/// Finds the part of the interval from 0 to 1 that holds a number: 0 below `edge`, or 1. Also returns the length of that part. The number
+/// becomes the position within it.
 #[inline]
 fn half(number: &mut f64, edge: f32) -> (usize, f64) {
     let edge = f64::from(edge);
@@ -146,7 +149,7 @@ fn half(number: &mut f64, edge: f32) -> (usize, f64) {
     (usize::from(is_upper), length)
 }
 
-/// The place of a number in the upper or the lower part of the interval from 0 to 1, and how long that part is.
+/// Returns the position of a number in the upper or lower part of the interval from 0 to 1, and the length of that part.
 #[inline(always)]
 fn within(number: f64, edge: f64, is_upper: bool) -> (f64, f64) {
     let (from, length) = if is_upper { (edge, 1.0 - edge) } else { (0.0, edge) };
@@ -159,7 +162,7 @@ mod tests {
     use super::*;
     use spectra_core::numbers::Numbers;
 
-    /// Whatever the numbers, no place is drawn where there are no rays.
+    /// No place is drawn where there are no rays, whatever the numbers.
     #[test]
     fn parts_without_rays_are_left_out() {
         let parts = |densities: [f64; 4]| {
@@ -180,7 +183,7 @@ mod tests {
         assert_eq!(parts([0.0; 4]).draw(0.25, 0.75), ([0.25, 0.75], 1.0));
     }
 
-    /// Bit for bit, of cells that lie one, two and no steps deep.
+    /// Draws side by side are the same as single ones, bit for bit, for cells one, two and no steps deep.
     #[test]
     fn side_by_side_they_are_as_one_by_one() {
         let deep = |first: f64| {

@@ -1,32 +1,37 @@
-//! Where on the front of the lens the light of a path enters that comes to the frame.
+//! Finds where on the front of the lens the light of a path that reaches the frame enters.
+//!
+//! The first rays go all over the front, the next ones only to where light came through. If none came through, they go to where rays got
+//! furthest along the path: what passes a surface is a part of what passes the one before it. A path that enters by one part in 20 000 of a
+//! fisheye's front, totally reflected at the first surface, is found in a few rounds this way. Without this step such a path was found by
+//! one ray of the final picture, which then carried a tenth of the region's light.
 
 use super::density::{ABREAST, Density, Each};
 
-/// Cells in which the first rounds look for the part of the front that light of a path comes through, across and up.
+/// Number of cells, across and up, in which the first rounds look for the part of the front through which light of a path comes.
 const SIDE: usize = 24;
-/// Where none came, as many rays or more that went furthest say where to look for it.
+/// Number of rays that got furthest and tell where to look, if no light came through.
 const FURTHEST: usize = 8;
-/// This part of the rays goes all over the front, whatever was found: so the estimate has no bias, and what was overlooked weighs
-/// ten times as much at most.
+/// Fraction of the rays that goes all over the front, whatever was found. The estimate therefore has no bias, and light that was overlooked
+/// weighs at most ten times as much.
 const EVEN: f64 = 0.1;
 
-/// A density over the square [-1, 1]^2 around the front disk: even over all of it, and by cells over a part of it.
+/// A density over the square [-1, 1]^2 around the front disk: uniform over all of it, plus a part given by cells.
 #[derive(Clone, Debug)]
 pub(super) struct Guide {
     part: Part,
-    /// What of the rays goes all over the square.
+    /// Fraction of the rays that goes all over the square.
     even: f64,
     cells: Density,
 }
 
-/// A place, and how dense rays are there: 1 over the square's unit of area.
+/// A place on the front and the ray density there, per unit area of the square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aim {
     pub place: [f64; 2],
     pub density: f64,
 }
 
-/// A part of the square: two corners.
+/// A rectangular part of the square, given by two corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part {
     pub low: [f64; 2],
@@ -41,7 +46,7 @@ impl Part {
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
     }
 
-    /// A place as the tree counts, from 0 to 1; `None` outside.
+    /// Converts a place to coordinates of the tree, from 0 to 1; `None` if it lies outside.
     #[inline]
     pub fn inside(&self, place: [f64; 2]) -> Option<[f64; 2]> {
         let at = |axis: usize| (place[axis] - self.low[axis]) / (self.high[axis] - self.low[axis]);
@@ -49,14 +54,14 @@ impl Part {
         at.iter().all(|at| (0.0..1.0).contains(at)).then_some(at)
     }
 
-    /// The place that the tree counts so.
+    /// Converts coordinates of the tree, from 0 to 1, to a place.
     #[inline(always)]
     pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ([low_x, low_y], [high_x, high_y]) = (self.low, self.high);
         [low_x + (high_x - low_x) * x, low_y + (high_y - low_y) * y]
     }
 
-    /// With places that lie outside.
+    /// Returns the part extended to hold more places.
     pub fn with(mut self, places: impl Iterator<Item = [f64; 2]>) -> Self {
         for place in places {
             for axis in 0..2 {
@@ -69,17 +74,17 @@ impl Part {
 }
 
 impl Guide {
-    /// Even over all of the square.
+    /// Creates a guide that is uniform over the square.
     pub fn everywhere() -> Self {
         Self::of(Part::ALL, Density::even())
     }
 
-    /// Nothing but the even part.
+    /// Creates a guide that sends all rays uniformly over the square.
     pub fn blind() -> Self {
         Self { even: 1.0, ..Self::everywhere() }
     }
 
-    /// By the cells of a part.
+    /// Creates a guide from the cells of a part.
     pub fn of(part: Part, cells: Density) -> Self {
         Self { part, even: EVEN, cells }
     }
@@ -99,7 +104,7 @@ impl Guide {
         Aim { place: self.part.place(at), density: self.mixed(dense) }
     }
 
-    /// [`Guide::draw`] of several side by side: writes the places over the numbers, and the densities.
+    /// Draws several places side by side, like [`Guide::draw`]. Writes the places over the numbers, and the densities.
     #[inline(always)]
     pub fn draw_abreast(own: [&Self; ABREAST], numbers: &mut [Each; 2], density: &mut Each) {
         let (before, mut cells) = (*numbers, [&own[0].cells; ABREAST]);
@@ -118,7 +123,7 @@ impl Guide {
         }
     }
 
-    /// How dense rays are at a place, 1 over the square's unit of area.
+    /// Returns the ray density at a place, per unit area of the square.
     #[inline]
     pub fn density(&self, place: [f64; 2]) -> f64 {
         self.mixed(self.part.inside(place).map_or(0.0, |at| self.cells.at(at)))
@@ -130,17 +135,17 @@ impl Guide {
     }
 }
 
-/// Where in the cells of a guide's part light came through, and how far along the path the other rays went.
+/// The cells of a guide's part through which light came, and how far along the path the other rays got.
 #[derive(Clone, Debug)]
 pub(super) struct Lit {
     part: Part,
     cells: [bool; SIDE * SIDE],
-    /// Of each ray the surfaces that it passed, and its cell.
+    /// Number of surfaces that each ray passed, and the cell of the ray.
     went: Vec<(u16, u16)>,
 }
 
 impl Lit {
-    /// Nothing yet.
+    /// Starts an empty record for a guide.
     pub fn of(guide: &Guide) -> Self {
         Self { part: guide.part, cells: [false; SIDE * SIDE], went: Vec::new() }
     }
@@ -150,28 +155,28 @@ impl Lit {
         Some(y * SIDE + x)
     }
 
-    /// A ray came through `place`.
+    /// Records that a ray came through `place`.
     pub fn add(&mut self, place: [f64; 2]) {
         if let Some(cell) = self.cell(place) {
             self.cells[cell] = true;
         }
     }
 
-    /// A ray from `place` passed so many surfaces of the path.
+    /// Records that a ray from `place` passed this many surfaces of the path.
     pub fn went(&mut self, place: [f64; 2], surfaces: u16) {
         if let Some(cell) = self.cell(place).filter(|_| surfaces > 0) {
             self.went.push((surfaces, cell as u16));
         }
     }
 
-    /// Whether no light came, but rays passed some surfaces.
+    /// Whether no light came through, but rays passed some surfaces.
     pub fn is_on_the_way(&self) -> bool {
         !self.went.is_empty() && !self.cells.contains(&true)
     }
 
-    /// The part of the cells that light came through and their neighbors, all alike. Where none came, of those that the rays came from which
-    /// went furthest: what passes a surface is a part of what passes the one before it, so a place that one ray of a million would find is
-    /// found in some steps.
+    /// Returns a uniform guide for the smallest part that holds the cells through which light came, and their neighbors. If none came, it
+    /// takes the cells of the rays that got furthest. Rays that pass a surface also passed all surfaces before it. A place that one ray in
+    /// a million would hit is therefore found in a few steps.
     pub fn closer(&self) -> Guide {
         let mut lit: Vec<usize> = (0..SIDE * SIDE).filter(|at| self.cells[*at]).collect();
         if lit.is_empty() {
@@ -199,8 +204,8 @@ mod tests {
     use spectra_core::math::sin_cos_turns;
     use spectra_core::numbers::Numbers;
 
-    /// Of a density the mean of one over it is the area, and the mean of a function over it is the function's integral, however
-    /// little of it the guide has found.
+    /// The mean of one over the density is the area, and the mean of a function over the density is its integral, however little of it the
+    /// guide has found.
     #[test]
     fn a_guide_has_no_bias() {
         let disk = |[x, y]: [f64; 2]| f64::from((x - 0.3) * (x - 0.3) + (y + 0.2) * (y + 0.2) < 0.01);
@@ -242,8 +247,8 @@ mod tests {
         }
     }
 
-    /// Ten disks one within the other, each three tenths of the one before, down to eight of a million places: rays that pass some of them
-    /// lead to it.
+    /// Ten nested disks, each with three tenths of the area of the one before, down to eight places in a million. Rays that pass some of
+    /// them lead to the innermost one.
     #[test]
     fn rays_that_go_further_lead_to_the_light() {
         let passed = |[x, y]: [f64; 2]| {
@@ -268,7 +273,7 @@ mod tests {
             guide = lit.closer();
         }
         assert!(came[0] == 0 && came[4] > n / 4, "{came:?}");
-        // Nothing came in: nobody knows where to look.
+        // No ray passed anything, so it is unknown where to look.
         let blocked = Lit::of(&guide);
         assert!(!blocked.is_on_the_way());
         assert_eq!(blocked.closer().part(), Part::ALL);

@@ -1,4 +1,4 @@
-//! Ghosts as a camera's meter sees them: by some of their blocks, of numbers of their own.
+//! Measures ghosts as a camera's meter sees them: traces some blocks with separate random numbers.
 
 use super::{Ghosts, Plan, Way};
 use crate::Workers;
@@ -10,16 +10,16 @@ use spectra_core::workers::each_of;
 use std::sync::Arc;
 
 impl Ghosts {
-    /// The same for what the meters see; `None` where they see nothing.
+    /// Returns a copy that traces what the meters see; `None` if they see none of the source's light.
     pub(super) fn of_meters(&self, workers: &dyn Workers) -> Option<Result<Self, RenderError>> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         let numbers = self.of_seed(pipeline.seed ^ meter::SEED);
-        // Meters see means, which footprints leave as they are.
+        // Meters see means, which footprints do not change.
         let own = Self { pipeline, plan: Arc::new(self.plan.together()), spreading: None, numbers, scale: 1.0 };
         Some(own.pilot_scale(workers).map(|scale| Self { scale, ..own }))
     }
 
-    /// The light, W/m2 at each pixel, channel by channel.
+    /// Measures the light, W/m2 at each pixel, channel by channel.
     pub(super) fn seen(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
         let pipeline = &self.pipeline;
         let scene = &pipeline.scene;
@@ -27,7 +27,7 @@ impl Ghosts {
         if scene.metered_pixels().is_empty() {
             return Ok(vec![vec![0.0; pixels]; channels]);
         }
-        // A block is a fair picture, however many rays it has.
+        // A block represents all paths fairly, however many rays it has.
         let blocks = meter::rays_for(pixels, pipeline.effort).div_ceil(self.plan.rays);
         let sums = ExactSums::new(pixels * channels).ok_or_else(|| RenderError::Memory(crate::memory_needed(scene)))?;
         let work = |state: &mut ThreadState, block: usize| {
@@ -43,7 +43,7 @@ impl Ghosts {
 }
 
 impl Plan {
-    /// Without sums of their own for some paths.
+    /// Returns the plan without separate sums for some paths.
     fn together(&self) -> Self {
         let way = |way: &Way| Way { own_cells: None, ..way.clone() };
         Self { ways: self.ways.iter().map(way).collect(), apart: Vec::new(), ..self.clone() }

@@ -1,9 +1,34 @@
-//! Ghosts: light of the source's lights that surfaces of the lens reflect on its way to the imager.
+//! Ghosts: light of the bright lights that surfaces of the lens reflect on its way to the imager.
 //!
-//! Forward, as [`crate::forward`], but along paths by two reflections, or four, each traced exactly as the straight one. A pilot run finds for
-//! each path and zone of the source where on the front of the lens its light comes in ([`guide`]), and how much each path needs: rays
-//! are shared out so that the noise of 32 x 32 pixels, as a part of the ghosts' light there (of luminance, where a picture has it), is
-//! least, and nowhere much more than elsewhere ([`shares`]). A tenth of every path's rays goes all over the front, so that no path has a bias whatever the pilot overlooked.
+//! **Model.** A ghost path is an ordinary path with two or four reflections. There is one for each pair of surfaces whose coating reflects;
+//! the imager counts as one more surface, in the image plane. Light is traced forward, as in [`crate::forward`], and along each path
+//! exactly as straight through; no matrix approximates a path. The source places the ray on the light, and the wavelength density gives its
+//! color. [`FrontOpening`] is the sphere around the clear part of the first surface. Seen from the light it is a disk across the line of
+//! sight, at any angle, so a fisheye needs no special case. The path's guide draws a place on the square around that disk, and the weight
+//! is multiplied by the solid angle over the density of the place.
+//!
+//! **Guides.** A pilot finds, for each path and zone of the source, where on the front of the lens its light enters ([`guide`], `pilot`),
+//! and how many rays each path needs. Rays are shared out to minimize the noise of blocks of 32 x 32 pixels, relative to the ghosts' light
+//! there. No block is left much noisier than the mean ([`shares`]). The noise is that of luminance if the picture has it, else of the sum
+//! of the channels. Paths get rays in proportion to their noise over the root of their cost (Neyman's allocation). A tenth of each path's
+//! rays goes all over the front, so that no path is biased, whatever the pilot overlooked.
+//!
+//! **Footprints.** A ghost is smooth, so the light of a ray is spread over a square of pixels as it lands (`spreading`, `width`, `net`,
+//! [`crate::footprint`]). A ray's integers are divided into equal shares, and the pixel that the ray meets gets the remainder, so the
+//! shares add up to the ray exactly. On a mosaic each pixel gets its share of what its own channel sees of the ray. With `spread: none`
+//! each ray adds to one pixel; rays and totals of each path are the same to the last bit, except on mosaics. `xtask/ghost_noise.py`
+//! compares the two.
+//!
+//! **Blocks.** A unit of work has some rays of every path, so any number of units is a fair picture. Stepping, saving and stopping need
+//! nothing else.
+//!
+//! **Four reflections** are traced if requested: see `account`, which also books where all light goes.
+//!
+//! **When.** Unless the scene decides, ghosts are on if lights are rendered apart from the rest and the brightest block has more than 1 %
+//! of the rest's mean. Dimmer ghosts get fewer rays, down to an eighth of a ray per pixel and sample.
+//!
+//! **Limits.** Prisms take no part: ghosts that their faces reflect are missing, and the scene is warned. Paths of four reflections are not
+//! spread if lights lie in several zones; nor are rays that the source directs itself, nor what meters see.
 
 mod account;
 mod aims;
@@ -42,111 +67,117 @@ use spectra_core::loss::ALIVE;
 use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Receive};
 use spectra_core::workers::each_of;
-use spectra_lens::{FrontOpening, Indices, Path, Route, Tracer, Travel};
+use spectra_optics::FrontOpening;
 use spectra_scene::GhostSpread;
+use spectra_tracer::{Indices, Path, Route, Tracer, Travel};
 use spreading::Spreading;
 use std::ops::Range;
 use std::sync::Arc;
 use zones::Zones;
 
-/// How rays are shared out over the paths of ghosts, and where on the front each begins.
+/// The way rays are shared out over the ghost paths and over the front of the lens.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GhostRays {
-    /// As a search before finds it best.
+    /// Shares rays out as a preceding search finds best.
     #[default]
     Found,
-    /// As many for each path, all over the front: what the search is measured against.
+    /// Gives each path equally many rays, all over the front: the reference for the search.
     Even,
 }
 
-/// Ghosts matter by themselves where the brightest of them has more than this part of the mean of the frame, diffraction where the
-/// brightest star has more of its median.
+/// Threshold above which ghosts or diffraction are computed without being requested. Ghosts: the brightest block, as a fraction of the mean
+/// of the frame. Diffraction: the brightest star, as a fraction of the median of the frame.
 pub(crate) const MATTERS: f64 = 0.01;
 
-/// What numbers of its own stages draw by.
+/// Estimator name from which the stages derive their own random numbers.
 pub(crate) const ESTIMATOR: &str = "ghosts";
 /// Turns the picture's seed into that of the ghosts.
 const SEED: u64 = 0x6768_6f73_7473;
 
-/// Rays for each pixel and sample, and in all of a sample at least for each path. Where ghosts are traced because lights are bright,
-/// dim ones get fewer, as the brightest block is to the mean of the frame.
+/// Number of rays per pixel and sample.
 const RAYS_A_PIXEL: f64 = 0.9;
+/// Smallest number of rays per pixel and sample. Ghosts that are traced because lights are bright get fewer rays the dimmer they are, in
+/// proportion to the brightest block over the mean of the frame.
 const LEAST_A_PIXEL: f64 = 0.125;
+/// Smallest number of rays of a sample for each path.
 const LEAST_A_PATH: u64 = 64;
-/// Rays of a unit of work: some milliseconds.
+/// Number of rays in a unit of work, which takes some milliseconds.
 const RAYS_PER_BLOCK: u64 = 1 << 16;
-/// This part of the rays is shared out evenly, whatever the pilot found.
+/// One part in this many of the rays is shared out evenly, whatever the pilot found.
 const FLOOR: u64 = 8;
-/// What a ray costs beside its surfaces, in surfaces.
+/// Cost of a ray in addition to its surfaces, in surfaces.
 const OVERHEAD: f64 = 8.0;
 
-/// Room of the sums for rays that the pilot has not seen, and rays of each path that it looks at.
+/// Headroom of the sums for rays brighter than the pilot saw.
 const HEADROOM: f64 = 4.0;
+/// Number of rays of each path from which the scale of the sums is found.
 const SCALE_RAYS: u64 = 4096;
 
-/// One path.
+/// A ghost path and the plan of its rays.
 #[derive(Clone)]
 struct Way {
     route: Route,
-    /// The surfaces that reflect, counted from 1.
+    /// Surfaces that reflect, counted from 1.
     surfaces: Vec<usize>,
-    /// By the zones of the source; of more than two reflections one for all.
+    /// Guides for the zones of the source; one for all zones if the path has more than two reflections.
     guides: Vec<Guide>,
-    /// Rays of a block, and what each of them weighs for those of all paths.
+    /// Number of rays in a block.
     rays: u64,
+    /// Factor for the weight of each ray that makes it stand for the rays of all paths.
     boost: f64,
-    /// Sums of its own, if it has any: the first of them.
+    /// First cell of the separate sums of this path, if it has any.
     own_cells: Option<usize>,
 }
 
 impl Way {
-    /// Whether two surfaces reflect, and no more.
+    /// Whether no more than two surfaces reflect.
     fn is_of_pair(&self) -> bool {
         self.surfaces.len() <= 2
     }
 
-    /// What a ray takes, in surfaces.
+    /// Returns the cost of a ray, in surfaces.
     fn cost(&self) -> f64 {
         self.route.steps() as f64 + OVERHEAD
     }
 }
 
-/// What was found once for a scene.
+/// The results of the search, found once per scene.
 #[derive(Clone)]
 struct Plan {
-    /// Where light enters; `None` of a source that sets its directions itself.
+    /// Front opening where light enters; `None` if the source sets directions itself.
     opening: Option<FrontOpening>,
     zones: Zones,
     ways: Vec<Way>,
-    /// Rays of a block of all paths.
+    /// Number of rays in a block, over all paths.
     rays: u64,
     blocks_a_sample: u64,
     ledger: LightLedger,
-    /// Paths that have sums of their own.
+    /// Paths that have separate sums.
     apart: Vec<Vec<usize>>,
 }
 
-/// Where a ray that landed went in: its zone, and its place on the front.
+/// The place where a ray that landed entered the lens: its zone, and its position on the front.
 #[derive(Clone, Copy, Debug)]
 struct Landed {
     zone: usize,
     place: [f64; 2],
-    /// Where around the axis its source lies: a unit vector.
+    /// Direction of the ray's source point around the axis, a unit vector.
     azimuth: [f64; 2],
 }
 
+/// Estimator of ghosts.
 pub(crate) struct Ghosts {
     pipeline: Arc<Pipeline>,
     plan: Arc<Plan>,
-    /// `None` where all light of a ray stays in the pixel that it meets.
+    /// Footprints over which light is spread; `None` if all light of a ray stays in the pixel that it meets.
     spreading: Option<Arc<Spreading>>,
     numbers: Numbers,
     scale: f64,
 }
 
 impl Ghosts {
-    /// Searches the ways of the light of a share of the source, and finds the scale of the sums. `None` where nothing reflects, or
-    /// where the brightest block of 32 x 32 pixels has no more than `matters` (W/m2, the sum of its channels).
+    /// Searches the paths of the light of a share of the source and finds the scale of the sums. `None` if nothing reflects, or if the
+    /// brightest block of 32 x 32 pixels has no more than `matters` (W/m2, summed over its channels).
     pub(crate) fn new(
         pipeline: &Pipeline,
         matters: Option<f64>,
@@ -155,7 +186,7 @@ impl Ghosts {
         Self::with_rays(pipeline, matters, GhostRays::Found, workers)
     }
 
-    /// The same, with its rays shared out otherwise.
+    /// Searches like [`Ghosts::new`], with a choice of how rays are shared out.
     pub(crate) fn with_rays(
         pipeline: &Pipeline,
         matters: Option<f64>,
@@ -186,7 +217,7 @@ impl Ghosts {
             Zones::new(&points, opening.center(), lens.has_axis_of_revolution())
         });
         let everywhere = Guide::everywhere();
-        // What reaches the imager counts, not what it keeps: exposure is incident light.
+        // The light that reaches the imager counts, not what it keeps: exposure is incident light.
         let way = |path: Path| {
             let surfaces: Vec<usize> = path.reflections().map(|at| at + 1).collect();
             let route = pipeline.tracer.route(&path.before(imager));
@@ -201,14 +232,14 @@ impl Ghosts {
         let order = reflections.order.unwrap_or(2);
         let mut ledger = None;
         if order > 2 {
-            // The books say which paths of more have enough.
+            // The ledger tells which paths of more reflections have enough light.
             let books = account::of(&own, &lens, &surfaces, order, workers)?;
             let mut more: Vec<&[usize]> = books.paths.iter().map(|path| &path.surfaces[..]).collect();
             more.retain(|surfaces| surfaces.len() > 2);
             more.sort_unstable();
             let path = |surfaces: &[usize]| {
                 let at: Vec<usize> = surfaces.iter().map(|at| at - 1).collect();
-                Path::reflected(count, Travel::Forward, &at).expect("the books follow paths")
+                Path::reflected(count, Travel::Forward, &at).expect("a path from the ledger")
             };
             let ways = more.into_iter().map(|surfaces| way(path(surfaces))).collect();
             own.plan = Arc::new(own.plan.with(ways));
@@ -233,32 +264,33 @@ impl Ghosts {
         Ok(Some(own))
     }
 
+    /// Returns the random numbers of a seed.
     fn of_seed(&self, seed: u64) -> Numbers {
         self.pipeline.numbers(mix64(seed ^ SEED))
     }
 
-    /// Where the light goes.
+    /// Ledger of where the light goes.
     pub(crate) fn ledger(&self) -> &LightLedger {
         &self.plan.ledger
     }
 
     fn emit(&self) -> &dyn Emit {
-        self.pipeline.source().emit().expect("`new` saw it")
+        self.pipeline.source().emit().expect("checked by `new`")
     }
 
     fn receive(&self) -> &dyn Receive {
-        self.pipeline.scene.imager.receive().expect("`new` saw it")
+        self.pipeline.scene.imager.receive().expect("checked by `new`")
     }
 
     fn state(&self, capacity: usize) -> ThreadState {
-        // Polarized where that is asked for, however steep the lens is.
+        // Polarized if the scene asks for it, however steep the lens is.
         let rays = RayBatch::new(capacity);
         let rays = if self.pipeline.scene.render.reflections.polarized { rays.with_polarization() } else { rays };
         let rays = if self.pipeline.draws { rays.with_numbers() } else { rays };
         ThreadState { rays, ..ThreadState::new(&self.pipeline, capacity) }
     }
 
-    /// Puts rays `first .. first + len` of a stream on the source, with the numbers of all dimensions.
+    /// Places rays `first .. first + len` of a stream on the source, with the random numbers of all dimensions.
     fn place(
         &self,
         state: &mut ThreadState,
@@ -279,7 +311,7 @@ impl Ghosts {
         look(Step::Source, &state.rays);
     }
 
-    /// Takes rays that are on the source to the front, by two numbers each; says where each is aimed at.
+    /// Aims rays from the source at the front, by two random numbers each, and returns where each ray is aimed.
     fn aim(&self, rays: &mut RayBatch, guides: &[Guide], numbers: [&[f64]; 2]) -> Aims {
         let Some(opening) = &self.plan.opening else { return Aims::of_numbers(numbers) };
         let [x, y, z] = rays.positions();
@@ -293,7 +325,7 @@ impl Ghosts {
         aims
     }
 
-    /// Starts rays `first .. first + len` of a stream at the front.
+    /// Starts rays `first .. first + len` of a stream on the source and aims them at the front.
     fn start(
         &self,
         state: &mut ThreadState,
@@ -312,7 +344,7 @@ impl Ghosts {
         aims
     }
 
-    /// From the front to the pixels. The number of each ray of the batch that it was.
+    /// Traces rays from the front to the pixels. Returns for each ray that is left its number in the batch.
     fn finish(&self, state: &mut ThreadState, route: &Route, mut look: impl FnMut(Step, &RayBatch)) -> Vec<u32> {
         let isa = self.pipeline.isa;
         (0..).zip(state.rays.columns_mut().tag).for_each(|(number, tag)| *tag = number);
@@ -326,7 +358,8 @@ impl Ghosts {
         numbers
     }
 
-    /// Traces rays `first .. first + len` of a path; what arrived is left in the batch, pixels in the tags. Where each of them went in.
+    /// Traces rays `first .. first + len` of a path. Rays that arrived are left in the batch, with their pixels in the tags. Returns where
+    /// each of them entered the lens.
     fn batch(
         &self,
         state: &mut ThreadState,
@@ -344,7 +377,7 @@ impl Ghosts {
         landed
     }
 
-    /// What each ray of a batch brings to each channel, ray by ray.
+    /// Returns what each ray of a batch brings to each channel, ray by ray.
     fn brought(&self, state: &mut ThreadState) -> Vec<f64> {
         let (len, channels) = (state.rays.len(), self.pipeline.responses.channels());
         let mut brought = vec![0.0; len * channels];
@@ -363,22 +396,22 @@ impl Ghosts {
         brought
     }
 
-    /// Sums of all paths: one a pixel and channel.
+    /// Number of sums for all paths together: one for each pixel and channel.
     fn cells(&self) -> usize {
         self.pipeline.scene.imager.size().pixels() * self.pipeline.recorded.len()
     }
 
-    /// Rays of a sample, where the brightest block has so much light.
+    /// Returns the number of rays in a sample if the brightest block has this much light.
     fn rays_a_sample(&self, matters: Option<f64>, brightest: f64) -> u64 {
         let a_pixel = matters.map_or(RAYS_A_PIXEL, |matters| {
-            // What matters is a part of the mean.
+            // The threshold is a fraction of the mean.
             RAYS_A_PIXEL * (MATTERS * brightest / matters).clamp(LEAST_A_PIXEL, 1.0)
         });
         let pixels = self.pipeline.scene.imager.size().pixels() as f64;
         ((pixels * a_pixel) as u64).max(self.plan.ways.len() as u64 * LEAST_A_PATH)
     }
 
-    /// The rays of a sample, shared out over the paths.
+    /// Shares the rays of a sample out over the paths.
     fn shared_out(&self, found: Vec<(Vec<Guide>, f64)>, a_sample: u64, ledger: LightLedger) -> Plan {
         let old = &self.plan;
         let paths = old.ways.len() as u64;
@@ -405,12 +438,12 @@ impl Ghosts {
         Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, ledger, apart }
     }
 
-    /// What a unit of the sums of so many rays is worth in such a time, J/m2.
+    /// Returns the value of one unit of the sums of this many rays, J/m2 in the given time.
     fn worth(&self, rays: u64, time_s: f64) -> f64 {
         time_s / self.scale / self.pipeline.scene.imager.size().pixel_area_mm2() / rays.max(1) as f64
     }
 
-    /// The scale of the sums, by some rays of each path.
+    /// Finds the scale of the sums from some rays of each path.
     fn pilot_scale(&self, workers: &dyn Workers) -> Result<f64, RenderError> {
         let capacity = self.pipeline.scene.render.batch;
         let look = |state: &mut ThreadState, at: usize| {
@@ -419,7 +452,7 @@ impl Ghosts {
                 let mut blame = Blame::default();
                 self.batch(state, at, (first, len), |step, rays| blame.look(step, rays));
                 if blame.no_number(&self.pipeline).is_some() {
-                    // Places of rays that ended in another batch are nobody's fault.
+                    // Trace in a fresh state: positions left over from rays that ended in another batch must not be blamed.
                     let (mut blame, mut again) = (Blame::default(), self.state(capacity));
                     self.batch(&mut again, at, (first, len), |step, rays| blame.look(step, rays));
                     if let Some(error) = blame.no_number(&self.pipeline) {
@@ -435,7 +468,7 @@ impl Ghosts {
         Ok(scale_for(largest * HEADROOM * self.pipeline.source().peak_over_mean().max(1.0)))
     }
 
-    /// Adds a block to the sums.
+    /// Traces a block of rays of all paths and adds it to the sums.
     fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> Unit {
         let mut rays = 0;
         for (at, way) in self.plan.ways.iter().enumerate() {
@@ -467,20 +500,20 @@ impl Ghosts {
 }
 
 impl Plan {
-    /// Before rays are shared out.
+    /// Creates a plan whose rays are not yet shared out.
     fn new(opening: Option<FrontOpening>, zones: Zones, ways: Vec<Way>) -> Self {
         let (ledger, apart) = (LightLedger::default(), Vec::new());
         Self { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger, apart }
     }
 
-    /// With more paths, before rays are shared out.
+    /// Returns the plan with more paths, whose rays are not yet shared out.
     fn with(&self, more: Vec<Way>) -> Self {
         let ways = self.ways.iter().cloned().chain(more).collect();
         Self::new(self.opening, self.zones.clone(), ways)
     }
 }
 
-/// A span of rays in batches: the first one and the number of each.
+/// Divides a range of rays into batches: the first ray and the number of rays of each.
 fn spans(rays: Range<u64>, capacity: usize) -> impl Iterator<Item = (u64, usize)> {
     let end = rays.end;
     rays.step_by(capacity).map(move |first| (first, capacity.min((end - first) as usize)))

@@ -1,38 +1,47 @@
-//! What footprints rest on: a net of places on the front of the lens, and where light through them lands by one path.
+//! A net of places on the front of the lens, and where light through them lands along one path. Footprints are derived from it.
 //!
-//! Neighbors in the net say how a step on the front moves the light on the frame (the Jacobian), where light is lost that comes in
-//! beside light that arrives (an edge of the ghost: the image of a rim or of the stop), and where the map folds (a caustic). A footprint
-//! is no larger than a few meshes of the net, for as far is the map known to be straight; it ends at edges and is small near folds.
+//! Neighbors in the net tell three things. First, how a step on the front moves the light on the frame (the Jacobian). Second, where light
+//! is lost next to light that arrives: an edge of the ghost, the image of a rim or of the stop. Third, where the map folds: a caustic. A
+//! footprint is no larger than a few meshes of the net, because the map is known to be linear only that far. It ends at edges, and reaches
+//! half of the way to a fold.
+//!
+//! An edge is found to a 32nd of a mesh and kept as a line across the frame that moves with the ray. In a round lens it turns with the
+//! source around the axis.
+//!
+//! **Limits.** Where the net knows nothing, footprints reach up to 6 pixels to each side. So do those of rays beyond an edge, but no
+//! farther than twice their distance beyond it: for their color and their place on the source the edge is elsewhere. Next to a caustic,
+//! just beyond an edge and in a corner of two edges, a footprint keeps one or two pixels, because single rays would be colored dots.
 
 use super::guide::Part;
 use crate::footprint::{Edge, Footprint, MOST_HALF};
 
-/// Meshes across and up.
+/// Number of meshes across and up.
 pub(super) const SIDE: usize = 32;
-/// How often the way from a place whose light arrives to one whose light is lost is halved.
+/// Number of times that the interval between a place whose light arrives and one whose light is lost is halved.
 const HALVINGS: usize = 5;
-/// A footprint reaches so many meshes to each side at most, across the map's shorter way.
+/// Largest half side of a footprint in meshes, along the direction in which the map moves light least.
 const MESHES: f64 = 3.0;
-/// Edges are looked for so many meshes away, folds so many.
+/// Distance up to which edges are searched, meshes.
 const EDGES_WITHIN: i64 = 4;
+/// Distance up to which folds are searched, meshes.
 const FOLDS_WITHIN: i64 = 8;
-/// Footprints of rays beyond an edge, and of rays through places that nobody knows, reach this far at most, pixels: the source is no point and light has many colors,
-/// so such edges are elsewhere for them, and as wide as that.
+/// Largest half side, pixels, of footprints of rays beyond an edge, and of rays through unknown places. The source is not a point and light
+/// has many colors, so the edge is elsewhere for such rays, and blurred by as much.
 const UNKNOWN: f64 = 6.0;
-/// How far footprints of rays that land beyond the edge reach, as a part of how far beyond it they do.
+/// Half side of footprints of rays that land beyond an edge, as a multiple of their distance beyond it.
 const BEYOND: f64 = 2.0;
-/// Of the way to a fold a footprint covers this part.
+/// Largest half side of a footprint, as a fraction of the distance to a fold.
 const OF_FOLD: f64 = 0.5;
-/// At a fold itself, where light is squeezed in one direction alone, they reach this far at least, pixels, and those of rays just
-/// beyond an edge this far: single rays would be colored dots.
+/// Smallest half side at a fold, pixels. Light is squeezed in one direction only there, and single rays would show as colored dots.
 const LEAST_AT_FOLD: f64 = 2.0;
+/// Smallest half side of footprints of rays just beyond an edge, pixels.
 const LEAST_BEYOND: f64 = 1.0;
-/// Two edges whose directions have more than this in common are one, bent.
+/// Cosine between the normals of two edges above which they count as one bent edge.
 const SAME: f64 = 0.7;
 
 type Pair = [f64; 2];
 
-/// An edge near a mesh: its distance in pixels is `at` and `slope` times the place on the front.
+/// An edge near a mesh. Its distance in pixels is `at` plus `slope` times the place on the front.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     out: Pair,
@@ -46,7 +55,7 @@ impl Line {
     }
 }
 
-/// What is known of a mesh: how far footprints may reach to each side, pixels, and the edges that are near.
+/// Properties of a mesh: how far footprints may reach to each side, pixels, and the edges nearby.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mesh {
     /// Whether light of the probes came through.
@@ -55,21 +64,21 @@ struct Mesh {
     lines: [u32; 2],
 }
 
-/// No line.
+/// Index that stands for no line.
 const NONE: u32 = 0;
 
-/// The net of a path and zone of the source.
+/// The net of one path and zone of the source.
 #[derive(Clone, Debug)]
 pub(super) struct Net {
     part: Part,
     meshes: Vec<Mesh>,
-    /// The first is none.
+    /// Lines of the meshes; the first is a placeholder for none.
     lines: Vec<Line>,
 }
 
 impl Net {
-    /// Over a part of the front; `land` says where on the frame light comes to that goes in at each of some places, in pixels: columns,
-    /// rows.
+    /// Builds the net over a part of the front. `land` returns for each of some places where on the frame the light that enters there
+    /// lands, in pixels: column and row.
     pub fn new(part: Part, land: impl FnMut(&[Pair]) -> Vec<Option<Pair>>) -> Self {
         let survey = Survey::new(part, land);
         let mut own = Self {
@@ -87,7 +96,7 @@ impl Net {
 
     fn mesh(&mut self, survey: &Survey, at: usize, map: &Map) -> Mesh {
         let half = survey.half(at, map);
-        // From all over the mesh, to the corners of the square.
+        // Reach from any point of the mesh to the corners of the square.
         let reach = std::f64::consts::SQRT_2 * half + map.half_diagonal();
         let mut near: Vec<(f64, Line)> = survey.lines(at, map).filter(|(away, _)| *away < reach).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -103,8 +112,8 @@ impl Net {
         Mesh { is_lit: true, half: half as f32, lines }
     }
 
-    /// The footprint of a ray through a place, where it is to reach so far to each side if it may. `turn` is how the ray's source is turned around the
-    /// axis from the one that the net was found for: cosine and sine.
+    /// Returns the footprint of a ray through a place, with half side `half` where that is allowed. `turn` is the cosine and sine of the
+    /// rotation about the axis from the source point that the net was found for to the ray's source point.
     pub fn footprint(&self, place: Pair, half: f64, turn: Pair) -> Footprint {
         let Some(inside) = self.part.inside(place) else { return Footprint::new(half.min(UNKNOWN), [None; 2]) };
         let [column, row] = inside.map(|at| ((at * SIDE as f64) as usize).min(SIDE - 1));
@@ -115,10 +124,10 @@ impl Net {
             let line = &self.lines[line as usize];
             let away = line.away(place);
             if away < 0.0 {
-                // The edge is elsewhere for this ray, at least as far beyond the known one as it lands, and as much blurred.
+                // The edge is elsewhere for this ray: at least as far beyond the known one as the ray lands, and blurred by as much.
                 return Footprint::new(half.min((BEYOND * -away).max(LEAST_BEYOND)).min(UNKNOWN), [None; 2]);
             }
-            // Columns count the other way from x, rows the way of y.
+            // Columns count opposite to x, rows along y.
             let ([x, y], [cos, sin]) = (line.out, turn);
             *edge = Some(Edge { out: [x * cos + y * sin, y * cos - x * sin], away });
         }
@@ -131,13 +140,14 @@ impl Net {
     }
 }
 
-/// How the light through a mesh lands.
+/// The linear map from a mesh on the front to the frame.
 #[derive(Clone, Copy, Debug)]
 struct Map {
-    /// Of its middle, if all its corners are known.
+    /// Landing point of the middle of the mesh, if all its corners are known.
     center: Option<Pair>,
-    /// Pixels for a step of one mesh across, and up.
+    /// Step on the frame, pixels, for a step of one mesh across.
     across: Pair,
+    /// Step on the frame, pixels, for a step of one mesh up.
     up: Pair,
 }
 
@@ -146,14 +156,14 @@ impl Map {
         self.across[0] * self.up[1] - self.across[1] * self.up[0]
     }
 
-    /// By how much a step of one mesh moves light at most.
+    /// Returns the largest distance by which a step of one mesh moves light, pixels.
     fn longest(&self) -> f64 {
         let [a, b, c, d] = [self.across[0], self.up[0], self.across[1], self.up[1]];
         let (sum, product) = (a * a + b * b + c * c + d * d, self.determinant());
         (0.5 * (sum + (sum * sum - 4.0 * product * product).max(0.0).sqrt())).sqrt()
     }
 
-    /// By how much it does at least.
+    /// Returns the smallest distance by which a step of one mesh moves light, pixels.
     fn shortest(&self) -> f64 {
         let longest = self.longest();
         if longest > 0.0 { self.determinant().abs() / longest } else { 0.0 }
@@ -164,12 +174,12 @@ impl Map {
         0.5 * long(1.0).max(long(-1.0))
     }
 
-    /// Where a step on the front goes, in meshes.
+    /// Returns the step on the frame for a step on the front, given in meshes.
     fn moved(&self, [x, y]: Pair) -> Pair {
         [self.across[0] * x + self.up[0] * y, self.across[1] * x + self.up[1] * y]
     }
 
-    /// The direction on the frame that lies across what lies across `normal` on the front: by the inverse, transposed.
+    /// Transforms the normal of an edge on the front to the normal of its image on the frame, by the transposed inverse.
     fn normal(&self, [x, y]: Pair) -> Pair {
         let over = 1.0 / self.determinant();
         [over * (self.up[1] * x - self.across[1] * y), over * (self.across[0] * y - self.up[0] * x)]
@@ -188,24 +198,24 @@ fn less(a: Pair, b: Pair) -> Pair {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// A stretch of an edge, on the front, in meshes.
+/// A piece of an edge on the front, in meshes.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     middle: Pair,
-    /// Unit vector toward where light is lost.
+    /// Unit vector toward the side where light is lost.
     out: Pair,
 }
 
-/// What was seen of a path: of each mesh the map, the stretches of edges and the folds in it.
+/// The survey of a path: the map, pieces of edges and folds of each mesh.
 struct Survey {
     part: Part,
     maps: Vec<Option<Map>>,
     stretches: Vec<Vec<Stretch>>,
-    /// Where light at a fold lands.
+    /// Landing points of the folds in each mesh.
     folds: Vec<Vec<Pair>>,
 }
 
-/// Nodes across.
+/// Number of nodes across.
 const NODES: usize = SIDE + 1;
 
 impl Survey {
@@ -221,7 +231,7 @@ impl Survey {
         Self { part, maps, stretches, folds }
     }
 
-    /// How far footprints of rays through a mesh may reach, but for edges.
+    /// Returns the largest half side of footprints of rays through a mesh, ignoring edges.
     fn half(&self, at: usize, map: &Map) -> f64 {
         let mut half = (MESHES * map.shortest()).min(MOST_HALF);
         if let Some(center) = map.center {
@@ -234,7 +244,7 @@ impl Survey {
         half.max(LEAST_AT_FOLD.min(MESHES * map.longest()))
     }
 
-    /// Edges around a mesh: how far away the nearest place of each stretch is from its middle, and the line that it lies on.
+    /// Iterates over the edges around a mesh: the distance of each piece from the middle of the mesh, and the line on which it lies.
     fn lines<'a>(&'a self, at: usize, map: &'a Map) -> impl Iterator<Item = (f64, Line)> + 'a {
         let middle = [(at % SIDE) as f64 + 0.5, (at / SIDE) as f64 + 0.5];
         let all = around(at, EDGES_WITHIN).flat_map(|mesh| &self.stretches[mesh]);
@@ -244,7 +254,7 @@ impl Survey {
             if !size.is_finite() || size <= 0.0 {
                 return None;
             }
-            // From a step in meshes to one on the front.
+            // Convert a step in meshes to one on the front.
             let (low, high) = (self.part.low, self.part.high);
             let meshes = [0, 1].map(|axis| SIDE as f64 / (high[axis] - low[axis]));
             let slope = [-stretch.out[0] * meshes[0] / size, -stretch.out[1] * meshes[1] / size];
@@ -255,20 +265,20 @@ impl Survey {
     }
 }
 
-/// The nodes of a mesh: lower left, lower right, upper left, upper right.
+/// Returns the nodes of a mesh: lower left, lower right, upper left, upper right.
 fn corners(mesh: usize) -> [usize; 4] {
     let first = mesh / SIDE * NODES + mesh % SIDE;
     [first, first + 1, first + NODES, first + NODES + 1]
 }
 
-/// Meshes up to so many away, and the mesh.
+/// Iterates over a mesh and its neighbors up to this many meshes away.
 fn around(mesh: usize, away: i64) -> impl Iterator<Item = usize> {
     let (column, row, side) = ((mesh % SIDE) as i64, (mesh / SIDE) as i64, SIDE as i64);
     let range = move |at: i64| (at - away).max(0)..(at + away + 1).min(side);
     range(row).flat_map(move |row| range(column).map(move |column| (row * side + column) as usize))
 }
 
-/// The map of a mesh of which three corners or more are known.
+/// Computes the map of a mesh with at least three known corners.
 fn map(corners: [Option<Pair>; 4]) -> Option<Map> {
     let step = |from: usize, to: usize| Some(less(corners[to]?, corners[from]?));
     let both = |a: Option<Pair>, b: Option<Pair>| match (a, b) {
@@ -283,7 +293,7 @@ fn map(corners: [Option<Pair>; 4]) -> Option<Map> {
     Some(Map { center, across, up })
 }
 
-/// Meshes at an edge of which too few corners are known have the mean map of their neighbors.
+/// Fills in meshes at an edge with too few known corners: they get the mean map of their neighbors.
 fn filled(maps: Vec<Option<Map>>) -> Vec<Option<Map>> {
     let own = |at: usize| {
         if maps[at].is_some() {
@@ -298,7 +308,7 @@ fn filled(maps: Vec<Option<Map>>) -> Vec<Option<Map>> {
     (0..maps.len()).map(own).collect()
 }
 
-/// Where neighbors are mapped the one as it is and the other as in a mirror, the light between them lies at a caustic.
+/// Finds the folds: between two neighboring meshes of which one is mapped directly and the other mirrored, light lies on a caustic.
 fn folds(maps: &[Option<Map>], landed: &[Option<Pair>]) -> Vec<Vec<Pair>> {
     let mut folds = vec![Vec::new(); SIDE * SIDE];
     let is_mirrored =
@@ -317,7 +327,7 @@ fn folds(maps: &[Option<Map>], landed: &[Option<Pair>]) -> Vec<Vec<Pair>> {
     folds
 }
 
-/// Where on the lines between nodes light begins to be lost: along each from left to right, and from below.
+/// The points on the lines between nodes where light begins to be lost: for each node, on the line to the right and on the line upward.
 struct Crossings {
     across: Vec<Option<Pair>>,
     up: Vec<Option<Pair>>,
@@ -352,7 +362,7 @@ impl Crossings {
         own
     }
 
-    /// The stretches of edges in a mesh: from where one enters to where it leaves.
+    /// Finds the pieces of edges in a mesh, each from where the edge enters to where it leaves.
     fn stretches(&self, mesh: usize, landed: &[Option<Pair>]) -> Vec<Stretch> {
         let own = corners(mesh);
         let sides = [self.across[own[0]], self.up[own[1]], self.across[own[2]], self.up[own[0]]];
@@ -363,7 +373,7 @@ impl Crossings {
             let (middle, along) = (between(a, b), less(b, a));
             let size = length(along);
             let across = [along[1] / size, -along[0] / size];
-            // Lost corners lie outside, others inside.
+            // Corners whose light is lost lie outside, others inside.
             let side = |at: usize| {
                 let away = less(node(at), middle);
                 let side = away[0] * across[0] + away[1] * across[1];
@@ -382,7 +392,7 @@ mod tests {
 
     const STRAIGHT: Pair = [1.0, 0.0];
 
-    /// A ghost of 200 pixels, round on the front at (0.1, -0.2) with radius 0.7, turned and stretched on the way.
+    /// A ghost of 200 pixels, round on the front at (0.1, -0.2) with radius 0.7, rotated and stretched on the way.
     fn round([x, y]: Pair) -> Option<Pair> {
         let inside = (x - 0.1).powi(2) + (y + 0.2).powi(2) < 0.49;
         inside.then_some([400.0 - 120.0 * x + 40.0 * y, 300.0 + 20.0 * x + 150.0 * y])
@@ -402,7 +412,7 @@ mod tests {
             let place = [0.1 + 0.68 * cos, -0.2 + 0.68 * sin];
             let found = net.footprint(place, 5.0, STRAIGHT);
             let edge = found.edges[0].unwrap_or_else(|| panic!("no edge at {place:?}: {found:?}"));
-            // The distance of what lies outside, along the direction that the edge has.
+            // Checks the distance to the outside along the direction that the edge has.
             let at = round(place).expect("inside");
             let ahead = |away: f64| {
                 let [c, r] = [at[0] + away * edge.out[0] - 400.0, at[1] + away * edge.out[1] - 300.0];
@@ -413,7 +423,7 @@ mod tests {
         }
     }
 
-    /// A map folded along x = 0.25: what lands near the caustic stays near it, what lands far from it is spread.
+    /// A map folded along x = 0.25: light that lands near the caustic stays near it, light far from it is spread.
     #[test]
     fn footprints_are_small_near_a_fold() {
         let folded = |[x, y]: Pair| Some([300.0 * (x - 0.25) * (x - 0.25), 200.0 * y]);

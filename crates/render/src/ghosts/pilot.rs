@@ -1,8 +1,12 @@
-//! The pilot: where on the front of the lens the light of each path comes in, and how much each path needs.
+//! The pilot: finds where on the front of the lens the light of each path enters, and how many rays each path needs.
 //!
-//! Places of the source are dear to draw, and what a ray from one carries can be dearer still (a picture with depth is walked through).
-//! So places are drawn once and shared by all paths, and only rays that come through are asked what they carry. In the first round all
-//! paths share the directions too; it says whether going on is worth it.
+//! Places on the source are expensive to draw, and finding out what a ray from there carries can be even more expensive (a picture with
+//! depth is traversed). Places are therefore drawn once and shared by all paths, and only rays that come through are evaluated. In the
+//! first round all paths share the directions, too; this round tells whether to go on.
+//!
+//! Three to six rounds find where light enters. In four further rounds rays are shared out as those of the picture will be, each round
+//! better than the one before. Cells of the front get rays by the root of the mean square of what they bring, as a fraction of the ghosts'
+//! light in its block of 32 x 32 pixels. The rays of all rounds form one set, as dense as they are together.
 
 use super::guide::{Aim, Guide, Lit};
 use super::seen::{self, Brought, Seen};
@@ -18,50 +22,55 @@ use spectra_core::numbers::{Dimension, StageKey};
 use spectra_core::workers::each_of;
 use spectra_core::{Loss, RayBatch};
 
-/// Rays for each path and round, of one zone and of each further one, in rounds that look where the light of each path comes in: so many
-/// rounds, and more while there is a zone whose rays passed some surfaces, but none all of them.
+/// Number of rays for each path and round with one zone, in the rounds that look where the light of each path enters.
 const RAYS: usize = 4096;
+/// Number of rays for each path and round that each further zone adds.
 const RAYS_MORE: usize = 256;
+/// Number of rounds at least. There are more while any zone has rays that passed some surfaces but none that passed all.
 const LEAST_ROUNDS: u64 = 3;
+/// Number of rounds at most.
 const ROUNDS: u64 = 6;
-/// Rounds after those, whose rays are shared out as those of the picture will be, each better than the one before: they find where
-/// noise is. Rays of each in parts of a sample's, and at most: as
-/// many whatever the samples, or a picture that goes on would be another one.
+/// Number of further rounds, which find where noise is. Their rays are shared out like those of the picture, each round better than the one
+/// before.
 const SHARED: u64 = 4;
+/// Number of rays of each further round, as a fraction of those of a sample.
 const SHARED_RAYS: f64 = 0.16;
+/// Largest number of rays of each further round. It does not depend on the number of samples, because otherwise a picture that is continued
+/// would be a different one.
 const SHARED_MOST: f64 = (3_u64 << 17) as f64;
-/// Streams of numbers of each path.
+/// Number of streams of random numbers of each path.
 const STREAMS: u64 = ROUNDS + SHARED;
-/// Paths of more than two reflections are many, and have little light: this part of the rays.
+/// Divisor for the rays of paths of more than two reflections, which are many and have little light.
 const OF_MORE: usize = 4;
-/// Rays of a batch.
+/// Number of rays in a batch.
 const BATCH: usize = 256;
-/// Pixels of a block, across and down.
+/// Side of a block, pixels.
 const BLOCK: usize = 32;
-/// Blocks that have less than this part of the brightest one need not be as clean as those that have more.
+/// Fraction of the brightest block's light below which a block need not be as clean as brighter ones.
 const DIM: f64 = 1e-4;
-/// Batches of each path that say whether going on is worth it. They see little of what is narrow: only what they find this many times too
-/// dim is left at that.
+/// Number of batches of each path that tell whether to go on.
 const SCOUTS: usize = 4;
+/// Factor by which the first batches must find ghosts too dim before the search ends. They see little of ghosts that enter through a narrow
+/// area.
 const DOUBT: f64 = 2.0;
 
-/// What the pilot finds.
+/// The results of the pilot.
 pub(super) struct Plan {
-    /// For each path its guides, and the variance of one of its rays.
+    /// Guides of each path, and the variance of one of its rays.
     pub ways: Vec<(Vec<Guide>, f64)>,
-    /// The brightest block, W/m2 in the mean of its pixels and the sum of its channels.
+    /// Light of the brightest block, W/m2: the mean over its pixels, summed over the channels.
     pub brightest: f64,
 }
 
 impl Plan {
-    /// Without a search: all over the front, and such variances that all paths get as many rays.
+    /// Creates a plan without a search: rays go all over the front, with variances that give all paths equally many rays.
     pub fn even(ghosts: &Ghosts) -> Self {
         let way = |way: &Way| (way.guides.clone(), way.cost());
         Self { ways: ghosts.plan.ways.iter().map(way).collect(), brightest: 0.0 }
     }
 }
 
-/// Blocks of the frame.
+/// The blocks of the frame.
 struct Blocks {
     width: usize,
     height: usize,
@@ -82,14 +91,14 @@ impl Blocks {
         pixel / self.width / BLOCK * self.across() + pixel % self.width / BLOCK
     }
 
-    /// What came to each, of parts of light.
+    /// Sums contributions, given with their blocks, to the light of each block.
     fn light(&self, parts: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
         let mut light = vec![0.0; self.count()];
         parts.for_each(|(block, part)| light[block] += part);
         light
     }
 
-    /// The brightest of them, W/m2.
+    /// Returns the light of the brightest block, W/m2.
     fn brightest(&self, light: &[f64]) -> f64 {
         let pixels = |block: usize| {
             let (column, row) = (block % self.across() * BLOCK, block / self.across() * BLOCK);
@@ -100,7 +109,7 @@ impl Blocks {
     }
 }
 
-/// A batch on its way into the lens, and the zone and aim of each ray.
+/// A batch aimed at the lens, and the zone and aim of each ray.
 struct Aimed {
     rays: RayBatch,
     aims: Vec<(usize, Aim)>,
@@ -108,21 +117,21 @@ struct Aimed {
 
 struct Pilot<'a> {
     ghosts: &'a Ghosts,
-    /// Channels that noise is asked of.
+    /// Channels in which noise is measured.
     judged: Vec<usize>,
     blocks: Blocks,
-    /// On the source, without a direction.
+    /// Rays on the source, without a direction.
     placed: Vec<RayBatch>,
-    /// The same, all over the front.
+    /// Rays from the source, aimed all over the front.
     everywhere: Vec<Aimed>,
 }
 
-/// Whether somebody still waits for the result.
+/// Returns an error if the caller no longer wants the result.
 fn wanted(workers: &dyn Workers) -> Result<(), RenderError> {
     if workers.should_stop() { Err(RenderError::Stopped) } else { Ok(()) }
 }
 
-/// Searches all paths. `None` where no block has more than `matters`.
+/// Searches all paths. `None` if no block has more light than `matters`.
 pub(super) fn search(
     ghosts: &Ghosts,
     matters: Option<f64>,
@@ -130,7 +139,7 @@ pub(super) fn search(
 ) -> Result<Option<Plan>, RenderError> {
     let pilot = &Pilot::new(ghosts);
     let (ways, fresh) = (&ghosts.plan.ways, || ghosts.state(BATCH));
-    // Batches of a path, of so many of a pair's.
+    // Number of batches of a path, given the number for a pair of reflections.
     let of = |way: &Way, batches: usize| if way.is_of_pair() { batches } else { batches.div_ceil(OF_MORE) };
     let first = |batches: usize| {
         each_of(workers, ways.len(), fresh, move |state, at| {
@@ -191,7 +200,7 @@ pub(super) fn search(
     Ok(Some(pilot.best(&sights, workers)?))
 }
 
-/// The numbers of a round of a path.
+/// Returns the stream of random numbers of a round of a path.
 fn stream(path: usize, round: u64) -> u64 {
     (path as u64 + 1) * STREAMS + round
 }
@@ -215,15 +224,15 @@ impl<'a> Pilot<'a> {
         Self { ghosts, judged: ghosts.pipeline.judged_channels(), blocks, placed, everywhere }
     }
 
-    /// The guides with the least noise, as far as was seen.
+    /// Computes the guides with the least noise, as far as the pilot has seen.
     fn best(&self, sights: &[Sight], workers: &dyn Workers) -> Result<Plan, RenderError> {
         let ways = &self.ghosts.plan.ways;
         let parts = |of: fn(&Brought) -> f64| sights.iter().flat_map(move |sight| sight.light(of));
         let light = self.blocks.light(parts(Brought::judged));
-        // Noise is a part of a block's light, or of light so dim that nobody looks at it.
+        // Noise is relative to a block's light, or to a light so dim that nobody looks at it.
         let least = 0.5 * DIM * light.iter().fold(0.0_f64, |most, light| most.max(*light));
         let over: Vec<f64> = light.iter().map(|light| light.max(least).powi(2).recip()).collect();
-        // One over the number of rays, as many as were all alike.
+        // One over the effective number of rays: as many as if all were equally bright.
         let mut few = vec![0.0; self.blocks.count()];
         for (block, part) in parts(Brought::judged) {
             few[block] += over[block] * part * part;
@@ -248,8 +257,8 @@ impl<'a> Pilot<'a> {
         Ok(Plan { ways, brightest: self.blocks.brightest(&self.blocks.light(parts(Brought::all))) })
     }
 
-    /// One round of a path by so many batches: where light came, and each ray that came through. `stream` are the numbers of the
-    /// directions; `None` for those that all paths share, all over the front.
+    /// Traces one round of a path with this many batches. Returns where light came through, and each ray that came through. `stream` is the
+    /// stream of random numbers of the directions; `None` uses the directions that all paths share, all over the front.
     fn round(
         &self,
         state: &mut ThreadState,
@@ -269,7 +278,7 @@ impl<'a> Pilot<'a> {
                     &own
                 }
             };
-            // Where one guide is for all zones, that.
+            // Where one guide serves all zones, use that one.
             let aimed = |ray: usize| {
                 let (zone, aim) = batch.aims[ray];
                 (zone.min(guides.len() - 1), aim)
@@ -288,7 +297,7 @@ impl<'a> Pilot<'a> {
         (lit, came)
     }
 
-    /// A batch aimed by guides.
+    /// Returns a batch aimed by guides.
     fn aimed(&self, at: usize, guides: &[Guide], stream: u64) -> Aimed {
         let [mut a, mut b] = [[0.0; BATCH]; 2];
         for (dimension, numbers) in [(Dimension::PupilU, &mut a), (Dimension::PupilV, &mut b)] {
@@ -298,8 +307,8 @@ impl<'a> Pilot<'a> {
         aimed(self.ghosts, self.placed[at % self.placed.len()].clone(), guides, [&a, &b])
     }
 
-    /// Follows a path. `came` is given number and tag of each ray that brings light to the frame, and what it brings. Says how many
-    /// surfaces each ray passed.
+    /// Traces a batch along a path. Calls `came` with the number, the tag and the contribution of each ray that brings light to the frame.
+    /// Returns the number of surfaces that each ray passed.
     fn through(
         &self,
         state: &mut ThreadState,
@@ -321,7 +330,7 @@ impl<'a> Pilot<'a> {
         state.rays.set_stage(StageKey::IMAGER);
         ghosts.receive().receive(&mut state.rays, ghosts.pipeline.isa);
         state.settle(ghosts.pipeline.isa);
-        // What they carry is asked only of those that came.
+        // Only rays that came through are asked for the light that they carry.
         let mut lit = from.clone();
         let c = lit.columns_mut();
         let unlit = Loss::Unlit.state(0);

@@ -1,4 +1,4 @@
-//! Probes: rays from one point of each zone of the source that find the nets of all paths.
+//! Probes: rays from one point of each zone of the source, with which the nets of all paths are found.
 
 use super::aims::{Aims, azimuth};
 use super::net::Net;
@@ -10,13 +10,14 @@ use crate::pipeline::ThreadState;
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
 use spectra_core::workers::each_of;
-use spectra_lens::FrontOpening;
+use spectra_optics::FrontOpening;
 
-/// Rays that say where the source is, and of a batch.
+/// Number of rays with which the source is sampled.
 const POINTS: usize = 2048;
+/// Number of rays in a batch.
 const BATCH: usize = 256;
 
-/// Where probes start, and their wavelength.
+/// The starting point of probes and their wavelength.
 #[derive(Clone, Copy)]
 struct Start {
     point: DVec3,
@@ -24,16 +25,17 @@ struct Start {
     opening: FrontOpening,
 }
 
-/// A net, and how it is turned for the rays of a source elsewhere around the axis.
+/// A net, and the data to rotate it for the rays of a source point elsewhere around the axis.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
     net: Net,
-    /// Where around the axis the point lies that it was found for, a unit vector; `None` of a lens that is not round, whose net does not turn.
+    /// Direction around the axis of the point for which the net was found, a unit vector. `None` for a lens without rotational symmetry,
+    /// whose net cannot be rotated.
     azimuth: Option<[f64; 2]>,
 }
 
 impl Found {
-    /// The footprint of a ray, where it is to reach so far to each side if it may.
+    /// Returns the footprint of a ray, with half side `half` where that is allowed.
     pub fn footprint(&self, landed: &Landed, half: f64) -> Footprint {
         let turn = self.azimuth.map_or([1.0, 0.0], |[x, y]| {
             let [u, v] = landed.azimuth;
@@ -43,7 +45,8 @@ impl Found {
     }
 }
 
-/// The nets of each path by the zones of the source. None of light that sets its directions itself, nor of a path whose zones share a guide.
+/// Finds the nets of each path for the zones of the source. There are none for light that sets its directions itself, or for a path whose
+/// zones share a guide.
 pub(super) fn nets(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Vec<Vec<Found>>, RenderError> {
     let ways = &ghosts.plan.ways;
     let Some(opening) = ghosts.plan.opening else { return Ok(vec![Vec::new(); ways.len()]) };
@@ -74,7 +77,7 @@ pub(super) fn nets(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Vec<Vec<Fou
     )
 }
 
-/// For each zone a point in its middle; the wavelength in the middle of those that are drawn.
+/// Returns for each zone a point in its middle, with the median of the drawn wavelengths.
 fn starts(ghosts: &Ghosts, opening: FrontOpening) -> Vec<Option<Start>> {
     let mut state = ghosts.state(BATCH);
     let (mut points, mut waves) = (Vec::new(), Vec::new());
@@ -90,7 +93,7 @@ fn starts(ghosts: &Ghosts, opening: FrontOpening) -> Vec<Option<Start>> {
     ghosts.plan.zones.middles(&points).into_iter().map(start).collect()
 }
 
-/// Where light lands that goes in at each place: column and row.
+/// Returns the column and row where light that enters at each place lands; `None` if it is lost.
 fn landed(
     ghosts: &Ghosts,
     state: &mut ThreadState,

@@ -1,8 +1,8 @@
-//! A ray of the pilot that came through.
+//! Rays of the pilot that came through.
 
 use super::guide::Aim;
 
-/// What a ray brought: the sum of all channels, and of those that noise is asked of.
+/// The contribution of a ray: the sum over all channels, and over those in which noise is measured.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Brought {
     pub all: f64,
@@ -23,18 +23,18 @@ impl Brought {
     }
 }
 
-/// A ray that came through.
+/// A ray of the pilot that came through to the frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub zone: usize,
     pub aim: Aim,
-    /// The block that it reached.
+    /// The block of pixels that the ray reached.
     pub block: usize,
-    /// But for the density of its aim.
+    /// Contribution of the ray, not yet divided by the density of its aim.
     pub brought: Brought,
 }
 
-/// Of each ray the block, and what of the light it is, of so many rays.
+/// Iterates over the rays: the block of each, and its contribution to the light as one of `rays` rays.
 pub(super) fn light(seen: &[Seen], rays: f64, of: fn(&Brought) -> f64) -> impl Iterator<Item = (usize, f64)> {
     seen.iter().map(move |seen| (seen.block, of(&seen.brought) / (seen.aim.density * rays)))
 }

@@ -1,37 +1,38 @@
-//! What the noise of each block of the frame weighs when rays are shared out.
+//! Weights the noise of each block of the frame for sharing out the rays.
 //!
-//! Rays by the root of the mean square make the sum of what blocks have of noise as small as it can be, so a block that light reaches
-//! from a small part of the front may be left with many times the noise of the others: it is one of thousands. Here such a block is made
-//! to weigh more, until it has no more than [`LIMIT`] times the mean: Lagrange's multipliers of a bound on each block, found by turns,
-//! each of which shares rays out anew.
+//! Rays in proportion to the root mean square make the sum of the blocks' noise as small as possible. A block that light reaches through a
+//! small part of the front may then be left with many times the noise of the others, because it is one of thousands. Such a block gets more
+//! weight here, until its noise is at most [`LIMIT`] times the mean. The weights are Lagrange multipliers of an upper limit for each block,
+//! found by iterations, each of which shares the rays out again.
 
 use super::tree::Tree;
 
-/// The variance that no block is to go beyond, in means of all that are judged. The low-discrepancy numbers of a picture leave less of it
+/// Upper limit on the variance of a block, relative to the mean of all judged blocks. The low-discrepancy numbers of a picture leave less
 /// in most blocks, but not in those that few rays reach.
 const LIMIT: f64 = 1.25;
-/// Rays that leave as much in doubt as is known.
+/// Number of rays at which the uncertainty of the noise is as large as the noise itself.
 const FEW: f64 = 200.0;
-/// Turns: what is left of an excess is about its root after each.
+/// Number of iterations; each leaves about the square root of an excess.
 const TURNS: usize = 12;
 
-/// A path: its cells by the zones of the source, the first of them among those of all paths, and what a ray costs.
+/// A path: its cells for each zone of the source, the index of its first cell among those of all paths, and the cost of a ray.
 pub(super) struct Share<'a> {
     pub zones: &'a [Tree],
     pub first: usize,
     pub cost: f64,
 }
 
-/// What came from a cell to a block: an estimate of the integral over the cell of the square, as a part of that of the block's light.
+/// The contribution of a cell to a block: an estimate of the integral over the cell of the squared contribution, relative to the square of
+/// the block's light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
-    /// Of all paths, one after the other.
+    /// Index of the cell, counted through all paths.
     pub cell: usize,
     pub block: usize,
     pub square: f64,
 }
 
-/// Rays where they are best for such squares: for each cell of a path how dense they are, 1 in the mean of its zone, and the variance
+/// Finds the best ray density for given squares. Returns for each cell of a path the ray density, with mean 1 in its zone, and the variance
 /// of one ray.
 pub(super) fn best(zones: &[Tree], squares: &[f64]) -> (Vec<Vec<f64>>, f64) {
     let (mut all, mut variance, mut first) = (Vec::with_capacity(zones.len()), 0.0, 0);
@@ -49,10 +50,10 @@ pub(super) fn best(zones: &[Tree], squares: &[f64]) -> (Vec<Vec<f64>>, f64) {
     (all, variance)
 }
 
-/// What the noise of each block weighs. `rays` are those that it is known by, as many as were all alike; `None` of a block that light is too
-/// dim in to be judged by itself: that weighs 1.
+/// Computes the weight of the noise of each block. `rays` is the effective number of rays that the noise is known from; `None` for a block
+/// too dim to be judged separately, which weighs 1.
 pub(super) fn weights(pieces: &[Piece], paths: &[Share], rays: &[Option<f64>]) -> Vec<f64> {
-    // Of few rays little is known: most likely there is more noise.
+    // The noise from few rays is uncertain, and is most likely higher.
     let doubts: Vec<f64> = rays.iter().map(|rays| rays.map_or(1.0, |rays| 1.0 + FEW / rays.max(1.0))).collect();
     let judged = rays.iter().flatten().count().max(1) as f64;
     let cells = paths.last().map_or(0, |path| path.first + path.zones.iter().map(Tree::leaves).sum::<usize>());
@@ -60,7 +61,7 @@ pub(super) fn weights(pieces: &[Piece], paths: &[Share], rays: &[Option<f64>]) -
     for _ in 0..TURNS {
         let mut squares = vec![0.0; cells];
         pieces.iter().for_each(|p| squares[p.cell] += weights[p.block] * p.square);
-        // Rays a unit of area, such that all of them cost 1 in all.
+        // Rays per unit area, scaled so that their total cost is 1.
         let (mut dense, mut cost) = (Vec::with_capacity(cells), 0.0);
         for path in paths {
             let (zones, variance) = best(path.zones, &squares[path.first..]);
@@ -87,8 +88,8 @@ pub(super) fn weights(pieces: &[Piece], paths: &[Share], rays: &[Option<f64>]) -
 mod tests {
     use super::*;
 
-    /// Each of 256 blocks has a cell, one more has a hundredth of the last cell. Left to the sum it would have ten times the noise
-    /// of the others; with its weight it has the limit, and the others pay for it with some percent.
+    /// Each of 256 blocks has a cell, and one more block has a hundredth of the last cell. By the sum alone it would have ten times the
+    /// noise of the others; with its weight it has the limit, and the others pay for it with a few percent.
     #[test]
     fn a_block_that_few_rays_reach_weighs_more() {
         // Cut four times: 256 cells.
@@ -97,7 +98,7 @@ mod tests {
         let many = 256;
         let mut pieces: Vec<Piece> = (0..many).map(|at| Piece { cell: at, block: at, square: 1.0 }).collect();
         pieces[many - 1].square = 0.99;
-        // As bright as its light is: a hundredth.
+        // Relative to its light, which is a hundredth.
         pieces.push(Piece { cell: many - 1, block: many, square: 0.01 / (0.01 * 0.01) });
         let rays = vec![Some(1e9); many + 1];
         let zones = [tree];
@@ -115,7 +116,7 @@ mod tests {
         assert!(before[many] > 5.0 * mean(&before), "{} {}", before[many], mean(&before));
         assert!(after[many] < 1.05 * LIMIT * mean(&after), "{} {}", after[many], mean(&after));
         assert!(after[0] < 1.5 * before[0], "{} {}", after[0], before[0]);
-        // What nobody has seen, and what nobody judges, changes nothing.
+        // Blocks that no ray reached or that are not judged change nothing.
         assert_eq!(weights(&[], &paths, &[None, Some(5.0)]), [1.0, 1.0]);
     }
 }

@@ -1,4 +1,4 @@
-//! What the pilot saw of one path, by all its rounds together, and the cells that this is sorted into.
+//! The rays that the pilot saw on one path in all rounds together, and the cells that they are sorted into.
 
 use super::guide::{Aim, Guide, Part};
 use super::seen::{Brought, Seen, light};
@@ -6,8 +6,7 @@ use super::shares;
 use super::spread;
 use super::tree::Tree;
 
-/// What was seen of a path. Rays of all rounds are one set, as dense as they are together: the density of an aim is that of the set,
-/// in rays.
+/// The rays seen on one path. The rays of all rounds form one set; the density of an aim is the density of that set, in rays.
 #[derive(Default)]
 pub(super) struct Sight {
     rounds: Vec<(Vec<Guide>, f64)>,
@@ -15,7 +14,7 @@ pub(super) struct Sight {
 }
 
 impl Sight {
-    /// Adds a round of so many rays.
+    /// Adds a round of `rays` rays.
     pub fn add(&mut self, guides: Vec<Guide>, rays: f64, came: Vec<Seen>) {
         for old in &mut self.all {
             old.aim.density += rays * guides[old.zone].density(old.aim.place);
@@ -29,12 +28,12 @@ impl Sight {
         self.rounds.push((guides, rays));
     }
 
-    /// Of each ray the block, and what of the light it is.
+    /// Iterates over the rays: the block of each, and its contribution to the light.
     pub fn light(&self, of: fn(&Brought) -> f64) -> impl Iterator<Item = (usize, f64)> {
         light(&self.all, 1.0, of)
     }
 
-    /// Sorts it into cells, as small as there are rays for; `over` is what a square of each block is multiplied by.
+    /// Sorts the rays into cells, as small as the number of rays allows. `over` is a factor for the squares of each block.
     pub fn sorted(&self, over: &[f64]) -> Sorted {
         let zones = self.rounds.last().map_or(0, |(guides, _)| guides.len());
         let places = |zone: usize| self.all.iter().filter(move |seen| seen.zone == zone).map(|seen| seen.aim.place);
@@ -66,7 +65,7 @@ impl Sight {
     }
 }
 
-/// What comes from the same cell to the same block, as one: by cells, and within each by blocks.
+/// Merges contributions from the same cell to the same block. The result is ordered by cell, and by block within each cell.
 fn summed(pieces: &[(u32, u32, f64)], cells: usize) -> Vec<(u32, u32, f64)> {
     let mut ends = vec![0_usize; cells + 1];
     pieces.iter().for_each(|(cell, ..)| ends[*cell as usize + 1] += 1);
@@ -92,7 +91,7 @@ fn summed(pieces: &[(u32, u32, f64)], cells: usize) -> Vec<(u32, u32, f64)> {
     sums
 }
 
-/// The cells of a path, zone by zone, and what came from each to each block: an estimate of the integral of the square.
+/// The cells of a path, zone by zone, and what comes from each cell to each block: an estimate of the integral of the square.
 pub(super) struct Sorted {
     parts: Vec<Part>,
     pub trees: Vec<Tree>,
@@ -104,7 +103,7 @@ impl Sorted {
         self.trees.iter().map(Tree::leaves).sum()
     }
 
-    /// Guides with the least noise, where a block's noise weighs so much, and the variance of one ray.
+    /// Returns the guides with the least noise for the given weights of the blocks' noise, and the variance of one ray.
     pub fn guides(&self, weights: &[f64]) -> (Vec<Guide>, f64) {
         let mut squares = vec![0.0; self.leaves()];
         self.pieces

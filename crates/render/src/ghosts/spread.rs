@@ -1,32 +1,34 @@
-//! How far around a ray of the pilot light comes in that reaches the same block.
+//! Finds how far around a ray of the pilot there is light that reaches the same block.
 //!
-//! A block may be known by few rays, and the next one that reaches it does not come in just where one of them did: where the pilot saw
-//! nothing of the block there would be few rays of the picture, and each would weigh many times as much as the others. So what a ray
-//! stands for is shared with places around it, as far away as the rays that reached the same block are spread, less where many of them
-//! say more of its shape.
+//! A block may be known from few rays, and the next ray that reaches it does not enter exactly where one of them did. Where the pilot saw
+//! nothing of the block, the picture would have few rays, and each would weigh many times as much as the others. Without correction, a
+//! quarter of a picture's rays in such a block came in where the search had seen none, and caused four fifths of its variance. Four fifths
+//! of the weight of a ray are therefore shared with eight places around it. They are as far away as the rays that reached the same block
+//! are spread, and closer if many of these rays describe its shape.
 
 use super::seen::Seen;
 
-/// The part that goes to each of eight places around; what is left stays.
+/// Fraction that goes to each of eight places around a ray; the rest stays.
 const SHARE: f64 = 0.1;
-/// Where those are: four this part of a way away, and four at the corners between the ways.
+/// Offsets of the eight places: four at this fraction of the two vectors, and four at the corners between them.
 const NEAR: f64 = 0.6;
-/// How long the ways are, in spreads, where so many rays or fewer are known; of more, what each stands for stays nearer.
+/// Length of the vectors, in standard deviations, if few rays are known. With more rays the places are nearer.
 const WIDTH: f64 = 1.2;
+/// Number of rays up to which the vectors have their full length.
 const FEW: f64 = 80.0;
-/// The spread of fewer rays than this is not known.
+/// Number of rays up to which their spread is not known.
 const LEAST: f64 = 3.0;
 
-/// What a ray stands for: for its place and each around it, how far away that is and its part of it.
+/// Returns the offsets of a ray's place and of the eight around it, with the fraction of its weight that each gets.
 pub(super) fn parts([a, b]: [[f64; 2]; 2]) -> [([f64; 2], f64); 9] {
     let at = |along: f64, across: f64| ([along * a[0] + across * b[0], along * a[1] + across * b[1]], SHARE);
     let [n, s, e, w] = [at(NEAR, 0.0), at(-NEAR, 0.0), at(0.0, NEAR), at(0.0, -NEAR)];
     [([0.0; 2], 1.0 - 8.0 * SHARE), n, s, e, w, at(1.0, 1.0), at(1.0, -1.0), at(-1.0, 1.0), at(-1.0, -1.0)]
 }
 
-/// For each ray two ways from its place, in the unit of places.
+/// Returns two vectors for each ray, in units of places.
 pub(super) fn around(seen: &[Seen]) -> Vec<[[f64; 2]; 2]> {
-    // The same zone and block, one after the other.
+    // Order the rays by zone and block.
     let mut order: Vec<u32> = (0..seen.len() as u32).collect();
     let of = |number: &u32| (seen[*number as usize].zone, seen[*number as usize].block);
     order.sort_by_key(of);
@@ -35,7 +37,7 @@ pub(super) fn around(seen: &[Seen]) -> Vec<[[f64; 2]; 2]> {
         let own = ways(numbers.iter().map(|number| &seen[*number as usize]));
         for number in numbers {
             let alone = || {
-                // A mean distance of all rays there.
+                // The mean distance between rays there.
                 let away = 1.0 / seen[*number as usize].aim.density.sqrt();
                 [[away, away], [-away, away]]
             };
@@ -45,11 +47,11 @@ pub(super) fn around(seen: &[Seen]) -> Vec<[[f64; 2]; 2]> {
     around
 }
 
-/// The ways that the spread of some rays says: the columns of Cholesky's root of their covariance. `None` of few.
+/// Returns the vectors given by the spread of some rays: the columns of the Cholesky factor of their covariance. `None` for few rays.
 fn ways<'a>(rays: impl Iterator<Item = &'a Seen>) -> Option<[[f64; 2]; 2]> {
     let (mut many, mut squares, mut first, mut second) = (0.0, 0.0, [0.0; 2], [0.0; 3]);
     for Seen { aim, .. } in rays {
-        // What of the front it stands for.
+        // The area of the front that the ray stands for.
         let (area, [x, y]) = (1.0 / aim.density, aim.place);
         many += area;
         squares += area * area;
@@ -80,8 +82,8 @@ mod tests {
         Seen { zone: 0, aim: Aim { place, density: 1e4 }, block, brought: Brought { all: 1.0, judged: 1.0 } }
     }
 
-    /// Along a sliver at 45 degrees, 0.2 long and 0.002 wide: what is evenly spread over a length has the length over the root of 12 as its
-    /// spread, along and across, whatever other blocks' rays lie between.
+    /// A sliver at 45 degrees, 0.2 long and 0.002 wide: a uniform distribution over a length has that length over the root of 12 as its
+    /// standard deviation. The test checks this along and across, whatever rays of other blocks lie between.
     #[test]
     fn the_places_around_lie_along_what_a_block_is_lit_through() {
         let numbers = Numbers::sobol(7);
@@ -96,7 +98,7 @@ mod tests {
             let all: Vec<Seen> = (0..many).flat_map(both).collect();
             let around = around(&all);
             for (at, length) in [(0, 0.2), (1, 0.7)] {
-                // What the two ways have as their covariance.
+                // The covariance of the two vectors.
                 let [a, b] = around[at];
                 let along = (a[0] + a[1]).powi(2) + (b[0] + b[1]).powi(2);
                 let across = (a[0] - a[1]).powi(2) + (b[0] - b[1]).powi(2);
@@ -107,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Nothing is lost, and the middle stays.
+    /// The fractions sum to 1, and their mean place is the ray's.
     #[test]
     fn the_parts_are_all_of_it() {
         let parts = parts([[0.3, 0.1], [-0.2, 0.5]]);
@@ -116,12 +118,12 @@ mod tests {
         assert!(sum(|part| part.0[0] * part.1).abs() < 1e-15 && sum(|part| part.0[1] * part.1).abs() < 1e-15);
     }
 
-    /// Of rays whose spread nobody knows: a mean distance of rays.
+    /// Rays whose spread is unknown use the mean distance between rays.
     #[test]
     fn few_rays_stay_near() {
         let alone = [seen(0, [0.1, 0.2]), seen(0, [0.5, -0.2]), seen(3, [0.0, 0.0])];
         assert_eq!(around(&alone), [[[0.01, 0.01], [-0.01, 0.01]]; 3]);
-        // All in one place.
+        // All rays in one place.
         assert_eq!(around(&[seen(0, [0.25, 0.5]); 8]), [[[0.01, 0.01], [-0.01, 0.01]]; 8]);
     }
 }

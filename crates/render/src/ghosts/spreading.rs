@@ -1,4 +1,4 @@
-//! The footprints of ghosts: as wide as their noise wants them, no wider than each path's net allows.
+//! The footprints of ghosts: as wide as their noise requires, and no wider than the net of each path allows.
 
 use super::probes::{self, Found};
 use super::width::{self, Width};
@@ -10,17 +10,17 @@ use crate::pipeline::ThreadState;
 use crate::spreader::Spreader;
 use crate::sums::ExactSums;
 
-/// What spreading ghosts needs, found once for a scene.
+/// The data for spreading ghosts, computed once per scene.
 #[derive(Clone, Debug)]
 pub(super) struct Spreading {
     pub spreader: Spreader,
     pub width: Width,
-    /// Of each path by the zones of the source.
+    /// Nets of each path for the zones of the source.
     nets: Vec<Vec<Found>>,
 }
 
 impl Spreading {
-    /// For ghosts whose rays are shared out already; `None` where there is nothing to spread.
+    /// Prepares spreading for ghosts whose rays are already shared out; `None` if there is nothing to spread.
     pub fn of(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Option<Self>, RenderError> {
         let width = width::found(ghosts, workers)?;
         if width.is_none() {
@@ -30,8 +30,8 @@ impl Spreading {
         Ok(Some(Self { spreader: Spreader::of(&ghosts.pipeline), width, nets }))
     }
 
-    /// Adds what the rays of a batch of a path bring, in a sample of this number, to the cells of all paths and to those that begin with
-    /// `own_cells`.
+    /// Adds the contributions of a batch of a path's rays to the cells of all paths, and to the separate cells that begin at `own_cells`.
+    /// `sample` is the number of the sample.
     pub fn add(
         &self,
         state: &mut ThreadState,

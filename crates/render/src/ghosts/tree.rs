@@ -1,30 +1,35 @@
-//! The unit square in cells that are smaller where more rays came: each cell that saw many is cut into four.
+//! Divides the unit square into cells that are smaller where more rays came: each cell with many rays is cut into four.
+//!
+//! A dim block whose light enters in a small part of the area of bright blocks gets cells of its own this way, once a ray has found it. No
+//! cell lies beside one of less than half its side, and none has less than a tenth of its neighbor's ray density. The edge of the light
+//! that reaches a block is not where the last ray of the pilot went.
 
 use super::density::{Density, Steps};
 
-/// A cell that more rays than this came through is cut.
+/// Number of rays above which a cell is cut.
 const MANY: usize = 64;
-/// Cuts at most, one within the other.
+/// Largest depth of cuts.
 const DEEPEST: u32 = 12;
-/// The mean square in a cell is at least this part of that in the cell that it was cut from.
+/// Lower limit on the mean square in a cell, as a fraction of that in the cell from which it was cut.
 const LEAST: f64 = 1.0 / 64.0;
-/// Rays are at least this part as dense in a cell as in its neighbors, and so on so many cells away: the edge of what comes through is not
-/// where the last ray of the pilot went.
+/// Lower limit on the ray density in a cell, as a fraction of that in its neighbors. The light does not end exactly where the last ray of
+/// the pilot went.
 const BESIDE: f64 = 0.1;
+/// Number of cells over which this limit reaches.
 const AROUND: usize = 2;
 
-/// A cell, cut or not.
+/// A cell of the tree, cut or not.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    /// The first of its four parts: lower left, lower right, upper left, upper right. 0 where it is not cut.
+    /// Index of the first of the four parts: lower left, lower right, upper left, upper right. 0 if the cell is not cut.
     first: u32,
-    /// Its number among those that are not cut.
+    /// Number of the cell among those that are not cut.
     leaf: u32,
     low: [f64; 2],
     side: f64,
 }
 
-/// Cells, each behind what it is a part of.
+/// The cells of the unit square, each listed after the cell that it is a part of.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     cells: Vec<Cell>,
@@ -32,7 +37,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Cells around places where rays came through.
+    /// Builds cells around places where rays came through.
     pub fn around(mut places: Vec<[f64; 2]>) -> Self {
         let mut tree = Self { cells: vec![Cell { first: 0, leaf: 0, low: [0.0; 2], side: 1.0 }], leaves: 0 };
         tree.cut(0, &mut places, DEEPEST);
@@ -59,7 +64,7 @@ impl Tree {
         }
     }
 
-    /// Cuts a cell, and says which is the first of its parts.
+    /// Cuts a cell and returns the index of the first of its parts.
     fn quarter(&mut self, at: usize) -> usize {
         let (first, Cell { low: [x, y], side, .. }) = (self.cells.len(), self.cells[at]);
         self.cells[at].first = first as u32;
@@ -69,7 +74,7 @@ impl Tree {
         first
     }
 
-    /// Cuts cells until none lies beside one of less than half its side.
+    /// Cuts cells until no cell has a neighbor with less than half its side.
     fn balance(&mut self) {
         let mut left: Vec<usize> = (0..self.cells.len()).collect();
         while let Some(at) = left.pop() {
@@ -85,7 +90,7 @@ impl Tree {
         }
     }
 
-    /// The cell, not cut, that holds a place.
+    /// Returns the index of the uncut cell that holds a place.
     #[inline]
     fn find(&self, place: [f64; 2]) -> usize {
         let (mut at, mut steps) = (0, Steps::to(place));
@@ -96,24 +101,25 @@ impl Tree {
         at
     }
 
-    /// The same by its number among those that are not cut.
+    /// Returns the number, among the uncut cells, of the cell that holds a place.
     #[inline]
     pub fn leaf(&self, place: [f64; 2]) -> usize {
         self.cells[self.find(place)].leaf as usize
     }
 
-    /// Cells that are not cut.
+    /// Number of cells that are not cut.
     pub fn leaves(&self) -> usize {
         self.leaves
     }
 
-    /// The area of each of them.
+    /// Iterates over the areas of the uncut cells.
     pub fn areas(&self) -> impl Iterator<Item = f64> {
-        // They are numbered in their order.
+        // Cells are numbered in this order.
         self.cells.iter().filter(|cell| cell.first == 0).map(|cell| cell.side * cell.side)
     }
 
-    /// How dense rays are best where each cell has such an integral of the square, but for a factor: the root of the mean square.
+    /// Returns the best ray density in each uncut cell, up to a common factor, given the integral of the square over each: the root mean
+    /// square.
     pub fn best(&self, squares: &[f64]) -> Vec<f64> {
         let of = |cell: &Cell| if cell.first == 0 { squares[cell.leaf as usize] } else { 0.0 };
         let mut means: Vec<f64> = self.cells.iter().map(of).collect();
@@ -137,7 +143,8 @@ impl Tree {
         best
     }
 
-    /// Rays as dense in each cell as said, but for a factor, or nearly so: see [`BESIDE`].
+    /// Builds a density from the ray density in each uncut cell, up to a common factor. Low values are raised to the limit given by
+    /// [`BESIDE`].
     pub fn density(&self, densities: &[f64]) -> Density {
         let mut soft = densities.to_vec();
         let beside = |cell: &Cell| around(cell).map(|place| self.leaf(place));
@@ -156,7 +163,7 @@ impl Tree {
     }
 }
 
-/// A place in each cell around one, as large as that.
+/// Iterates over one place in each of the eight neighboring cells of the same size, as far as they lie in the unit square.
 fn around(cell: &Cell) -> impl Iterator<Item = [f64; 2]> + use<> {
     let Cell { low: [x, y], side, .. } = *cell;
     let ways = (0..9).filter(|way| *way != 4).map(|way| [f64::from(way % 3), f64::from(way / 3)]);
@@ -164,7 +171,7 @@ fn around(cell: &Cell) -> impl Iterator<Item = [f64; 2]> + use<> {
     places.filter(|place| place.iter().all(|at| (0.0..1.0).contains(at)))
 }
 
-/// Those of which it is true, and the others.
+/// Partitions places into those for which the condition is true and the others.
 fn parted(places: &mut [[f64; 2]], is_first: impl Fn(&[f64; 2]) -> bool) -> (&mut [[f64; 2]], &mut [[f64; 2]]) {
     let mut end = 0;
     for at in 0..places.len() {
@@ -181,7 +188,7 @@ mod tests {
     use super::*;
     use spectra_core::numbers::Numbers;
 
-    /// What is drawn from cells of all sizes has the density that is told of it, and reaches all of the square.
+    /// Places drawn from cells of all sizes have the density that the tree reports, and reach all of the square.
     #[test]
     fn places_have_their_density() {
         let numbers = Numbers::sobol(3);

@@ -1,4 +1,8 @@
-//! How wide footprints have to be: by how noisy ghosts are where each ray adds to one pixel.
+//! Finds how wide footprints have to be, from the noise of ghosts if each ray adds to one pixel only.
+//!
+//! The area of a footprint is chosen for a noise of 2.1 % after 64 samples; it reaches at most 14 pixels to each side. The area falls with
+//! the root of the sample's number, not with how many samples will follow. Noise and blur both tend to zero, and light that is continued
+//! has the bits of light in one go.
 
 use super::{Ghosts, SCALE_RAYS, spans};
 use crate::Workers;
@@ -8,38 +12,41 @@ use crate::pipeline::ThreadState;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::workers::each_of;
 
-/// The noise of a pixel that footprints are to leave in a picture of so many samples, as a part of the light. Neighbors share most of it:
-/// about the plane through 16 x 16 pixels it is some six tenths of that.
+/// Noise of a pixel that footprints are to leave after [`SAMPLES`] samples, as a fraction of the light. Neighboring pixels share most of
+/// it: about the plane fitted to 16 x 16 pixels, roughly six tenths remain.
 const NOISE: f64 = 0.021;
+/// Number of samples for which the noise is specified.
 const SAMPLES: f64 = 64.0;
-/// Of the samples before that, whose footprints are larger, the noise is less by this factor in all (squared).
+/// Factor on the total variance, because earlier samples have larger footprints.
 const EARLIER: f64 = 2.0 / 3.0;
-/// Parts of the frame that are looked at, across, and how many rays one has at least that is taken into account.
+/// Number of parts across the frame in which noise is measured.
 const ACROSS: usize = 20;
+/// Smallest number of rays in a part that is taken into account.
 const LEAST: f64 = 6.0;
 
-/// How far footprints reach to each side, in pixels, sample by sample.
+/// The half side of footprints, pixels, sample by sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Width {
-    /// The side of the last sample of [`SAMPLES`]; 0 where there is no noise.
+    /// Side of footprints at sample number [`SAMPLES`]; 0 if there is no noise.
     side: f64,
 }
 
 impl Width {
-    /// For so much noise of a pixel in a picture of one sample: variance over the square of the mean.
+    /// Computes the width from the noise of a pixel in a picture of one sample: variance over the square of the mean.
     fn for_noise(variance: f64) -> Self {
         let pixels = EARLIER * variance / SAMPLES / (NOISE * NOISE);
         Self { side: pixels.sqrt() }
     }
 
-    /// That of a sample: the area falls with the root of its number, so that both noise and blur go to nothing. It does not rest on how
-    /// many samples there will be, so light that goes on has the bits of light in one go.
+    /// Returns the half side of footprints in a sample. Their area falls with the square root of the sample's number, so that both noise
+    /// and blur tend to zero. It does not depend on how many samples follow, so a render that is continued gets the same bits as one
+    /// without a stop.
     pub fn of_sample(&self, sample: u64) -> f64 {
         (0.5 * (self.side * (SAMPLES / (sample + 1) as f64).sqrt().sqrt() - 1.0)).clamp(0.0, MOST_HALF)
     }
 
-    /// The noise that is left of a pixel, as a part of its light, in a picture of so many samples whose footprints reach no farther than
-    /// `most_half` to each side.
+    /// Returns the noise that is left in a pixel, as a fraction of its light, after this many samples whose footprints reach no farther
+    /// than `most_half` to each side.
     pub fn noise(&self, samples: u64, most_half: f64) -> f64 {
         let variance = self.side * self.side * SAMPLES * NOISE * NOISE / EARLIER;
         let pixels = |sample: u64| (2.0 * self.of_sample(sample).min(most_half) + 1.0).powi(2);
@@ -52,10 +59,10 @@ impl Width {
     }
 }
 
-/// What a ray brought to a part of the frame and a channel, times how many rays it stands for.
+/// The contribution of a ray: the cell of a part of the frame and a channel, the value, and the number of rays that it stands for.
 type Part = (u32, f64, f64);
 
-/// The width for ghosts whose rays are shared out already.
+/// Finds the width for ghosts whose rays are already shared out.
 pub(super) fn found(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Width, RenderError> {
     let size = ghosts.pipeline.scene.imager.size();
     let (width, height) = (size.width_px as usize, size.height_px as usize);
@@ -95,7 +102,7 @@ pub(super) fn found(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Width, Ren
     Ok(Width::for_noise(a_block / ghosts.plan.blocks_a_sample as f64))
 }
 
-/// What a block's rays of a path bring.
+/// Returns the contributions of a block's rays of one path.
 fn parts(ghosts: &Ghosts, state: &mut ThreadState, at: usize, first: impl Fn(usize) -> usize) -> Vec<Part> {
     let all = ghosts.plan.ways[at].rays;
     let some = all.min(SCALE_RAYS);
@@ -123,7 +130,7 @@ mod tests {
         let width = Width::for_noise(2.0);
         let halves = [0, 15, 63, 255, 1 << 20].map(|sample| width.of_sample(sample));
         assert!(halves.is_sorted_by(|a, b| a >= b) && halves[0] < MOST_HALF && halves[4] == 0.0, "{halves:?}");
-        // The noise that is left, by the areas, and that of single pixels.
+        // The noise that is left, from the areas, and that of single pixels.
         assert!((width.noise(64, MOST_HALF) / NOISE - 1.0).abs() < 0.01, "{}", width.noise(64, MOST_HALF));
         assert!((width.noise(50, 0.0) / (2.0_f64 / 50.0).sqrt() - 1.0).abs() < 1e-9);
         assert_eq!(Width::for_noise(1e3).of_sample(0), MOST_HALF);

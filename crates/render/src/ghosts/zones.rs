@@ -1,16 +1,18 @@
-//! Points of a source, sorted by the direction in which the lens sees them.
+//! Sorts the points of a source by the direction in which the lens sees them.
 
 use glam::DVec3;
 use spectra_core::math::atan2;
 
-/// Zones of the angle to the axis, at most, and how wide they are at least (chord of the unit circle: 0.6 degrees): the sun, 0.53, is in one,
-/// wherever it stands, as rays of both halves tell of the same places on the front.
+/// Largest number of zones of the angle to the axis.
 const MOST_RINGS: usize = 12;
+/// Smallest width of a zone (chord of the unit circle: 0.6 degrees). The sun, 0.53 degrees wide, is in one zone wherever it stands, because
+/// rays of both its halves find the same places on the front.
 const WIDTH: f64 = 0.6 * std::f64::consts::PI / 180.0;
-/// Zones around the axis, in a lens that is not round.
+/// Number of zones around the axis, in a lens without rotational symmetry.
 const SECTORS: usize = 8;
 
-/// Zones that share a guide: the light of a path comes in by nearly the same way from all points of one.
+/// The zones of a source. The points of a zone share a guide, because the light of a path enters in nearly the same places from all of
+/// them.
 #[derive(Clone, Debug)]
 pub(super) struct Zones {
     eye: DVec3,
@@ -21,7 +23,7 @@ pub(super) struct Zones {
 }
 
 impl Zones {
-    /// For points such as these, seen from `eye`; of a round lens all azimuths are alike.
+    /// Creates zones for points like the given ones, seen from `eye`. In a round lens all azimuths are equivalent.
     pub fn new(points: &[DVec3], eye: DVec3, is_round: bool) -> Self {
         let unit = |p: &DVec3| (*p - eye).normalize_or(DVec3::NEG_Z);
         let middle = points.iter().map(unit).sum::<DVec3>().normalize_or(DVec3::NEG_Z);
@@ -35,7 +37,7 @@ impl Zones {
         Self { eye, low, step, rings, sectors: if is_round || high < WIDTH { 1 } else { SECTORS } }
     }
 
-    /// One for all.
+    /// Creates a single zone for all points.
     pub fn one() -> Self {
         Self { eye: DVec3::ZERO, low: 0.0, step: 2.0, rings: 1, sectors: 1 }
     }
@@ -44,10 +46,10 @@ impl Zones {
         self.rings * self.sectors
     }
 
-    /// Of some points, for each zone one in its middle, if any of them lies in it.
+    /// Returns for each zone the one of the given points that is nearest to its middle, if any lies in it.
     pub fn middles(&self, points: &[DVec3]) -> Vec<Option<DVec3>> {
         let unit = |point: &DVec3| (*point - self.eye).normalize_or(DVec3::NEG_Z);
-        // Around the axis all places of a ring are alike.
+        // All places of a ring around the axis are equivalent.
         let turned = |point: &DVec3| {
             let unit = unit(point);
             if self.rings > 1 && self.sectors == 1 { DVec3::new(unit.truncate().length(), 0.0, unit.z) } else { unit }
@@ -61,7 +63,7 @@ impl Zones {
         (0..self.count()).map(middle).collect()
     }
 
-    /// That of a point.
+    /// Returns the zone of a point.
     #[inline]
     pub fn of(&self, point: DVec3) -> usize {
         if self.count() == 1 {
@@ -77,7 +79,7 @@ impl Zones {
     }
 }
 
-/// Distance on the unit sphere of a direction from that along the axis, toward the subject: twice the sine of half the angle.
+/// Returns the chord on the unit sphere between a direction and the axis toward the subject: twice the sine of half the angle.
 fn chord(way: DVec3) -> f64 {
     let unit = way.normalize_or(DVec3::NEG_Z);
     (unit - DVec3::NEG_Z).length()
@@ -95,7 +97,7 @@ mod tests {
         assert_eq!(Zones::new(&[at(19.735), at(20.265)], DVec3::ZERO, true).count(), 1);
         let wide = Zones::new(&[at(0.0), at(30.0)], DVec3::ZERO, true);
         assert_eq!((wide.count(), wide.of(at(0.0)), wide.of(at(29.9)), wide.of(at(80.0))), (12, 0, 11, 11));
-        // The sun beside the middle, where two of eight sectors meet.
+        // The sun next to the middle of the field, where two of eight sectors meet.
         let edge = |turn: f64| DMat3::from_rotation_z(turn) * at(0.265);
         let aside = DMat3::from_rotation_y(-20.0_f64.to_radians());
         let sun: Vec<DVec3> = (0..8).map(|k| aside * edge(f64::from(k) * std::f64::consts::FRAC_PI_4)).collect();

@@ -1,4 +1,4 @@
-//! `animation`: one scene, a sequence of frames over which values change.
+//! The `animation` section: one scene, and a sequence of frames over which values change.
 
 use super::law::{Law, Track};
 use super::setting::{ANIMATION, Setting, check_path};
@@ -9,16 +9,16 @@ use spectra_core::params::{Fault, Faults, Key, Node, Part, StageNode, Value, War
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Most frames of one animation: 400 s of film at 25 frames a second.
+/// Largest number of frames of an animation: 400 s of film at 25 frames per second.
 const MAX_FRAMES: u64 = 10_000;
 /// Largest number of a frame: seven digits.
 const LAST: u64 = 9_999_999;
 /// Largest number of a first frame.
 const LAST_FIRST: u64 = LAST - MAX_FRAMES;
-/// The key beside keyframes that names their law.
+/// The key among keyframes that names their interpolation.
 const INTERPOLATION: &str = "interpolation";
 
-/// The section as written.
+/// The `animation` section as written.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Section {
@@ -47,19 +47,19 @@ enum FrameSeed {
     Fixed,
 }
 
-/// Frames, and what changes over them.
+/// The frames of an animation, and the values that change over them.
 #[derive(Clone, Debug)]
 pub(super) struct Animation {
     /// Number of the first frame.
     pub first: u32,
-    /// How many.
+    /// Number of frames.
     pub frames: u32,
-    /// Frames a second.
+    /// Frames per second.
     pub rate: f64,
-    /// Whether every frame has numbers of its own.
+    /// Whether every frame has random numbers of its own.
     pub is_alive: bool,
     tracks: Vec<(String, Track)>,
-    /// What a person should know: keyframes beyond the frames.
+    /// Warnings about keyframes outside the frames.
     pub warnings: Vec<Warning>,
 }
 
@@ -67,7 +67,7 @@ impl Animation {
     /// Reads the section. `$name` in it stands for the scene's own variables.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// Every fault of the section.
     pub(super) fn read(section: &Node, variables: &Variables) -> Result<Self, Faults> {
         let filled = variables.put_into_part(section)?;
         let node = StageNode::new(filled, ANIMATION);
@@ -98,13 +98,13 @@ impl Animation {
         faults.into_result(Self { first, frames, rate, is_alive, tracks, warnings })
     }
 
-    /// What is set for a frame.
+    /// Returns the paths and values that are set for a frame.
     pub(super) fn setting(&self, frame: u32) -> Setting {
         self.tracks.iter().map(|(path, track)| (path.clone(), track.value_at(f64::from(frame)))).collect()
     }
 }
 
-/// The keyframes of one path, and their numbers.
+/// Returns the keyframes of one path as a track, and their frame numbers.
 fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
     let path = format!("{ANIMATION}.animate.{}", key.text);
     let example = "such as `{1: 2 m, 48: 0.6 m, interpolation: smooth}`";

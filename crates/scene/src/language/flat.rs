@@ -1,9 +1,9 @@
-//! A tree written as YAML again: the record of what a picture was made of.
+//! Conversion of a tree back to YAML, to record the scene of a picture.
 
 use spectra_core::params::{Node, Value};
 use std::fmt::Write as _;
 
-/// A whole scene in block style; lists and maps of scalars stand on one line. Read again, it is the same tree.
+/// Writes a whole scene in block style, with lists and maps of scalars on one line. Reading the text gives the same tree.
 #[must_use]
 pub fn document(root: &Node) -> String {
     let mut out = String::new();
@@ -11,7 +11,7 @@ pub fn document(root: &Node) -> String {
     out
 }
 
-/// A value on one line: `f/2.8`, `[1, 2]`, `{stock: ilford-ortho-plus}`.
+/// Writes a value on one line: `f/2.8`, `[1, 2]`, `{stock: ilford-ortho-plus}`.
 #[must_use]
 pub(crate) fn one_line(node: &Node) -> String {
     let mut out = String::new();
@@ -19,7 +19,7 @@ pub(crate) fn one_line(node: &Node) -> String {
     out
 }
 
-/// Longest list or map that stands on one line.
+/// Largest number of characters of a list or map on one line.
 const LINE: usize = 96;
 
 fn block(node: &Node, indent: usize, out: &mut String) {
@@ -40,7 +40,7 @@ fn block(node: &Node, indent: usize, out: &mut String) {
     }
 }
 
-/// A value behind its key, on the same line or below.
+/// Writes a value after its key, on the same line or below.
 fn value_behind(node: &Node, indent: usize, out: &mut String) {
     let line = one_line(node);
     let long = line.chars().count() > LINE;
@@ -93,7 +93,7 @@ fn flow(node: &Node, out: &mut String) {
     }
 }
 
-/// A text as YAML: plain where that reads as the same text, else in double quotes.
+/// Writes a text as YAML: plain if that reads as the same text, otherwise in double quotes.
 fn text(value: &str) -> String {
     if is_plain(value) && matches!(Value::from_plain(value), Value::String(_)) {
         value.to_owned()
@@ -102,7 +102,7 @@ fn text(value: &str) -> String {
     }
 }
 
-/// A key, which is a text whatever it looks like.
+/// Writes a key, which is a text whatever it looks like.
 fn key_text(value: &str) -> String {
     if is_plain(value) { value.to_owned() } else { quoted(value) }
 }
@@ -142,7 +142,7 @@ mod tests {
         parse(SourceFile::new("t.yaml", text)).unwrap_or_else(|faults| panic!("{faults}\n{text}"))
     }
 
-    /// What is written reads as the same tree: texts stay texts, numbers keep their digits.
+    /// Written trees read as the same tree: texts remain texts, and numbers keep their digits.
     #[test]
     fn what_is_written_is_read_back() {
         let long = format!("a: {{list: [{}], map: {{b: {{c: {}}}}}}}", "12 mm, ".repeat(40), "x".repeat(100));
@@ -163,7 +163,7 @@ mod tests {
         }
     }
 
-    /// The values without their places.
+    /// Returns the values without their places.
     fn strip(node: &Node) -> Value {
         let at = |node: &Node| Node::new(strip(node), Default::default(), std::sync::Arc::new(SourceFile::new("", "")));
         match &node.value {

@@ -1,4 +1,4 @@
-//! `include`: a scene on top of others.
+//! The `include` key: a scene on top of others.
 
 use super::merge::merge;
 use crate::resources::{of_user, read_yaml};
@@ -9,40 +9,40 @@ use spectra_core::params::{Fault, Faults, Node, Params, Value};
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
-/// Deepest chain of files that include each other.
+/// Longest chain of files that include each other.
 const MAX_DEPTH: usize = 16;
-/// Most files in one scene, a file that is included twice counted twice.
+/// Largest number of files in one scene; a file that is included twice counts twice.
 const MAX_FILES: usize = 256;
-/// The key.
+/// The key `include` of a scene.
 pub(super) const INCLUDE: &str = "include";
 
-/// The key as written, for the schema.
+/// The value of `include` as written, for the schema.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "its form is all that is wanted of it")]
 pub(crate) enum Form {
-    /// A file.
+    /// The name of one file.
     One(String),
-    /// Files, later ones on top.
+    /// A list of files; later ones go on top.
     Several(Vec<String>),
 }
 
-/// A scene with what it includes below it, and which files it is made of.
+/// A scene merged with its includes, and the files that it is made of.
 pub(super) struct Included {
-    /// One tree; each value keeps the place where it was written.
+    /// The merged tree; each value keeps the place where it was written.
     pub root: Node,
-    /// Names of the files, in the order they were named: the scene itself is not among them.
+    /// Names of the included files in order, without the scene itself.
     pub files: Vec<String>,
-    /// Their folders on disk, in the same order, none twice.
+    /// Folders of the included files on disk, in order, without duplicates.
     pub folders: Vec<PathBuf>,
-    /// Names of variables that any of the files refers to.
+    /// Names of the variables that any of the files refers to.
     pub references: BTreeSet<String>,
 }
 
-/// Puts the files below a scene that it includes, and that those include.
+/// Merges a scene with the files that it includes, and with their includes.
 ///
 /// # Errors
-/// A file that is not found or not read, whatever is wrong in it, a chain that comes back to itself.
+/// A file that is not found or cannot be read; every fault in it; an include chain that closes on itself.
 pub(super) fn resolve(root: Node) -> Result<Included, Faults> {
     let mut reader = Reader {
         chain: vec![identity(&root.file.name)],
@@ -56,9 +56,9 @@ pub(super) fn resolve(root: Node) -> Result<Included, Faults> {
 }
 
 struct Reader {
-    /// The files from the scene down to the one being read.
+    /// Files from the scene down to the one that is being read.
     chain: Vec<String>,
-    /// Files read so far.
+    /// Number of files read so far.
     read: usize,
     files: Vec<String>,
     folders: Vec<PathBuf>,
@@ -95,7 +95,7 @@ impl Reader {
         Ok(merged)
     }
 
-    /// The tree of one file, with what it includes.
+    /// Reads one file and merges it with its includes.
     fn file(&mut self, item: &Node) -> Result<Node, Faults> {
         let Some(name) = item.as_str() else {
             let fault = item.fault("an include names a file").path(INCLUDE);
@@ -123,7 +123,7 @@ impl Reader {
             return Err(fault.hint(format!("the chain is {}", chain())).into());
         }
         let tree = found.read().map_err(|faults| placed(faults, item))?;
-        // A scene is a map; what is none is told with its own place.
+        // A scene is a map; anything else is reported at its own place.
         Params::section(tree.clone(), "")?;
         if !self.files.contains(&found.name()) {
             self.files.push(found.name());
@@ -141,10 +141,10 @@ impl Reader {
     }
 }
 
-/// A file that is there.
+/// A file that was found.
 enum Found {
     Disk(PathBuf),
-    /// By its name among the bundled data.
+    /// Name of a bundled file.
     Bundled(String),
 }
 
@@ -164,7 +164,7 @@ impl Found {
     }
 }
 
-/// The file that `item` names: beside the file that it stands in, else a bundled scene.
+/// Finds the file that `item` names: beside the file that contains `item`, otherwise a bundled scene.
 fn find(name: &str, item: &Node) -> Result<Found, Fault> {
     const ENDINGS: [&str; 3] = ["", ".yaml", ".yml"];
     if let Some(folder) = item.file.folder() {
@@ -192,7 +192,7 @@ fn find(name: &str, item: &Node) -> Result<Found, Fault> {
     }))
 }
 
-/// The nearest name, on disk or bundled.
+/// Returns the most similar name, on disk or bundled.
 fn near(name: &str, item: &Node) -> Option<String> {
     let bundled = spectra_data::list("scenes/").filter_map(|n| n.strip_prefix("scenes/")?.strip_suffix(".yaml"));
     let mut names: Vec<String> = bundled.map(str::to_owned).collect();
@@ -208,12 +208,12 @@ fn near(name: &str, item: &Node) -> Option<String> {
     nearest(name, names.iter().map(String::as_str)).map(str::to_owned)
 }
 
-/// What tells whether two names are one file.
+/// Returns a text that is equal for two names of the same file.
 fn identity(name: &str) -> String {
     std::fs::canonicalize(name).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
 }
 
-/// Faults without a place (a file that cannot be read) at what named the file.
+/// Places faults that have no place, such as of a file that cannot be read, at the name of the file.
 fn placed(faults: Faults, item: &Node) -> Faults {
     let at = |fault: Fault| {
         if fault.place.is_some() { fault } else { Fault { place: Some(item.place()), ..fault }.path(INCLUDE) }
@@ -221,7 +221,7 @@ fn placed(faults: Faults, item: &Node) -> Faults {
     faults.into_iter().map(at).collect::<Vec<_>>().into()
 }
 
-/// The same path without `.` in it: as a person would write it.
+/// Returns the path without `.` components, as users write it.
 fn plain(path: &Path) -> PathBuf {
     path.components().filter(|c| *c != Component::CurDir).collect()
 }

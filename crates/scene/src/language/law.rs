@@ -1,28 +1,28 @@
-//! Values between values: quantities with their units, by a law.
+//! Interpolation of values, including quantities with units.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::pow;
 use spectra_core::params::{Dimension, Fault, Node, Number, Reading, Unit, Value};
 
-/// How a value goes from one to the next.
+/// Ways to interpolate from one value to the next.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Law {
-    /// Evenly.
+    /// Linear interpolation.
     #[default]
     Linear,
-    /// Evenly, starting and stopping gently: a monotone cubic through all values.
+    /// A monotone cubic through all values, which starts and stops gently.
     Smooth,
-    /// By equal ratios: stops of an aperture, of an exposure.
+    /// Equal ratios, like the stops of an aperture or exposure.
     Logarithmic,
-    /// Evenly in one over the value: a focus ring turns so.
+    /// Linear in one over the value, like the turn of a focus ring.
     Reciprocal,
-    /// Not at all: each stays until the next.
+    /// No interpolation: each value stays until the next.
     Hold,
 }
 
-/// Values at places along a line, and what lies between them.
+/// Values at places along a line, with interpolation between them.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     at: Vec<f64>,
@@ -33,25 +33,26 @@ pub(super) struct Track {
 
 #[derive(Clone, Debug)]
 enum Values {
-    /// Nothing is reckoned with.
+    /// Values without interpolation.
     Held,
-    /// Numbers of one unit.
+    /// Numbers in one unit.
     Scalar { values: Vec<f64>, unit: Option<&'static Unit> },
-    /// Lists of one length, element by element.
+    /// Lists of equal length, interpolated element by element.
     List(Vec<Track>),
 }
 
 impl Track {
-    /// Values at places, which rise.
+    /// Makes a track of values at increasing places.
     ///
     /// # Errors
-    /// Values that are no quantities, or of different kinds; those that a law does not take.
+    /// Values that are not quantities, or of different dimensions, or outside the domain of the law.
     pub(super) fn new(at: &[f64], nodes: &[Node], law: Law) -> Result<Self, Fault> {
         let values = if law == Law::Hold || nodes.len() < 2 { Values::Held } else { values_of(at, nodes, law)? };
         Ok(Self { at: at.to_vec(), nodes: nodes.to_vec(), law, values })
     }
 
-    /// The value at a place; before the first and behind the last it stays. What was written is given as it was written.
+    /// Returns the value at a place. Before the first and after the last value it is constant. At given places it is returned as
+    /// written.
     pub(super) fn value_at(&self, place: f64) -> Node {
         let next = self.at.partition_point(|at| *at <= place);
         let before = next.saturating_sub(1);
@@ -68,7 +69,7 @@ impl Track {
         Node::new(value, node.span, std::sync::Arc::clone(&node.file))
     }
 
-    /// The number between `before` and the value behind it.
+    /// Returns the number between the value at `before` and the next one.
     fn scalar_at(&self, values: &[f64], before: usize, place: f64) -> f64 {
         let (a, b) = (values[before], values[before + 1]);
         let length = self.at[before + 1] - self.at[before];
@@ -80,15 +81,15 @@ impl Track {
             Law::Smooth => {
                 let [from, to] = [before, before + 1].map(|i| slope(&self.at, values, i) * length);
                 let u = 1.0 - t;
-                // The cubic of Hermite in the form of Bernstein.
+                // The cubic Hermite polynomial in Bernstein form.
                 u * u * u * a + 3.0 * u * u * t * (a + from / 3.0) + 3.0 * u * t * t * (b - to / 3.0) + t * t * t * b
             }
         }
     }
 }
 
-/// Slope of the monotone cubic at a value: the weighted harmonic mean of the slopes on either side, 0 at the ends and
-/// where the values turn round (F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5, 300, 1984).
+/// Returns the slope of the monotone cubic at a value: the weighted harmonic mean of the slopes on either side, 0 at the ends and
+/// at extrema (F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5, 300, 1984).
 fn slope(at: &[f64], values: &[f64], i: usize) -> f64 {
     if i == 0 || i + 1 == values.len() {
         return 0.0;
@@ -112,7 +113,7 @@ fn values_of(at: &[f64], nodes: &[Node], law: Law) -> Result<Values, Fault> {
                     Value::Seq(items) if items.len() == first.len() => column.push(items[i].clone()),
                     _ => {
                         return Err(
-                            node.fault(format!("expected a list of {} values, as the first one is", first.len()))
+                            node.fault(format!("expected a list of {} values, like the first one", first.len()))
                         );
                     }
                 }
@@ -134,7 +135,7 @@ fn scalars(nodes: &[Node], law: Law) -> Result<Values, Fault> {
             (None, _) => value,
             (Some((_, unit)), Some(own)) if own.dimension == unit.dimension => own.convert(value, unit),
             (Some((_, unit)), None) if value.is_infinite() || unit.dimension == Dimension::FNumber => value,
-            // A bare number and one in per cent.
+            // A bare number among percentages.
             (Some((_, unit)), None) if unit.dimension == Dimension::Ratio => {
                 Unit::find("").map_or(value, |whole| whole.convert(value, unit))
             }
@@ -162,7 +163,7 @@ fn scalars(nodes: &[Node], law: Law) -> Result<Values, Fault> {
     }
 }
 
-/// The number and unit of a value.
+/// Returns the number and unit of a value.
 fn quantity(node: &Node, law: Law) -> Result<(f64, Option<&'static Unit>), Fault> {
     let text = node.as_str();
     let reading = match &node.value {
@@ -191,7 +192,7 @@ fn quantity(node: &Node, law: Law) -> Result<(f64, Option<&'static Unit>), Fault
     }
 }
 
-/// A number in its unit, as one writes it in a scene.
+/// Returns a number with its unit as written in a scene.
 fn written(value: f64, unit: Option<&'static Unit>) -> Value {
     if value.is_infinite() {
         return Value::String(if value > 0.0 { "inf" } else { "-inf" }.to_owned());
@@ -237,12 +238,12 @@ mod tests {
             ("[[0, 1 mm], [4, 2 mm]]", Law::Linear, 3.0, "[2, 1.5 mm]"),
             ("[a, b]", Law::Hold, 4.9, "a"),
             ("[{x: 1}, true]", Law::Hold, 5.0, "true"),
-            // Evenly in diopters: 0 and 2, so 0.5, 1 and 1.5 on the way.
+            // Linear in diopters: 0 and 2 at the ends, so 0.5, 1 and 1.5 between.
             ("[infinity, 50 cm]", Law::Reciprocal, 2.0, "200 cm"),
             ("[inf, 50 cm]", Law::Reciprocal, 3.0, "100 cm"),
             ("[2 m, inf]", Law::Reciprocal, 3.0, "4 m"),
             ("[inf, inf]", Law::Reciprocal, 3.0, "inf"),
-            // Two ends: 3 t^2 - 2 t^3.
+            // With two values the curve is 3 t^2 - 2 t^3.
             ("[0, 32]", Law::Smooth, 2.0, "5"),
             ("[0, 32]", Law::Smooth, 3.0, "16"),
         ] {
@@ -250,7 +251,7 @@ mod tests {
         }
     }
 
-    /// A stop is a factor of the root of two: a quarter of the way from f/2 to f/8 is f/2.828.
+    /// A stop is a factor of the square root of two: a quarter of the way from f/2 to f/8 is f/2.828.
     #[test]
     fn equal_ratios_are_stops() {
         let text = at("[f/2, f/8]", Law::Logarithmic, 2.0);
@@ -258,8 +259,8 @@ mod tests {
         assert!((value / (2.0 * std::f64::consts::SQRT_2) - 1.0).abs() < 4.0 * f64::EPSILON, "{text}");
     }
 
-    /// Slopes by Fritsch and Butland as scipy.interpolate.PchipInterpolator has them inside, 0 at the ends; values by
-    /// scipy.interpolate.CubicHermiteSpline with those slopes.
+    /// The inner slopes by Fritsch and Butland are those of scipy.interpolate.PchipInterpolator, and 0 at the ends. The values
+    /// come from scipy.interpolate.CubicHermiteSpline with these slopes.
     #[test]
     fn the_smooth_way_is_the_monotone_cubic() {
         let track = track(&[0.0, 1.0, 3.0, 4.0, 6.0], "[0, 1, 2, 5, 4]", Law::Smooth).expect("good");

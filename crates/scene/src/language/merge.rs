@@ -1,17 +1,17 @@
-//! Two maps as one: what an included file says, and what is said over it.
+//! Merging of an included file with the file that includes it.
 
 use spectra_core::params::{Key, Node, Value};
 use spectra_core::registry;
 
-/// The key that names a stage.
+/// The key that names the kind of a stage.
 const KIND: &str = "kind";
 
-/// `over` on top of `base`, both of them the maps of whole files.
+/// Merges `over` on top of `base`; both are the maps of whole files.
 ///
-/// Maps merge key by key, at any depth; anything else (a list, a text, a number) replaces what was there; a key whose
-/// value is nothing (`film:`, `film: null`) takes the key away. A stage of another `kind` replaces the whole map, since
-/// the keys of one kind mean nothing to another; a map that names no kind goes on with the one below it. A variable, a
-/// swept list and the keyframes of a parameter are values of their own: they are replaced as a whole.
+/// Maps merge key by key at any depth. Anything else (a list, a text, a number) replaces the value below it. A key with an empty
+/// value (`film:`, `film: null`) removes the key. A stage of another `kind` replaces the whole map, because keys of one kind mean
+/// nothing to another. A map that names no kind extends the one below it. A variable, a swept list and the keyframes of a
+/// parameter are replaced as a whole.
 #[must_use]
 pub(super) fn merge(base: Node, over: Node) -> Node {
     merge_at(base, over, &mut Vec::new())
@@ -41,7 +41,7 @@ fn merge_at(base: Node, over: Node, path: &mut Vec<String>) -> Node {
     }
 }
 
-/// A stage of which only the kind was said (`imager: film`), as a map, where a map comes on top of it.
+/// Turns a stage given only by its kind (`imager: film`) into a map, if a map goes on top of it.
 fn as_map(base: Node, over: &Node, path: &[String]) -> Node {
     match (&base.value, &over.value) {
         (Value::String(_), Value::Map(_)) if default_kind(path).is_some() => {
@@ -53,7 +53,7 @@ fn as_map(base: Node, over: &Node, path: &[String]) -> Node {
     }
 }
 
-/// Whether a value at this place is one thing, though it may be written as a map.
+/// Returns whether the value at this place counts as a whole, even if it is written as a map.
 fn is_whole(path: &[String]) -> bool {
     let path: Vec<&str> = path.iter().map(String::as_str).collect();
     matches!(path[..], ["variables" | "sweep", _] | ["animation", "animate", _])
@@ -71,7 +71,7 @@ fn is_same_kind(base: &[(Key, Node)], over: &[(Key, Node)], path: &[String]) -> 
     }
 }
 
-/// The kind that is meant at this place where none is named; `None` where no stage stands.
+/// Returns the default kind of the stage at this place; `None` if no stage is expected there.
 #[expect(clippy::option_option, reason = "no stage, a stage without a default, a stage with one")]
 fn default_kind(path: &[String]) -> Option<Option<&'static str>> {
     let stage = path.last()?;
@@ -112,7 +112,7 @@ mod tests {
             ("{x: {kind: a, p: 1}}", "{x: {kind: b, q: 2}}", "{x: {kind: b, q: 2}}"),
             ("{x: {kind: a, p: 1}}", "{x: {kind: a, q: 2}}", "{x: {kind: a, p: 1, q: 2}}"),
             ("{x: {kind: a, p: 1}}", "{x: {q: 2}}", "{x: {kind: a, p: 1, q: 2}}"),
-            // No stage that is known: what was said without a kind is of another one.
+            // An unknown stage without a kind counts as being of another kind.
             ("{x: {p: 1}}", "{x: {kind: a, q: 2}}", "{x: {kind: a, q: 2}}"),
             ("{x: {kind: a, p: 1}}", "{x: b}", "{x: b}"),
         ] {

@@ -1,4 +1,4 @@
-//! A scene file as the pictures that it stands for: one, the members of a sweep, the frames of an animation.
+//! A scene file as a series of pictures: one picture, the members of a sweep, or the frames of an animation.
 
 use super::animation::Animation;
 use super::flat;
@@ -19,73 +19,73 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a scene file stands for.
+/// Kinds of series that a scene file stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SeriesKind {
-    /// One picture.
+    /// A single picture.
     Single,
-    /// Pictures that differ in named values.
+    /// A sweep: pictures that differ in named values.
     Sweep {
-        /// Of a product, its paths with the values along each, in order; empty where values go together.
+        /// Paths of a product, each with its values, in order; empty if values are set together.
         axes: Vec<SweptAxis>,
     },
-    /// Frames.
+    /// An animation: a sequence of frames.
     Animation {
-        /// Number of the first one.
+        /// Number of the first frame.
         first: u32,
-        /// Frames a second.
+        /// Frames per second.
         rate: f64,
     },
 }
 
-/// A path of a sweep's product.
+/// A path of a sweep's product, with its values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SweptAxis {
     /// The path, such as `lens.f-number`.
     pub path: String,
-    /// What is put there, one after the other, as it is written.
+    /// Values set at the path, one after another, as written.
     pub values: Vec<String>,
 }
 
 /// One picture of a series.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Member {
-    /// Number in the sweep, from 1, or of the frame.
+    /// Number in the sweep, from 1, or number of the frame.
     pub number: u32,
-    /// Paths and values that are its own, as they are written.
+    /// Paths and values of this picture, as written.
     pub values: Vec<(String, String)>,
     /// Name of the scene.
     base: String,
-    /// What tells it from the others, in the names of files: `-001` or `.0001`, nothing of a picture alone.
+    /// Part of the file names that differs between pictures: `-001` or `.0001`; empty for a single picture.
     mark: String,
     is_frame: bool,
 }
 
 impl Member {
-    /// The name of its files without their ending. `part` is what tells several files of one picture apart, such as the
-    /// name of a film: a sequence of frames ends with the number, a picture of a sweep begins with it.
+    /// Returns the name of the picture's files without extension. `part` distinguishes several files of one picture, such as by
+    /// the name of a film. The number comes last for a frame, and before `part` for a picture of a sweep.
     #[must_use]
     pub fn stem(&self, part: &str) -> String {
         let Self { base, mark, .. } = self;
         if self.is_frame { format!("{base}{part}{mark}") } else { format!("{base}{mark}{part}") }
     }
 
-    /// Its values in a line: `lens.f-number = f/2, film.stock = kodak-tri-x-400`.
+    /// Formats the values on one line: `lens.f-number = f/2, film.stock = kodak-tri-x-400`.
     #[must_use]
     pub fn words(&self) -> String {
         self.values.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// A scene file, read, with all that it includes; no stage is built yet.
+/// A scene file that was read with all of its includes; no stage is built yet.
 #[derive(Clone)]
 pub struct Series {
     written: Written,
-    /// What is set on top of it: texts `path=value`.
+    /// Texts `path=value` that are set on top of the file.
     overrides: Vec<String>,
-    /// The tree, variables still in it.
+    /// The tree, with its variables.
     root: Node,
-    /// What stands in the record of a scene that is one picture, written out.
+    /// Complete record of a scene that uses none of the scene language.
     plain: Option<String>,
     going: Going,
     warnings: Vec<Warning>,
@@ -101,7 +101,7 @@ enum Going {
 /// Reads and assembles a scene that is one picture. `overrides` are texts `path=value`, as given by `--set`.
 ///
 /// # Errors
-/// Everything that is wrong with it, each with its place; and a scene that stands for several pictures.
+/// Every fault of the scene, each with its place; a scene that stands for several pictures.
 pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
     let series = load_series(path, overrides)?;
     if let Some(key) = series.key() {
@@ -112,15 +112,14 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
     series.scene(0)
 }
 
-/// Reads a scene file, with what it includes, and finds out which pictures it stands for.
+/// Reads a scene file with its includes, and determines the pictures that it stands for.
 ///
 /// # Errors
-/// Everything that is wrong with files, `--set`, `include`, `sweep` and `animation`; what is wrong with a picture is told
-/// by [`Series::scene`].
+/// Every fault of files, `--set`, `include`, `sweep` and `animation`. Faults of a picture are reported by [`Series::scene`].
 pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let root = read(path)?;
-    // A bundled scene is called by its whole name, however it was named.
+    // A bundled scene gets its full name, whatever part of it was given.
     let called = match root.file.name.strip_prefix("bundled:") {
         Some(bundled) => Path::new(bundled),
         None => path,
@@ -131,10 +130,10 @@ pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> 
     Written::read(name, root, overrides, beside)?.set(overrides)
 }
 
-/// The same of a text: its stages ask `resources` for files.
+/// Reads a series from the text of a scene file. Its stages get their files from `resources`.
 ///
 /// # Errors
-/// As [`load_series`].
+/// The errors of [`load_series`].
 pub fn series_of_text(
     name: &str,
     text: &str,
@@ -145,10 +144,10 @@ pub fn series_of_text(
     series_of_tree(name, root, overrides, resources)
 }
 
-/// The same of a tree, as a program may have made it.
+/// Reads a series from a tree, for example one made by a program. Its stages get their files from `resources`.
 ///
 /// # Errors
-/// As [`load_series`].
+/// The errors of [`load_series`].
 pub fn series_of_tree(
     name: &str,
     root: Node,
@@ -159,23 +158,23 @@ pub fn series_of_tree(
     Written::read(stem, root, overrides, |_| resources)?.set(overrides)
 }
 
-/// A scene as it is written, with all that it includes, before anything is set.
+/// A scene as written, with all of its includes, before any value is set.
 #[derive(Clone)]
 struct Written {
     name: String,
     root: Node,
-    /// The file itself, for the record.
+    /// The scene file, for the record.
     text: Arc<SourceFile>,
     resources: Arc<Remembered>,
-    /// The files that it is made of.
+    /// Names of the files that the scene is made of.
     files: Vec<String>,
     /// Variables that any of the files refers to.
     references: BTreeSet<String>,
-    /// Whether nothing of the language above stages is in it.
+    /// Whether the scene uses none of the scene language.
     is_plain: bool,
 }
 
-/// Whether a text `path=value` sets what is included.
+/// Returns whether a text `path=value` sets `include`.
 fn is_include(text: &str) -> bool {
     text.split_once('=').is_some_and(|(path, _)| path.trim() == INCLUDE)
 }
@@ -200,7 +199,7 @@ impl Written {
         Ok(Self { name, root, text, resources, files: [files, included].concat(), references, is_plain })
     }
 
-    /// With these texts `path=value` on top.
+    /// Returns the series with these texts `path=value` on top.
     fn set(self, overrides: &[String]) -> Result<Series, Faults> {
         let (mut root, mut references) = (self.root.clone(), self.references.clone());
         let mut faults = Faults::new();
@@ -210,14 +209,14 @@ impl Written {
             variables::references(&over.node, &mut references);
             variables::open(&mut root, &over.path);
             set.push(over.path.clone());
-            // `null` takes a key away, as in a file that includes another.
+            // `null` removes a key, as in a file that includes another.
             if matches!(over.node.value, Value::Null) && take_away(&mut root, &over.path) {
                 continue;
             }
             faults.take(over.apply(&mut root));
         }
         faults.into_result(())?;
-        // `--set` may have brought the language in.
+        // `--set` may have added scene language.
         let is_plain = self.is_plain && [VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
         let plain = is_plain.then(|| record(&self.text.text, overrides));
         let overrides = overrides.to_vec();
@@ -226,7 +225,7 @@ impl Written {
     }
 }
 
-/// Takes the key at a path away; says whether it was there.
+/// Removes the key at a path; returns whether it existed.
 fn take_away(root: &mut Node, path: &str) -> bool {
     let Ok(steps) = steps(path) else { return false };
     let Some((Step::Key(last), through)) = steps.split_last() else { return false };
@@ -241,19 +240,19 @@ fn take_away(root: &mut Node, path: &str) -> bool {
 }
 
 impl Series {
-    /// The text of its file, and below it, as remarks, what is set on top.
+    /// Returns the text of the scene file, followed by comments with the values that are set on top.
     #[must_use]
     pub fn text(&self) -> String {
         record(&self.written.text.text, &self.overrides)
     }
 
-    /// The text of its file, as it is written.
+    /// The text of the scene file as written.
     #[must_use]
     pub fn written(&self) -> &str {
         &self.written.text.text
     }
 
-    /// Takes `sweep` and `animation` out of the tree.
+    /// Removes `sweep` and `animation` from the tree, and reads them.
     fn unfolded(mut self, set: &[String], references: &std::collections::BTreeSet<String>) -> Result<Self, Faults> {
         let mut faults = Faults::new();
         let variables = faults.take(Variables::of(self.root.get(VARIABLES)));
@@ -273,7 +272,7 @@ impl Series {
                 "the sweep is at {place}; render the animation once for each value, with `--set sweep=null --set lens.f-number=f/4`"
             )));
         }
-        // A circle closes for whoever sets one of its variables otherwise: what nothing uses is looked at, too.
+        // Unused variables are checked for circles, too, because setting another variable may use them.
         faults.take(variables.check_circles());
         self.warnings = variables.unused(references);
         let mut own: Vec<String> = Vec::new();
@@ -303,7 +302,7 @@ impl Series {
         faults.into_result(self)
     }
 
-    /// The section that makes several pictures of it.
+    /// Returns the key of the section that makes several pictures.
     fn key(&self) -> Option<&'static str> {
         match self.going {
             Going::Single => None,
@@ -312,19 +311,19 @@ impl Series {
         }
     }
 
-    /// The same with one more value set, as `--set` does it: a text `path=value`. No file is read again, but for what is
-    /// included, where that is set.
+    /// Returns the series with one more value set by a text `path=value`, as `--set` does. No file is read again, except includes
+    /// if `include` is set.
     ///
     /// # Errors
-    /// As [`load_series`].
+    /// The errors of [`load_series`].
     pub fn with(&self, text: &str) -> Result<Self, Faults> {
         self.with_all(std::slice::from_ref(&text))
     }
 
-    /// The same with several values more.
+    /// Returns the series with several more values set, each by a text `path=value`.
     ///
     /// # Errors
-    /// As [`load_series`].
+    /// The errors of [`load_series`].
     pub fn with_all(&self, texts: &[impl AsRef<str>]) -> Result<Self, Faults> {
         let path = |text: &str| text.split_once('=').map(|(path, _)| path.trim().to_owned());
         let mut overrides = self.overrides.clone();
@@ -335,11 +334,11 @@ impl Series {
         self.written.clone().set(&overrides)
     }
 
-    /// The series with films exposed for stated times in place of what their meters would choose: places of films in the list, and
+    /// Returns the series with stated exposure times instead of metered ones. `times` holds indices of films in the list, and
     /// seconds.
     ///
     /// # Errors
-    /// A film that is no section of the scene.
+    /// A film that is not a section of the scene.
     pub fn exposed_for(&self, times: &[(usize, f64)]) -> Result<Self, Faults> {
         let mut series = self.clone();
         variables::open(&mut series.root, "film.exposure");
@@ -357,7 +356,8 @@ impl Series {
         Ok(series)
     }
 
-    /// Whether what its films are exposed by is set for each picture: then each is metered by itself.
+    /// Returns whether the series sets something for each picture that affects the exposure of its films. Each picture is then
+    /// metered by itself.
     #[must_use]
     pub fn sets_exposures(&self) -> bool {
         let used = |path: &str| match path.strip_prefix("variables.") {
@@ -370,19 +370,19 @@ impl Series {
         self.setting(0).iter().flat_map(|(path, _)| used(path)).any(|path| metering::is_of_meter(&path))
     }
 
-    /// What is set on top of the scene as it is written: texts `path=value`.
+    /// Texts `path=value` that are set on top of the scene as written.
     #[must_use]
     pub fn overrides(&self) -> &[String] {
         &self.overrides
     }
 
-    /// Name of the scene: the file's name without its ending.
+    /// Name of the scene: the file's name without its extension.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.written.name
     }
 
-    /// What it stands for.
+    /// Returns the kind of the series.
     #[must_use]
     pub fn kind(&self) -> SeriesKind {
         match &self.going {
@@ -398,14 +398,14 @@ impl Series {
         }
     }
 
-    /// Whether the lens that it names is [`NO_LENS`]: film gets its picture's own pixels.
+    /// Returns whether the scene's lens is [`NO_LENS`]: the picture's own pixels expose the film.
     #[must_use]
     pub fn is_without_lens(&self) -> bool {
         let file = self.root.get("lens").and_then(|lens| lens.get("file"));
         file.and_then(Node::as_str) == Some(NO_LENS)
     }
 
-    /// How many pictures there are.
+    /// Number of pictures in the series.
     #[must_use]
     pub fn count(&self) -> usize {
         match &self.going {
@@ -415,26 +415,26 @@ impl Series {
         }
     }
 
-    /// What a person should know: variables that nothing uses, values that have no effect.
+    /// Warnings about unused variables and about values that have no effect.
     #[must_use]
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
-    /// The files that it is made of: the scene, then what it includes.
+    /// Names of the files that the scene is made of: the scene, then its includes.
     #[must_use]
     pub fn files(&self) -> &[String] {
         &self.written.files
     }
 
-    /// All files on disk that it rests on: those that it is made of, and those that its stages have asked for so far.
+    /// Returns all files on disk that the series depends on: its own, and those that its stages have read so far.
     #[must_use]
     pub fn files_on_disk(&self) -> Vec<PathBuf> {
         let own = self.files().iter().filter(|name| !name.starts_with(BUNDLED)).map(PathBuf::from);
         own.chain(self.written.resources.on_disk()).collect()
     }
 
-    /// Where a variable is used: paths of values with their texts, such as `source.distance` and `$far`.
+    /// Returns where a variable is used: paths and texts of the values, such as `source.distance` and `$far`.
     #[must_use]
     pub fn uses_of_variable(&self, name: &str) -> Vec<(String, String)> {
         fn search(node: &Node, path: &str, wanted: &[String; 2], found: &mut Vec<(String, String)>) {
@@ -465,7 +465,7 @@ impl Series {
         }
     }
 
-    /// A picture by its place in the series, from 0.
+    /// Returns a picture by its index in the series, from 0.
     #[must_use]
     pub fn member(&self, index: usize) -> Member {
         let values = self.setting(index).iter().map(|(path, node)| (path.clone(), flat::one_line(node))).collect();
@@ -485,19 +485,20 @@ impl Series {
         Member { number, values, base: self.written.name.clone(), mark, is_frame }
     }
 
-    /// Assembles a picture by its place in the series, from 0.
+    /// Assembles a picture by its index in the series, from 0.
     ///
     /// # Errors
-    /// Everything that is wrong with it, each with its place; of a value that came through a variable both places.
+    /// Every fault of the picture, each with its place. Faults of a value that came through a variable name both places.
     pub fn scene(&self, index: usize) -> Result<Scene, Faults> {
         self.assembled(index, Earlier::default())
     }
 
-    /// The same, with the stages of another picture of the series where the scene says the same of them, of which nothing else is
-    /// left, with the lens of one more where both focus it alike, and with what the frame sees looked for as `search` says.
+    /// Assembles a picture, and takes over what it can from scenes that were assembled before. `other` gives the stages whose
+    /// sections are unchanged, and is used up. `lens_of` gives its lens if both scenes focus it alike. `search` controls the
+    /// search for what the frame sees.
     ///
     /// # Errors
-    /// As [`Series::scene`]; and something where the workers are to stop.
+    /// The errors of [`Series::scene`]; an error if the workers are told to stop.
     pub fn scene_between(
         &self,
         index: usize,
@@ -508,11 +509,11 @@ impl Series {
         self.assembled(index, Earlier::of(other, false).and_lens_of(lens_of).by(search))
     }
 
-    /// A picture to be looked at, not to be rendered: noise and grain need not be those of its frame. So that all the
-    /// stages of another such picture serve again, where the scene says the same of them.
+    /// Assembles a picture only to check it: noise and grain need not be those of its frame. All stages of `other`, another such
+    /// picture, can therefore be reused if their sections are unchanged.
     ///
     /// # Errors
-    /// As [`Series::scene`].
+    /// The errors of [`Series::scene`].
     pub fn looked_at(&self, index: usize, other: Option<Arc<Scene>>) -> Result<Scene, Faults> {
         self.assembled(index, Earlier::of(other, true))
     }
@@ -568,8 +569,8 @@ impl Series {
         scene.map_err(|faults| variables::told(faults, &uses))
     }
 
-    /// Of a sweep over lenses, where all that is wrong is that one of them does not reach the f-number of the others: the scene
-    /// without it, and what to say.
+    /// Handles a sweep over lenses in which the only fault is that a lens cannot reach the f-number. Returns the scene without
+    /// the f-number, and a warning.
     fn wide_open_instead(&self, index: usize, root: &Node, faults: &Faults) -> Option<(Node, String)> {
         let is_sweep = matches!(self.going, Going::Sweep { .. });
         let lens = self.setting(index).iter().any(|(path, _)| path == "lens.file" || path == "lens");
@@ -588,10 +589,10 @@ impl Series {
         Some((open, format!("picture {} is taken wide open: {}", index + 1, fault.message)))
     }
 
-    /// The scene as set for one picture, as a scene of its own.
+    /// Returns the record of one picture as a scene of its own.
     fn record(&self, member: &Member, root: &Node) -> String {
         let mut root = root.clone();
-        // What changes no picture does not change the record in its file either.
+        // Settings that do not change the picture do not change the record in its file.
         if let Value::Map(entries) = &mut root.value
             && let Some((_, render)) = entries.iter_mut().find(|(key, _)| key.text == "render")
         {
@@ -612,7 +613,7 @@ impl Series {
     }
 }
 
-/// Takes a key out of a map.
+/// Removes a key from a map.
 fn without(node: &mut Node, key: &str) -> Option<(Key, Node)> {
     let Value::Map(entries) = &mut node.value else { return None };
     let at = entries.iter().position(|(k, _)| k.text == key)?;

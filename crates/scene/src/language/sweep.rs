@@ -1,4 +1,4 @@
-//! `sweep`: one scene, several pictures that differ in named values.
+//! The `sweep` section: one scene, and several pictures that differ in named values.
 
 use super::law::{Law, Track};
 use super::setting::{SWEEP, Setting, check_path};
@@ -8,49 +8,49 @@ use serde::Deserialize;
 use spectra_core::params::{Fault, Faults, Key, Node, StageNode, Value, Whole, keys_of};
 use std::collections::BTreeMap;
 
-/// Most pictures of one sweep.
+/// Largest number of pictures of a sweep.
 pub(super) const MAX_PICTURES: usize = 1000;
-/// Values along one path.
+/// The values of one swept path.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pub path: String,
     pub values: Vec<Node>,
 }
 
-/// What a sweep goes through.
+/// The values that a sweep goes through.
 #[derive(Clone, Debug)]
 pub(super) enum Sweep {
-    /// Every value of each path with every value of the others; the last one changes fastest.
+    /// All combinations of the values of each path; the last path changes fastest.
     Product(Vec<Axis>),
-    /// Values that go together.
+    /// Lists of values that are set together.
     Together(Vec<Setting>),
 }
 
-/// The section as written, for the schema.
+/// The `sweep` section as written, for the schema.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "its form is all that is wanted of it")]
 pub(crate) enum Form {
-    /// Every value of each path with every value of the others; the last path changes fastest.
+    /// All combinations of the values of each path; the last path changes fastest.
     Product(BTreeMap<String, AxisForm>),
-    /// Values that go together.
+    /// Maps of values that are set together.
     Together(Vec<BTreeMap<String, StageNode>>),
 }
 
-/// Values of one path, for the schema.
+/// The values of one path as written, for the schema.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "its form is all that is wanted of it")]
 pub(crate) enum AxisForm {
-    /// A variable that is a list.
+    /// A variable that holds a list.
     Variable(String),
-    /// One after the other.
+    /// A list of values.
     List(Vec<StageNode>),
-    /// From one to another.
+    /// A range of values.
     Range(Range),
 }
 
-/// Values from one to another, as a sweep writes them.
+/// A range of values as written in a sweep.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct Range {
@@ -58,14 +58,14 @@ pub(crate) struct Range {
     from: StageNode,
     /// The last value.
     to: StageNode,
-    /// How many values, both ends counted.
+    /// Number of values, including both ends.
     steps: Whole<2, { MAX_PICTURES as u64 }>,
-    /// `linear`, `logarithmic` or `reciprocal`.
+    /// Spacing of the values: `linear`, `logarithmic` or `reciprocal`.
     #[serde(default)]
     spacing: Spacing,
 }
 
-/// How the values of a range follow each other.
+/// Spacings of the values of a range.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -80,7 +80,7 @@ impl Sweep {
     /// Reads the section. `$name` in it stands for the scene's own variables.
     ///
     /// # Errors
-    /// Everything that is wrong with it; more than [`MAX_PICTURES`].
+    /// Every fault of the section; more than [`MAX_PICTURES`] pictures.
     pub(super) fn read(section: &Node, variables: &Variables) -> Result<Self, Faults> {
         match &section.value {
             Value::Map(entries) if !entries.is_empty() => product(section, entries, variables),
@@ -92,7 +92,7 @@ impl Sweep {
         }
     }
 
-    /// The settings of all pictures, in order.
+    /// Returns the settings of all pictures, in order.
     pub(super) fn settings(&self) -> Vec<Setting> {
         match self {
             Self::Together(settings) => settings.clone(),
@@ -125,14 +125,14 @@ fn product(section: &Node, entries: &[(Key, Node)], variables: &Variables) -> Re
 
 fn too_many(section: &Node, pictures: &str) -> Fault {
     let fault =
-        section.fault(format!("the sweep has {pictures} pictures, at most {MAX_PICTURES} are made")).path(SWEEP);
+        section.fault(format!("the sweep has {pictures} pictures, but at most {MAX_PICTURES} can be made")).path(SWEEP);
     fault.hint("fewer values; or values that go together, as a list of maps: `sweep: [{a: 1, b: 2}, ...]`")
 }
 
-/// The values along one path.
+/// Returns the values of one path.
 fn axis(key: &Key, node: &Node, variables: &Variables) -> Result<Vec<Node>, Faults> {
     let path = format!("{SWEEP}.{}", key.text);
-    // A list that is a variable is wanted now; what stands in a list written out is each picture's own.
+    // A list given by a variable is needed now; variables inside a written list are replaced later, for each picture.
     let opened = match &node.value {
         Value::String(_) => variables.put_into_part(node)?,
         _ => node.clone(),
@@ -142,7 +142,7 @@ fn axis(key: &Key, node: &Node, variables: &Variables) -> Result<Vec<Node>, Faul
         Value::Seq(items) if items.len() > MAX_PICTURES => {
             Err(too_many(node, &items.len().to_string()).path(path).into())
         }
-        // A path that was not written with dots.
+        // A path written as nested maps instead of with dots.
         Value::Map(entries) if entries.first().is_some_and(|(key, _)| !keys_of::<Range>().contains(&key.text)) => {
             let fault = node.fault("a swept path has a list of values, or a range").path(path);
             let joined = entries.first().map_or_else(String::new, |(inner, _)| format!("{}.{}", key.text, inner.text));

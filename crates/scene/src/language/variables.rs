@@ -1,4 +1,4 @@
-//! `variables`: values with a name, and `$name` where they are used.
+//! The `variables` section: named values, and their use as `$name`.
 
 use super::count;
 use crate::yaml::MAX_NODES;
@@ -7,37 +7,37 @@ use spectra_core::params::{Fault, Faults, Key, MAX_DEPTH, Node, SourceFile, Span
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The key.
+/// The key `variables` of a scene.
 pub(super) const VARIABLES: &str = "variables";
 
-/// Longest text that `${name}` may grow to, bytes.
+/// Largest size of a text after replacing `${name}`, bytes.
 const MAX_TEXT: usize = 1 << 16;
 
-/// The variables of a scene, as defined; a value may name others.
+/// The variables of a scene as defined; a value may refer to others.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Variables {
     entries: Vec<(Key, Node)>,
 }
 
-/// A place where a variable is used: a fault in its value is told with it.
+/// A use of a variable. Faults in its value are reported with it.
 #[derive(Clone, Debug)]
 pub(super) struct Use {
-    /// Path of the value that it became, or became part of.
+    /// Path of the value that the variable became, or became part of.
     path: String,
     name: String,
     used: (Arc<SourceFile>, Span),
     defined: (Arc<SourceFile>, Span),
-    /// Whether it is all of the value, which then has the place of the definition.
+    /// Whether the variable is the whole value, which then has the place of the definition.
     is_whole: bool,
 }
 
-/// A text by its parts.
+/// A text split at its variables.
 enum Text<'a> {
-    /// Nothing in it names a variable.
+    /// A text without variables.
     Plain,
-    /// All of it is one variable, and it may be of any type.
+    /// A text that is one variable, of any type.
     Whole(&'a str),
-    /// Pieces, and names of scalars between them.
+    /// Pieces of text and names of scalar variables.
     Pieces(Vec<Piece<'a>>),
 }
 
@@ -46,13 +46,13 @@ enum Piece<'a> {
     Variable(&'a str),
 }
 
-/// Whether a name can stand behind `$`: letters, digits, `-` and `_`, no digit or `-` first.
+/// Returns whether a name can follow `$`: letters, digits, `-` and `_`, beginning with a letter or `_`.
 fn is_name(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
 }
 
-/// Takes a text apart; an error says what is wrong, and what to write.
+/// Splits a text at its variables. The error holds the message and a hint.
 fn parts(text: &str) -> Result<Text<'_>, (String, String)> {
     if !text.contains('$') {
         return Ok(Text::Plain);
@@ -97,7 +97,7 @@ fn parts(text: &str) -> Result<Text<'_>, (String, String)> {
     Ok(Text::Pieces(pieces))
 }
 
-/// A user's text, fit to be repeated in a message.
+/// Returns a user's text in a form that is safe to repeat in a message.
 fn shorten(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).take(48).collect()
 }
@@ -119,7 +119,7 @@ pub(super) fn references(node: &Node, into: &mut BTreeSet<String>) {
     }
 }
 
-/// The text that refers to a variable.
+/// Returns the first text in the tree that refers to a variable.
 fn reference<'a>(node: &'a Node, name: &str) -> Option<&'a Node> {
     match &node.value {
         Value::Seq(items) => items.iter().find_map(|item| reference(item, name)),
@@ -132,8 +132,7 @@ fn reference<'a>(node: &'a Node, name: &str) -> Option<&'a Node> {
     }
 }
 
-/// Puts the map of a variable in the place of its name, as far as a path leads through it: so that `lens.focus` can be
-/// set where the scene says `lens: $prime`.
+/// Replaces variables by their maps along a path, so that `lens.focus` can be set in a scene with `lens: $prime`.
 pub(super) fn open(root: &mut Node, path: &str) {
     let variables = root.get(VARIABLES).cloned();
     let Some(variables) = variables else { return };
@@ -159,10 +158,10 @@ pub(super) fn open(root: &mut Node, path: &str) {
 }
 
 impl Variables {
-    /// Those of a scene; none where it has no such section.
+    /// Reads the `variables` section; there are no variables without a section.
     ///
     /// # Errors
-    /// The section is no map, or a name cannot stand behind `$`.
+    /// The section is not a map, or a name cannot follow `$`.
     pub(super) fn of(section: Option<&Node>) -> Result<Self, Faults> {
         let Some(section) = section else { return Ok(Self::default()) };
         let entries = match &section.value {
@@ -188,10 +187,11 @@ impl Variables {
         self.entries.iter().find(|(key, _)| key.text == name).map(|(_, node)| node)
     }
 
-    /// Variables that are made of themselves, whether anything uses them or not; each circle is told once.
+    /// Checks that no variable refers to itself, directly or through others, even if nothing uses it. Each circle is reported
+    /// once.
     ///
     /// # Errors
-    /// All of them, at the place that closes the circle.
+    /// All circles, each at the place that closes it.
     pub(super) fn check_circles(&self) -> Result<(), Faults> {
         let mut faults = Faults::new();
         let (mut open, mut done) = (Vec::new(), BTreeSet::new());
@@ -201,9 +201,9 @@ impl Variables {
         faults.into_result(())
     }
 
-    /// Follows a variable to those that it is made of; `open` are those that lead to it.
+    /// Follows a variable to those that its value refers to. `open` holds the chain of variables that leads to it.
     fn follow(&self, name: &str, open: &mut Vec<String>, done: &mut BTreeSet<String>, faults: &mut Faults) {
-        // What is nested deeper is refused where it is used.
+        // Deeper nesting is refused where the variable is used.
         let known = self.get(name).filter(|_| !done.contains(name) && open.len() < MAX_DEPTH);
         let Some(node) = known else { return };
         open.push(name.to_owned());
@@ -223,7 +223,7 @@ impl Variables {
         done.insert(name.to_owned());
     }
 
-    /// What a person should know: definitions that nothing refers to.
+    /// Returns warnings about variables that nothing refers to.
     pub(super) fn unused(&self, references: &BTreeSet<String>) -> Vec<Warning> {
         let unused = self.entries.iter().filter(|(key, _)| !references.contains(&key.text));
         let words = unused.map(|(key, node)| {
@@ -236,10 +236,10 @@ impl Variables {
         words.collect()
     }
 
-    /// A tree with all variables in it replaced by their values; where they were used is added to `uses`.
+    /// Returns a tree with all variables replaced by their values, and adds their uses to `uses`.
     ///
     /// # Errors
-    /// All unknown names, cycles and ill-formed texts, each at its place; and more values than a scene may have.
+    /// All unknown names, circles and malformed texts, each at its place; more values than a scene may have.
     pub(super) fn put_into(&self, root: &Node, uses: &mut Vec<Use>) -> Result<Node, Faults> {
         let mut filler = Filler { variables: self, done: BTreeMap::new(), open: Vec::new(), budget: MAX_NODES, uses };
         let mut faults = Faults::new();
@@ -247,7 +247,7 @@ impl Variables {
         faults.into_result(filled)
     }
 
-    /// The same for a part of the scene whose uses nobody asks for.
+    /// Replaces the variables in a part of the scene without recording their uses.
     pub(super) fn put_into_part(&self, part: &Node) -> Result<Node, Faults> {
         self.put_into(part, &mut Vec::new())
     }
@@ -255,11 +255,11 @@ impl Variables {
 
 struct Filler<'a> {
     variables: &'a Variables,
-    /// Values of variables with everything in them replaced; `None` where that failed and was reported.
+    /// Values of variables with all variables in them replaced; `None` if that failed and was reported.
     done: BTreeMap<String, Option<Node>>,
-    /// Variables whose value is being worked out.
+    /// Variables whose values are being computed.
     open: Vec<String>,
-    /// Values that may still be made.
+    /// Number of values that may still be created.
     budget: usize,
     uses: &'a mut Vec<Use>,
 }
@@ -284,7 +284,7 @@ impl Filler<'_> {
                 for (key, item) in entries {
                     let path = if path.is_empty() { key.text.clone() } else { format!("{path}.{}", key.text) };
                     let value = self.fill(item, &path, depth + 1, faults);
-                    // A key stands in the file of its value.
+                    // A key is placed in the file of its value.
                     let moved = !Arc::ptr_eq(&value.file, &item.file);
                     let span = if moved { value.span } else { key.span };
                     filled.push((Key { text: key.text.clone(), span }, value));
@@ -344,7 +344,7 @@ impl Filler<'_> {
         }
     }
 
-    /// The value of a variable, with what it names replaced; `None` where that has been reported as a fault.
+    /// Returns the value of a variable with all variables in it replaced; `None` if a fault was reported.
     fn value(&mut self, name: &str, node: &Node, path: &str, depth: usize, faults: &mut Faults) -> Option<Node> {
         let Some(defined) = self.variables.get(name) else {
             let known: Vec<&str> = self.variables.entries.iter().map(|(key, _)| key.text.as_str()).collect();
@@ -385,7 +385,7 @@ impl Filler<'_> {
         value
     }
 
-    /// Takes from the number of values that a scene may have.
+    /// Counts values against the limit of a scene. Returns whether they fit.
     fn spend(&mut self, values: usize, node: &Node, path: &str, faults: &mut Faults) -> bool {
         let enough = values <= self.budget;
         if enough {
@@ -399,7 +399,7 @@ impl Filler<'_> {
     }
 }
 
-/// The place of a node without its value.
+/// Copies the place of a node without its value.
 trait ClonePlace {
     fn clone_place(&self) -> Node;
 }
@@ -414,7 +414,7 @@ fn nothing(node: &Node) -> Node {
     node.clone_place()
 }
 
-/// Adds to each fault in a value that came through a variable where the other end of it is.
+/// Adds to each fault in a value that came through a variable the place of its use or definition.
 pub(super) fn told(faults: Faults, uses: &[Use]) -> Faults {
     faults.into_iter().map(|fault| with_use(fault, uses)).collect::<Vec<_>>().into()
 }
@@ -527,7 +527,7 @@ mod tests {
             let error = filled(&text).expect_err(said);
             assert!(error.contains(said), "{error}");
         }
-        // Each fault once, all of them.
+        // Each fault is reported once, and all are reported.
         let error = filled("variables: {a: $q}\nx: [$a, $a, $r]\n").expect_err("three names");
         assert_eq!(error.lines().count(), 2, "{error}");
     }

@@ -1,4 +1,4 @@
-//! The prism of a scene on the study's bench: where the study starts, and what it saves.
+//! Link between a scene and the dispersion study: the prism with which the study starts, and saving it back into the scene.
 
 use super::order::Order;
 use super::save::save;
@@ -16,10 +16,10 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// How a lens file begins that this page wrote, and may write again.
+/// First line of a lens file that this page wrote, and which it may therefore overwrite.
 const MARK: &str = "# A prism, as the dispersion study of `spectra view` has it.\n";
 
-/// Whether a lens is one piece of glass between plane faces that are tilted to each other.
+/// Returns whether a lens is a prism: one piece of glass between two plane faces that are tilted to each other.
 pub(super) fn is_prism(lens: &Lens) -> bool {
     let [first, second] = &lens.elements[..] else { return false };
     let is_plane = |element: &spectra_lens::Element| element.surface.vertex_curvature_per_mm() == (0.0, 0.0);
@@ -31,7 +31,7 @@ fn normals(lens: &Lens) -> Option<[DVec3; 2]> {
     Some([first, second].map(|element| element.pose.direction(DVec3::Z)))
 }
 
-/// What the scene of an order has of a prism in words of the page; nothing of what the study cannot show. `None` where the scene
+/// Returns the prism, beam and light of the scene of an order as JSON for the page, as far as the study can show them. `None` if the scene
 /// has no prism.
 pub(super) fn start(order: &Order) -> Option<Value> {
     let session = order.session().ok()?;
@@ -44,7 +44,7 @@ pub(super) fn start(order: &Order) -> Option<Value> {
     Some(start)
 }
 
-/// What a scene has of a prism.
+/// Returns the prism, beam and light of a scene as JSON.
 fn words(scene: &Scene) -> Option<Value> {
     let lens = &scene.lens;
     let angles = normals(lens)?.map(|normal| atan2(-normal.y, normal.z).to_degrees());
@@ -68,29 +68,29 @@ fn words(scene: &Scene) -> Option<Value> {
     }))
 }
 
-/// A number that stands for a text.
+/// Returns a hash of a text, as 16 hexadecimal digits.
 fn print_of(text: &str) -> String {
     let mut hasher = DefaultHasher::new();
     text.hash(&mut hasher);
     format!("{:016x}", hasher.finish())
 }
 
-/// Writes a prism and its beam into the scene of an order, whose file is still the one of this print: the prism into a lens file of
-/// its own beside it, the rest where a person would write it. Gives the number of values of the scene, and the new print.
+/// Writes a prism and its beam into the scene of an order, if the scene's file still has the hash `print`. The prism goes into a separate
+/// lens file beside the scene, the rest where a person would write it. Returns the number of changed values, the lens file and the new
+/// hash as JSON.
 ///
 /// # Errors
-/// Why nothing is written.
+/// The reason why nothing is written.
 pub(super) fn keep(order: &Order, prism: &Prism, print: &str) -> Result<Value, String> {
     let file = &order.scene;
-    let before = std::fs::read_to_string(file).map_err(|_| {
-        "a bundled scene is not written to: `spectra new scene` makes one of your own to view".to_owned()
-    })?;
+    let before = std::fs::read_to_string(file)
+        .map_err(|_| "a bundled scene cannot be changed: make one of your own with `spectra new scene`".to_owned())?;
     if print_of(&before) != print {
         return Err(format!("{} has changed meanwhile: reload the page", file.display()));
     }
     let session = Session::open(file, &order.overrides, order.isa).map_err(|error| error.to_string())?;
     let scene = session.scene();
-    let known = words(scene).filter(|_| is_prism(&scene.lens)).ok_or("the scene has no prism any more")?;
+    let known = words(scene).filter(|_| is_prism(&scene.lens)).ok_or("the scene no longer has a prism")?;
     let root = scene.params.node();
     let lens = lens_file(file, root.at_path("lens.file").and_then(Node::as_str).unwrap_or_default())?;
     let mut changes = Vec::new();
@@ -113,7 +113,7 @@ pub(super) fn keep(order: &Order, prism: &Prism, print: &str) -> Result<Value, S
     match saved {
         Ok(now) => Ok(json!({"saved": changes.len(), "lens": lens.path.display().to_string(), "text": print_of(&now)})),
         Err(why) => {
-            // All or nothing.
+            // The lens file is restored, so that either both files change or neither.
             match old {
                 Some(old) => put(&old)?,
                 None => drop(std::fs::remove_file(&lens.path)),
@@ -123,16 +123,16 @@ pub(super) fn keep(order: &Order, prism: &Prism, print: &str) -> Result<Value, S
     }
 }
 
-/// Where the prism is written.
+/// The lens file into which the prism is written.
 struct LensFile {
     path: PathBuf,
-    /// As a scene names it.
+    /// Name of the file in the scene.
     name: String,
-    /// Whether the scene does so already.
+    /// Whether the scene already names this file.
     is_named: bool,
 }
 
-/// The lens file of a scene, if this page wrote it; or else one that is not there yet.
+/// Returns the lens file of a scene if this page wrote it, otherwise a new one. Fails if the new name is taken by another file.
 fn lens_file(scene: &Path, named: &str) -> Result<LensFile, String> {
     let folder = scene.parent().unwrap_or(Path::new(""));
     let is_own = |path: &Path| std::fs::read_to_string(path).is_ok_and(|text| text.starts_with(MARK));
@@ -144,7 +144,7 @@ fn lens_file(scene: &Path, named: &str) -> Result<LensFile, String> {
     let name = format!("{stem}-prism.yaml");
     let path = folder.join(&name);
     if path.exists() && !is_own(&path) {
-        return Err(format!("{} is there, and somebody else wrote it", path.display()));
+        return Err(format!("{} exists and was written by somebody else", path.display()));
     }
     Ok(LensFile { path, name, is_named: false })
 }
@@ -201,7 +201,7 @@ mod tests {
             (&json!("SCHOTT/N-BK7"), &json!("hydrogen"), &kept["text"])
         );
 
-        // Its own file is written again; a scene that somebody wrote meanwhile, or a lens file of somebody else, is left alone.
+        // The page's own lens file is overwritten; a scene that somebody changed meanwhile, or somebody else's lens file, is not.
         assert!(keep(&order, &prism, &print).expect_err("an older text").contains("has changed"));
         let print = kept["text"].as_str().expect("a print");
         assert_eq!(keep(&order, &Prism { apex_deg: 50.0, ..prism.clone() }, print).expect("saved")["saved"], 0);

@@ -1,5 +1,5 @@
-//! What a page can open: bundled scenes, and scenes and photographs beside the one that the viewer was started with. A page sends a name of
-//! this list, no path.
+//! The list of what a page can open: bundled scenes, and scenes and photographs beside the one with which the viewer was started. A page
+//! sends a name from this list and never a path.
 
 use super::order::Order;
 use serde_json::{Value, json};
@@ -8,18 +8,18 @@ use spectra_session::{SessionError, is_picture};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Most files that are listed.
+/// Largest number of files that are listed.
 const MANY: usize = 500;
-/// A scene says that it is one in its first bytes.
+/// Number of bytes at the start of a file in which the key `spectra:` marks it as a scene.
 const HEAD_BYTES: u64 = 4096;
 
-/// The folder that the viewer was started in, or that its scene lies in.
+/// Returns the folder of the viewer's scene, or the one in which the viewer was started.
 fn folder(order: &Order) -> PathBuf {
     let parent = order.scene.parent().filter(|p| !p.as_os_str().is_empty() && order.scene.exists());
     parent.unwrap_or(Path::new(".")).to_owned()
 }
 
-/// Names of scenes and photographs in a folder.
+/// Returns the names of the scenes and photographs in a folder, sorted.
 fn files(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names: Vec<String> = entries
@@ -32,7 +32,7 @@ fn files(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Whether a file is a scene: YAML that begins as one.
+/// Returns whether a file is a scene: YAML that begins like one.
 fn is_scene(path: &Path) -> bool {
     let is_yaml = path.extension().is_some_and(|ending| ending == "yaml" || ending == "yml");
     let head = || {
@@ -43,27 +43,27 @@ fn is_scene(path: &Path) -> bool {
     is_yaml && head().unwrap_or(false)
 }
 
-/// The list for the page.
+/// Returns the list of files and bundled scenes as JSON for the page.
 pub(super) fn listed(order: &Order) -> Value {
     let bundled: Vec<String> = Bundled::Scene.names().into_iter().filter(|name| !name.contains('/')).collect();
     json!({"files": files(&folder(order)), "bundled": bundled})
 }
 
-/// The order for what a page opens: a name, and whether it is that of a bundled scene.
+/// Returns the order for a name from the list; `is_bundled` says whether it is the name of a bundled scene.
 ///
 /// # Errors
-/// Why it cannot be opened.
+/// The reason why it cannot be opened.
 pub(super) fn opened(order: &Order, name: &str, is_bundled: bool) -> Result<Order, String> {
     let own = listed(order);
     let is_known = own[if is_bundled { "bundled" } else { "files" }]
         .as_array()
         .is_some_and(|all| all.iter().any(|own| own == name));
     if !is_known {
-        return Err(format!("`{name}` is not among what can be opened"));
+        return Err(format!("`{name}` is not among the scenes and photographs that can be opened"));
     }
     let scene = if is_bundled { PathBuf::from(name) } else { folder(order).join(name) };
     let made = Order::of(scene, None, Vec::new(), order.isa, order.threads);
-    // What is wrong with it is said before the page leaves what it has.
+    // Faults are reported before the page leaves its current scene.
     made.and_then(|made| made.session().map(|_| made)).map_err(|error: SessionError| error.to_string())
 }
 
@@ -95,7 +95,7 @@ mod tests {
             assert!(opened(&order, name, is_bundled).is_err_and(|why| why.contains("not among")), "{name}");
         }
         assert!(opened(&order, "biotar-ortho", true).is_ok());
-        // Broken: said, and nothing is opened.
+        // A broken picture is reported, and nothing is opened.
         assert!(opened(&order, "b.JPG", false).is_err_and(|why| why.contains("b.JPG")));
     }
 }

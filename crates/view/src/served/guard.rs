@@ -1,21 +1,21 @@
-//! Who may ask: a page that this server gave out, in a browser that was shown the token.
+//! Access control: only a page that this server served, in a browser that was given the token, may send requests.
 
 use super::http::{Answer, Request};
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
-/// 128 random bits, as 32 hexadecimal digits.
+/// Returns 128 random bits as 32 hexadecimal digits.
 fn secret() -> std::io::Result<String> {
     let mut bytes = [0_u8; 16];
     getrandom::fill(&mut bytes).map_err(std::io::Error::other)?;
     Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
 }
 
-/// Whether two texts are equal, in a time that does not say where they differ.
+/// Returns whether two texts are equal, in a time that does not reveal where they differ.
 fn same(a: &str, b: &str) -> bool {
     a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |sum, (a, b)| sum | (a ^ b)) == 0
 }
 
-/// The door: it knows the address that was printed, a token that opens once, and the cookie that it is changed for.
+/// The access control of a server: its address, a token that works once, and the cookie for which the token is exchanged.
 pub(crate) struct Guard {
     host: String,
     token: String,
@@ -24,36 +24,37 @@ pub(crate) struct Guard {
 }
 
 impl Guard {
-    /// For a server at `host`, address and port.
+    /// Creates the access control for a server at `host`, which is address and port.
     pub(crate) fn new(host: String) -> std::io::Result<Self> {
         Ok(Self { host, token: secret()?, is_spent: AtomicBool::new(false), cookie: secret()? })
     }
 
-    /// What a person opens.
+    /// URL that a person opens, with the token.
     pub(crate) fn address(&self) -> String {
         format!("http://{}/?token={}", self.host, self.token)
     }
 
-    /// The name of the cookie: cookies know no ports, so that of another server of ours must not overwrite it.
+    /// Returns the name of the cookie. It contains the port, because browsers share cookies between ports, and another `spectra view` must
+    /// not overwrite it.
     fn cookie_name(&self) -> String {
         format!("spectra-{}", self.host.rsplit(':').next().unwrap_or_default())
     }
 
-    /// Nothing, if the request may pass; else its answer.
+    /// Checks a request: `Ok` if it may pass, otherwise its answer.
     pub(crate) fn look(&self, request: &Request) -> Result<(), Answer> {
         let forbidden = |why| Err(Answer::refused(403, why));
         if request.field("Host")? != Some(self.host.as_str()) {
-            return forbidden("this server has another name");
+            return forbidden("this server has a different name");
         }
         match request.field("Origin")? {
             None if !request.is_post => {}
             Some(origin) if origin.strip_prefix("http://") == Some(self.host.as_str()) => {}
-            _ => return forbidden("only the page of this server may ask"),
+            _ => return forbidden("only the page of this server may send requests"),
         }
         if let Some(site) = request.field("Sec-Fetch-Site")?
             && !matches!(site, "same-origin" | "none")
         {
-            return forbidden("only the page of this server may ask");
+            return forbidden("only the page of this server may send requests");
         }
         let name = self.cookie_name();
         let cookies = request.field("Cookie")?.unwrap_or_default();
@@ -65,7 +66,7 @@ impl Guard {
         if is_door && request.asked("token").is_some_and(|token| same(token, &self.token)) {
             if self.is_spent.swap(true, SeqCst) {
                 return forbidden(
-                    "this address was opened before; open it in the same browser, or start `spectra view` again",
+                    "this address was already used; open it in the same browser, or start `spectra view` again",
                 );
             }
             let cookie = format!("{name}={}; HttpOnly; SameSite=Strict; Path=/", self.cookie);

@@ -1,50 +1,50 @@
-//! HTTP/1.1, as much of it as a page on the same machine needs: one request a connection, all of it bounded.
+//! The part of HTTP/1.1 that a page on the same machine needs: one request per connection, with limits on everything.
 
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-/// Largest head of a request, bytes.
+/// Largest header of a request, bytes.
 const MAX_HEAD: usize = 8 << 10;
 /// Largest body of a request, bytes.
 const MAX_BODY: usize = 4 << 10;
-/// Most header fields of a request.
+/// Largest number of header fields of a request.
 const MAX_FIELDS: usize = 64;
-/// A request is complete within this time of the connection, or dropped.
+/// Time from the connection within which a request must be complete, or it is dropped.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// An answer is taken within this time, or dropped.
+/// Time within which an answer must be read, or it is dropped.
 const TAKEN: Duration = Duration::from_secs(10);
 
-/// What a page asks.
+/// A request of a page.
 #[derive(Debug)]
 pub(crate) struct Request {
-    /// `true` for POST, `false` for GET.
+    /// Whether the method is POST; otherwise it is GET.
     pub is_post: bool,
     /// Path without the query.
     pub path: String,
     query: String,
     fields: Vec<(String, String)>,
-    /// What was sent along.
+    /// Body of the request.
     pub body: Vec<u8>,
 }
 
 impl Request {
-    /// A field of the head that stands there once; `Err` where it stands there several times.
+    /// Returns a header field, if it is given; an error if it is given more than once.
     pub(crate) fn field(&self, name: &str) -> Result<Option<&str>, Answer> {
         let mut all = self.fields.iter().filter(|(n, _)| n.eq_ignore_ascii_case(name)).map(|(_, v)| v.as_str());
         match (all.next(), all.next()) {
-            (_, Some(_)) => Err(Answer::refused(400, "a field of the head is given twice")),
+            (_, Some(_)) => Err(Answer::refused(400, "a header field is given twice")),
             (first, None) => Ok(first),
         }
     }
 
-    /// A value of the query. Nothing that the page asks for needs an escape, so none is undone.
+    /// Returns a value of the query. The page sends nothing that needs escaping, so no escapes are decoded.
     pub(crate) fn asked(&self, name: &str) -> Option<&str> {
         self.query.split('&').filter_map(|part| part.split_once('=')).find(|(n, _)| *n == name).map(|(_, v)| v)
     }
 }
 
-/// What it gets.
+/// The answer to a request.
 #[derive(Debug)]
 pub(crate) struct Answer {
     status: u16,
@@ -54,38 +54,38 @@ pub(crate) struct Answer {
 }
 
 impl Answer {
-    /// A document.
+    /// Creates an answer with a document of this media type.
     pub(crate) fn new(kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
         Self { status: 200, kind, fields: Vec::new(), body: body.into() }
     }
 
-    /// Data.
+    /// Creates an answer with JSON data.
     pub(crate) fn json(value: &serde_json::Value) -> Self {
         Self::new("application/json", value.to_string())
     }
 
-    /// Nothing new.
+    /// Creates an answer without content: there is nothing new.
     pub(crate) fn nothing() -> Self {
         Self { status: 204, ..Self::new("text/plain; charset=utf-8", "") }
     }
 
-    /// The page is elsewhere.
+    /// Creates an answer that redirects to another path.
     pub(crate) fn see(place: &str) -> Self {
         Self { status: 303, ..Self::new("text/plain; charset=utf-8", "") }.with("Location", place.to_owned())
     }
 
-    /// No, and why.
+    /// Creates an answer that refuses the request, with the status and the reason.
     pub(crate) fn refused(status: u16, why: &str) -> Self {
         Self { status, ..Self::new("text/plain; charset=utf-8", format!("{why}\n")) }
     }
 
-    /// With a field more in its head.
+    /// Adds a header field to the answer.
     pub(crate) fn with(mut self, name: &'static str, value: String) -> Self {
         self.fields.push((name, value));
         self
     }
 
-    /// Sends it.
+    /// Sends the answer.
     pub(crate) fn send(&self, stream: &mut TcpStream) -> io::Result<()> {
         let reason = match self.status {
             200 => "OK",
@@ -116,7 +116,7 @@ impl Answer {
         }
         head.push_str("\r\n");
         stream.set_write_timeout(Some(TAKEN))?;
-        // Head and body in one: a body alone would wait for the other side to acknowledge the head.
+        // Header and body are sent together; a separate body would wait for the other side to acknowledge the header.
         stream.set_nodelay(true)?;
         let mut all = head.into_bytes();
         all.extend_from_slice(&self.body);
@@ -125,7 +125,7 @@ impl Answer {
     }
 }
 
-/// Reads a request; `Err(None)` of a connection that said nothing.
+/// Reads a request. The error is the answer to a bad request, or `None` if the connection sent nothing.
 pub(crate) fn read(stream: &mut TcpStream) -> Result<Request, Option<Answer>> {
     let end = Instant::now() + PATIENCE;
     let mut bytes: Vec<u8> = Vec::new();
@@ -151,20 +151,20 @@ pub(crate) fn read(stream: &mut TcpStream) -> Result<Request, Option<Answer>> {
             Ok(httparse::Status::Complete(head)) if head <= MAX_HEAD => break (taken(&parsed)?, head),
             Ok(httparse::Status::Partial) if bytes.len() < MAX_HEAD => more(&mut bytes)?,
             Ok(_) | Err(httparse::Error::TooManyHeaders) => {
-                return Err(Some(Answer::refused(431, "the head of the request is too large")));
+                return Err(Some(Answer::refused(431, "the header of the request is too large")));
             }
-            Err(_) => return Err(Some(Answer::refused(400, "this is no HTTP request"))),
+            Err(_) => return Err(Some(Answer::refused(400, "this is not an HTTP request"))),
         }
     };
     if request.field("Transfer-Encoding").map_err(Some)?.is_some() {
-        return Err(Some(Answer::refused(501, "a body is sent whole, with its length")));
+        return Err(Some(Answer::refused(501, "a body must be sent whole, with its length")));
     }
     let length = match request.field("Content-Length").map_err(Some)? {
         None => 0,
         Some(text) if !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit()) => {
             text.parse().unwrap_or(usize::MAX)
         }
-        Some(_) => return Err(Some(Answer::refused(400, "the length of the body is no number"))),
+        Some(_) => return Err(Some(Answer::refused(400, "the length of the body is not a number"))),
     };
     if length > MAX_BODY {
         return Err(Some(Answer::refused(413, "the body of the request is too large")));
@@ -187,7 +187,7 @@ fn taken(parsed: &httparse::Request<'_, '_>) -> Result<Request, Option<Answer>> 
     let mut fields = Vec::new();
     for field in parsed.headers.iter() {
         let Ok(value) = std::str::from_utf8(field.value) else {
-            return Err(Some(Answer::refused(400, "the head of the request is no text")));
+            return Err(Some(Answer::refused(400, "the header of the request is not text")));
         };
         fields.push((field.name.to_owned(), value.to_owned()));
     }

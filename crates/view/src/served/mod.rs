@@ -1,4 +1,4 @@
-//! The page with its server: connections, threads, and the scene's file.
+//! The server of the page: connections, threads, and the scene's file.
 
 mod bench;
 mod choices;
@@ -21,44 +21,45 @@ use spectra_core::Isa;
 use spectra_session::SessionError;
 use std::path::PathBuf;
 
-/// What is viewed, and how.
+/// Settings of the viewer: what is viewed, and how.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// A scene file, the name of a bundled scene, or a photograph: a file of a picture, which is developed on a film.
+    /// Scene file, name of a bundled scene, or photograph: a picture file that is developed on a film.
     pub scene: PathBuf,
-    /// The film of a photograph, by its whole name or its file; the usual one if not said.
+    /// Film of a photograph, by its whole name or its file; the usual one if `None`.
     pub stock: Option<String>,
-    /// Texts `path=value` on top of it.
+    /// Texts `path=value` that override values of the scene.
     pub overrides: Vec<String>,
-    /// Port of 127.0.0.1; 0 is a free one.
+    /// Port on 127.0.0.1; 0 takes a free one.
     pub port: u16,
-    /// The instruction set to trace with.
+    /// Instruction set to trace with.
     pub isa: Isa,
-    /// Threads that a page's picture is traced on.
+    /// Number of threads that trace the picture of a page.
     pub threads: usize,
 }
 
-/// Serves a scene until the process ends; `ready` gets the address to open.
+/// Serves a scene until the process ends; calls `ready` with the address to open.
 ///
 /// # Errors
-/// Everything that is wrong with the scene; a port that cannot be had.
+/// Every fault of the scene; a port that cannot be opened; an error that ends the server.
 pub fn view(view: View, ready: impl FnOnce(&str)) -> Result<std::convert::Infallible, SessionError> {
     let View { scene, stock, overrides, port, isa, threads } = view;
     memory::keep_little();
     let order = Order::of(scene, stock.as_deref(), overrides, isa, threads)?;
-    // Faults are told at the start, and not by a page.
+    // Faults are reported at the start, not first by a page.
     order.session()?;
     let server = bound(port, Some(order))?;
     ready(&server.address());
-    // A page that is there sooner waits for it; without a thread for it, too.
+    // A page that comes sooner waits for this data; without this thread, the first page gathers it.
     let _ = std::thread::Builder::new().name("gather".to_owned()).spawn(controls::gather);
     Err(SessionError::Failed(format!("the server ended: {}", server.serve())))
 }
 
-/// Serves the color tester, lights of one wavelength as a screen shows them, until the process ends; `ready` gets the address to open.
+/// Serves the color tester, which shows light of one wavelength on a screen, until the process ends. Calls `ready` with the address to
+/// open.
 ///
 /// # Errors
-/// A port that cannot be had.
+/// A port that cannot be opened; an error that ends the server.
 pub fn color_tester(port: u16, ready: impl FnOnce(&str)) -> Result<std::convert::Infallible, SessionError> {
     let server = bound(port, None)?;
     ready(&server.address());
@@ -67,5 +68,5 @@ pub fn color_tester(port: u16, ready: impl FnOnce(&str)) -> Result<std::convert:
 
 fn bound(port: u16, order: Option<Order>) -> Result<Server, SessionError> {
     Server::bind(port, order)
-        .map_err(|error| SessionError::Request(format!("port {port} of this machine cannot be had: {error}")))
+        .map_err(|error| SessionError::Request(format!("port {port} of this machine cannot be opened: {error}")))
 }

@@ -1,16 +1,16 @@
-//! What is asked of a desk.
+//! The order for a desk: what to render, and how.
 
 use super::photograph;
 use spectra_core::Isa;
 use spectra_session::{Photograph, Session, SessionError, is_picture};
 use std::path::{Path, PathBuf};
 
-/// What is rendered, and by what means.
+/// A scene or photograph to render, and the means to do it.
 #[derive(Clone, Debug)]
 pub(crate) struct Order {
-    /// A scene file, the name of a bundled scene, or the file of a photograph.
+    /// Scene file, name of a bundled scene, or file of a photograph.
     pub scene: PathBuf,
-    /// What is made of a photograph, if it is one.
+    /// Settings for a photograph; `None` for a scene.
     pub photograph: Option<Photograph>,
     pub overrides: Vec<String>,
     pub isa: Isa,
@@ -18,7 +18,7 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    /// The order for a scene, or for a photograph on a stock: on the one that is usual if none is named.
+    /// Creates the order for a scene, or for a photograph on a stock; the usual stock if none is named.
     ///
     /// # Errors
     /// A stock that cannot be read.
@@ -33,10 +33,10 @@ impl Order {
         Ok(Self { scene, photograph, overrides, isa, threads })
     }
 
-    /// Opens it.
+    /// Opens a session for the order.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// Every fault of the scene or the photograph.
     pub(crate) fn session(&self) -> Result<Session, SessionError> {
         match &self.photograph {
             Some(photograph) => Session::of_series(photograph.series(&self.overrides, self.isa)?, 0, self.isa),
@@ -44,7 +44,7 @@ impl Order {
         }
     }
 
-    /// The file that a scene is written to; none of a photograph.
+    /// File into which changes of a scene are saved; `None` for a photograph.
     pub(crate) fn file(&self) -> Option<&Path> {
         self.photograph.is_none().then_some(&*self.scene)
     }

@@ -1,4 +1,4 @@
-//! A photograph in the viewer: the scene that `film develop` would make of it.
+//! Photographs in the viewer: the scene that `film develop` would make of one.
 
 use spectra_core::stage::{Source, Still};
 use spectra_film::stock::Stock;
@@ -7,10 +7,10 @@ use spectra_session::{Photograph, Plate, Rendering, Session, SessionError, Setti
 use std::path::Path;
 use std::sync::Arc;
 
-/// The stock of a photograph where nobody names one.
+/// Stock of a photograph if none is named.
 pub(super) const USUAL: &str = "kodak-portra-400";
 
-/// A photograph on a stock, in the light that this is made for, so that gray is gray.
+/// Returns the settings that develop a photograph on a stock, in the light for which the stock is made, so that gray stays gray.
 pub(super) fn of(file: &Path, stock: Option<&str>) -> Result<Photograph, SessionError> {
     let stock = stock.unwrap_or(USUAL);
     let light = light_of(stock)?;
@@ -31,7 +31,7 @@ pub(super) fn of(file: &Path, stock: Option<&str>) -> Result<Photograph, Session
     })
 }
 
-/// The light that a stock is made for.
+/// Returns the name of the light for which a stock is made.
 ///
 /// # Errors
 /// A stock that cannot be read.
@@ -39,27 +39,29 @@ pub(super) fn light_of(stock: &str) -> Result<String, SessionError> {
     Ok(Stock::load(stock, &FileResources::beside(Path::new("")))?.reference_illuminant)
 }
 
-/// A photograph with more pixels than this across is kept smaller, to be exposed again.
+/// Largest width at which the pixels of a photograph are kept for further exposures.
 const KEPT_PX: u32 = 1920;
 
-/// The pixels of a photograph, kept to be exposed again: reading a file takes longer than all else. A large one is kept with fewer.
+/// Pixels of a photograph that are kept for further exposures, because reading the file takes longer than everything else. A large
+/// photograph is kept with fewer pixels.
 pub(super) struct Small {
-    /// Whose they are.
+    /// Source to which the pixels belong.
     source: Arc<dyn Source>,
     still: Still,
-    /// Pixels across that the file has.
+    /// Width of the picture in the file, pixels.
     own_px: u32,
 }
 
 impl Small {
-    /// Exposes the film of a scene to its photograph; `kept` has its pixels, now or from then on.
+    /// Exposes the film of a scene to its photograph. Uses the pixels in `kept` if they are of the same source; otherwise reads them and
+    /// stores them there.
     pub(super) fn expose(kept: &mut Option<Self>, session: &Session) -> Result<Rendering, SessionError> {
         let scene = session.scene();
         let known = kept.take_if(|small| Arc::ptr_eq(&small.source, &scene.source));
         let small = match known {
             Some(small) => small,
             None => {
-                // What is not flat says so.
+                // For a source that is not a flat picture, `expose` returns the error.
                 let Some(still) = scene.source.still() else { return session.expose() };
                 let still = still?;
                 let own_px = still.width_px;
@@ -76,7 +78,7 @@ impl Small {
     }
 }
 
-/// The same picture of at most [`KEPT_PX`] pixels across, each the mean of those that it covers.
+/// Returns the picture with at most [`KEPT_PX`] pixels across, each the mean of those that it covers.
 fn shrunk(still: Still) -> Still {
     if still.width_px <= KEPT_PX {
         return still;
@@ -99,7 +101,7 @@ fn shrunk(still: Still) -> Still {
             rgb.push(sum.map(|sum| (sum / count) as f32));
         }
     }
-    // Whatever is rounded, the picture has its own shape.
+    // The picture keeps its aspect ratio exactly, although the number of pixels is rounded.
     let aspect = still.pixel_aspect * from_x as f64 / from_y as f64;
     Still {
         width_px: to_x as u32,

@@ -1,4 +1,4 @@
-//! What was turned, written into the scene's file where a person would write it.
+//! Saving of changes into the scene's file, where a person would write them.
 
 use spectra_core::params::{Node, SourceFile, Span, Step, Value, steps};
 use spectra_files::write_atomically;
@@ -7,13 +7,13 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Writes changes, texts `path=value` by their paths, into a scene's file, which reads `before`.
+/// Writes changes, pairs of a path and a text `path=value`, into a scene's file, whose text was `before`. Returns the new text.
 ///
-/// The text is changed where the values stand, and everything else stays, comments included. It is written only if the scene that it
-/// then says is the one that is seen, and if the file is still as it was read. Gives the new text.
+/// The text is changed only where the values are; everything else stays, comments included. The file is written only if it is still as it
+/// was read, and if the new text describes the scene that is shown.
 ///
 /// # Errors
-/// Why it is not written.
+/// The reason why the file is not written.
 pub(crate) fn save(
     file: &Path,
     before: &str,
@@ -24,7 +24,7 @@ pub(crate) fn save(
     let mut text = now.clone();
     if now != before {
         return Err(format!(
-            "{} has changed meanwhile: the page takes it up in a moment; then save again",
+            "{} has changed meanwhile: the page will load it in a moment; then save again",
             file.display()
         ));
     }
@@ -42,13 +42,13 @@ pub(crate) fn save(
     let wanted = read(before, &texts).map_err(|faults| faults.to_string())?;
     let found = read(&text, &[]).map_err(|faults| faults.to_string())?;
     if wanted != found {
-        return Err("the file is written in a way that these values cannot be put into; use `--set`".to_owned());
+        return Err("these values cannot be inserted into the file as it is written; use `--set`".to_owned());
     }
     write_atomically(file, |out| Ok(out.write_all(text.as_bytes())?)).map_err(|error| error.to_string())?;
     Ok(text)
 }
 
-/// Whether two texts of a scene's file say the same at a path, also where neither says anything.
+/// Returns whether two texts of a scene's file have the same value at a path; also true if neither has one.
 pub(crate) fn says_same(one: &str, other: &str, path: &str) -> bool {
     let at = |text: &str| {
         let root = spectra_yaml::parse(SourceFile::new("scene", text)).ok()?;
@@ -57,7 +57,7 @@ pub(crate) fn says_same(one: &str, other: &str, path: &str) -> bool {
     at(one) == at(other)
 }
 
-/// What a tree says, so that its order does not count.
+/// Returns the content of a tree as text, with keys sorted so that their order does not matter.
 pub(super) fn said(node: &Node) -> String {
     match &node.value {
         Value::Map(entries) => {
@@ -74,14 +74,14 @@ pub(super) fn said(node: &Node) -> String {
     }
 }
 
-/// A text of YAML in which `path` has this value.
+/// Returns a YAML text in which `path` has this value; `None` if there is no place for it.
 pub(super) fn with(text: &str, path: &str, value: &str) -> Option<String> {
     let root = spectra_yaml::parse(SourceFile::new("scene", text)).ok()?;
     if let Some(node) = root.at_path(path) {
         let Span { offset, len, .. } = node.span;
         return Some(format!("{}{value}{}", &text[..offset], &text[offset + len..]));
     }
-    // The deepest map that is there gets the rest.
+    // The deepest existing map gets the rest of the path.
     let steps: Vec<Step<'_>> = steps(path).ok()?;
     let (mut at, mut depth) = (&root, 0);
     for step in &steps {
@@ -103,7 +103,7 @@ pub(super) fn with(text: &str, path: &str, value: &str) -> Option<String> {
         let end = text[..close].trim_end().len();
         return Some(format!("{}{gap}{entry}{}", &text[..end], &text[close..]));
     }
-    // A map in lines: a line more, under its first key.
+    // A map in block style gets one more line, before its first key.
     let (first, _) = entries.first()?;
     let line = text[..first.span.offset].rfind('\n').map_or(0, |at| at + 1);
     let indent = &text[line..first.span.offset];
@@ -149,7 +149,7 @@ mod tests {
             .replace("focus: 2 m}", "focus: 2 m, aperture: {shape: iris, blades: 7}}")
             .replace("spectra: 1", "render: {samples: 8}\nspectra: 1");
         assert_eq!(text, wanted);
-        // A second time on top of what is there now.
+        // A second save works on top of the first.
         save(&file, &text, &[], &changes(&["lens.aperture.blades=8"])).unwrap();
         assert!(std::fs::read_to_string(&file).unwrap().contains("blades: 8"));
     }
@@ -162,7 +162,7 @@ mod tests {
             SCENE.replace("focus: 2 m}", "focus: $there}").replace("spectra: 1", "spectra: 1\nvariables: {there: 2 m}");
         std::fs::write(&file, &anchored).unwrap();
         assert!(save(&file, SCENE, &[], &changes(&["lens.f-number=f/4"])).unwrap_err().contains("has changed"));
-        // The value of a variable is written over where it is used, nowhere else.
+        // The use of a variable is overwritten with the value; the variable itself stays.
         save(&file, &anchored, &[], &changes(&["lens.focus=3 m"])).unwrap();
         assert_eq!(std::fs::read_to_string(&file).unwrap(), anchored.replace("focus: $there", "focus: 3 m"));
         assert!(

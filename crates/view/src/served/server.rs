@@ -1,4 +1,4 @@
-//! The server: it listens on the loopback address, gives out the page, and passes what the page asks to its desk.
+//! The server: it listens on the loopback address, serves the page, and passes the page's requests to its desk.
 
 use super::desk::Desk;
 use super::guard::Guard;
@@ -13,13 +13,14 @@ use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Connections at a time; where there are more, those that have not asked yet make room, the oldest first, and else they are turned away.
+/// Largest number of connections at a time. If there are more, the oldest one that has not sent its request yet is closed; if there is
+/// none, the new one is refused.
 const MAX_CONNECTIONS: usize = 64;
-/// With those that end because they made room.
+/// Largest number of connections including those that are being closed to make room.
 const MOST_CONNECTIONS: usize = 2 * MAX_CONNECTIONS;
-/// Pages at a time; the one that was opened first makes room.
+/// Largest number of pages at a time; the one opened first is closed to make room.
 const MAX_DESKS: usize = 4;
-/// A page that waits for a picture asks again after this.
+/// Longest time that a request for a picture waits; after that the page asks again.
 const WAIT: Duration = Duration::from_secs(10);
 
 const STUDY: &str = include_str!("../../page/study.html");
@@ -30,20 +31,20 @@ const PAGE: &str = include_str!("../../page/index.html");
 const SCRIPT: &str = include_str!("../../page/page.js");
 const STYLE: &str = include_str!("../../page/page.css");
 
-/// A server that has its port.
+/// A server that has opened its port.
 pub(crate) struct Server {
     listener: TcpListener,
     guard: Guard,
-    /// The scene that it shows; the color tester alone without one.
+    /// Scene to show; `None` if only the color tester is served.
     order: Option<Order>,
     desks: Mutex<(u64, BTreeMap<u64, Arc<Desk>>)>,
     connections: AtomicUsize,
-    /// Connections whose request has not come yet, by number, the oldest first. A page sends its request at once: whoever stands here for long
-    /// holds a place that others need.
+    /// Connections whose request has not arrived yet, by number, the oldest first. A page sends its request at once, so a connection that
+    /// stays here for long takes a place that others need.
     silent: Mutex<BTreeMap<u64, TcpStream>>,
 }
 
-/// A connection among those that are counted.
+/// Counts a connection as open until it is dropped.
 struct Counted<'a>(&'a AtomicUsize);
 
 impl Drop for Counted<'_> {
@@ -53,7 +54,7 @@ impl Drop for Counted<'_> {
 }
 
 impl Server {
-    /// Takes a port of this machine's own address; 0 takes a free one.
+    /// Opens a port on this machine's loopback address; 0 takes a free one.
     pub(crate) fn bind(port: u16, order: Option<Order>) -> io::Result<Self> {
         let listener = TcpListener::bind(("127.0.0.1", port))?;
         let guard = Guard::new(listener.local_addr()?.to_string())?;
@@ -67,12 +68,12 @@ impl Server {
         })
     }
 
-    /// What a person opens.
+    /// URL that a person opens, with the token.
     pub(crate) fn address(&self) -> String {
         self.guard.address()
     }
 
-    /// Answers until the process ends.
+    /// Answers requests until the process ends, or returns the error that ends the server.
     pub(crate) fn serve(self) -> io::Error {
         let server = Arc::new(self);
         let mut number = 0_u64;
@@ -80,7 +81,7 @@ impl Server {
             number += 1;
             let mut stream = match server.listener.accept() {
                 Ok((stream, _)) => stream,
-                // A connection that ended before it was taken, or no more room for one: neither ends the server.
+                // The connection ended before it was accepted, or there is no room for one. Neither ends the server.
                 Err(_) => {
                     std::thread::sleep(Duration::from_millis(10));
                     continue;
@@ -93,7 +94,7 @@ impl Server {
                 let _ = Answer::refused(503, "too many connections").send(&mut stream);
                 continue;
             }
-            // Without a second hold on it, it cannot be ended from here, and ends by the time.
+            // If the stream cannot be cloned, the connection cannot be closed from here, and ends by its timeout.
             if let Ok(held) = stream.try_clone() {
                 server.silent().insert(number, held);
             }
@@ -104,7 +105,7 @@ impl Server {
                 own.answer(number, &mut stream);
             });
             if let Err(error) = spawned {
-                // The closure, and the connection with it, are gone.
+                // The closure was dropped, and the connection with it.
                 server.silent().remove(&number);
                 server.connections.fetch_sub(1, SeqCst);
                 if error.kind() != io::ErrorKind::WouldBlock {
@@ -118,10 +119,10 @@ impl Server {
         self.silent.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Ends the connection that has said nothing for longest; whether there was one.
+    /// Closes the connection that has been silent for longest; returns whether there was one.
     fn makes_room(&self) -> bool {
         let oldest = self.silent().pop_first();
-        // Who has gone by itself makes room as well.
+        // A connection that has already ended makes room as well.
         oldest.inspect(|(_, stream)| drop(stream.shutdown(Shutdown::Both))).is_some()
     }
 
@@ -135,14 +136,14 @@ impl Server {
             Err(Some(refused)) => refused,
             Err(None) => return,
         };
-        // Whoever has gone needs no answer.
+        // If the other side has gone, no answer is needed.
         let _ = answer.send(stream);
         let _ = stream.shutdown(Shutdown::Write);
     }
 
     fn asked(&self, request: &Request) -> Result<Answer, Answer> {
         let sent = || -> Result<Value, Answer> {
-            serde_json::from_slice(&request.body).map_err(|_| Answer::refused(400, "the body is no JSON"))
+            serde_json::from_slice(&request.body).map_err(|_| Answer::refused(400, "the body is not JSON"))
         };
         match (request.is_post, request.path.as_str()) {
             (false, "/") if self.order.is_some() => Ok(Answer::new("text/html; charset=utf-8", PAGE)),
@@ -180,11 +181,11 @@ impl Server {
             }
             (false, "/page.js") => Ok(Answer::new("text/javascript; charset=utf-8", SCRIPT)),
             (false, "/page.css") => Ok(Answer::new("text/css; charset=utf-8", STYLE)),
-            // Of nothing, what the viewer was started with.
+            // An empty body opens the scene with which the viewer was started.
             (true, "/open") if request.body.is_empty() => self.open(None),
             (true, "/open") => {
                 let sent = sent()?;
-                let name = sent["name"].as_str().ok_or_else(|| Answer::refused(400, "no name"))?;
+                let name = sent["name"].as_str().ok_or_else(|| Answer::refused(400, "the name is missing"))?;
                 self.open(Some((name, sent["bundled"] == true)))
             }
             (false, "/openable") => Ok(Answer::json(&choices::listed(self.order()?))),
@@ -206,7 +207,7 @@ impl Server {
             (true, "/turn") => {
                 let desk = self.desk(request)?;
                 let sent = sent()?;
-                let path = sent["path"].as_str().ok_or_else(|| Answer::refused(400, "no path"))?;
+                let path = sent["path"].as_str().ok_or_else(|| Answer::refused(400, "the path is missing"))?;
                 let turn = desk.turn(path, &sent["value"]).map_err(|why| Answer::refused(400, &why))?;
                 Ok(Answer::json(&json!({"turn": turn})))
             }
@@ -236,11 +237,11 @@ impl Server {
                 let drawn = drawn.filter(|svg| !svg.is_empty()).ok_or_else(|| Answer::refused(404, "no drawing"))?;
                 Ok(Answer::new("image/svg+xml", drawn.as_bytes()))
             }
-            _ => Err(Answer::refused(404, "nothing is here")),
+            _ => Err(Answer::refused(404, "there is nothing here")),
         }
     }
 
-    /// The desk of a request.
+    /// Returns the desk that a request names, and records the request there.
     fn desk(&self, request: &Request) -> Result<Arc<Desk>, Answer> {
         let desks = self.desks.lock().unwrap_or_else(PoisonError::into_inner);
         let desk = desks.1.get(&number(request, "desk")?).filter(|desk| !desk.is_closed());
@@ -249,12 +250,12 @@ impl Server {
         Ok(Arc::clone(desk))
     }
 
-    /// What the viewer was started with.
+    /// Returns the order with which the viewer was started.
     fn order(&self) -> Result<&Order, Answer> {
         self.order.as_ref().ok_or_else(|| Answer::refused(404, "no scene is viewed"))
     }
 
-    /// A page more.
+    /// Opens a desk for a page, for the viewer's order or for `other`: a name from the list of choices, and whether it is a bundled scene.
     fn open(&self, other: Option<(&str, bool)>) -> Result<Answer, Answer> {
         let order = match other {
             None => self.order()?.clone(),
@@ -269,7 +270,7 @@ impl Server {
             oldest.close();
         }
         let desk = Desk::open(order);
-        let desk = desk.map_err(|error| Answer::refused(503, &format!("no thread for another page: {error}")))?;
+        let desk = desk.map_err(|error| Answer::refused(503, &format!("another page cannot be opened: {error}")))?;
         desks.0 += 1;
         let number = desks.0;
         desks.1.insert(number, desk);
@@ -279,5 +280,5 @@ impl Server {
 
 fn number(request: &Request, name: &str) -> Result<u64, Answer> {
     let text = request.asked(name).filter(|text| text.len() <= 19 && text.bytes().all(|b| b.is_ascii_digit()));
-    text.and_then(|text| text.parse().ok()).ok_or_else(|| Answer::refused(400, &format!("no number `{name}`")))
+    text.and_then(|text| text.parse().ok()).ok_or_else(|| Answer::refused(400, &format!("`{name}` is not a number")))
 }

@@ -1,6 +1,6 @@
-//! The dispersion study: a thin beam through a prism, ray by ray, and the glass of the prism by Cauchy's formula.
+//! The dispersion study: a thin beam through a prism, ray by ray, and fits of Cauchy's formula to the glass of the prism.
 //!
-//! A page sends numbers and words of lists; the prism is put together here as a lens file says it, and traced by the tracer of all lenses.
+//! A page sends numbers and places in lists. The prism is put together here as the text of a lens file, and traced like any lens.
 
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -10,25 +10,26 @@ use spectra_core::math::{asin, sin};
 use spectra_core::params::{Params, SourceFile};
 use spectra_glass::fit::{Sample, cauchy_by_rows, cauchy_least_squares};
 use spectra_glass::{Catalogue, Category, Glass, lines};
-use spectra_lens::{Indices, Lens, Tracer};
+use spectra_lens::Lens;
 use spectra_scene::FileResources;
 use spectra_spectrum::{BAND, Emission, Observer, bundled_spectra, find_emission};
+use spectra_tracer::{Indices, Tracer};
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// Light that a screen can show, nm.
+/// Range of wavelengths that a screen can show, nm.
 const VISIBLE_NM: [f64; 2] = [390.0, 710.0];
-/// Wavelengths of a continuous spectrum.
+/// Number of wavelengths by which a continuous spectrum is sampled.
 const WAVELENGTHS: usize = 320;
-/// Where the beam starts before the prism, and how far it is followed behind it, mm.
+/// Distance in front of the prism at which the beam starts, mm; `BEHIND_MM` is the length of its path behind the prism.
 const BEFORE_MM: f64 = 60.0;
 const BEHIND_MM: f64 = 150.0;
-/// Rays of an answer.
+/// Largest number of rays in an answer.
 const MAX_RAYS: usize = 64;
-/// The lines that the study's table of glasses has: from violet to red, nm.
+/// Lines in the study's table of glasses, from violet to red.
 const LINES: [lines::Line; 6] = [lines::H, lines::G, lines::F, lines::E, lines::D, lines::C];
 
-/// Media that are clear over all of the light that a screen can show.
+/// Names of the media that are clear over the whole range of [`VISIBLE_NM`].
 static GLASSES: LazyLock<Vec<String>> = LazyLock::new(|| {
     let is_glass = |glass: &Glass| {
         let kind = matches!(
@@ -40,7 +41,7 @@ static GLASSES: LazyLock<Vec<String>> = LazyLock::new(|| {
     Catalogue::bundled().glasses().filter(is_glass).map(|glass| format!("{}/{}", glass.maker, glass.name)).collect()
 });
 
-/// Names of lights: the study's own first.
+/// Names of the lights, with the study's own first.
 static LIGHTS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let is_light = |path: &str| path.starts_with("spectra/lamps/") || path.starts_with("spectra/illuminants/");
     let all = bundled_spectra().filter(|(_, path)| is_light(path)).map(|(name, _)| name.to_owned());
@@ -49,7 +50,7 @@ static LIGHTS: LazyLock<Vec<String>> = LazyLock::new(|| {
     own.clone().into_iter().chain(others).filter(|name| find_emission(name).is_ok()).collect()
 });
 
-/// A prism and the beam before it.
+/// A prism and the beam that enters it.
 #[derive(Clone, Debug)]
 pub(crate) struct Prism {
     /// Angle between the faces, degrees.
@@ -57,26 +58,27 @@ pub(crate) struct Prism {
     /// Length of a face, mm.
     pub side_mm: f64,
     pub glass: String,
-    /// Angle between the beam and the normal of the first face, degrees; positive where the beam comes from the side of the base.
+    /// Angle between the beam and the normal of the first face, degrees; positive if the beam comes from the side of the base.
     pub incidence_deg: f64,
     /// Height of the beam over the middle of the first face, mm.
     pub beam_mm: f64,
     pub light: String,
-    /// Whether colors are as bright as the light and the eye make them, the brightest full; all are full otherwise.
+    /// Whether colors are as bright as the light and the eye make them, relative to the brightest. If false, all have full brightness.
     pub is_true: bool,
 }
 
 impl Prism {
-    /// By the words of a page, which names glass and light by their places in [`choices`]; `Err` says which is wrong.
+    /// Parses the words of a page, which gives glass and light by their indices in the lists of [`choices`]. The error names the wrong
+    /// word.
     pub(crate) fn of(word: impl Fn(&str) -> Option<String>) -> Result<Self, String> {
         let number = |name: &str, least: f64, most: f64| {
-            let text = word(name).ok_or_else(|| format!("no number `{name}`"))?;
+            let text = word(name).ok_or_else(|| format!("the number `{name}` is missing"))?;
             let value = text.parse().ok().filter(|value: &f64| (least..=most).contains(value));
-            value.ok_or_else(|| format!("`{name}` is a number from {least} to {most}"))
+            value.ok_or_else(|| format!("`{name}` must be a number from {least} to {most}"))
         };
         let one_of = |name: &str, all: &[String]| {
             let at = word(name).and_then(|text| text.parse::<usize>().ok());
-            at.and_then(|at| all.get(at).cloned()).ok_or_else(|| format!("`{name}` is no place in its list"))
+            at.and_then(|at| all.get(at).cloned()).ok_or_else(|| format!("`{name}` is not an index of its list"))
         };
         Ok(Self {
             apex_deg: number("apex", 5.0, 90.0)?,
@@ -89,8 +91,8 @@ impl Prism {
         })
     }
 
-    /// The prism as the text of a lens file: its axis is the beam's direction and meets the first face in its middle. Behind the
-    /// second face stands `end`.
+    /// Returns the prism as the text of a lens file. Its axis is the direction of the beam and meets the middle of the first face. The text
+    /// `end` follows the second face.
     fn text(&self, end: &str) -> String {
         let Self { apex_deg, side_mm, glass, incidence_deg, .. } = self;
         let half = side_mm / 2.0;
@@ -105,14 +107,14 @@ impl Prism {
         )
     }
 
-    /// The lens file of a scene: a screen across the light of the d line stands where the study's rays end.
+    /// Returns the lens file for a scene, with a screen perpendicular to the light of the d line at the end of the study's rays.
     ///
     /// # Errors
-    /// No such light leaves by the second face.
+    /// The light of the d line does not leave through the second face.
     pub(crate) fn file(&self) -> Result<String, String> {
         let deviation_deg = self
             .deviation_deg(&self.lens()?, lines::D.wavelength_nm)
-            .ok_or("the beam does not leave by the second face: nothing comes to a screen")?;
+            .ok_or("the beam does not leave through the second face: no light reaches a screen")?;
         // The light leaves at this angle to the normal of the second face.
         let leaves_deg = deviation_deg + self.apex_deg - self.incidence_deg;
         Ok(self.text(&format!(
@@ -131,7 +133,8 @@ impl Prism {
         find_emission(&self.light).map_err(|error| error.to_string())
     }
 
-    /// Wavelengths and how bright each is seen, the brightest 1; so ordered that any first part of them is spread over all.
+    /// Returns the wavelengths, nm, and the brightness of each, 1 for the brightest. Any first part of the list is spread over the whole
+    /// spectrum.
     fn rays(&self) -> Result<Vec<(f64, f64)>, String> {
         let light = self.light()?;
         let is_visible = |nm: f64| (VISIBLE_NM[0]..=VISIBLE_NM[1]).contains(&nm);
@@ -141,12 +144,12 @@ impl Prism {
         let mut lines: Vec<(f64, f64)> =
             lines.map(|line| (line.wavelength_nm, line.power * seen(line.wavelength_nm))).collect();
         let step = (VISIBLE_NM[1] - VISIBLE_NM[0]) / WAVELENGTHS as f64;
-        // 197 and 320 have no common divisor: all places are met once, far from each other.
+        // 197 and 320 have no common divisor, so every index occurs once, and successive ones are far apart.
         let order = (0..WAVELENGTHS).map(|k| k * 197 % WAVELENGTHS);
         let nm = order.map(|k| VISIBLE_NM[0] + step * (k as f64 + 0.5));
         let mut continuum: Vec<(f64, f64)> =
             if light.continuum().is_some() { nm.map(|nm| (nm, light.at(nm) * seen(nm))).collect() } else { Vec::new() };
-        // Lines and continuum have no common measure: each is relative to its own brightest.
+        // Lines and continuum cannot be compared, so each group is relative to its own brightest.
         for group in [&mut lines, &mut continuum] {
             let most = group.iter().map(|ray| ray.1).fold(0.0, f64::max);
             group.iter_mut().for_each(|ray| ray.1 = if self.is_true && most > 0.0 { ray.1 / most } else { 1.0 });
@@ -155,10 +158,10 @@ impl Prism {
         Ok(lines)
     }
 
-    /// Figures of the prism, its outline and the index of its glass.
+    /// Returns the outline and the figures of the prism, and the index of its glass with the fits, as JSON.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is no such prism.
     pub(crate) fn shown(&self) -> Result<Value, String> {
         let lens = self.lens()?;
         let half = self.side_mm / 2.0;
@@ -171,7 +174,7 @@ impl Prism {
         let nd = n(lines::D.wavelength_nm);
         let half_apex = (self.apex_deg / 2.0).to_radians();
         let bent = nd * sin(half_apex);
-        // Symmetric inside: both faces bend alike.
+        // At least deviation the path is symmetric, and both faces bend the ray alike.
         let least = (bent < 1.0).then(|| {
             let incidence = asin(bent);
             [incidence.to_degrees(), (2.0 * (incidence - half_apex)).to_degrees()]
@@ -204,17 +207,17 @@ impl Prism {
         }))
     }
 
-    /// By how much a ray on the axis is bent, degrees; `None` of one that does not leave by the second face.
+    /// Returns the deviation of the beam at a wavelength, degrees; `None` if it does not leave through the second face.
     fn deviation_deg(&self, lens: &Lens, wavelength_nm: f64) -> Option<f64> {
         let tracer = Tracer::new(lens, Indices::At(wavelength_nm), Isa::Baseline).ok()?;
         let path = tracer.path(DVec3::new(0.0, self.beam_mm, -BEFORE_MM), DVec3::Z, wavelength_nm);
         path.end.is_none().then(|| spectra_core::math::acos(path.direction.z.clamp(-1.0, 1.0)).to_degrees())
     }
 
-    /// Some rays, from the `first` on: their colors and their ways as pairs of z and y, mm.
+    /// Traces `count` rays from number `first` on, and returns their colors and their paths, as pairs of z and y in mm, as JSON.
     ///
     /// # Errors
-    /// Why there are none.
+    /// The reason why there is no such prism.
     pub(crate) fn traced(&self, first: usize, count: usize) -> Result<Value, String> {
         let lens = self.lens()?;
         let all = self.rays()?;
@@ -235,7 +238,7 @@ impl Prism {
     }
 }
 
-/// What a page chooses from.
+/// Returns the lists of glasses and lights, from which a page chooses, as JSON.
 pub(crate) fn choices() -> Value {
     json!({"glasses": *GLASSES, "lights": *LIGHTS, "range_nm": [BAND.start_nm, BAND.end_nm()]})
 }
@@ -257,7 +260,7 @@ mod tests {
         }
     }
 
-    /// Snell's law twice, in the plane; and the angle of least deviation is that of no larger or smaller incidence.
+    /// The deviation is that of Snell's law applied twice in the plane, and it is least at the stated incidence.
     #[test]
     fn deviation_is_that_of_two_refractions() {
         let snell = |prism: &Prism, nm: f64| {
@@ -326,7 +329,7 @@ mod tests {
     fn cauchys_formula_lies_by_the_catalogue() {
         let shown = prism().shown().expect("a prism");
         let apart = [0, 1, 2].map(|i| shown["cauchy"]["apart"][i].as_f64().expect("a number"));
-        // More terms come nearer; the table's means less near than squares.
+        // More terms fit better, and the means of the table's rows fit worse than least squares.
         assert!(apart[2] < apart[1] && apart[1] <= apart[0] && apart[2] < 1e-3, "{apart:?}");
     }
 }

@@ -1,39 +1,39 @@
-//! The color tester: a light of one wavelength, or of a narrow band, as an eye sees it and as a screen can show it.
+//! The color tester: light of one wavelength or a narrow band, as an eye sees it and as a screen can show it.
 //!
-//! Its figures are those of `spectra spectrum info`; the page draws them and asks for them again.
+//! The figures are those of `spectra spectrum info`; the page requests them for each change and draws them.
 
 use serde_json::{Value, json};
 use spectra_color::{Gamut, RgbSpace, chromaticity, into_gamut, to_u8};
 use spectra_spectrum::{BAND, Observer};
 
-/// Steps of a band are no longer than this, nm.
+/// Longest step by which a band is integrated, nm.
 const STEP_NM: f64 = 0.25;
-/// The widest band, nm.
+/// Largest width of a band, nm.
 const WIDEST_NM: f64 = 200.0;
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// A light, and how it is to be shown.
+/// A light, and the way to show it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked {
     /// Middle of the band, nm.
     pub wavelength_nm: f64,
-    /// Its full width, nm: all of the band is as strong. 0 is a line.
+    /// Full width of the band, nm; the power is constant over the band. 0 is a line.
     pub width_nm: f64,
-    /// 0 to 100; at 100 the brightest channel of the screen is full.
+    /// Intensity, 0 to 100; at 100 the brightest channel of the screen is at its maximum.
     pub intensity: f64,
     pub space: &'static RgbSpace,
     pub gamut: Gamut,
-    /// A mixture of the screen's channels to compare it with, linear, 0 to 1.
+    /// Mixture of the screen's channels to compare with the light, linear, 0 to 1.
     pub mixed: [f64; 3],
 }
 
 impl Asked {
-    /// By the words of a page; `Err` says which is wrong.
+    /// Parses the words of a page; the error names the wrong one.
     pub(crate) fn of(word: impl Fn(&str) -> Option<String>) -> Result<Self, String> {
         let number = |name: &str, least: f64, most: f64| {
-            let text = word(name).ok_or_else(|| format!("no number `{name}`"))?;
+            let text = word(name).ok_or_else(|| format!("the number `{name}` is missing"))?;
             let value = text.parse().ok().filter(|value: &f64| (least..=most).contains(value));
-            value.ok_or_else(|| format!("`{name}` is a number from {least} to {most}"))
+            value.ok_or_else(|| format!("`{name}` must be a number from {least} to {most}"))
         };
         let space = word("space").unwrap_or_default();
         let space = spaces().into_iter().find(|(name, _)| *name == space).map(|(_, space)| space);
@@ -41,25 +41,25 @@ impl Asked {
             Some("clip") => Gamut::Clip,
             Some("desaturate") => Gamut::Desaturate,
             Some("perceptual") => Gamut::Perceptual,
-            _ => return Err("`gamut` is clip, desaturate or perceptual".to_owned()),
+            _ => return Err("`gamut` must be clip, desaturate or perceptual".to_owned()),
         };
         Ok(Self {
             wavelength_nm: number("nm", BAND.start_nm, BAND.end_nm())?,
             width_nm: number("width", 0.0, WIDEST_NM)?,
             intensity: number("intensity", 0.0, 100.0)?,
-            space: space.ok_or("`space` is none of the spaces")?,
+            space: space.ok_or("`space` is not one of the spaces")?,
             gamut,
             mixed: [number("r", 0.0, 1.0)?, number("g", 0.0, 1.0)?, number("b", 0.0, 1.0)?],
         })
     }
 }
 
-/// The gamuts to choose from, by their names in CSS Color 4.
+/// Returns the color spaces to choose from, with their names in CSS Color 4.
 fn spaces() -> [(&'static str, &'static RgbSpace); 3] {
     [("srgb", RgbSpace::srgb()), ("display-p3", RgbSpace::display_p3()), ("rec2020", RgbSpace::rec2020())]
 }
 
-/// XYZ of a light of a power of 1: the mean of the observer over the band.
+/// Returns XYZ of the light for a power of 1: the mean of the observer's functions over the band.
 fn xyz(asked: &Asked) -> [f64; 3] {
     let observer = Observer::cie_1931_2deg();
     let steps = (asked.width_nm / STEP_NM).ceil().max(1.0);
@@ -71,20 +71,20 @@ fn xyz(asked: &Asked) -> [f64; 3] {
     sum
 }
 
-/// u' and v' of the CIE 1976 diagram, in which equal distances look about equally far.
+/// Returns u', v' of the CIE 1976 diagram, in which equal distances look about equally large; `None` for no light.
 fn uv_1976(xyz: [f64; 3]) -> Option<[f64; 2]> {
     let [x, y, z] = xyz;
     let sum = x + 15.0 * y + 3.0 * z;
     (sum > 0.0).then(|| [4.0 * x / sum, 9.0 * y / sum])
 }
 
-/// The figures of a light.
+/// Returns the figures of a light as JSON.
 pub(crate) fn color(asked: &Asked) -> Value {
     let space = asked.space;
     let xyz = xyz(asked);
     let signed = space.from_xyz(xyz);
     let brightest = signed.into_iter().fold(0.0, f64::max);
-    // As `spectrum info` shows a light: its most brilliant.
+    // The light is scaled so that its brightest channel is 1, as in `spectrum info`.
     let full = signed.map(|v| if brightest > 0.0 { v / brightest } else { 0.0 });
     let strong = full.map(|v| v * asked.intensity / 100.0);
     let linear = into_gamut(strong, space, asked.gamut);
@@ -120,7 +120,7 @@ pub(crate) fn color(asked: &Asked) -> Value {
     })
 }
 
-/// What the diagram is drawn of: the colors of the spectrum, and the screens' gamuts.
+/// Returns the data of the diagram as JSON: the spectral locus with colors, and the screens' gamuts.
 pub(crate) fn diagram() -> Value {
     let observer = Observer::cie_1931_2deg();
     let srgb = RgbSpace::srgb();
@@ -150,7 +150,8 @@ mod tests {
         [0, 1, 2].map(|i| value[i].as_f64().expect("a number"))
     }
 
-    /// Of the published dispersion study, whose table is linear; and a half of the light is half of it.
+    /// Colors of spectral lines agree with the published dispersion study, whose table is linear. Half the intensity gives half of each
+    /// value.
     #[test]
     fn lines_of_mercury_are_those_of_the_study() {
         for (nm, table, shown) in [
@@ -175,14 +176,14 @@ mod tests {
     #[test]
     fn a_band_is_the_mean_of_its_lines() {
         let band = color(&Asked { width_nm: 2.0, ..asked(560.0) });
-        // Of the 1 nm table, linear between its rows: the mean from 559 to 561 nm.
+        // The mean from 559 to 561 nm of the 1 nm table, which is linear between its rows.
         let at = |nm| Observer::cie_1931_2deg().at(nm);
         let mean = [0, 1, 2].map(|i| (at(559.0)[i] + 2.0 * at(560.0)[i] + at(561.0)[i]) / 4.0);
         let wanted = chromaticity(mean).expect("light");
         for i in 0..2 {
             assert!((band["xy"][i].as_f64().expect("a number") - wanted[i]).abs() < 2e-6, "{band} {wanted:?}");
         }
-        // A wide one around green is what every screen has.
+        // A wide band around green lies inside the gamut of every screen.
         assert!(color(&Asked { width_nm: 200.0, ..asked(540.0) })["outside"].as_array().expect("a list").is_empty());
     }
 

@@ -1,4 +1,4 @@
-//! What is seen, as somebody would write it: a command for the shell, and the text of a scene.
+//! The current picture in writing: as a command for the shell, and as the text of a scene.
 
 use super::order::Order;
 use super::{photograph, save};
@@ -6,9 +6,9 @@ use spectra_scene::{FileResources, NO_LENS, Series, document, series_of_text};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The page chooses how many pixels it sees; that is no part of the scene.
+/// Path of the resolution, which the page chooses for itself; it is not part of the scene.
 const WIDTH: &str = "imager.resolution";
-/// Options of `film develop`, by the keys that they are for.
+/// Options of `film develop`, by the keys that they set.
 const OPTIONS: [(&str, &str); 9] = [
     ("lens.file", "--lens"),
     ("lens.f-number", "--f-number"),
@@ -20,10 +20,10 @@ const OPTIONS: [(&str, &str); 9] = [
     ("film.print", "--print"),
     ("film.paper.grade", "--grade"),
 ];
-/// Sections of a scene that mean nothing where no ray is traced.
+/// Sections of a scene that have no effect if no ray is traced.
 const OF_RAYS: [&str; 2] = ["lens.", "render."];
 
-/// What is set on top of a scene, as paths and values; of the width what the order says alone.
+/// Returns the values that are set on top of a scene, as paths and values. The resolution is included only if the order sets it.
 fn set(order: &Order, series: &Series) -> Vec<(String, String)> {
     let split = |text: &String| {
         let (path, value) = text.split_once('=')?;
@@ -34,7 +34,7 @@ fn set(order: &Order, series: &Series) -> Vec<(String, String)> {
     ordered.iter().filter(|(path, _)| path == WIDTH).cloned().chain(own).collect()
 }
 
-/// The command that makes the picture with all of its pixels.
+/// Returns the command that renders a picture of the series at full size.
 pub(super) fn command(order: &Order, series: &Series, index: usize) -> String {
     let mut words = vec!["spectra".to_owned()];
     let file = order.scene.to_string_lossy();
@@ -75,7 +75,7 @@ pub(super) fn command(order: &Order, series: &Series, index: usize) -> String {
             continue;
         }
         match OPTIONS.iter().find(|(key, _)| *key == path) {
-            // A value that begins with a sign is no option.
+            // With `=`, a value that begins with a minus sign is not taken for an option.
             Some((_, option)) => words.push(quoted(&format!("{option}={value}"))),
             None => rest.push((path, value)),
         }
@@ -84,7 +84,7 @@ pub(super) fn command(order: &Order, series: &Series, index: usize) -> String {
     words.join(" ")
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for the shell if needed.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./=:+,@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -94,14 +94,15 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// The text of a scene that says what is seen: its file's own with the values where they stand, or else all of it anew.
+/// Returns the text of a scene that describes a picture of the series: the scene file with changed values in place, or, if that does not
+/// work, a newly written scene.
 pub(super) fn text(order: &Order, series: &Series, index: usize) -> Result<String, String> {
     let faults = |faults: spectra_core::params::Faults| faults.to_string();
     let wanted = series.scene(index).map_err(faults)?;
     let mut edited = Some(series.written().to_owned());
     let mut set = set(order, series);
     if order.photograph.is_some() {
-        // The text may be kept anywhere.
+        // The text may be saved in any folder, so the photograph gets its absolute path.
         let file = std::fs::canonicalize(&order.scene).map_err(|error| error.to_string())?;
         set.push(("source.file".to_owned(), format!("{:?}", file.to_string_lossy())));
     }
@@ -119,7 +120,7 @@ pub(super) fn text(order: &Order, series: &Series, index: usize) -> Result<Strin
     Ok(edited.filter(says_so).unwrap_or_else(|| document(wanted.params.node())))
 }
 
-/// The resolution of a scene as it is written.
+/// Returns the resolution of a scene as its file states it.
 fn size(order: &Order, series: &Series, index: usize) -> Result<String, String> {
     let session = order.session().map_err(|error| error.to_string())?;
     let index = index.min(series.count() - 1);

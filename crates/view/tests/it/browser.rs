@@ -1,4 +1,4 @@
-//! The page in a real browser: Chromium, driven by `playwright-core`, which `.ci/run` installs where it can be had.
+//! Tests of the page in a real browser: Chromium, driven by `playwright-core`, which `.ci/run` installs if it is available.
 
 use spectra_core::Isa;
 use spectra_plugins as _;
@@ -11,7 +11,7 @@ const SCENE: &str = "spectra: 1\nsource: {kind: chart, chart: color-checker, dis
     lens: {file: zeiss-biotar-50-f1.4, f-number: f/2, focus: 2 m}\nimager: {kind: film, format: 135, resolution: [60, 40]}\n\
     film: {stock: kodak-tri-x-400, metering: average}\nrender: {samples: 4}\noutput: [png]\n";
 
-/// The folder with `node_modules/playwright-core`, and the browser; else what is missing.
+/// Returns the folder with `node_modules/playwright-core` and the path of the browser; the error says what is missing.
 fn browser() -> Result<(String, String), String> {
     let folder =
         std::env::var("SPECTRA_PLAYWRIGHT").map_err(|_| "SPECTRA_PLAYWRIGHT names no folder with playwright-core")?;
@@ -38,7 +38,7 @@ fn a_person_turns_types_saves_and_is_told_what_is_wrong() {
     assert_eq!(saved, SCENE.replace("f/2, focus: 2 m", "f/5.6, focus: 2 m, aperture: {shape: iris, blades: 6}"));
 }
 
-/// Opens a scene and changes it so often, with values that are refused among them.
+/// Opens a scene and makes this many changes, some with values that are refused.
 fn tells_the_truth(scene: &str, changes: u32) {
     let own = View { scene: scene.into(), stock: None, overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
     driven_with("truth.mjs", &[&changes.to_string()], |ready| drop(view(own, ready)));
@@ -52,7 +52,8 @@ fn no_field_says_what_the_picture_does_not_have() {
     tells_the_truth(&file.to_string_lossy(), 12);
 }
 
-/// Five scenes with 30 changes each, every other one with five: minutes. `SPECTRA_BROWSER_SCENES`, names with commas, are those alone.
+/// Makes 30 changes to each of five scenes, and five to every other one, which takes minutes. `SPECTRA_BROWSER_SCENES`, names separated
+/// by commas, restricts it to these scenes.
 #[test]
 #[ignore = "minutes; a step of .ci/run --all"]
 fn no_field_says_what_the_picture_does_not_have_in_any_scene() {
@@ -66,7 +67,7 @@ fn no_field_says_what_the_picture_does_not_have_in_any_scene() {
     }
 }
 
-/// A short one; `SPECTRA_BROWSER_SECONDS` makes it longer.
+/// A short run of random use; `SPECTRA_BROWSER_SECONDS` makes it longer.
 #[test]
 fn random_use_leaves_neither_errors_nor_threads_behind() {
     let (folder, chromium) = match browser() {
@@ -74,7 +75,7 @@ fn random_use_leaves_neither_errors_nor_threads_behind() {
         Err(why) => return println!("skipped: {why}"),
     };
     let program = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/debug/spectra");
-    // A process of its own, so that its threads and its memory are the server's alone.
+    // The server runs in a separate process, so that its threads and its memory are the server's alone.
     if !program.exists() {
         return println!("skipped: {} is not built", program.display());
     }
@@ -104,12 +105,12 @@ fn random_use_leaves_neither_errors_nor_threads_behind() {
     println!("{said}");
 }
 
-/// Drives a page of what `serve` serves by a script beside this file, which says what fails; false where there is no browser.
+/// Drives a page of what `serve` serves with a script in the folder `tests`, which reports failures. Returns false if there is no browser.
 fn driven(script: &str, serve: impl FnOnce(Box<dyn FnOnce(&str)>) + Send + 'static) -> bool {
     driven_with(script, &[], serve)
 }
 
-/// The same, with more words for the script.
+/// Drives a page like [`driven`], with more arguments for the script.
 fn driven_with(script: &str, more: &[&str], serve: impl FnOnce(Box<dyn FnOnce(&str)>) + Send + 'static) -> bool {
     let (folder, chromium) = match browser() {
         Ok(found) => found,
@@ -130,7 +131,7 @@ fn driven_with(script: &str, more: &[&str], serve: impl FnOnce(Box<dyn FnOnce(&s
     true
 }
 
-/// By `typescript`, from the types in the comments.
+/// Checks the types in the comments of the pages' code with `typescript`.
 #[test]
 fn the_code_of_the_pages_keeps_its_types() {
     let Ok(folder) = std::env::var("SPECTRA_PLAYWRIGHT") else {
@@ -152,6 +153,6 @@ fn the_color_tester_has_the_figures_of_the_command_line_and_labels_that_do_not_o
 
 #[test]
 fn a_prism_is_dragged_and_its_rays_grow_and_stop() {
-    // The study is there whatever is shown.
+    // The study is served whatever is shown.
     driven("study.mjs", |ready| drop(color_tester(0, ready)));
 }

@@ -1,4 +1,4 @@
-//! The tests of this crate as its users see it: one program, so that what they need is linked once.
+//! Tests of this crate's public interface, in one program so that dependencies are linked once.
 
 mod browser;
 mod server;

@@ -1,4 +1,4 @@
-//! The server, over the wire: what a page does, and what others try.
+//! Tests of the server through its socket: what a page does, and what others try.
 
 use half::f16;
 use serde_json::{Value, json};
@@ -34,11 +34,11 @@ impl Got {
     }
 }
 
-/// Sends these bytes and reads until the server hangs up; `None` where it hangs up without a word.
+/// Sends these bytes and reads until the server closes the connection; `None` if it closes it without an answer.
 fn raw(host: &str, bytes: &[u8]) -> Option<Got> {
     let mut stream = TcpStream::connect(host).expect("a server");
     stream.set_read_timeout(Some(Duration::from_secs(20))).expect("a timeout");
-    // The server may hang up before it has read all.
+    // The server may close the connection before it has read everything.
     let _ = stream.write_all(bytes);
     let mut all = Vec::new();
     let mut some = [0; 65536];
@@ -55,12 +55,12 @@ fn raw(host: &str, bytes: &[u8]) -> Option<Got> {
 }
 
 impl Browser {
-    /// A server with a scene, without its cookie yet.
+    /// Starts a server with a scene; the browser does not have the cookie yet.
     fn start() -> Self {
         Self::start_with("scene.yaml", SCENE.as_bytes())
     }
 
-    /// The same with a file.
+    /// Starts a server with a file of this name and content; the browser does not have the cookie yet.
     fn start_with(name: &str, bytes: &[u8]) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join(name);
@@ -77,12 +77,12 @@ impl Browser {
         Self { host: host.to_owned(), token: token.to_owned(), cookie: String::new(), _folder: folder, file }
     }
 
-    /// The same after the address was opened.
+    /// Starts a server with a scene and opens its address, so that the browser has the cookie.
     fn let_in() -> Self {
         Self::start().entered()
     }
 
-    /// The same of a file.
+    /// Starts a server with a file and opens its address.
     fn viewing(name: &str, bytes: &[u8]) -> Self {
         Self::start_with(name, bytes).entered()
     }
@@ -117,7 +117,7 @@ impl Browser {
         self.post("/open", "").json()["desk"].as_u64().expect("a number")
     }
 
-    /// Frames from this number on until one pleases: its head and its light.
+    /// Requests frames after this number until one is wanted, and returns its head and its light.
     fn frame(&self, desk: u64, mut after: u64, is_wanted: impl Fn(&Value) -> bool) -> (Value, Vec<f32>) {
         let end = Instant::now() + Duration::from_secs(60);
         loop {
@@ -137,7 +137,7 @@ impl Browser {
         }
     }
 
-    /// What the controls say once so many values that were turned are taken up or refused.
+    /// Returns the controls once this many changes are applied or refused.
     fn controls(&self, desk: u64, turns: u64) -> Value {
         let end = Instant::now() + Duration::from_secs(60);
         loop {
@@ -150,7 +150,7 @@ impl Browser {
         }
     }
 
-    /// Turns a control, waits until it is taken up or refused, and gives what the controls say then.
+    /// Changes a control, waits until the change is applied or refused, and returns the controls.
     fn turned(&self, desk: u64, path: &str, value: Value) -> Value {
         let got = self.turn(desk, path, value);
         assert_eq!(got.status, 200, "{path}: {}", String::from_utf8_lossy(&got.body));
@@ -162,13 +162,13 @@ impl Browser {
     }
 }
 
-/// The value of a control.
+/// Returns the value of a control.
 fn value_of(said: &Value, path: &str) -> Value {
     let all = said["controls"].as_array().expect("a list");
     all.iter().find(|control| control["path"] == path).unwrap_or_else(|| panic!("no {path}"))["value"].clone()
 }
 
-/// The picture of a text of a scene, with all its samples, as a page is handed it.
+/// Renders the text of a scene with all its samples, and returns the picture as a page receives it.
 fn picture_of(text: &str) -> Vec<f32> {
     let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
     let mut session = spectra_session::Session::of_text("scene.yaml", text, resources, Isa::detect()).expect("a scene");
@@ -181,7 +181,7 @@ fn is_done(head: &Value) -> bool {
     head["samples"].is_u64() && head["samples"] == head["of"]
 }
 
-/// Light as a page is handed it, in 16 bits.
+/// Returns light as a page receives it, rounded to 16 bits.
 fn as_sent(light: &[f32]) -> Vec<f32> {
     light.iter().map(|v| f16::from_f32(*v).to_f32()).collect()
 }
@@ -220,7 +220,7 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     assert_eq!(values.iter().filter_map(Value::as_f64).fold(0.0, f64::max), 1.0);
     assert_eq!(spectra["light"]["values"].as_array().expect("a list").len(), values.len());
 
-    // Development alone: the same rays, a lighter print of the denser negative or the other way round.
+    // A change of the development alone keeps the rays, and makes the print lighter or darker.
     let rays = head["rays"].clone();
     let at = head["frame"].as_u64().expect("a number");
     assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 200);
@@ -228,7 +228,7 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     assert_eq!(pushed["rays"], rays);
     assert!((mean(&light) - mean(&first)).abs() > 0.005, "{} {}", mean(&light), mean(&first));
 
-    // What is traced: a stop less light, and the picture of a run with that value, to the bit.
+    // A change that is traced: the picture is bit by bit that of a run with this value.
     assert_eq!(browser.turn(desk, "lens.f-number", json!(4)).status, 200);
     let (closed, light) = browser.frame(desk, pushed["frame"].as_u64().expect("a number"), is_done);
     let text = SCENE.replace("[60, 40]", "[480, 320]").replace("f/2", "f/4").replace("1/80 s", "1/80 s, push: 1");
@@ -239,7 +239,7 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     let wanted = session.develop().expect("a picture").remove(0).1;
     assert!(light == as_sent(&wanted.rgb.concat()), "{closed}");
 
-    // What the scene cannot be is told with its place, and the picture stays.
+    // A value that the scene cannot have is reported with its path, and the picture stays.
     assert_eq!(browser.turn(desk, "lens.f-number", json!(0.01)).status, 200);
     let (faulty, _) =
         browser.frame(desk, closed["frame"].as_u64().expect("a number"), |head| head["fault"].is_object());
@@ -252,7 +252,7 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     assert_eq!(got.status, 200, "{}", String::from_utf8_lossy(&got.body));
     let saved = std::fs::read_to_string(&browser.file).expect("a file");
     assert_eq!(saved, SCENE.replace("f/2", "f/4").replace("1/80 s", "1/80 s, push: 1"));
-    // The page goes on from there, until somebody else writes to the file.
+    // The page continues from there, until somebody else writes to the file.
     assert_eq!(browser.turn(desk, "film.push", json!(0)).status, 200);
     let at = browser.frame(desk, 0, |_| true).0["frame"].as_u64().expect("a number");
     assert_eq!(browser.turn(desk, "film.compensation", json!(0)).status, 200);
@@ -260,13 +260,13 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     assert_eq!(browser.post(&format!("/save?desk={desk}"), "").status, 200);
     assert!(std::fs::read_to_string(&browser.file).expect("a file").contains("push: 0"));
     assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 200);
-    // What somebody else wrote is no scene, so the page cannot take it up, and must not write over it.
+    // If somebody else writes something that is not a scene, the page cannot load it and must not overwrite it.
     let broken = SCENE.replace("f/2", "f/2, fnumber: 3");
     std::fs::write(&browser.file, &broken).expect("written by somebody else");
     let refused = browser.post(&format!("/save?desk={desk}"), "");
     assert_eq!(refused.status, 409, "{}", refused.head);
     assert_eq!(std::fs::read_to_string(&browser.file).expect("a file"), broken);
-    // Once the page has taken up what it says, and what was turned gave way to that, nothing is left to write.
+    // Once the page has loaded the file, whose values replace those of the page, nothing is left to write.
     std::fs::write(&browser.file, SCENE).expect("written by somebody else");
     browser.frame(desk, 0, |head| head["reread"] == 1);
     let nothing = browser.post(&format!("/save?desk={desk}"), "");
@@ -287,7 +287,7 @@ fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
     let (draft, light) = browser.frame(desk, at, |head| head["width"].is_u64());
     assert_eq!((&draft["draft"], &draft["width"], &draft["light"]), (&json!(true), &json!(480), &json!([120, 80])));
     assert_eq!(light.len(), 3 * 120 * 80);
-    // A pixel of the whole picture is found in the draft, too.
+    // A pixel of the whole picture can be read from the draft, too.
     assert_eq!(browser.get(&format!("/pixel?desk={desk}&x=479&y=319")).expect("an answer").status, 200);
     let (whole, light) = browser.frame(desk, draft["frame"].as_u64().expect("a number"), is_done);
     assert_eq!((&whole["draft"], &whole["light"]), (&json!(false), &json!([480, 320])));
@@ -299,7 +299,7 @@ fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
     let wanted = session.develop().expect("a picture").remove(0).1;
     assert!(light == as_sent(&wanted.rgb.concat()), "{whole}");
 
-    // Print, push, grade and grain: no draft, no ray, the whole at once; where it is large, smaller before.
+    // Print, push, grade and grain need no draft and no rays: the whole picture comes at once, or a smaller one first if it is large.
     assert_eq!(browser.turn(desk, "width", json!(960)).status, 200);
     let large = |head: &Value| is_done(head) && head["width"] == 960;
     let (head, _) = browser.frame(desk, whole["frame"].as_u64().expect("a number"), large);
@@ -311,13 +311,13 @@ fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
     assert_eq!(last["rays"], head["rays"]);
 }
 
-/// Values that are refused leave the scene as it was, whatever is turned beside them; they are told until they are turned again.
+/// Refused values leave the scene as it was, whatever else is changed. They are reported until they are changed again.
 #[test]
 fn controls_never_say_what_the_picture_does_not_have() {
     let browser = Browser::let_in();
     let desk = browser.open();
     browser.frame(desk, 0, is_done);
-    // Out of range: at once, with the range, and nothing is turned.
+    // A value out of range is refused at once, with the range, and nothing changes.
     let far = browser.turn(desk, "film.compensation", json!(99));
     let why = String::from_utf8_lossy(&far.body).into_owned();
     assert!(far.status == 400 && why.contains("99 is out of range: it goes from -10 to 10"), "{why}");
@@ -327,7 +327,7 @@ fn controls_never_say_what_the_picture_does_not_have() {
         assert!(said["refused"][path]["faults"][0]["message"].is_string(), "{path}: {}", said["refused"]);
         assert_eq!(value_of(&said, path), value_of(&before, path));
     }
-    // Something else is turned: what was refused is still told, and the picture has what the controls say.
+    // After another change, the refused values are still reported, and the picture has what the controls say.
     let said = browser.turned(desk, "film.push", json!(1));
     let refused = said["refused"].as_object().expect("a map");
     assert_eq!(refused.len(), 2, "{refused:?}");
@@ -336,7 +336,7 @@ fn controls_never_say_what_the_picture_does_not_have() {
     let (head, light) = browser.frame(desk, 0, |head| is_done(head) && head["draft"] == false);
     let text = SCENE.replace("[60, 40]", "[480, 320]").replace("1/80 s", "1/80 s, push: 1");
     assert!(light == picture_of(&text), "{head}");
-    // Turned to what can be, it is refused no more.
+    // A valid value ends the refusal.
     let said = browser.turned(desk, "lens.f-number", json!(4));
     assert!(said["refused"]["lens.f-number"].is_null() && value_of(&said, "lens.f-number") == json!(4.0));
 }
@@ -359,7 +359,7 @@ fn a_swept_key_chooses_among_the_pictures() {
     assert!(light != first);
     let text = SCENE.replace("[60, 40]", "[480, 320]").replace("f/2", "f/8").replace("1/80 s", "1/80 s, push: 0");
     assert!(light == picture_of(&text));
-    // What it has of its own is turned as ever; a value that the sweep does not have is none.
+    // Other values can be changed as usual; a value that the sweep does not have is refused.
     browser.turned(desk, "lens.focus", json!(3));
     assert_eq!(browser.turn(desk, "lens.f-number", json!("f/4")).status, 400);
     let said = browser.turned(desk, "picture", json!("2: lens.f-number = f/2, film.push = 1"));
@@ -370,7 +370,7 @@ fn a_swept_key_chooses_among_the_pictures() {
     assert!(command.starts_with("spectra run ") && command.ends_with(end), "{command}");
 }
 
-/// A picture whose file is cut off shows that only when light is asked for: the scene goes back to the picture that it had.
+/// A truncated picture file is noticed only when light is needed; the scene then goes back to the picture that it had.
 #[test]
 fn what_turns_out_to_have_no_picture_is_taken_back() {
     let scene = "spectra: 1\nsource: {kind: picture, distance: 2 m, luminance: 300 cd/m2, width: fill}\n\
@@ -393,7 +393,7 @@ fn what_turns_out_to_have_no_picture_is_taken_back() {
     let said = browser.controls(desk, 0);
     assert_eq!((value_of(&said, "source.file"), &said["undos"]), (json!("good.png"), &json!(0)));
     assert!(said["refused"]["source.file"].is_object(), "{}", said["refused"]);
-    // It goes on from there.
+    // The page works on from there.
     browser.turned(desk, "lens.f-number", json!(4));
     browser.turned(desk, "lens.f-number", json!(2));
     let (_, again) =
@@ -401,7 +401,7 @@ fn what_turns_out_to_have_no_picture_is_taken_back() {
     assert!(again.len() == first.len());
 }
 
-/// The file of a small photograph.
+/// Returns the file of a small photograph.
 fn photograph() -> Vec<u8> {
     let mut png = std::io::Cursor::new(Vec::new());
     let color = |x: u32, y: u32| image::Rgb([(x * 4) as u8, (y * 5) as u8, ((x + y) * 2) as u8]);
@@ -429,7 +429,7 @@ fn steps_are_taken_back_and_what_is_seen_is_a_scene_of_its_own() {
     }
     let (_, again) = browser.frame(desk, 0, |head| is_done(head) && head["draft"] == false);
     assert!(again == first);
-    // Another scene from the list, and nothing else.
+    // A scene from the list can be opened, and nothing else.
     assert_eq!(browser.post("/open", r#"{"name": "../scene.yaml", "bundled": false}"#).status, 400);
     let listed = browser.get("/openable").expect("an answer").json();
     assert_eq!(listed["files"], json!(["scene.yaml"]));
@@ -439,7 +439,7 @@ fn steps_are_taken_back_and_what_is_seen_is_a_scene_of_its_own() {
     assert_eq!(browser.controls(other, 0)["name"], "gray-card");
 }
 
-/// A photograph is developed as `film develop` does: the same bits; and through a lens once one is turned to.
+/// A photograph is developed with the same bits as by `film develop`, and through a lens once one is chosen.
 #[test]
 fn a_photograph_is_developed() {
     let browser = Browser::viewing("photo.png", &photograph());
@@ -469,7 +469,7 @@ fn a_photograph_is_developed() {
         as_sent(&shot.pictures().expect("a picture")[0].1.rgb.concat())
     };
     assert!(light == wanted("kodak-portra-400", "iso-7589-sensitometric-daylight"));
-    // A film for lamps sees its own light.
+    // A film for tungsten light gets the light for which it is made.
     let at = head["frame"].as_u64().expect("a number");
     let said = browser.turned(desk, "film.stock", json!("kodak-vision3-500t-5219"));
     let own = value_of(&said, "source.illuminant");
@@ -487,7 +487,7 @@ fn a_photograph_is_developed() {
     assert!(seen["lens"].as_str().is_some_and(|name| name.contains("Helios")), "{seen}");
     browser.turned(desk, "lens.f-number", json!(5.6));
     command("--lens=helios-44-58-f2 --f-number=f/5.6");
-    // Without it again, its pixels are as they were.
+    // Without the lens again, the pixels are as before.
     browser.turned(desk, "lens.file", json!("no-lens"));
     let (_, again) = browser.frame(desk, seen["frame"].as_u64().expect("a number"), |head| head["flat"] == true);
     assert!(again == light);
@@ -502,7 +502,7 @@ fn a_file_that_is_saved_is_rendered_again_and_a_broken_one_is_told() {
     let desk = browser.open();
     let (head, first) = browser.frame(desk, 0, is_done);
     let at = |head: &Value| head["frame"].as_u64().expect("a number");
-    // Values of the page stay, but for those that the file now says otherwise.
+    // Values of the page stay, except those that the file itself has changed.
     assert_eq!(browser.turn(desk, "film.push", json!(1)).status, 200);
     assert_eq!(browser.turn(desk, "lens.f-number", json!(8)).status, 200);
     let (head, _) = browser.frame(desk, at(&head), |head| is_done(head) && head["draft"] == false);
@@ -516,7 +516,7 @@ fn a_file_that_is_saved_is_rendered_again_and_a_broken_one_is_told() {
     };
     assert_eq!((value("lens.f-number"), value("film.push")), (json!(4.0), json!(1.0)));
 
-    // Broken: told with its place; the picture stays.
+    // A broken file is reported with the place, and the picture stays.
     std::fs::write(&browser.file, SCENE.replace("f/2", "f/2, fnumber: 3")).expect("written");
     let (broken, _) = browser.frame(desk, at(&again), |head| head["fault"].is_object());
     let fault = &broken["fault"]["faults"][0];
@@ -546,8 +546,7 @@ fn pages_do_not_disturb_each_other_and_the_oldest_makes_room() {
     assert_eq!(browser.get(&format!("/controls?desk={two}")).expect("an answer").status, 200);
 }
 
-/// Each is refused or dropped, and the server answers the next one.
-/// 150 connections that ask nothing, or half of something, and come again when they are ended: the page is answered all the same.
+/// The page is answered although 150 connections send nothing, or half a request, and reconnect when they are closed.
 #[test]
 fn whoever_asks_nothing_makes_room() {
     let browser = Browser::start().entered();
@@ -571,6 +570,7 @@ fn whoever_asks_nothing_makes_room() {
     });
 }
 
+/// Each of these requests is refused or dropped, and the server answers the next one.
 #[test]
 fn what_others_try_is_refused() {
     let browser = Browser::start();
@@ -579,7 +579,7 @@ fn what_others_try_is_refused() {
     let field = |name: &str, value: &str| format!("{name}: {value}\r\n");
     let own = field("Host", &host);
     let get = |path: &str, fields: &str| format!("GET {path} HTTP/1.1\r\n{fields}\r\n").into_bytes();
-    // Before the address was opened.
+    // Requests before the address was opened.
     let mut tries: Vec<(String, Vec<u8>, &[u16])> = Vec::new();
     for path in [
         "/",
@@ -731,7 +731,7 @@ fn what_others_try_is_refused() {
         &[400],
     ));
     for (name, bytes, wanted) in &tries {
-        // A server that hangs up while it is still written to may lose its answer on the way.
+        // If the server closes the connection while it is still being written to, its answer may be lost.
         let Some(got) = raw(&host, bytes) else {
             assert!(bytes.len() > 60_000, "{name}: no answer");
             continue;
@@ -741,7 +741,7 @@ fn what_others_try_is_refused() {
     count += tries.len();
     assert!(count >= 60, "{count} tries");
 
-    // Many that say nothing: they are bounded, let go in a few seconds, and the page is answered after that.
+    // The number of silent connections is limited; they are dropped after a few seconds, and the page is answered after that.
     let idle: Vec<Option<TcpStream>> = (0..1000).map(|_| TcpStream::connect(&host).ok()).collect();
     let end = Instant::now() + Duration::from_secs(30);
     let answered = || browser.get("/page.css").is_some_and(|got| got.status == 200);

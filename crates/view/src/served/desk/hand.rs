@@ -1,4 +1,4 @@
-//! What the thread of a desk has in hand: the scene, the same scene small for a draft, and what either is still to be told.
+//! Working state of a desk's thread: the scene, a small draft of it, and the changes that each of them still lacks.
 
 use super::history::{Before, History};
 use super::turned::{Turned, What};
@@ -10,40 +10,40 @@ use spectra_scene::Negatives;
 use spectra_session::{Rendering, Session, SessionError};
 use std::sync::Arc;
 
-/// The first picture after a change: its width, pixels, and its samples of a pixel.
+/// Width of a draft, the first picture after a change, pixels; `DRAFT_SAMPLES` is its number of samples per pixel.
 const DRAFT_PX: u32 = 120;
 const DRAFT_SAMPLES: u32 = 4;
-/// Developed first at this width where the whole is larger, pixels.
+/// Width at which a larger picture is developed first, pixels.
 const QUICK_PX: u32 = 480;
 
-/// A value that was turned and that the whole picture does not have yet.
+/// A changed value that the whole picture does not have yet.
 pub(super) struct Owed {
     pub(super) turned: Turned,
     pub(super) is_drafted: bool,
 }
 
-/// What was taken up and that no picture has been made of yet: it may still turn out that there is none.
+/// Changes that the scene accepted but of which no picture was made yet. It may still turn out that none can be made.
 pub(super) struct Unproved {
     pub(super) before: Before,
-    /// The controls that were turned since.
+    /// Controls that were changed since.
     pub(super) controls: Vec<String>,
 }
 
-/// What came of a draft.
+/// Outcome of making a draft.
 pub(super) enum Drafted {
-    /// The page has it.
+    /// The page has the draft.
     Shown,
-    /// The light stays: the whole picture is as soon developed.
+    /// The light is still valid, so the whole picture is developed as quickly as a draft.
     SameLight,
-    /// There is none.
+    /// There is no draft.
     None,
 }
 
-/// What the film got, and what was developed of it.
+/// The exposure of the film, and the negatives developed from it.
 pub(super) struct Plate {
     pub(super) exposure: Arc<ExposureFrame>,
     pub(super) negatives: Negatives,
-    /// Rays that were traced for it.
+    /// Number of rays traced for it.
     pub(super) rays: u64,
 }
 
@@ -56,16 +56,16 @@ impl Plate {
         Self { exposure: Arc::new(exposure), negatives: Negatives::default(), rays }
     }
 
-    /// The same of fewer pixels, where they are many.
+    /// Returns a copy with fewer pixels; `None` if it has few already.
     pub(super) fn small(&self) -> Option<Self> {
         (self.exposure.size.width_px > QUICK_PX).then(|| Self::got(shrunk(&self.exposure, QUICK_PX), self.rays))
     }
 }
 
-/// What the thread of a desk has in hand.
+/// Working state of a desk's thread.
 pub(super) struct Hand {
     pub(super) session: Session,
-    /// The same scene, small.
+    /// A small draft of the same scene.
     pub(super) draft: Option<Session>,
     pub(super) shape: Shape,
     pub(super) width_px: u32,
@@ -73,25 +73,25 @@ pub(super) struct Hand {
     /// Texts `path=value` that the draft does not have yet.
     pub(super) behind: Vec<String>,
     pub(super) is_light_owed: bool,
-    /// The light of the session so far, until more is traced.
+    /// Light of the session so far, until more is traced.
     pub(super) light: Option<Arc<Plate>>,
-    /// Light of fewer pixels, by at least half of the rays that were last shown: what only develops otherwise is first seen by it.
+    /// Light with fewer pixels, from at least half of the rays last shown. It gives the first picture after a change of the development.
     pub(super) small: Option<Arc<Plate>>,
-    /// A sample of all pixels takes so long.
+    /// Time that one sample of all pixels takes, s; `None` until it is measured.
     pub(super) pace_s: Option<f64>,
-    /// The files that the scene names, as they were read.
+    /// Stamps of the files that the scene names, from when they were read.
     pub(super) stamps: Stamps,
-    /// A text of the scene's file, and the files that it names, that are no scene.
+    /// Text of the scene's file, and stamps of the files that it names, which were found not to be a valid scene.
     pub(super) refused: Option<(Option<String>, Stamps)>,
-    /// How the scene was set before.
+    /// Earlier states of the scene.
     pub(super) history: History,
     pub(super) unproved: Option<Unproved>,
-    /// The pixels of a photograph, to be exposed again.
+    /// Pixels of a photograph, kept for the next exposure.
     pub(super) pixels: Option<Small>,
 }
 
 impl Hand {
-    /// A scene, nothing of which is traced yet.
+    /// Creates the state for a scene of which nothing is traced yet.
     pub(super) fn of(session: Session, shape: Shape, width_px: u32) -> Self {
         Self {
             session,
@@ -112,12 +112,12 @@ impl Hand {
         }
     }
 
-    /// Whether its film gets a photograph's own pixels, and no ray is traced.
+    /// Returns whether the film is exposed to a photograph's own pixels, without tracing rays.
     pub(super) fn is_flat(&self) -> bool {
         self.session.series().is_without_lens()
     }
 
-    /// Whether there is nothing to do for the picture.
+    /// Returns whether there is nothing left to do for the picture.
     pub(super) fn is_done(&self) -> bool {
         let is_lit = || match self.is_flat() {
             true => self.light.is_some(),
@@ -126,29 +126,29 @@ impl Hand {
         self.owed.is_empty() && is_lit()
     }
 
-    /// Whether its picture will have stars, and the light so far has none.
+    /// Returns whether the picture will have stars (diffraction at the aperture) that the light so far lacks.
     pub(super) fn is_without_stars(&self) -> bool {
         !self.is_flat() && has_stars(&self.session) && !self.is_traced()
     }
 
-    /// Whether all samples are there.
+    /// Returns whether all samples are traced.
     fn is_traced(&self) -> bool {
         self.session.samples() >= u64::from(self.session.scene().render.samples)
     }
 
-    /// The light so far.
+    /// Returns the light so far.
     pub(super) fn look(&mut self) -> Result<Arc<Plate>, SessionError> {
         let light = match self.light.take() {
             Some(light) => light,
             None if self.is_flat() => Arc::new(Plate::of(Small::expose(&mut self.pixels, &self.session)?)),
-            // Stars take seconds in which nothing that is turned is heard: they come with the last sample.
+            // Stars take seconds, during which no change is noticed, so they come with the last sample.
             None if self.is_without_stars() => Arc::new(Plate::of(self.session.look_without_stars()?)),
             None => Arc::new(Plate::of(self.session.look()?)),
         };
         Ok(Arc::clone(self.light.insert(light)))
     }
 
-    /// Of values of one control the last counts.
+    /// Adds changes to those that the whole picture lacks; for each control only the last value counts.
     pub(super) fn owe(&mut self, turned: Vec<Turned>) {
         for turned in turned {
             self.owed.retain(|owed| owed.turned.control != turned.control);
@@ -156,7 +156,7 @@ impl Hand {
         }
     }
 
-    /// The picture of the series that is owed, or that is there.
+    /// Returns the index of the picture of the series that is to be shown: the last one asked for, or the current one.
     pub(super) fn index_owed(&self) -> usize {
         self.owed.iter().rev().find_map(|owed| owed.turned.picture()).unwrap_or(self.session.index())
     }
@@ -166,23 +166,23 @@ impl Hand {
         Drafted::None
     }
 
-    /// Goes on with another scene.
+    /// Replaces the scene by another one; changes that are not applied yet remain.
     pub(super) fn take_up(&mut self, session: Session, shape: Shape) {
         let owed = std::mem::take(&mut self.owed);
         *self = Self { owed, ..Self::of(session, shape, self.width_px) };
     }
 }
 
-/// Whether lights get stars: where nothing is said, they are looked for where a source has lights.
+/// Returns whether lights get stars. If the scene does not say, they do if its source has lights.
 pub(super) fn has_stars(session: &Session) -> bool {
     let scene = session.scene();
     scene.render.diffraction.unwrap_or_else(|| scene.source.split().is_some())
 }
 
-/// The shape of a scene's picture, as its file has it.
+/// The aspect ratio of a scene's picture, from the scene's file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
-    /// Height over width, in pixels.
+    /// Height divided by width, both in pixels.
     pub(super) aspect: f64,
 }
 
@@ -200,7 +200,7 @@ impl Shape {
         format!("imager.resolution=[{width_px}, {}]", self.height_px(width_px))
     }
 
-    /// Texts `path=value` for the whole picture.
+    /// Returns the texts `path=value` that a change sets on the whole picture.
     pub(super) fn texts(&self, turned: &Turned) -> Vec<String> {
         match &turned.what {
             What::Set(texts) => texts.clone(),
@@ -209,10 +209,10 @@ impl Shape {
         }
     }
 
-    /// What makes a draft of a scene.
+    /// Returns the texts `path=value` that turn a scene into a draft.
     pub(super) fn draft(&self, session: &Session) -> Vec<String> {
         let mut texts = vec![self.resolution(DRAFT_PX), format!("render.samples={DRAFT_SAMPLES}")];
-        // To look for ghosts, and to spread light at the stop, takes seconds.
+        // Searching for ghosts and computing diffraction at the stop takes seconds, so a draft does without.
         texts.extend(["render.reflections.order=0", "render.diffraction=false"].map(str::to_owned));
         let render = &session.scene().render;
         if let Some(rays) = session
@@ -232,7 +232,7 @@ impl Shape {
     }
 }
 
-/// The same exposure of fewer pixels: each has the mean of those that it covers.
+/// Returns an exposure with fewer pixels, each the mean of those that it covers.
 fn shrunk(exposure: &ExposureFrame, width_px: u32) -> ExposureFrame {
     let [from_x, from_y] = [exposure.size.width_px, exposure.size.height_px].map(|n| n as usize);
     let to_x = (width_px as usize).min(from_x).max(1);

@@ -1,14 +1,14 @@
-//! How the scene was set before, to go back to.
+//! Earlier states of the scene, for undo.
 
 use spectra_session::Moment;
 use std::time::{Duration, Instant};
 
-/// So many steps are kept: each holds the stages of a scene.
+/// Largest number of steps that are kept; each holds the stages of a scene.
 const STEPS: usize = 40;
-/// What one control is turned through within this time is one step: a slider goes through many values.
+/// Changes of one control within this time are one step, because a slider passes through many values.
 const ONE_STEP: Duration = Duration::from_millis(1500);
 
-/// A scene as it was set, and what the page had set of it.
+/// An earlier state of the scene, and the changes that the page had made up to it.
 #[derive(Clone)]
 pub(super) struct Before {
     pub(super) moment: Moment,
@@ -17,18 +17,18 @@ pub(super) struct Before {
 
 struct Step {
     before: Before,
-    /// What was turned from there.
+    /// Controls that were changed from that state.
     controls: Vec<String>,
-    /// When that was turned last.
+    /// Time of the last change of these controls.
     turned: Instant,
 }
 
-/// The steps so far.
+/// The steps that can be undone.
 #[derive(Default)]
 pub(super) struct History(Vec<Step>);
 
 impl History {
-    /// Keeps a step: what was `before` these controls were turned.
+    /// Adds a step: the state `before` these controls were changed.
     pub(super) fn push(&mut self, before: Before, controls: &[String]) {
         if let Some(last) = self.0.last_mut()
             && last.controls == controls
@@ -43,7 +43,7 @@ impl History {
         self.0.push(Step { before, controls: controls.to_owned(), turned: Instant::now() });
     }
 
-    /// The last step, which is taken away.
+    /// Removes the last step and returns its state.
     pub(super) fn pop(&mut self) -> Option<Before> {
         self.0.pop().map(|step| step.before)
     }

@@ -1,7 +1,29 @@
-//! What one page works on: a session of its own, on a thread of its own.
+//! The desk of one page: a separate session on its own thread.
 //!
-//! The page leaves changes on the desk and takes frames from it. Changes of one control that arrive while a picture is traced count
-//! once, by the last of them; the work at hand is stopped for them. A desk that nobody asks anything of is cleared.
+//! The page leaves changes on the desk and takes frames from it. If several changes of one control arrive while a picture is traced, only
+//! the last one counts; current work is stopped for changes. A desk that receives no requests for 25 s is closed. There are at most four
+//! desks.
+//!
+//! **Draft and whole** (`hand`). The desk holds the scene twice: the whole session, and a draft of it, 120 pixels wide with four samples,
+//! which shares the stages that do not depend on size. A change goes to the draft first. The whole gets it once nothing has changed for 60
+//! ms. Changes of a film's development go to the whole at once, because its light mostly stays; the draft gets them when it is next needed.
+//! A draft is prepared with little effort (`Effort::Draft`): few zones, no outlines, few rays for meters, no ghosts and no stars. The whole
+//! takes the focused lens of the draft (`Session::change_after`) and is prepared when it is traced.
+//!
+//! **Refused changes** are reported until the control changes again, and leave the scene as it was. If a fault shows only when light is
+//! traced, the session goes back to an earlier state (`Moment`), as for a step back (`history`). `turns_settled` counts the changes that
+//! the controls have. A field of the page waits until that count reaches the number of its own change; then it shows the value, or is red.
+//! A control of a swept key chooses a picture ([`Picks`]).
+//!
+//! **Pieces** (`work`). The whole is traced in pieces of half of the time since the change, up to 1 s. Preparation and tracing stop if more
+//! changes arrive. Stars are spread on the desk's thread and cannot be stopped. Light that does not have all of its samples is therefore
+//! shown without them.
+//!
+//! **Files** (`watch`). The scene's file and all files that it names are checked about three times a second. A different text is taken up
+//! as a new session.
+//!
+//! A photograph ([`super::photograph`]) is the scene that `film develop` makes. Without a lens its film is exposed to pixels that are kept,
+//! and there is no draft.
 
 mod hand;
 mod history;
@@ -32,87 +54,88 @@ const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
 /// A picture for the page.
 pub(crate) struct Frame {
     pub number: u64,
-    /// A head as JSON, with its length before it, and linear red, green and blue as [`halves`](crate::parts::halves) has them.
+    /// The length of the head, the head as JSON, and linear red, green and blue in the format of [`halves`](crate::parts::halves).
     pub bytes: Vec<u8>,
     exposure: Arc<ExposureFrame>,
     times: Vec<FilmTime>,
-    /// Width of the picture that it is one of, pixels: that of its numbers or, of a draft, more.
+    /// Width of the whole picture, pixels; for a draft it is more than the width of the numbers in `bytes`.
     whole_px: u32,
 }
 
 #[derive(Default)]
 struct State {
-    /// What was turned, in the order in which it was first turned.
+    /// Changes that the desk's thread has not taken yet, one per control.
     pending: Vec<Turned>,
-    /// So many steps back are asked for.
+    /// Number of undo steps that are requested and not taken yet.
     backs: usize,
     controls: Vec<Control>,
-    /// The pictures of the scene.
+    /// Values of the pictures of the series.
     picks: Picks,
-    /// The last picture.
+    /// The last picture made for the page.
     frame: Option<Arc<Frame>>,
-    /// What was said last without a picture: a number and a head.
+    /// The last message without a picture: its number and its packed head.
     note: Option<(u64, Arc<Vec<u8>>)>,
-    /// Of pictures and notes together.
+    /// Number of pictures and notes so far; the last one has this number.
     number: u64,
-    /// Why there is no picture at all of the scene as it is; until something else is turned, nothing is traced.
+    /// Reason why there is no picture of the current scene at all. Until something changes, nothing is traced.
     fault: Option<Value>,
-    /// What was turned and refused, by control, with what is wrong: the scene is as it was.
+    /// Refused changes, by control, with the errors; the scene is as it was before them.
     refused: BTreeMap<String, Value>,
-    /// Those of them that the page was told.
+    /// The refused changes of which the page was told.
     refused_told: BTreeMap<String, Value>,
     section: [Option<Arc<String>>; 2],
     scene: Option<Arc<spectra_scene::Scene>>,
-    /// How the session is set.
+    /// Current state of the session.
     moment: Option<Moment>,
-    /// How often the scene was another one: the page asks for its controls again.
+    /// Number of times that the scene changed; when it changes, the page requests the controls again.
     scenes: u64,
-    /// What the page set, by path, for the scene's file.
+    /// Changes that the page made and that are not saved to the scene's file, as paths and texts `path=value`.
     changes: Vec<(String, String)>,
-    /// So many steps back can be taken.
+    /// Number of steps that can be undone.
     undos: usize,
-    /// How often the lens was another one: the page asks for its drawing again.
+    /// Number of times that the lens changed; when it changes, the page requests the drawing again.
     lenses: u64,
-    /// How often the scene's file was taken up after somebody wrote it.
+    /// Number of times that the scene's file was loaded again after somebody wrote it.
     reread: u64,
-    /// Width of the whole picture, pixels, and those that can be chosen.
+    /// Width of the whole picture, pixels; `widths_px` are the widths to choose from.
     width_px: u32,
     widths_px: Vec<u32>,
-    /// Values that were turned; those among them that the pictures have; and those that the controls have, or that are refused.
+    /// Number of changes that the page has sent; `turns_taken` counts those that the next picture has, and `turns_settled` those that the
+    /// controls show or that are refused.
     turns: u64,
     turns_taken: u64,
     turns_settled: u64,
-    /// Those of them that the page was told.
+    /// Value of `turns_settled` that the page was told last.
     turns_told: u64,
-    /// A large picture is being developed beside the desk's thread.
+    /// Whether a large picture is being developed on another thread than the desk's.
     is_developing: bool,
     stop: Arc<Stop>,
     is_closed: bool,
 }
 impl State {
-    /// What is wrong, for the page: with the scene, or else with what was turned last of what is refused.
+    /// Returns the error for the page: that of the scene, or otherwise one of a refused change.
     fn said(&self) -> Option<Value> {
         self.fault.clone().or_else(|| self.refused.values().next_back().cloned())
     }
 }
 
-/// A desk, as the page's requests and its thread share it.
+/// A desk, shared by its thread and the requests of its page.
 pub(crate) struct Desk {
     order: Order,
-    /// The scene's file as it was opened, or saved since; none of a bundled scene.
+    /// Text of the scene's file as it was last read or saved; `None` for a bundled scene or a photograph.
     written: Mutex<Option<String>>,
     seen: Mutex<Instant>,
     state: Mutex<State>,
     turned: Condvar,
 }
 
-/// A lock is held for copying alone: what a thread that panicked left is whole.
+/// Locks a mutex, even if a thread panicked with it. Locks are held only while data is copied, so the data is consistent.
 fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Desk {
-    /// A desk with its thread, which ends when the desk is closed or forgotten.
+    /// Opens a desk and starts its thread, which ends when the desk is closed or receives no requests for a while.
     pub(crate) fn open(order: Order) -> std::io::Result<Arc<Self>> {
         let written = order.file().and_then(|file| std::fs::read_to_string(file).ok());
         let desk = Self {
@@ -131,17 +154,17 @@ impl Desk {
         Ok(desk)
     }
 
-    /// Somebody is there.
+    /// Records that the page has just sent a request.
     pub(crate) fn is_asked(&self) {
         *held(&self.seen) = Instant::now();
     }
 
-    /// Whether its thread has ended or is to end.
+    /// Returns whether the desk's thread has ended or is about to end.
     pub(crate) fn is_closed(&self) -> bool {
         held(&self.state).is_closed
     }
 
-    /// Ends the work.
+    /// Closes the desk and stops its work.
     pub(crate) fn close(&self) {
         let mut state = held(&self.state);
         state.is_closed = true;
@@ -149,27 +172,27 @@ impl Desk {
         self.turned.notify_all();
     }
 
-    /// Takes a value that the page sent; gives its number among all that were turned.
+    /// Accepts a change that the page sent, and returns its number among all changes.
     ///
     /// # Errors
-    /// Why the scene has no such value.
+    /// The reason why the scene cannot have such a value.
     pub(crate) fn turn(&self, path: &str, value: &Value) -> Result<u64, String> {
         let mut state = held(&self.state);
         let what = if path == "width" {
             let width = value.as_u64().and_then(|w| u32::try_from(w).ok());
-            What::Width(width.filter(|w| state.widths_px.contains(w)).ok_or("none of the widths")?)
+            What::Width(width.filter(|w| state.widths_px.contains(w)).ok_or("not one of the widths")?)
         } else {
             let control = state.controls.iter().find(|c| c.path() == path).ok_or("no such control")?;
             let text = control.text(value)?;
             match control.picked(value) {
                 Some(word) => {
                     let from = state.pending.iter().rev().find_map(Turned::picture);
-                    What::Picture(state.picks.with(from, path, &word).ok_or("no picture of the scene has it")?)
+                    What::Picture(state.picks.with(from, path, &word).ok_or("no picture of the series has it")?)
                 }
                 None => What::Set(self.together(path, text)?),
             }
         };
-        // Of values of one control the last counts.
+        // Only the last value of each control counts.
         state.pending.retain(|other| other.control != path);
         state.pending.push(Turned { control: path.to_owned(), what });
         state.turns += 1;
@@ -179,7 +202,8 @@ impl Desk {
         Ok(number)
     }
 
-    /// A text `path=value` with what goes with it: of a photograph, the light that a film is made for, so that gray is gray.
+    /// Returns a text `path=value` with the texts that go with it: another film for a photograph also sets the light for which the film is
+    /// made, so that gray stays gray.
     fn together(&self, path: &str, text: String) -> Result<Vec<String>, String> {
         let mut all = vec![text];
         if path == "film.stock" && self.order.photograph.is_some() {
@@ -190,7 +214,7 @@ impl Desk {
         Ok(all)
     }
 
-    /// Takes the last step back.
+    /// Requests to undo the last step, and returns the number of this change.
     pub(crate) fn back(&self) -> u64 {
         let mut state = held(&self.state);
         state.backs += 1;
@@ -200,7 +224,7 @@ impl Desk {
         state.turns
     }
 
-    /// The last picture after this number, or what was said after it, if there is one within the time.
+    /// Waits for a picture or a note with a higher number than `number`, and returns the last one; `None` if none comes within `patience`.
     pub(crate) fn frame_after(&self, number: u64, patience: Duration) -> Option<Vec<u8>> {
         let found = |state: &State| {
             let picture = state.frame.as_ref().filter(|frame| frame.number > number).map(|frame| frame.bytes.clone());
@@ -216,7 +240,7 @@ impl Desk {
         found(&state)
     }
 
-    /// What the scene's controls are and say now.
+    /// Returns the scene's controls with their current values, and the state of the desk, as JSON.
     pub(crate) fn controls(&self) -> Value {
         let saves = held(&self.written).is_some();
         let state = held(&self.state);
@@ -236,16 +260,16 @@ impl Desk {
         })
     }
 
-    /// What a pixel of the last frame got, channel by channel.
+    /// Returns the exposure of a pixel of the last frame in each channel; `None` if there is no such pixel.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> Option<Value> {
         let frame = held(&self.state).frame.clone()?;
         let size = frame.exposure.size;
-        // Of a draft, the pixel that covers it.
+        // In a draft, the coarser pixel that covers the place.
         let part = |at: u32| u64::from(at) * u64::from(size.width_px) / u64::from(frame.whole_px.max(1));
         pixel(&frame.exposure, &frame.times, frame.number, [x, y].map(part))
     }
 
-    /// The cross-section of the lens as it is set now; an empty text where it cannot be drawn.
+    /// Returns the cross-section of the current lens as SVG; an empty text if it cannot be drawn, `None` without a scene.
     pub(crate) fn section(&self, is_dark: bool) -> Option<Arc<String>> {
         let (drawn, scene) = {
             let state = held(&self.state);
@@ -263,38 +287,36 @@ impl Desk {
         Some(made)
     }
 
-    /// The light and the layers of the scene as it is set now.
+    /// Returns the spectrum of the light and the responses of the layers of the current scene; `None` without a scene.
     pub(crate) fn spectra(&self) -> Option<Value> {
         let scene = held(&self.state).scene.clone()?;
         Some(spectra(&scene))
     }
 
-    /// The command that makes the picture that is seen, with all of its pixels.
+    /// Returns the command that renders the current picture at full size; `None` without a scene.
     pub(crate) fn command(&self) -> Option<String> {
         let moment = held(&self.state).moment.clone()?;
         Some(told::command(&self.order, moment.series(), moment.index()))
     }
 
-    /// The text of a scene that says what is seen.
+    /// Returns the text of a scene file that describes the current picture; `None` without a scene.
     pub(crate) fn text(&self) -> Option<Result<String, String>> {
         let moment = held(&self.state).moment.clone()?;
         Some(told::text(&self.order, moment.series(), moment.index()))
     }
 
-    /// Writes what the page set into the scene's file; says how many values.
+    /// Writes the page's changes into the scene's file, and returns how many values were written.
     ///
     /// # Errors
-    /// Why it is not written; then the file is as it was.
+    /// The reason why the file is not written; it is then unchanged.
     pub(crate) fn save(&self) -> Result<usize, String> {
         let mut written = held(&self.written);
         let Some(before) = &*written else {
-            return Err(
-                "a bundled scene is not written to: `spectra new scene` makes one of your own to view".to_owned()
-            );
+            return Err("a bundled scene cannot be changed: make one of your own with `spectra new scene`".to_owned());
         };
         let changes = held(&self.state).changes.clone();
         *written = Some(save::save(&self.order.scene, before, &self.order.overrides, &changes)?);
-        // What was turned meanwhile is still to be written.
+        // Changes that arrived meanwhile remain to be written.
         held(&self.state).changes.retain(|change| !changes.contains(change));
         Ok(changes.len())
     }

@@ -1,8 +1,12 @@
-//! Work that gives way: whoever turns a control does not wait for the picture of before.
+//! Threads of low priority: after a change, nobody has to wait for work on the previous picture.
+//!
+//! The whole picture is traced and developed by such threads. Drafts, the server and the browser on the same machine run before them. Only
+//! Linux has a priority per thread; elsewhere all threads are equal.
 
 use std::sync::OnceLock;
 
-/// So many threads do the work, and this one waits for them. What answers a page, and the browser on the same machine, run before them.
+/// Does the work on this many threads of low priority, and waits for them. Threads that answer the page, and the browser on the same
+/// machine, run before them.
 pub(super) fn each(threads: usize, work: &(dyn Fn() + Sync)) {
     let is_begun = std::thread::scope(|scope| {
         let begin = |number: usize| {
@@ -13,7 +17,7 @@ pub(super) fn each(threads: usize, work: &(dyn Fn() + Sync)) {
             };
             thread.spawn_scoped(scope, giving_way).is_ok()
         };
-        // Where the system has no more threads, fewer do all the work.
+        // If the system has no more threads, fewer threads do all the work.
         (0..threads.max(1)).take_while(|number| begin(*number)).count() > 0
     });
     if !is_begun {
@@ -21,19 +25,19 @@ pub(super) fn each(threads: usize, work: &(dyn Fn() + Sync)) {
     }
 }
 
-/// Threads for the development of pictures that give way, the same for all pages, so many as the first of them asks for; `None` where
-/// the system has no more.
+/// Returns the pool of low-priority threads that develop pictures. All pages share it; it has as many threads as the first page asks for.
+/// `None` if the system has no more threads.
 pub(super) fn pool(threads: usize) -> Option<&'static rayon::ThreadPool> {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
     let made = || {
-        // A panic is said by its thread, and ends no other picture.
+        // A panic is printed by its thread, and does not affect other pictures.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.max(1)).panic_handler(|_| {});
         pool.start_handler(|_| give_way()).thread_name(|number| format!("develop {number}")).build().ok()
     };
     POOL.get_or_init(made).as_ref()
 }
 
-/// Lets this thread run where no other wants to. Linux has a priority of each thread; elsewhere all stay equal.
+/// Lowers the priority of this thread. Only Linux has a priority for each thread; on other systems all threads stay equal.
 fn give_way() {
     #[cfg(target_os = "linux")]
     let _ = rustix::process::nice(10);

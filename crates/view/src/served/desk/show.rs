@@ -1,4 +1,7 @@
-//! Develops light and gives the picture to the page: a small one at once, and a large one beside whatever is turned next.
+//! Development of pictures for the page: a small one at once, and a large one in the background.
+//!
+//! Large pictures are developed one at a time, beside the desk's thread, and dropped if more changes arrive meanwhile. The desk waits only
+//! for the picture by which a change is first seen.
 
 use super::hand::{Hand, Plate, Shape, has_stars};
 use super::{Desk, Frame, State, held, priority};
@@ -10,18 +13,18 @@ use spectra_session::{Session, SessionError};
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-/// What a picture is to the page.
+/// The role of a picture for the page.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// Fewer pixels than the picture will have.
+    /// A draft, with fewer pixels than the whole picture.
     Draft,
-    /// What was turned is first seen by it.
+    /// The first picture that shows a change.
     First,
-    /// Once more is turned, nobody waits for it.
+    /// A later picture, which is dropped if something else changes.
     Later,
 }
 
-/// Light that was taken, of a scene, and what is said of it.
+/// Light of a scene that is to be developed, with the head of its picture.
 pub(super) struct Taken {
     scene: Arc<Scene>,
     plate: Arc<Plate>,
@@ -30,12 +33,12 @@ pub(super) struct Taken {
     shape: Shape,
     started: Instant,
     kind: Kind,
-    /// Values that were turned before it.
+    /// Number of changes that the picture includes.
     turns: u64,
 }
 
 impl Taken {
-    /// Says what a draft leaves out that the picture of its session will have.
+    /// Lists in the head what a draft leaves out and the picture of its session will have: ghosts and stars.
     pub(super) fn leaves_out(&mut self, session: &Session) {
         let scene = session.scene();
         let has_lights = || scene.source.split().is_some();
@@ -46,7 +49,7 @@ impl Taken {
 }
 
 impl Desk {
-    /// Develops the light so far and gives it to the page. If it is to be `quick`, a small picture comes before a large one.
+    /// Develops the light so far and gives the picture to the page. If `quick`, a small picture comes before a large one.
     pub(super) fn picture(
         self: &Arc<Self>,
         hand: &mut Hand,
@@ -67,7 +70,7 @@ impl Desk {
             };
             hand.small.clone_from(&small);
             match small {
-                // What cannot be developed small is seen whole.
+                // If the small picture cannot be developed, the whole one follows anyway.
                 Some(small) => drop(self.show(&of(hand, small, Kind::Draft))),
                 None => {
                     let whole = hand.look()?;
@@ -76,13 +79,14 @@ impl Desk {
             }
         }
         let whole = hand.look()?;
-        // Half as many rays are as good for a first look, and what was developed of them is kept, until all are there.
+        // For a first look, half as many rays are good enough. The small light, with its negatives, is kept until there are twice as many
+        // rays, or all samples.
         let is_whole = hand.session.samples() >= u64::from(hand.session.scene().render.samples);
         let is_better = |rays: u64| whole.rays >= 2 * rays || (is_whole && whole.rays > rays);
         if !quick && hand.small.as_ref().is_none_or(|small| is_better(small.rays)) {
             hand.small = whole.small().map(Arc::new);
         }
-        // One after the other; and for none of them does anybody wait who turns something.
+        // Large pictures are developed one after the other, in the background, so that changes need not wait for them.
         if self.is_developed() {
             self.show_beside(of(hand, whole, Kind::Later))?;
             self.is_developed();
@@ -90,14 +94,14 @@ impl Desk {
         Ok(())
     }
 
-    /// Waits until no picture is being developed beside this thread; `false` where more was turned meanwhile.
+    /// Waits until no picture is being developed in the background; returns `false` if something changed before.
     fn is_developed(&self) -> bool {
         let goes_on = |state: &mut State| state.is_developing && state.pending.is_empty() && !state.is_closed;
         let waited = self.turned.wait_while(held(&self.state), goes_on);
         !waited.unwrap_or_else(PoisonError::into_inner).is_developing
     }
 
-    /// Shows it from a thread of its own, or from this one where the system has no more.
+    /// Develops and shows a picture in the background, or on this thread if the system has no more threads.
     fn show_beside(self: &Arc<Self>, taken: Taken) -> Result<(), SessionError> {
         let Some(pool) = priority::pool(self.order.threads) else {
             return self.show(&taken);
@@ -105,7 +109,7 @@ impl Desk {
         held(&self.state).is_developing = true;
         let own = Arc::clone(self);
         pool.spawn(move || {
-            // A panic, too, ends it.
+            // Dropping this marks the end, also after a panic.
             let ended = Ended(Arc::clone(&own));
             if let Err(error) = own.show(&taken) {
                 own.tell(Some(said(&error, "")));
@@ -127,7 +131,7 @@ impl Desk {
         let times = scene.film_times(&plate.exposure);
         let mut head = head(json!({}), session, &times, plate.rays);
         if session.series().is_without_lens() {
-            // No sample is traced: all of it is there.
+            // No samples are traced, so the picture is complete.
             (head["samples"], head["of"], head["flat"]) = (1.into(), 1.into(), true.into());
         } else if kind == Kind::Draft {
             head["samples"] = 0.into();
@@ -136,7 +140,7 @@ impl Desk {
         Taken { scene, plate, times, head, shape: *shape, started, kind, turns }
     }
 
-    /// Develops it, and gives it to the page unless that is of no use any more.
+    /// Develops light and gives the picture to the page, unless it is outdated by then.
     pub(super) fn show(&self, taken: &Taken) -> Result<(), SessionError> {
         let Taken { scene, plate, times, kind, .. } = taken;
         let shot = Shot::new(scene, &plate.exposure, times, &[], self.order.isa).keeping(&plate.negatives);
@@ -178,7 +182,7 @@ impl Desk {
     }
 }
 
-/// Says that the picture beside is developed, when it goes.
+/// Marks the development in the background as finished when dropped.
 struct Ended(Arc<Desk>);
 
 impl Drop for Ended {

@@ -1,26 +1,26 @@
-//! What was turned on a page.
+//! Changes of controls that a page sends.
 
-/// A value that was turned.
+/// A change of one control.
 #[derive(Clone, Debug)]
 pub(super) struct Turned {
-    /// The path of its control.
+    /// Path of the control.
     pub(super) control: String,
     pub(super) what: What,
 }
 
-/// What a value is of.
+/// The effect of a change.
 #[derive(Clone, Debug)]
 pub(super) enum What {
-    /// Texts `path=value`, set together; the first one is that of the control.
+    /// Sets texts `path=value` together; the first one is that of the control.
     Set(Vec<String>),
-    /// The width of the picture, pixels.
+    /// Sets the width of the picture, pixels.
     Width(u32),
-    /// Which picture of the series it is, from 0.
+    /// Selects a picture of the series by its index, from 0.
     Picture(usize),
 }
 
 impl Turned {
-    /// The picture of the series that it asks for.
+    /// Index of the picture of the series that the change selects; `None` if it selects none.
     pub(super) fn picture(&self) -> Option<usize> {
         match self.what {
             What::Picture(index) => Some(index),

@@ -1,26 +1,26 @@
-//! Whether somebody wrote the scene's file meanwhile, or one that it names.
+//! Detection of changes to the files that a scene names.
 
 use spectra_session::Session;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// How a file was when it was looked at: when it was written, and its size in bytes.
+/// State of a file: time of its last modification, and size in bytes.
 type Stamp = (Option<SystemTime>, u64);
 
-/// The files that a scene names, such as a lens, a stock, a picture, or what it includes, as they were when they were read.
+/// States of the files that a scene names, such as a lens, a stock, a picture or an included file, at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Stamps(BTreeMap<PathBuf, Stamp>);
 
 impl Stamps {
-    /// As they are now. A file that is gone for a moment, because it is being replaced, stays as it was; one that was not asked for
-    /// before is taken to be as it was read.
+    /// Returns the states of the files that the session's scene names now. A file that is missing for a moment, because it is being
+    /// replaced, keeps its state. The scene's own file is left out.
     pub(super) fn now(&self, session: &Session, scene: &Path) -> Self {
         let stamp = |path: &Path| {
             let data = std::fs::metadata(path).ok()?;
             Some((data.modified().ok(), data.len()))
         };
-        // The scene itself is known by its text, whatever path it was found by.
+        // The scene's own file is compared by its text, so it is left out here, by whatever path it was found.
         let scene = std::fs::canonicalize(scene).ok();
         let is_other = |path: &PathBuf| scene.is_none() || std::fs::canonicalize(path).ok() != scene;
         let others = session.files().into_iter().filter(is_other);
@@ -34,12 +34,12 @@ impl Stamps {
         )
     }
 
-    /// Whether a file is another one than in these, of those that both know.
+    /// Returns whether a file that both know has different states in them.
     pub(super) fn differ(&self, other: &Self) -> bool {
         self.0.iter().any(|(path, stamp)| other.0.get(path).is_some_and(|before| before != stamp))
     }
 
-    /// Takes up those that it does not know.
+    /// Adds the files of `other` that are not known yet.
     pub(super) fn learn(&mut self, other: &Self) {
         for (path, stamp) in &other.0 {
             self.0.entry(path.clone()).or_insert(*stamp);

@@ -1,4 +1,4 @@
-//! What the thread of a desk does: take up what was turned, trace, develop, and watch the scene's file.
+//! The work of a desk's thread: it applies changes, traces, develops, and watches the scene's file.
 
 use super::super::{memory, save};
 use super::hand::{Drafted, Hand, Plate, Shape, Unproved};
@@ -16,32 +16,32 @@ use std::path::Path;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A page that asks nothing for so long is gone.
+/// Time without requests after which a page counts as gone.
 const PATIENCE: Duration = Duration::from_secs(25);
-/// Light is traced in pieces of at least about this time, and of this part of the time since the change, at most so long: the picture
-/// is seen to grow, and little of the time goes into developing it.
+/// Light is traced in pieces that take at least about `PIECE_S` seconds, the fraction `PIECE_PART` of the time since the change, and at
+/// most `LONGEST_PIECE_S` seconds. The picture thus grows visibly, and little time goes into developing it.
 const PIECE_S: f64 = 0.12;
 const PIECE_PART: f64 = 0.5;
 const LONGEST_PIECE_S: f64 = 1.0;
-/// What a draft has of its own.
+/// Controls that do not apply to a draft, which has its own values.
 const NOT_DRAFTED: [&str; 6] =
     ["width", "render.samples", "render.rays", "render.noise", "render.reflections.order", "render.diffraction"];
-/// What chooses another film, and so other light; all else of a film mostly leaves the light as it is.
+/// Keys that choose another film, and so need other light. Other keys of a film mostly leave the light valid.
 const CHOOSES_FILM: [&str; 2] = ["stock", "kind"];
-/// After a draft the whole picture is begun when nothing was turned for so long.
+/// Time without changes, after a draft, until the whole picture is begun.
 const REST: Duration = Duration::from_millis(60);
-/// The scene's file is looked at so often.
+/// Interval at which the scene's file is checked.
 const GLANCE: Duration = Duration::from_millis(300);
-/// Memory that nobody used for so long is given back.
+/// Time without work after which free memory is returned to the system.
 const TIDY: Duration = Duration::from_secs(1);
-/// The first picture of a photograph is so wide, pixels: it takes no rays.
+/// Width of the first picture of a photograph, pixels; it needs no rays.
 const PHOTOGRAPH_PX: u32 = 960;
-/// A photograph is seen with at most so many pixels across.
+/// Largest width at which a photograph is shown, pixels.
 const LARGEST_PX: u32 = 8192;
-/// A scene's file that is larger than this is none.
+/// Largest size of a scene's file, bytes; a larger file is ignored.
 const MAX_SCENE_BYTES: u64 = 1 << 22;
 
-/// Threads whose work nobody waits for once something more is turned. They give way to the page.
+/// Threads of low priority whose work stops when something changes.
 struct Until<'a> {
     threads: usize,
     stop: &'a Stop,
@@ -59,7 +59,7 @@ impl Workers for Until<'_> {
 
 impl Desk {
     pub(super) fn work(self: &Arc<Self>) {
-        // Before there is much to do: later pictures are developed by it.
+        // Starts the pool that develops later pictures, before there is much to do.
         priority::pool(self.order.threads);
         let mut session = match self.order.session() {
             Ok(session) => session,
@@ -72,7 +72,7 @@ impl Desk {
         self.adopt(&session, false);
         let own_px = session.scene().imager.size().width_px;
         let widths_px = match self.order.photograph {
-            // It has no more pixels than it has.
+            // A photograph is not shown larger than its own pixels.
             Some(_) => WIDTHS_PX.into_iter().filter(|w| *w < own_px).chain([own_px.min(LARGEST_PX)]).collect(),
             None => WIDTHS_PX.to_vec(),
         };
@@ -90,7 +90,7 @@ impl Desk {
         // The first picture of all is a draft, too.
         let mut is_asked_for_draft = true;
         let mut looked = Instant::now();
-        // When there was work to do last, until its memory is given back.
+        // Time of the last work, until its memory is returned.
         let mut worked = None;
         loop {
             let (pending, backs, stop) = {
@@ -142,7 +142,7 @@ impl Desk {
             if take(&mut is_asked_for_draft) {
                 match self.drafted(&mut hand, started) {
                     Drafted::Shown => {
-                        // While somebody drags, drafts alone follow: the whole is begun once the hand rests.
+                        // While somebody drags, only drafts follow. The whole picture is begun once the hand rests.
                         let rests = |state: &mut State| state.pending.is_empty() && !state.is_closed;
                         let waited = self.turned.wait_timeout_while(held(&self.state), REST, rests);
                         let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
@@ -162,7 +162,7 @@ impl Desk {
                     continue;
                 }
                 if !is_light_kept && !hand.behind.is_empty() {
-                    // What was taken for development alone is not.
+                    // A change that was expected to affect only the development needs new light, so the draft must catch up.
                     is_asked_for_draft = true;
                     continue;
                 }
@@ -185,7 +185,7 @@ impl Desk {
             if done >= all || held(&self.state).fault.is_some() {
                 continue;
             }
-            // Strata are laid out for all samples in one go.
+            // Strata are laid out for all samples at once.
             let more = match hand.pace_s {
                 _ if scene.render.numbers == NumberFamily::Stratified => all,
                 None => 1,
@@ -197,21 +197,22 @@ impl Desk {
             let from = Instant::now();
             let more = more.min(all - done);
             hand.light = None;
-            // To search what passes the whole scene's lens may take longer than a draft: that, too, ends where more is turned.
+            // The search for the rays that pass the lens of the whole scene may take longer than a draft; it also stops when something
+            // changes.
             let workers = Until { threads: self.order.threads, stop: &stop };
             if let Err(error) = hand.session.step(more, &workers, &stop) {
                 self.take_back(&mut hand, &error);
                 is_asked_for_draft = hand.is_light_owed;
                 continue;
             }
-            // The first sample pays for what is made ready once.
+            // The first sample includes preparation that happens once.
             let took_s = from.elapsed().as_secs_f64().max(1e-6);
             if done == 0 {
                 hand.pace_s = Some(took_s.min(PIECE_S));
             } else if !stop.should_stop() {
                 hand.pace_s = Some(took_s / more as f64);
             }
-            // What was stopped before a whole sample of every pixel is no picture; where more was turned, this one is late.
+            // Without a whole sample of every pixel there is no picture. If something changed, the picture is outdated.
             if hand.session.samples() == 0 || stop.should_stop() {
                 continue;
             }
@@ -225,7 +226,7 @@ impl Desk {
         }
     }
 
-    /// Exposes the film to a photograph's own pixels, and shows it.
+    /// Exposes the film to a photograph's own pixels, and shows the picture.
     fn exposed(self: &Arc<Self>, hand: &mut Hand, started: Instant) {
         hand.light = None;
         match self.picture(hand, started, true) {
@@ -234,8 +235,8 @@ impl Desk {
         }
     }
 
-    /// There is no picture of the scene as it was turned: what was turned is refused, and the scene is as it was. Where nothing was
-    /// turned, the scene itself is at fault.
+    /// Takes back changes of which no picture can be made: they are refused, and the scene is restored. If nothing was changed, the
+    /// error is that of the scene itself.
     fn take_back(&self, hand: &mut Hand, error: &SessionError) {
         let Some(Unproved { before, controls }) = hand.unproved.take() else {
             return self.tell(Some(said(error, "")));
@@ -254,7 +255,7 @@ impl Desk {
         self.tell(None);
     }
 
-    /// Takes steps back; what is not taken up yet is the last of them. Says whether the light is the same.
+    /// Undoes steps; changes that are not applied yet count as the last step. Returns whether the light is still valid.
     fn go_back(&self, hand: &mut Hand, steps: usize) -> bool {
         let steps = steps - usize::from(!hand.owed.is_empty());
         let mut is_light_kept = hand.session.has_light() && hand.unproved.is_none();
@@ -275,10 +276,10 @@ impl Desk {
         is_light_kept
     }
 
-    /// Goes on from another moment of the session, at the width that is chosen.
+    /// Continues from another state of the session, at the chosen width. Sets `is_light_kept` to false if the width had to change.
     fn at_another(&self, hand: &mut Hand, is_light_kept: &mut bool) {
         if hand.session.scene().imager.size().width_px != hand.width_px {
-            // It had another width then; one that cannot be is no worse than that.
+            // The session had another width then. If the chosen width cannot be set, the old width remains.
             let resolution = hand.shape.resolution(hand.width_px);
             let _ = hand.session.turn(&[resolution], hand.session.index(), None, &Threads(self.order.threads));
             *is_light_kept = false;
@@ -293,12 +294,12 @@ impl Desk {
         hand.is_light_owed = !*is_light_kept;
     }
 
-    /// Shows a small picture of few samples of the scene as it is to be.
+    /// Makes and shows a draft, a small picture with few samples, of the scene with all changes.
     fn drafted(&self, hand: &mut Hand, started: Instant) -> Drafted {
         let workers = Threads(self.order.threads);
         let mut same_light = hand.draft.is_some() && hand.session.has_light();
         if same_light && !hand.is_light_owed && hand.owed.iter().all(|owed| is_of_development(&owed.turned.control)) {
-            // The draft takes it up when it is wanted.
+            // The draft gets the change when it is needed next.
             return Drafted::SameLight;
         }
         let index = hand.index_owed();
@@ -307,7 +308,7 @@ impl Desk {
                 hand.behind.clear();
                 let mut texts: Vec<String> = hand.owed.iter().flat_map(|owed| hand.shape.texts(&owed.turned)).collect();
                 texts.extend(hand.shape.draft(&hand.session));
-                // What cannot be is said of the whole scene.
+                // Faults are reported when the whole scene is changed.
                 hand.draft = hand.session.draft_of(&texts, index).ok();
             }
             Some(draft) => {
@@ -324,7 +325,7 @@ impl Desk {
                 }
             }
         }
-        // Pixels of a photograph are developed as soon.
+        // A photograph's own pixels are developed as quickly as a draft.
         if hand.draft.as_ref().is_some_and(|draft| draft.series().is_without_lens()) {
             hand.draft = None;
         }
@@ -355,11 +356,11 @@ impl Desk {
         Drafted::Shown
     }
 
-    /// Sets the scene as it is to be; says whether the light is the same. `None` where more was turned meanwhile: what is not set is
-    /// owed still.
+    /// Applies the changes to the scene, and returns whether the light is still valid. `None` if another change stopped it; changes that
+    /// are not applied then remain.
     fn settle(&self, hand: &mut Hand, stop: &Stop) -> Option<bool> {
         let is_drafted = hand.draft.is_some() && hand.is_light_owed;
-        // Where there is no draft to look at, this is what is waited for.
+        // Without a draft to look at, somebody waits for this, so it is not stopped.
         let never = Stop::new();
         let stop = if is_drafted { stop } else { &never };
         let workers = Until { threads: self.order.threads, stop };
@@ -371,7 +372,7 @@ impl Desk {
         for owed in take(&mut hand.owed) {
             let (texts, control) = (hand.shape.texts(&owed.turned), owed.turned.control.clone());
             let index = owed.turned.picture().unwrap_or(hand.session.index());
-            // Where a draft of it was made, the scene can be.
+            // A draft with this change has the focused lens, which the scene can take over.
             let draft = hand.draft.as_ref().filter(|_| !NOT_DRAFTED.contains(&&*control));
             let changed = hand.session.turn(&texts, index, draft, &workers);
             match changed {
@@ -391,7 +392,7 @@ impl Desk {
                 Err(_) if stop.should_stop() => hand.owed.push(owed),
                 Err(error) => {
                     held(&self.state).refused.insert(control.clone(), said(&error, &control));
-                    // The draft may have taken it.
+                    // The draft may have the refused change.
                     hand.draft = None;
                     hand.is_light_owed |= is_drafted;
                 }
@@ -405,7 +406,7 @@ impl Desk {
         if !is_light_kept {
             hand.pace_s = None;
         }
-        // What the film got follows from the light, but for what is done to the sum of it.
+        // The exposure follows from the light, unless something that is applied to the sum of the light has changed.
         if !is_light_kept || !is_developed_only || hand.session.scene().exposure_time_s() != time_s {
             (hand.light, hand.small) = (None, None);
         }
@@ -420,15 +421,15 @@ impl Desk {
         Some(is_light_kept)
     }
 
-    /// Takes up the scene's file, or one that it names, where somebody wrote it since; says whether there is another scene now. A
-    /// file that is broken is told, and all stays as it is.
+    /// Loads the scene again if somebody wrote its file, or one that it names, since. Returns whether there is another scene now. If a
+    /// file is broken, the page is told, and everything stays as it is.
     fn is_written_anew(&self, hand: &mut Hand) -> bool {
         let mut written = held(&self.written);
         let now = match &*written {
             None => None,
             Some(_) => {
                 let is_small = std::fs::metadata(&self.order.scene).is_ok_and(|found| found.len() <= MAX_SCENE_BYTES);
-                // A file that is just being replaced is there the next time.
+                // A file that is just being replaced will be there next time.
                 let Some(now) = is_small.then(|| std::fs::read_to_string(&self.order.scene).ok()).flatten() else {
                     return false;
                 };
@@ -446,7 +447,7 @@ impl Desk {
         if hand.refused.as_ref().is_some_and(|refused| refused.0 == now && !others.differ(&refused.1)) {
             return false;
         }
-        // What the page set stays, but for what the file now says otherwise.
+        // Changes of the page stay, except values that the file itself has changed.
         let mut changes = held(&self.state).changes.clone();
         if let (Some(before), Some(now)) = (&*written, &now) {
             changes.retain(|(path, _)| save::says_same(before, now, path));
@@ -481,7 +482,7 @@ impl Desk {
         }
     }
 
-    /// Keeps what was set, a text `path=value`, for the scene's file.
+    /// Records a change, a text `path=value`, for saving it to the scene's file.
     fn remember(&self, text: &str) {
         let path = text.split_once('=').map_or(text, |(path, _)| path);
         let mut state = held(&self.state);
@@ -489,7 +490,8 @@ impl Desk {
         state.changes.push((path.to_owned(), text.to_owned()));
     }
 
-    /// Shows the scene's controls as they are now, which have all that was taken, and its lens, if that was not drawn from the draft.
+    /// Publishes the controls of the session's scene, which now have all accepted changes, and its lens if that was not drawn from the
+    /// draft.
     fn adopt(&self, session: &Session, is_lens_drawn: bool) {
         self.draw(session, is_lens_drawn);
         let controls = controls::of_session(session);
@@ -504,7 +506,7 @@ impl Desk {
         self.turned.notify_all();
     }
 
-    /// Shows the lens as it is now.
+    /// Publishes the session's scene, and marks its lens as changed unless `is_drawn` or it is the same one.
     fn draw(&self, session: &Session, is_drawn: bool) {
         let mut state = held(&self.state);
         let is_same = |before: &Arc<spectra_scene::Scene>| Arc::ptr_eq(&before.lens, &session.scene().lens);
@@ -515,7 +517,7 @@ impl Desk {
         state.scene = Some(Arc::clone(session.scene()));
     }
 
-    /// Says what is wrong with the scene, or that nothing is any more, and what was refused.
+    /// Tells the page the scene's error, or that there is none any more, and which changes were refused.
     pub(super) fn tell(&self, fault: Option<Value>) {
         let mut state = held(&self.state);
         let is_other = state.refused != state.refused_told || state.turns_settled != state.turns_told;
@@ -524,7 +526,7 @@ impl Desk {
         state.refused_told = state.refused.clone();
         state.turns_told = state.turns_settled;
         if is_new {
-            // The page need not wait for a picture to hear of it.
+            // The page learns of it without waiting for a picture.
             state.number += 1;
             let head = json!({"frame": state.number, "scene": state.scenes, "fault": state.said()});
             state.note = Some((state.number, Arc::new(packed(&head, &[]))));
@@ -533,7 +535,7 @@ impl Desk {
     }
 }
 
-/// Whether a value is of the development of a film, by its path.
+/// Returns whether a path belongs to the development of a film, so that a change of it mostly leaves the light valid.
 fn is_of_development(path: &str) -> bool {
     path.starts_with("film.") && !CHOOSES_FILM.iter().any(|key| path.rsplit('.').next() == Some(key))
 }

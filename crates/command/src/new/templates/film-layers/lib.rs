@@ -5,20 +5,20 @@ use serde::Deserialize;
 use spectra_core::math::exp;
 use spectra_core::prelude::*;
 
-/// Number of layers. They share the band equally, the first one at its short end.
+/// Number of layers. They divide the band equally, starting at its short end.
 const LAYERS: usize = {{layers}};
 /// The band that the film sees, nm.
 const BAND_NM: [f64; 2] = [400.0, 700.0];
-/// Density of a layer's dye where no light fell.
+/// Density of a layer's dye without exposure.
 const DENSITY: f64 = 3.0;
-/// Exposure of a layer that halves the density of its dye, J m^-2. With more layers, each sees less of the light.
+/// Exposure that halves the density of a layer's dye, J m^-2. With more layers, each receives less of the light.
 const HALF: f64 = 4e-3 / LAYERS as f64;
 /// Wavelengths of the red, green and blue of a screen, nm.
 const SCREEN_NM: [f64; 3] = [640.0, 545.0, 455.0];
 
-/// A color reversal film whose layers share the spectrum equally.
+/// A color reversal film whose layers divide the spectrum equally.
 ///
-/// Light bleaches the dye that absorbs its color, so the film is clear where it was white and black where it was dark.
+/// Light bleaches the dye that absorbs its color, so the film is clear where the scene was white and black where it was dark.
 ///
 /// # Example
 /// ```yaml
@@ -48,12 +48,12 @@ fn center_nm(layer: usize) -> f64 {
     BAND_NM[0] + (layer as f64 + 0.5) * (BAND_NM[1] - BAND_NM[0]) / LAYERS as f64
 }
 
-/// A bell around `center_nm`.
+/// Gaussian around `center_nm`, 1 at the center.
 fn bell(nm: f64, center_nm: f64, width_nm: f64) -> f64 {
     exp(-((nm - center_nm) / width_nm) * ((nm - center_nm) / width_nm))
 }
 
-/// What the layers see: responses to spectral irradiance, which the exposure time makes J m^-2.
+/// Responses of the layers to spectral irradiance; times the exposure time they give J m^-2.
 fn layers(grid: &Grid) -> Vec<Channel> {
     let width_nm = 0.5 * (BAND_NM[1] - BAND_NM[0]) / LAYERS as f64;
     let layer = |i| {
@@ -63,7 +63,7 @@ fn layers(grid: &Grid) -> Vec<Channel> {
     (0..LAYERS).map(layer).collect()
 }
 
-/// Linear red, green and blue that pass the dyes of all layers, after an exposure of each, J m^-2.
+/// Returns the linear red, green and blue that pass the dyes after exposures of all layers, J m^-2.
 fn color(exposures: &[f64]) -> [f64; 3] {
     SCREEN_NM.map(|nm| {
         let weights: Vec<f64> = (0..LAYERS).map(|i| bell(nm, center_nm(i), 50.0)).collect();
@@ -103,7 +103,7 @@ mod tests {
     use super::{DENSITY, HALF, LAYERS, color};
     use spectra_testing::{FilmLaws, assert_fault, film};
 
-    /// Without light all dye is left; `HALF` halves its density; much light leaves none.
+    /// All dye is left without light, `HALF` halves its density, and much light leaves none.
     #[test]
     fn light_bleaches_the_dyes() {
         for (exposure, density) in [(0.0, DENSITY), (HALF, 0.5 * DENSITY), (1e12 * HALF, 0.0)] {

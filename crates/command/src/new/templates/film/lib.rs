@@ -7,7 +7,7 @@ use spectra_core::prelude::*;
 
 /// A tintype: silver from wet collodion on black iron, a positive at once.
 ///
-/// It sees blue and ultraviolet light only: skies are white, lips and grass dark.
+/// The plate is sensitive only to blue and ultraviolet light: skies come out white, lips and grass dark.
 ///
 /// # Example
 /// ```yaml
@@ -28,7 +28,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Film>, Faults
     Ok(Box::new(OneLayer::new("tintype", "J m^-2", context, sees, p.exposure.s(), tone)))
 }
 
-/// Warm light from silver on black iron, after a radiant exposure in J m^-2.
+/// Returns the warm color of silver on black iron after a radiant exposure in J m^-2, as linear RGB.
 fn tone(exposure: f64, _: Pixel) -> [f64; 3] {
     let silver = 1.0 - exp(-exposure / 0.06);
     [1.0, 0.9, 0.76].map(|warm| warm * (0.01 + 0.75 * silver))
@@ -40,7 +40,7 @@ mod tests {
     use spectra_core::prelude::Pixel;
     use spectra_testing::{FilmLaws, assert_fault, film};
 
-    /// No light is black iron; at 0.06 J m^-2 a part 1/e of the silver is missing.
+    /// There is only black iron without light; at 0.06 J m^-2 a fraction 1/e of the silver is missing.
     #[test]
     fn silver_grows_toward_its_most() {
         let red = |exposure| tone(exposure, Pixel { index: 0, area_mm2: 1.0, frame: 0 })[0];

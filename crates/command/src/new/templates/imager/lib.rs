@@ -6,9 +6,9 @@ use spectra_core::loss::ALIVE;
 use spectra_core::math::log10;
 use spectra_core::prelude::*;
 
-/// A radiometer: irradiance in W m^-2, every wavelength alike, shown on a scale of decades.
+/// A radiometer: irradiance in W m^-2, weighted equally at every wavelength, shown on a logarithmic scale.
 ///
-/// The brightest pixel is white; black is so many decades below.
+/// The brightest pixel is white; black is `decades` powers of ten below it.
 ///
 /// # Example
 /// ```yaml
@@ -24,7 +24,7 @@ struct MyStageParams {
     /// Pixels across and down, 1 to 8192 each.
     #[schemars(inner(range(min = 1, max = 8192)))]
     resolution: [u32; 2],
-    /// Powers of ten from black to white.
+    /// Range from black to white, in powers of ten.
     #[serde(default = "three")]
     decades: Positive<f64>,
 }
@@ -65,7 +65,7 @@ impl Imager for MyStage {
     }
 }
 
-/// What it records by itself, without a film on it.
+/// What the imager records without a film: irradiance, and a picture of it.
 impl Response for MyStage {
     fn channels(&self) -> Vec<Channel> {
         vec![self.irradiance.clone()]
@@ -78,13 +78,13 @@ impl Response for MyStage {
     }
 }
 
-/// Gray of a part of the most: 1 is white, `decades` below is black.
+/// Returns the gray of a fraction of the brightest value: 1 is white, `decades` powers of ten below is black.
 fn shade(part: f64, decades: f64) -> [f32; 3] {
     let step = (1.0 + log10(part.max(1e-300)) / decades).clamp(0.0, 1.0);
-    [(step * step) as f32; 3] // squared: steps look even on a screen
+    [(step * step) as f32; 3] // squared, so that steps look even on a screen
 }
 
-/// Forward: which pixel a ray meets.
+/// Forward tracing: finds the pixel that a ray hits.
 impl Receive for MyStage {
     fn receive(&self, rays: &mut RayBatch, _: Isa) {
         let c = rays.columns_mut();
@@ -103,7 +103,7 @@ impl Receive for MyStage {
     }
 }
 
-/// Backward: where in a pixel a ray starts.
+/// Backward tracing: chooses the point of a pixel where a ray starts.
 impl Launch for MyStage {
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
         let c = rays.columns_mut();

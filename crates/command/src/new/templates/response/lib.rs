@@ -1,4 +1,4 @@
-//! `kind: my-stage`, a response: what a detector sees, channel by channel, and the picture of that.
+//! `kind: my-stage`, a response: the sensitivity of a detector, channel by channel, and how its data are shown.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use spectra_core::prelude::*;
 
 /// The eye of a honey bee: ultraviolet, blue and green.
 ///
-/// The picture shows them as blue, green and red. What a bee cannot see, red light, is black.
+/// The picture shows them as blue, green and red. Red light, which a bee cannot see, is black.
 ///
 /// # Example
 /// ```yaml
@@ -18,13 +18,13 @@ use spectra_core::prelude::*;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MyStageParams {
-    /// Irradiance, as its receptors weigh it, that the picture shows as white, W m^-2 (J m^-2 with an exposure time).
+    /// Irradiance, weighted by the receptors, that the picture shows as white, W m^-2 (J m^-2 with an exposure time).
     white: Positive<f64>,
 }
 
 spectra_core::register!(response "my-stage": MyStageParams, build);
 
-/// Name, wavelength of the peak and width of its Gaussian, nm; in the order red, green, blue of the picture.
+/// Name, peak wavelength and standard deviation of each Gaussian, nm, in the order red, green, blue of the picture.
 const RECEPTORS: [(&str, f64, f64); 3] = [("green", 544.0, 45.0), ("blue", 436.0, 35.0), ("ultraviolet", 344.0, 30.0)];
 
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Response>, Faults> {
@@ -59,7 +59,7 @@ impl Response for MyStage {
 mod tests {
     use spectra_testing::{ResponseLaws, assert_fault, response};
 
-    /// A Gaussian falls to exp(-1/2) one width beside its peak.
+    /// A Gaussian falls to exp(-1/2) one standard deviation from its peak.
     #[test]
     fn receptors_see_what_they_should() {
         let channels = response("{kind: my-stage, white: 1}").channels();

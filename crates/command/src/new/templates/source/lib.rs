@@ -6,9 +6,9 @@ use spectra_core::math::{expm1, sin_cos_turns};
 use spectra_core::prelude::*;
 use std::f64::consts::PI;
 
-/// A ring lamp: a glowing ring across the axis.
+/// A ring lamp: a glowing ring around the axis.
 ///
-/// It radiates as a black body does, alike to all sides (Lambert's law).
+/// The ring radiates as a black body, with the same radiance in all directions (Lambert's law).
 ///
 /// # Example
 /// ```yaml
@@ -23,7 +23,7 @@ struct MyStageParams {
     distance: Positive<Length>,
     /// Outer diameter, mm if bare.
     diameter: Positive<Length>,
-    /// Width of the glowing ring, mm if bare: at most half of the diameter, which is a disk.
+    /// Width of the glowing ring, mm if bare: at most half of the diameter, which makes a disk.
     width: Positive<Length>,
     /// Temperature, 500 K to 50 000 K, K if bare; a halogen lamp has 3200 K.
     #[schemars(range(min = 500, max = 50_000))]
@@ -81,11 +81,11 @@ impl Source for MyStage {
         Some(self)
     }
     fn describe(&self) -> String {
-        format!("ring lamp of {} mm, {} mm before the lens", 2.0 * self.outer_mm, self.distance_mm)
+        format!("ring lamp of {} mm, {} mm in front of the lens", 2.0 * self.outer_mm, self.distance_mm)
     }
 }
 
-/// Forward, from the lamp: where rays start, and how much they carry.
+/// Forward tracing, from the lamp: chooses where rays start and how much they carry.
 impl Emit for MyStage {
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
         let (inner2, outer2) = (self.inner_mm * self.inner_mm, self.outer_mm * self.outer_mm);
@@ -107,7 +107,7 @@ impl Emit for MyStage {
     }
 }
 
-/// Backward, from the imager: what rays see where they meet the plane of the lamp.
+/// Backward tracing, from the imager: the radiance where rays meet the plane of the lamp.
 impl Radiance for MyStage {
     fn radiance(&self, rays: &mut RayBatch, _: Isa) {
         let c = rays.columns_mut();

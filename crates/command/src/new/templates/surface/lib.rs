@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::prelude::*;
 
-/// A cubic phase plate: it blurs near and far alike.
+/// A cubic phase plate, which blurs near and far objects equally.
 ///
-/// z = height ((x / radius)^3 + (y / radius)^3). Every point becomes the same small comet at any
-/// distance, which a computer can take away again from all of the picture at once.
+/// z = height ((x / radius)^3 + (y / radius)^3). A point at any distance becomes the same small comet,
+/// which a computer can remove from the whole picture at once.
 ///
 /// # Example
 /// ```yaml
@@ -20,7 +20,7 @@ use spectra_core::prelude::*;
 struct MyStageParams {
     /// Sag on the x axis at `radius`, mm if bare; 0 is a plane.
     height: Length,
-    /// Where the sag is `height`, mm if bare.
+    /// Distance from the axis, along x, where the sag is `height`, mm if bare.
     radius: Positive<Length>,
 }
 
@@ -31,7 +31,7 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let (height, radius) = (p.height.mm(), p.radius.mm());
     if height.abs() > radius {
         let fault = params.fault("height", format!("{height} mm is too steep"));
-        return Err(fault.hint("at most `radius`; 40 um is a lot already").into());
+        return Err(fault.hint("use at most `radius`; 40 um is already a lot").into());
     }
     let cubic_per_mm2 = height / (radius * radius * radius);
     Ok(Box::new(PerRay(FromSag(MyStage { cubic_per_mm2 }))))
@@ -47,7 +47,7 @@ impl SagShape for MyStage {
         Some(self.cubic_per_mm2 * (x * x * x + y * y * y))
     }
 
-    // Without this, slopes are taken by differences: slower, and less exact.
+    // Without this, slopes are computed by finite differences, which is slower and less exact.
     fn slope(&self, x: f64, y: f64) -> Option<(f64, f64)> {
         Some((3.0 * self.cubic_per_mm2 * x * x, 3.0 * self.cubic_per_mm2 * y * y))
     }
@@ -59,7 +59,7 @@ mod tests {
     use spectra_core::surface::Action;
     use spectra_testing::{SurfaceLaws, assert_fault, ray, surface};
 
-    /// A ray along the axis is mirrored by twice the slope's angle: at x = 5 mm the slope is
+    /// A ray parallel to the axis is turned by twice the angle of the slope: at x = 5 mm the slope is
     /// 3 (0.4 mm / 1000 mm^3) 25 mm^2 = 0.03.
     #[test]
     fn a_mirror_turns_light_by_twice_its_slope() {

@@ -1,4 +1,4 @@
-//! `kind: my-stage`, a way to draw wavelengths.
+//! `kind: my-stage`, a wavelength sampler.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -6,9 +6,9 @@ use spectra_core::batch::CONTINUUM;
 use spectra_core::math::{exp, expm1, log1p};
 use spectra_core::prelude::*;
 
-/// An exponential density: most samples at short wavelengths.
+/// An exponential density with most samples at short wavelengths.
 ///
-/// Where the source has lines, they get half of the samples, each in proportion to its power.
+/// If the source has lines, they get half of the samples, each in proportion to its power.
 ///
 /// # Example
 /// ```yaml
@@ -59,11 +59,11 @@ impl WavelengthSampler for MyStage {
 struct Density {
     length_nm: f64,
     start_nm: f64,
-    /// What lies in the band, of an exponential without end.
+    /// Fraction of an infinite exponential that lies in the band.
     all: f64,
-    /// Share of all lines.
+    /// Probability of all lines together.
     of_lines: f64,
-    /// Wavelength and probability of each.
+    /// Wavelength (nm) and probability of each line.
     lines: Vec<(f64, f64)>,
 }
 
@@ -80,7 +80,7 @@ impl WavelengthDensity for Density {
                 (nm[i], line[i]) = (at_nm, number as u32);
                 weight[i] /= p;
             } else {
-                // Behind the lines, the number is on [0, 1) again.
+                // What remains of `u` after the lines is rescaled to [0, 1).
                 let u = (rest.max(0.0) / (1.0 - self.of_lines)).min(1.0);
                 nm[i] = self.start_nm - self.length_nm * log1p(-u * self.all);
                 line[i] = CONTINUUM;
