@@ -182,7 +182,7 @@ fn main() {
     ];
     let band = Indices::Band { min_nm: 400.0, max_nm: 700.0 };
     let isa = Isa::detect();
-    let tracers = cases.each_ref().map(|(_, _, lens)| Tracer::new(lens, band, isa).expect("its glasses have indices"));
+    let tracers = cases.each_ref().map(|(_, _, lens)| Tracer::new(lens, band).expect("its glasses have indices"));
     let mut batch = RayBatch::new(BATCH);
     let mut ratios: [Vec<f64>; 7] = Default::default();
     let mut fastest_s = f64::INFINITY;

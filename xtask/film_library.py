@@ -120,9 +120,10 @@ RECIPROCITY = {
         "reciprocity: {exponent: 1.26, above: 1 s}"],
     "ilford-hp5-plus": ["# Harman, \"Film reciprocity failure compensation\": beyond 1 s a metered time Tm becomes Tm^1.31.",
         "reciprocity: {exponent: 1.31, above: 1 s}"],
-    "fuji-velvia-50": ["# Fuji's data sheet: 1/3, 1/2, 2/3 and 1 stop more at 4, 8, 16 and 32 s; the filters that it names besides are left out.",
+    "fuji-velvia-50": ["# Fuji's data sheet: 1/3, 1/2, 2/3 and 1 stop more at 4, 8, 16 and 32 s; the filters that it also "
+                       "recommends are left out.",
         "reciprocity: {table: [[4, 5.04], [8, 11.3], [16, 25.4], [32, 64]], above: 1 s}"],
-    "fuji-provia-100f": ["# Fuji's data sheet: in full to 128 s, a third of a stop more at 4 minutes.",
+    "fuji-provia-100f": ["# Fuji's data sheet: no correction up to 128 s, a third of a stop more at 4 minutes.",
         "reciprocity: {table: [[240, 302]], above: 128 s}"],
 }
 # Weights of red, green and blue in a visual density.
@@ -310,7 +311,7 @@ def dye_remark(off):
 
 
 def mtf_remark(data):
-    return bool(data.mtf) and len(data.mtf) == 1 and "The sheet has one curve for the whole film; assumed for each layer."
+    return bool(data.mtf) and len(data.mtf) == 1 and "The sheet has one curve for the whole film; it is assumed for each layer."
 
 
 def negative(folder, slug, numbers):
@@ -321,8 +322,8 @@ def negative(folder, slug, numbers):
     speed = "the maker's exposure index" if cine else "an ISO speed"
     tungsten = " It is balanced for tungsten light: in daylight its prints are blue without an amber filter (Wratten 85) before the lens." if light == TUNGSTEN else ""
     stops = " counted in stops from the normal exposure, taken here as 10/S lx s of the reference light" if data.exposure_base == 2 else ""
-    back = ("The black backing (rem-jet) takes nearly all of it. " if cine else
-            "A layer of gray silver or of dye under the emulsion, cleared in processing, takes some of it. ")
+    back = ("The black backing (rem-jet) absorbs nearly all of the light in the base. " if cine else
+            "A layer of gray silver or of dye under the emulsion, cleared in processing, absorbs some of the light. ")
     remark = (f"Color negative for {'tungsten light' if light == TUNGSTEN else 'daylight'}; the speed is {speed}.{tungsten} The "
               f"sheet's curves are Status M densities of neutral exposures{stops}.")
     base.stock(
@@ -340,8 +341,8 @@ def slide(folder, slug, numbers):
     _, _, name, maker, sheet, year, iso = SLIDES[slug]
     data = prepared(folder, "slide", slug)
     grain, grain_remark = grainy(folder, slug, iso, data, "slide")
-    back = ("The black backing (rem-jet) takes nearly all of it. " if slug == "kodachrome-64" else
-            "A layer of gray silver under the emulsion, bleached in processing, takes most of it. ")
+    back = ("The black backing (rem-jet) absorbs nearly all of the light in the base. " if slug == "kodachrome-64" else
+            "A layer of gray silver under the emulsion, bleached in processing, absorbs most of the light. ")
     base.stock(
         slug, name=name, maker=maker, source=f"{sheet}, {base.CARRIED}",
         remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures.",
@@ -357,9 +358,9 @@ def print_stock(folder, slug, numbers):
     _, _, name, maker, sheet, year, medium, aim = PRINTS[slug]
     data = prepared(folder, "print", slug)
     if medium == "paper":
-        remark = ("Color paper (process RA-4) for prints of still negatives. The exposures of its curves are relative to the printing "
-                  "light, which is set for each negative; no speed is stated. Densities of reflection are taken as the sums of its "
-                  "dyes' densities over the minimum.")
+        remark = ("Color paper (process RA-4) for prints of still negatives. The exposures of its curves are relative to the "
+                  "printing light, which is set for each negative; no speed is stated. Reflection densities are taken as sums "
+                  "of its dyes' densities above the minimum.")
     else:
         remark = ("Print film for projection. The exposures of its curves are relative to the printing light, which is set for each "
                   "negative; no speed is stated.")
@@ -377,29 +378,32 @@ def silver(folder, slug):
     name, maker, sheet, year, iso, rms, k_mm, gradient = SILVER[slug]
     seen = base.pairs(base.load(folder, "bw_negative_film.kodak_trix_400", "KODAK_TRI_X_400").log_sensitivity[0])
     lines = base.layer("panchromatic", seen, [], assumed_sensitivity=True, mtf=base.frieser(k_mm), sensitivity_remark=(
-        "No free digitization of the sheet's figure is known: that of Tri-X (F-4017), a panchromatic film, too."))
+        "No free digitization of the sheet's figure is known. This is the sensitivity of Tri-X (F-4017), which is also "
+        "panchromatic."))
     curve = [
         "    curves:", "      - development: pictorial", "        assumed: true", f"        average-gradient: {gradient}",
         "        maximum-density: 2.4", "        toe: 0.2", "        shoulder: 4", "        remark: " + base.folded(
-            "No free digitization of the sheet's figure is known: through the ISO speed point with a usual pictorial gradient; "
-            "density over base and fog.", "          ")]
+            "No free digitization of the sheet's figure is known. The curve passes through the ISO speed point with a usual "
+            "pictorial gradient; density above base and fog.", "          ")]
     if rms:
         grain = f"granularity: {{rms: {rms}, aperture: 0.048 mm, density: 1}}"
     else:
         rms = {125: 11, 400: 16}[iso]
         grain = f"granularity:\n  rms: {rms}\n  assumed: true\n  remark: " + base.folded(
-            "The sheet states none. Between those of films of its kind and speed: 8 of T-Max 100, 14 of Double-X (EI 250), 17 of Tri-X.",
+            "The sheet states none. The value lies between those of similar films: 8 for T-Max 100, 14 for Double-X (EI 250), "
+            "17 for Tri-X.",
             "    ")
     half = 2.302585 / (3.141593 * k_mm)
     base.stock(
         slug, name=name, maker=maker,
         source=f"{sheet} (speed{', granularity' if SILVER[slug][5] else ''}); sensitivity of Tri-X 400, F-4017, {base.CARRIED}",
-        remark="A film by its published figures, not by its curves: speed" + (" and granularity are" if SILVER[slug][5] else " is")
-        + " as stated; sensitivity, curve, modulation transfer and halation are those of films of its kind.",
+        remark="Based on published figures, not on curves: speed" + (" and granularity are" if SILVER[slug][5] else " is")
+        + " as stated; sensitivity, curve, modulation transfer and halation are those of similar films.",
         head=["", "process: negative", "density: visual", f"year: {year}", f"iso: {iso}", f"reference-illuminant: {DAYLIGHT}",
               *assumed([("mtf", f"By Frieser's formula with k = {k_mm} mm, half of the contrast at {half:.0f} cycles/mm, of the 0.005 to "
                          "0.04 mm that H. Frieser (Photogr. Sci. Eng. 4, 324, 1960) gives for emulsions.")]),
-              grain, base.halation("dye", base.ENTERS + "Base and dye under the emulsion as of Tri-X: 0.35 passes once."), base.ACETATE,
+              grain, base.halation("dye", base.ENTERS + "Base and dye under the emulsion are as in Tri-X: they transmit 0.35 in "
+                                                        "one pass."), base.ACETATE,
               *RECIPROCITY.get(slug, [])],
         layers=[[*lines[:-1], *curve]])
 

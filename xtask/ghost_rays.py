@@ -1,9 +1,10 @@
-"""Ghost rays by another program: tests/data/ghost-rays.csv.
+"""Traces ghost rays with another program and writes tests/data/ghost-rays.csv.
 
-Rays along paths of two reflections, traced by optiland (MIT; K. Harrison and contributors, https://github.com/HarrisonKramer/optiland),
-version 0.6.3, `Optic.add_sequence` with `(surface, "reflect")` steps, double precision. Lenses are those of tests/data/lenses at
-their stated indices, without clear apertures. Columns: the lens; the two surfaces that reflect, counted from 1; a point of the ray and its
-direction before the lens (mm, vertex of the first surface at the origin); where it meets the image plane, and its direction there.
+The rays follow paths of two reflections. optiland (MIT; K. Harrison and contributors, https://github.com/HarrisonKramer/optiland), version
+0.6.3, traces them by `Optic.add_sequence` with `(surface, "reflect")` steps, in double precision. The lenses are those of
+tests/data/lenses at their stated indices, without clear apertures. Columns: the lens; the two surfaces that reflect, counted from 1; a
+point of the ray and its direction before the lens (mm, vertex of the first surface at the origin); the point where it meets the image
+plane, and its direction there.
 
     pip install optiland==0.6.3 pyyaml
     python xtask/ghost_rays.py > tests/data/ghost-rays.csv

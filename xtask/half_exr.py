@@ -1,4 +1,4 @@
-"""An OpenEXR file of 16-bit floats as scan lines, ZIP compressed: what the makers of pictures here write, without a library."""
+"""Writes OpenEXR files of 16-bit floats as scan lines, ZIP compressed, without a library. The scripts that make pictures use it."""
 
 import struct
 import zlib
@@ -9,7 +9,7 @@ def attribute(name, kind, value):
 
 
 def compressed(raw):
-    """OpenEXR's ZIP: bytes apart by parity, differences plus 128, deflate."""
+    """Compresses bytes as OpenEXR's ZIP does: separated by parity, as differences plus 128, deflated."""
     halves = raw[0::2] + raw[1::2]
     differences = bytearray(halves[:1])
     differences += bytes((b - a + 128) & 255 for a, b in zip(halves, halves[1:]))
@@ -18,7 +18,7 @@ def compressed(raw):
 
 
 def write(path, comment, channels, rows):
-    """Writes rows of pixels, each pixel with a value a channel; `channels` are letters in alphabetical order."""
+    """Writes rows of pixels. Each pixel has one value for each channel; `channels` are letters in alphabetical order."""
     width, height = len(rows[0]), len(rows)
     listed = b"".join(n.encode() + b"\0" + struct.pack("<iBxxxii", 1, 0, 1, 1) for n in channels) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the CIE, ISO and ColorChecker tables under spectra/, and the values that tests hold them to.
+"""Writes the CIE, ISO and ColorChecker tables under spectra/, and the values that tests compare with.
 
 Run from the root of the repository:
 
@@ -7,19 +7,18 @@ Run from the root of the repository:
     VENV/bin/pip install colour-science==0.4.7
     VENV/bin/python xtask/import_colour_science.py
 
-Source of all tables: the Python package colour-science 0.4.7 (BSD-3-Clause, Copyright 2013 Colour Developers), which
-names the publication of each; that publication is what `source` states. Numbers are written as the package holds them
-(the shortest decimal that reads back to the same double, which is what was typed there). Nothing is interpolated,
-extended, normalised or cut: `outside` states what a reader does beyond the range, `interpolation` what it does between
-points where that is not a straight line.
+The source of all tables is the Python package colour-science 0.4.7 (BSD-3-Clause, Copyright 2013 Colour Developers). It names the
+publication of each table, which `source` states. Numbers are written as the package holds them (the shortest decimal that reads back to
+the same double, which is what was typed there). Nothing is interpolated, extended, normalized or cut: `outside` states what a reader
+does beyond the range, `interpolation` what it does between points if that is not linear.
 
-Spectra that nothing here was fitted to (`crates/film/tests/data/unseen.csv`): skins and leaves among the 190 training
-spectra of the Academy's rawtoaces, which the package carries: those with the two bands of blood near 545 and 575 nm, and those
+`crates/film/tests/data/unseen.csv` holds spectra to which nothing was fitted: skins and leaves among the 190 training spectra of the
+Academy's rawtoaces, which the package includes. The skins are those with the two bands of blood near 545 and 575 nm, the leaves those
 with the band of chlorophyll near 675 nm and the edge behind it.
 
-Expected values (`crates/spectrum/tests/data/`) are computed here, by that package and numpy alone:
+The expected values (`crates/spectrum/tests/data/`) are computed here, by that package and numpy alone:
   illuminants.csv  x, y of each illuminant: aligned to 360-830 nm by 1 nm (linear, constant ends), summed with the
-                   1 nm CIE 1931 functions; CCT and Duv by Ohno (2013) from that chromaticity, where it has one
+                   1 nm CIE 1931 functions; CCT and Duv by Ohno (2013) from that chromaticity, if it has one
   checker-d50.csv  XYZ and Lab of the ColorChecker patches under D50; reflectances by Sprague's interpolation (CIE 167:2005)
 """
 
@@ -38,13 +37,13 @@ CIE15_2018 = "CIE 015:2018, Colorimetry, 4th edition, doi:10.25039/TR.015.2018"
 
 
 def number(value):
-    """The shortest decimal that reads back to the same double, without a trailing `.0`."""
+    """Returns the shortest decimal that reads back to the same double, without a trailing `.0`."""
     text = repr(float(value))
     return text[:-2] if text.endswith(".0") else text
 
 
 def write(path, front_matter, wavelengths, columns):
-    """One file: front matter, a header row, rows."""
+    """Writes one file: front matter, a header row, rows."""
     low, high = number(wavelengths[0]), number(wavelengths[-1])
     lines = ["# spectra: 1"]
     lines += [f"# {key}: {value}" for key, value in front_matter.items()]
@@ -57,12 +56,12 @@ def write(path, front_matter, wavelengths, columns):
 
 
 def slug(name):
-    """A file name: lower case, with hyphens."""
+    """Returns a file name: lower case, with hyphens."""
     return re.sub(r"[^a-z0-9.]+", "-", name.lower()).strip("-")
 
 
 def observers():
-    """Color-matching functions and luminous efficiency functions."""
+    """Writes color-matching functions and luminous efficiency functions."""
     table = [
         ("cie-1931-2deg", "CIE 1931 2 Degree Standard Observer", "CIE 1931 2 deg", CIE15 + " (CIE 018:2019)", "geometric"),
         ("cie-1964-10deg", "CIE 1964 10 Degree Standard Observer", "CIE 1964 10 deg", CIE15, "geometric"),
@@ -103,7 +102,7 @@ def observers():
 
 
 def illuminant_front_matter(name):
-    """Source and conditions of an illuminant."""
+    """Returns source and conditions of an illuminant."""
     source, conditions = CIE15, "CIE illuminant"
     if name == "D60":
         conditions = "CIE daylight of 6000 K nominal (6003.5 K), computed from the daylight components"
@@ -131,7 +130,7 @@ def illuminant_front_matter(name):
 
 
 def illuminants():
-    """All illuminants, and the chromaticities that a test holds them to."""
+    """Writes all illuminants, and the chromaticities that a test compares with."""
     cmfs = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
     rows = ["name,x,y,cct_k,duv"]
     for name in colour.SDS_ILLUMINANTS:
@@ -157,7 +156,7 @@ PATCH_NAMES = {
 
 
 def checkers():
-    """ColorChecker reflectances, and their colors under D50."""
+    """Writes ColorChecker reflectances, and their colors under D50."""
     table = [
         ("colorchecker", "ISO 17321-1", "ColorChecker", "ISO 17321-1:2012, annex C", "24 patches, 0/45 geometry"),
         ("colorchecker-babelcolor", "BabelColor Average", "ColorChecker BabelColor average",
@@ -188,9 +187,9 @@ UNSEEN = pathlib.Path("crates/film/tests/data/unseen.csv")
 
 
 def unseen():
-    """Skins and leaves that film was not fitted to: patches of the rawtoaces training data, by number."""
+    """Writes skins and leaves to which film was not fitted: patches of the rawtoaces training data, by number."""
     training = colour.characterisation.read_training_data_rawtoaces_v1()
-    values = np.maximum(training.values, 0)  # zeros of 1e-17 of either sign at 380 nm
+    values = np.maximum(training.values, 0)  # at 380 nm the data have +-1e-17 instead of 0
     columns = {f"skin-{i}": values[:, i - 1] for i in range(12, 19)}
     columns |= {f"leaf-{i}": values[:, i - 1] for i in (80, 81, *range(85, 91))}
     write(UNSEEN, {
@@ -201,7 +200,7 @@ def unseen():
 
 
 def cones():
-    """What cones see, and the 1931 observer's functions for the primaries of sRGB, with their negative lobes."""
+    """Writes cone fundamentals, and the 1931 observer's functions for the primaries of sRGB, with their negative lobes."""
     for degrees, key in ((2, "Stockman & Sharpe 2 Degree Cone Fundamentals"), (10, "Stockman & Sharpe 10 Degree Cone Fundamentals")):
         cones = colour.MSDS_CMFS[key]
         values = np.nan_to_num(cones.values)
@@ -222,10 +221,10 @@ def cones():
 
 
 def rendering():
-    """Samples by which lamps are judged, and what the package makes of F1 to F12 by them.
+    """Writes samples by which lamps are judged, and the results of the package for F1 to F12 with them.
 
-    The fourteen test colors are those of the CIE as NIST's CQS simulation holds them (a work of the United States government); the 99
-    color evaluation samples are published with CIE 224:2017 and ANSI/IES TM-30, and are here as the package distributes them, by 5 nm.
+    The fourteen test colors of the CIE are taken from NIST's CQS simulation (a work of the United States government). The 99 color
+    evaluation samples are published with CIE 224:2017 and ANSI/IES TM-30, and are here as the package distributes them, by 5 nm.
     """
     colors = colour.quality.datasets.tcs.SDS_TCS_CIE1995
     first = next(iter(colors.values()))

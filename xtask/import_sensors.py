@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables under spectra/sensors/: what sensors see, by color.
+"""Writes the tables under spectra/sensors/: spectral sensitivities of sensors, by color.
 
 Run from the root of the repository:
 
@@ -11,10 +11,10 @@ Source: the Python package colour-science 0.4.7 (BSD-3-Clause, Copyright 2013 Co
 measurement of the National Physical Laboratory: M. M. Darrodi, G. Finlayson, T. Goodman, M. Mackiewicz, "Reference data
 set for camera spectral sensitivity estimation", J. Opt. Soc. Am. A 32, 381 (2015), doi:10.1364/JOSAA.32.000381.
 
-There each color is scaled to a peak of 1, and how the colors compare is not told. It is taken from the camera's answer to
-white: the matrix for D65 that Adobe's DNG Converter writes for this camera, (0.8198 -0.2239 -0.0724; -0.4871 1.2389 0.2798;
+There each color is scaled to a peak of 1, and the ratio of the colors is not stated. It is derived from the camera's response
+to white: the matrix for D65 that Adobe's DNG Converter writes for this camera, (0.8198 -0.2239 -0.0724; -0.4871 1.2389 0.2798;
 -0.1043 0.2050 0.7181) from XYZ, as LibRaw 0.21 lists it, gives red, green and blue of D65 as 0.441 : 1 : 0.822. Red and blue
-are scaled to that; green keeps its peak of 1. How many electrons a photon makes is still not told.
+are scaled to that; green keeps its peak of 1. The number of electrons per photon remains unknown.
 """
 
 import pathlib
@@ -22,7 +22,7 @@ import pathlib
 from colour import SDS_ILLUMINANTS
 from colour.characterisation import MSDS_CAMERA_SENSITIVITIES
 
-# Camera from XYZ under D65.
+# Matrix from XYZ to the camera's colors, for D65.
 MATRIX = [[0.8198, -0.2239, -0.0724], [-0.4871, 1.2389, 0.2798], [-0.1043, 0.2050, 0.7181]]
 D65_XYZ = [0.95047, 1.0, 1.08883]
 
@@ -42,7 +42,7 @@ FRONT = """# spectra: 1
 
 
 def number(value):
-    """The shortest decimal that reads back to the same double, without a trailing `.0`."""
+    """Returns the shortest decimal that reads back to the same double, without a trailing `.0`."""
     text = repr(float(value))
     return text[:-2] if text.endswith(".0") else text
 
@@ -50,7 +50,7 @@ def number(value):
 def main():
     camera = MSDS_CAMERA_SENSITIVITIES["Nikon 5100 (NPL)"]
     rows = ["wavelength_nm,red,green,blue"]
-    # Noise of the measurement about zero.
+    # Negative values are noise of the measurement about zero.
     table = [[max(float(x), 0.0) for x in values] for values in camera.values]
     daylight = [float(SDS_ILLUMINANTS["D65"][w]) for w in camera.domain]
     seen = [sum(p * row[i] for p, row in zip(daylight, table)) for i in range(3)]

@@ -5,20 +5,20 @@ Run from the root of the repository, with the program itself for the choice of g
 
     python3 xtask/lens_library.py target/release/spectra
 
-- Three prescriptions of the CSV are left out, since they do not hold together as lenses, though their focal lengths do:
-  leica-summilux-35-f1.4 and nikon-28-70-f2.8-wide have 4 and 1.4 mm of spherical aberration wide open (aspheres seem to be
-  lost in the transcription), kodak-100-f3.8 has 0.4 % of lateral color (a glass seems to be wrong).
-- Radii, thicknesses, nd and Vd are copied; a lens of unit focal length is scaled, figure by figure. Where a transcription was compared with the
-  print of the patent, the print's figures stand (`printed`: by surface and column), and the remark names them.
-- A catalogue glass is named where one of the time agrees within 0.0005 in nd and 0.5 in Vd (`spectra glass match`);
-  elsewhere nd and Vd stand alone.
-- The f-number of a lens's name is its nominal one. No source states coatings: those of the time stand in the files, as
-  assumed (see `coating`).
-- Semi-diameters are copied where they are clear apertures. Where the source has none, or says that they are not
-  reliable, they are computed here by tracing real rays: the stop by the axial beam at the stated f-number, the others
-  to pass that beam, and of the beam at the edge of the format the middle half.
-- `rims` of a lens says where its semi-diameters come from. Patents state none but that of the Primoplan: those of transcriptions are
-  guesses. Where a real lens was measured, `fitted` has the semi-diameters that give its light (see `xtask/measured_light.py`).
+- Three prescriptions of the CSV are left out because they are not consistent as lenses, although their focal lengths are:
+  leica-summilux-35-f1.4 and nikon-28-70-f2.8-wide have 4 and 1.4 mm of spherical aberration wide open (the transcription
+  seems to have lost aspheres), kodak-100-f3.8 has 0.4 % of lateral color (a glass seems to be wrong).
+- Radii, thicknesses, nd and Vd are copied; a lens of unit focal length is scaled, figure by figure. If a transcription was compared with
+  the print of the patent, the print's figures are used (`printed`: by surface and column), and the remark lists them.
+- A catalog glass is named if one of the time agrees within 0.0005 in nd and 0.5 in Vd (`spectra glass match`).
+  Otherwise only nd and Vd are written.
+- The f-number of a lens is the nominal one in its name. No source states coatings, so the files have those usual at the time, marked
+  as assumed (see `coating`).
+- Semi-diameters are copied if they are clear apertures. If the source has none, or says that they are not reliable, they are computed
+  here by tracing real rays: the axial beam at the stated f-number sets the stop; the other surfaces pass that beam and the middle half
+  of the beam at the edge of the format.
+- `rims` of a lens says where its semi-diameters come from. Only the patent of the Primoplan states any; those of transcriptions are
+  guesses. If a real lens was measured, `fitted` has the semi-diameters that reproduce its light (see `xtask/measured_light.py`).
 """
 
 import csv
@@ -39,29 +39,30 @@ OPTRACE = "transcription of the optrace project (MIT)"
 OPTILAND = "transcription of the Optiland project (MIT)"
 REALFLARE = "transcription of the realflare project (MIT)"
 
-# By name: the CSV's name where it differs, scale, name, year, maker, patent, source, remark, makers of glass (in order of
-# preference), era, semi-diameters to compute: (f-number, half diagonal of the format in mm), figures of the patent's print.
+# By name: the CSV's name if it differs, scale, name, year, maker, patent, source, remark, makers of glass (in order of preference),
+# era, semi-diameters to compute: (f-number, half diagonal of the format in mm), figures of the patent's print.
 LENSES = {
     "angenieux-100-f1.1": dict(
         name="Angénieux 100 mm f/1.1", year=1953, maker="P. Angénieux, Paris", patent="US 2701982", source=LENTIL,
-        remark="Normalized to 100 mm; built shorter. Compared with the print of the patent, which calls it 1:1, states indices for the D line and no "
-        "semi-diameters. The glasses named in the transcription are Schott's.",
+        remark="Normalized to 100 mm; it was built with a shorter focal length. Compared with the print of the patent, which calls it "
+        "1:1 and states indices for the D line and no semi-diameters. The glasses named in the transcription are Schott's.",
         makers=["SCHOTT", "CORNING"], era="1953"),
     "meyer-primoplan-100-f1.5": dict(
         name="Meyer Primoplan 100 mm f/1.5", year=1936, maker="Meyer-Optik Görlitz", patent="DE 1387593",
         source=LENTIL, rims="stated", gap=51.8854,
         printed={1: dict(nd_after="1.657"), 2: dict(radius_mm="1450.1"), 3: dict(semi_diameter_mm="31"), 6: dict(semi_diameter_mm="23.3")},
-        remark="A utility model, at its scale: 1:1.5, 100 mm, free opening 66.7 mm. Compared with its print, by which three figures of the "
-        "transcription were corrected: nd of the first lens 1.657 (1.66), radius 2 1450.1 (1450.01), diameter of the second lens 62 (58); the stop "
-        "is that of the free opening (23.3 mm, 25 in the transcription). Its diameters are those of the lenses. So spherical "
-        "aberration at f/1.5 (a ray of the edge meets the axis 1.1 mm behind the focus) is the design's own; it was built as f/1.9. The image plane is "
-        "put to the smallest axial spot.",
+        remark="A utility model, at its own scale: 1:1.5, 100 mm, free opening 66.7 mm. Compared with its print, by which three figures "
+        "of the transcription were corrected: nd of the first lens 1.657 (was 1.66), radius 2 1450.1 (was 1450.01), diameter of "
+        "the second lens 62 (was 58). The stop is that of the free opening (23.3 mm, 25 in the transcription). The stated "
+        "diameters are those of the lenses. Spherical aberration at f/1.5 (a ray at the edge meets the axis 1.1 mm behind the "
+        "focus) is therefore the design's own; it was built as f/1.9. The image plane is at the smallest axial spot.",
         makers=["SCHOTT"], era="1936"),
     "nikon-retrofocus-100-f2.8": dict(
         name="Nikon retrofocus 100 mm f/2.8", year=1971, maker="Nippon Kogaku", patent="US 3583791", source=LENTIL,
-        remark="Example 1, normalized to 100 mm: a wide angle for a short focal length; the image circle is that of 66 degrees. Compared with the "
-        "print of the patent, by which three figures of the transcription were corrected: the Abbe number of the fourth lens 46.2 (27.5), nd of the first "
-        "1.6425 (1.64), the second gap 17.83 (17.38). The back focus comes out 130.92 mm for its 131.19. The image plane is put to the smallest axial spot.",
+        remark="Example 1, normalized to 100 mm: a wide-angle design for a short focal length; the image circle is that of 66 degrees. "
+        "Compared with the print of the patent, by which three figures of the transcription were corrected: the Abbe number of "
+        "the fourth lens 46.2 (was 27.5), nd of the first 1.6425 (was 1.64), the second gap 17.83 (was 17.38). The computed back "
+        "focus is 130.92 mm; the patent states 131.19. The image plane is at the smallest axial spot.",
         printed={1: dict(nd_after="1.6425"), 2: dict(thickness_mm="17.83"), 7: dict(vd_after="46.2")}, gap=130.3501,
         makers=["OHARA", "HOYA", "SCHOTT"], era="1971"),
     "zeiss-biotar-100-f1.4": dict(
@@ -74,13 +75,13 @@ LENSES = {
         "semi-diameters; its space of 32.50 for the stop is 32.51 here.", makers=["OHARA", "HOYA"], era="1969"),
     "canon-35-f1.8": dict(
         csv="canon-35-f1.8-unit", scale=35, name="Canon 35 mm f/1.8", year=1956, maker="Canon", patent="US 2854890", source=LENTIL,
-        remark="The patent's unit focal length times 35. It states three decimals, so radii are known to some 1 %; the image plane is put to the "
-        "smallest axial spot, 0.49 mm behind that of the source.", gap=24.1152,
+        remark="The patent's unit focal length times 35. The patent states three decimals, so radii are known to about 1 %. The image "
+        "plane is at the smallest axial spot, 0.49 mm behind that of the source.", gap=24.1152,
         makers=["OHARA", "SCHOTT", "HOYA"], era="1956"),
     "kodak-petzval-100-f2.2": dict(
         name="Kodak Petzval 100 mm f/2.2", year=1948, maker="Eastman Kodak", patent="US 2500046", source=LENTIL,
-        remark="Normalized to 100 mm: a projection lens for small angles. Compared with the print of the patent, which states no semi-diameters; by "
-        "it one figure of the transcription was corrected: the thickness of the last lens 7.5 (7.4).",
+        remark="Normalized to 100 mm: a projection lens for small angles. Compared with the print of the patent, which states no "
+        "semi-diameters and by which one figure of the transcription was corrected: the thickness of the last lens 7.5 (was 7.4).",
         printed={7: dict(thickness_mm="7.5")}, makers=["SCHOTT", "CORNING", "CHANCE"], era="1948"),
     "minolta-fisheye-16-f2.7": dict(
         csv="minolta-fisheye-1-f2.7", scale=16, name="Minolta fisheye 16 mm f/2.7", year=1978, maker="Minolta", patent="US 4256373",
@@ -91,39 +92,42 @@ LENSES = {
         csv="schneider-anamorphic", squeeze=1.9, groups=["{name: front, surfaces: [1, 3]}"], focus=["{group: front, section: x}"],
         name="Schneider anamorphic 60 mm, squeeze 1.9", year=2001, maker="Schneider", patent="US 6310731",
         source=LENTIL,
-        remark="Not compared with the print of the patent; the transcription holds together: across, the cylinders in front are afocal "
-        "to 1.3e-5 per mm with a magnification of 0.5195, the images of both sections lie within 0.025 mm of each other, and with "
-        "the sign of any of the five radii changed neither is so. The plane before the biconvex cylinder carries no power. "
-        "Nothing is said of the f-number: it is what the stated stop gives. Nor of how it is focused: here the whole lens moves, and the "
-        "negative cylinders in front by themselves so far that both sections stay together.",
+        remark="Not compared with the print of the patent, but the transcription is consistent: horizontally, the cylinders in front are "
+        "afocal to 1.3e-5 per mm with a magnification of 0.5195, and the images of both sections lie within 0.025 mm of each "
+        "other. With the sign of any of the five radii changed, neither is true. The plane before the biconvex cylinder has no "
+        "power. The source does not state the f-number: it follows from the stated stop. Nor does it say how the lens is focused: "
+        "here the whole lens moves, and the negative cylinders in front move in addition, so far that both sections stay "
+        "together.",
         makers=["SCHOTT", "OHARA", "HIKARI"], era="2001"),
-    "zeiss-biotar-50-f1.4": None,  # kept as it is, with the remarks of its own
+    "zeiss-biotar-50-f1.4": None,  # kept as it is: a hand-written file with its own remarks
     "helios-44-58-f2": dict(
         name="Helios-44 58 mm f/2", year=1958, maker="KMZ Krasnogorsk", source=OPTRACE,
-        remark="The source cites no patent; a Soviet Biotar. The image plane is put to the smallest axial spot: the source's 37.12 lies 0.88 mm "
-        "in front of it. The source's semi-diameters are round guesses; of them the front's 15 became 14.3 and the rear's 13.25 12.3.",
+        remark="The source cites no patent; a Soviet Biotar. The image plane is at the smallest axial spot: the source's 37.12 lies 0.88 "
+        "mm in front of it. The source's semi-diameters are round guesses; of them, the front's 15 became 14.3 and the rear's "
+        "13.25 became 12.3.",
         fitted={1: 14.3, 2: 14.3, 10: 12.3, 11: 12.3},
-        rims="the light of a Helios-44 58 mm f/2 at f/2 and f/2.8, as Lensfun measured it (CC BY-SA 3.0): at 5.4, 10.8, 16.2 and 21.6 mm "
-        "0.914, 0.712, 0.507, 0.317 of the middle's at f/2, here 0.955, 0.759, 0.515, 0.285; 0.995, 0.948, 0.801, 0.556 at f/2.8, here 0.985, 0.937, "
-        "0.781, 0.501", makers=["LZOS"], gap=37.9975),
+        rims="the light of a Helios-44 58 mm f/2 at f/2 and f/2.8, as Lensfun measured it (CC BY-SA 3.0). Relative to the middle, at "
+        "5.4, 10.8, 16.2 and 21.6 mm: 0.914, 0.712, 0.507, 0.317 at f/2, here 0.955, 0.759, 0.515, 0.285; 0.995, 0.948, 0.801, "
+        "0.556 at f/2.8, here 0.985, 0.937, 0.781, 0.501", makers=["LZOS"], gap=37.9975),
     "canon-fd-50-f1.8": dict(
         name="Canon FD 50 mm f/1.8", year=1979, maker="Canon", patent="JP 1988-081312", source=REALFLARE,
-        remark="The source calls it 50 mm; 48.9 mm come out. The image plane is put to the smallest axial spot: the source's 34.81 "
-        "lies 2.15 mm behind it, as for an object at 1.2 m. A glass is very likely misread: the foci of F and C lie 0.27 mm apart, 0.56 % of the focal "
-        "length, where the other normal lenses have 0.11 to 0.29 %; blue is drawn 11.7 um larger than green at 14 mm and red 4.4 um smaller, and the "
-        "lens that was measured (Lensfun, New FD 50 mm f/1.8) has -0.6 and +0.6. The source names catalogue glasses of other makers and decades (M-NBFD130, "
-        "F5, PBH4W, E-FD10), and nd and Vd are those of these. One Abbe number would explain it: 25.3 in place of 27.51 behind surface 4, or "
-        "40 in place of 35.93 behind surface 3. The patent was not seen, so the figures stand as the source has them.", makers=["OHARA", "HOYA", "SCHOTT"], era="1979", gap=32.6629),
+        remark="The source calls it 50 mm; the computed focal length is 48.9 mm. The image plane is at the smallest axial spot: the "
+        "source's 34.81 lies 2.15 mm behind it, as for an object at 1.2 m. A glass is very likely misread: the foci of F and C "
+        "lie 0.27 mm apart, 0.56 % of the focal length, compared with 0.11 to 0.29 % for the other normal lenses. At 14 mm, blue "
+        "is drawn 11.7 um larger than green and red 4.4 um smaller; the lens that was measured (Lensfun, New FD 50 mm f/1.8) has "
+        "-0.6 and +0.6. The source names catalog glasses of other makers and decades (M-NBFD130, F5, PBH4W, E-FD10), and states "
+        "their nd and Vd. One Abbe number would explain it: 25.3 instead of 27.51 behind surface 4, or 40 instead of 35.93 behind "
+        "surface 3. The patent was not seen, so the figures are those of the source.", makers=["OHARA", "HOYA", "SCHOTT"], era="1979", gap=32.6629),
     "zeiss-hologon-15-f8": dict(
         name="Zeiss Hologon 15 mm f/8", year=1969, maker="Carl Zeiss", source=REALFLARE,
         remark="The source cites no patent. The stop lies in the glass of the middle element, between two planes.",
         makers=["SCHOTT", "HOYA", "CDGM"], era="1969"),
     "canon-ef-70-200-f2.8-at-72": dict(
         name="Canon EF 70-200 mm f/2.8L at 72 mm", year=1995, maker="Canon", patent="US 5537259", source=ISS,
-        remark="One position of a zoom. The image plane is put to the smallest axial spot: the source has none.",
+        remark="One position of a zoom. The image plane is at the smallest axial spot, since the source states none.",
         wider={(1, 17): 0.8, (18, 28): 0.4, (29, 34): 0.8},
-        rims="the light of a Canon EF 70-200 mm f/2.8L USM wide open, as Lensfun measured it at 70 and 80 mm (CC BY-SA 3.0): at 5.4, 10.8, 16.2 and "
-        "21.6 mm 0.972, 0.894, 0.768, 0.517 of the middle's, here 0.976, 0.885, 0.741, 0.507",
+        rims="the light of a Canon EF 70-200 mm f/2.8L USM wide open, as Lensfun measured it at 70 and 80 mm (CC BY-SA 3.0). Relative "
+        "to the middle, at 5.4, 10.8, 16.2 and 21.6 mm: 0.972, 0.894, 0.768, 0.517, here 0.976, 0.885, 0.741, 0.507",
         makers=["OHARA", "HOYA"], era="1995", sizes=(2.923, 21.633), gap=52.1753),
     "nikkor-100-f1.4": dict(
         name="Nikkor 100 mm f/1.4", year=1981, maker="Nippon Kogaku (K. Wakamiya)", patent="US 4448497, example 1", source=OPTRACE,
@@ -131,7 +135,7 @@ LENSES = {
         makers=["HIKARI", "OHARA"], era="1983"),
     "cooke-triplet-50-f5": dict(
         name="Cooke triplet 50 mm f/5", source="textbook design; " + OPTILAND, stop_at=4,
-        remark="No patent: the design that textbooks optimize after H. D. Taylor (1893). The rear of the flint is the stop.",
+        remark="No patent: the design that textbooks optimize after H. D. Taylor (1893). The rear surface of the flint is the stop.",
         makers=["SCHOTT"], sizes=(5.0, 18.2)),
     "tessar-50-f4.5": dict(
         csv="tessar-4-f4.5", scale=12.5, name="Tessar 50 mm f/4.5", source="M. Laikin, Lens Design, 4th ed.; " + OPTILAND,
@@ -148,7 +152,7 @@ def rows(name):
 
 
 def number(x):
-    """Ten digits at most, without zeros at the end: products of printed figures carry no more."""
+    """Formats a number with ten digits at most and no trailing zeros. Products of printed figures carry no more digits."""
     text = f"{x:.10g}"
     return text.replace("e+", "e")
 
@@ -167,7 +171,7 @@ class Surface:
 
 
 class System:
-    """Spheres and planes on one axis; rays of real size."""
+    """Spherical and plane surfaces on one axis, for tracing real rays."""
 
     def __init__(self, surfaces):
         self.surfaces = surfaces
@@ -183,7 +187,7 @@ class System:
         return -1 / u, -y / u
 
     def trace(self, y, z, angle):
-        """Heights of a ray in the plane of the paper at each surface, and its last slope; None where it is lost."""
+        """Returns the heights at each surface of a ray in the plane of the paper, and its last slope; None if the ray is lost."""
         m, l, n = math.sin(angle), math.cos(angle), 1.0
         heights = []
         for s in self.surfaces:
@@ -214,7 +218,7 @@ class System:
         return heights, m
 
     def marginal(self, f_number):
-        """Heights of the axial ray that leaves with sin = 1 / (2 N)."""
+        """Returns the heights of the axial ray that leaves with sin = 1 / (2 N)."""
         wanted = 0.5 / f_number
         low, high = 0.0, 2.0 * self.paraxial()[0] * wanted
         for _ in range(80):
@@ -227,8 +231,9 @@ class System:
         return self.trace(low, -1e-9, 0.0)[0]
 
     def beam(self, stop, height, start, edge):
-        """Heights of the rays that meet the stop at a height, from the axis to the edge of the field in half degrees: each
-        from the one before, so that no far-fetched way through the glass is taken. Ends where there is none."""
+        """Traces rays that meet the stop at a given height, from the axis to the edge of the field in steps of half a degree. Each
+        ray starts from the previous one, so that the search does not jump to another path through the glass. Stops at the first angle
+        without such a ray. Returns (angle, heights) of each ray."""
         y, found, steps = start, [], max(1, math.ceil(math.degrees(edge) / 0.5))
         for k in range(steps + 1):
             angle = edge * k / steps
@@ -261,23 +266,23 @@ class System:
                 print(f"  {share} of the stop: rays to {reached:.1f} degrees only", file=sys.stderr)
             for _, heights in rays:
                 need = [max(a, abs(h)) for a, h in zip(need, heights)]
-        # A twentieth to a tenth of a millimetre of play, so that the axial beam is limited by the stop alone.
+        # A margin of 0.05 to 0.1 mm, so that only the stop limits the axial beam.
         return [round(axial[i], 4) if i == stop else math.ceil(20 * need[i] + 1) / 20 for i in range(len(need))]
 
 
 def coating(year):
-    """What lenses of a year had as a rule: none before 1940 (or where no year is known), one layer before 1970, then three."""
+    """Returns the usual coating of lenses of a year: none before 1940 (or for an unknown year), one layer before 1970, then three."""
     return "bare" if not year or year < 1940 else "single-layer" if year < 1970 else "three-layer"
 
 
 def nominal_f_number(name):
-    """The f-number in a lens's name."""
+    """Returns the f-number in a lens's name."""
     found = re.search(r"f/([0-9.]+)", name)
     return found.group(1) if found else None
 
 
 def glass(program, surface, entry, seen):
-    """The catalogue's glass for nd and Vd, by the first maker that has one near enough; None if none has."""
+    """Returns the catalog glass for nd and Vd from the first maker that has one near enough; None if none has."""
     key = (surface.nd_text, surface.v)
     if key in seen:
         return seen[key]
@@ -288,7 +293,7 @@ def glass(program, surface, entry, seen):
             command += ["--era", entry["era"]]
         found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["matches"]
         near = [m for m in found if abs(m["delta_n"]) <= 0.0005 and abs(m["delta_v"]) <= 0.5]
-        # Glass for the ultraviolet is no lens maker's.
+        # Ultraviolet glass was not used in camera lenses.
         near = [m for m in near if not m["name"].split("/")[1].startswith("UBK")]
         hinted = [m for m in near if m["name"].split("/")[1] == surface.hint.removeprefix("LZ_")] if surface.hint else []
         if hinted or near:
@@ -299,7 +304,7 @@ def glass(program, surface, entry, seen):
 
 
 def text_block(key, text):
-    """A folded text of at most 110 letters a line."""
+    """Formats a folded YAML text with at most 110 characters on a line."""
     lines, line = [], ""
     for word in text.split():
         if len(line) + len(word) + 1 > 106:
@@ -328,7 +333,7 @@ def write(name, entry, table, program):
         for s, size in zip(surfaces, system.sizes(stop, f_number, half)):
             s.size = size
         remark += (
-            f" Semi-diameters computed: the axial beam at f/{number(f_number)}, and the middle half of the beam at "
+            f" Semi-diameters are computed: they pass the axial beam at f/{number(f_number)}, and the middle half of the beam at "
             f"{math.degrees(math.atan(half / efl)):.0f} degrees."
         )
     rims = entry.get("rims", "computed" if entry.get("sizes") else "guessed")
@@ -336,7 +341,7 @@ def write(name, entry, table, program):
         surfaces[surface - 1].size = size
     if entry.get("wider"):
         parts = ", ".join(f"{first} to {last} by {number(by)} mm" for (first, last), by in entry["wider"].items())
-        remark += f" Then all but the stop were made wider, surfaces {parts}."
+        remark += f" Then all except the stop were enlarged: surfaces {parts}."
     for (first, last), by in entry.get("wider", {}).items():
         for i in range(first - 1, last):
             surfaces[i].size = round(surfaces[i].size + by * (i != stop), 4)
@@ -377,13 +382,13 @@ def write(name, entry, table, program):
     named = [g for g in seen.values() if g]
     plain = [f"{k[0]}/{k[1]}" for k, g in seen.items() if not g]
     if named and plain:
-        remark += " Catalogue glasses stand where one of the time has the stated nd and Vd; the other media are known by these alone."
+        remark += " Catalog glasses of the time are named if they have the stated nd and Vd; the other media are given only by these."
     elif named and entry.get("era"):
-        remark += " Catalogue glasses of the time with the stated nd and Vd are chosen."
+        remark += " Catalog glasses of the time with the stated nd and Vd were chosen."
     elif named:
-        remark += " The glasses are those that the source names, or have the stated nd and Vd."
+        remark += " The glasses are those that the source names, or were chosen by the stated nd and Vd."
     else:
-        remark += " No catalogue glass of the time has the stated nd and Vd: they stand alone."
+        remark += " No catalog glass of the time has the stated nd and Vd, so only these are given."
     lines += text_block("remark", remark.strip())
     lines += [f"rims: {rims}"] if rims in ("stated", "computed", "guessed") else ["rims:"] + ["  " + line for line in text_block("fitted", rims)]
     lines.append("surfaces:")

@@ -5,7 +5,7 @@ Run from the root of the repository:
 
     python3 xtask/lens_sheet.py target/release/spectra [NAME...]
 
-With names, only the pictures of these lenses are made anew; the page is always of all.
+With names, the script makes only the pictures of these lenses; the page always covers all lenses.
 """
 
 import json
@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 LENSES = ROOT / "lenses"
 IMAGES = ROOT / "docs" / "images" / "lenses"
 
-# Frames in which a lens is shown, where it is not 135: lenses normalized to 100 mm have larger circles.
+# Frames other than 135 in which some lenses are shown: lenses normalized to 100 mm have larger image circles.
 FORMATS = {
     "angenieux-100-f1.1": "6x4.5",
     "meyer-primoplan-100-f1.5": "6x4.5",
@@ -50,7 +50,7 @@ def run(*command):
 
 
 def names():
-    """Lenses with a stop, that is, without prisms."""
+    """Returns the names of the lenses with a stop, which leaves out prisms."""
     has_stop = re.compile(r"kind: stop|stop: true")
     return sorted(p.stem for p in LENSES.glob("*.yaml") if has_stop.search(p.read_text(encoding="utf-8")))
 
@@ -60,8 +60,8 @@ def pictures(program, name, info):
     run(program, "lens", "draw", name, "--section", section, "--width", "640", "--wavelengths", "e", "-o", IMAGES / f"{name}.svg")
     frame = FORMATS.get(name, "135")
     width, height = SIZES[frame]
-    # Two metres, or forty focal lengths; the cylinders of an anamorphic are set for infinity. The chart fills the frame;
-    # a fisheye's is wider.
+    # The chart stands at 2 m, or at forty focal lengths if that is farther; the cylinders of an anamorphic are set for infinity. The
+    # chart fills the frame; that of a fisheye is wider.
     focal = info.get("efl_x_mm") or info["efl_mm"]
     distance = 1e6 if info.get("efl_x_mm") else max(2000.0, 40 * info["efl_mm"])
     across = width / focal * distance * (2.2 if "fisheye" in name else 1.0)
@@ -71,7 +71,7 @@ def pictures(program, name, info):
         rows=rows, focus=f"{round(distance)} mm",
     )  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
-        # Not named like the lens: what stands beside a scene is found before what is bundled.
+        # The file must not be named like the lens: files in the folder of a scene take precedence over bundled ones.
         path = Path(folder) / "shot.yaml"
         path.write_text(scene, encoding="utf-8")
         run(program, "run", path, "--output", folder, "--quiet", "--threads", "1")
@@ -79,7 +79,7 @@ def pictures(program, name, info):
 
 
 def head(name):
-    """The plain keys of a lens file."""
+    """Returns the plain keys of a lens file."""
     found = {}
     for line in (LENSES / f"{name}.yaml").read_text(encoding="utf-8").splitlines():
         if match := re.match(r"([a-z-]+): (.+)", line):

@@ -1,6 +1,6 @@
 """Writes the lens files of tests/data/lenses from the prescriptions in tests/data/lenses.csv.
 
-One row of the CSV is one surface, so one line of the file: figures are copied digit by digit, nothing is computed.
+One row of the CSV is one surface, and becomes one line of the file. Figures are copied digit by digit; nothing is computed.
 Run from the root of the repository: python3 xtask/lenses_from_csv.py
 """
 
@@ -8,7 +8,7 @@ import csv
 from pathlib import Path
 
 DATA = Path(__file__).resolve().parent.parent / "tests" / "data"
-# Lenses with a reference of their own: rays, first-order values, or both.
+# Lenses with reference values of their own: rays, first-order values, or both.
 NAMES = """
     angenieux-100-f1.1 asahi-takumar-100-f1.2 canon-fd-50-f1.8 cooke-triplet-50-f5 helios-44-58-f2
     kodak-petzval-100-f2.2 leica-summilux-35-f1.4 meyer-primoplan-100-f1.5 minolta-fisheye-1-f2.7
@@ -23,7 +23,7 @@ def rows(name):
 
 
 def quoted(text):
-    """A YAML text that no reader takes for anything else."""
+    """Quotes a text so that YAML reads it as text and nothing else."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
@@ -37,7 +37,7 @@ def surface(row):
     elif row["radius_mm"] != "inf":
         raise ValueError(f"{row['lens']} {row['surface']}: a {kind} with a radius")
     entries.append(("thickness", row["thickness_mm"]))
-    # A stop keeps the medium that it stands in; no entry is air.
+    # A stop keeps its surrounding medium. Without an entry the medium is air.
     if kind != "stop" and float(row["nd_after"]) != 1.0:
         entries += [("nd", row["nd_after"]), ("vd", row["vd_after"])]
     if float(row["semi_diameter_mm"] or 0) > 0:

@@ -1,20 +1,22 @@
 #!/usr/bin/env python3
-"""Compares the light over the frame of two library lenses with what was measured of real copies.
+"""Compares the relative illumination of two library lenses with measurements of real copies.
 
 Run from the root of the repository:
 
     cargo build && python3 xtask/measured_light.py target/debug/spectra [FOLDER]
 
-The measurements are Lensfun's (https://lensfun.github.io, CC BY-SA 3.0), read from Debian's package `liblensfun-data-v1`: from FOLDER where
-its XML files are, else as installed, else downloaded by `apt-get download` into a folder that is thrown away. Where none can be had, that is
-said, and nothing is compared. Nothing of the package is kept here.
+The measurements are Lensfun's (https://lensfun.github.io, CC BY-SA 3.0), from Debian's package `liblensfun-data-v1`. The script reads the
+XML files in FOLDER if they are there, else those of the installed package, else those that `apt-get download` brings into a temporary
+folder. If it finds none, it says so and compares nothing. The repository keeps nothing of the package.
 
 Lensfun states E(r) / E(0) = 1 + k1 r^2 + k2 r^4 + k3 r^6 for each stop, r = 1 in the corner of the camera's frame (21.633 mm over its crop
-factor), of raw values of a diffuser flush with the front, focus at infinity. A lens that was measured at other focal lengths is interpolated
-between the two nearest. Such a polynomial wiggles by 0.01, and sensors darken their corners by up to 0.05, which film does not; the same design on
-two cameras differs by 0.02 to 16 mm and by 0.05 in the corner. Ours is `spectra lens info --image-height`, `light`, without losses.
+factor), of raw values of a diffuser flush with the front, focus at infinity. For a lens that was measured at other focal lengths, the
+script interpolates between the two nearest. Such a polynomial wiggles by 0.01, and sensors darken their corners by up to 0.05, unlike
+film. The same design on two cameras differs by 0.02 up to 16 mm and by 0.05 in the corner. Our value is `light` of
+`spectra lens info --image-height`, without losses.
 
-Held: the Helios from f/2.8 on, the zoom at f/8: within 0.03 to 16.2 mm, within 0.06 in the corner. The other stops are printed with the reason.
+Checked: the Helios from f/2.8 on and the zoom at f/8, within 0.03 up to 16.2 mm and within 0.06 in the corner. The other stops are printed
+with the reason.
 """
 
 import glob
@@ -31,7 +33,7 @@ CORNER_MM = 21.633
 HEIGHTS_MM = [5.4, 10.8, 16.2, 21.6]
 WITHIN, WITHIN_CORNER = 0.03, 0.06
 
-# Our lens; its maker's name of it in Lensfun, and its focal length; stops that are held; why the others are not.
+# Our lens; its name and focal length in Lensfun; all checked stops; the other stops, and why they are not checked.
 LENSES = [
     ("helios-44-58-f2", "Helios-44 58mm 1:2", 58.0, [2.8, 4, 5.6, 8], [2], {2: "wide open: the rims were fitted to it, as well as two rims can"}),
     (
@@ -46,7 +48,7 @@ LENSES = [
 
 
 def unpacked(folder):
-    """The folder of the package's XML files, or why there is none."""
+    """Returns the folder of the package's XML files, or why there is none."""
     for kept in (Path("/") / INSTALLED,):
         if any(kept.glob("**/slr-ussr.xml")):
             return kept, None
@@ -65,7 +67,7 @@ def unpacked(folder):
 
 
 def measured(folder, model, focal_mm):
-    """{stop: light over the axis's at HEIGHTS_MM} of the full-frame copy of a lens."""
+    """Returns {stop: light relative to the axis at HEIGHTS_MM} of the full-frame copy of a lens."""
     table = {}
     for file in sorted(glob.glob(f"{folder}/**/*.xml", recursive=True)):
         for lens in ElementTree.parse(file).getroot().iter("lens"):
@@ -87,7 +89,7 @@ def measured(folder, model, focal_mm):
 
 
 def ours(program, name, stop, nominal_open):
-    """The same of our lens at a stop; as it stands where that is its full aperture."""
+    """Returns the relative light of our lens at a stop. If the stop is the full aperture, the lens stays as it is."""
     light = []
     for height in HEIGHTS_MM:
         command = [program, "lens", "info", name, "--coating", "ideal", "--absorption", "false", "--image-height", f"{height} mm", "--json"]

@@ -1,7 +1,8 @@
-"""Writes scenes/night-lights.exr and scenes/far-lights.exr: lamps in the dark, for pictures of what a lens makes of lights out of focus.
+"""Writes scenes/night-lights.exr and scenes/far-lights.exr: lamps in the dark, for pictures of out-of-focus highlights.
 
-Lamps of one pixel each on black, placed by a fixed seed and apart from each other, white, warm, red, green and blue as along a street:
-sixty, and twenty-six smaller ones for what is fine in a disk of light. R, G, B (linear, Rec. 709) as 16-bit floats, ZIP compressed.
+Each lamp is one pixel on black, placed by a fixed seed with a distance between lamps, in white, warm, red, green and blue as along a
+street. The first file has sixty lamps; the second has twenty-six smaller ones, which show fine structure in a blur disk. R, G, B (linear,
+Rec. 709) as 16-bit floats, ZIP compressed.
 
     python3 xtask/night_lights.py
 """
@@ -11,7 +12,7 @@ import random
 
 import half_exr
 
-# Width, height, lamps, pixels between them.
+# Width, height, number of lamps, least distance in pixels between them.
 FILES = {"night-lights": (180, 120, 60, 9), "far-lights": (480, 320, 26, 52)}
 TINTS = [(1, 0.9, 0.7), (1, 0.7, 0.35), (1, 0.12, 0.06), (0.15, 0.9, 0.3), (0.3, 0.5, 1), (1, 1, 1)]
 

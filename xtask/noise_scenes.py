@@ -1,13 +1,13 @@
-"""Writes the pictures of the scenes scenes/bench/noise-*.yaml, which say how long a clean frame takes.
+"""Writes the pictures of the scenes scenes/bench/noise-*.yaml, which measure how long a clean frame takes.
 
-- noise-portrait.exr: head and shoulders at 1.5 m by ray casting from a pinhole, a card of 18 % gray beside them, leaves and sky
+- noise-portrait.exr: head and shoulders at 1.5 m by ray casting from a pinhole, with a card of 18 % gray, and leaves and sky
   on a wall at 8 m. Channel Z is the depth in m.
-- noise-lights.exr: the same at dusk, with 70 lamps on the wall, disks of 1 to 6 pixels and 30 to 150 times white.
-- noise-street.exr: a street at night: road, houses with lit windows, lamps to 400, headlamps to 3000 times white.
+- noise-lights.exr: the portrait at dusk, with 70 lamps on the wall, disks of 1 to 6 pixels and 30 to 150 times white.
+- noise-street.exr: a street at night: road, houses with lit windows, lamps up to 400 and headlamps up to 3000 times white.
 
-Color of the two with depth is the mean of nine samples of a pixel, and depth is that of the one in its middle, as renderers do it;
-the street has one sample a pixel. R, G, B (linear, Rec. 709) and Z as 16-bit floats of 8 significant bits, ZIP compressed. Needs nothing
-but Python 3, and takes some minutes.
+In the two pictures with depth, the color of a pixel is the mean of nine samples; its depth is that of the sample in the middle, as in
+other renderers. The street has one sample per pixel. R, G, B (linear, Rec. 709) and Z as 16-bit floats with 8 significant bits, ZIP
+compressed. The script needs only Python 3 and takes some minutes.
 
     python3 xtask/noise_scenes.py
 """
@@ -19,7 +19,7 @@ import random
 import half_exr
 
 WIDTH, HEIGHT = 600, 400
-SAMPLES = 3  # of a pixel, across and down
+SAMPLES = 3  # samples of a pixel across, and as many down
 PLANE, ACROSS, WALL = 1.5, 0.52, 8.0  # m: the picture is ACROSS wide on the plane at PLANE
 LIGHT = (-0.55, 0.62, 0.56)  # toward the key light; +z toward the camera
 
@@ -54,7 +54,7 @@ LATTICE = lattice(3)
 
 
 def noise(x, y):
-    """Random values on a lattice of whole numbers, smooth between them: 0 to 1."""
+    """Value noise: random values on an integer lattice, smooth between them, 0 to 1."""
     i, j = math.floor(x), math.floor(y)
     u, v = smooth(0, 1, x - i), smooth(0, 1, y - j)
     a, b = LATTICE[j % 256], LATTICE[(j + 1) % 256]
@@ -72,7 +72,7 @@ def cloudy(x, y, octaves):
 
 
 def eight_bits(value):
-    """The number with 8 significant bits: what packs well, finer than the eye sees."""
+    """Rounds a number to 8 significant bits, which compresses well and is finer than the eye sees."""
     if value == 0:
         return 0.0
     scale = 2.0 ** (7 - math.floor(math.log2(abs(value))))
@@ -93,7 +93,7 @@ BODY = [
 
 
 def met(way, center, axes):
-    """Distance along the ray from the origin to an ellipsoid, and its unit normal there."""
+    """Returns the distance along the ray from the origin to an ellipsoid, and its unit normal there."""
     d = [w / a for w, a in zip(way, axes)]
     o = [-c / a for c, a in zip(center, axes)]
     a, b, c = sum(x * x for x in d), sum(x * y for x, y in zip(d, o)), sum(x * x for x in o) - 1
@@ -114,7 +114,7 @@ def lit(color, normal, gloss):
 
 
 def face(x, y):
-    """Color of the skin at a place of the face, m from the middle of the picture."""
+    """Returns the color of the skin at a point of the face, given in m from the middle of the picture."""
     color = SKIN
     for eye in (-0.03, 0.03):
         dx, dy = (x - eye) / 0.0125, (y - 0.052) / 0.0055
@@ -135,7 +135,7 @@ def face(x, y):
 
 
 def subject(x, y):
-    """Color and depth of what stands in front, where a ray through (x, y) on the plane meets it."""
+    """Returns color and depth of the foreground where a ray through (x, y) on the plane meets it."""
     way = (x / PLANE, y / PLANE, -1.0)
     best = None
     for what, center, axes in BODY:
@@ -159,7 +159,7 @@ def subject(x, y):
 
 
 def garden(x, y):
-    """Leaves, and the sky between them."""
+    """Returns the color of leaves with the sky between them."""
     leaves = cloudy(26 * x + 5, 26 * y + 9, 4)
     depth = cloudy(9 * x + 40, 9 * y, 3)
     green = mixed((0.02, 0.035, 0.012), (0.16, 0.23, 0.06), smooth(0.35, 0.7, leaves))
@@ -169,7 +169,7 @@ def garden(x, y):
 
 
 def sample(behind, column, row):
-    """Color and depth at a place of the picture, in pixels."""
+    """Returns color and depth at a point of the picture, given in pixels."""
     x, y = (column - 0.5 * WIDTH) / WIDTH * ACROSS, (0.5 * HEIGHT - row) / WIDTH * ACROSS
     return subject(x, y) or (behind(x, y, column, row), WALL)
 
@@ -195,7 +195,7 @@ def lamps():
 
 
 def lights():
-    """The garden at dusk and the lamps in it; a lamp's rim is as smooth as its pixels allow."""
+    """Draws the garden at dusk with lamps in it. The rim of a lamp is as smooth as its pixels allow."""
     strung = list(lamps())
 
     def behind(x, y, column, row):
@@ -213,7 +213,7 @@ STREET = (720, 480)
 
 
 def street():
-    """A street to its vanishing point: houses on both sides, lamps along it, cars toward and away, lights strung across."""
+    """Draws a street to its vanishing point: houses on both sides, lamps along it, cars in both directions, strings of lights across."""
     width, height = STREET
     dice = random.Random(5)
     middle, horizon = 0.46 * width, 0.52 * height
@@ -238,7 +238,7 @@ def street():
     windows = {}
 
     def wall(side, far, row):
-        """A house's front at a distance from the eye (1 at the near end), and what of it is a window."""
+        """Returns the color of a house front at a distance from the eye (1 at the near end), with its windows."""
         along, up = 1.0 / far, (horizon - row) / far
         column, floor = math.floor(along * 3.2), math.floor(up / 62)
         if (side, column, floor) not in windows:

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Writes crates/command/src/notices.txt: the licences of all crates that are linked into the program, with their notices.
+"""Writes crates/command/src/notices.txt: the licenses of all crates that are linked into the program, with their notices.
 
     xtask/notices.py            writes the file
-    xtask/notices.py --check    says whether it is what would be written
+    xtask/notices.py --check    checks that the file is up to date
 
-Cargo says which crates those are (`cargo metadata`, for the systems below, with the features that are on by default):
-dependencies of the program and theirs, without build scripts, tests and procedural macros, whose code is not linked. The
-texts are the licence files in the crates' packages, as cargo has them on disk; the same text is written once. Where a crate
-lets one choose, a short licence with the copyright line in it is chosen before a long one.
+Cargo lists these crates (`cargo metadata`, for the systems below, with the default features): the program's direct and indirect
+dependencies, without build scripts, tests and procedural macros, whose code is not linked. The texts are the license files in the
+crates' packages, as cargo has them on disk; identical texts are written once. If a crate offers a choice, a short license that contains
+the copyright line is preferred to a long one.
 """
 
 import json
@@ -21,7 +21,7 @@ OUTPUT = ROOT / "crates/command/src/notices.txt"
 PROGRAM = "spectra-camera"
 SYSTEMS = ["x86_64-unknown-linux-gnu", "aarch64-apple-darwin", "x86_64-pc-windows-msvc"]
 
-# In the order of choice. What a name of a licence file looks like, in capitals.
+# Licenses in order of preference, each with a pattern for the name of its file, in capitals.
 LICENCES = [
     ("MIT", r"MIT"),
     ("ISC", r"ISC"),
@@ -43,7 +43,7 @@ def metadata(system):
 
 
 def linked():
-    """The packages that are linked on any of the systems, by name and version."""
+    """Returns the packages that are linked on any of the systems, by name and version."""
     found = {}
     for system in SYSTEMS:
         data = metadata(system)
@@ -67,7 +67,7 @@ def linked():
 
 
 def choices(expression):
-    """Sets of licences that satisfy an SPDX expression, as OR of AND."""
+    """Returns the sets of licenses that satisfy an SPDX expression, as OR of AND."""
     tokens = re.findall(r"\(|\)|[A-Za-z0-9.+-]+", expression.replace("/", " OR "))
 
     def either():
@@ -94,7 +94,7 @@ def choices(expression):
         if tokens and tokens[0] == "WITH":
             tokens.pop(0)
             tokens.pop(0)
-            # An exception takes a duty away; the choice without it is asked for elsewhere in the expression.
+            # An exception removes an obligation. The expression offers the choice without it elsewhere.
             return [frozenset()] if token not in ALLOWED else [frozenset([token])]
         return [frozenset([token])]
 
@@ -110,7 +110,7 @@ def chosen(package):
 
 
 def texts(package, licence):
-    """The files in the package that hold this licence; a file `LICENSE` without a name holds the only one."""
+    """Returns the files in the package that hold this license. A file `LICENSE` without a license name holds the only one."""
     folder = Path(package["manifest_path"]).parent
     pattern = dict(LICENCES)[licence]
     files = [f for f in sorted(folder.iterdir()) if f.is_file() and re.match(r"(LICEN[CS]E|COPYING|UNLICENSE)", f.name.upper())]

@@ -1,16 +1,17 @@
-"""Old glasses of SCHOTT, of which Robb and Mercado's table has a fit of two terms for 400 to 700 nm, with a better dispersion.
+"""Improves the dispersion of old SCHOTT glasses for which Robb and Mercado's table has only a two-term fit over 400 to 700 nm.
 
-- A glass that had no lead (BK7, SK16, ...): the dispersion of SCHOTT's glass of the same type with N- before its name, where nd agrees to
-  0.0005 and Vd to 0.5, scaled to the nd of the table and to the Vd of that glass. SCHOTT gave both the same six digits; the table's Vd differs
-  by up to 0.4.
-- A glass that had lead beside barium, lanthanum or boron (BAF4, SSK2, KZFS8, ...): the same, scaled to nd and Vd of the table, since the
-  successor without lead has another Vd by up to 0.25, and the table is nearer to the six digits of the old one.
-- A flint whose dispersion is made by lead (F, LF, LLF, SF): nd and Vd of the table, and the relative partial dispersions that the flints of
-  SCHOTT's catalogue have at these, by least squares. Each of those left out in turn is met within 1e-4 from h to C but SF57 and SF11,
-  the ends of the family (1.1e-4). Beyond the Vd of these, and where the table's own index at g differs by more than 1e-4, a glass stays.
+- Glasses without lead (BK7, SK16, ...) get the dispersion of SCHOTT's glass of the same type with N- before its name, if nd agrees to
+  0.0005 and Vd to 0.5, scaled to the nd of the table and to the Vd of that glass. SCHOTT gave both the same six digits; the table's Vd
+  differs by up to 0.4.
+- Glasses with lead and also barium, lanthanum or boron (BAF4, SSK2, KZFS8, ...) get the dispersion of that glass too, but scaled to nd and
+  Vd of the table. The lead-free successor has a Vd that differs by up to 0.25, and the table is nearer to the six digits of the old one.
+- Flints whose dispersion comes from lead (F, LF, LLF, SF) get nd and Vd of the table, and the relative partial dispersions that the
+  flints of SCHOTT's catalog have at these, by least squares. This predicts each of those, left out in turn, within 1e-4 from h to C,
+  except SF57 and SF11, the ends of the family (1.1e-4). A glass is not changed if it lies beyond the Vd of these, or if the table's
+  own index at g differs by more than 1e-4.
 
-Both are written as three terms of Sellmeier with the poles of the N- glass, or of the flint of the nearest Vd, and a constant, which meet
-them to 2e-5 from 400 to 800 nm. What the table covers is still what is known: 400 to 700 nm.
+All are written as a constant and three Sellmeier terms with the poles of the N- glass, or of the flint with the nearest Vd. These formulas
+match the dispersion to 2e-5 from 400 to 800 nm. The stated range stays that of the table: 400 to 700 nm.
 """
 
 import re
@@ -18,16 +19,16 @@ import re
 import numpy as np
 
 H, G, F, D, C = 0.4046561, 0.4358343, 0.4861327, 0.5875618, 0.6562725
-# Glasses whose dispersion is made by lead, with some titanium in SF10, SF11, SF14 and SF15.
+# Glasses whose dispersion comes from lead, with some titanium in SF10, SF11, SF14 and SF15.
 FLINTS = "SF1 SF2 SF4 SF5 SF6 SF10 SF11 SF14 SF15 SF56A SF57 F2 F5 LF5 LF7 LLF1".split()
-# Types that had lead, whose successors (N-) have another Vd.
+# Types that had lead; their successors (N-) have another Vd.
 LEAD = r"(KF|BALF|SSK|BAF|BASF|KZFS)\d+|BAK4|LAK10|SK10|SK15"
 WAVELENGTHS = 1.0 / np.linspace(1.0 / 0.4, 1.0 / 0.8, 200)
 LARGEST_RESIDUAL = 2e-5
 
 
 def index(fields):
-    """Index of a glass as a function of the wavelength in um; None for other forms than those of SCHOTT's glasses."""
+    """Returns the index of a glass as a function of the wavelength in um, or None if its formula is not one of SCHOTT's."""
     c = [float(v) for v in fields["coefficients"].split()]
     match fields["type"]:
         case "2":
@@ -52,21 +53,21 @@ def partials(n, um):
 
 
 def flint(nd, vd, known):
-    """A flint of these figures by the partial dispersions of the others."""
+    """Returns the index function of a flint with nd and Vd, using the partial dispersions of the other flints."""
     rows = np.array([features(n(D), abbe(n)) for n in known])
     at = features(nd, vd)
 
     def n(um):
         um = np.atleast_1d(um)
         fit = np.linalg.lstsq(rows, np.array([partials(n, um) for n in known]), rcond=None)[0]
-        # Exactly that Vd, and the partial dispersions between F and C as they come.
+        # The fit gives exactly that Vd; the partial dispersions between F and C follow.
         return np.squeeze(nd + (at @ fit) * (nd - 1) / vd)
 
     return n
 
 
 def left_out(known):
-    """Largest error from h to C of each flint of the catalogue that is left out in turn."""
+    """Returns the largest error from h to C of each flint of the catalog if it is left out of the fit."""
     um = np.linspace(H, C, 50)
     errors = {}
     for name, n in known.items():
@@ -76,7 +77,7 @@ def left_out(known):
 
 
 def sellmeier(n, like, number):
-    """Coefficients of Sellmeier's formula with the poles of another glass."""
+    """Returns coefficients of Sellmeier's formula with the poles of another glass."""
     poles = [float(v) for v in like["coefficients"].split()][2::2]
     squared = WAVELENGTHS**2
     basis = np.array([np.ones_like(squared)] + [squared / (squared - pole) for pole in poles]).T
@@ -88,7 +89,7 @@ def sellmeier(n, like, number):
 
 
 def improve(catalogue, number):
-    """Replaces the dispersion of old glasses, and says which by what."""
+    """Replaces the dispersion of old glasses, and prints which glass got which."""
     of = {}
     for (maker, _, source), glasses in catalogue.blocks.items():
         if maker == "SCHOTT":

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""Holds `spectra film develop` against the photographs that it is given: lightness before and after, and what goes black or white.
+"""Develops given photographs with `spectra film develop` and compares lightness before and after, and clipping to black or white.
 
 Run from the root of the repository, with a folder of photographs (JPEG, PNG), numpy and Pillow:
 
     VENV/bin/python xtask/photographs.py target/release/spectra FOLDER [OUT]
 
-With the seven that people have at hand (astronaut, rocket, coffee and chelsea of scikit-image, grace_hopper of matplotlib, china and flower
-of scikit-learn) it says which are out of bounds: the median L* within 7 of the photograph's, within 11 for rocket, grace_hopper and flower;
-the 95th percentile within 12; within 1 L* of the medium's black at most the share of the photograph below L* 8 and 2 % more, of its white at
-most the share above L* 97 and 2 % more. Then the same of a render with lamps of 1000 times white on 0.5 % of it: its median L* is 20 to 45.
+For seven widely available photographs (astronaut, rocket, coffee and chelsea of scikit-image, grace_hopper of matplotlib, china and
+flower of scikit-learn) the script reports which exceed the limits:
+- the median L* is within 7 of the photograph's (within 11 for rocket, grace_hopper and flower), the 95th percentile within 12;
+- the share of pixels within 1 L* of the medium's black is at most the share of the photograph below L* 8 plus 2 %;
+- the share within 1 L* of its white is at most the share of the photograph above L* 97 plus 2 %.
+Then it develops a render with lamps of 1000 times white on 0.5 % of it. The median L* of the result must be 20 to 45.
 """
 
 import subprocess
@@ -28,7 +30,7 @@ def linear(code):
 
 
 def lightness(path):
-    """L* of each pixel of a file that is sRGB-encoded."""
+    """Returns L* of each pixel of an sRGB-encoded file."""
     rgb = np.asarray(Image.open(path).convert("RGB")).astype(float) / 255
     y = linear(rgb) @ np.array([0.2126, 0.7152, 0.0722])
     return np.where(y > 216 / 24389, 116 * np.cbrt(y) - 16, y * 24389 / 27)
@@ -42,7 +44,7 @@ def developed(program, photograph, stock, out, *more):
 
 
 def gray(photograph, folder):
-    """The photograph without color, as a black-and-white film is compared with it."""
+    """Returns the photograph without color, for the comparison with a black-and-white film."""
     rgb = np.asarray(Image.open(photograph).convert("RGB")).astype(float) / 255
     y = linear(rgb) @ np.array([0.2126, 0.7152, 0.0722])
     code = np.where(y <= 0.0031308, 12.92 * y, 1.055 * np.maximum(y, 1e-9) ** (1 / 2.4) - 0.055)
@@ -52,7 +54,7 @@ def gray(photograph, folder):
 
 
 def ends(program, stock, folder):
-    """L* of the medium's black and white: of a photograph that is black on the one half and far beyond white on the other."""
+    """Returns L* of the medium's black and white, from a photograph that is half black and half far above white."""
     path = Path(folder) / "ends.png"
     both = np.zeros((64, 128, 3), np.uint8)
     both[:, 64:] = 255
@@ -91,7 +93,7 @@ def main():
 
 
 def lamps(program, folder, out_folder):
-    """A render of grays with lamps of 1000 times white on 0.5 % of it, as Radiance HDR."""
+    """Writes a render of grays with lamps of 1000 times white on 0.5 % of it, as Radiance HDR."""
     height, width = 120, 200
     random = np.random.default_rng(1)
     light = 0.18 * 2.0 ** random.uniform(-3, 2, (height // 8, width // 8)).repeat(8, 0).repeat(8, 1)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes tests/data/picture-differences.csv: pixels of two pictures, and how far apart they look by another program.
+"""Writes tests/data/picture-differences.csv: pixels of two pictures, and their color differences by another program.
 
 Run from the root of the repository:
 
@@ -7,10 +7,10 @@ Run from the root of the repository:
     VENV/bin/pip install colour-science==0.4.7
     VENV/bin/python xtask/picture_differences.py
 
-Two pictures of 24 x 16 pixels as CIE 1931 XYZ in single precision, Y of white 1: colors within sRGB and beyond it, from nearly black to
-twice as bright as white, each beside one that differs by noise, by hue, or altogether. CIEDE2000 of each pair by the Python package
-colour-science 0.4.7 (BSD-3-Clause, Copyright 2013 Colour Developers), in CIE Lab against D65 (0.3127, 0.3290), from the values as single
-precision holds them.
+Two pictures of 24 x 16 pixels as CIE 1931 XYZ in single precision, Y of white 1. The colors of the first lie within sRGB and beyond it,
+from nearly black to twice as bright as white. Their counterparts in the second differ by noise, by hue, or altogether. CIEDE2000 of each
+pair comes from the Python package colour-science 0.4.7 (BSD-3-Clause, Copyright 2013 Colour Developers), in CIE Lab against D65
+(0.3127, 0.3290), from the values in single precision.
 """
 
 import pathlib
@@ -28,7 +28,7 @@ def pictures():
     rgb = random.random((PIXELS, 3)) ** 2.2
     rgb[: PIXELS // 8] *= 1e-3
     rgb[PIXELS // 8 : PIXELS // 4] *= 2.0
-    # A third of the colors lies outside of sRGB, as lines of the spectrum do.
+    # About a third of the colors lies outside sRGB, as spectral lines do.
     outside = random.random((PIXELS, 3)) < 0.1
     rgb = np.where(outside, -0.05 * rgb, rgb)
     srgb = colour.models.RGB_COLOURSPACE_sRGB

@@ -1,9 +1,9 @@
-"""Makes pictures that crates/pictures is tested with: printing inks (CMYK), and what LittleCMS 2 makes of them; a lossy WebP.
+"""Makes pictures for the tests of crates/pictures: printing inks (CMYK), with their colors by LittleCMS 2, and a lossy WebP.
 
     python3 xtask/picture_samples.py
 
-Needs Pillow (with LittleCMS) and imagecodecs. The profile is our own: eight Neugebauer primaries of offset inks and black after a simple
-model (Yule-Nielsen, n = 2), so nobody's data is in it. Writes into crates/pictures/tests/data `lossy.webp` with the same picture as
+Needs Pillow (with LittleCMS) and imagecodecs. The profile is our own: eight Neugebauer primaries of offset inks, and black, by a simple
+model (Yule-Nielsen, n = 2), so it contains nobody's data. Writes into crates/pictures/tests/data `lossy.webp` with the picture of
 `lossy.png`, and into its folder `inks`:
 
 - `mft2.tif`, `mft1.tif`, `mab.tif`: twelve patches of 8 bits with the profile in each of the three kinds of tables;
@@ -22,7 +22,7 @@ from PIL import Image, ImageCms
 
 OUT = pathlib.Path(__file__).parent.parent / "crates/pictures/tests/data/inks"
 D50 = np.array([0.9642, 1.0, 0.8249])
-# XYZ under D50 of paper and of solid inks in the order C, M, Y (bits), plausible for offset on coated paper.
+# XYZ under D50 of paper and of solid inks in the order C, M, Y (bits), with plausible values for offset on coated paper.
 SOLIDS = {
     (0, 0, 0): (0.9642, 1.0, 0.8249),
     (1, 0, 0): (0.155, 0.215, 0.470),
@@ -38,7 +38,7 @@ GRID = 5
 
 
 def xyz(c, m, y, k):
-    grow = lambda a: a**0.8  # dots grow in print
+    grow = lambda a: a**0.8  # dot gain in print
     c, m, y, k = map(grow, (c, m, y, k))
     total = np.zeros(3)
     for bits, color in SOLIDS.items():
@@ -147,7 +147,7 @@ def main():
     for name, icc in [("mft2", old), ("mft1", profile(tag_mft1(), 2)), ("mab", profile(tag_mab(), 4))]:
         picture.save(OUT / f"{name}.tif", icc_profile=icc, compression="tiff_deflate")
     picture.save(OUT / "cmyk.jpg", icc_profile=old, quality=95)
-    # YCCK of amounts that are stored the other way round; the profile is put in by hand.
+    # YCCK with inverted amounts; the profile is inserted by hand.
     stored = 255 - pixels
     jpeg = imagecodecs.jpeg8_encode(stored, level=95, colorspace="CMYK", outcolorspace="YCCK", subsampling="444")
     chunk = b"ICC_PROFILE\0\x01\x01" + old
@@ -157,7 +157,7 @@ def main():
     for name in ["mft2.tif", "mft1.tif", "mab.tif", "cmyk.jpg", "ycck.jpg"]:
         read = Image.open(OUT / name)
         own = ImageCms.ImageCmsProfile(io.BytesIO(read.info["icc_profile"]))
-        # Not optimized: through the tables of the profile, and not through ones of LittleCMS's own.
+        # Not optimized: LittleCMS then uses the tables of the profile and not its own.
         through = ImageCms.buildTransform(own, srgb, "CMYK", "RGB", renderingIntent=1, flags=0x0100)
         rgb = np.asarray(ImageCms.applyTransform(read, through))
         for i in range(len(PATCHES)):

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Plants faults in the program, one at a time, and says whether a test catches each.
+"""Plants faults in the program, one at a time, and reports whether a test catches each.
 
-    xtask/plant_faults.py               all of them, in a copy of the repository that is thrown away
-    xtask/plant_faults.py --list        shows them as a table and looks whether each still fits the source; builds nothing
+    xtask/plant_faults.py               all of them, in a temporary copy of the repository
+    xtask/plant_faults.py --list        lists them as a table and checks that each still fits the source; builds nothing
     xtask/plant_faults.py --only 3,7    some of them
     --folder DIR                        keeps the copy there, so that the next run builds less
-    --target DIR                        where cargo builds; else in the copy
-    --no-sound                          does not look first whether all tests pass without a fault
-    --own                               only by the tests of the crate that each fault is in: minutes
+    --target DIR                        where cargo builds; by default in the copy
+    --no-sound                          does not check first that all tests pass without a fault
+    --own                               runs only the tests of the crate that each fault is in: minutes
 
-The faults are chosen by hand: slips that a tired person makes, in code that a user sees the results of. The copy is of the last
-commit; what is not committed is not in it. All faults are compiled in at once, so that there is one build. The environment
-variable SPECTRA_FAULT has the number of the one that counts; without it the program is as it should be. For each fault the tests
-of its own crate run first, then all others, those of the whole program first, until one fails. A test program that takes 300
-seconds, or three times what it takes without a fault if that is longer, counts as caught: it hangs. The exit code is 1 if a fault
+The faults are chosen by hand: slips that a tired person makes, in code whose results a user sees. The copy contains the last
+commit, without uncommitted changes. All faults are compiled in at once, so one build is enough. The environment variable
+SPECTRA_FAULT holds the number of the active fault; without it, the program is correct. For each fault the tests of its own
+crate run first, then all others, those of the whole program first, until one fails. A test program counts as having caught the
+fault if it hangs: if it takes 300 seconds, or three times its usual time if that is longer. The exit code is 1 if a fault
 escapes.
 """
 
@@ -38,7 +38,7 @@ LIMIT_S = 300.0
 SOUND_LIMIT_S = 3600.0
 FAILED = re.compile(r"test (.*?)(?: - should panic)? \.\.\. FAILED")
 
-# Number, area, kind, what it does, file, a text that is there once, and what stands in place of what it has in «».
+# Number, area, kind, effect, file, a text that occurs there once, and the faulty replacement of its part in «».
 FAULTS = [
     (1, "lens", "sign", "A group of a lens that a scene shifts toward the image goes toward the object.",
      "crates/lens/src/misalignment.rs", "elements.clone(), «-by.shift_mm»);", "by.shift_mm"),
@@ -112,7 +112,8 @@ FAULTS = [
      "2.0 * (incidence - half_apex)"),
 ]
 
-# In the copy, what asks for a fault. Not spelled `env::`, since a test looks who touches the environment.
+# This code is added to the copy and checks which fault is requested. It avoids the spelling `env::`, because a test checks which
+# files access the environment.
 PLANTED = """
 /// Whether `SPECTRA_FAULT` asks for this fault.
 #[must_use]
@@ -144,7 +145,7 @@ def planted(fault):
 
 
 def place(root, fault):
-    """The line of a fault, and the file's text; stops where it does not fit."""
+    """Returns the line of a fault, and the file's text; exits if the fault does not fit."""
     path = root / fault.file
     text = path.read_text(encoding="utf-8") if path.is_file() else ""
     count = text.count(original(fault))
@@ -165,7 +166,7 @@ def git(folder, *words):
 
 
 def copied(folder, all_faults):
-    """A copy of the last commit with all faults in it; one that is there and is as wanted stays."""
+    """Makes a copy of the last commit with all faults in it. A copy that is up to date is kept."""
     if changed := git(ROOT, "status", "--porcelain"):
         print(f"{len(changed.splitlines())} files are not as they were committed: the copy has them as committed", file=sys.stderr)
     head, mark = git(ROOT, "rev-parse", "HEAD"), folder / ".git/planted"
@@ -194,7 +195,7 @@ def copied(folder, all_faults):
 
 
 def built(folder, target):
-    """The test programs of the copy."""
+    """Builds the copy and returns its test programs."""
     command = ["cargo", "test", "--workspace", "--locked", "--no-run", "--message-format=json-render-diagnostics"]
     env = {**os.environ, "CARGO_INCREMENTAL": "0", "CARGO_TARGET_DIR": str(target)}
     done = subprocess.run(command, cwd=folder, env=env, stdout=subprocess.PIPE, text=True)
@@ -207,12 +208,12 @@ def built(folder, target):
             is_lib = "lib" in said["target"]["kind"]
             name = package.relative_to(folder).as_posix() + ("" if is_lib else "/" + said["target"]["name"])
             tests.append(Test(said["executable"], package, name.removeprefix("./"), is_lib))
-    # Those of the whole program first, and of each crate those within it.
+    # Tests of the whole program come first; within a crate, its unit tests do.
     return sorted(tests, key=lambda test: (test.folder != folder, not test.is_lib, test.name))
 
 
 def run(test, number, limit_s):
-    """The test that fails first, or how else the program fails; None where all is well. And how long it took, s."""
+    """Runs a test program. Returns its first failing test, or how else it failed (None if all passed), and its time, s."""
     env = {**os.environ, "SPECTRA_FAULT": str(number), "CARGO_MANIFEST_DIR": str(test.folder)}
     begun, wrong = time.monotonic(), None
     program = subprocess.Popen(
@@ -251,7 +252,7 @@ def crate(folder, fault):
 
 
 def search(fault, tests, own, sound, only_own):
-    """Where a fault is caught, by what, and how long its runs took, s. What fails without a fault says nothing."""
+    """Returns where a fault is caught, by which test, and how long its runs took, s. Skips tests that fail without a fault."""
     all_s = 0.0
     for where, is_own in (("crate", True), ("workspace", False))[: 1 if only_own else 2]:
         for test in (test for test in tests if (test.folder == own) == is_own):
@@ -267,8 +268,8 @@ def search(fault, tests, own, sound, only_own):
 
 
 def tried(chosen, tests, folder, is_sound_asked, only_own):
-    """Whether all are caught."""
-    # How each test program does without a fault: asked once.
+    """Tries the faults, and returns whether all are caught."""
+    # Result of each test program without a fault, computed once.
     sound = functools.cache(lambda test: run(test, 0, SOUND_LIMIT_S) if is_sound_asked else (None, 0.0))
     for test in (test for test in tests if test.folder in {crate(folder, fault) for fault in chosen}):
         if wrong := sound(test)[0]:
@@ -285,12 +286,12 @@ def tried(chosen, tests, folder, is_sound_asked, only_own):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--list", action="store_true", help="shows the faults as a table, and builds nothing")
-    parser.add_argument("--only", metavar="NUMBERS", help="numbers of faults, with commas")
-    parser.add_argument("--folder", type=Path, metavar="DIR", help="where the copy is, and stays")
-    parser.add_argument("--target", type=Path, metavar="DIR", help="where cargo builds")
-    parser.add_argument("--no-sound", action="store_true", help="does not look first whether all passes without a fault")
-    parser.add_argument("--own", action="store_true", help="only by the tests of the crate that each fault is in")
+    parser.add_argument("--list", action="store_true", help="lists the faults as a table and builds nothing")
+    parser.add_argument("--only", metavar="NUMBERS", help="numbers of the faults to try, separated by commas")
+    parser.add_argument("--folder", type=Path, metavar="DIR", help="where to make and keep the copy")
+    parser.add_argument("--target", type=Path, metavar="DIR", help="folder in which cargo builds; by default in the copy")
+    parser.add_argument("--no-sound", action="store_true", help="do not check first that all tests pass without a fault")
+    parser.add_argument("--own", action="store_true", help="run only the tests of the crate that each fault is in")
     args = parser.parse_args()
     all_faults = faults()
     if args.list:

@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""How clean the edges of a rendered plate with depth are, against the same scene in two layers.
+"""Measures how clean the edges of a rendered plate with depth are, compared with the same scene in two layers.
 
     VENV/bin/python xtask/plate_edges.py target/debug/spectra [FOLDER]
 
-Needs numpy. Plates of 600 x 400 pixels, antialiased in color, with the depth of one sample a pixel or with depth that was averaged:
+Needs numpy. The plates have 600 x 400 pixels, antialiased colors, and either the depth of one sample per pixel or averaged depth:
 
-- a white card in focus at 1 m before a dark wall at 8 m, f/1.4. Printed: light of the wall beside the card over that of the same card
-  and wall as two layers, by distance from the edge in pixels of the frame;
-- hair around a dark ball before that wall, the wall in focus: to be looked at;
-- threads of 0.7 and of 2 pixels at 1 m before the wall, the wall in focus. Printed: contrast over that of the same plate without depth.
+- a white card in focus at 1 m before a dark wall at 8 m, f/1.4. Printed: light of the wall near the card relative to that of the same
+  card and wall as two layers, by distance from the edge in pixels of the frame;
+- hair around a dark ball before that wall, the wall in focus: for visual inspection;
+- threads of 0.7 and of 2 pixels at 1 m before the wall, the wall in focus. Printed: contrast relative to that of the same plate without
+  depth.
 
-Each as the program reads it, and with `depth: {edges: as-is}`. With FOLDER the pictures stay there, as PNG too.
+Each is rendered by default and with `depth: {edges: as-is}`. With FOLDER, the pictures are kept there, also as PNG.
 """
 
 import contextlib
@@ -44,7 +45,7 @@ LAYERS = (
 
 
 def plate(path, near, front, back, averaged=False, cover=False):
-    """Writes a plate: what is near is said for each of its fine pixels."""
+    """Writes a plate. `near` says for each of its fine pixels whether it belongs to the foreground."""
     share = near.reshape(HEIGHT, FINE, WIDTH, FINE).mean((1, 3))
     sample = share if averaged else near[FINE // 2 :: FINE, FINE // 2 :: FINE].astype(float)
     mix = lambda part: [part * front[k] + (1 - part) * back[k] for k in range(3)]
@@ -77,7 +78,7 @@ def cards(program, folder, x, y):
     plate(folder / "card.exr", near, CARD, WALL, cover=True)
     plate(folder / "wall.exr", near, WALL, WALL)
     layers = render(program, folder, "card-layers", LAYERS, 1, 64)
-    # Where the edge is in the frame: half of the card's light, by a straight line through all rows.
+    # Edge in the frame: half of the card's light, fitted by a straight line through all rows.
     half = 0.5 * (np.median(layers[:, :100]) + np.median(layers[:, -100:]))
     rows = np.arange(HEIGHT)
     edge = np.array([WIDTH - np.argmax(row[::-1] > half) for row in layers])
@@ -96,7 +97,7 @@ def cards(program, folder, x, y):
 
 
 def detail(frame, reach):
-    """What differs from the mean of a row's pixels around."""
+    """Returns the relative deviation of each pixel from the mean of its neighbors in the row."""
     smooth = np.apply_along_axis(np.convolve, 1, frame, np.ones(reach) / reach, "same")
     return frame / smooth - 1
 
@@ -117,7 +118,7 @@ def threads(program, folder, x, y):
 
 
 def hair(program, folder):
-    """A ball with hair of 0.3 to 1.2 pixels."""
+    """Renders a ball with hair of 0.3 to 1.2 pixels."""
     random = np.random.default_rng(7)
     y, x = (np.mgrid[: HEIGHT * FINE, : WIDTH * FINE] + 0.5) / FINE
     near = (x - 300) ** 2 + (y - 230) ** 2 < 90**2

@@ -7,11 +7,11 @@ Run from the root of the repository:
     VENV/bin/pip install mpmath==1.4.1
     VENV/bin/python xtask/reference_surfaces.py
 
-Independent of the tracer: sags are written as the textbook has them, the crossing nearest to the vertex plane is found by
-bisection and polished by the secant method, normals are numerical derivatives of the sag, and Snell's law is applied to the
-angle: sin i' = (n / n') sin i in the plane of incidence. Surfaces and rays are made up here; nothing comes from elsewhere.
+The computation is independent of the tracer: sags are written as in textbooks, the intersection nearest to the vertex plane is
+found by bisection and refined by the secant method, normals are numerical derivatives of the sag, and Snell's law is applied to
+the angle: sin i' = (n / n') sin i in the plane of incidence. Surfaces and rays are made up here; nothing comes from elsewhere.
 
-A file holds sets of parameters, as comments, and rows: number of the set, sense of travel (1: toward +z), refractive index
+A file holds sets of parameters, as comments, and rows: number of the set, direction of travel (1: toward +z), refractive index
 before and after, start (mm) and direction of the ray, point on the surface (mm), direction behind it. The frame is that of
 the surface. The start and its direction are exact doubles; the direction is normalized before use.
 """
@@ -48,7 +48,7 @@ def odd_asphere(p, x, y):
 
 
 def toroid(p, x, y):
-    """radius, conic, rotation radius, a2, a4, ..."""
+    """Parameters: radius, conic, rotation radius, a2, a4, ..."""
     g = conic(p[0], p[1], y * y) + sum(mpf(a) * y ** (2 * i + 2) for i, a in enumerate(p[3:]))
     if p[2] == inf:
         return g
@@ -58,14 +58,14 @@ def toroid(p, x, y):
 
 
 def biconic(p, x, y):
-    """radius-x, radius-y, conic-x, conic-y"""
+    """Parameters: radius-x, radius-y, conic-x, conic-y."""
     cx, cy = curvature(p[0]), curvature(p[1])
     below = 1 + sqrt(1 - (1 + mpf(p[2])) * cx**2 * x**2 - (1 + mpf(p[3])) * cy**2 * y**2)
     return (cx * x * x + cy * y * y) / below
 
 
 def cylinder(p, x, y):
-    """radius, 1 for straight lines along x or 0 for y"""
+    """Parameters: radius, 1 for straight lines along x or 0 for y."""
     return conic(p[0], 0, y * y if p[1] else x * x)
 
 
@@ -73,7 +73,7 @@ FACTORIAL = [mp.factorial(i) for i in range(40)]
 
 
 def zernike(p, x, y):
-    """radius, conic, normalization radius, 0 for noll or 1 for fringe, coefficients; tables as published"""
+    """Parameters: radius, conic, normalization radius, 0 for noll or 1 for fringe, coefficients; tables as published."""
     noll = [(0, 0), (1, 1), (1, -1), (2, 0), (2, -2), (2, 2), (3, -1), (3, 1), (3, -3), (3, 3), (4, 0), (4, 2), (4, -2), (4, 4), (4, -4)]
     fringe = [(0, 0), (1, 1), (1, -1), (2, 0), (2, 2), (2, -2), (3, 1), (3, -1), (4, 0), (3, 3), (3, -3), (4, 2), (4, -2), (5, 1), (5, -1), (6, 0)]
     r, angle = sqrt(x * x + y * y) / p[2], atan2(y, x)
@@ -97,7 +97,7 @@ KINDS = {
             ([25.0, -0.5, 0.0, 2e-6, -3e-9, 1e-12], 10),
             ([-30.0, 1.5, 1e-4, -1e-5, 2e-8], 9),
             ([6.0, -1.2, 0.0, 1e-4, -2e-6, 3e-8, -1e-10, 2e-13, -1e-16, 1e-19], 4.5),  # steep
-            ([1.6, -0.6, 0.02, -0.01, 0.004, -0.001], 1.1),  # of a telephone
+            ([1.6, -0.6, 0.02, -0.01, 0.004, -0.001], 1.1),  # from a telephone camera
             ([inf, 0.0, 0.01, -2e-5, 1e-7, -1e-10, 2e-13, -3e-16, 1e-19, 2e-23, -1e-26, 3e-30, -1e-33], 8),
             ([40.0, 0.0] + [1e-3 / 15.0 ** (2 * i + 1) * (-1) ** i for i in range(20)], 12),
         ],
@@ -137,7 +137,7 @@ KINDS = {
 
 
 def crossing(sag, p, start, d):
-    """Distance along the ray of the crossing nearest to the vertex plane."""
+    """Returns the distance along the ray to the intersection nearest to the vertex plane."""
     origin = -start[2] / d[2]
 
     def height(t):
@@ -165,7 +165,7 @@ def crossing(sag, p, start, d):
 
 
 def refract(d, normal, ratio):
-    """Snell's law by the angle; None where the light is totally reflected."""
+    """Refracts a direction by Snell's law for the angle. Returns None at total reflection."""
     length = sqrt(sum(v * v for v in normal))
     normal = [v / length for v in normal]
     along = sum(a * b for a, b in zip(d, normal))
@@ -181,7 +181,7 @@ def refract(d, normal, ratio):
 
 
 def rays(sag, p, largest, numbers):
-    """Rows of one set: half in each sense, and in each of them from air into glass and back."""
+    """Yields the rows of one set: half in each direction of travel, and in each direction from air into glass and back."""
     for i in range(RAYS):
         sense = 1 if i % 2 == 0 else -1
         before, after = (1.0, INDEX) if i % 4 < 2 else (INDEX, 1.0)
@@ -201,7 +201,7 @@ def rays(sag, p, largest, numbers):
                 continue
             q = [mpf(v) + t * w for v, w in zip(start, d)]
             normal = [-diff(lambda x: sag(p, x, q[1]), q[0]), -diff(lambda y: sag(p, q[0], y), q[1]), mpf(1)]
-            # The surface is met from its own side, and not along it.
+            # Keeps only rays that hit the surface from the correct side and not at grazing incidence.
             if sense * sum(a * b for a, b in zip(d, normal)) < 0.1:
                 continue
             bent = refract(d, normal, mpf(before) / mpf(after))

@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
-"""Three spectral lines of the hues of sRGB's primaries that together are white: wavelengths and powers, mean power 1.
+"""Computes three spectral lines with the hues of sRGB's primaries that together are white: wavelengths and powers, mean power 1.
 
-An independent computation for the test `rgb_lines_make_white` (plugins/colors/src/named.rs). Needs colour-science (BSD-3-Clause) for
-the CIE 1931 color-matching functions only.
+An independent computation for the test `rgb_lines_make_white` (plugins/colors/src/named.rs). Needs colour-science (BSD-3-Clause) only
+for the CIE 1931 color-matching functions.
 """
 import colour
 import numpy as np

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Records the bits of every bundled scene and the figures of every bundled lens, and compares two such records.
+"""Records digests of every bundled scene and the figures of every bundled lens, and compares two such records.
 
     xtask/same_pictures.py record target/release/spectra -o after.json   renders everything: about a quarter of an hour on two cores
-    xtask/same_pictures.py compare benches/pictures.json after.json      says what differs, and fails if it differs by too much
+    xtask/same_pictures.py compare benches/pictures.json after.json      lists the differences, and fails if one is too large
 
-Each scene is rendered 240 pixels wide with a sixteenth of its samples: all pictures of a sweep, the first one of an animation. A record holds, for
-every file, a digest of its pixels (of an EXR file everything behind the header, of a PNG file its image data) and for an EXR file the mean
-of each channel. A change to the structure of the program must keep the digests. Where it replaces a search for focus, stop or field, the
-means must agree within 1e-5, the figures of lenses within 1e-6, and places of focus within 1e-4 mm. Needs numpy.
+Each scene is rendered 240 pixels wide with a sixteenth of its samples: all pictures of a sweep, the first picture of an animation.
+A record holds, for every file, a digest of its pixels (for an EXR file everything behind the header, for a PNG file its image data) and
+for an EXR file the mean of each channel. A refactoring of the program must keep the digests. If it replaces a search for focus, stop or
+field, the means must agree within 1e-5, the figures of lenses within 1e-6, and focus positions within 1e-4 mm. Needs numpy.
 """
 
 import argparse
@@ -48,7 +48,7 @@ def number(text, key):
 
 
 def settings(path):
-    """The keys of a scene that make its picture small."""
+    """Returns the settings of a scene that make its picture small."""
     text = text_with_includes(path)
     sets = ["output=[exr, png]"]
     size = re.search(r"resolution:\s*\[\s*(\d+),\s*(\d+)\s*\]", text)
@@ -68,7 +68,7 @@ def settings(path):
 
 
 def pixels(path):
-    """The bytes of a picture that hold its pixels."""
+    """Returns the bytes of a picture that hold its pixels."""
     data = path.read_bytes()
     if path.suffix == ".png":
         out, at = b"", 8
@@ -84,7 +84,7 @@ def pixels(path):
             at = data.index(0, at) + 1
         (size,) = struct.unpack_from("<i", data, at)
         at += 4 + size
-    # Behind the header stand the offsets of the chunks in the file, which depend on the length of the header.
+    # The header is followed by the offsets of the chunks in the file, which depend on the length of the header.
     (first,) = struct.unpack_from("<Q", data, at + 1)
     return data[first:]
 
@@ -109,7 +109,7 @@ def picture(program, scene):
 
 
 def figures(value, path=""):
-    """All numbers of a JSON value by their paths."""
+    """Yields all numbers of a JSON value with their paths."""
     if isinstance(value, dict):
         for key, inner in value.items():
             yield from figures(inner, f"{path}.{key}" if path else key)
@@ -146,7 +146,7 @@ def apart(a, b):
 
 
 def compare(before, after):
-    """The differences as lines, each with whether it is too large."""
+    """Yields the differences as lines, each with whether it is too large."""
     for name, files in before["scenes"].items():
         now = after["scenes"].get(name)
         if now is None or files.keys() != now.keys() or "error" in files:

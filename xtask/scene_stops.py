@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""By how many stops the losses of its lens dim each stock scene: mean exposure of a small, noisy frame with
-`lens.coating=ideal` and `lens.absorption=false` over that of the scene as it is, in log2, channel by channel.
+"""Measures how much the losses of its lens dim each stock scene, in stops.
+
+The result is the mean exposure of a small, noisy frame with `lens.coating=ideal` and `lens.absorption=false` relative to that of the
+unchanged scene, in log2, for each channel.
 
     python3 xtask/scene_stops.py target/release/spectra [SCENE ...]
 
-Same seed, same rays: the noise is the same on both sides. Sweeps are rendered as the scene that they start from.
+Both renders use the same seed and the same rays, so they have the same noise. Sweeps are rendered as the scene that they start from.
 """
 
 import math
@@ -20,7 +22,7 @@ IDEAL = ["lens.coating=ideal", "lens.absorption=false"]
 
 
 def means(path):
-    """Mean of each channel of an EXR of scan lines, uncompressed or ZIP."""
+    """Returns the mean of each channel of an EXR file of scan lines, uncompressed or ZIP compressed."""
     data = path.read_bytes()
     at, header = 8, {}
     while data[at]:

@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
-"""How noisy bright things out of focus are: the disks of `onion-rings`, and a window at three times white.
+"""Measures the noise of bright things out of focus: the disks of `onion-rings`, and a window at three times white.
 
     VENV/bin/python xtask/speckle.py target/debug/spectra [FOLDER] [--samples N]
 
-Needs numpy. Run from the root of the repository; with FOLDER the pictures stay there.
+Needs numpy. Run from the root of the repository. With FOLDER, the pictures are kept there.
 
-- `onion-rings` at its defaults, and once more with another seed: of the disk nearest to the middle of the frame, within nine tenths of
-  its radius, the standard deviation about the mean of each ring, in parts of that mean, by channel. The rings stand about a middle of
-  their own, which is looked for. Then the difference of the two seeds over the square root of two, which is noise and nothing else.
-- the window, out of focus, 64 samples unless said otherwise: blocks of 12 x 12 pixels inside of it, across its bars and at its edges, the
-  standard deviation about a plane fitted to each, of Y and of the ratios X/Y and Z/Y, which are what one sees as colored dots.
+- `onion-rings` with its defaults, and again with another seed. For the disk nearest to the middle of the frame, within nine tenths of
+  its radius, the script prints the standard deviation about the mean of each ring, relative to that mean, by channel. The rings have a
+  center of their own, which the script finds. Then it prints the difference of the two seeds over the square root of two, which is pure
+  noise.
+- the window, out of focus, with 64 samples by default: in blocks of 12 x 12 pixels inside it, across its bars and at its edges, the
+  standard deviation about a plane fitted to each block, of Y and of the ratios X/Y and Z/Y, which show as colored dots.
 """
 
 import contextlib
@@ -32,7 +33,7 @@ render: {{samples: {samples}}}
 output: [png, exr]
 """
 BLOCK = 12
-# Left, right, top, bottom, pixels of the frame.
+# Left, right, top and bottom of each part, in pixels of the frame.
 PARTS = {"inside": (110, 160, 60, 105), "bars": (188, 224, 60, 108), "edges": (335, 359, 60, 240)}
 
 
@@ -47,7 +48,7 @@ def run(program, folder, scene, *settings):
 
 
 def about_rings(plane, inside, middle, y, x):
-    """What differs from the mean of the ring, in parts of it."""
+    """Returns the relative deviation of each pixel from the mean of its ring."""
     radius = np.hypot(x - middle[0], y - middle[1])[inside]
     ring = radius.astype(int)
     values = plane[inside]
@@ -62,7 +63,7 @@ def disk(program, folder):
     y, x = np.mgrid[:height, :width] + 0.5
     lit = light > 0.05 * np.percentile(light, 99)
     near = lit & (np.hypot(x - width / 2, y - height / 2) < 120)
-    # Light of others at the rim of the search does not count: what lies about the middle of all is the disk.
+    # Light of other disks at the rim of the search does not count: the disk is the light around the common center.
     for _ in range(4):
         middle = [x[near].mean(), y[near].mean()]
         size = np.sqrt(near.sum() / np.pi)
@@ -80,7 +81,7 @@ def disk(program, folder):
 
 
 def write_window(path):
-    """A window with bars in a dim room with a dark floor, and a lit picture on the wall."""
+    """Writes a picture of a window with bars in a dim room with a dark floor, and a lit picture on the wall."""
     rows = []
     for y in range(240):
         row = []

@@ -5,13 +5,13 @@ Run from the root of the repository, with numpy and scipy:
 
     python3 xtask/spectrum_expressions.py
 
-Each expression is a random tree, printed with as few parentheses as the usual order of signs needs (and sometimes more), and
-evaluated by numpy from the tree and not from the text, with scipy's constants for Planck's law. Tables are read from
-spectra/ and asked for at their own rows. Trees that are somewhere negative or not finite on 350-830 nm are thrown away, as spectrum
-would refuse them, and so are filters beyond 1.
+Each expression is a random tree, printed with as few parentheses as the usual operator precedence allows (and sometimes more).
+numpy evaluates it from the tree and not from the text, with scipy's constants for Planck's law. Tables are read from spectra/
+and evaluated at their own rows. The script discards trees that are negative or not finite anywhere on 350-830 nm, since spectrum
+would refuse them, and filters above 1.
 
-Columns: what is wanted, values at the wavelengths of the header, and the size of each: the sum of what is added up on the way
-without its signs, to which roundings are relative. The expression comes last, in quotes.
+Columns: the quantity, values at the wavelengths of the header, and the magnitude of each value. The magnitude is the sum of
+everything that is added on the way, without signs; rounding errors are relative to it. The expression comes last, in quotes.
 """
 
 import csv
@@ -32,14 +32,14 @@ SUM, PRODUCT, SIGN, POWER, ATOM = range(5)
 
 
 class Tree:
-    """Text with the rank of its loosest sign, values, and sizes."""
+    """An expression: text, precedence of its outermost operator, values, and magnitudes."""
 
     def __init__(self, text, rank, values, sizes=None):
         self.text, self.rank, self.values = text, rank, values
         self.sizes = np.abs(values) if sizes is None else sizes
 
     def inside(self, least):
-        """The text where a sign of that rank takes it as an operand."""
+        """Returns the text as an operand of an operator with precedence `least`, in parentheses if needed."""
         loose = self.rank < least or RANDOM.random() < 0.08
         return f"({self.text})" if loose else self.text
 
@@ -53,7 +53,7 @@ def table(path, column):
     rows = [r for r in csv.reader(open(ROOT / path)) if r and not r[0].startswith("#")]
     index = rows[0].index(column) if column else 1
     data = np.array([[float(r[0]), float(r[index])] for r in rows[1:]])
-    # On the rows themselves; between them on the grid it only decides what is thrown away.
+    # Exact at the rows of the table. Between them, on the grid, the values only decide which trees are discarded.
     return np.interp(WAVELENGTHS, data[:, 0], data[:, 1])
 
 
@@ -202,7 +202,7 @@ def is_good(tree, wanted):
         return False
     if np.min(v) < 0 or (wanted == "transmittance" and np.max(v) > 1):
         return False
-    # A spectrum by name only is no algebra.
+    # Discards expressions that are only the name of a spectrum.
     return any(sign in tree.text for sign in "+-*/^ ") and len(tree.text) < 400
 
 

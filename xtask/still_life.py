@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Draws a still life by a window, for the sheet of films: light and shade, bright and dull things, a gray card.
+"""Draws a still life by a window, for the page of films: light and shade, bright and dull things, a gray card.
 
     VENV/bin/python xtask/still_life.py FILE.exr [WIDTH]
 
-Needs numpy. Traced by rays: the window is a lamp of four panes with a real area, walls and table give some of its light back, and brass
-and glaze mirror it. R, G, B, linear, Rec. 709, in units in which white paper in the window's light is about 1. The same seed, the same
-picture.
+Needs numpy. The picture is ray traced: the window is an area light of four panes, walls and table reflect diffusely, brass and glaze are
+specular. R, G, B, linear, Rec. 709, in units in which white paper in the window's light is about 1. The seed is fixed, so the picture is
+always the same.
 """
 
 import pathlib
@@ -16,10 +16,10 @@ import numpy as np
 import half_exr
 
 FAR = 1e9
-# The window in the left wall: center, half height, half width (along z), and light of the panes over that of white paper.
+# The window in the left wall: center, half height, half width (along z), and light of the panes relative to white paper.
 WINDOW, HALF_UP, HALF_ALONG, PANES = np.array([-1.1, 0.62, 0.42]), 0.36, 0.4, 14.0
 SKY = np.array([0.93, 0.99, 1.08])
-EYE, AIM, LENS = np.array([0.08, 0.33, 1.45]), np.array([0.03, 0.105, 0.0]), 3.7  # focal length over half of the frame's width
+EYE, AIM, LENS = np.array([0.08, 0.33, 1.45]), np.array([0.03, 0.105, 0.0]), 3.7  # LENS: focal length over half the frame's width
 
 # Spheroids: name, center, semi-axes.
 ROUND = [
@@ -32,14 +32,14 @@ ROUND = [
     ("jug", (0.045, 0.085, 0.0), (0.078, 0.085, 0.078)),
     ("flame", (-0.26, 0.243, 0.0), (0.0065, 0.019, 0.0065)),
 ]
-# Upright cylinders: name, x and z, radius, from and to.
+# Upright cylinders: name, x and z, radius, lower and upper end.
 UPRIGHT = [
     ("jug", (0.045, 0.0), 0.036, 0.15, 0.235),
     ("jug", (0.045, 0.0), 0.045, 0.228, 0.242),
     ("wax", (-0.26, 0.0), 0.021, 0.02, 0.215),
     ("brass", (-0.26, 0.0), 0.05, 0.0, 0.02),
 ]
-# Boxes turned about the vertical: name, center, half sides, turn in radians.
+# Boxes, rotated about the vertical: name, center, half sides, rotation in radians.
 BOXES = [
     ("book", (0.20, 0.0175, 0.02), (0.105, 0.0175, 0.075), 0.22),
     ("slate", (0.19, 0.05, 0.02), (0.09, 0.015, 0.065), -0.12),
@@ -57,7 +57,7 @@ BACK, FLOOR = -0.75, 0.0
 
 
 def nearest(o, d):
-    """Distance, name as a number, and normal of what rays meet."""
+    """Returns the distance, the name as a number, and the normal of the first hit of each ray."""
     n = len(o)
     t, what, normal = np.full(n, FAR), np.full(n, NAMES.index("wall")), np.zeros((n, 3))
 
@@ -107,7 +107,7 @@ def nearest(o, d):
 
 
 def blotches(x, y, chance, size):
-    """Smooth random values, 0 to 1, on a lattice."""
+    """Value noise: smooth random values, 0 to 1, on a lattice."""
     table = np.random.default_rng(chance).random((256, 256))
     x, y = x / size, y / size
     i, j = np.floor(x).astype(int), np.floor(y).astype(int)
@@ -118,7 +118,7 @@ def blotches(x, y, chance, size):
 
 
 def colors(what, p):
-    """Reflectances, with what makes things look like things: grain of wood, pores, pages, the white rim of the card."""
+    """Returns reflectances with texture: grain of wood, pores, pages, the white rim of the card."""
     color = np.array([COLORS[n] for n in NAMES])[what]
     x, y, z = p.T
     wood = 0.55 + 0.5 * blotches(x * 0.12, z, 3, 0.004) * blotches(x * 0.2, z, 4, 0.02) + 0.35 * blotches(x, z, 5, 0.15)
@@ -144,7 +144,7 @@ def colors(what, p):
 
 
 def light_of(o, d):
-    """What a ray that leaves the room, or meets the window or the flame, brings; and which rays do."""
+    """Returns which rays hit the window or the flame, or leave the room, and their light."""
     with np.errstate(divide="ignore", invalid="ignore"):
         at = (WINDOW[0] - o[:, 0]) / d[:, 0]
         p = o + d * at[:, None]
@@ -154,7 +154,7 @@ def light_of(o, d):
 
 
 def traced(o, d, chance, depth):
-    """Light along rays."""
+    """Returns the light along rays."""
     t, what, normal = nearest(o, d)
     p = o + d * t[:, None]
     is_pane, pane = light_of(o, d)
@@ -163,7 +163,7 @@ def traced(o, d, chance, depth):
     albedo = colors(what, p)
     normal = np.where(((normal * d).sum(1) > 0)[:, None], -normal, normal)
     start = p + 1e-4 * normal
-    # From a place of the window.
+    # Direct light from a random point of the window.
     n = len(o)
     place = WINDOW + np.stack([np.zeros(n), (2 * chance.random(n) - 1) * HALF_UP, (2 * chance.random(n) - 1) * HALF_ALONG], 1)
     way = place - start
@@ -173,13 +173,13 @@ def traced(o, d, chance, depth):
     is_seen, from_pane = light_of(start, way)
     blocked = nearest(start, way)[0] < np.sqrt(far2) - 2e-3
     direct = from_pane * (cosines / (np.pi * far2) * 4 * HALF_UP * HALF_ALONG * (is_seen & ~blocked))[:, None]
-    # And the flame, a small lamp.
+    # Direct light from the flame, a small lamp.
     way = np.array(ROUND[-1][1]) - start
     far2 = (way * way).sum(1)
     way = way / np.sqrt(far2)[:, None]
     open_ = nearest(start, way)[0] > np.sqrt(far2) - 0.02
     direct += np.array([1.0, 0.55, 0.2]) * (0.0022 * np.clip((way * normal).sum(1), 0, None) / far2 * open_)[:, None]
-    # And what the room gives back.
+    # Light that the room reflects.
     around = np.full((n, 3), 0.03)
     if depth > 0:
         u, v = chance.random(n), 2 * np.pi * chance.random(n)
@@ -188,7 +188,7 @@ def traced(o, d, chance, depth):
         a /= np.sqrt((a * a).sum(1, keepdims=True))
         b = np.cross(normal, a)
         way = np.sqrt(u)[:, None] * (a * np.cos(v)[:, None] + b * np.sin(v)[:, None]) + normal * np.sqrt(1 - u)[:, None]
-        # The window itself has been counted.
+        # Direct light from the window has already been counted.
         around = np.minimum(traced(start, way, chance, depth - 1) * ~light_of(start, way)[0][:, None], 2.0)
     light = albedo * (direct + around)
     gloss = np.array([GLOSS.get(name, 0.0) for name in NAMES])[what]

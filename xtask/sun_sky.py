@@ -1,9 +1,9 @@
 """Writes scenes/sun-sky.exr: a clear sky in late afternoon over hills and a meadow, for suns at the edge of the frame.
 
-The sky is bluest far from the sun and pale near the horizon and around the sun, which stands at the right edge, 18.5 degrees across and
-11 degrees up of the middle (the sun itself is not in it); four ranges of hills grow paler with distance; thin clouds. The
-picture is seen by a 50 mm lens on 36 x 24 mm. Every pixel is the mean of nine samples. R, G, B (linear, Rec. 709, 1 is white) as 16-bit
-floats of 8 significant bits, ZIP compressed. Needs nothing but Python 3, and takes some minutes.
+The sky is bluest far from the sun and pale near the horizon and around the sun. The sun itself is not in the picture; its place is at the
+right edge, 18.5 degrees across and 11 degrees up from the middle. Four ranges of hills grow paler with distance; there are thin clouds.
+The picture has the field of a 50 mm lens on 36 x 24 mm. Every pixel is the mean of nine samples. R, G, B (linear, Rec. 709, 1 is white) as
+16-bit floats with 8 significant bits, ZIP compressed. The script needs only Python 3 and takes some minutes.
 
     python3 xtask/sun_sky.py
 """
@@ -16,15 +16,15 @@ import half_exr
 from noise_scenes import eight_bits, mixed, noise, scaled, smooth
 
 WIDTH, HEIGHT = 1080, 720
-SAMPLES = 3  # of a pixel, across and down
-# Tangents of the field a pixel, and where the sun stands.
+SAMPLES = 3  # samples of a pixel across, and as many down
+# Tangent of the field per pixel, and tangents of the sun's direction.
 PITCH = 36.0 / 50.0 / WIDTH
 SUN = (0.335, 0.195)
 HORIZON = -0.06
 
 
 def cloudy(x, y):
-    """Noise of five octaves: 0 to 1."""
+    """Fractal noise of five octaves: 0 to 1."""
     return sum(noise(x * 2**k, y * 2**k) / 2 ** (k + 1) for k in range(5))
 
 
@@ -40,7 +40,7 @@ def sky(x, y):
 
 @functools.lru_cache(4 * WIDTH)
 def ridges(x):
-    """How high the ranges stand in a direction, from far to near."""
+    """Returns the heights of the ranges in a direction, from far to near."""
     found = []
     for k, (base, height, per) in enumerate([(-0.035, 0.05, 9), (-0.055, 0.05, 13), (-0.085, 0.045, 21), (-0.13, 0.03, 8)]):
         ridge = base + height * (cloudy(per * x + 31 * k, 7.3 * k) - 0.35)
@@ -52,7 +52,7 @@ def ridges(x):
 
 
 def hills(x, y):
-    """The nearest range that stands before a direction, 0 to 3 from far to near; `None` where the sky is free."""
+    """Returns the nearest range in a direction, 0 to 3 from far to near, or `None` for free sky."""
     return max((k for k, ridge in enumerate(ridges(x)) if y < ridge), default=None)
 
 

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""T-numbers of a lens file of spheres, planes and a stop, on the axis, by a tracer of its own: what `spectra lens info` is held
-against (tests/it/cli_lens.rs, figures in tests/data/t-numbers.csv).
+"""Computes T-numbers on the axis for a lens file of spheres, planes and a stop, with an independent tracer.
+
+`spectra lens info` is compared with them (tests/it/cli_lens.rs, figures in tests/data/t-numbers.csv).
 
     python3 xtask/t_number.py lenses/zeiss-biotar-50-f1.4.yaml target/release/spectra
 
-Rays of an object at infinity on the axis, rings of equal area over the pupil; at each surface Snell's law by the angle to the
-normal and Fresnel's equations for both polarizations (of a bare lens; cement between glasses included). The marginal ray is the
-highest one that passes all semi-diameters; N = 1 / (2 sin theta'), T = N / sqrt(mean of what passes). Indices at the line d are
-those that the program's own `glass info` gives. With a third argument, `absorbing`, glass absorbs too: by the internal transmittance of
-10 mm that `glass info` gives for it or, where it has none, for the glass that `lens info` names as the lender.
+The rays come from an object at infinity on the axis, in rings of equal area over the pupil. At each surface the script applies Snell's
+law to the angle to the normal and Fresnel's equations for both polarizations (of an uncoated lens, including cemented surfaces). The
+marginal ray is the highest one that passes all semi-diameters. N = 1 / (2 sin theta'), T = N / sqrt(mean transmitted fraction). Indices
+at the line d are those of the program's own `glass info`. With a third argument, `absorbing`, glass absorbs too: by the internal
+transmittance of 10 mm that `glass info` gives for it. If it has none, that of the glass counts from which `lens info` says it is borrowed.
 """
 
 import json
@@ -22,7 +23,7 @@ LINE_D_NM = 587.5618
 
 
 def surfaces(path):
-    """(curvature, thickness, glass or None or 'same', semi-diameter or inf) of each row of a file in flow style."""
+    """Returns (curvature, thickness, glass or None or 'same', semi-diameter or inf) of each row of a file in flow style."""
     found = []
     with open(path, encoding="utf-8") as file:
         for line in file:
@@ -56,14 +57,14 @@ def per_mm(program, glass):
 
 
 def fresnel(n, m, cos_i, cos_t):
-    """Power that passes from n to m, of unpolarized light."""
+    """Returns the power fraction of unpolarized light that passes from n to m."""
     rs = (n * cos_i - m * cos_t) / (n * cos_i + m * cos_t)
     rp = (m * cos_i - n * cos_t) / (m * cos_i + n * cos_t)
     return 1.0 - 0.5 * (rs * rs + rp * rp)
 
 
 def trace(lens, height, clip=True):
-    """What passes, and the sine behind the lens; None where the ray ends. The ray runs in the plane of the paper."""
+    """Returns the transmitted fraction and the sine behind the lens, or None if the ray ends. The ray runs in the plane of the paper."""
     y, z, sin, cos, n = height, 0.0, 0.0, 1.0, 1.0
     weight = 1.0
     for curvature, thickness, m, per_mm, before_per_mm, rim in lens:
@@ -72,7 +73,7 @@ def trace(lens, height, clip=True):
             way = -z / cos
         else:
             radius = 1.0 / curvature
-            # From (y, z) along (sin, cos) to the sphere about (0, radius), the intersection next to the vertex.
+            # From (y, z) along (sin, cos) to the sphere about (0, radius); the intersection near the vertex counts.
             dy, dz = y, z - radius
             b = dy * sin + dz * cos
             disc = b * b - (dy * dy + dz * dz - radius * radius)
@@ -83,7 +84,7 @@ def trace(lens, height, clip=True):
         if clip and abs(y) > rim:
             return None
         weight *= math.exp(-before_per_mm * math.hypot(y - start[0], z - start[1]))
-        # Angle of the outward normal to the axis, then plain angles.
+        # Tilt is the angle of the outward normal to the axis; the others are ordinary angles.
         tilt = math.asin(y * curvature)
         incidence = math.atan2(sin, cos) + tilt
         ratio = n * math.sin(incidence) / m
@@ -99,7 +100,7 @@ def trace(lens, height, clip=True):
 
 
 def numbers(rows, indices, absorption):
-    """f-number, share of the light that passes, T-number."""
+    """Returns the f-number, the transmitted fraction of the light, and the T-number."""
     lens, n, a = [], 1.0, 0.0
     for curvature, thickness, glass, rim in rows:
         before = a

@@ -1,9 +1,9 @@
-"""What surfaces with and without films reflect and pass, by another program: tests/data/thin-films.csv.
+"""Computes reflectance and transmittance of surfaces with and without films by another program: tests/data/thin-films.csv.
 
-the Python package `tmm` (MIT; S. J. Byrnes), version 0.2.0, `coh_tmm`, double precision: the transfer matrix of a coherent stack
-between two half-spaces. Columns: a name; the indices of the medium that light comes from and of the one behind; the layers in the order
-in which light meets them, each as thickness (nm), n and k, divided by `/`; wavelength (nm); angle of incidence (degrees);
-reflectance and transmittance of s and of p light, as parts of the power.
+The program is the Python package `tmm` (MIT; S. J. Byrnes), version 0.2.0, `coh_tmm`, double precision: the transfer matrix of a coherent
+stack between two half-spaces. Columns: a name; the indices of the medium that light comes from and of the one behind; the layers in the
+order in which light meets them, each as thickness (nm), n and k, divided by `/`; wavelength (nm); angle of incidence (degrees);
+reflectance and transmittance of s and of p light, as fractions of the power.
 
     pip install tmm==0.2.0
     python xtask/thin_films.py > tests/data/thin-films.csv
@@ -48,7 +48,7 @@ def main():
             for nm in WAVELENGTHS_NM:
                 for angle in ANGLES_DEG:
                     if before * math.sin(math.radians(angle)) >= after:
-                        # Beyond total reflection nothing passes: not what this table is for.
+                        # Total reflection transmits nothing; this table leaves it out.
                         continue
                     s, p = (coh_tmm(c, indices, thicknesses, math.radians(angle), nm) for c in "sp")
                     figures = [s["R"], p["R"], s["T"], p["T"]]

@@ -2,7 +2,7 @@
 """Validates every scene, lens, stock and spectrum file of the repository against the schemas that `spectra schema` writes.
 
 An independent check of the schemas: the validator is Python's `jsonschema`, the YAML reader is ruamel's (YAML 1.2, as ours).
-Broken files must be refused as well: a schema that accepts everything would pass the first half.
+The schemas must also reject broken files, since a schema that accepts everything would pass the first half.
 
 Usage: validate_schemas.py PATH/TO/spectra
 Needs: jsonschema >= 4, ruamel.yaml (Debian: python3-jsonschema, python3-ruamel.yaml).
@@ -17,7 +17,7 @@ import jsonschema
 from ruamel.yaml import YAML
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-# Example plugins whose stage stands in a lens file, so that their scene is good without them.
+# Example plugins whose stage belongs to a lens file, so their scenes are valid without them.
 IN_LENSES = ("axicon", "diffusion-filter")
 
 FILES = {
@@ -26,7 +26,7 @@ FILES = {
     "stock": ["spectra/film/*.yaml"],
     "spectrum": ["spectra/**/*.yaml"],
 }
-# What a schema must refuse: the file, the path of the value, and what is put there (None: the key is taken away).
+# Values that a schema must reject: the file, the path of the value, and the new value (None: the key is removed).
 BROKEN = [
     ("scene", "scenes/biotar-ortho.yaml", ["source", "kind"], "chrat"),
     ("scene", "scenes/biotar-ortho.yaml", ["source", "distance"], "2 lx"),
@@ -42,7 +42,7 @@ BROKEN = [
     ("stock", "spectra/film/ilford-ortho-plus.yaml", ["iso"], 0),
     ("stock", "spectra/film/ilford-ortho-plus.yaml", ["layers"], None),
 ]
-# What a schema must accept: variables stand for values of any kind.
+# Values that a schema must accept: variables can replace values of any kind.
 GOOD = [
     ("scene", "scenes/biotar-ortho.yaml", ["source", "distance"], "$distance"),
     ("scene", "scenes/biotar-ortho.yaml", ["source"], "$subject"),
@@ -53,7 +53,7 @@ GOOD = [
 
 
 def plain(value):
-    """Without ruamel's own types."""
+    """Converts ruamel's types to plain Python types."""
     if isinstance(value, dict):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, list):

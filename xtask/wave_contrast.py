@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""What a wavefront's aberrations do to contrast, from rays that `spectra lens trace` gives with their optical paths.
+"""Computes the effect of a wavefront's aberrations on contrast, from rays of `spectra lens trace` with their optical paths.
 
     xtask/wave_contrast.py SPECTRA > crates/diffraction/tests/data/wave-contrast.csv
 
-For a point at infinity: the wavefront over the direction cosines at the film is a polynomial through the paths to the foot of the
-perpendicular from the middle of the spot; the contrast of light is the modulus of the autocorrelation of the pupil with that
-phase (H. H. Hopkins, "The frequency response of a defocused optical system", Proc. R. Soc. A 231, 1955), that of rays the modulus of the mean of
-exp(-2 pi i f x), that of the edge the pupil's overlap. Needs numpy and scipy.
+The object is a point at infinity. The wavefront over the direction cosines at the film is a polynomial through the paths to the foot
+of the perpendicular from the middle of the spot. The contrast of light is the modulus of the autocorrelation of the pupil with that
+phase (H. H. Hopkins, "The frequency response of a defocused optical system", Proc. R. Soc. A 231, 1955). The contrast of rays is the
+modulus of the mean of exp(-2 pi i f x), that of the edge the overlap of the pupil with itself. Needs numpy and scipy.
 """
 
 import subprocess
@@ -24,7 +24,7 @@ PER_MM = [10, 20, 40, 60]
 
 
 def traced(program, lens, stop, points, direction):
-    """Which rays hit, and where, whither and after which path."""
+    """Returns which rays hit, and their hit points, directions and optical paths."""
     with tempfile.NamedTemporaryFile("w", suffix=".csv") as rays:
         rays.write("x_mm,y_mm,z_mm,l,m,n\n")
         rays.writelines("%.12g,%.12g,%.12g,%.17g,%.17g,%.17g\n" % (*p, *direction) for p in points)

@@ -1,9 +1,9 @@
-"""Writes scenes/window-dusk.exr: a dim room with a vase near by and a window behind it, by ray casting from a pinhole.
+"""Writes scenes/window-dusk.exr: a dim room with a vase in front and a window behind it, by ray casting from a pinhole.
 
-A vase stands at 0.7 m on a table that reaches to 1.6 m; behind it, at 5 m, a wall with a window of six panes, through which the evening sky
-shines at three times white, and a lit picture at the right. As renderers do it, color is the mean of nine samples of a pixel, and depth is
-that of the one in its middle. R, G, B (linear, Rec. 709) and Z (m, along the axis) as 16-bit floats, ZIP compressed, as OpenEXR's "File Layout" describes.
-Needs nothing but Python 3.
+A vase stands at 0.7 m on a table that reaches to 1.6 m. Behind it, at 5 m, is a wall with a lit picture at the right and a window of six
+panes, through which the evening sky shines at three times white. The color of a pixel is the mean of nine samples; its depth is that of
+the sample in the middle, as in other renderers. R, G, B (linear, Rec. 709) and Z (m, along the axis) as 16-bit floats, ZIP compressed, as
+OpenEXR's "File Layout" describes. Needs only Python 3.
 
     python3 xtask/window_dusk.py
 """
@@ -14,16 +14,16 @@ import pathlib
 import half_exr
 
 WIDTH, HEIGHT = 960, 640
-SAMPLES = 3  # of a pixel, across and down
+SAMPLES = 3  # samples of a pixel across, and as many down
 PLANE, ACROSS = 1.0, 0.84  # m: the picture is this wide on a plane at this distance
 WALL, TABLE_END, TABLE = 5.0, 1.6, -0.14  # m
-VASE, VASE_Z = -0.07, 0.7  # m: its axis
-# Radius of the vase by height over the table, m.
+VASE, VASE_Z = -0.07, 0.7  # position of its axis, m
+# Radius of the vase by height above the table, m.
 OUTLINE = [(0.0, 0.026), (0.01, 0.03), (0.05, 0.048), (0.09, 0.05), (0.13, 0.034), (0.17, 0.016), (0.21, 0.014), (0.235, 0.02)]
 
 
 def radius(height):
-    """Of the vase, m, and its slope; `None` above and below it."""
+    """Returns the radius of the vase, m, and its slope at a height, or `None` above and below it."""
     for (low, a), (high, b) in zip(OUTLINE, OUTLINE[1:]):
         if low <= height <= high:
             t = (height - low) / (high - low)
@@ -33,7 +33,7 @@ def radius(height):
 
 
 def sky(up):
-    """Evening sky by height in the window, 0 to 1: about three times white."""
+    """Returns the color of the evening sky by height in the window, 0 to 1: about three times white."""
     low, high = (3.7, 2.7, 1.9), (1.9, 2.6, 3.9)
     return tuple(a + (b - a) * up for a, b in zip(low, high))
 
@@ -52,7 +52,7 @@ def wall(x, y):
 
 
 def vase(x, y):
-    """Color and depth of the vase along a ray through (x, y, 1); `None` beside it."""
+    """Returns color and depth of the vase along a ray through (x, y, 1), or `None` if the ray misses it."""
     if abs(x * VASE_Z - VASE) > 0.056 or not TABLE - 0.02 < y * VASE_Z < TABLE + 0.26:
         return None
 
@@ -71,7 +71,7 @@ def vase(x, y):
     size, slope = radius(y * far - TABLE)
     long = math.sqrt(1 + slope * slope)
     nx, ny, nz = (x * far - VASE) / size / long, -slope / long, (far - VASE_Z) / size / long
-    # A soft lamp at the left in front, its reflection in the glaze, and the window as a rim of light.
+    # Shading: a soft lamp at the front left, its reflection in the glaze, and the window as rim light.
     lamp = max(0.0, -0.72 * nx + 0.35 * ny - 0.6 * nz)
     gloss = max(0.0, -0.45 * nx + 0.2 * ny - 0.87 * nz) ** 60
     rim = max(0.0, 0.5 * nz + 0.62) ** 4
@@ -80,7 +80,7 @@ def vase(x, y):
 
 
 def table(x, y):
-    """Color and depth of the table along a ray through (x, y, 1); `None` above and beyond it."""
+    """Returns color and depth of the table along a ray through (x, y, 1), or `None` above and beyond it."""
     if y >= 0:
         return None
     depth = TABLE / y
@@ -95,7 +95,7 @@ def table(x, y):
 
 
 def sample(column, row):
-    """Color and depth at a place of the picture, in pixels."""
+    """Returns color and depth at a point of the picture, given in pixels."""
     x = (column / WIDTH - 0.5) * ACROSS / PLANE
     y = (0.5 - row / HEIGHT) * ACROSS * HEIGHT / WIDTH / PLANE
     return vase(x, y) or table(x, y) or (wall(x * WALL, y * WALL), WALL)

@@ -194,7 +194,7 @@ fn rays_follow_a_path() {
         assert!((got - want).abs() < 1e-9, "{got} {want}");
     }
     for (path, word) in
-        [("3", "odd number"), ("6,1", "does not refract"), ("1,3", "does not come to"), ("0,1", "counted from 1")]
+        [("3", "odd number"), ("6,1", "does not refract"), ("1,3", "does not reach"), ("0,1", "counted from 1")]
     {
         let output = trace(path);
         assert!(!output.status.success() && text(&output.stderr).contains(word), "{path}: {}", text(&output.stderr));

@@ -52,7 +52,7 @@ impl Traced {
 
 /// Returns the area, in direction cosines, that a point of the film sees through the real lens, from rays on a grid.
 fn counted(lens: &Lens, point: DVec3) -> f64 {
-    let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::detect()).expect("indices");
+    let tracer = Tracer::new(lens, Indices::At(lens.reference_nm)).expect("indices");
     let (n, reach) = (700, 0.75);
     let cell = 2.0 * reach / n as f64;
     let mut seen = 0;
@@ -210,7 +210,7 @@ fn the_slope_of_the_wavefront_is_where_rays_land() {
     for point in [DVec3::ZERO, DVec3::new(3.0, -9.0, 0.0)] {
         let opening = pupil.seen_from(point, axes).expect("it sees the opening");
         let wave = waves.seen_from(point, axes, &opening).expect("a wavefront");
-        let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::detect()).expect("indices");
+        let tracer = Tracer::new(lens, Indices::At(lens.reference_nm)).expect("indices");
         // The path of the light that reaches the point through the middle of the pupil.
         let middle = opening.center();
         let mut back = RayBatch::new(1);

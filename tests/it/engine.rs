@@ -120,8 +120,8 @@ impl Source for Broken {
 }
 
 impl Radiance for Broken {
-    fn radiance(&self, rays: &mut RayBatch, isa: Isa) {
-        self.sound.radiance().expect("sound").radiance(rays, isa);
+    fn radiance(&self, rays: &mut RayBatch) {
+        self.sound.radiance().expect("sound").radiance(rays);
         let factor = f64::from_bits(self.factor.load(Relaxed));
         let c = rays.columns_mut();
         for (weight, nm) in c.weight.iter_mut().zip(c.wavelength_nm.iter()) {

@@ -42,7 +42,7 @@ fn render(scene: &Scene) -> ExposureFrame {
 /// arrives through the lens. It is computed by brute force over a plane in front of the film.
 fn projected_solid_angle_sr(lens: &Lens, x_mm: f64, y_mm: f64) -> f64 {
     const N: usize = 500;
-    let tracer = Tracer::new(lens, Indices::At(PHOTOPIC_NM), Isa::detect()).expect("media");
+    let tracer = Tracer::new(lens, Indices::At(PHOTOPIC_NM)).expect("media");
     let last = lens.elements.last().expect("surfaces");
     let half = 1.3 * last.semi_diameter_mm.unwrap_or(20.0);
     let z = last.vertex_z_mm() - lens.image_z_mm();

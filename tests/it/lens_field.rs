@@ -1,8 +1,8 @@
 //! Tests the field of a lens: its limit, chief rays, telecentricity.
 
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
-use spectra_core::{Isa, RayBatch};
 use spectra_lens::Lens;
 use spectra_optics::{Optics, stop_down};
 use spectra_plugins as _;
@@ -18,7 +18,7 @@ fn lens(path: &str) -> Lens {
 /// Returns by brute force how many rays of a field angle (degrees) pass, from a dense square grid over a disk of radius `reach_mm`
 /// around a point on the axis.
 fn brute(lens: &Lens, field_deg: f64, middle_z_mm: f64, reach_mm: f64, cells: usize) -> usize {
-    let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::detect()).expect("media");
+    let tracer = Tracer::new(lens, Indices::At(lens.reference_nm)).expect("media");
     let (s, c) = field_deg.to_radians().sin_cos();
     let (d, up) = (DVec3::new(0.0, s, c), DVec3::new(0.0, c, -s));
     let at = |i: usize| ((i as f64 + 0.5) / cells as f64 * 2.0 - 1.0) * reach_mm;
@@ -91,7 +91,7 @@ fn chief_rays_pass_the_center_of_the_stop() {
         let rays = Optics::new(lens.clone()).chief_rays(f64::INFINITY, &fields).expect("media");
         let mut open = lens.clone();
         open.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
-        let tracer = Tracer::new(&open, Indices::At(lens.reference_nm), Isa::Baseline).expect("media");
+        let tracer = Tracer::new(&open, Indices::At(lens.reference_nm)).expect("media");
         let stop = lens.stop().expect("a stop");
         for (field, ray) in fields.iter().zip(&rays) {
             let ray = ray.expect("a chief ray");
@@ -160,7 +160,7 @@ fn a_stop_in_the_front_focus_is_telecentric() {
 fn coddington(lens: &Lens, start: DVec3, direction: DVec3) -> [f64; 2] {
     let mut open = lens.clone();
     open.elements.iter_mut().for_each(|e| e.semi_diameter_mm = None);
-    let tracer = Tracer::new(&open, Indices::At(lens.reference_nm), Isa::Baseline).expect("media");
+    let tracer = Tracer::new(&open, Indices::At(lens.reference_nm)).expect("media");
     let path = tracer.path(start, direction, lens.reference_nm);
     assert!(path.end.is_none());
     let index = |medium: usize| lens.index(medium, lens.reference_nm);

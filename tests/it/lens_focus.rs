@@ -1,8 +1,8 @@
 //! Tests focusing by laws and by real rays, misaligned groups, and reversed lenses.
 
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::math::j0;
-use spectra_core::{Isa, RayBatch};
 use spectra_lens::{FocusError, Lens, Misalignment, Section};
 use spectra_optics::{Beam, Criterion, FocusSearch, ObjectPoint, Optics, stop_down};
 use spectra_plugins as _;
@@ -136,7 +136,7 @@ fn faults_of_laws_say_what_to_do() {
         ("focus: [{group: rear, factor: 0}]\n", "does not move"),
         ("focus: [{group: rear, factor: 1, section: x}]\n", "follows a section"),
         ("focus: [{group: rear, table: [[500, 1], [inf, 0]]}]\n", "the farthest first"),
-        ("focus: [{group: rear, factor: 1}, {group: rear, factor: 2}]\n", "two laws"),
+        ("focus: [{group: rear, factor: 1}, {group: rear, factor: 2}]\n", "two focusing laws"),
         ("coating: bear\n", "unknown coating"),
         ("coating: {layer: 1.38}\n", "either a `thickness`"),
         ("coating: {layer: 0.2, thickness: 100}\n", "found 0.2, which is out of range"),
@@ -275,7 +275,7 @@ fn the_smallest_spot_is_where_theory_has_it() {
          - {kind: sphere, radius: -100, thickness: 96, semi-diameter: 20}\n",
     )
     .expect("good");
-    let tracer = Tracer::new(&lens, Indices::At(587.5618), Isa::Baseline).expect("media");
+    let tracer = Tracer::new(&lens, Indices::At(587.5618)).expect("media");
     let path = tracer.path(DVec3::new(0.0, 4.999_999, -1.0), DVec3::Z, 587.5618);
     let last = path.points.last().expect("points");
     let marginal = last.z - last.y * path.direction.z / path.direction.y - lens.image_z_mm();
@@ -330,7 +330,7 @@ fn trace(lens: &Lens, rays: &[(DVec3, DVec3)], travel: Travel) -> Vec<Option<(DV
 
 /// Traces rays; returns positions, directions and the remaining weights.
 fn trace_weighed(lens: &Lens, rays: &[(DVec3, DVec3)], travel: Travel) -> Vec<Option<(DVec3, DVec3, f64)>> {
-    let tracer = Tracer::new(lens, Indices::At(lens.reference_nm), Isa::Baseline).expect("media");
+    let tracer = Tracer::new(lens, Indices::At(lens.reference_nm)).expect("media");
     let mut batch = RayBatch::new(rays.len());
     batch.restart(rays.len());
     let c = batch.columns_mut();

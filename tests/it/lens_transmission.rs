@@ -29,8 +29,8 @@ type Ray = (DVec3, DVec3, f64);
 
 /// Returns rays with their weights where they leave the lens, or `None` for rays that end.
 fn trace(lens: &Lens, rays: &[Ray], travel: Travel, isa: Isa) -> Vec<Option<(DVec3, DVec3, f64)>> {
-    let tracer = Tracer::new(lens, Indices::Band { min_nm: 350.0, max_nm: 830.0 }, isa).expect("media");
-    let mut batch = RayBatch::new(rays.len());
+    let tracer = Tracer::new(lens, Indices::Band { min_nm: 350.0, max_nm: 830.0 }).expect("media");
+    let mut batch = RayBatch::new(rays.len()).on(isa);
     batch.restart(rays.len());
     let c = batch.columns_mut();
     for (i, (p, d, nm)) in rays.iter().enumerate() {
@@ -92,7 +92,7 @@ fn surfaces_multiply() {
         let mut compared = 0;
         for (ray, out) in rays.iter().zip(trace(&coated, &rays, Travel::Forward, Isa::Baseline)) {
             let Some((.., weight)) = out else { continue };
-            let path = Tracer::new(&lens, Indices::At(ray.2), Isa::Baseline).expect("media").path(ray.0, ray.1, ray.2);
+            let path = Tracer::new(&lens, Indices::At(ray.2)).expect("media").path(ray.0, ray.1, ray.2);
             let mut want = 1.0;
             for (at, e) in lens.elements.iter().enumerate().filter(|(_, e)| e.medium_before != e.medium_after) {
                 // For a sphere the normal points to the center.

@@ -1,7 +1,7 @@
 //! Tests tilted, shifted, folded and reversed surfaces against closed forms.
 
 use glam::{DMat3, DVec3};
-use spectra_core::{Isa, RayBatch};
+use spectra_core::RayBatch;
 use spectra_lens::{Lens, Section};
 use spectra_optics::{Optics, stop_down};
 use spectra_plugins as _;
@@ -22,7 +22,7 @@ fn load(path: &Path) -> Lens {
 }
 
 fn tracer(lens: &Lens) -> Tracer {
-    Tracer::new(lens, Indices::At(lens.reference_nm), Isa::Baseline).expect("media")
+    Tracer::new(lens, Indices::At(lens.reference_nm)).expect("media")
 }
 
 /// Returns positions and directions of rays where they leave a lens, in the frame of the lens.

@@ -37,7 +37,7 @@ fn fisheye() -> Lens {
 }
 
 fn tracer(lens: &Lens) -> Tracer {
-    Tracer::new(lens, Indices::Band { min_nm: MIN_NM, max_nm: MAX_NM }, Isa::detect()).expect("media")
+    Tracer::new(lens, Indices::Band { min_nm: MIN_NM, max_nm: MAX_NM }).expect("media")
 }
 
 fn front(lens: &Lens, tracer: &Tracer, points: &[DVec3]) -> FrontPupil {
@@ -99,10 +99,21 @@ fn everywhere(point: DVec3, center: DVec3, radius_mm: f64, n: usize, seed: u64) 
 
 /// Aims `n` rays from `points` in turn at the pupil; rays of weight 0 are kept.
 fn aimed(points: &[DVec3], n: usize, seed: u64, aim: impl Fn(&mut RayBatch, &[f64], &[f64]) -> usize) -> Vec<Ray> {
+    aimed_on(Isa::detect(), points, n, seed, aim)
+}
+
+/// Returns rays as [`aimed`] does, on an instruction set.
+fn aimed_on(
+    isa: Isa,
+    points: &[DVec3],
+    n: usize,
+    seed: u64,
+    aim: impl Fn(&mut RayBatch, &[f64], &[f64]) -> usize,
+) -> Vec<Ray> {
     let (u, v) = (numbers(seed, 3, n), numbers(seed, 4, n));
     // The direction of an aimed ray depends on its wavelength, so it is aimed with the wavelength with which it is traced.
     let colors = numbers(5, 0, BATCH);
-    let mut batch = RayBatch::new(BATCH);
+    let mut batch = RayBatch::new(BATCH).on(isa);
     let mut rays = Vec::with_capacity(n);
     while rays.len() < n {
         let first = rays.len();
@@ -179,7 +190,7 @@ fn at_least_half_of_the_aimed_rays_arrive() {
         let start = std::time::Instant::now();
         let pupil = front(&lens, &tracer, &points);
         let searched = start.elapsed();
-        let rays = aimed(&points, n, 1, |b, u, v| pupil.aim(b, u, v, AimPattern::Disk, Isa::detect()));
+        let rays = aimed(&points, n, 1, |b, u, v| pupil.aim(b, u, v, AimPattern::Disk));
         let (now, before) = (share(&tracer, &rays), share_by_rim(&tracer, &lens, &points, n));
         println!("{name}: {:.1} % arrive, {:.1} % by the rim; searched in {searched:.0?}", 100.0 * now, 100.0 * before);
         assert!(now >= 0.5, "{name}: {now}");
@@ -202,8 +213,7 @@ fn nothing_is_lost(name: &str, lens: &Lens, points: &[DVec3], rays: usize) {
         let through = arrived.iter().filter(|a| **a).count();
         assert_eq!(beside, 0, "{name}, {point}: of {through} rays");
         let (want, want_error) = estimate(&tracer, &brute, Travel::Forward);
-        let aims =
-            aimed(&[*point], 40_000, 7 + k as u64, |b, u, v| pupil.aim(b, u, v, AimPattern::Disk, Isa::detect()));
+        let aims = aimed(&[*point], 40_000, 7 + k as u64, |b, u, v| pupil.aim(b, u, v, AimPattern::Disk));
         let (got, got_error) = estimate(&tracer, &aims, Travel::Forward);
         let sigma = (got - want).abs() / want_error.hypot(got_error).max(1e-300);
         println!("{name}, {point:.1}: {through} rays, {got:.4e} and {want:.4e} sr, {sigma:.2} standard errors");
@@ -286,7 +296,7 @@ fn a_point_nearer_than_searched_has_no_bias() {
     let pupil = front(&lens, &tracer, &[DVec3::new(0.0, 0.0, -1e4)]);
     for (k, point) in [DVec3::new(3.0, 2.0, -40.0), DVec3::new(0.0, 4.0, -3.0)].into_iter().enumerate() {
         assert_eq!(pupil.region(point), None);
-        let aims = aimed(&[point], 400_000, 50, |b, u, v| pupil.aim(b, u, v, AimPattern::Rings, Isa::detect()));
+        let aims = aimed(&[point], 400_000, 50, |b, u, v| pupil.aim(b, u, v, AimPattern::Rings));
         let (got, got_error) = estimate(&tracer, &aims, Travel::Forward);
         let n = 400_000;
         // Uniform over the hemisphere of directions into the lens.
@@ -357,7 +367,7 @@ fn the_rear_pupil_loses_nothing(is_chosen: Chosen) {
                 // The projection uses the normal of the imager, (0, 0, -1), so the brute force is weighted in the same way.
                 let brute: Vec<Ray> = brute.iter().map(|r| (r.0, r.1, r.2 * -r.1.z)).collect();
                 let (want, want_error) = estimate(&tracer, &brute, Travel::Backward);
-                let aims = aimed(&[point], 30_000, 30 + k as u64, |b, u, v| pupil.aim(b, u, v, Isa::detect()));
+                let aims = aimed(&[point], 30_000, 30 + k as u64, |b, u, v| pupil.aim(b, u, v));
                 let (got, got_error) = estimate(&tracer, &aims, Travel::Backward);
                 let sigma = (got - want).abs() / want_error.hypot(got_error);
                 println!("{what}, {name}, {point:.2}: {got:.5} and {want:.5} sr, {sigma:.2} standard errors");
@@ -399,7 +409,7 @@ fn equal_per_solid_angle(tracer: &Tracer, point: DVec3, pupil: &FrontPupil, outl
     let cell_sr = 2.0 * PI * (1.0 - cos) / (RINGS * SECTORS) as f64;
     for pattern in [AimPattern::Disk, AimPattern::Rings] {
         let n = 6_400_000;
-        let rays = aimed(&[point], n, 77, |batch, u, v| pupil.aim(batch, u, v, pattern, Isa::detect()));
+        let rays = aimed(&[point], n, 77, |batch, u, v| pupil.aim(batch, u, v, pattern));
         let mut sums = [(0.0, 0.0); RINGS * SECTORS];
         for (_, d, weight) in &rays {
             let height = d.dot(axis);
@@ -441,7 +451,7 @@ fn rays_that_cannot_pass_end_at_once() {
     let pupil = front(&lens, &tracer, &points);
     let mut dark = 0;
     let rays = aimed(&points, 1000, 3, |b, u, v| {
-        let d = pupil.aim(b, u, v, AimPattern::Disk, Isa::detect());
+        let d = pupil.aim(b, u, v, AimPattern::Disk);
         assert_eq!(d, b.len());
         d
     });
@@ -455,7 +465,7 @@ fn every_tier_aims_alike() {
     let lens = biotar(1.4);
     let tracer = tracer(&lens);
     let pupil = front(&lens, &tracer, &card());
-    let aim = |isa: Isa| aimed(&card(), 5000, 3, |b, u, v| pupil.aim(b, u, v, AimPattern::Rings, isa));
+    let aim = |isa: Isa| aimed_on(isa, &card(), 5000, 3, |b, u, v| pupil.aim(b, u, v, AimPattern::Rings));
     let want = aim(Isa::Baseline);
     for isa in Isa::available() {
         assert!(aim(isa) == want, "{}", isa.name());

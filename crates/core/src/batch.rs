@@ -7,6 +7,7 @@ pub use column::Column;
 pub use polarization::Polarization;
 use polarization::PolarizationColumns;
 
+use crate::isa::Isa;
 use crate::loss::{ALIVE, Loss};
 use crate::numbers::{Numbers, RayColumns, StageKey, StageNumbers};
 use std::ops::Range;
@@ -54,6 +55,7 @@ pub fn pixel_and_channel(tag: u32) -> (u32, Option<u32>) {
 pub struct RayBatch {
     len: usize,
     capacity: usize,
+    isa: Isa,
     x: Column<f64>,
     y: Column<f64>,
     z: Column<f64>,
@@ -169,6 +171,7 @@ impl RayBatch {
         Self {
             len: 0,
             capacity,
+            isa: Isa::detect(),
             x: column(),
             y: column(),
             z: column(),
@@ -195,6 +198,19 @@ impl RayBatch {
                 step_then_way: column(),
             },
         }
+    }
+
+    /// Uses this instruction set for all work on the batch, in place of the best one. The bits are the same; tests compare them.
+    #[must_use]
+    pub fn on(self, isa: Isa) -> Self {
+        Self { isa, ..self }
+    }
+
+    /// Returns the instruction set for work on the batch.
+    #[inline(always)]
+    #[must_use]
+    pub fn isa(&self) -> Isa {
+        self.isa
     }
 
     /// Creates an empty batch that also carries the optical path: the sum of index times distance, mm. A distance is negative

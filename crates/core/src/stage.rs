@@ -144,7 +144,7 @@ pub trait Emit: Send + Sync {
     /// divided by the density with which the position was drawn. Emission is radiance times area (W m^-2 sr^-1 nm^-1 mm^2,
     /// without the nm^-1 on a line), or a point's intensity (W sr^-1 nm^-1) times 1e6. `u` and `v` are the random numbers to
     /// use, one per ray.
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa);
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]);
 
     /// Half the width and height of the spots that all light of this source comes from, mm across the axis; `None` if it is not
     /// made of spots. Each spot fades linearly from its middle along both sides, and a ray from the middle carries as much as
@@ -155,8 +155,8 @@ pub trait Emit: Send + Sync {
 
     /// Starts each ray in the middle of a spot, which the ray represents; otherwise like [`Emit::place`]. For sources that have
     /// [`Emit::spots_mm`].
-    fn place_in_middle(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
-        self.place(rays, u, v, isa);
+    fn place_in_middle(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
+        self.place(rays, u, v);
     }
 
     /// Returns whether [`Emit::place`] also writes the directions, as for a beam. Such rays are not aimed at the lens, and
@@ -167,7 +167,7 @@ pub trait Emit: Send + Sync {
 
     /// Multiplies the weight by the emission in the direction of the ray relative to that of [`Emit::place`], including the
     /// cosine for an emitting plane. Called once the directions are set.
-    fn radiate(&self, rays: &mut RayBatch, isa: Isa);
+    fn radiate(&self, rays: &mut RayBatch);
 
     /// Returns whether the source draws random numbers beyond `u` and `v` ([`crate::numbers::RayNumbers`]).
     fn draws(&self) -> bool {
@@ -180,7 +180,7 @@ pub trait Radiance: Send + Sync {
     /// Multiplies the weight of each living ray by the radiance that arrives along it. The ray travels from the lens toward the
     /// object, with its position in the frame of the lens. Radiance is in W m^-2 sr^-1 nm^-1, or in W m^-2 sr^-1 if the
     /// wavelength is that of a line.
-    fn radiance(&self, rays: &mut RayBatch, isa: Isa);
+    fn radiance(&self, rays: &mut RayBatch);
 
     /// Returns whether the source draws random numbers from the rays ([`crate::numbers::RayNumbers`]).
     fn draws(&self) -> bool {
@@ -342,7 +342,7 @@ pub trait Receive: Send + Sync {
     /// Moves the living rays onto the imager, in the frame whose nominal image plane is z = 0. Writes the pixel into the tag,
     /// with the channel if the light adds to one channel only ([`crate::batch::tag_of`]). Rays that miss the frame end as
     /// [`crate::Loss::OutOfFrame`].
-    fn receive(&self, rays: &mut RayBatch, isa: Isa);
+    fn receive(&self, rays: &mut RayBatch);
 
     /// Returns whether the imager draws random numbers from the rays ([`crate::numbers::RayNumbers`]).
     fn draws(&self) -> bool {
@@ -354,12 +354,12 @@ pub trait Receive: Send + Sync {
 pub trait Launch: Send + Sync {
     /// Writes the starting point of each ray (mm; nominal image plane z = 0) at (`u`, `v`) in [0, 1)^2 within the pixel in its
     /// tag. Writes the imager's unit normal (toward the lens) as the direction.
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa);
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]);
 
     /// Applies what lies in front of the pixels to each ray. Called once the directions are set (toward the lens; positions
     /// anywhere along the rays). It may shift a ray sideways by less than matters at the pupil, change its weight, end it, or
     /// name the only channel that it adds to ([`crate::batch::tag_of`]).
-    fn admit(&self, _rays: &mut RayBatch, _isa: Isa) {}
+    fn admit(&self, _rays: &mut RayBatch) {}
 
     /// Returns whether the imager draws random numbers beyond `u` and `v` ([`crate::numbers::RayNumbers`]).
     fn draws(&self) -> bool {

@@ -4,7 +4,7 @@ use crate::{Coating, Lens, Soil};
 use spectra_core::surface::Action;
 use spectra_glass::{Lender, Medium};
 
-/// Loss, stops, from which on a warning says that an assumed absorption darkens a lens.
+/// Loss above which a warning says that an assumed absorption darkens a lens, stops.
 const DARK_STOPS: f64 = 1.0;
 
 impl Lens {

@@ -79,7 +79,7 @@ impl Lens {
     }
 }
 
-/// Returns a warning for each pair of media with the same index but different Abbe numbers, at least one of which is near no glass.
+/// Returns a warning for each pair of media with the same index but different Abbe numbers, at least one of them far from every glass.
 fn twins(dispersers: &[Disperser<'_>]) -> Vec<String> {
     let mut all = Vec::new();
     for (i, one) in dispersers.iter().enumerate() {

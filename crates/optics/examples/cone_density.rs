@@ -71,7 +71,7 @@ fn by_solid_angle() -> Result<Vec<DVec3>, Box<dyn std::error::Error>> {
     front.thickness_mm = 10.0;
     lens.elements.push(front);
     lens.arrange();
-    let tracer = Tracer::new(&lens, Indices::At(lens.reference_nm), Isa::detect())?;
+    let tracer = Tracer::new(&lens, Indices::At(lens.reference_nm))?;
     let pupil = FrontPupil::search(&lens, &tracer, &[POINT], 400.0, 700.0).ok_or("no aperture")?;
     let numbers = Numbers::sobol(1);
     let mut rays = RayBatch::new(DRAWN);
@@ -86,7 +86,7 @@ fn by_solid_angle() -> Result<Vec<DVec3>, Box<dyn std::error::Error>> {
         c.wavelength_nm[i] = 550.0;
     }
     let [u, v, keep] = &columns;
-    pupil.aim(&mut rays, u, v, AimPattern::Disk, Isa::detect());
+    pupil.aim(&mut rays, u, v, AimPattern::Disk);
     let [l, m, n] = rays.directions().map(<[f64]>::to_vec);
     let weights = rays.weights().to_vec();
     tracer.trace(&mut rays, &mut tracer.work_in_place(DRAWN), spectra_tracer::Travel::Forward);

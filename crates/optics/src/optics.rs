@@ -1,6 +1,5 @@
 //! A lens made ready to trace, with a cache of its tracers.
 
-use spectra_core::Isa;
 use spectra_glass::DispersionError;
 use spectra_lens::Lens;
 use spectra_lens::Shape;
@@ -81,8 +80,8 @@ impl Optics {
             return Ok(Arc::clone(tracer));
         }
         let tracer = match clipping {
-            Clipping::AsStated => Tracer::new(&self.lens, indices, Isa::detect())?,
-            _ => Tracer::new(&clipping.applied_to(&self.lens), indices, Isa::detect())?,
+            Clipping::AsStated => Tracer::new(&self.lens, indices)?,
+            _ => Tracer::new(&clipping.applied_to(&self.lens), indices)?,
         };
         let tracer = Arc::new(tracer);
         kept.push((indices, clipping, Arc::clone(&tracer)));

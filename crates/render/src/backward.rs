@@ -22,7 +22,6 @@ use crate::sums::{ExactSums, PILOT_RAYS};
 use crate::tiles::{Tile, Tiles};
 use crate::{Done, Workers};
 use glam::DVec3;
-use spectra_core::Isa;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
@@ -62,7 +61,7 @@ impl Backward {
         let scene = &pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
         pipeline.source().radiance().ok_or(RenderError::NoRadiance)?;
-        let mut rays = imager_rays(launch, scene.imager.size(), pipeline.isa);
+        let mut rays = imager_rays(launch, scene.imager.size());
         let [x, y, z] = rays.positions();
         let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
         let grid = scene.grid;
@@ -74,7 +73,7 @@ impl Backward {
         let rear = rear.map(|rear| {
             rays.columns_mut().wavelength_nm.fill(grid.start_nm);
             rays.number(0, &numbers, ESTIMATOR, 0, 0);
-            let aside_mm = aside_mm(launch, &rear, &rays, pipeline.isa);
+            let aside_mm = aside_mm(launch, &rear, &rays);
             if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
         });
         let pixels = scene.imager.size().pixels() as u64;
@@ -163,19 +162,19 @@ impl Backward {
         state.rays.set_stage(StageKey::IMAGER);
         let [_, u, v, a, b] = &state.numbers;
         let launch = self.launch();
-        launch.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        launch.place(&mut state.rays, u.slice(len), v.slice(len));
         look(Step::Imager, &state.rays);
-        let dark = self.rear.aim_part(&mut state.rays, a.slice(len), b.slice(len), part, isa);
+        let dark = self.rear.aim_part(&mut state.rays, a.slice(len), b.slice(len), part);
         state.drop_dark(dark);
         look(Step::Pupil, &state.rays);
-        launch.admit(&mut state.rays, isa);
+        launch.admit(&mut state.rays);
         let ended = state.rays.len() - state.rays.alive();
         state.drop_dark(ended);
         look(Step::Imager, &state.rays);
         self.pipeline.tracer.trace(&mut state.rays, &mut state.work, Travel::Backward);
         look(Step::Lens, &state.rays);
         state.rays.set_stage(StageKey::SOURCE);
-        self.radiance().radiance(&mut state.rays, isa);
+        self.radiance().radiance(&mut state.rays);
         look(Step::Source, &state.rays);
         state.settle(isa);
     }
@@ -401,7 +400,7 @@ impl Estimator for Backward {
 }
 
 /// Returns rays at points all over the imager, including its edges and corners. They give its outline for the pupil search.
-fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
+fn imager_rays(launch: &dyn Launch, size: FrameSize) -> RayBatch {
     const SIDE: u32 = 65;
     let mut rays = RayBatch::new((SIDE * SIDE) as usize).with_numbers();
     rays.restart((SIDE * SIDE) as usize);
@@ -419,7 +418,7 @@ fn imager_rays(launch: &dyn Launch, size: FrameSize, isa: Isa) -> RayBatch {
         u.push(x);
         v.push(y);
     }
-    launch.place(&mut rays, &u, &v, isa);
+    launch.place(&mut rays, &u, &v);
     rays
 }
 
@@ -428,15 +427,15 @@ const ROOM: f64 = 1.25;
 
 /// Measures how far the imager shifts rays sideways after they were aimed, mm. Takes the largest shift of rays from all over the imager
 /// through the middle and four sides of the pupil.
-fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &RayBatch, isa: Isa) -> f64 {
+fn aside_mm(launch: &dyn Launch, rear: &RearPupil, points: &RayBatch) -> f64 {
     let mut most = 0.0_f64;
     for (u, v) in [(0.5, 0.5), (0.02, 0.5), (0.98, 0.5), (0.5, 0.02), (0.5, 0.98)] {
         let mut rays = points.clone();
         let n = rays.len();
-        rear.aim(&mut rays, &vec![u; n], &vec![v; n], isa);
+        rear.aim(&mut rays, &vec![u; n], &vec![v; n]);
         let before = rays.clone();
         rays.set_stage(StageKey::IMAGER);
-        launch.admit(&mut rays, isa);
+        launch.admit(&mut rays);
         let at = |rays: &RayBatch, i: usize| DVec3::from_array(rays.positions().map(|c| c[i]));
         for i in (0..n).filter(|i| before.loss(*i).is_none()) {
             let way = DVec3::from_array(rays.directions().map(|c| c[i]));

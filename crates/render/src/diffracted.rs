@@ -8,9 +8,9 @@
 //! the sums at each look, before any kernel is made.
 
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::frame::ExposureChannel;
 use spectra_core::spectral::{Channel, SpectralPower};
-use spectra_core::{Isa, RayBatch};
 use spectra_diffraction::{Account, Light, Polygon, Pupil, Spread, View, Wave, Waves, brightest_star};
 use spectra_scene::Scene;
 
@@ -34,8 +34,8 @@ pub(crate) fn fault(scene: &Scene) -> Option<String> {
 
 /// Returns the brightness of the brightest star, as a fraction of the median of the frame, where the star leaves the pixels around its
 /// light. Takes the channel in which it is largest; `None` if it cannot be computed.
-pub(crate) fn star(scene: &Scene, planes: &[ExposureChannel], recorded: &[usize], isa: Isa) -> Option<f64> {
-    let seen = Seen { scene, pupil: &Pupil::new(&scene.lens).ok()?, waves: None, isa };
+pub(crate) fn star(scene: &Scene, planes: &[ExposureChannel], recorded: &[usize]) -> Option<f64> {
+    let seen = Seen { scene, pupil: &Pupil::new(&scene.lens).ok()?, waves: None };
     let one = |number: &usize| {
         let (channel, plane) = (scene.channels.get(*number)?, planes.get(*number)?);
         brightest_star(scene.imager.size(), &light(scene.source.spectrum(), channel)?, &seen, &plane.values)
@@ -48,7 +48,6 @@ pub(crate) fn spread(
     scene: &Scene,
     planes: &mut [ExposureChannel],
     recorded: &[usize],
-    isa: Isa,
 ) -> Result<Vec<Diffracted>, String> {
     let size = scene.imager.size();
     let pupil = Pupil::new(&scene.lens)?;
@@ -56,7 +55,7 @@ pub(crate) fn spread(
         let (channel, plane) = (scene.channels.get(*number)?, planes.get_mut(*number)?);
         let light = light(scene.source.spectrum(), channel)?;
         let waves = Waves::new(&scene.lens, light.mean_mm() * 1e6);
-        let seen = Seen { scene, pupil: &pupil, waves, isa };
+        let seen = Seen { scene, pupil: &pupil, waves };
         let Account { left, stays, stars } = Spread::new(size, light, &seen)?.apply(&mut plane.values);
         Some(Diffracted { channel: channel.name.clone(), left, stays, stars })
     };
@@ -80,23 +79,22 @@ struct Seen<'a> {
     scene: &'a Scene,
     pupil: &'a Pupil<'a>,
     waves: Option<Waves<'a>>,
-    isa: Isa,
 }
 
 impl View for Seen<'_> {
     fn opening(&self, at: [f64; 2]) -> Option<Polygon> {
-        let (point, axes) = place(self.scene, at, self.isa)?;
+        let (point, axes) = place(self.scene, at)?;
         self.pupil.seen_from(point, axes)
     }
 
     fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wave> {
-        let (point, axes) = place(self.scene, at, self.isa)?;
+        let (point, axes) = place(self.scene, at)?;
         self.waves.as_ref()?.seen_from(point, axes, opening)
     }
 }
 
 /// Returns a point of the frame and the two axes of the frame there, in the coordinates of the image plane.
-fn place(scene: &Scene, [column, row]: [f64; 2], isa: Isa) -> Option<(DVec3, [DVec3; 2])> {
+fn place(scene: &Scene, [column, row]: [f64; 2]) -> Option<(DVec3, [DVec3; 2])> {
     let size = scene.imager.size();
     let pixel = |at: f64, count: u32| (at.max(0.0) as u32).min(count - 1);
     let (i, j) = (pixel(column, size.width_px), pixel(row, size.height_px));
@@ -109,7 +107,7 @@ fn place(scene: &Scene, [column, row]: [f64; 2], isa: Isa) -> Option<(DVec3, [DV
             let mut rays = RayBatch::new(u.len());
             rays.restart(u.len());
             rays.columns_mut().tag.fill(tag);
-            launch.place(&mut rays, &u, &v, isa);
+            launch.place(&mut rays, &u, &v);
             let [x, y, z] = rays.positions();
             (0..u.len()).map(|k| DVec3::new(x[k], y[k], z[k])).collect()
         }

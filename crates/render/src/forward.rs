@@ -228,7 +228,7 @@ impl Forward {
     fn arrive(&self, state: &mut ThreadState, look: &mut impl FnMut(Step, &RayBatch)) {
         let isa = self.pipeline.isa;
         state.rays.set_stage(StageKey::IMAGER);
-        self.receive().receive(&mut state.rays, isa);
+        self.receive().receive(&mut state.rays);
         look(Step::Imager, &state.rays);
         state.settle(isa);
     }
@@ -256,19 +256,19 @@ impl Forward {
         let [_, u, v, a, b] = &state.numbers;
         let emit = self.emit();
         if in_middle {
-            emit.place_in_middle(&mut state.rays, u.slice(len), v.slice(len), isa);
+            emit.place_in_middle(&mut state.rays, u.slice(len), v.slice(len));
         } else {
-            emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+            emit.place(&mut state.rays, u.slice(len), v.slice(len));
         }
         look(Step::Source, &state.rays);
         let rings = self.pipeline.scene.render.cone == ConePattern::Rings;
         let pattern = if rings { AimPattern::Rings } else { AimPattern::Disk };
         if let Some(pupil) = &self.pupil {
-            let dark = pupil.aim(&mut state.rays, a.slice(len), b.slice(len), pattern, isa);
+            let dark = pupil.aim(&mut state.rays, a.slice(len), b.slice(len), pattern);
             state.drop_dark(dark);
             look(Step::Pupil, &state.rays);
         }
-        emit.radiate(&mut state.rays, isa);
+        emit.radiate(&mut state.rays);
         let ended = state.rays.len() - state.rays.alive();
         state.drop_dark(ended);
         look(Step::Source, &state.rays);
@@ -458,7 +458,7 @@ pub(crate) fn source_points(pipeline: &Pipeline, emit: &dyn Emit, numbers: &Numb
     state.rays.number(0, numbers, ESTIMATOR, STREAM, 0);
     state.rays.set_stage(StageKey::SOURCE);
     let [_, u, v, _, _] = &state.numbers;
-    emit.place(&mut state.rays, u.slice(SOURCE_POINTS), v.slice(SOURCE_POINTS), isa);
+    emit.place(&mut state.rays, u.slice(SOURCE_POINTS), v.slice(SOURCE_POINTS));
     let [x, y, z] = state.rays.positions();
     (0..SOURCE_POINTS).map(|i| DVec3::new(x[i], y[i], z[i])).collect()
 }

@@ -22,6 +22,7 @@ use spectra_core::linear::least_squares;
 use spectra_core::loss::ALIVE;
 use spectra_scene::GhostSpread;
 use spectra_tracer::{Tracer, Travel};
+use std::sync::Arc;
 
 /// Half side of a footprint, as a fraction of the distance by which scattering moved the ray.
 const OF_WAY: f64 = 0.15;
@@ -35,7 +36,7 @@ const SAMPLES: f64 = 64.0;
 pub(crate) struct Haze {
     pub spreader: Spreader,
     /// Tracer for the lens with nothing on its surfaces.
-    clean: Tracer,
+    clean: Arc<Tracer>,
     /// Size of the frame, across and up: first in pixels, then in mm.
     frame: [[f64; 2]; 2],
     /// Rough linear map from aimed rays to the column and row where they land; `None` if too few rays land to fit it.

@@ -1,8 +1,8 @@
 //! Finds where light lands in the plane of the imager, on the frame or outside it.
 
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
-use spectra_core::{Isa, RayBatch};
 use spectra_scene::Scene;
 
 /// The place in the plane of the imager where the light of a source lands.
@@ -16,8 +16,8 @@ pub struct Landing {
 
 impl Landing {
     /// Measures where rays that left the lens land; `None` if none meets the plane of the imager.
-    pub(crate) fn of(scene: &Scene, rays: &RayBatch, isa: Isa) -> Option<Self> {
-        let (middle, across, down) = frame(scene, isa);
+    pub(crate) fn of(scene: &Scene, rays: &RayBatch) -> Option<Self> {
+        let (middle, across, down) = frame(scene);
         let normal = across.cross(down);
         let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
         let mut places: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
@@ -45,13 +45,13 @@ impl Landing {
 }
 
 /// Returns the corners of the frame in order around it, mm on the nominal image plane.
-pub(crate) fn corners(scene: &Scene, isa: Isa) -> Vec<[f64; 2]> {
-    let (middle, across, down) = frame(scene, isa);
+pub(crate) fn corners(scene: &Scene) -> Vec<[f64; 2]> {
+    let (middle, across, down) = frame(scene);
     [across + down, across - down, -across - down, down - across].map(|p| [middle.x + p.x, middle.y + p.y]).to_vec()
 }
 
 /// Returns the middle of the frame and the vectors of half its width and half its height, mm on the nominal image plane.
-fn frame(scene: &Scene, isa: Isa) -> (DVec3, DVec3, DVec3) {
+fn frame(scene: &Scene) -> (DVec3, DVec3, DVec3) {
     let size = scene.imager.size();
     let (width, height) = (DVec3::X * 0.5 * size.width_mm, DVec3::Y * 0.5 * size.height_mm);
     let Some(launch) = scene.imager.launch() else { return (DVec3::ZERO, width, height) };
@@ -61,7 +61,7 @@ fn frame(scene: &Scene, isa: Isa) -> (DVec3, DVec3, DVec3) {
     let mut rays = RayBatch::new(4);
     rays.restart(4);
     rays.columns_mut().tag.copy_from_slice(&[0, columns - 1, last, last + columns - 1]);
-    launch.place(&mut rays, &[0.0, 1.0, 0.0, 1.0], &[0.0, 0.0, 1.0, 1.0], isa);
+    launch.place(&mut rays, &[0.0, 1.0, 0.0, 1.0], &[0.0, 0.0, 1.0, 1.0]);
     let [x, y, z] = rays.positions();
     let [a, b, c, d]: [DVec3; 4] = std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]));
     ((a + b + c + d) * 0.25, (b + d - a - c) * 0.25, (c + d - a - b) * 0.25)

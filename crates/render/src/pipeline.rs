@@ -81,10 +81,10 @@ impl Pipeline {
         let system = system(scene, Share::Whole, &recorded);
         let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
         let density = density.map_or_else(fitted, Ok)?;
-        let tracer = tracer(scene, isa)?;
+        let tracer = tracer(scene)?;
         let responses = Responses::new(scene.grid, &system.channels);
         let draws = draws(scene);
-        let (scene, tracer, share, seed) = (Arc::clone(scene), Arc::new(tracer), Share::Whole, scene.render.seed);
+        let (scene, tracer, share, seed) = (Arc::clone(scene), tracer, Share::Whole, scene.render.seed);
         Ok(Self { scene, seed, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
     }
 
@@ -118,8 +118,8 @@ impl Pipeline {
     }
 
     /// Returns a copy that traces through another tracer of the lens.
-    pub(crate) fn with_tracer(&self, tracer: Tracer) -> Self {
-        Self { tracer: Arc::new(tracer), ..self.clone() }
+    pub(crate) fn with_tracer(&self, tracer: Arc<Tracer>) -> Self {
+        Self { tracer, ..self.clone() }
     }
 
     /// Returns a copy that traces light scattered by haze, dust and scratches on the lens; `None` if nothing lies on it.
@@ -127,13 +127,13 @@ impl Pipeline {
         if !self.scene.lens.scatters() {
             return Ok(None);
         }
-        let tracer = tracer(&self.scene, self.isa)?.scattering();
+        let tracer = Arc::new(Tracer::clone(&*tracer(&self.scene)?).scattering());
         Ok(Some(Self { draws: true, scattered: true, ..self.with_tracer(tracer) }))
     }
 
     /// Returns a tracer for the lens with nothing on it that scatters.
-    pub(crate) fn clean_tracer(&self) -> Result<Tracer, RenderError> {
-        tracer(&self.scene, self.isa)
+    pub(crate) fn clean_tracer(&self) -> Result<Arc<Tracer>, RenderError> {
+        tracer(&self.scene)
     }
 
     /// Returns the source of the light that this pipeline traces.
@@ -168,9 +168,9 @@ impl Pipeline {
 }
 
 /// Prepares the lens of a scene for its band.
-fn tracer(scene: &Scene, isa: Isa) -> Result<Tracer, RenderError> {
+fn tracer(scene: &Scene) -> Result<Arc<Tracer>, RenderError> {
     let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
-    Tracer::new(&scene.lens, indices, isa).map_err(|e| RenderError::Lens(e.to_string()))
+    scene.lens.tracer(indices).map_err(|e| RenderError::Lens(e.to_string()))
 }
 
 /// Whether any stage draws random numbers of its own.
@@ -207,7 +207,7 @@ pub(crate) struct ThreadState {
 
 impl ThreadState {
     pub(crate) fn new(pipeline: &Pipeline, capacity: usize) -> Self {
-        let rays = RayBatch::new(capacity);
+        let rays = RayBatch::new(capacity).on(pipeline.isa);
         let rays = if pipeline.tracer.polarizes() { rays.with_polarization() } else { rays };
         Self {
             rays: if pipeline.draws { rays.with_numbers() } else { rays },

@@ -288,7 +288,7 @@ impl Renderer {
         let mut landing = None;
         forward.steps(&mut state, 0, PILOT_RAYS as usize, &mut |step, rays| {
             if step == crate::Step::Lens {
-                landing = Landing::of(&self.scene, rays, self.pipeline.isa);
+                landing = Landing::of(&self.scene, rays);
             }
         });
         landing
@@ -531,7 +531,7 @@ impl Renderer {
         let star = layers.iter_mut().find(|layer| layer.kind == LightKind::Star);
         let diffraction = if scene.render.diffraction.unwrap_or_else(|| self.has_seen_star(scene, &planes)) {
             let before = if star.is_some() { planes.clone() } else { Vec::new() };
-            let done = diffracted::spread(scene, &mut planes, recorded, self.pipeline.isa);
+            let done = diffracted::spread(scene, &mut planes, recorded);
             let done = done.map_err(RenderError::Diffraction)?;
             for ((star, plane), before) in star.into_iter().flat_map(|s| &mut s.channels).zip(&planes).zip(before) {
                 let moved = plane.values.iter().zip(before.values).map(|(now, before)| now - before);
@@ -579,7 +579,7 @@ impl Renderer {
 
     /// Whether a star is bright enough for diffraction to matter without being requested.
     fn has_seen_star(&self, scene: &Scene, planes: &[ExposureChannel]) -> bool {
-        let star = || diffracted::star(scene, planes, &self.pipeline.recorded, self.pipeline.isa);
+        let star = || diffracted::star(scene, planes, &self.pipeline.recorded);
         self.has_lights && star().is_some_and(|star| star > MATTERS)
     }
 

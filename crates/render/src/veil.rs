@@ -71,8 +71,7 @@ struct Frame {
 
 impl Frame {
     fn of(pipeline: &Pipeline) -> Self {
-        let [a, b, c, _] =
-            <[[f64; 2]; 4]>::try_from(landing::corners(&pipeline.scene, pipeline.isa)).unwrap_or_default();
+        let [a, b, c, _] = <[[f64; 2]; 4]>::try_from(landing::corners(&pipeline.scene)).unwrap_or_default();
         // The corners are in this order: bottom right, top right, top left, bottom left of the picture.
         let half = |p: [f64; 2], q: [f64; 2]| [0.5 * (p[0] - q[0]), 0.5 * (p[1] - q[1])];
         let mut frame = Self { middle: half(a, c.map(|v| -v)), across: half(b, c), down: half(a, b) };
@@ -254,7 +253,7 @@ impl Veil {
                     c.weight[i] *= out.weight * std::f64::consts::PI;
                 }
                 state.rays.set_stage(StageKey::SOURCE);
-                self.radiance().radiance(&mut state.rays, isa);
+                self.radiance().radiance(&mut state.rays);
                 for i in (0..len).filter(|i| state.rays.states()[*i] == ALIVE && state.rays.weights()[*i] != 0.0) {
                     weights.push(state.rays.weights()[i]);
                     nm.push(state.rays.wavelengths_nm()[i]);
@@ -280,11 +279,10 @@ impl Veil {
 
     /// Starts the light of bright lights in front of the lens, at the place where it is to enter.
     fn start(&self, state: &mut ThreadState, len: usize) {
-        let isa = self.pipeline.isa;
         state.rays.set_stage(StageKey::SOURCE);
         let [_, u, v, a, b] = &state.numbers;
         let emit = self.pipeline.source().emit().expect("checked by `new`");
-        emit.place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        emit.place(&mut state.rays, u.slice(len), v.slice(len));
         if let Some(opening) = &self.plan.opening {
             let (a, b) = (a.slice(len), b.slice(len));
             let c = state.rays.columns_mut();
@@ -305,7 +303,7 @@ impl Veil {
                 c.weight[i] *= area * direction.dot(disk.sight) / (distance * distance);
             }
         }
-        emit.radiate(&mut state.rays, isa);
+        emit.radiate(&mut state.rays);
     }
 
     /// Adds each contribution to the four nodes around it: the hat function of the node there, divided by the mean of the hat over the
@@ -523,8 +521,8 @@ fn gains(pipeline: &Pipeline) -> Vec<PixelGain> {
         }
         rays.number(0, &numbers, ESTIMATOR, STREAM, first as u64);
         rays.set_stage(StageKey::IMAGER);
-        launch.place(&mut rays, &half[..len], &half[..len], pipeline.isa);
-        launch.admit(&mut rays, pipeline.isa);
+        launch.place(&mut rays, &half[..len], &half[..len]);
+        launch.admit(&mut rays);
         all.extend((0..len).map(|i| {
             let is_alive = rays.states()[i] == ALIVE;
             let only = pixel_and_channel(rays.tags()[i]).1.map_or(0, |only| only as u8 + 1);

@@ -62,7 +62,7 @@ pub(crate) fn middle_mm(
             ["the imager sees nothing of the light of the source".to_owned(), hint.to_owned()]
         })?;
     }
-    emit.place(&mut rays, &columns[1], &columns[2], isa);
+    emit.place(&mut rays, &columns[1], &columns[2]);
     if !emit.is_directed() {
         aim(lens, &tracer, &mut rays, [&columns[3], &columns[4]], grid, size_hint)?;
     }
@@ -100,6 +100,6 @@ fn aim(
         let text = "no surface of the lens states its size, so no light can be aimed at it";
         [text.to_owned(), size_hint.to_owned()]
     })?;
-    pupil.aim(rays, places[0], places[1], AimPattern::Disk, Isa::Baseline);
+    pupil.aim(rays, places[0], places[1], AimPattern::Disk);
     Ok(())
 }

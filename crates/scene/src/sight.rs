@@ -5,13 +5,13 @@
 //! fold, a vignetted corner), the bundle is aimed at the real exit pupil, which takes longer to find. Each ray that passes is a
 //! line of sight.
 
+use spectra_core::RayBatch;
 use spectra_core::frame::FrameSize;
 use spectra_core::glam::DVec3;
 use spectra_core::loss::ALIVE;
 use spectra_core::stage::Imager;
 use spectra_core::view::{Sight, View};
 use spectra_core::workers::{Alone, Workers};
-use spectra_core::{Isa, RayBatch};
 use spectra_optics::{Effort, Optics, RearPupil};
 use spectra_tracer::{Indices, Tracer, Travel};
 use std::sync::Arc;
@@ -119,7 +119,7 @@ fn points(imager: &dyn Imager, places: &[[f64; 2]]) -> Option<Vec<DVec3>> {
         u.push(x);
         v.push(y);
     }
-    launch.place(&mut rays, &u, &v, Isa::Baseline);
+    launch.place(&mut rays, &u, &v);
     let [x, y, z] = rays.positions();
     Some((0..places.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect())
 }
@@ -211,7 +211,7 @@ impl<'a> Aim<'a> {
                 (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, -1.0);
             }
             c.wavelength_nm.fill(self.lens.reference_nm);
-            pupil.aim(&mut rays, &u, &v, Isa::Baseline);
+            pupil.aim(&mut rays, &u, &v);
             self.tracer.trace(&mut rays, &mut work, Travel::Backward);
             sights(&rays)
         };

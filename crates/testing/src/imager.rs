@@ -69,7 +69,7 @@ impl ImagerLaws {
         let mut out = Vec::new();
         for first in (0..self.rays).step_by(batch) {
             let upto = (first + batch).min(self.rays);
-            let mut rays = RayBatch::new(upto - first);
+            let mut rays = RayBatch::new(upto - first).on(isa);
             rays.restart(upto - first);
             let c = rays.columns_mut();
             for (i, tag) in c.tag.iter_mut().enumerate() {
@@ -78,7 +78,7 @@ impl ImagerLaws {
                 *tag = if ray == 1 { pixels - 1 } else { ray * 7919 * 104_729 % pixels } as u32;
             }
             c.wavelength_nm.fill(550.0);
-            launch.place(&mut rays, &u[first..upto], &v[first..upto], isa);
+            launch.place(&mut rays, &u[first..upto], &v[first..upto]);
             let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());
             out.extend(
                 (0..rays.len())
@@ -125,7 +125,7 @@ impl ImagerLaws {
         let spread = Spread::new(22);
         let launched = self.launched(imager, launch, 256, Isa::detect());
         for isa in Isa::available() {
-            let mut rays = RayBatch::new(launched.len());
+            let mut rays = RayBatch::new(launched.len()).on(isa);
             rays.restart(launched.len());
             let c = rays.columns_mut();
             for (i, (_, p, normal)) in launched.iter().enumerate() {
@@ -138,7 +138,7 @@ impl ImagerLaws {
                 c.wavelength_nm[i] = 550.0;
                 c.tag[i] = u32::MAX;
             }
-            receive.receive(&mut rays, isa);
+            receive.receive(&mut rays);
             let mut elsewhere = 0;
             let channels = imager.response().map_or(u32::MAX, |own| own.channels().len() as u32);
             for (i, (pixel, p, _)) in launched.iter().enumerate() {
@@ -180,7 +180,7 @@ impl ImagerLaws {
             (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, 1.0);
             c.wavelength_nm[i] = 550.0;
         }
-        receive.receive(&mut rays, Isa::detect());
+        receive.receive(&mut rays);
         for (i, place) in aside.into_iter().enumerate() {
             let loss = rays.loss(i);
             assert!(!self.flat || loss.is_some(), "light that passes at {place:?} mm, beside the frame, is received");

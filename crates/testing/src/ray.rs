@@ -16,7 +16,7 @@ pub type Line = (DVec3, DVec3);
 /// # Errors
 /// The cause of the loss, if the ray ends at the surface.
 pub fn ray(surface: &dyn Surface, ray: Line, indices: (f64, f64), action: Action) -> Result<Line, Loss> {
-    Rays { indices, action, ..Rays::default() }.meet(surface, &[ray], Isa::detect())[0]
+    Rays { indices, action, ..Rays::default() }.meet(surface, &[ray])[0]
 }
 
 /// Conditions under which rays meet a surface, in a coordinate frame whose origin is the surface's vertex.
@@ -34,6 +34,8 @@ pub struct Rays {
     pub batch: usize,
     /// Seed of the random numbers that a surface may draw; each ray is one sample, in order. Without a seed the batch has no numbers.
     pub seed: Option<u64>,
+    /// Instruction set of the batches.
+    pub isa: Isa,
 }
 
 impl Default for Rays {
@@ -46,6 +48,7 @@ impl Default for Rays {
             wavelength_nm: 550.0,
             batch: 256,
             seed: None,
+            isa: Isa::Baseline,
         }
     }
 }
@@ -62,11 +65,11 @@ impl Rays {
     /// # Panics
     /// If the number of losses that the surface returns is not the number of rays that ended.
     #[must_use]
-    pub fn meet(&self, surface: &dyn Surface, rays: &[Line], isa: Isa) -> Vec<Result<Line, Loss>> {
+    pub fn meet(&self, surface: &dyn Surface, rays: &[Line]) -> Vec<Result<Line, Loss>> {
         let mut out = Vec::with_capacity(rays.len());
         for (first, part) in (0..).step_by(self.batch.max(1)).zip(rays.chunks(self.batch.max(1))) {
             let mut batch = self.send(part, first);
-            let lost = self.interact(surface, &mut batch, isa);
+            let lost = self.interact(surface, &mut batch);
             assert_eq!(lost, batch.len() - batch.alive(), "`interact` returns {lost}, another number of rays ended");
             out.extend((0..part.len()).map(|i| outcome(&batch, i)));
         }
@@ -75,7 +78,7 @@ impl Rays {
 
     /// Returns a batch of these rays in front of the surface; their samples are numbered from `first`.
     pub(crate) fn send(&self, rays: &[Line], first: u64) -> RayBatch {
-        let mut batch = RayBatch::new(rays.len()).with_numbers();
+        let mut batch = RayBatch::new(rays.len()).on(self.isa).with_numbers();
         batch.restart(rays.len());
         batch.set_stage(StageKey::new("surface", 0));
         if let Some(seed) = self.seed {
@@ -93,7 +96,7 @@ impl Rays {
     }
 
     /// Lets a batch made by [`Rays::send`] interact with the surface, and returns the number of losses that the surface counts.
-    pub(crate) fn interact(&self, surface: &dyn Surface, batch: &mut RayBatch, isa: Isa) -> usize {
+    pub(crate) fn interact(&self, surface: &dyn Surface, batch: &mut RayBatch) -> usize {
         let len = batch.len();
         let column = |value: f64| {
             let mut column = Column::<f64>::new(len);
@@ -112,7 +115,7 @@ impl Rays {
             before: IndexColumns { n: before.slice(len), inverse: before_inverse.slice(len) },
             after: IndexColumns { n: after.slice(len), inverse: after_inverse.slice(len) },
         };
-        surface.interact(batch, &interface, isa)
+        surface.interact(batch, &interface)
     }
 }
 

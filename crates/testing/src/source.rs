@@ -109,8 +109,8 @@ impl SourceLaws {
         let mut flux = Vec::with_capacity(self.rays);
         for first in (0..self.rays).step_by(how.batch) {
             let part = first..(first + how.batch).min(self.rays);
-            let mut rays = start(source, line, &columns[4][part.clone()]);
-            emit.place(&mut rays, &columns[0][part.clone()], &columns[1][part.clone()], how.isa);
+            let mut rays = start(source, line, &columns[4][part.clone()], how.isa);
+            emit.place(&mut rays, &columns[0][part.clone()], &columns[1][part.clone()]);
             let mut factor = vec![1.0; rays.len()];
             if !emit.is_directed() {
                 let c = rays.columns_mut();
@@ -122,7 +122,7 @@ impl SourceLaws {
                     factor[i] = area_mm2 * direction.z.abs() / toward.length_squared();
                 }
             }
-            emit.radiate(&mut rays, how.isa);
+            emit.radiate(&mut rays);
             check(&rays, line);
             let alive = |i: usize| if rays.loss(i).is_none() { rays.weights()[i] } else { 0.0 };
             flux.extend((0..rays.len()).map(|i| alive(i) * factor[i]));
@@ -147,7 +147,7 @@ impl SourceLaws {
         let mut flux = Vec::with_capacity(self.rays);
         for first in (0..self.rays).step_by(how.batch) {
             let part = first..(first + how.batch).min(self.rays);
-            let mut rays = start(source, line, &columns[4][part.clone()]);
+            let mut rays = start(source, line, &columns[4][part.clone()], how.isa);
             let c = rays.columns_mut();
             for (i, ray) in part.enumerate() {
                 let from = self.aperture(columns[2][ray], columns[3][ray]);
@@ -158,7 +158,7 @@ impl SourceLaws {
                 (c.l[i], c.m[i], c.n[i]) = direction.into();
                 c.weight[i] = areas * direction.z * direction.z / toward.length_squared();
             }
-            radiance.radiance(&mut rays, how.isa);
+            radiance.radiance(&mut rays);
             check(&rays, line);
             flux.extend((0..rays.len()).map(|i| if rays.loss(i).is_none() { rays.weights()[i] } else { 0.0 }));
         }
@@ -173,8 +173,8 @@ impl SourceLaws {
 }
 
 /// Starts rays with the wavelength of one line, or with wavelengths from the whole band.
-fn start(source: &dyn Source, line: Option<usize>, u: &[f64]) -> RayBatch {
-    let mut rays = RayBatch::new(u.len());
+fn start(source: &dyn Source, line: Option<usize>, u: &[f64], isa: Isa) -> RayBatch {
+    let mut rays = RayBatch::new(u.len()).on(isa);
     rays.restart(u.len());
     let c = rays.columns_mut();
     for (i, u) in u.iter().enumerate() {

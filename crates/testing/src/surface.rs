@@ -103,7 +103,7 @@ impl SurfaceLaws {
 
     fn bends_each(&self, surface: &dyn Surface, rays: &[Line], how: Rays) {
         let (n, m) = how.indices;
-        let met = how.meet(surface, rays, Isa::detect());
+        let met = how.meet(surface, rays);
         let mut alive = 0;
         for (&(p, d), met) in rays.iter().zip(&met) {
             let case = || format!("{surface:?}, {:?} from {n} to {m}, ray at {p} mm along {d}", how.action);
@@ -140,8 +140,7 @@ impl SurfaceLaws {
             }
             // On its way back, light at a grazing angle may meet a curved surface at another place first.
             if self.reversible && how.action == Action::Refract && after.z * d.z > 0.05 {
-                let back =
-                    Rays { indices: (m, n), ..how }.meet(surface, &[(q + 0.5 * after, -after)], Isa::detect())[0];
+                let back = Rays { indices: (m, n), ..how }.meet(surface, &[(q + 0.5 * after, -after)])[0];
                 if let Ok((there, out)) = back
                     && (there - q).length() < 1e-3
                 {
@@ -173,7 +172,7 @@ impl SurfaceLaws {
                 let (n, m) = (indices.0, if action == Action::Reflect { indices.0 } else { indices.1 });
                 for &(p, d) in rays {
                     for aside in [DVec3::X, DVec3::Y].map(|axis| axis * STEP_MM) {
-                        let met = how.meet(surface, &[(p - aside, d), (p, d), (p + aside, d)], Isa::detect());
+                        let met = how.meet(surface, &[(p - aside, d), (p, d), (p + aside, d)]);
                         let [Ok((a, from)), Ok((_, after)), Ok((b, to))] = met[..] else { continue };
                         compared += 1;
                         let phase = |point, after| {
@@ -208,8 +207,8 @@ impl SurfaceLaws {
     fn is_the_same_however_asked(&self, surface: &dyn Surface, rays: &[Line]) {
         let clip_mm = 0.8 * self.semi_diameter_mm;
         let how = Rays { indices: INDICES[1], clip_mm, seed: Some(1), ..Rays::default() };
-        let want = how.meet(surface, rays, Isa::Baseline);
-        let chance = [Some(2), None].map(|seed| Rays { seed, ..how }.meet(surface, rays, Isa::Baseline));
+        let want = how.meet(surface, rays);
+        let chance = [Some(2), None].map(|seed| Rays { seed, ..how }.meet(surface, rays));
         for other in chance.iter().filter(|_| !surface.draws()) {
             if let Some(i) = differs(other, &want) {
                 panic!("{surface:?}: ray {i} gives {:?} or {:?} at random; `draws` denies it", other[i], want[i]);
@@ -218,13 +217,13 @@ impl SurfaceLaws {
         let mut few = how.send(rays, 0);
         few.columns_mut().state.iter_mut().step_by(2).for_each(|state| *state = Loss::Absorbed.state(3));
         few.compact();
-        how.interact(surface, &mut few, Isa::Baseline);
+        how.interact(surface, &mut few);
         for (at, i) in (1..rays.len()).step_by(2).enumerate() {
             let got = outcome(&few, at);
             assert!(got == want[i], "{surface:?}: ray {i} gives {got:?} if others were dropped, else {:?}", want[i]);
         }
         for batch in [1, 7, 64, 1024] {
-            let got = Rays { batch, ..how }.meet(surface, rays, Isa::Baseline);
+            let got = Rays { batch, ..how }.meet(surface, rays);
             if let Some(i) = differs(&got, &want) {
                 panic!(
                     "{surface:?}: ray {i} gives {:?} in batches of {batch}, {:?} in batches of 256",
@@ -233,7 +232,7 @@ impl SurfaceLaws {
             }
         }
         for isa in Isa::available() {
-            let got = how.meet(surface, rays, isa);
+            let got = Rays { isa, ..how }.meet(surface, rays);
             if let Some(i) = differs(&got, &want) {
                 panic!("{surface:?}: ray {i} gives {:?} on {}, {:?} on baseline", got[i], isa.name(), want[i]);
             }
@@ -243,8 +242,8 @@ impl SurfaceLaws {
     fn clips(&self, surface: &dyn Surface, rays: &[Line]) {
         let clip_mm = 0.7 * self.semi_diameter_mm;
         let open = Rays { action: Action::Pass, ..Rays::default() };
-        let free = open.meet(surface, rays, Isa::detect());
-        let clipped = Rays { clip_mm, ..open }.meet(surface, rays, Isa::detect());
+        let free = open.meet(surface, rays);
+        let clipped = Rays { clip_mm, ..open }.meet(surface, rays);
         for (i, (free, clipped)) in free.iter().zip(&clipped).enumerate() {
             let Ok((q, _)) = free else {
                 assert_eq!(free, clipped, "{surface:?}: ray {i} ends differently if the surface is clipped");
@@ -262,7 +261,7 @@ impl SurfaceLaws {
         let mut batch = Rays { clip_mm, ..open }.send(rays, 0);
         let before = Loss::Absorbed.state(3);
         batch.columns_mut().state.iter_mut().step_by(2).for_each(|state| *state = before);
-        let lost = Rays { clip_mm, ..open }.interact(surface, &mut batch, Isa::detect());
+        let lost = Rays { clip_mm, ..open }.interact(surface, &mut batch);
         let newly = batch.states().iter().filter(|s| **s != ALIVE && **s != before).count();
         assert_eq!(lost, newly, "{surface:?}: `interact` returns {lost}, but {newly} rays ended");
         for i in 0..rays.len() {
@@ -284,7 +283,7 @@ impl SurfaceLaws {
             let how = Rays { indices, ..Rays::default() };
             let rays = self.some_rays(true);
             let far: Vec<Line> = rays.iter().map(|(p, d)| (*p * FACTOR, *d)).collect();
-            let [own, of_larger] = [how.meet(surface, &rays, Isa::detect()), how.meet(&*larger, &far, Isa::detect())];
+            let [own, of_larger] = [how.meet(surface, &rays), how.meet(&*larger, &far)];
             let (mut compared, mut apart) = (0, 0);
             for (i, (own, of_larger)) in own.iter().zip(&of_larger).enumerate() {
                 let (Ok((p, d)), Ok((q, e))) = (own, of_larger) else {
@@ -327,7 +326,7 @@ impl SurfaceLaws {
             let power: [f64; 2] = surface.paraxial_power_per_mm(n, m).into();
             for (axis, (power, place)) in [DVec3::X, DVec3::Y].into_iter().zip(power.into_iter().zip(["x", "y"])) {
                 let rays = [axis * h - DVec3::Z, -axis * h - DVec3::Z].map(|p| (p, DVec3::Z));
-                let met = Rays { indices: (n, m), ..Rays::default() }.meet(surface, &rays, Isa::detect());
+                let met = Rays { indices: (n, m), ..Rays::default() }.meet(surface, &rays);
                 let [Ok((_, a)), Ok((_, b))] = met[..] else {
                     panic!("{surface:?}: a ray next to the axis ends: {met:?}");
                 };
@@ -363,7 +362,7 @@ impl SurfaceLaws {
             rays.push((DVec3::ZERO, DVec3::Z * sense));
             for action in [Action::Refract, Action::Reflect, Action::Pass] {
                 let how = Rays { action, ..Rays::default() };
-                for (i, met) in how.meet(surface, &rays, Isa::detect()).iter().enumerate() {
+                for (i, met) in how.meet(surface, &rays).iter().enumerate() {
                     let Ok((q, d)) = met else { continue };
                     let (p, along) = rays[i];
                     assert!(

@@ -30,7 +30,6 @@ use crate::path::Path;
 use crate::transmission::{Before, Passage};
 use glam::DVec3;
 use route::{ImagePlane, arrives, route};
-use spectra_core::isa::Isa;
 use spectra_core::surface::{Action, Travel};
 use spectra_glass::{Dispersion, DispersionError, Medium};
 use spectra_lens::{Coating, Element, Layer, Lens, Opening, Shape};
@@ -55,7 +54,7 @@ pub enum Indices {
 const ANY_NM: f64 = 200.0;
 
 /// A lens made ready for one band of light.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Tracer {
     elements: Vec<Element>,
     /// Square of the radius at which each element clips, mm^2.
@@ -78,7 +77,6 @@ pub struct Tracer {
     scattered: bool,
     /// What each medium absorbs; `None` if absorption is off.
     absorptions: Option<Absorptions>,
-    isa: Isa,
 }
 
 impl Tracer {
@@ -86,7 +84,7 @@ impl Tracer {
     ///
     /// # Errors
     /// A medium has no usable index somewhere in the band.
-    pub fn new(lens: &Lens, indices: Indices, isa: Isa) -> Result<Self, DispersionError> {
+    pub fn new(lens: &Lens, indices: Indices) -> Result<Self, DispersionError> {
         let media = lens
             .media
             .iter()
@@ -149,7 +147,6 @@ impl Tracer {
             layers,
             scattered: false,
             absorptions,
-            isa,
         })
     }
 
@@ -181,12 +178,6 @@ impl Tracer {
     /// Returns whether behind an element light may go another way than the one that it goes without chance.
     pub fn leaves_to_chance(&self, at: usize) -> bool {
         self.elements[at].surface.draws() || self.scattered && !self.layers[at].is_empty()
-    }
-
-    /// The instruction set in use.
-    #[must_use]
-    pub fn isa(&self) -> Isa {
-        self.isa
     }
 
     /// Number of surfaces, the stop included, the image plane not.

@@ -19,7 +19,6 @@ use passage::Kernel;
 use spectra_core::Loss;
 use spectra_core::RayBatch;
 use spectra_core::batch::{Column, Polarization};
-use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
 use spectra_lens::Coating;
 use spectra_lens::coating::{Amplitudes, CHUNK, Polarizing, Sides};
@@ -107,8 +106,8 @@ impl Before {
         rays: &RayBatch,
         indices: impl Iterator<Item = &'a [f64]>,
         absorptions: Option<&Absorptions>,
-        isa: Isa,
     ) {
+        let isa = rays.isa();
         let len = rays.len();
         if self.swift {
             isa.run(Invert { wavelength_nm: rays.wavelengths_nm(), per_nm: &mut self.per_nm[..len] });
@@ -147,21 +146,24 @@ impl Before {
 
     /// Computes how rays met a surface that does not record it itself, from the recorded positions and directions. `shift_mm` is the vertex
     /// of the surface in the frame of the recorded positions.
-    pub(crate) fn measure(&self, rays: &mut RayBatch, shift_mm: f64, isa: Isa) {
+    pub(crate) fn measure(&self, rays: &mut RayBatch, shift_mm: f64) {
+        let isa = rays.isa();
         let len = rays.len();
         let from = self.position.each_ref().map(|column| column.slice(len));
         isa.run(Measure { from, direction: self.directions(len), shift_mm, rays: rays.weighing() });
-        self.measure_angles(rays, isa);
+        self.measure_angles(rays);
     }
 
     /// Computes the angles by which rays were bent, from the recorded directions.
-    pub(crate) fn measure_angles(&self, rays: &mut RayBatch, isa: Isa) {
+    pub(crate) fn measure_angles(&self, rays: &mut RayBatch) {
+        let isa = rays.isa();
         isa.run(MeasureAngles { direction: self.directions(rays.len()), rays: rays.weighing() });
     }
 
     /// Records the absorption of rays by a medium on their way to a surface, from its table. [`Before::weigh_absorbed`] applies it to
     /// the weights: one exponential for the whole path through a lens.
-    pub(crate) fn absorb(&mut self, rays: &mut RayBatch, table: usize, isa: Isa) {
+    pub(crate) fn absorb(&mut self, rays: &mut RayBatch, table: usize) {
+        let isa = rays.isa();
         let len = rays.len();
         let way_mm = rays.weighing().way_mm;
         let (per_mm, depth) = (self.per_mm[table].slice(len), self.depth.slice_mut(len));
@@ -174,7 +176,8 @@ impl Before {
     }
 
     /// Multiplies the weights by what the absorption recorded so far leaves.
-    pub(crate) fn weigh_absorbed(&mut self, rays: &mut RayBatch, isa: Isa) {
+    pub(crate) fn weigh_absorbed(&mut self, rays: &mut RayBatch) {
+        let isa = rays.isa();
         if std::mem::take(&mut self.absorbed) {
             let depth = self.depth.slice(rays.len());
             isa.run(WeighAbsorbed { rays: rays.weighing(), depth });
@@ -183,7 +186,8 @@ impl Before {
 
     /// Ends rays that met a surface behind them: a steep reflection may send light sideways, past the next surface. Returns
     /// how many ended.
-    pub(crate) fn end_behind(rays: &mut RayBatch, number: u32, isa: Isa) -> usize {
+    pub(crate) fn end_behind(rays: &mut RayBatch, number: u32) -> usize {
+        let isa = rays.isa();
         let c = rays.weighing();
         let many = isa.run(CountBehind { way_mm: c.way_mm, state: c.state }) as usize;
         if many > 0 {
@@ -204,7 +208,8 @@ impl Before {
     }
 
     /// Multiplies the weights by the reflectance of a refracting surface; `n_beyond` are the indices on its other side.
-    pub(crate) fn reflect(rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64], isa: Isa) {
+    pub(crate) fn reflect(rays: &mut RayBatch, passage: &Passage, n: &[f64], n_beyond: &[f64]) {
+        let isa = rays.isa();
         let (coating, gap) = match passage {
             Passage::All | Passage::Mirror(_) => return,
             Passage::Coated(..) => (passage.coating(), None),
@@ -277,17 +282,11 @@ impl Before {
     }
 
     /// Multiplies the weights by the transmittance of a surface between these media, with these indices.
-    pub(crate) fn pass(
-        &self,
-        rays: &mut RayBatch,
-        passage: &Passage,
-        media: [usize; 2],
-        [n, n_after]: [&[f64]; 2],
-        isa: Isa,
-    ) {
+    pub(crate) fn pass(&self, rays: &mut RayBatch, passage: &Passage, media: [usize; 2], [n, n_after]: [&[f64]; 2]) {
+        let isa = rays.isa();
         if let Passage::Apart(intact, gap) = passage {
             let came = rays.weights().to_vec();
-            self.pass(rays, intact, media, [n, n_after], isa);
+            self.pass(rays, intact, media, [n, n_after]);
             let c = rays.weighing();
             for (i, part, coating) in gap.met(c.position, c.state) {
                 let sides = Sides::of(n[i], n_after[i], c.versine[i]);

@@ -6,7 +6,7 @@ use crate::standing::Standing;
 use glam::{DVec2, DVec3};
 use spectra_core::cover::CoverStack;
 use spectra_core::frame::FrameSize;
-use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::whole;
 use spectra_core::numbers::RayNumbers;
@@ -95,7 +95,8 @@ impl Plane {
 }
 
 impl Receive for Plane {
-    fn receive(&self, rays: &mut RayBatch, isa: Isa) {
+    fn receive(&self, rays: &mut RayBatch) {
+        let isa = rays.isa();
         if self.is_plain() {
             return isa.run(ReceiveBatch { size: self.size, rays });
         }
@@ -123,7 +124,8 @@ impl Receive for Plane {
 }
 
 impl Launch for Plane {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
+        let isa = rays.isa();
         if self.is_plain() {
             return isa.run(PlaceBatch { size: self.size, rays, u, v });
         }
@@ -140,7 +142,7 @@ impl Launch for Plane {
 
     /// Moves the rays from the apparent frame, which is exact near the axis only, to where Snell's law puts them. Rays were
     /// aimed before that, at a region that leaves room for this shift.
-    fn admit(&self, rays: &mut RayBatch, _isa: Isa) {
+    fn admit(&self, rays: &mut RayBatch) {
         let Some(plates) = &self.plates else { return };
         let axes = self.axes(0.0, 0.0);
         let lift_mm = plates.lift_mm();
@@ -241,6 +243,7 @@ impl Vectorized for PlaceBatch<'_> {
 mod tests {
     use super::*;
     use crate::standing::Bend;
+    use spectra_core::Isa;
     use spectra_core::numbers::Numbers;
 
     fn size() -> FrameSize {
@@ -261,7 +264,7 @@ mod tests {
         let n = 1000;
         let (u, v) = (uniform(0, n), uniform(1, n));
         for isa in Isa::available() {
-            let mut rays = RayBatch::new(n);
+            let mut rays = RayBatch::new(n).on(isa);
             rays.restart(n);
             let last = size().pixels() as u32 - 1;
             for (i, tag) in rays.columns_mut().tag.iter_mut().enumerate() {
@@ -269,7 +272,7 @@ mod tests {
             }
             rays.columns_mut().tag[n - 1] = last;
             let pixels = rays.tags().to_vec();
-            plane.place(&mut rays, &u, &v, isa);
+            plane.place(&mut rays, &u, &v);
             for i in 0..n {
                 let (x, y) = size().point_of(pixels[i], u[i], v[i]);
                 let [px, py, pz] = rays.positions();
@@ -289,7 +292,7 @@ mod tests {
                 (c.l[i], c.m[i], c.n[i]) = (d[0] / length, d[1] / length, d[2] / length);
                 c.tag[i] = 0;
             }
-            plane.receive(&mut rays, isa);
+            plane.receive(&mut rays);
             assert_eq!(rays.alive(), n);
             assert_eq!(rays.tags(), pixels, "{}", isa.name());
         }
@@ -318,7 +321,7 @@ mod tests {
                 *tag = (i as u32 * 614_657) % size().pixels() as u32;
             }
             let pixels = rays.tags().to_vec();
-            plane.place(&mut rays, &u, &v, Isa::Baseline);
+            plane.place(&mut rays, &u, &v);
             let c = rays.columns_mut();
             for i in 0..n {
                 let (x, y) = size().point_of(pixels[i], u[i], v[i]);
@@ -344,7 +347,7 @@ mod tests {
                 [c.l[i], c.m[i], c.n[i]] = way.to_array();
                 c.tag[i] = 0;
             }
-            plane.receive(&mut rays, Isa::Baseline);
+            plane.receive(&mut rays);
             assert_eq!(rays.alive(), n);
             assert_eq!(rays.tags(), pixels, "{bend:?}");
         }
@@ -397,7 +400,7 @@ mod tests {
             c.wavelength_nm[i] = 400.0 + 300.0 * v[i];
         }
         let pixels = rays.tags().to_vec();
-        plane.place(&mut rays, &u, &v, Isa::Baseline);
+        plane.place(&mut rays, &u, &v);
         let c = rays.columns_mut();
         for i in 0..n {
             let at = DVec3::new(c.x[i], c.y[i], c.z[i]);
@@ -405,7 +408,7 @@ mod tests {
             [c.x[i], c.y[i], c.z[i]] = target.to_array();
             [c.l[i], c.m[i], c.n[i]] = (target - at).normalize().to_array();
         }
-        plane.admit(&mut rays, Isa::Baseline);
+        plane.admit(&mut rays);
         let c = rays.columns_mut();
         for i in 0..n {
             let way = -DVec3::new(c.l[i], c.m[i], c.n[i]);
@@ -429,7 +432,7 @@ mod tests {
         {
             (c.x[i], c.y[i], c.z[i], c.l[i], c.m[i], c.n[i]) = (x, y, -3.0, 0.0, 0.0, 1.0);
         }
-        plane.receive(&mut rays, Isa::detect());
+        plane.receive(&mut rays);
         assert_eq!(rays.tags(), [0, 960, 638 * 961, 639 * 961 - 1]);
     }
 
@@ -448,7 +451,7 @@ mod tests {
         (c.l[3], c.n[3]) = (1.0, 0.0);
         c.state[4] = Loss::Vignetted.state(3);
         c.x[5] = f64::NAN;
-        plane.receive(&mut rays, Isa::detect());
+        plane.receive(&mut rays);
         let losses: Vec<_> = (0..6).map(|i| rays.loss(i)).collect();
         let out = Some((Loss::OutOfFrame, 0));
         assert_eq!(losses, [None, out, out, out, Some((Loss::Vignetted, 3)), out]);
@@ -470,7 +473,7 @@ mod tests {
             (c.x[i], c.y[i], c.z[i]) = (40.0 * (u[i] - 0.5), 30.0 * (v[i] - 0.5), -5.0);
             (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, 1.0);
         }
-        plane.receive(&mut rays, Isa::detect());
+        plane.receive(&mut rays);
         let mut counts = vec![0_u32; size.pixels()];
         for i in 0..n {
             if rays.loss(i).is_none() {

@@ -84,7 +84,7 @@ fn of_picture(shot: &Shot<'_>) -> Result<Page, WriteFault> {
     }
     page.heading("Lens");
     // A lens that cannot be drawn is still described.
-    if let Ok(canvas) = rays::on_paper(scene, shot.isa) {
+    if let Ok(canvas) = rays::on_paper(scene) {
         page.figure(&canvas, &format!("{} with rays of the scene's light", scene.lens.name));
     }
     page.facts(&lens(shot));

@@ -6,11 +6,11 @@ use serde::Deserialize;
 use spectra_analysis::draw::{DrawnRay, Fans, Ground, Sheet, View};
 use spectra_analysis::fan::largest_field_rad;
 use spectra_color::RgbSpace;
+use spectra_core::RayBatch;
 use spectra_core::params::{Faults, Length, Params, Positive, Whole};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::Emit;
-use spectra_core::{Isa, RayBatch};
 use spectra_glass::DispersionError;
 use spectra_lens::Section;
 use spectra_plot::{Canvas, Format};
@@ -117,16 +117,16 @@ impl Output for Rays {
 
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
         let figure = &self.0;
-        let canvas = drawn(shot.scene, figure, shot.isa).map_err(|e| WriteFault::Format(e.to_string()))?;
+        let canvas = drawn(shot.scene, figure).map_err(|e| WriteFault::Format(e.to_string()))?;
         let format = if figure.format == As::Svg { Format::Svg } else { Format::Png };
         Ok(out.write_all(&canvas.to_bytes(format, 1.0)?)?)
     }
 }
 
 /// Draws the path of a scene's light through the lens.
-fn drawn(scene: &Scene, figure: &RaysParams, isa: Isa) -> Result<Canvas, DispersionError> {
+fn drawn(scene: &Scene, figure: &RaysParams) -> Result<Canvas, DispersionError> {
     let rays = match scene.source.emit().filter(|emit| emit.is_directed()) {
-        Some(emit) => beam(scene, emit, figure, isa)?,
+        Some(emit) => beam(scene, emit, figure)?,
         None => fans(scene, figure)?,
     };
     let [width, height] = figure.size.map(|side| f64::from(side.get_u32()));
@@ -146,7 +146,7 @@ fn drawn(scene: &Scene, figure: &RaysParams, isa: Isa) -> Result<Canvas, Dispers
 ///
 /// # Errors
 /// Fails if a medium has no refractive index at the wavelength of a ray.
-pub(crate) fn on_paper(scene: &Scene, isa: Isa) -> Result<Canvas, DispersionError> {
+pub(crate) fn on_paper(scene: &Scene) -> Result<Canvas, DispersionError> {
     let figure = RaysParams {
         size: [Whole::known(1100), Whole::known(420)],
         view: None,
@@ -157,7 +157,7 @@ pub(crate) fn on_paper(scene: &Scene, isa: Isa) -> Result<Canvas, DispersionErro
         format: As::Svg,
         screen: true,
     };
-    drawn(scene, &figure, isa)
+    drawn(scene, &figure)
 }
 
 /// Wavelengths that a screen can show, nm.
@@ -168,7 +168,7 @@ const PARTS: [f64; 3] = [0.0, 0.6, 0.95];
 const WIDEST_DEG: f64 = 85.0;
 
 /// Traces a beam's own rays: for each spectral line, and for wavelengths over its continuum.
-fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams, isa: Isa) -> Result<Vec<DrawnRay>, DispersionError> {
+fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams) -> Result<Vec<DrawnRay>, DispersionError> {
     let spectrum = scene.source.spectrum();
     let visible = |nm: f64| (VISIBLE_NM[0]..=VISIBLE_NM[1]).contains(&nm);
     let lines = spectrum.lines.iter().enumerate().filter(|(_, line)| visible(line.wavelength_nm));
@@ -190,7 +190,7 @@ fn beam(scene: &Scene, emit: &dyn Emit, figure: &RaysParams, isa: Isa) -> Result
             c.wavelength_nm.fill(wavelength_nm);
             c.line.fill(line);
             let across: Vec<f64> = (0..n).map(|k| (k as f64 + 0.5) / n as f64).collect();
-            emit.place(&mut rays, &vec![0.5; n], &across, isa);
+            emit.place(&mut rays, &vec![0.5; n], &across);
             let tracer = scene.lens.tracer(Indices::At(wavelength_nm))?;
             for k in 0..n {
                 let [position, direction] =

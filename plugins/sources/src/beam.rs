@@ -8,7 +8,7 @@ use spectra_core::params::{Angle, Faults, Length, Params, Positive, Power, Quant
 use spectra_core::registry::Context;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Source};
-use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
+use spectra_core::{RayBatch, batch::CONTINUUM};
 
 /// A thin beam of parallel light, round or cut by a slit.
 ///
@@ -122,7 +122,7 @@ impl Source for Beam {
 const MM2_PER_M2: f64 = 1e6;
 
 impl Emit for Beam {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
         // Two unit vectors perpendicular to the beam, the first one horizontal. x runs to the photographer's right.
         let [l, m, n] = self.direction;
         let flat = (l * l + n * n).sqrt();
@@ -152,5 +152,5 @@ impl Emit for Beam {
         true
     }
 
-    fn radiate(&self, _: &mut RayBatch, _: Isa) {}
+    fn radiate(&self, _: &mut RayBatch) {}
 }

@@ -88,7 +88,8 @@ impl<T: Texture> Source for Flat<T> {
 impl<T: Texture> Flat<T> {
     /// Starts rays at the points that `drawn` returns.
     #[inline(always)]
-    fn start(&self, rays: &mut RayBatch, isa: Isa, drawn: impl Fn(usize) -> (f64, f64, f64)) {
+    fn start(&self, rays: &mut RayBatch, drawn: impl Fn(usize) -> (f64, f64, f64)) {
+        let isa = rays.isa();
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             let (x, y, area) = drawn(i);
@@ -101,26 +102,28 @@ impl<T: Texture> Flat<T> {
 }
 
 impl<T: Texture> Emit for Flat<T> {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
-        self.start(rays, isa, |i| self.texture.draw(u[i], v[i]));
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
+        self.start(rays, |i| self.texture.draw(u[i], v[i]));
     }
 
     fn spots_mm(&self) -> Option<[f64; 2]> {
         self.texture.spots_mm()
     }
 
-    fn place_in_middle(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
-        self.start(rays, isa, |i| self.texture.draw_middle(u[i], v[i]));
+    fn place_in_middle(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
+        self.start(rays, |i| self.texture.draw_middle(u[i], v[i]));
     }
 
-    fn radiate(&self, rays: &mut RayBatch, isa: Isa) {
+    fn radiate(&self, rays: &mut RayBatch) {
+        let isa = rays.isa();
         let c = rays.columns_mut();
         isa.run(Cosine { n: c.n, weight: c.weight });
     }
 }
 
 impl<T: Texture> Radiance for Flat<T> {
-    fn radiance(&self, rays: &mut RayBatch, isa: Isa) {
+    fn radiance(&self, rays: &mut RayBatch) {
+        let isa = rays.isa();
         let c = rays.columns_mut();
         isa.run(ToPlane { distance_mm: self.distance_mm, c: [c.z, c.l, c.m, c.n], x: c.x, y: c.y });
         // A ray that runs away from the plane gets no light from it.

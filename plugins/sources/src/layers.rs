@@ -13,12 +13,12 @@ use crate::picture::{Making, PictureFile, color_model, find};
 use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::RayBatch;
 use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity, Warning};
 use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Emit, Radiance, Source};
-use spectra_core::{Isa, RayBatch};
 use spectra_pictures::read::Header;
 use std::sync::Arc;
 
@@ -276,7 +276,7 @@ impl Source for Layers {
 const CHUNK: usize = 64;
 
 impl Radiance for Layers {
-    fn radiance(&self, rays: &mut RayBatch, _: Isa) {
+    fn radiance(&self, rays: &mut RayBatch) {
         let c = rays.columns_mut();
         for start in (0..c.x.len()).step_by(CHUNK) {
             let end = (start + CHUNK).min(c.x.len());
@@ -312,7 +312,7 @@ impl Radiance for Layers {
 }
 
 impl Emit for Layers {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
         let c = rays.columns_mut();
         let total = self.sums.last().copied().unwrap_or(0.0);
         for i in 0..c.x.len() {
@@ -330,7 +330,7 @@ impl Emit for Layers {
     }
 
     /// Multiplies by the transmission of the layers in front, which is known once the direction is set.
-    fn radiate(&self, rays: &mut RayBatch, _: Isa) {
+    fn radiate(&self, rays: &mut RayBatch) {
         let c = rays.columns_mut();
         for start in (0..c.x.len()).step_by(CHUNK) {
             let end = (start + CHUNK).min(c.x.len());

@@ -9,7 +9,7 @@ use spectra_core::params::{Angle, Faults, Length, Params, Part, Positive, Quanti
 use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Emit, Source};
-use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
+use spectra_core::{RayBatch, batch::CONTINUUM};
 
 /// A point source of light at a finite distance.
 ///
@@ -136,7 +136,7 @@ impl Source for Point {
 const MM2_PER_M2: f64 = 1e6;
 
 impl Emit for Point {
-    fn place(&self, rays: &mut RayBatch, _: &[f64], _: &[f64], _: Isa) {
+    fn place(&self, rays: &mut RayBatch, _: &[f64], _: &[f64]) {
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             (c.x[i], c.y[i], c.z[i]) = self.place.into();
@@ -150,5 +150,5 @@ impl Emit for Point {
     }
 
     /// Leaves the weights unchanged, since a point radiates equally in all directions.
-    fn radiate(&self, _: &mut RayBatch, _: Isa) {}
+    fn radiate(&self, _: &mut RayBatch) {}
 }

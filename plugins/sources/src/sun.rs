@@ -9,7 +9,7 @@ use spectra_core::params::{Angle, Faults, Illuminance, Params, Part, Positive, Q
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source, Split};
-use spectra_core::{Isa, RayBatch, batch::CONTINUUM};
+use spectra_core::{RayBatch, batch::CONTINUUM};
 
 /// The sun: a disk of uniform brightness at infinity.
 ///
@@ -166,7 +166,7 @@ impl Source for Disk {
 }
 
 impl Emit for Disk {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
         // Two unit vectors perpendicular to the direction of the sun, the first one horizontal.
         let [l, m, n] = self.toward;
         let flat = (l * l + n * n).sqrt();
@@ -183,11 +183,11 @@ impl Emit for Disk {
     }
 
     /// Leaves the weights unchanged, since the whole disk faces the lens.
-    fn radiate(&self, _: &mut RayBatch, _: Isa) {}
+    fn radiate(&self, _: &mut RayBatch) {}
 }
 
 impl Radiance for Disk {
-    fn radiance(&self, rays: &mut RayBatch, _: Isa) {
+    fn radiance(&self, rays: &mut RayBatch) {
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             let met = self.is_met([c.l[i], c.m[i], c.n[i]]);
@@ -239,7 +239,7 @@ impl Source for Over {
 }
 
 impl Radiance for Over {
-    fn radiance(&self, rays: &mut RayBatch, isa: Isa) {
+    fn radiance(&self, rays: &mut RayBatch) {
         let met = |rays: &RayBatch, i: usize| {
             let [l, m, n] = rays.directions();
             // Spectral lines belong to the other source.
@@ -253,7 +253,7 @@ impl Radiance for Over {
             })
             .collect();
         if let Some(over) = self.over.radiance() {
-            over.radiance(rays, isa);
+            over.radiance(rays);
         }
         let c = rays.columns_mut();
         for (i, own) in of_sun {
@@ -291,14 +291,14 @@ mod tests {
     #[test]
     fn both_ways_are_the_same_disk() {
         let disk = disk(0.4, -0.3);
-        let (steps, isa) = (64, Isa::detect());
+        let steps = 64;
         let mut rays = RayBatch::new(steps * steps);
         rays.restart(steps * steps);
         let (u, v): (Vec<f64>, Vec<f64>) = (0..steps * steps)
             .map(|i| (((i % steps) as f64 + 0.5) / steps as f64, ((i / steps) as f64 + 0.5) / steps as f64))
             .unzip();
         rays.columns_mut().wavelength_nm.fill(550.0);
-        disk.place(&mut rays, &u, &v, isa);
+        disk.place(&mut rays, &u, &v);
         let c = rays.columns_mut();
         let mut off_axis = 0.0;
         for i in 0..c.x.len() {
@@ -312,7 +312,7 @@ mod tests {
         }
         // The mean squared angle of a uniform disk is half the square of its radius.
         assert!((off_axis / (0.5 * 0.00462 * 0.00462) - 1.0).abs() < 1e-3, "{off_axis}");
-        Radiance::radiance(&disk, &mut rays, isa);
+        Radiance::radiance(&disk, &mut rays);
         let solid_angle = std::f64::consts::PI * 0.00462 * 0.00462;
         assert!(rays.weights().iter().all(|w| (w * solid_angle / 2.0 - 1.0).abs() < 1e-4));
         let (mut beside, up) = (RayBatch::new(1), disk.cos_radius - 1e-6);
@@ -324,7 +324,7 @@ mod tests {
         let sine = (1.0 - up * up).sqrt();
         [c.l[0], c.m[0], c.n[0]] = std::array::from_fn(|k| [l, m, n][k] * up + across[k] * sine);
         c.wavelength_nm[0] = 550.0;
-        Radiance::radiance(&disk, &mut beside, isa);
+        Radiance::radiance(&disk, &mut beside);
         assert_eq!(beside.weights(), [0.0]);
     }
 }

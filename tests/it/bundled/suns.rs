@@ -3,9 +3,9 @@
 use super::plane::{Plane, mean};
 use super::taken::{Taken, first, ghosts, member};
 use super::{Found, Promise, hold};
+use spectra_core::RayBatch;
 use spectra_core::glam::DVec3;
 use spectra_core::loss::ALIVE;
-use spectra_core::{Isa, RayBatch};
 use spectra_lens::Lens;
 use spectra_render::GhostRays;
 use spectra_scene::LightKind;
@@ -79,7 +79,7 @@ struct Ghost {
 /// Traces all pairs of reflections in a lens with rays over its front.
 fn traced(lens: &Lens, field_deg: [f64; 2]) -> Vec<Ghost> {
     const SIDE: usize = 24;
-    let tracer = Tracer::new(lens, Indices::Band { min_nm: 400.0, max_nm: 700.0 }, Isa::detect()).expect("known glass");
+    let tracer = Tracer::new(lens, Indices::Band { min_nm: 400.0, max_nm: 700.0 }).expect("known glass");
     let radius = lens.elements[0].semi_diameter_mm.expect("stated");
     // Light from the right and above goes left and down, and the picture is rotated by half a turn.
     let [x, y] = field_deg.map(|degrees| -degrees.to_radians().tan());

@@ -209,8 +209,7 @@ fn ghost_rays_are_those_of_optiland() {
         let surface = |at: usize| fields[at].parse::<usize>().expect("a number") - 1;
         let v: Vec<f64> = fields[3..].iter().map(|f| f.parse().expect("a number")).collect();
         let traced = |lens: &Lens| {
-            let tracer =
-                Tracer::new(&lens.clone().with_coating(Coating::Bare), Indices::Stated, Isa::detect()).expect("media");
+            let tracer = Tracer::new(&lens.clone().with_coating(Coating::Bare), Indices::Stated).expect("media");
             let path =
                 LightPath::reflected(tracer.surfaces(), Travel::Forward, &[surface(1), surface(2)]).expect("a path");
             let mut rays = RayBatch::new(1);

@@ -1,9 +1,9 @@
 //! Relative illuminance: how bright a lens draws a uniformly bright field over the image plane.
 
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::workers::Alone;
-use spectra_core::{Isa, RayBatch};
 use spectra_optics::Optics;
 use spectra_optics::{Effort, RearPupil};
 use spectra_tracer::{Indices, Travel};
@@ -27,7 +27,6 @@ pub(super) fn relative_illuminance(lens: &Optics, indices: Indices, points_mm: &
         Indices::At(nm) => nm,
         Indices::Band { .. } | Indices::Stated => lens.reference_nm,
     };
-    let isa = Isa::detect();
     let tracer = lens.tracer(indices).ok()?;
     let points: Vec<DVec3> = points_mm.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect();
     let pupil = RearPupil::search_by(lens, &tracer, &points, [wavelength_nm; 2], &Alone, Effort::Draft)?;
@@ -52,7 +51,7 @@ pub(super) fn relative_illuminance(lens: &Optics, indices: Indices, points_mm: &
             c.weight.fill(1.0);
             c.wavelength_nm.fill(wavelength_nm);
             let [u, v] = [0, 1].map(|k| places.iter().map(|place| place[k]).collect::<Vec<f64>>());
-            pupil.aim(&mut rays, &u, &v, isa);
+            pupil.aim(&mut rays, &u, &v);
             tracer.trace(&mut rays, &mut work, Travel::Backward);
             let passed = rays.weights().iter().zip(rays.states());
             weights.extend(passed.map(|(weight, state)| (*state == ALIVE).then_some(*weight)));

@@ -8,7 +8,7 @@
 use super::search::{ARRIVED_MM, NOISE_MM, SHORTER};
 use super::{Action, Interface, SagShape, ScalarShape, bend};
 use crate::RayBatch;
-use crate::isa::{Isa, Vectorized};
+use crate::isa::Vectorized;
 use crate::loss::{ALIVE, Loss};
 use glam::DVec3;
 
@@ -57,9 +57,9 @@ pub(super) fn interact<S: SagShape>(
     alone: &impl ScalarShape,
     rays: &mut RayBatch,
     at: &Interface<'_>,
-    isa: Isa,
     beside: Option<impl Fn(DVec3, DVec3) -> bool>,
 ) -> usize {
+    let isa = rays.isa();
     let c = rays.columns_mut();
     let mut lost = 0;
     for first in (0..c.x.len()).step_by(CHUNK) {

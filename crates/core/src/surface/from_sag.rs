@@ -4,7 +4,6 @@ use super::per_ray::passes_beside;
 use super::search::nearest_crossing;
 use super::{Interface, Intersection, SagShape, ScalarShape, Travel, by_batch};
 use crate::RayBatch;
-use crate::isa::Isa;
 use glam::DVec3;
 
 /// Turns a [`SagShape`] into a [`ScalarShape`]: a ray hits it where it crosses the sag in its direction of travel. In
@@ -43,10 +42,10 @@ impl<S: SagShape> ScalarShape for FromSag<S> {
     fn scaled(&self, factor: f64) -> Option<Self> {
         self.0.scaled(factor).map(Self)
     }
-    fn by_batch(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> Option<usize> {
+    fn by_batch(&self, rays: &mut RayBatch, interface: &Interface<'_>) -> Option<usize> {
         let clip2 = interface.clip_radius2_mm2;
         let extent = if clip2.is_finite() { self.0.extent_mm(clip2.sqrt()) } else { None };
         let beside = extent.map(|extent| move |p: DVec3, d: DVec3| passes_beside(p, d, clip2, extent));
-        Some(by_batch::interact(&self.0, self, rays, interface, isa, beside))
+        Some(by_batch::interact(&self.0, self, rays, interface, beside))
     }
 }

@@ -14,7 +14,7 @@
 
 use super::{Action, Interface, Surface, Travel, bend};
 use crate::RayBatch;
-use crate::isa::{Isa, Vectorized};
+use crate::isa::Vectorized;
 use crate::loss::{ALIVE, Loss};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
@@ -201,24 +201,19 @@ impl<S: KernelShape> Surface for Kernel<S> {
     fn scaled(&self, factor: f64) -> Option<Arc<dyn Surface>> {
         self.0.scaled(factor).map(|shape| Arc::new(Self(shape)) as Arc<dyn Surface>)
     }
-    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize {
+    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>) -> usize {
         match interface.action {
-            Action::Refract => interact::<S, REFRACT>(&self.0, rays, interface, isa),
-            Action::Reflect => interact::<S, REFLECT>(&self.0, rays, interface, isa),
-            Action::Pass => interact::<S, PASS>(&self.0, rays, interface, isa),
+            Action::Refract => interact::<S, REFRACT>(&self.0, rays, interface),
+            Action::Reflect => interact::<S, REFLECT>(&self.0, rays, interface),
+            Action::Pass => interact::<S, PASS>(&self.0, rays, interface),
         }
     }
 }
 
-fn interact<S: KernelShape, const ACTION: u8>(
-    shape: &S,
-    rays: &mut RayBatch,
-    interface: &Interface<'_>,
-    isa: Isa,
-) -> usize {
+fn interact<S: KernelShape, const ACTION: u8>(shape: &S, rays: &mut RayBatch, interface: &Interface<'_>) -> usize {
     match interface.travel {
-        Travel::Forward => interact_along::<S, ACTION, true>(shape, rays, interface, isa),
-        Travel::Backward => interact_along::<S, ACTION, false>(shape, rays, interface, isa),
+        Travel::Forward => interact_along::<S, ACTION, true>(shape, rays, interface),
+        Travel::Backward => interact_along::<S, ACTION, false>(shape, rays, interface),
     }
 }
 
@@ -235,8 +230,8 @@ fn interact_along<S: KernelShape, const ACTION: u8, const FORWARD: bool>(
     shape: &S,
     rays: &mut RayBatch,
     interface: &Interface<'_>,
-    isa: Isa,
 ) -> usize {
+    let isa = rays.isa();
     let unsure = isa.run(Intersect::<S, FORWARD> { shape, rays, shift_mm: interface.shift_mm });
     if S::SEARCHES && unsure {
         search(shape, rays, interface.travel);

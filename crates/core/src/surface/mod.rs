@@ -26,7 +26,6 @@ pub use sag::SagShape;
 pub use search::nearest_crossing;
 
 use crate::RayBatch;
-use crate::isa::Isa;
 use std::sync::Arc;
 
 /// The action of a surface on a ray that hits it inside its clear aperture.
@@ -142,5 +141,5 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
     /// Moves the living rays of the batch, given in the frame of the surface before, onto this surface in its own frame, and
     /// bends them. Rays that end get their cause and the number of this surface. Works in either direction of travel. Returns
     /// how many rays ended here.
-    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize;
+    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>) -> usize;
 }

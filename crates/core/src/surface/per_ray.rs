@@ -2,7 +2,6 @@
 
 use super::{Action, BentRay, Interface, Surface, Travel, bend};
 use crate::RayBatch;
-use crate::isa::Isa;
 use crate::loss::{ALIVE, Loss};
 use crate::numbers::RayNumbers;
 use glam::DVec3;
@@ -96,7 +95,7 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug + 'static {
     /// Does the work of [`Surface::interact`] for shapes that can handle a batch better than ray by ray; `None`, the default,
     /// if there is nothing better.
     #[doc(hidden)]
-    fn by_batch(&self, _rays: &mut RayBatch, _interface: &Interface<'_>, _isa: Isa) -> Option<usize> {
+    fn by_batch(&self, _rays: &mut RayBatch, _interface: &Interface<'_>) -> Option<usize> {
         None
     }
 }
@@ -133,8 +132,8 @@ impl<S: ScalarShape> Surface for PerRay<S> {
     fn scaled(&self, factor: f64) -> Option<Arc<dyn Surface>> {
         self.0.scaled(factor).map(|shape| Arc::new(Self(shape)) as Arc<dyn Surface>)
     }
-    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>, isa: Isa) -> usize {
-        if let Some(lost) = self.0.by_batch(rays, interface, isa) {
+    fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>) -> usize {
+        if let Some(lost) = self.0.by_batch(rays, interface) {
             return lost;
         }
         let c = rays.columns_mut();

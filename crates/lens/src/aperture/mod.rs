@@ -12,8 +12,8 @@ pub(crate) use params::ApertureKeys;
 pub use params::{ApertureEntry, ApertureForm, read};
 
 use iris::Blades;
+use spectra_core::RayBatch;
 use spectra_core::loss::{ALIVE, Loss};
-use spectra_core::{Isa, RayBatch};
 use spectra_masks::Drawing;
 
 /// An aperture that limits the light at a surface.
@@ -202,7 +202,8 @@ impl Aperture {
 
     /// Ends the live rays of the batch that an iris stops, like [`Aperture::clip`], using the opening from [`Aperture::opening`]. Returns
     /// how many ended.
-    pub fn clip_by(&self, opening: &Opening, rays: &mut RayBatch, number: u32, isa: Isa) -> usize {
+    pub fn clip_by(&self, opening: &Opening, rays: &mut RayBatch, number: u32) -> usize {
+        let isa = rays.isa();
         let Self { center_mm, obscures, .. } = *self;
         let stopped = Loss::Vignetted.state(number);
         isa.run(Blades { opening, center_mm, obscures, stopped, columns: rays.columns_mut() })

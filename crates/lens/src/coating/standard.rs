@@ -1,4 +1,4 @@
-//! Standard coatings: those that lenses of a period usually had, for lenses of which only the year is known.
+//! Standard coatings: the usual coatings of a period, for lenses of which only the year is known.
 //!
 //! A lens that states no coating gets the coating of its year, marked as assumed. Evaporated layers of magnesium fluoride came into
 //! production around 1940 (A. Smakula, German patent DE 685767, 1935; C. H. Cartwright and A. F. Turner, Physical Review 55, 1939, 675),

@@ -4,7 +4,7 @@ use super::fan;
 use super::part::AimPart;
 use super::table::{FIELDS, SLOTS, Table};
 use glam::DVec3;
-use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::isa::Vectorized;
 use spectra_core::math::{concentric_disk, polar_disk};
 use spectra_core::{Loss, RayBatch};
 
@@ -41,12 +41,12 @@ impl Table {
         u: &[f64],
         v: &[f64],
         (pattern, part): (AimPattern, AimPart),
-        isa: Isa,
     ) -> usize {
-        let strays = self.strays::<BACKWARD>(rays, u, v, isa);
+        let isa = rays.isa();
+        let strays = self.strays::<BACKWARD>(rays, u, v);
         let rings = pattern == AimPattern::Rings;
         let dark = match (&self.outlines, rings, self.rows.len() > 1) {
-            (Some(outlines), ..) => fan::aim::<BACKWARD>(self, outlines, rays, [u, v], rings, part, isa),
+            (Some(outlines), ..) => fan::aim::<BACKWARD>(self, outlines, rays, [u, v], rings, part),
             (None, false, false) => isa.run(Aim::<BACKWARD, false, false> { table: self, u, v, rays }).dark,
             (None, false, true) => isa.run(Aim::<BACKWARD, false, true> { table: self, u, v, rays }).dark,
             (None, true, false) => isa.run(Aim::<BACKWARD, true, false> { table: self, u, v, rays }).dark,
@@ -68,7 +68,8 @@ impl Table {
 
     /// Aims the rays of points at a depth that was not searched at the whole surface that is met first. They are rare, and
     /// this is slow.
-    fn strays<const BACKWARD: bool>(&self, rays: &RayBatch, u: &[f64], v: &[f64], isa: Isa) -> Vec<Stray> {
+    fn strays<const BACKWARD: bool>(&self, rays: &RayBatch, u: &[f64], v: &[f64]) -> Vec<Stray> {
+        let isa = rays.isa();
         let [x, y, z] = rays.positions();
         let found = isa.run(CountStrays::<BACKWARD> { table: self, x, y, z });
         if found == 0 {

@@ -3,7 +3,7 @@
 /// The effort with which a pupil is searched. The estimate of light has no bias either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
-    /// As fine as pays off for a picture.
+    /// The effort that pays off for a picture.
     #[default]
     Full,
     /// A tenth of the time or less, for a first look: few zones and no outlines, so that more rays end on the way.

@@ -5,7 +5,7 @@ use super::outline::{Outlines, RING, STRIDE, TURN_STEPS};
 use super::part::{AimPart, RIM_EVERY};
 use super::reach::CORNERS;
 use super::table::{SLOTS, Table};
-use spectra_core::isa::{Isa, Vectorized};
+use spectra_core::isa::Vectorized;
 use spectra_core::{Loss, RayBatch};
 
 /// Area of the ring relative to the outline. For [`AimPart::Whole`] the mean of its numbers counts 16.3 times as much as that of the
@@ -62,8 +62,8 @@ pub(super) fn aim<const BACKWARD: bool>(
     [u, v]: [&[f64]; 2],
     rings: bool,
     part: AimPart,
-    isa: Isa,
 ) -> usize {
+    let isa = rays.isa();
     let cast = Cast::of(part);
     match (rings, table.rows.len() > 1) {
         (false, false) => isa.run(Draw::<BACKWARD, false, false> { table, outlines, cast, u, v, rays }),

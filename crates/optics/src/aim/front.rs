@@ -8,8 +8,8 @@ use super::sphere::Sphere;
 use super::table::{Depth, Table, Zone};
 use super::task::Task;
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::workers::{Alone, Workers};
-use spectra_core::{Isa, RayBatch};
 use spectra_lens::Lens;
 use spectra_tracer::{Tracer, Travel};
 
@@ -92,12 +92,11 @@ impl FrontPupil {
         self
     }
 
-    /// Aims the rays of a batch, which are at their source points, at the pupil. Each ray then starts at the pupil,
-    /// and its weight is multiplied by the solid angle of the region (sr), so that all of it
-    /// counts alike. `u` and `v`, one value per ray in [0, 1), choose the point of the pupil. Rays from points from which
-    /// nothing passes end, vignetted at the first surface. Returns how many end.
-    pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], pattern: AimPattern, isa: Isa) -> usize {
-        self.table.aim::<false>(rays, u, v, (pattern, AimPart::Whole), isa)
+    /// Aims the rays of a batch, which are at their source points, at the pupil. Each ray then starts at the pupil, and its weight is
+    /// multiplied by the solid angle of the region (sr), so that all of it counts alike. `u` and `v`, one value per ray in [0, 1), choose
+    /// the point of the pupil. Rays from points from which nothing passes end, vignetted at the first surface. Returns how many end.
+    pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], pattern: AimPattern) -> usize {
+        self.table.aim::<false>(rays, u, v, (pattern, AimPart::Whole))
     }
 
     /// Returns the region for a source point, mm in the frame of the lens; `None` if the point is nearer than

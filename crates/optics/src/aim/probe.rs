@@ -101,8 +101,8 @@ impl<T: Borrow<Tracer>> Stage<T> {
     }
 }
 
-/// The lens, preceded by versions of it with enlarged small openings. Each step passes
-/// everything that the next one does. By closing in on the pupil step by step it is found, however small it is.
+/// The lens, preceded by versions of it with enlarged small openings. Each step passes everything that the next one does. By closing in on
+/// the pupil step by step it is found, however small it is.
 pub(super) struct Stages<'a> {
     /// Wavelengths at the ends and the middle of the band, nm; only one if they are equal.
     wavelengths_nm: Vec<f64>,
@@ -147,7 +147,7 @@ impl<'a> Stages<'a> {
                     element.semi_diameter_mm = element.semi_diameter_mm.map(|own| own.max(opening));
                 }
             }
-            let tracer = Tracer::new(&open, Indices::At(middle_nm), tracer.isa()).ok()?.scattering_like(tracer);
+            let tracer = Tracer::new(&open, Indices::At(middle_nm)).ok()?.scattering_like(tracer);
             opened.push(Stage::new(tracer, travel));
             opening *= STEP;
         }
@@ -218,7 +218,7 @@ impl Prober<'_> {
     ) {
         let at: Vec<f64> = (0..n).map(|k| ((k as f64 + 0.5) / n as f64) * 2.0 - 1.0).collect();
         let lines = Lines { point, plane, center: bounds.center(), half: bounds.half(), at: &at };
-        let isa = self.stages.whole.tracer.isa();
+        let isa = self.rays.isa();
         let most = (BATCH / n).max(1);
         for first in (0..n).step_by(most) {
             let count = most.min(n - first);

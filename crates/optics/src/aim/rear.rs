@@ -10,13 +10,12 @@ use super::sphere::Sphere;
 use super::table::{Depth, Table};
 use super::task::Task;
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::workers::{Alone, Workers};
-use spectra_core::{Isa, RayBatch};
 use spectra_lens::Lens;
 use spectra_tracer::{Tracer, Travel};
 
-/// A table of where light leaves the lens, for each point of the imager: the real exit pupil
-/// as seen from there.
+/// A table of where light leaves the lens, for each point of the imager: the real exit pupil as seen from there.
 ///
 /// Points are in the frame of the image plane (mm, z = 0 there, the lens at negative z). They may lie
 /// anywhere behind the lens. They are sorted into zones by the angle to the axis at which a point is seen from the last
@@ -116,14 +115,14 @@ impl RearPupil {
     /// multiplied by the projected solid angle of the region, sr. On entry each direction holds the imager's
     /// unit normal. `u` and `v`, one value per ray in [0, 1), choose the point of the pupil. Rays from points that no light reaches
     /// end, vignetted at the last surface. Returns how many end.
-    pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) -> usize {
-        self.aim_part(rays, u, v, AimPart::Whole, isa)
+    pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) -> usize {
+        self.aim_part(rays, u, v, AimPart::Whole)
     }
 
     /// Aims rays like [`RearPupil::aim`] at one part of the pupil. The core is the whole pupil if there is no [rim](Self::has_rim).
-    pub fn aim_part(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], part: AimPart, isa: Isa) -> usize {
+    pub fn aim_part(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], part: AimPart) -> usize {
         debug_assert!(part != AimPart::Rim || self.has_rim());
-        self.table.aim::<true>(rays, u, v, (AimPattern::Disk, part), isa)
+        self.table.aim::<true>(rays, u, v, (AimPattern::Disk, part))
     }
 
     /// Whether the pupil has a rim: outlines have one, ellipses and rectangles do not.

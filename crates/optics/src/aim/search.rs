@@ -58,9 +58,7 @@ impl Task<'_> {
         let [min_nm, max_nm] = self.band_nm;
         let travel = self.geometry.travel;
         if let Some((round, at)) = stopped::split(self.lens) {
-            let tracer = Tracer::new(&round, Indices::Band { min_nm, max_nm }, self.tracer.isa())
-                .ok()?
-                .scattering_like(self.tracer);
+            let tracer = Tracer::new(&round, Indices::Band { min_nm, max_nm }).ok()?.scattering_like(self.tracer);
             // If light scatters before it reaches the opening, only the round lens can be aimed at.
             // A draft aims at the round lens, too.
             let is_seen = self.effort.fineness().outlines;

@@ -113,7 +113,7 @@ impl Stopped {
             [place.x, place.y]
         });
         let edge = edge.collect();
-        let tracer = Tracer::new(round, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }, whole.isa()).ok()?;
+        let tracer = Tracer::new(round, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }).ok()?;
         let path = Path::through(round.elements.len(), travel).up_to(|k| k == at);
         // An opening behind a surface that scatters cannot be aimed at.
         let (_, before) = path.steps().split_last()?;

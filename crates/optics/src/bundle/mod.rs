@@ -193,7 +193,7 @@ impl<'o> Bundle<'o> {
     /// Returns the rectangle of the window that contains everything that passes, to within a cell of the first grid that sees light.
     ///
     /// # Errors
-    /// Nothing passes: the last surface (from 1) that any ray reached, and why rays end there.
+    /// If nothing passes: the last surface (from 1) that any ray reached, and why rays end there.
     pub fn extent(&self) -> Result<Extent, Option<(Loss, u32)>> {
         let mut last = None;
         for cells in GRIDS {
@@ -209,7 +209,7 @@ impl<'o> Bundle<'o> {
     /// on each side.
     ///
     /// # Errors
-    /// Nothing passes: the last surface (from 1) that any ray reached, and why rays end there.
+    /// If nothing passes: the last surface (from 1) that any ray reached, and why rays end there.
     pub fn extent_within(&self, part: Extent, cells: usize) -> Result<Extent, Option<(Loss, u32)>> {
         let places: Vec<[f64; 2]> = RayPattern::Grid(cells).places(part).collect();
         let (mut found, mut end): (Option<Extent>, Option<(Loss, u32)>) = (None, None);

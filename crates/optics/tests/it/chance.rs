@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use spectra_core::numbers::{Numbers, RayNumbers, StageKey};
 use spectra_core::surface::{Bending, Intersection, Kernel, PerRay, ScalarShape, Surface};
-use spectra_core::{Isa, Loss, RayBatch};
+use spectra_core::{Loss, RayBatch};
 use spectra_lens::{Element, Lens};
 use spectra_optics::{FrontPupil, RearPupil};
 use spectra_plugin_surfaces::{Plane, Sphere, ThinLens};
@@ -55,7 +55,7 @@ fn lens(surfaces: &[(&str, f64, f64)]) -> Lens {
 }
 
 fn tracer(lens: &Lens) -> Tracer {
-    Tracer::new(lens, Indices::At(550.0), Isa::detect()).expect("media")
+    Tracer::new(lens, Indices::At(550.0)).expect("media")
 }
 
 const RAYS: usize = 500;

@@ -1,7 +1,7 @@
 //! Rings on an asphere: deflections and brightness in a defocused spot against closed forms, and backward travel.
 
 use glam::DVec3;
-use spectra_core::{Isa, RayBatch};
+use spectra_core::RayBatch;
 use spectra_lens::{Lens, OnionRings};
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
@@ -33,7 +33,7 @@ fn with_rings(radius: &str) -> Lens {
 
 /// Traces rays parallel to the axis at these heights forward through the lens. Returns positions and directions in the image plane.
 fn traced(lens: &Lens, heights: &[f64]) -> Vec<(DVec3, DVec3)> {
-    let tracer = Tracer::new(lens, Indices::Stated, Isa::detect()).expect("media");
+    let tracer = Tracer::new(lens, Indices::Stated).expect("media");
     let mut rays = RayBatch::new(heights.len());
     rays.restart(heights.len());
     let c = rays.columns_mut();
@@ -82,7 +82,7 @@ fn the_way_back_is_the_same() {
     let lens = with_rings("-80");
     let heights = [0.3, 2.1, 4.77, 7.9];
     let there = traced(&lens, &heights);
-    let tracer = Tracer::new(&lens, Indices::Stated, Isa::detect()).expect("media");
+    let tracer = Tracer::new(&lens, Indices::Stated).expect("media");
     let mut rays = RayBatch::new(heights.len());
     rays.restart(heights.len());
     let c = rays.columns_mut();

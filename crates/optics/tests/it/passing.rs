@@ -78,7 +78,7 @@ fn with(mut lens: Lens, opening: Opening) -> Lens {
 }
 
 fn tracer(lens: &Lens) -> Tracer {
-    Tracer::new(lens, Indices::Band { min_nm: BAND_NM[0], max_nm: BAND_NM[1] }, Isa::detect()).expect("media")
+    Tracer::new(lens, Indices::Band { min_nm: BAND_NM[0], max_nm: BAND_NM[1] }).expect("media")
 }
 
 fn numbers(seed: u64, dimension: u32, n: usize) -> Vec<f64> {
@@ -108,7 +108,7 @@ impl Pupil {
 
     /// Returns the largest weight of a ray from these points, relative to the mean weight of the rays from the same point. It covers
     /// numbers all over the unit square and numbers at its edge, which are aimed around the outline.
-    fn largest_weight(&self, points: &[DVec3], isa: Isa) -> f64 {
+    fn largest_weight(&self, points: &[DVec3]) -> f64 {
         const RIM: usize = 1 << 10;
         const ALL: usize = 1 << 11;
         let (mut u, mut v) = (numbers(31, 0, ALL), numbers(31, 1, ALL));
@@ -129,7 +129,7 @@ impl Pupil {
             c.z.fill(point.z);
             c.n.fill(-1.0);
             c.wavelength_nm.fill(BAND_NM[0] + (k as f64 + 0.5) / points.len() as f64 * (BAND_NM[1] - BAND_NM[0]));
-            self.aim(&mut rays, &u, &v, isa);
+            self.aim(&mut rays, &u, &v);
             let weights = rays.weights();
             let mean = weights[..ALL].iter().sum::<f64>() / ALL as f64;
             if mean > 0.0 {
@@ -139,11 +139,11 @@ impl Pupil {
         largest
     }
 
-    fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) -> usize {
+    fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) -> usize {
         match self {
-            Self::Rear(p) => p.aim(rays, u, v, isa),
-            Self::Part(p, part) => p.aim_part(rays, u, v, *part, isa),
-            Self::Front(p) => p.aim(rays, u, v, AimPattern::Disk, isa),
+            Self::Rear(p) => p.aim(rays, u, v),
+            Self::Part(p, part) => p.aim_part(rays, u, v, *part),
+            Self::Front(p) => p.aim(rays, u, v, AimPattern::Disk),
         }
     }
 }
@@ -183,7 +183,7 @@ fn outcome(tracer: &Tracer, pupil: &Pupil, points: &[DVec3], seed: u64) -> Outco
             (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, -1.0);
             c.wavelength_nm[i] = BAND_NM[0] + columns[2][first + i] * (BAND_NM[1] - BAND_NM[0]);
         }
-        pupil.aim(&mut rays, &columns[0][first..first + len], &columns[1][first..first + len], tracer.isa());
+        pupil.aim(&mut rays, &columns[0][first..first + len], &columns[1][first..first + len]);
         // From points from which nothing passes, no rays are launched into the lens.
         out.launched += rays.alive();
         let weights = rays.weights().to_vec();
@@ -242,7 +242,7 @@ fn row(name: &str, lens: &Lens, frame: [f64; 2], n: usize, forward: bool) -> [f6
     let searched = start.elapsed();
     let axis = vec![DVec3::ZERO; n];
     let points = film(frame, n);
-    let mut weight = pupil.largest_weight(&points[..WEIGHED], tracer.isa());
+    let mut weight = pupil.largest_weight(&points[..WEIGHED]);
     let [on_axis, all] = [&axis, &points].map(|p| 100.0 * outcome(&tracer, &pupil, p, 3).lost());
     let old = pupil.without_outlines();
     let [old_axis, old_all] = [&axis, &points].map(|p| 100.0 * outcome(&tracer, &old, p, 3).lost());
@@ -251,7 +251,7 @@ fn row(name: &str, lens: &Lens, frame: [f64; 2], n: usize, forward: bool) -> [f6
     if forward {
         let start = Instant::now();
         let (pupil, points) = front(lens, &tracer, frame, n);
-        weight = weight.max(pupil.largest_weight(&points[..WEIGHED], tracer.isa()));
+        weight = weight.max(pupil.largest_weight(&points[..WEIGHED]));
         took = start.elapsed();
         let far = points[0].length();
         let axis = vec![DVec3::new(0.0, 0.0, -far); n];
@@ -484,7 +484,7 @@ fn every_tier_aims_alike() {
     let aimed = |part: AimPart, isa: Isa| {
         let points = film(frame, 3000);
         let (u, v) = (numbers(1, 0, 3000), numbers(1, 1, 3000));
-        let mut rays = RayBatch::new(3000);
+        let mut rays = RayBatch::new(3000).on(isa);
         rays.restart(3000);
         let c = rays.columns_mut();
         for (i, p) in points.iter().enumerate() {
@@ -492,7 +492,7 @@ fn every_tier_aims_alike() {
             (c.l[i], c.m[i], c.n[i]) = (0.0, 0.0, -1.0);
             c.wavelength_nm[i] = 350.0 + 0.16 * i as f64;
         }
-        rear.aim_part(&mut rays, &u, &v, part, isa);
+        rear.aim_part(&mut rays, &u, &v, part);
         let bits = |c: &[f64]| c.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         let mut all: Vec<Vec<u64>> = rays.positions().iter().map(|c| bits(c)).collect();
         all.extend(rays.directions().iter().map(|c| bits(c)));

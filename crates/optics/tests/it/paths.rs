@@ -1,10 +1,10 @@
 //! Light along reflected paths: where it goes, and how long its optical path is.
 
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::math::concentric_disk;
 use spectra_core::numbers::Numbers;
 use spectra_core::surface::{Action, Kernel, Surface};
-use spectra_core::{Isa, RayBatch};
 use spectra_glass::Medium;
 use spectra_lens::{Coating, Element, Lens, LensMedium};
 use spectra_plugin_surfaces::{Conic, Plane, Sphere};
@@ -94,7 +94,7 @@ fn ledger(tracer: &Tracer, path: &Path, (point, radius_mm): (DVec3, f64), polari
 #[test]
 fn light_of_all_two_bounce_paths_adds_up() {
     let lens = biotar();
-    let tracer = Tracer::new(&lens, Indices::At(WAVELENGTH_NM), Isa::detect()).expect("media");
+    let tracer = Tracer::new(&lens, Indices::At(WAVELENGTH_NM)).expect("media");
     let count = lens.elements.len();
     let glass: Vec<usize> = (0..count).filter(|i| *i != STOP).collect();
     let (on_axis, aside) = (DVec3::new(0.0, 0.0, -2000.0), DVec3::new(150.0, -600.0, -2000.0));
@@ -144,7 +144,7 @@ fn light_of_all_two_bounce_paths_adds_up() {
 #[test]
 fn the_axial_ray_has_the_product_of_its_reflectances() {
     let lens = biotar();
-    let tracer = Tracer::new(&lens, Indices::At(WAVELENGTH_NM), Isa::Baseline).expect("media");
+    let tracer = Tracer::new(&lens, Indices::At(WAVELENGTH_NM)).expect("media");
     let r = |at: usize| {
         let e = &lens.elements[at];
         let (n, m) = (lens.index(e.medium_before, WAVELENGTH_NM), lens.index(e.medium_after, WAVELENGTH_NM));
@@ -172,7 +172,7 @@ fn the_axial_ray_has_the_product_of_its_reflectances() {
 #[test]
 fn ghosts_are_reversible() {
     let lens = biotar();
-    let tracer = Tracer::new(&lens, Indices::At(WAVELENGTH_NM), Isa::detect()).expect("media");
+    let tracer = Tracer::new(&lens, Indices::At(WAVELENGTH_NM)).expect("media");
     let count = lens.elements.len();
     let mut compared = 0;
     for (first, second) in [(1, 0), (4, 2), (10, 7), (6, 4), (10, 0)] {
@@ -211,7 +211,7 @@ fn ghosts_are_reversible() {
 /// Returns the optical path of each ray: from its start to the last surface, plus `index` times the distance to a focus (mm, frame of the
 /// image plane; negative for a virtual one). Also returns the largest distance at which a ray misses that focus.
 fn paths_to(lens: &Lens, rays: &[(DVec3, DVec3)], focus: DVec3, index: f64) -> (Vec<f64>, f64) {
-    let tracer = Tracer::new(lens, Indices::At(WAVELENGTH_NM), Isa::detect()).expect("media");
+    let tracer = Tracer::new(lens, Indices::At(WAVELENGTH_NM)).expect("media");
     let mut batch = RayBatch::with_optical_path(rays.len());
     batch.restart(rays.len());
     let c = batch.columns_mut();

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use spectra_core::surface::{Action, Bending, BentRay, Intersection, Kernel, PerRay, ScalarShape, Surface};
-use spectra_core::{Isa, Loss, RayBatch};
+use spectra_core::{Loss, RayBatch};
 use spectra_glass::Medium;
 use spectra_lens::{Element, Lens, LensMedium};
 use spectra_plugin_surfaces::{Conic, Grating, Plane, Sphere, ThinLens};
@@ -48,7 +48,7 @@ fn lens(surfaces: Vec<(Arc<dyn Surface>, f64, f64)>) -> Lens {
 /// Traces rays through a lens and returns positions, directions and optical paths, in the frame of the image plane or, backward, of the
 /// lens.
 fn traced(lens: &Lens, rays: &[(DVec3, DVec3)], travel: Travel) -> Vec<(DVec3, DVec3, f64)> {
-    let tracer = Tracer::new(lens, Indices::At(WAVELENGTH_NM), Isa::detect()).expect("media");
+    let tracer = Tracer::new(lens, Indices::At(WAVELENGTH_NM)).expect("media");
     let mut batch = RayBatch::with_optical_path(rays.len());
     batch.restart(rays.len());
     let c = batch.columns_mut();

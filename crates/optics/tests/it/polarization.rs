@@ -1,8 +1,8 @@
 //! Polarized light, against closed forms.
 
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::surface::{Kernel, Surface};
-use spectra_core::{Isa, RayBatch};
 use spectra_glass::Medium;
 use spectra_lens::{Coating, Displacement, Element, Lens, LensMedium};
 use spectra_plugin_surfaces::Plane;
@@ -39,7 +39,7 @@ fn fresnel(angle_deg: f64) -> [f64; 2] {
 /// Traces one ray along z or against it, with the Stokes numbers Q, U, V about an axis at this angle from x. Returns its weight behind the
 /// plates and its degree of polarization.
 fn passes(lens: &Lens, travel: Travel, [q, u, v]: [f64; 3], axis_deg: f64) -> (f64, f64) {
-    let tracer = Tracer::new(lens, Indices::At(587.56), Isa::detect()).expect("media");
+    let tracer = Tracer::new(lens, Indices::At(587.56)).expect("media");
     let mut rays = RayBatch::new(1).with_polarization();
     rays.restart(1);
     let c = rays.columns_mut();
@@ -129,7 +129,7 @@ fn what_brewster_reflects_is_one_state() {
     let angle = N.atan().to_degrees();
     let [s, _] = fresnel(angle);
     let lens = plates(&[[angle, 0.0]]);
-    let tracer = Tracer::new(&lens, Indices::At(587.56), Isa::detect()).expect("media");
+    let tracer = Tracer::new(&lens, Indices::At(587.56)).expect("media");
     let mut rays = RayBatch::new(1).with_polarization();
     rays.restart(1);
     let c = rays.columns_mut();

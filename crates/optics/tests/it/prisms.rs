@@ -1,7 +1,7 @@
 //! Prisms, in which light goes to the nearest face: against closed forms.
 
 use glam::{DMat3, DVec3};
-use spectra_core::{Isa, Loss, RayBatch};
+use spectra_core::{Loss, RayBatch};
 use spectra_lens::{Coating, Lens};
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
@@ -20,7 +20,7 @@ fn lens(surfaces: &str) -> Result<Lens, String> {
 /// Traces rays, each given by a point and a direction in the frame of the lens. Returns point, direction and weight behind the lens, in
 /// the frame of the lens, or the cause of loss.
 fn traced(lens: &Lens, nm: f64, rays: &[(DVec3, DVec3)]) -> Vec<Result<(DVec3, DVec3, f64), Loss>> {
-    let tracer = Tracer::new(lens, Indices::Band { min_nm: 380.0, max_nm: 780.0 }, Isa::detect()).expect("media");
+    let tracer = Tracer::new(lens, Indices::Band { min_nm: 380.0, max_nm: 780.0 }).expect("media");
     let batch = RayBatch::with_optical_path(rays.len());
     let mut batch = if tracer.polarizes() { batch.with_polarization() } else { batch };
     batch.restart(rays.len());
@@ -174,7 +174,7 @@ fn porro_prisms_turn_the_image_round() {
 fn light_is_booked() {
     let text = format!("  - {{kind: prism, {PORRO}, width: 20, thickness: 50}}\n");
     let porro = lens(&text).expect("a prism");
-    let tracer = Tracer::new(&porro, Indices::At(D_NM), Isa::detect()).expect("media");
+    let tracer = Tracer::new(&porro, Indices::At(D_NM)).expect("media");
     let mut rays = RayBatch::new(1);
     rays.restart(1);
     let c = rays.columns_mut();

@@ -2,8 +2,8 @@
 //! balanced books.
 
 use glam::DVec3;
+use spectra_core::RayBatch;
 use spectra_core::numbers::Numbers;
-use spectra_core::{Isa, RayBatch};
 use spectra_lens::{Aperture, Layer, Lens, Lobe, Run, Shape, Soil};
 use spectra_optics::stop_down;
 use spectra_plugin_surfaces as _;
@@ -89,7 +89,7 @@ fn paths_and_walks_agree() {
     let books = walker.ledger;
     assert!(((books.launched + books.aimed) / books.ended() - 1.0).abs() < 1e-9, "{books:?}");
 
-    let made = || Tracer::new(&lens, Indices::At(NM), Isa::detect()).expect("media");
+    let made = || Tracer::new(&lens, Indices::At(NM)).expect("media");
     let (mut traced, mut traced_straight) = ([Sum::default(); REGIONS], Sum::default());
     let numbers = Numbers::random(3);
     for (tracer, is_scattered) in [(made().scattering(), true), (made(), false)] {
@@ -136,7 +136,7 @@ fn paths_and_walks_agree() {
 #[test]
 fn the_books_close() {
     let lens = soiled();
-    let tracer = Tracer::new(&lens, Indices::At(NM), Isa::detect()).expect("media");
+    let tracer = Tracer::new(&lens, Indices::At(NM)).expect("media");
     let n = 4096;
     let (mut rays, mut work) = (RayBatch::new(n), tracer.work_in_place(n).with_ledger());
     rays.restart(n);

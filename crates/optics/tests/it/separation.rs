@@ -1,7 +1,7 @@
 //! Separated cement: the transmittance and reflectance of a gap of air, checked with Airy's sum over all its reflections and with the
 //! positions of fringes.
 
-use spectra_core::{Isa, RayBatch};
+use spectra_core::RayBatch;
 use spectra_lens::{Lens, Separation};
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
@@ -34,7 +34,7 @@ fn loaded(front: &str, rest: &str) -> Lens {
 
 /// Returns the weights behind a path of light that enters parallel to the axis at these heights, with or without Stokes numbers.
 fn weights(lens: &Lens, heights_mm: &[f64], path: Option<&Path>, polarized: bool) -> Vec<f64> {
-    let tracer = Tracer::new(lens, Indices::Stated, Isa::detect()).expect("media");
+    let tracer = Tracer::new(lens, Indices::Stated).expect("media");
     let count = heights_mm.len();
     let mut rays = RayBatch::new(count);
     if polarized {
@@ -153,7 +153,7 @@ fn it_lies_where_it_is_said_to() {
     let reversed = apart.reversed().expect("no mirror, no prism");
     let back = weights(&reversed, &[5.9, 6.1], None, false);
     assert!(back.iter().zip(&passed).all(|(a, b)| (a - b).abs() < 1e-12), "{back:?} {passed:?}");
-    let tracer = Tracer::new(&apart, Indices::Stated, Isa::detect()).expect("media");
+    let tracer = Tracer::new(&apart, Indices::Stated).expect("media");
     assert_eq!(tracer.reflecting(), [1]);
     let separation = Separation { gap_nm: 300.0, depth_mm: None, places: Vec::new() };
     assert_eq!(apart.with_separation(&separation).1, 2);

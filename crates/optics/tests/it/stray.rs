@@ -2,7 +2,7 @@
 //! and white walls lose nothing.
 
 use glam::DVec3;
-use spectra_core::{Isa, RayBatch};
+use spectra_core::RayBatch;
 use spectra_lens::{Coating, Lens};
 use spectra_optics::stop_down;
 use spectra_plugin_surfaces as _;
@@ -32,7 +32,7 @@ fn mean(sum: f64, squares: f64, n: usize) -> (f64, f64) {
 fn walks_by_glass_alone_are_the_paths_of_the_tracer() {
     let mut lens = biotar(2.0).with_coating(Coating::Bare);
     lens.absorption = true;
-    let tracer = Tracer::new(&lens, Indices::At(NM), Isa::detect()).expect("media");
+    let tracer = Tracer::new(&lens, Indices::At(NM)).expect("media");
     // The imager is so wide that everything that leaves the rear reaches it.
     let interior =
         Interior::new(&lens, [4000.0; 2], [NM; 2], StrayMatter { paint: 0.0, imager: 0.0, imager_mirror: 0.0 });

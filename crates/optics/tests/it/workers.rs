@@ -1,7 +1,6 @@
 //! The pupil search finds the same on any number of threads.
 
 use glam::DVec3;
-use spectra_core::Isa;
 use spectra_core::workers::Workers;
 use spectra_lens::{Aperture, Iris, Lens, Shape};
 use spectra_optics::{FrontPupil, RearPupil};
@@ -46,8 +45,7 @@ impl Workers for Impatient {
 fn a_search_can_be_stopped() {
     let lens = lens("zeiss-biotar-50-f1.4");
     let band_nm = [450.0, 650.0];
-    let tracer =
-        Tracer::new(&lens, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }, Isa::detect()).expect("media");
+    let tracer = Tracer::new(&lens, Indices::Band { min_nm: band_nm[0], max_nm: band_nm[1] }).expect("media");
     let film = [DVec3::ZERO, DVec3::new(18.0, 12.0, 0.0)];
     // Stopped at the nodes; stopped at the zones; not stopped.
     for (looks, is_found) in [(0, false), (20, false), (150, false), (1_000_000, true)] {
@@ -65,7 +63,7 @@ fn pupils_have_the_same_bits_on_any_number_of_threads() {
     let shape = Shape::Iris(Iris { blades: 7, blade_radius_mm: f64::INFINITY, rotation_rad: 0.2 });
     stop.apertures.push(Aperture { shape, center_mm: [0.0; 2], obscures: false });
     let (min_nm, max_nm) = (450.0, 650.0);
-    let tracer = |lens: &Lens| Tracer::new(lens, Indices::Band { min_nm, max_nm }, Isa::detect()).expect("media");
+    let tracer = |lens: &Lens| Tracer::new(lens, Indices::Band { min_nm, max_nm }).expect("media");
     let plain = lens("canon-35-f1.8");
     let source = [DVec3::new(100.0, 0.0, -2000.0)];
     let alone = FrontPupil::search(&plain, &tracer(&plain), &source, min_nm, max_nm).expect("sizes");

@@ -220,7 +220,7 @@ fn follow(ghosts: &Ghosts, state: &mut ThreadState, rays: &[RayBatch], path: &Pa
         pipeline.tracer.follow(&route, &mut state.rays, &mut state.work);
         if forward {
             state.rays.set_stage(spectra_core::numbers::StageKey::IMAGER);
-            ghosts.receive().receive(&mut state.rays, pipeline.isa);
+            ghosts.receive().receive(&mut state.rays);
             let rays = &state.rays;
             let alive = rays.states().iter().zip(rays.weights()).filter(|(state, _)| **state == ALIVE);
             on_frame += alive.map(|(_, weight)| weight).sum::<f64>();

@@ -65,7 +65,8 @@ impl Aims {
     }
 
     /// Moves rays from the source to the places where they are aimed.
-    pub fn send(&self, rays: &mut RayBatch, opening: FrontOpening, isa: Isa) {
+    pub fn send(&self, rays: &mut RayBatch, opening: FrontOpening) {
+        let isa = rays.isa();
         let c = rays.columns_mut();
         isa.run(Send {
             opening,

@@ -198,17 +198,17 @@ impl Ghosts {
         scene.imager.receive().ok_or(RenderError::CannotReceive)?;
         let reflections = scene.render.reflections;
         let part = reflections.imager;
-        let corners = crate::landing::corners(scene, pipeline.isa);
+        let corners = crate::landing::corners(scene);
         let lens = spectra_lens::Lens::clone(&scene.lens).with_reflecting_imager(|_| part, corners);
         let indices = Indices::Band { min_nm: scene.grid.start_nm, max_nm: scene.grid.end_nm() };
-        let tracer = Tracer::new(&lens, indices, pipeline.isa).map_err(|e| RenderError::Lens(e.to_string()))?;
+        let tracer = Tracer::new(&lens, indices).map_err(|e| RenderError::Lens(e.to_string()))?;
         let (count, imager) = (lens.elements.len(), lens.elements.len() - 1);
         let mut surfaces = tracer.reflecting();
         surfaces.retain(|at| part > 0.0 || *at != imager);
         if surfaces.is_empty() {
             return Ok(None);
         }
-        let pipeline = Arc::new(pipeline.with_tracer(tracer));
+        let pipeline = Arc::new(pipeline.with_tracer(Arc::new(tracer)));
         let opening =
             if emit.is_directed() { None } else { Some(FrontOpening::of(&lens).ok_or(RenderError::NoAperture)?) };
         let numbers = pipeline.numbers(PILOT_SEED ^ SEED);
@@ -284,7 +284,7 @@ impl Ghosts {
 
     fn state(&self, capacity: usize) -> ThreadState {
         // Polarized if the scene asks for it, however steep the lens is.
-        let rays = RayBatch::new(capacity);
+        let rays = RayBatch::new(capacity).on(self.pipeline.isa);
         let rays = if self.pipeline.scene.render.reflections.polarized { rays.with_polarization() } else { rays };
         let rays = if self.pipeline.draws { rays.with_numbers() } else { rays };
         ThreadState { rays, ..ThreadState::new(&self.pipeline, capacity) }
@@ -307,7 +307,7 @@ impl Ghosts {
         state.rays.number(0, &self.numbers, ESTIMATOR, stream, first);
         state.rays.set_stage(StageKey::SOURCE);
         let [_, u, v, _, _] = &state.numbers;
-        self.emit().place(&mut state.rays, u.slice(len), v.slice(len), isa);
+        self.emit().place(&mut state.rays, u.slice(len), v.slice(len));
         look(Step::Source, &state.rays);
     }
 
@@ -321,7 +321,7 @@ impl Ghosts {
         if self.spreading.is_some() {
             aims.note_azimuths(rays);
         }
-        aims.send(rays, *opening, self.pipeline.isa);
+        aims.send(rays, *opening);
         aims
     }
 
@@ -339,7 +339,7 @@ impl Ghosts {
         if self.plan.opening.is_some() {
             look(Step::Pupil, &state.rays);
         }
-        self.emit().radiate(&mut state.rays, self.pipeline.isa);
+        self.emit().radiate(&mut state.rays);
         look(Step::Source, &state.rays);
         aims
     }
@@ -352,7 +352,7 @@ impl Ghosts {
         let numbers = state.rays.tags().to_vec();
         look(Step::Lens, &state.rays);
         state.rays.set_stage(StageKey::IMAGER);
-        self.receive().receive(&mut state.rays, isa);
+        self.receive().receive(&mut state.rays);
         look(Step::Imager, &state.rays);
         state.settle(isa);
         numbers

@@ -328,7 +328,7 @@ impl<'a> Pilot<'a> {
         });
         let numbers = state.rays.tags().to_vec();
         state.rays.set_stage(StageKey::IMAGER);
-        ghosts.receive().receive(&mut state.rays, ghosts.pipeline.isa);
+        ghosts.receive().receive(&mut state.rays);
         state.settle(ghosts.pipeline.isa);
         // Only rays that came through are asked for the light that they carry.
         let mut lit = from.clone();
@@ -349,7 +349,7 @@ impl<'a> Pilot<'a> {
             .filter(|(_, arrived)| **arrived == unlit)
             .for_each(|(state, _)| *state = unlit);
         lit.set_stage(StageKey::SOURCE);
-        ghosts.emit().radiate(&mut lit, ghosts.pipeline.isa);
+        ghosts.emit().radiate(&mut lit);
         let carries = |number: u32| {
             let at = number as usize;
             if lit.states()[at] == ALIVE { lit.weights()[at] } else { 0.0 }

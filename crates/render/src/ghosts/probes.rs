@@ -113,7 +113,7 @@ fn landed(
         c.wavelength_nm.fill(start.nm);
         (0..).zip(c.tag).for_each(|(number, tag)| *tag = number);
         state.rays.number(0, &ghosts.numbers, ESTIMATOR, 0, 0);
-        Aims::at(places).send(&mut state.rays, start.opening, pipeline.isa);
+        Aims::at(places).send(&mut state.rays, start.opening);
         pipeline.tracer.follow(&way.route, &mut state.rays, &mut state.work);
         let ([x, y, z], [l, m, n]) = (state.rays.positions(), state.rays.directions());
         for (i, number) in state.rays.tags().iter().enumerate().filter(|(i, _)| state.rays.states()[*i] == ALIVE) {

@@ -8,7 +8,6 @@ use super::{Tracer, Work};
 use crate::ledger::{StepLedger, living};
 use crate::scatter::{self, Meeting};
 use crate::transmission::Before;
-use spectra_core::isa::Isa;
 use spectra_core::surface::{Action, Interface, Travel};
 use spectra_core::{Loss, LossCounts, RayBatch};
 use spectra_lens::onion::Bent;
@@ -52,17 +51,17 @@ impl Tracer {
         let mut alive = rays.len();
         for (step, leg) in route.legs.iter().enumerate() {
             let operations = program.of_leg(step);
-            let ended: usize = operations.iter().map(|op| self.apply(*op, rays, work, (route, step), self.isa)).sum();
+            let ended: usize = operations.iter().map(|op| self.apply(*op, rays, work, (route, step))).sum();
             rays.set_surface(leg.at as u32 + 1);
             if let Some(seen) = &mut observer {
-                work.weigh_absorbed(rays, self.isa);
+                work.weigh_absorbed(rays);
                 seen(leg.at, rays);
             }
             if ended > 0 {
                 self.count(rays, leg.at as u32 + 1, &mut work.losses);
                 alive -= ended;
                 if work.compact && alive * 2 < rays.len() {
-                    work.weigh_absorbed(rays, self.isa);
+                    work.weigh_absorbed(rays);
                     rays.compact();
                     self.refractive_indices(rays, work);
                     if let Some((_, booked)) = &mut work.ledger {
@@ -71,7 +70,7 @@ impl Tracer {
                 }
             }
         }
-        work.weigh_absorbed(rays, self.isa);
+        work.weigh_absorbed(rays);
         if let Some((ledger, _)) = &mut work.ledger {
             ledger.arrived += living(rays);
         }
@@ -79,11 +78,11 @@ impl Tracer {
         let shift_mm = match route.out {
             Move::Shift(shift_mm) => shift_mm,
             Move::Turn(pose) => {
-                self.isa.run(Reframe { rays, pose });
+                rays.isa().run(Reframe { rays, pose });
                 0.0
             }
         };
-        self.isa.run(Leave { rays, index, shift_mm: -shift_mm });
+        rays.isa().run(Leave { rays, index, shift_mm: -shift_mm });
     }
 
     /// Evaluates the indices of media for a batch, makes room for notes if the route needs them, and returns the mode of the batch.
@@ -105,14 +104,14 @@ impl Tracer {
         rays: &mut RayBatch,
         work: &mut Work,
         (route, step): (&Route, usize),
-        isa: Isa,
     ) -> usize {
+        let isa = rays.isa();
         let leg = &route.legs[step];
         match operation {
-            Operation::Meet => return self.meet(rays, work, leg, isa),
-            Operation::Clip(aperture) => return self.clip(rays, leg, aperture, isa),
-            Operation::BendByRings => return self.bend_by_rings(rays, work, leg, isa),
-            Operation::EndBehind => return Before::end_behind(rays, leg.number(), isa),
+            Operation::Meet => return self.meet(rays, work, leg),
+            Operation::Clip(aperture) => return self.clip(rays, leg, aperture),
+            Operation::BendByRings => return self.bend_by_rings(rays, work, leg),
+            Operation::EndBehind => return Before::end_behind(rays, leg.number()),
             Operation::Scatter => return self.scatter(rays, work, leg, step),
             Operation::PassPrism => return self.pass_prism(rays, work, leg, step),
             Operation::Reframe(pose) => isa.run(Reframe { rays, pose }),
@@ -124,7 +123,7 @@ impl Tracer {
             Operation::AddPhase => self.add_phase(rays, work, route, step),
             Operation::ReflectNothing => rays.weighing().weight.fill(0.0),
             Operation::Dim => self.dim(rays, work, leg, step),
-            Operation::WeighAbsorbed => work.weigh_absorbed(rays, isa),
+            Operation::WeighAbsorbed => work.weigh_absorbed(rays),
             Operation::Book(account) => book(rays, work, step, account),
             Operation::NotePositions
             | Operation::NoteDirections
@@ -132,13 +131,13 @@ impl Tracer {
             | Operation::Absorb(_)
             | Operation::Polarize
             | Operation::Reflect
-            | Operation::Pass => self.weigh(operation, rays, work, leg, isa),
+            | Operation::Pass => self.weigh(operation, rays, work, leg),
         }
         0
     }
 
     /// Applies an operation that takes notes or weighs rays by them.
-    fn weigh(&self, operation: Operation, rays: &mut RayBatch, work: &mut Work, leg: &Leg, isa: Isa) {
+    fn weigh(&self, operation: Operation, rays: &mut RayBatch, work: &mut Work, leg: &Leg) {
         let Some(notes) = &mut work.before else { return };
         let passage = &self.passages[leg.at];
         let len = rays.len();
@@ -146,16 +145,16 @@ impl Tracer {
         match operation {
             Operation::NotePositions => notes.note_positions(rays),
             Operation::NoteDirections => notes.note_directions(rays),
-            Operation::Measure => notes.measure(rays, leg.shift_mm(), isa),
-            Operation::Absorb(table) => notes.absorb(rays, table, isa),
+            Operation::Measure => notes.measure(rays, leg.shift_mm()),
+            Operation::Absorb(table) => notes.absorb(rays, table),
             Operation::Polarize => notes.polarize(rays, passage, leg.action == Action::Reflect, [before, beyond]),
-            Operation::Reflect => Before::reflect(rays, passage, before, beyond, isa),
-            _ => notes.pass(rays, passage, [leg.before, leg.after], [before, after], isa),
+            Operation::Reflect => Before::reflect(rays, passage, before, beyond),
+            _ => notes.pass(rays, passage, [leg.before, leg.after], [before, after]),
         }
     }
 
     /// Moves rays to the surface of a leg, clips them at its rim and bends them.
-    fn meet(&self, rays: &mut RayBatch, work: &Work, leg: &Leg, isa: Isa) -> usize {
+    fn meet(&self, rays: &mut RayBatch, work: &Work, leg: &Leg) -> usize {
         let len = rays.len();
         let interface = Interface {
             number: leg.number(),
@@ -166,26 +165,26 @@ impl Tracer {
             before: columns(&work.media[leg.before], len),
             after: columns(&work.media[leg.after], len),
         };
-        self.elements[leg.at].surface.interact(rays, &interface, isa)
+        self.elements[leg.at].surface.interact(rays, &interface)
     }
 
     /// Clips rays at an aperture of the element of a leg.
-    fn clip(&self, rays: &mut RayBatch, leg: &Leg, aperture: usize, isa: Isa) -> usize {
+    fn clip(&self, rays: &mut RayBatch, leg: &Leg, aperture: usize) -> usize {
         let element = &self.elements[leg.at];
         match &self.openings[leg.at][aperture] {
-            Some(opening) => element.apertures[aperture].clip_by(opening, rays, leg.number(), isa),
+            Some(opening) => element.apertures[aperture].clip_by(opening, rays, leg.number()),
             None => element.apertures[aperture].clip(rays, leg.number(), element.semi_diameter_mm),
         }
     }
 
     /// Bends rays by the rings on the surface of a leg.
-    fn bend_by_rings(&self, rays: &mut RayBatch, work: &Work, leg: &Leg, isa: Isa) -> usize {
+    fn bend_by_rings(&self, rays: &mut RayBatch, work: &Work, leg: &Leg) -> usize {
         let (Some(rings), Some(notes)) = (&self.elements[leg.at].onion_rings, &work.before) else { return 0 };
         let len = rays.len();
         let n = [leg.before, leg.after].map(|medium| work.media[medium].n.slice(len));
         let (before, mirror) = (notes.directions(len), leg.action == Action::Reflect);
         let ended = rings.bend(rays, &Bent { before, n, mirror, number: leg.number() });
-        notes.measure_angles(rays, isa);
+        notes.measure_angles(rays);
         ended
     }
 
@@ -224,7 +223,7 @@ impl Tracer {
 
     fn count(&self, rays: &RayBatch, number: u32, losses: &mut LossCounts) {
         let causes = [Loss::Missed, Loss::Vignetted, Loss::TotalReflection, Loss::Absorbed];
-        let many = self.isa.run(Count { states: rays.states(), wanted: causes.map(|cause| cause.state(number)) });
+        let many = rays.isa().run(Count { states: rays.states(), wanted: causes.map(|cause| cause.state(number)) });
         for (cause, many) in causes.into_iter().zip(many).filter(|(_, many)| *many > 0) {
             losses.add(cause, number, many);
         }

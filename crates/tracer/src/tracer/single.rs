@@ -30,7 +30,7 @@ impl Tracer {
     /// Follows a single ray along a route that enters at the front. See [`Tracer::path`].
     #[must_use]
     pub fn path_along(&self, route: &Route, position: DVec3, direction: DVec3, wavelength_nm: f64) -> RayPath {
-        let mut rays = RayBatch::new(1);
+        let mut rays = RayBatch::new(1).on(Isa::Baseline);
         rays.restart(1);
         let c = rays.columns_mut();
         (c.x[0], c.y[0], c.z[0]) = position.into();
@@ -42,7 +42,7 @@ impl Tracer {
         for (step, leg) in route.legs.iter().enumerate() {
             let element = &self.elements[leg.at];
             for operation in program.of_leg(step) {
-                self.apply(*operation, &mut rays, &mut work, (route, step), Isa::Baseline);
+                self.apply(*operation, &mut rays, &mut work, (route, step));
             }
             rays.set_surface(leg.number());
             let ([x, y, z], [l, m, n]) = (rays.positions(), rays.directions());

@@ -5,7 +5,6 @@ use super::kernels::Evaluate;
 use crate::ledger::{Booked, Ledger};
 use crate::transmission::Before;
 use spectra_core::batch::Column;
-use spectra_core::isa::Isa;
 use spectra_core::surface::IndexColumns;
 use spectra_core::{LossCounts, RayBatch};
 use spectra_glass::Dispersion;
@@ -33,9 +32,9 @@ impl Work {
     }
 
     /// Weighs rays by what media have absorbed of them so far.
-    pub(super) fn weigh_absorbed(&mut self, rays: &mut RayBatch, isa: Isa) {
+    pub(super) fn weigh_absorbed(&mut self, rays: &mut RayBatch) {
         if let Some(noted) = &mut self.before {
-            noted.weigh_absorbed(rays, isa);
+            noted.weigh_absorbed(rays);
         }
     }
 
@@ -79,12 +78,12 @@ impl Tracer {
         for (medium, columns) in self.media.iter().zip(&mut work.media) {
             if !columns.constant {
                 let (n, inverse) = (columns.n.slice_mut(len), columns.inverse.slice_mut(len));
-                self.isa.run(Evaluate { medium, wavelength_nm: rays.wavelengths_nm(), n, inverse });
+                rays.isa().run(Evaluate { medium, wavelength_nm: rays.wavelengths_nm(), n, inverse });
             }
         }
         if let Some(noted) = &mut work.before {
             let indices = work.media.iter().map(|medium| medium.n.slice(len));
-            noted.note_wavelengths(rays, indices, self.absorptions.as_ref(), self.isa);
+            noted.note_wavelengths(rays, indices, self.absorptions.as_ref());
         }
     }
 }

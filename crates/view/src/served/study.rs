@@ -5,15 +5,14 @@
 use glam::DVec3;
 use serde_json::{Value, json};
 use spectra_color::{RgbSpace, spectral_color_linear, to_u8};
-use spectra_core::Isa;
 use spectra_core::math::{asin, sin};
 use spectra_core::params::{Params, SourceFile};
 use spectra_glass::fit::{Sample, cauchy_by_rows, cauchy_least_squares};
 use spectra_glass::{Catalogue, Category, Glass, lines};
-use spectra_lens::Lens;
+use spectra_optics::Optics;
 use spectra_scene::FileResources;
 use spectra_spectrum::{BAND, Emission, Observer, bundled_spectra, find_emission};
-use spectra_tracer::{Indices, Tracer};
+use spectra_tracer::Indices;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -122,11 +121,12 @@ impl Prism {
         )))
     }
 
-    fn lens(&self) -> Result<Lens, String> {
+    fn lens(&self) -> Result<Optics, String> {
         let text = self.text(", thickness: 1}\n");
         let node = spectra_yaml::parse(SourceFile::new("prism", text)).map_err(|faults| faults.to_string())?;
         let params = Params::section(node, "").map_err(|faults| faults.to_string())?;
-        spectra_lens::parse(&params, &FileResources::beside(Path::new(""))).map_err(|faults| faults.to_string())
+        let lens = spectra_lens::parse(&params, &FileResources::beside(Path::new("")));
+        lens.map(Optics::new).map_err(|faults| faults.to_string())
     }
 
     fn light(&self) -> Result<Emission, String> {
@@ -208,8 +208,8 @@ impl Prism {
     }
 
     /// Returns the deviation of the beam at a wavelength, degrees; `None` if it does not leave through the second face.
-    fn deviation_deg(&self, lens: &Lens, wavelength_nm: f64) -> Option<f64> {
-        let tracer = Tracer::new(lens, Indices::At(wavelength_nm), Isa::Baseline).ok()?;
+    fn deviation_deg(&self, lens: &Optics, wavelength_nm: f64) -> Option<f64> {
+        let tracer = lens.tracer(Indices::At(wavelength_nm)).ok()?;
         let path = tracer.path(DVec3::new(0.0, self.beam_mm, -BEFORE_MM), DVec3::Z, wavelength_nm);
         path.end.is_none().then(|| spectra_core::math::acos(path.direction.z.clamp(-1.0, 1.0)).to_degrees())
     }
@@ -223,7 +223,7 @@ impl Prism {
         let all = self.rays()?;
         let mut rays = Vec::new();
         for (nm, strength) in all.into_iter().skip(first).take(count.min(MAX_RAYS)) {
-            let tracer = Tracer::new(&lens, Indices::At(nm), Isa::Baseline).map_err(|error| error.to_string())?;
+            let tracer = lens.tracer(Indices::At(nm)).map_err(|error| error.to_string())?;
             let path = tracer.path(DVec3::new(0.0, self.beam_mm, -BEFORE_MM), DVec3::Z, nm);
             let mut points: Vec<[f64; 2]> = path.points.iter().map(|p| [p.z, p.y]).collect();
             let goes_on = matches!(path.end, None | Some((spectra_core::Loss::Missed, _)));

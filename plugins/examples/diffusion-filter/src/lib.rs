@@ -126,8 +126,8 @@ impl ScalarShape for DiffusionFilter {
 
 #[cfg(test)]
 mod tests {
+    use spectra_core::Loss;
     use spectra_core::glam::DVec3;
-    use spectra_core::{Isa, Loss};
     use spectra_testing::{Rays, SurfaceLaws, assert_fault, surface};
 
     const RAYS: usize = 1 << 14;
@@ -135,7 +135,7 @@ mod tests {
     /// Returns the steps in direction cosines of rays from this direction, and how many rays end.
     fn steps(yaml: &str, from: DVec3) -> (Vec<DVec3>, usize) {
         let how = Rays { indices: (1.0, 1.0), seed: Some(5), ..Rays::default() };
-        let met = how.meet(&*surface(yaml), &vec![(-10.0 * from, from); RAYS], Isa::detect());
+        let met = how.meet(&*surface(yaml), &vec![(-10.0 * from, from); RAYS]);
         assert!(met.iter().all(|met| met.is_ok() || *met == Err(Loss::Absorbed)));
         let steps: Vec<DVec3> = met.iter().flatten().map(|(_, d)| *d - from).collect();
         let ended = RAYS - steps.len();

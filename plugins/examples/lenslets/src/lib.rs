@@ -102,7 +102,7 @@ impl Source for Lenslets {
 
 /// Radiance that rays meet at the panel.
 impl Radiance for Lenslets {
-    fn radiance(&self, rays: &mut RayBatch, _: Isa) {
+    fn radiance(&self, rays: &mut RayBatch) {
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             let slopes = [c.l[i] / c.n[i], c.m[i] / c.n[i]];

@@ -22,7 +22,6 @@ use glam::DVec3;
 use spectra_core::batch::{Columns, pixel_and_channel, tag_of};
 use spectra_core::cover::CoverStack;
 use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, Wanted};
-use spectra_core::isa::Isa;
 use spectra_core::loss::ALIVE;
 use spectra_core::numbers::seed_of_frame;
 use spectra_core::spectral::Channel;
@@ -153,7 +152,7 @@ fn each(rays: &mut RayBatch, one: impl Fn(&mut Columns<'_>, usize) -> Result<(),
 }
 
 impl Receive for Pixels {
-    fn receive(&self, rays: &mut RayBatch, _isa: Isa) {
+    fn receive(&self, rays: &mut RayBatch) {
         each(rays, |c, i| self.receive_one(c, i));
     }
 
@@ -163,16 +162,16 @@ impl Receive for Pixels {
 }
 
 impl Launch for Pixels {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], isa: Isa) {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
         if self.open == 1.0 {
-            return self.plane.place(rays, u, v, isa);
+            return self.plane.place(rays, u, v);
         }
         let open = |u: &[f64]| -> Vec<f64> { u.iter().map(|u| 0.5 + (u - 0.5) * self.open).collect() };
-        self.plane.place(rays, &open(u), &open(v), isa);
+        self.plane.place(rays, &open(u), &open(v));
     }
 
-    fn admit(&self, rays: &mut RayBatch, isa: Isa) {
-        self.plane.admit(rays, isa);
+    fn admit(&self, rays: &mut RayBatch) {
+        self.plane.admit(rays);
         each(rays, |c, i| self.admit_one(c, i));
     }
 
@@ -233,6 +232,7 @@ impl Response for Sensor {
 mod tests {
     use super::*;
     use crate::standing::{Bend, Standing};
+    use spectra_core::Isa;
     use spectra_core::numbers::Numbers;
     use spectra_core::spectral::BAND;
 
@@ -264,7 +264,7 @@ mod tests {
                 let (x, y) = (2 + i as u32 % 56, 2 + i as u32 / 56 % 36);
                 (c.tag[i], c.wavelength_nm[i]) = (y * 60 + x, 550.0);
             }
-            Launch::place(&pixels, &mut rays, &u, &v, Isa::Baseline);
+            Launch::place(&pixels, &mut rays, &u, &v);
             let c = rays.columns_mut();
             for i in 0..n {
                 let at = DVec3::new(c.x[i], c.y[i], c.z[i]);
@@ -272,7 +272,7 @@ mod tests {
                 [c.x[i], c.y[i], c.z[i]] = target.to_array();
                 [c.l[i], c.m[i], c.n[i]] = (target - at).normalize().to_array();
             }
-            pixels.admit(&mut rays, Isa::Baseline);
+            pixels.admit(&mut rays);
             rays.compact();
             let left = rays.len();
             let admitted = rays.tags().to_vec();
@@ -281,7 +281,7 @@ mod tests {
                 (c.l[i], c.m[i], c.n[i], c.tag[i]) = (-c.l[i], -c.m[i], -c.n[i], 0);
                 assert!((c.weight[i] - 0.81).abs() < 1e-12);
             }
-            pixels.receive(&mut rays, Isa::Baseline);
+            pixels.receive(&mut rays);
             assert_eq!(rays.alive(), left);
             assert_eq!(rays.tags(), admitted);
             let strange = |tag: &&u32| {

@@ -1,9 +1,9 @@
 //! The plane of sharp focus of a tilted imager behind a real lens.
 
 use glam::{DMat3, DVec3};
+use spectra_core::RayBatch;
 use spectra_core::frame::FrameSize;
 use spectra_core::stage::Launch;
-use spectra_core::{Isa, RayBatch};
 use spectra_optics::{RearPupil, stop_down};
 use spectra_plugin_imagers::{Bend, Plane, Standing};
 use spectra_plugin_surfaces as _;
@@ -24,8 +24,8 @@ fn sharp_point(tracer: &Tracer, pupil: &RearPupil, plane: &Plane, pixel: u32, nm
     c.tag.fill(pixel);
     c.wavelength_nm.fill(nm);
     let middle = vec![0.5; n];
-    plane.place(&mut rays, &middle, &middle, Isa::Baseline);
-    pupil.aim(&mut rays, &a, &b, Isa::Baseline);
+    plane.place(&mut rays, &middle, &middle);
+    pupil.aim(&mut rays, &a, &b);
     tracer.trace(&mut rays, &mut tracer.work_in_place(n), Travel::Backward);
     let (mut matrix, mut right) = (DMat3::ZERO, DVec3::ZERO);
     for i in (0..n).filter(|i| rays.loss(*i).is_none()) {
@@ -45,8 +45,7 @@ fn a_tilted_imager_is_sharp_on_scheimpflugs_plane() {
     let lens = spectra_lens::load("zeiss-biotar-50-f1.4", &FileResources::beside(Path::new("."))).expect("bundled");
     let lens = stop_down(lens, 8.0).expect("stopped down").focused_at(2000.0).expect("focused");
     let nm = lens.reference_nm;
-    let tracer =
-        Tracer::new(&lens, Indices::Band { min_nm: nm - 1.0, max_nm: nm + 1.0 }, Isa::Baseline).expect("a lens");
+    let tracer = Tracer::new(&lens, Indices::Band { min_nm: nm - 1.0, max_nm: nm + 1.0 }).expect("a lens");
     let first = lens.first_order(nm);
     for tilt_deg in [-6.0_f64, 2.0, 5.0, 10.0] {
         let tilt = tilt_deg.to_radians();

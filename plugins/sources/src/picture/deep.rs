@@ -15,11 +15,11 @@ use super::narrowing::{Line, Lines, SIDE_BY_SIDE};
 use super::starts::{MOST_CELLS, Starts};
 use crate::flat::Texture;
 use crate::halves::Half;
+use spectra_core::RayBatch;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source};
-use spectra_core::{Isa, RayBatch};
 use std::sync::{Arc, OnceLock};
 
 /// A picture source whose pixels lie at their depths.
@@ -171,7 +171,8 @@ impl DeepPicture {
 }
 
 impl Radiance for DeepPicture {
-    fn radiance(&self, rays: &mut RayBatch, isa: Isa) {
+    fn radiance(&self, rays: &mut RayBatch) {
+        let isa = rays.isa();
         let c = rays.columns_mut();
         let mut looked = Looked::new();
         for start in (0..c.x.len()).step_by(CHUNK) {

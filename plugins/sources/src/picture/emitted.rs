@@ -6,10 +6,10 @@ use super::field::Hit;
 use super::narrowing::Line;
 use super::starts::{Start, Starts};
 use crate::halves::Half;
+use spectra_core::RayBatch;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::stage::Emit;
-use spectra_core::{Isa, RayBatch};
 
 impl DeepPicture {
     /// Finds the surfaces on which rays start besides the planes in front. `level` returns the brightness of a pixel.
@@ -45,7 +45,7 @@ impl DeepPicture {
 }
 
 impl Emit for DeepPicture {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
         let starts = self.starts.get_or_init(|| match (&self.map.lights, self.map.half) {
             (Some(lights), Half::Lights) => self.starts(|cell| lights.level[cell]),
             _ => self.starts(|_| 1.0),
@@ -96,7 +96,8 @@ impl Emit for DeepPicture {
     }
 
     /// Computes the light of rays once their directions are known, since only then is it known what hides their start.
-    fn radiate(&self, rays: &mut RayBatch, isa: Isa) {
+    fn radiate(&self, rays: &mut RayBatch) {
+        let isa = rays.isa();
         let c = rays.columns_mut();
         let mut looked = Looked::new();
         for start in (0..c.x.len()).step_by(CHUNK) {

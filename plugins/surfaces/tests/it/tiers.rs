@@ -68,7 +68,8 @@ fn interact(surface: &dyn Surface, travel: Travel, isa: Isa) -> (RayBatch, usize
     interact_with(surface, rays(travel), travel, isa)
 }
 
-fn interact_with(surface: &dyn Surface, mut batch: RayBatch, travel: Travel, isa: Isa) -> (RayBatch, usize) {
+fn interact_with(surface: &dyn Surface, batch: RayBatch, travel: Travel, isa: Isa) -> (RayBatch, usize) {
+    let mut batch = batch.on(isa);
     let (mut glass, mut air) = (Column::<f64>::new(RAYS), Column::<f64>::new(RAYS));
     glass.slice_mut(RAYS).fill(1.5);
     air.slice_mut(RAYS).fill(1.0 / 1.5);
@@ -86,7 +87,7 @@ fn interact_with(surface: &dyn Surface, mut batch: RayBatch, travel: Travel, isa
         before,
         after,
     };
-    let lost = surface.interact(&mut batch, &interface, isa);
+    let lost = surface.interact(&mut batch, &interface);
     (batch, lost)
 }
 

@@ -35,7 +35,7 @@ pub fn meet_all(
         before: IndexColumns { n: b.slice(len), inverse: bi.slice(len) },
         after: IndexColumns { n: a.slice(len), inverse: ai.slice(len) },
     };
-    let mut batch = RayBatch::new(len);
+    let mut batch = RayBatch::new(len).on(isa);
     batch.restart(len);
     let c = batch.columns_mut();
     for (i, (p, d)) in rays.iter().enumerate() {
@@ -43,7 +43,7 @@ pub fn meet_all(
         (c.l[i], c.m[i], c.n[i]) = (*d).into();
         c.wavelength_nm[i] = wavelength_nm;
     }
-    let lost = surface.interact(&mut batch, &interface, isa);
+    let lost = surface.interact(&mut batch, &interface);
     assert_eq!(lost, len - batch.alive());
     let ([x, y, z], [l, m, n]) = (batch.positions(), batch.directions());
     (0..len)

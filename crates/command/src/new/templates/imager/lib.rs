@@ -86,7 +86,7 @@ fn shade(part: f64, decades: f64) -> [f32; 3] {
 
 /// Forward tracing: finds the pixel that a ray hits.
 impl Receive for MyStage {
-    fn receive(&self, rays: &mut RayBatch, _: Isa) {
+    fn receive(&self, rays: &mut RayBatch) {
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             if c.state[i] != ALIVE {
@@ -105,7 +105,7 @@ impl Receive for MyStage {
 
 /// Backward tracing: chooses the point of a pixel where a ray starts.
 impl Launch for MyStage {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             let (x, y) = self.size.point_of(c.tag[i], u[i], v[i]);

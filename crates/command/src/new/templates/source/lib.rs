@@ -87,7 +87,7 @@ impl Source for MyStage {
 
 /// Forward tracing, from the lamp: chooses where rays start and how much they carry.
 impl Emit for MyStage {
-    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], _: Isa) {
+    fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
         let (inner2, outer2) = (self.inner_mm * self.inner_mm, self.outer_mm * self.outer_mm);
         let area_mm2 = PI * (outer2 - inner2);
         let c = rays.columns_mut();
@@ -99,7 +99,7 @@ impl Emit for MyStage {
         }
     }
 
-    fn radiate(&self, rays: &mut RayBatch, _: Isa) {
+    fn radiate(&self, rays: &mut RayBatch) {
         let c = rays.columns_mut();
         for (weight, cosine) in c.weight.iter_mut().zip(c.n.iter()) {
             *weight *= cosine.abs();
@@ -109,7 +109,7 @@ impl Emit for MyStage {
 
 /// Backward tracing, from the imager: the radiance where rays meet the plane of the lamp.
 impl Radiance for MyStage {
-    fn radiance(&self, rays: &mut RayBatch, _: Isa) {
+    fn radiance(&self, rays: &mut RayBatch) {
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             let t = (-self.distance_mm - c.z[i]) / c.n[i];
