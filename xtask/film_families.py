@@ -58,6 +58,6 @@ def inhibition(slug):
 
 
 def remark(slug):
-    return (f"One matrix for all {WORDS[family_of(slug)]}, times a strength for the class `{class_of(slug)}`, found for all films "
-            "together so that skies, leaves and skins keep their hue as far as one matrix can, and a class is as saturated as its makers "
-            "promise (xtask/fit_film_families.py). Rows and columns are blue, green, red. No sheet tells it.")
+    return (f"One matrix for all {WORDS[family_of(slug)]}, times a strength for the class `{class_of(slug)}`, fitted for all films "
+            "together so that skies, leaves and skins keep their hue as far as one matrix allows, and each class is as saturated as its "
+            "makers promise (xtask/fit_film_families.py). Rows and columns are blue, green, red. No sheet states it.")

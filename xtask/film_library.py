@@ -248,13 +248,13 @@ def grainy(folder, slug, iso, data, kind):
     visual = sum((VISUAL[base.LAYERS[i]] * between(tables[i], 1.0)) ** 2 for i in range(3)) ** 0.5
     if slug in GRAIN:
         factor = GRAIN[slug] / visual
-        remark = (f"The sheet states one figure, RMS {number(GRAIN[slug])} at the density 1 through 48 um. Assumed: the layers have "
+        remark = (f"The sheet states one figure, RMS {number(GRAIN[slug])} at density 1 through 48 um. Assumed: the layers have "
                   f"the curves of {name}, times {factor:.2f}, so that a visual density (0.26 red, 0.57 green, 0.17 blue) has "
                   "that figure.")
     else:
         factor = (iso / 250) ** BY_SPEED
-        remark = (f"The sheet states a Print Grain Index only. Assumed: the curves of {name}, times {factor:.2f}, as the speed to "
-                  f"the power of {BY_SPEED}, by which Vision3 50D, 200T and 500T differ.")
+        remark = (f"The sheet states only a Print Grain Index. Assumed: the curves of {name}, times {factor:.2f}, since grain grows as "
+                  f"the speed to the power of {BY_SPEED}, as among Vision3 50D, 200T and 500T.")
     return [[(d, r * factor) for d, r in t] for t in tables], remark
 
 
@@ -306,7 +306,7 @@ def assumed(parts):
 def dye_remark(off):
     return off is not None and (
         "The sheet has the spectrum of a midscale neutral and of unexposed film, not of single dyes. Assumed: the dyes of "
-        "kodak-vision3-250d-5207, each times one factor a wavelength (0.5 to 2; it differs from 1 by "
+        "kodak-vision3-250d-5207, all times one factor per wavelength (0.5 to 2; it differs from 1 by "
         f"{off:.2f}, root mean square), so that together they make the sheet's neutral.")
 
 
@@ -400,8 +400,8 @@ def silver(folder, slug):
         remark="Based on published figures, not on curves: speed" + (" and granularity are" if SILVER[slug][5] else " is")
         + " as stated; sensitivity, curve, modulation transfer and halation are those of similar films.",
         head=["", "process: negative", "density: visual", f"year: {year}", f"iso: {iso}", f"reference-illuminant: {DAYLIGHT}",
-              *assumed([("mtf", f"By Frieser's formula with k = {k_mm} mm, half of the contrast at {half:.0f} cycles/mm, of the 0.005 to "
-                         "0.04 mm that H. Frieser (Photogr. Sci. Eng. 4, 324, 1960) gives for emulsions.")]),
+              *assumed([("mtf", f"By Frieser's formula with k = {k_mm} mm, half of the contrast is left at {half:.0f} cycles/mm. H. Frieser "
+                         "(Photogr. Sci. Eng. 4, 324, 1960) gives k of 0.005 to 0.04 mm for emulsions.")]),
               grain, base.halation("dye", base.ENTERS + "Base and dye under the emulsion are as in Tri-X: they transmit 0.35 in "
                                                         "one pass."), base.ACETATE,
               *RECIPROCITY.get(slug, [])],

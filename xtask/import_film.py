@@ -316,7 +316,7 @@ def color_layers(data, *, rising, kind, stops_of=None, grainy=False):
         seen, nm, said = pairs(data.log_sensitivity[i]), MOVED.get(kind, {}).get(LAYERS[i], 0), None
         if nm:
             seen = [(x + nm, y) for x, y in seen]
-            said = (f"moved by {number(nm)} nm, within what a figure is read off, so that skies, leaves and skins keep their hue "
+            said = (f"moved by {number(nm)} nm, within the reading accuracy of a figure, so that skies, leaves and skins keep their hue "
                     "(assumed)")
         out.append(layer(LAYERS[i], seen,
                          [("normal", None, data.sensiometric_curve[i])], granularity=rms,
@@ -350,7 +350,7 @@ def color_negative(folder):
 
 def flat_minimum(red, green, blue):
     return ("minimum-density:\n  assumed: true\n"
-            "  remark: the Status A minima of the curves at 620, 530 and 440 nm, straight between\n"
+            "  remark: the Status A minima of the curves at 620, 530 and 440 nm, linear in between\n"
             f"  table: [[440, {number(blue)}], [530, {number(green)}], [620, {number(red)}]]")
 
 
@@ -426,8 +426,9 @@ PLATE_CURVE = [
     "        toe: 0.2",
     "        shoulder: 4",
     "        remark: >-",
-    "          No curve of such a plate is at hand: through the ISO speed point with a usual pictorial gradient (as C. N. Nelson",
-    "          and J. L. Simonds, J. Opt. Soc. Am. 46, 1956, found for usual negatives), density over base and fog.",
+    "          No curve of such a plate is available. This one passes through the ISO speed point with a usual pictorial",
+    "          gradient (as C. N. Nelson and J. L. Simonds, J. Opt. Soc. Am. 46, 1956, found for usual negatives); density",
+    "          above base and fog.",
 ]
 GLASS = ['bases:', '  - {formats: "plate", material: glass, thickness: 1.3 mm, index: 1.52, assumed: true}']
 
@@ -464,9 +465,9 @@ def plate(slug, name, remark, iso, layer_name, points, sensitivity_remark, sourc
               "assumed:\n  mtf: " + folded(PLATE_MTF, "    "),
               halation(0.95, ENTERS + "The plate has no backing, as most were sold: clear glass transmits 0.95 in one pass, and "
                        "halos are the largest of all. Plates with a backing of dark varnish had hardly any: `halation: off`."),
-              "granularity:\n  rms: 14\n  assumed: true\n  remark: >-\n    No figure of such plates is at hand; between fine-grained "
-              "and fast films of the 1960s.\n"
-              "    Through 48 um at the density 1."],
+              "granularity:\n  rms: 14\n  assumed: true\n  remark: >-\n    No figure of such plates is available. The value lies "
+              "between fine-grained and fast films of the 1960s. Through 48\n"
+              "    um at density 1."],
         layers=[lines[:-1] + PLATE_CURVE],
         tail=["", "# Thin plate glass; thickness and index vary from maker to maker.", *GLASS],
     )

@@ -1,10 +1,9 @@
 //! Tests imagers placed where the light of the source lands (`imager: {around: source}`), and points with a color.
 
 use spectra_color::{RgbSpace, to_u8};
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use std::path::Path;
 
 /// Focal length of the ideal lens, mm.
@@ -25,7 +24,7 @@ fn scene(folder: &Path, source: &str, imager: &str) -> Result<spectra_scene::Sce
 }
 
 fn render(scene: spectra_scene::Scene) -> ExposureFrame {
-    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
+    let renderer = Renderer::new(scene, &RenderOptions::default()).expect("ready");
     renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
 }
 
@@ -85,7 +84,7 @@ fn a_screen_finds_the_line_behind_a_prism() {
         ];
         let scene =
             spectra_scene::load(&path, &overrides.map(str::to_owned)).unwrap_or_else(|faults| panic!("{faults}"));
-        Renderer::new(scene, Isa::detect()).expect("ready").landing().expect("light")
+        Renderer::new(scene, &RenderOptions::default()).expect("ready").landing().expect("light")
     };
     let (axis, source) = (landing("axis"), landing("source"));
     assert!(axis.on_frame < 0.1 && source.on_frame > 0.9, "{axis:?} {source:?}");
@@ -101,7 +100,7 @@ fn the_screens_of_the_prisms_catch_every_line() {
         for nm in lines_nm {
             let overrides = ["render.rays=20000".to_owned(), format!("source.spectrum=\"line:{nm}\"")];
             let scene = spectra_scene::load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
-            let landing = Renderer::new(scene, Isa::detect()).expect("ready").landing().expect("light");
+            let landing = Renderer::new(scene, &RenderOptions::default()).expect("ready").landing().expect("light");
             assert!(landing.on_frame > 0.9, "{name}, {nm} nm: {landing:?}");
         }
     }

@@ -78,7 +78,7 @@ fn a_base_seed_is_followed() {
     assert!(of("7") == of("7") && of("7") != of("8"));
 }
 
-/// With independent uniform wavelengths the error falls with the square root of their number, by the central limit theorem.
+/// The error of independent uniform wavelengths falls with the square root of their number, by the central limit theorem.
 #[test]
 fn random_numbers_have_a_slope_of_one_half() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -290,7 +290,7 @@ fn one_term_of_every_factor_through_a_pinhole() {
     }
 }
 
-/// With one Gaussian per factor nothing is random: every sample equals the integral, up to rounding.
+/// Nothing is random with one Gaussian per factor: every sample equals the integral, up to rounding.
 #[test]
 fn one_gaussian_each_is_exact() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -593,7 +593,7 @@ fn light_over_the_field_is_that_of_a_hole() {
     }
 }
 
-/// For a lens without a stop, a note says which rim sets the f-number and what to write, in the terms of the file format. Writing it
+/// A note about a lens without a stop says which rim sets the f-number and what to write, in the terms of the file format. Writing it
 /// solves the problem.
 #[test]
 fn a_lens_without_a_stop_says_what_is_assumed() {

@@ -1,9 +1,8 @@
 //! Tests pictures with depth and layers: occlusion at edges compared with the area of the pupil that sees each side.
 
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
-use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use std::path::Path;
 
 const SEMI_DIAMETER: f64 = 6.25;
@@ -33,7 +32,7 @@ fn halves(path: &Path, with: impl Fn(bool) -> Vec<(&'static str, f32)>) {
 fn columns(scene: &Path, set: &[&str]) -> Vec<f64> {
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let scene = spectra_scene::load(scene, &set).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    let renderer = Renderer::new(scene.clone(), &RenderOptions::default()).expect("the scene can be rendered");
     let frame = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
     let values = &frame.channel("Y").expect("an XYZ imager").values;
     (0..COLUMNS)
@@ -174,7 +173,7 @@ fn a_blurred_edge_is_the_same_from_the_source() {
     }
 }
 
-/// With the foreground in focus its edge is sharp. No background leaks into it, and no foreground appears beside it, although much of
+/// The edge of a foreground in focus is sharp. No background leaks into it, and no foreground appears beside it, although much of
 /// what is seen there is hidden from the picture's own viewpoint.
 #[test]
 fn an_edge_in_focus_leaks_nothing_either_way() {
@@ -269,7 +268,7 @@ fn overscan_lies_beside_the_picture() {
         std::fs::write(at("scene.yaml"), text).expect("written");
         let scene = spectra_scene::load(&at("scene.yaml"), &[]).unwrap_or_else(|faults| panic!("{faults}"));
         let told: Vec<String> = scene.warnings.iter().map(ToString::to_string).collect();
-        let renderer = Renderer::new(scene, Isa::detect()).expect("the scene can be rendered");
+        let renderer = Renderer::new(scene, &RenderOptions::default()).expect("the scene can be rendered");
         let frame = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
         (frame.channel("Y").expect("an XYZ imager").values.clone(), told.join("\n"))
     };

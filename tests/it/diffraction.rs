@@ -1,12 +1,12 @@
 //! Tests diffraction in pictures: the pupil that the film sees, stars of lamps, and unchanged pictures if it is off.
 
 use glam::DVec3;
-use spectra_core::{Isa, RayBatch};
+use spectra_core::RayBatch;
 use spectra_diffraction::{Light, PixelSpread, Pupil, Waves};
 use spectra_lens::Lens;
 use spectra_optics::{Criterion, FocusSearch, Optics};
 use spectra_plugins as _;
-use spectra_render::{Control, Light as Sums, Renderer, Rendering, Threads};
+use spectra_render::{Control, Light as Sums, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 use spectra_tracer::{Indices, Tracer, Travel};
 
@@ -35,7 +35,8 @@ struct Traced {
 
 impl Traced {
     fn new(scene: Scene) -> Self {
-        let renderer = Renderer::on(scene, Isa::detect(), &Threads(2)).expect("ready");
+        let renderer =
+            Renderer::new(scene, &RenderOptions { workers: &Threads(2), ..RenderOptions::default() }).expect("ready");
         let mut light = renderer.begin().expect("memory");
         let samples = u64::from(renderer.scene().render.samples);
         renderer.advance(&mut light, samples, &Threads(2), &Control::new()).expect("rendered");
@@ -194,7 +195,7 @@ fn a_picture_as_a_mask_is_refused() {
     let path = folder.path().join("scene.yaml");
     std::fs::write(&path, text).expect("written");
     let scene = std::sync::Arc::new(spectra_scene::load(&path, &[]).unwrap_or_else(|faults| panic!("{faults}")));
-    let error = Renderer::check(&scene, Isa::detect()).expect_err("it has no edge");
+    let error = Renderer::check(&scene).expect_err("it has no edge");
     let faults = error.faults(&scene).expect("a fault of the scene").to_string();
     assert!(faults.contains("picture used as a mask") && faults.contains("`diffraction: false`"), "{faults}");
 }

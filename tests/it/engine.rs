@@ -6,9 +6,9 @@ use crate::common::{repository, run, shown, text};
 use serde_json::Value;
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Radiance, Source};
-use spectra_core::{Isa, Loss, RayBatch};
+use spectra_core::{Loss, RayBatch};
 use spectra_plugins as _;
-use spectra_render::{Control, RenderError, Renderer, Rendering, Threads};
+use spectra_render::{Control, RenderError, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
@@ -22,7 +22,10 @@ fn load(scene: &str, overrides: &[&str]) -> Scene {
 }
 
 fn render(scene: &Scene) -> Rendering {
-    Renderer::new(scene.clone(), Isa::detect()).expect("ready").run(&Threads(2), &Control::new()).expect("rendered")
+    Renderer::new(scene.clone(), &RenderOptions::default())
+        .expect("ready")
+        .run(&Threads(2), &Control::new())
+        .expect("rendered")
 }
 
 fn json(path: &Path) -> Value {
@@ -139,7 +142,7 @@ fn broken(factor: f64, at_once: bool) -> (Result<(), RenderError>, Option<Render
     let bits = Arc::new(AtomicU64::new(if at_once { factor } else { 1.0 }.to_bits()));
     let sound = Arc::clone(&scene.source);
     scene.source = Arc::new(Broken { sound, factor: Arc::clone(&bits) });
-    let renderer = match Renderer::new(scene.clone(), Isa::detect()) {
+    let renderer = match Renderer::new(scene.clone(), &RenderOptions::default()) {
         Ok(renderer) => renderer,
         Err(error) => return (Err(error), None),
     };
@@ -224,7 +227,7 @@ fn empty_and_infinite_pictures_are_said_so() {
     }
 }
 
-/// For a point off the axis whose light misses a small frame, the warning says where the light lands. A frame at that place receives
+/// The warning about a point off the axis whose light misses a small frame says where the light lands. A frame at that place receives
 /// it.
 #[test]
 fn light_beside_the_frame_is_said_where_it_lands() {

@@ -1,10 +1,10 @@
 //! Tests exposure in absolute units: the camera equation on the axis, the solid angle of the exit pupil in the corners.
 
+use spectra_core::RayBatch;
 use spectra_core::frame::ExposureFrame;
-use spectra_core::{Isa, RayBatch};
 use spectra_lens::Lens;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use spectra_scene::Scene;
 use spectra_tracer::{Indices, Tracer, Travel};
 use std::f64::consts::PI;
@@ -31,7 +31,7 @@ fn scene(lens: &str, f_number: &str, object: &str) -> Scene {
 }
 
 fn render(scene: &Scene) -> ExposureFrame {
-    Renderer::new(scene.clone(), Isa::detect())
+    Renderer::new(scene.clone(), &RenderOptions::default())
         .expect("ready")
         .run(&Threads(2), &Control::new())
         .expect("rendered")

@@ -5,7 +5,7 @@ use spectra_core::frame::{ExposureFrame, FrameSize};
 use spectra_film::emulsion::Emulsion;
 use spectra_film::stock::Stock;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use spectra_scene::{FileResources, Negatives, Scene, Shot};
 use std::path::Path;
 
@@ -19,7 +19,7 @@ fn load(scene: &str, overrides: &[&str]) -> Scene {
 }
 
 fn render(scene: &Scene) -> ExposureFrame {
-    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    let renderer = Renderer::new(scene.clone(), &RenderOptions::default()).expect("the scene can be rendered");
     renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure
 }
 

@@ -3,12 +3,11 @@
 use glam::DVec3;
 use spectra_analysis::Light;
 use spectra_analysis::focus::conjugate;
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::spectral::SystemResponse;
 use spectra_optics::{Beam, ObjectPoint};
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use spectra_scene::{FocusBy, Scene};
 use std::path::Path;
 
@@ -20,7 +19,7 @@ fn load(scene: &str, overrides: &[&str]) -> Result<Scene, String> {
 
 fn render(overrides: &[&str]) -> ExposureFrame {
     let scene = load("biotar-color.yaml", overrides).expect("a scene");
-    Renderer::new(scene.clone(), Isa::detect())
+    Renderer::new(scene.clone(), &RenderOptions::default())
         .expect("ready")
         .run(&Threads(2), &Control::new())
         .expect("rendered")

@@ -1,9 +1,8 @@
 //! Tests that a source with `width: fill` fills the frame and is not much larger, and what lies beyond its border.
 
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use spectra_scene::Scene;
 use std::path::Path;
 
@@ -15,7 +14,7 @@ fn load(overrides: &[&str]) -> Scene {
 }
 
 fn render(scene: &Scene) -> ExposureFrame {
-    Renderer::new(scene.clone(), Isa::detect())
+    Renderer::new(scene.clone(), &RenderOptions::default())
         .expect("ready")
         .run(&Threads(2), &Control::new())
         .expect("rendered")

@@ -4,9 +4,8 @@
 use crate::common::statistics::{Estimate, drafted};
 use crate::common::{run, shown, text};
 use spectra_analysis::ghosts::{GhostSearch, ghosts};
-use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_render::{Control, Light, Renderer, Rendering, Threads};
+use spectra_render::{Control, Light, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::{GhostPaths, LightKind, LightLayer, Scene};
 
 /// The sun beside the axis of an uncoated lens, with ghosts, veiling glare and the star of the blades.
@@ -139,7 +138,7 @@ fn the_strongest_path_is_that_of_lens_ghosts() {
     let known = ghosts(&scene.lens, search).expect("indices").paths;
     // All light lands on the frame.
     assert!(known.iter().all(|ghost| ghost.size_mm < 600.0), "{known:?}");
-    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
+    let renderer = Renderer::new(scene, &RenderOptions::default()).expect("ready");
     let by_seed: Vec<Vec<(GhostPaths, f64)>> = (1..=8)
         .map(|seed| {
             let rendering = renderer.reseeded(seed).run(&Threads(2), &Control::new()).expect("rendered");

@@ -2,9 +2,8 @@
 //! rays all over the front, and no block of the frame has much more noise than the others.
 
 use crate::common::statistics::{estimates, rendered};
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
-use spectra_render::{GhostRays, Renderer, Threads};
+use spectra_render::{GhostRays, RenderOptions, Renderer, Threads, Traced};
 use spectra_scene::Scene;
 use std::sync::Arc;
 
@@ -32,8 +31,12 @@ fn spread_scene(pixels: [u32; 2], samples: u32, spread: &str) -> Scene {
 
 /// Renders only ghosts. Returns the light of each block of `side` pixels, for each seed.
 fn blocks(scene: Scene, rays: GhostRays, side: usize, seeds: impl Iterator<Item = u64>) -> Vec<Vec<f64>> {
-    let renderer = Renderer::of_ghosts(Arc::new(scene), Isa::detect(), rays, &Threads(2)).expect("ready");
-    let renderer = renderer.expect("it reflects");
+    let renderer = Renderer::new(
+        Arc::new(scene),
+        &RenderOptions { traced: Traced::Ghosts(rays), workers: &Threads(2), ..RenderOptions::default() },
+    )
+    .expect("ready");
+    assert!(renderer.ledger().is_some(), "it reflects");
     seeds.map(|seed| of(&rendered(&renderer.reseeded(seed)).exposure, side)).collect()
 }
 

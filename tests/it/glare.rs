@@ -4,7 +4,7 @@
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Control, Light, Renderer, Rendering, Threads};
+use spectra_render::{Control, Light, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 use spectra_tracer::{Chance, Interior, StrayMatter, Walker};
 
@@ -28,7 +28,7 @@ fn scene(source: &str, set: &[&str]) -> Result<Scene, String> {
 
 fn render(source: &str, set: &[&str]) -> Rendering {
     let scene = scene(source, set).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
+    let renderer = Renderer::new(scene, &RenderOptions::default()).expect("ready");
     renderer.run(&Threads(2), &Control::new()).expect("rendered")
 }
 
@@ -122,7 +122,8 @@ fn threads_batches_and_steps_change_no_bit() {
     for source in [WHITE, POINT] {
         let renderer = |isa, set: &[&str]| {
             let set = [set, &["render.glare.imager=20 %", "render.samples=5", "render.rays=5000"]].concat();
-            Renderer::new(scene(source, &set).expect("a scene"), isa).expect("ready")
+            Renderer::new(scene(source, &set).expect("a scene"), &RenderOptions { isa, ..RenderOptions::default() })
+                .expect("ready")
         };
         let whole = renderer(Isa::detect(), &[]);
         let run = |r: &Renderer, threads| bits(&r.run(&Threads(threads), &Control::new()).expect("rendered"));
@@ -155,6 +156,6 @@ fn what_cannot_be_is_told() {
             "source={kind: beam, distance: 60 mm, slit: [6 mm, 1 mm], spectrum: he-ne}",
         ],
     );
-    let error = Renderer::new(prism.expect("a scene"), Isa::detect()).map(|_| ()).expect_err("refused");
+    let error = Renderer::new(prism.expect("a scene"), &RenderOptions::default()).map(|_| ()).expect_err("refused");
     assert!(error.to_string().contains("surface 1 is tilted"), "{error}");
 }

@@ -107,7 +107,7 @@ fn chief_rays_pass_the_center_of_the_stop() {
     }
 }
 
-/// Without any sizes the field has no limit, but there are chief rays.
+/// The field of a lens without any sizes has no limit, but there are chief rays.
 #[test]
 fn chief_rays_need_no_rims() {
     let full = lens("lenses/zeiss-biotar-50-f1.4.yaml");

@@ -265,7 +265,7 @@ fn the_sharpest_plane_is_found_to_a_micrometer() {
     }
 }
 
-/// With primary spherical aberration, the smallest RMS spot lies two thirds of the way from the paraxial to the marginal focus (W. T.
+/// The smallest RMS spot under primary spherical aberration lies two thirds of the way from the paraxial to the marginal focus (W. T.
 /// Welford, Aberrations of Optical Systems, section 8.2). Checked for a singlet at f/10.
 #[test]
 fn the_smallest_spot_is_where_theory_has_it() {

@@ -111,8 +111,8 @@ fn surfaces_multiply() {
     }
 }
 
-/// The same share passes backward along the same rays, and every instruction set gives the same bits. A lens with an ideal coating
-/// keeps every weight.
+/// Light passes backward along a ray with the same weight as forward, and every instruction set gives the same bits. A lens with an
+/// ideal coating keeps every weight.
 #[test]
 fn both_ways_and_all_tiers_alike() {
     let rays = fan(300);

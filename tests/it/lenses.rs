@@ -1,11 +1,10 @@
 //! Tests the lens library: every lens of `lenses/` agrees with its patent, can be drawn and renders.
 
 use crate::common::{good, run, shown, text};
-use spectra_core::Isa;
 use spectra_lens::{Lens, Section};
 use spectra_optics::Optics;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use spectra_scene::FileResources;
 use std::path::Path;
 
@@ -284,7 +283,7 @@ fn of_the_camera_equation(lens: &str) -> f64 {
         .unwrap_or_else(|faults| panic!("{lens}: {faults}"));
     let n = scene.lens.marginal_ray().unwrap_or_else(|e| panic!("{lens}: {e}")).f_number();
     assert!((n - 8.0).abs() < 1e-6, "{lens}: f/{n}");
-    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    let renderer = Renderer::new(scene.clone(), &RenderOptions::default()).expect("the scene can be rendered");
     let frame = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
     let y = &frame.channel("Y").expect("XYZ").values;
     let mean = y.iter().map(|v| f64::from(*v)).sum::<f64>() / y.len() as f64;

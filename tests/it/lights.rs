@@ -4,7 +4,7 @@
 use crate::common::statistics::{self, Estimate, bits, estimates, over_seeds, ready, rendered};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use spectra_core::Isa;
-use spectra_render::{Control, Renderer, Rendering, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Rendering, Threads};
 use std::path::Path;
 
 const COLUMNS: usize = 5;
@@ -184,7 +184,7 @@ fn bits_are_the_same_however_it_runs() {
     let path = scene(folder.path(), DEEP);
     let run = |threads: usize, isa: Isa, batch: &str| {
         let scene = statistics::load(&path, &["render.samples=3", &format!("render.batch={batch}")]);
-        let renderer = Renderer::new(scene, isa).expect("ready");
+        let renderer = Renderer::new(scene, &RenderOptions { isa, ..RenderOptions::default() }).expect("ready");
         bits(&renderer.run(&Threads(threads), &Control::new()).expect("rendered"))
     };
     let want = run(1, Isa::detect(), "256");

@@ -1,8 +1,7 @@
 //! Tests that a camera's meter sees all light on the film: direct light, ghosts and the veil.
 
-use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Rendering, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 
 const FILM: &str = "imager: {kind: film, width: 36, height: 24, resolution: [48, 32]}\n\
@@ -26,7 +25,7 @@ fn scene(source: &str, imager: &str, set: &[&str]) -> Scene {
 }
 
 fn render(scene: Scene) -> Rendering {
-    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
+    let renderer = Renderer::new(scene, &RenderOptions::default()).expect("ready");
     renderer.run(&Threads(2), &Control::new()).expect("rendered")
 }
 
@@ -73,7 +72,7 @@ fn a_meter_sees_ghosts() {
 fn threads_change_no_time() {
     let set = ["render.reflections.order=2", "render.glare=true", "render.samples=8"];
     let time = |threads: usize| {
-        let renderer = Renderer::new(scene(POINT, FILM, &set), Isa::detect()).expect("ready");
+        let renderer = Renderer::new(scene(POINT, FILM, &set), &RenderOptions::default()).expect("ready");
         let rendering = renderer.run(&Threads(threads), &Control::new()).expect("rendered");
         scene(POINT, FILM, &set).film_times(&rendering.exposure)[0].time_s.to_bits()
     };

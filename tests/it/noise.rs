@@ -3,7 +3,7 @@
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_render::{Renderer, Rendering};
+use spectra_render::{RenderOptions, Renderer, Rendering};
 use spectra_session::{Alone, Control, Session, Threads, Workers};
 use std::path::Path;
 
@@ -23,7 +23,7 @@ fn path(scene: &str) -> std::path::PathBuf {
 
 fn render(scene: &str, more: &[&str], workers: &dyn Workers) -> Rendering {
     let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));
-    Renderer::new(scene, Isa::detect()).expect("ready").run(workers, &Control::new()).expect("rendered")
+    Renderer::new(scene, &RenderOptions::default()).expect("ready").run(workers, &Control::new()).expect("rendered")
 }
 
 fn bits(exposure: &ExposureFrame) -> Vec<u32> {
@@ -34,7 +34,7 @@ fn bits(exposure: &ExposureFrame) -> Vec<u32> {
 fn over_seeds(scene: &str, more: &[&str], seeds: u64) -> Vec<(f64, f64)> {
     let mut sums = vec![(0.0, 0.0); WIDTH * HEIGHT];
     let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
+    let renderer = Renderer::new(scene, &RenderOptions::default()).expect("ready");
     for seed in 1..=seeds {
         let exposure = renderer.reseeded(seed).run(&Threads(2), &Control::new()).expect("rendered").exposure;
         let plane = exposure.channels.iter().find(|c| c.name == "Y").unwrap_or(&exposure.channels[0]);
@@ -126,7 +126,7 @@ fn few_samples_are_as_bright_as_many() {
 /// Returns the luminance, or the only layer, of pictures of a scene with these seeds, each traced on one thread, two at a time.
 fn pictures(scene: &str, more: &[&str], seeds: std::ops::Range<u64>) -> Vec<Vec<f32>> {
     let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
+    let renderer = Renderer::new(scene, &RenderOptions::default()).expect("ready");
     let one = |seed: u64| {
         let picture = renderer.reseeded(seed).run(&Alone, &Control::new());
         let mut channels = picture.expect("rendered").exposure.channels;
@@ -259,7 +259,7 @@ fn a_gray_card_is_even_at_64_samples() {
     ];
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     let scene = spectra_scene::load(&path("gray-card"), &set).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(scene, Isa::detect()).expect("ready");
+    let renderer = Renderer::new(scene, &RenderOptions::default()).expect("ready");
     let exposure = renderer.run(&Threads(2), &Control::new()).expect("rendered").exposure;
     for layer in &exposure.channels {
         let mean = layer.values.iter().map(|v| f64::from(*v)).sum::<f64>() / layer.values.len() as f64;

@@ -1,17 +1,16 @@
 //! Tests visible properties of pictures by numbers.
 
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::spectral::{BAND, Channel, SpectralPower};
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Rendering, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Rendering, Threads};
 use std::path::Path;
 
 fn render(scene: &str, overrides: &[&str]) -> Rendering {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
     let overrides: Vec<String> = overrides.iter().map(|s| (*s).to_owned()).collect();
     let scene = spectra_scene::load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
-    let renderer = Renderer::new(scene.clone(), Isa::detect()).expect("the scene can be rendered");
+    let renderer = Renderer::new(scene.clone(), &RenderOptions::default()).expect("the scene can be rendered");
     renderer.run(&Threads(2), &Control::new()).expect("rendered")
 }
 

@@ -79,7 +79,7 @@ fn are_equal(seeds: u64) {
     assert!(seeds < SEEDS_OF_PIXELS || (0.7..1.6).contains(&mean_square) && most < 5.5);
 }
 
-/// With no haze the bits are those of a clean lens. A soiled lens has one more estimator, and its bits do not depend on the batch
+/// A lens without haze gives the bits of a clean lens. A soiled lens has one more estimator, and its bits do not depend on the batch
 /// size.
 #[test]
 fn bits_stay() {
@@ -107,7 +107,7 @@ fn dust_takes_what_it_covers() {
     assert!((got / want - 1.0).abs() < 0.01, "{got} {want}");
 }
 
-/// For a sun with ghosts, the ledger books every watt once, with scattered light in an entry of its own.
+/// The ledger of a sun with ghosts books every watt once, with scattered light in an entry of its own.
 #[test]
 fn the_books_of_a_sun_close() {
     let sun = "source={kind: sun, field: [5 deg, 3 deg], illuminance: 60000 lx, spectrum: \"blackbody:5400\"}";

@@ -1,10 +1,9 @@
 //! Tests the `lens` section of a scene.
 
-use spectra_core::Isa;
 use spectra_lens::{Coating, Lens};
 use spectra_optics::Optics;
 use spectra_plugins as _;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use spectra_scene::load;
 use spectra_tracer::Indices;
 use std::path::Path;
@@ -65,7 +64,7 @@ fn coatings_dim_the_picture() {
         ];
         let overrides: Vec<String> = common.iter().chain(set).map(|s| (*s).to_owned()).collect();
         let scene = load(&path, &overrides).unwrap_or_else(|faults| panic!("{faults}"));
-        let frame = Renderer::new(scene.clone(), Isa::detect())
+        let frame = Renderer::new(scene.clone(), &RenderOptions::default())
             .expect("a scene")
             .run(&Threads(2), &Control::new())
             .expect("rendered");

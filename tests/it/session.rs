@@ -5,7 +5,7 @@ use spectra_core::resources::{Found, Resource, ResourceError, Resources};
 use spectra_core::sink::Memory;
 use spectra_core::{Isa, params::Params};
 use spectra_plugins as _;
-use spectra_render::{Light, Renderer};
+use spectra_render::{Light, RenderOptions, Renderer, Traced};
 use spectra_scene::{Direction, FileResources};
 use spectra_session::{Alone, Control, Session, SessionError, Threads, Workers};
 use std::path::Path;
@@ -126,8 +126,13 @@ fn stopped(session: &mut Session, samples: u64) {
 fn estimators_of_one_scene_add() {
     let session = session("gray-card", &["imager.resolution=[16, 12]", "render.samples=64", "render.rays=300000"]);
     let both = [Direction::Forward, Direction::Backward];
-    let renderer =
-        |which: &[Direction]| Renderer::of(Arc::clone(session.scene()), Isa::detect(), None, which).expect("ready");
+    let renderer = |which: &[Direction]| {
+        Renderer::new(
+            Arc::clone(session.scene()),
+            &RenderOptions { traced: Traced::Directions(which.to_vec()), ..RenderOptions::default() },
+        )
+        .expect("ready")
+    };
     let look = |renderer: &Renderer, light: &Light| -> Vec<f32> {
         let exposure = renderer.look(session.scene(), light).expect("memory").exposure;
         exposure.channels.iter().flat_map(|c| c.values.clone()).collect()

@@ -6,7 +6,7 @@ use crate::integral::Measured;
 use crate::statistics::mean_and_variance_of_mean;
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
-use spectra_render::{Control, Renderer, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Threads};
 use spectra_scene::Scene;
 use std::time::Instant;
 
@@ -26,7 +26,9 @@ pub(crate) fn renders(
     scene.render.samples = samples;
     scene.render.rays = u64::from(samples) * scene.imager.size().pixels() as u64;
     let failed = |error| BenchError::Render { strategy: strategy.to_owned(), error };
-    let renderer = Renderer::on(scene.clone(), isa, &Threads(threads)).map_err(failed)?;
+    let renderer =
+        Renderer::new(scene.clone(), &RenderOptions { isa, workers: &Threads(threads), ..RenderOptions::default() })
+            .map_err(failed)?;
     let one = |seed| {
         let begun = Instant::now();
         let rendering = renderer.reseeded(seed).run(&Threads(threads), &Control::new()).map_err(failed)?;

@@ -8,7 +8,7 @@ use crate::BenchError;
 use serde::Serialize;
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
-use spectra_render::{Control, GhostRays, Renderer, Threads};
+use spectra_render::{Control, GhostRays, RenderOptions, Renderer, Threads, Traced};
 use spectra_scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
@@ -146,8 +146,17 @@ fn rendered(
     };
     let (mut frames, mut paths) = (Vec::new(), 0);
     let start = now();
-    let ready = Renderer::of_ghosts(Arc::new(scene.clone()), settings.isa, rays, &workers).map_err(failed)?;
-    let ready = ready.ok_or(BenchError::Dark)?;
+    let ready = Renderer::new(
+        Arc::new(scene.clone()),
+        &RenderOptions {
+            isa: settings.isa,
+            traced: Traced::Ghosts(rays),
+            workers: &workers,
+            ..RenderOptions::default()
+        },
+    )
+    .map_err(failed)?;
+    ready.ledger().ok_or(BenchError::Dark)?;
     noise.ready_s = now() - start;
     for seed in 0..settings.seeds {
         let start = now();

@@ -8,7 +8,7 @@ use crate::BenchError;
 use serde::Serialize;
 use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
-use spectra_render::{Control, Light, Renderer, Threads};
+use spectra_render::{Control, Light, RenderOptions, Renderer, Threads};
 use spectra_scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
@@ -100,7 +100,11 @@ fn row(scene: Scene, direction: &str, settings: &NoiseSettings) -> Result<NoiseR
     let mut estimators = Vec::new();
     let mut frames: Vec<ExposureFrame> = Vec::new();
     let begun = Instant::now();
-    let ready = Renderer::on(Arc::clone(&scene), settings.isa, &Threads(settings.threads)).map_err(failed)?;
+    let ready = Renderer::new(
+        Arc::clone(&scene),
+        &RenderOptions { isa: settings.isa, workers: &Threads(settings.threads), ..RenderOptions::default() },
+    )
+    .map_err(failed)?;
     let ready_s = begun.elapsed().as_secs_f64();
     for seed in 0..settings.seeds {
         let renderer = ready.reseeded(scene.render.seed.wrapping_add(seed << 32));

@@ -28,6 +28,7 @@ use spectra_core::frame::FrameSize;
 use spectra_core::numbers::{Numbers, StageKey, Stretch};
 use spectra_core::stage::{Launch, Radiance};
 use spectra_optics::{AimPart, RIM_EVERY, RearPupil};
+use spectra_scene::LightKind;
 use spectra_tracer::Travel;
 use std::ops::Range;
 use std::sync::Arc;
@@ -325,6 +326,10 @@ impl Backward {
 impl Estimator for Backward {
     fn name(&self) -> &'static str {
         if self.pipeline.scattered { SCATTER } else { "backward" }
+    }
+
+    fn light(&self) -> LightKind {
+        self.pipeline.light()
     }
 
     fn tiles(&self) -> usize {

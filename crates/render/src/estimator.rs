@@ -3,6 +3,7 @@
 use crate::pipeline::ThreadState;
 use crate::sums::ExactSums;
 use crate::{Done, RenderError, Workers};
+use spectra_scene::LightKind;
 use std::ops::Range;
 
 /// A way to estimate the exposure or a part of it. The light of all estimators of a scene is added up.
@@ -12,6 +13,9 @@ use std::ops::Range;
 pub trait Estimator: Send + Sync {
     /// Name of the estimator, such as `forward` or `backward`.
     fn name(&self) -> &'static str;
+
+    /// The kind of light that is estimated, for layers of light.
+    fn light(&self) -> LightKind;
 
     /// Number of parts of the frame that may have different numbers of samples; 1 if light may land anywhere.
     fn tiles(&self) -> usize;

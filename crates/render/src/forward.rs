@@ -24,7 +24,7 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::{Dimension, Numbers, StageKey};
 use spectra_core::stage::{Emit, Receive};
 use spectra_optics::{AimPattern, FrontPupil};
-use spectra_scene::ConePattern;
+use spectra_scene::{ConePattern, LightKind};
 use spectra_tracer::Travel;
 use std::ops::Range;
 use std::sync::Arc;
@@ -390,6 +390,10 @@ impl Forward {
 impl Estimator for Forward {
     fn name(&self) -> &'static str {
         if self.pipeline.scattered { SCATTER } else { ESTIMATOR }
+    }
+
+    fn light(&self) -> LightKind {
+        self.pipeline.light()
     }
 
     fn tiles(&self) -> usize {

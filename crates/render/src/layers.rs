@@ -7,8 +7,7 @@
 
 use crate::estimator::Estimator;
 use crate::light::Part;
-use crate::pipeline::SCATTER;
-use crate::{Light, RenderError, Renderer, ghosts, veil};
+use crate::{Light, RenderError, Renderer};
 use spectra_core::frame::ExposureChannel;
 use spectra_scene::{GhostPaths, LightKind, LightLayer, Scene};
 use std::ops::Range;
@@ -75,7 +74,7 @@ impl Renderer {
         let metered = light.metered.as_deref().unwrap_or_default();
         let time_s = scene.exposure_time_s();
         let own = self.estimators().zip(&light.parts).zip(weights);
-        let own = own.filter(|((e, _), _)| layer.is_none_or(|(kind, _)| kind == kind_of(*e)));
+        let own = own.filter(|((e, _), _)| layer.is_none_or(|(kind, _)| kind == e.light()));
         let taken = |e: &dyn Estimator| Taken::of(layer.map_or(&GhostPaths::All, |(_, paths)| paths), e.paths());
         let parts: Vec<(&Part, &Vec<f64>, Taken)> =
             own.filter_map(|((e, part), w)| Some((part, w, taken(e)?))).collect();
@@ -107,15 +106,5 @@ impl Renderer {
             planes.push(ExposureChannel { name, unit: channel.unit.clone(), values });
         }
         Ok(planes)
-    }
-}
-
-/// Returns the kind of light that an estimator estimates.
-fn kind_of(estimator: &dyn Estimator) -> LightKind {
-    match estimator.name() {
-        // Light scattered by haze, dust or scratches is stray light, too.
-        name if name == veil::ESTIMATOR || name == SCATTER => LightKind::Glare,
-        name if name == ghosts::ESTIMATOR => LightKind::Ghosts,
-        _ => LightKind::Direct,
     }
 }

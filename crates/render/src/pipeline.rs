@@ -1,5 +1,6 @@
 //! Parts that both directions share: the prepared stages, and the buffers of one thread.
 
+use crate::RenderOptions;
 use crate::error::RenderError;
 use crate::response::Responses;
 use crate::spots::Before;
@@ -12,7 +13,7 @@ use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{Source, WavelengthDensity};
 use spectra_core::{Isa, Loss, RayBatch};
 use spectra_optics::Effort;
-use spectra_scene::{NumberFamily, Scene};
+use spectra_scene::{LightKind, NumberFamily, Scene};
 use spectra_tracer::{Indices, Tracer, Work};
 use std::sync::Arc;
 
@@ -66,13 +67,9 @@ pub(crate) const SCATTER: &str = "scatter";
 const SCATTER_SEED: u64 = 0x5ca7_7e4e_d11f_7b0d;
 
 impl Pipeline {
-    /// Prepares the stages of a scene. `density` is a wavelength density already fitted to this scene; if `None`, one is fitted.
-    pub(crate) fn new(
-        scene: &Arc<Scene>,
-        isa: Isa,
-        density: Option<Arc<dyn WavelengthDensity>>,
-        effort: Effort,
-    ) -> Result<Self, RenderError> {
+    /// Prepares the stages of a scene.
+    pub(crate) fn new(scene: &Arc<Scene>, options: &RenderOptions<'_>) -> Result<Self, RenderError> {
+        let (isa, effort) = (options.isa, options.effort);
         if let Some(text) = crate::diffracted::fault(scene) {
             return Err(RenderError::Diffraction(text));
         }
@@ -80,12 +77,17 @@ impl Pipeline {
         let recorded = scene.picture_channels();
         let system = system(scene, Share::Whole, &recorded);
         let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
-        let density = density.map_or_else(fitted, Ok)?;
+        let density = options.density.clone().map_or_else(fitted, Ok)?;
         let tracer = tracer(scene)?;
         let responses = Responses::new(scene.grid, &system.channels);
         let draws = draws(scene);
         let (scene, tracer, share, seed) = (Arc::clone(scene), tracer, Share::Whole, scene.render.seed);
         Ok(Self { scene, seed, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
+    }
+
+    /// Returns the kind of straight light that it traces. Light scattered by haze, dust or scratches is stray light.
+    pub(crate) fn light(&self) -> LightKind {
+        if self.scattered { LightKind::Glare } else { LightKind::Direct }
     }
 
     /// Returns the divisor of the number of rays with which ghosts are searched and their light is booked.

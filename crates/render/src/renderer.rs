@@ -1,25 +1,25 @@
 //! The renderer: hands units of work to threads and sums their light exactly.
 
-use crate::backward::Backward;
 use crate::diffracted;
 use crate::done::{Done, Units};
 use crate::estimator::Estimator;
+use crate::estimators::Estimators;
 use crate::forward::Forward;
-use crate::ghosts::{self, GhostRays, Ghosts, LightLedger, MATTERS};
+use crate::ghosts::{LightLedger, MATTERS};
 use crate::landing::Landing;
 use crate::light::{Light, Part};
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
-use crate::pipeline::{Pipeline, Share, ThreadState};
+use crate::pipeline::{Pipeline, ThreadState};
 use crate::rendering::{GhostNoise, Rendering};
 use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, PILOT_RAYS};
-use crate::veil::{self, Veil};
-use crate::{Alone, Control, Effort, RenderError, Workers};
+use crate::veil::{self};
+use crate::{Alone, Control, RenderError, RenderOptions, Workers};
+use spectra_core::LossCounts;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
 use spectra_core::stage::WavelengthDensity;
-use spectra_core::{Isa, LossCounts};
-use spectra_scene::{Direction, LightKind, Lights, NumberFamily, Scene};
+use spectra_scene::{Direction, LightKind, NumberFamily, Scene};
 use spectra_tracer::Travel;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -33,7 +33,8 @@ const LONGEST_RUN: u64 = 16;
 pub struct Renderer {
     scene: Arc<Scene>,
     pipeline: Arc<Pipeline>,
-    estimators: Vec<Box<dyn Estimator>>,
+    /// The estimators, one for each kind of light and direction; twice, with independent random numbers, if the scene limits the noise.
+    halves: Vec<Vec<Box<dyn Estimator>>>,
     ledger: Option<LightLedger>,
     /// Whether the bright lights of the source are rendered separately from the rest.
     has_lights: bool,
@@ -43,153 +44,14 @@ impl Renderer {
     /// Prepares a scene: fits the wavelength density, searches the pupils and finds the scale of the sums.
     ///
     /// # Errors
-    /// Returns a [`RenderError`] if a stage lacks an ability that the direction needs, or if files of the source are broken.
-    pub fn new(scene: impl Into<Arc<Scene>>, isa: Isa) -> Result<Self, RenderError> {
-        Self::on(scene, isa, &Alone)
-    }
-
-    /// Prepares a scene like [`Renderer::new`], with the search for pupils shared out over `workers`. The result has the same bits on any
-    /// workers.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`Renderer::new`].
-    pub fn on(scene: impl Into<Arc<Scene>>, isa: Isa, workers: &dyn Workers) -> Result<Self, RenderError> {
-        Self::with_density(scene.into(), isa, None, workers)
-    }
-
-    /// Prepares a scene like [`Renderer::on`]. `density` is a wavelength density already fitted to this scene; if `None`, one is fitted.
-    ///
-    /// Bright lights of the source ([`spectra_core::stage::Split`]) are traced forward and the rest backward if the scene asks for it. If
-    /// the scene does not say, this is done when it pays.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`Renderer::new`].
-    pub fn with_density(
-        scene: Arc<Scene>,
-        isa: Isa,
-        density: Option<Arc<dyn WavelengthDensity>>,
-        workers: &dyn Workers,
-    ) -> Result<Self, RenderError> {
-        Self::with_effort(scene, isa, density, Effort::Full, workers)
-    }
-
-    /// Prepares a scene like [`Renderer::with_density`]. `effort` sets how closely pupils are searched and meters are read.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`Renderer::new`], and [`RenderError::Stopped`] if the workers are to stop meanwhile.
-    pub fn with_effort(
-        scene: Arc<Scene>,
-        isa: Isa,
-        density: Option<Arc<dyn WavelengthDensity>>,
-        effort: Effort,
-        workers: &dyn Workers,
-    ) -> Result<Self, RenderError> {
-        Self::without_veil(scene, isa, density, effort, workers)?.with_veil()
-    }
-
-    fn without_veil(
-        scene: Arc<Scene>,
-        isa: Isa,
-        density: Option<Arc<dyn WavelengthDensity>>,
-        effort: Effort,
-        workers: &dyn Workers,
-    ) -> Result<Self, RenderError> {
-        let direction = scene.render.direction;
-        let lights = scene.render.lights;
-        let order = scene.render.reflections.order;
+    /// Returns a [`RenderError`] if a stage lacks an ability that the direction needs, if files of the source are broken, or if the workers
+    /// are to stop meanwhile.
+    pub fn new(scene: impl Into<Arc<Scene>>, options: &RenderOptions<'_>) -> Result<Self, RenderError> {
+        let scene = scene.into();
         scene.source.prepare().map_err(RenderError::Source)?;
-        let pays = scene.source.split().map(|split| split.pays);
-        let apart = lights != Lights::Same && pays.is_some_and(|pays| pays || lights == Lights::Forward);
-        if !apart {
-            let plain = Self::by(scene, isa, density, &[direction], effort, workers)?;
-            return if order.unwrap_or(0) == 0 { Ok(plain) } else { plain.with_ghosts(workers) };
-        }
-        let pipeline = Arc::new(Pipeline::new(&scene, isa, density, effort)?);
-        let share = |share| Arc::new(pipeline.of_share(share));
-        let of_lights = share(Share::Lights);
-        let of_rest = share(Share::Rest);
-        let (rest, lights) = (Backward::new(of_rest.clone(), workers)?, Forward::new(of_lights.clone(), workers)?);
-        let found = match order {
-            Some(0) => None,
-            Some(_) => Ghosts::new(&of_lights, None, workers)?,
-            None => Ghosts::new(&of_lights, Some(MATTERS * rest.mean()), workers)?,
-        };
-        let ledger = found.as_ref().map(|found| found.ledger().clone());
-        let mut kinds: Vec<Box<dyn Estimator>> = vec![Box::new(rest), Box::new(lights)];
-        kinds.extend(found.map(|found| Box::new(found) as Box<dyn Estimator>));
-        if let (Some(rest), Some(lights)) = (of_rest.scattered()?, of_lights.scattered()?) {
-            kinds.push(Box::new(Backward::new(Arc::new(rest), workers)?));
-            kinds.push(Box::new(Forward::new(Arc::new(lights), workers)?));
-        }
-        Ok(Self { estimators: halved(&scene, kinds), scene, pipeline, ledger, has_lights: true })
-    }
-
-    /// Adds the ghosts of the bright lights, or of the whole source if no part of it is brighter than the rest.
-    fn with_ghosts(mut self, workers: &dyn Workers) -> Result<Self, RenderError> {
-        let share = if self.scene.source.split().is_some() { Share::Lights } else { Share::Whole };
-        let found = match share {
-            Share::Whole => Ghosts::new(&self.pipeline, None, workers)?,
-            share => Ghosts::new(&self.pipeline.of_share(share), None, workers)?,
-        };
-        let Some(found) = found else { return Ok(self) };
-        self.ledger = Some(found.ledger().clone());
-        let halves = self.halves() as usize;
-        let mut both = halved(&self.scene, vec![Box::new(found)]).into_iter();
-        // The estimators of the second half follow those of the first.
-        let kinds = self.estimators.len() / halves;
-        for half in (1..=halves).rev() {
-            let Some(ghosts) = both.next_back() else { break };
-            self.estimators.insert(half * kinds, ghosts);
-        }
-        Ok(self)
-    }
-
-    /// Prepares a renderer for the ghosts of a scene alone, to measure them. Returns `None` if nothing reflects.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`Renderer::new`].
-    pub fn of_ghosts(
-        scene: Arc<Scene>,
-        isa: Isa,
-        rays: GhostRays,
-        workers: &dyn Workers,
-    ) -> Result<Option<Self>, RenderError> {
-        scene.source.prepare().map_err(RenderError::Source)?;
-        let pipeline = Arc::new(Pipeline::new(&scene, isa, None, Effort::Full)?);
-        let share = if scene.source.split().is_some() { Share::Lights } else { Share::Whole };
-        let Some(found) = Ghosts::with_rays(&pipeline.of_share(share), None, rays, workers)? else { return Ok(None) };
-        let ledger = Some(found.ledger().clone());
-        Ok(Some(Self { estimators: halved(&scene, vec![Box::new(found)]), scene, pipeline, ledger, has_lights: false }))
-    }
-
-    /// Adds the veiling glare that the scene asks for: walks start at the source for the bright lights, and at the imager for the rest.
-    fn with_veil(mut self) -> Result<Self, RenderError> {
-        let Some(matter) = self.scene.render.glare else { return Ok(self) };
-        // Ghosts may also be traced without being requested, because the lights are bright enough.
-        let has_ghosts = self.estimators().any(|estimator| estimator.name() == ghosts::ESTIMATOR);
-        let ghosts_order = if has_ghosts { self.scene.render.reflections.order.unwrap_or(2) } else { 0 };
-        let emits = |split: &spectra_core::stage::Split<'_>| split.lights.emit().is_some();
-        let veils = if self.scene.source.split().as_ref().is_some_and(emits) {
-            let share = |share| Arc::new(self.pipeline.of_share(share));
-            vec![
-                Veil::new(share(Share::Lights), true, ghosts_order, matter)?,
-                Veil::new(share(Share::Rest), false, 0, matter)?,
-            ]
-        } else {
-            let from_source = self.scene.render.direction == Direction::Forward;
-            vec![Veil::new(Arc::clone(&self.pipeline), from_source, ghosts_order, matter)?]
-        };
-        let halves = self.halves() as usize;
-        let many = veils.len();
-        let all = halved(&self.scene, veils.into_iter().map(|veil| Box::new(veil) as Box<dyn Estimator>).collect());
-        // The estimators of the second half follow those of the first.
-        let kinds = self.estimators.len() / halves;
-        let mut all: Vec<_> = all.into_iter().collect();
-        for half in (1..=halves).rev() {
-            let own = all.split_off((half - 1) * many);
-            self.estimators.splice(half * kinds..half * kinds, own);
-        }
-        Ok(self)
+        let pipeline = Arc::new(Pipeline::new(&scene, options)?);
+        let Estimators { all, ledger, has_lights } = Estimators::new(&pipeline, &options.traced, options.workers)?;
+        Ok(Self { halves: halved(&scene, all), scene, pipeline, ledger, has_lights })
     }
 
     /// Ledger of the light of the bright lights, if ghosts are traced.
@@ -198,56 +60,18 @@ impl Renderer {
         self.ledger.as_ref()
     }
 
-    /// Builds a renderer that traces in the given directions and adds up their light. `density` is a wavelength density already fitted to
-    /// this scene.
-    ///
-    /// # Errors
-    /// Returns the same errors as [`Renderer::new`].
-    pub fn of(
-        scene: Arc<Scene>,
-        isa: Isa,
-        density: Option<Arc<dyn WavelengthDensity>>,
-        estimators: &[Direction],
-    ) -> Result<Self, RenderError> {
-        Self::by(scene, isa, density, estimators, Effort::Full, &Alone)
-    }
-
-    fn by(
-        scene: Arc<Scene>,
-        isa: Isa,
-        density: Option<Arc<dyn WavelengthDensity>>,
-        estimators: &[Direction],
-        effort: Effort,
-        workers: &dyn Workers,
-    ) -> Result<Self, RenderError> {
-        scene.source.prepare().map_err(RenderError::Source)?;
-        let pipeline = Arc::new(Pipeline::new(&scene, isa, density, effort)?);
-        let scattered = pipeline.scattered()?.map(Arc::new);
-        let one = |(pipeline, direction): (&Arc<Pipeline>, &Direction)| -> Result<Box<dyn Estimator>, RenderError> {
-            let pipeline = Arc::clone(pipeline);
-            Ok(match direction {
-                Direction::Forward => Box::new(Forward::new(pipeline, workers)?),
-                Direction::Backward => Box::new(Backward::new(pipeline, workers)?),
-            })
-        };
-        let kinds = std::iter::once(&pipeline).chain(&scattered);
-        let each = kinds.flat_map(|pipeline| estimators.iter().map(move |direction| (pipeline, direction)));
-        let estimators = each.map(one).collect::<Result<_, _>>()?;
-        Ok(Self { estimators: halved(&scene, estimators), scene, pipeline, ledger: None, has_lights: false })
-    }
-
     /// Returns a copy for the picture of another seed, with the same bits as [`Renderer::new`] for the scene with that seed. What was
     /// searched and decided before the first ray does not depend on the seed and is shared, so this costs next to nothing.
     #[must_use]
     pub fn reseeded(&self, seed: u64) -> Self {
         let mut scene = (*self.scene).clone();
         scene.render.seed = seed;
-        let reseed = |(at, estimator): (usize, &dyn Estimator)| match self.halves() {
-            1 => estimator.reseeded(seed, seed),
-            _ => estimator.reseeded(seed, half_seed(seed, (at / self.kinds()) as u64)),
+        let reseed = |(at, half): (usize, &Vec<Box<dyn Estimator>>)| {
+            let own = if self.halves() == 1 { seed } else { half_seed(seed, at as u64) };
+            half.iter().map(|estimator| estimator.reseeded(seed, own)).collect()
         };
         Self {
-            estimators: self.estimators().enumerate().map(reseed).collect(),
+            halves: self.halves.iter().enumerate().map(reseed).collect(),
             scene: Arc::new(scene),
             pipeline: Arc::new(self.pipeline.of_seed(seed)),
             ledger: self.ledger.clone(),
@@ -260,8 +84,8 @@ impl Renderer {
     ///
     /// # Errors
     /// Returns the same errors as [`Renderer::new`].
-    pub fn check(scene: &Arc<Scene>, isa: Isa) -> Result<(), RenderError> {
-        let pipeline = Pipeline::new(scene, isa, None, Effort::Full)?;
+    pub fn check(scene: &Arc<Scene>) -> Result<(), RenderError> {
+        let pipeline = Pipeline::new(scene, &RenderOptions::default())?;
         veil::check(&pipeline)?;
         let sized = |travel| spectra_optics::has_sizes(&scene.lens, travel);
         let is_open = match scene.render.direction {
@@ -361,12 +185,12 @@ impl Renderer {
 
     /// Number of halves of the samples, each with its own random numbers: two if the scene limits the noise, else one.
     pub(crate) fn halves(&self) -> u64 {
-        1 + u64::from(self.scene.render.noise.is_some())
+        self.halves.len() as u64
     }
 
-    /// Number of estimators, not counting those of the second half.
-    fn kinds(&self) -> usize {
-        self.estimators.len() / self.halves() as usize
+    /// The estimators of the first half: one for each kind of light and direction.
+    pub(crate) fn kinds(&self) -> &[Box<dyn Estimator>] {
+        &self.halves[0]
     }
 
     /// Whether the requested noise is reached everywhere.
@@ -386,7 +210,7 @@ impl Renderer {
         let spans: Vec<_> = light.parts.iter_mut().map(|part| part.done.next(samples)).collect();
         // A span that was begun is one piece of work; what lies beyond it is another.
         let more = light.parts.iter().any(|part| part.done.end() < samples);
-        let rays = self.estimators.iter().zip(&light.parts).map(|(e, part)| {
+        let rays = self.estimators().zip(&light.parts).map(|(e, part)| {
             let tiles = part.done.active(e.tiles());
             e.rays(&(part.done.complete()..samples.max(part.done.end())), &tiles)
         });
@@ -409,7 +233,7 @@ impl Renderer {
         if self.scene.meter_channels().is_empty() {
             return Ok(all);
         }
-        for estimator in self.estimators().take(self.kinds()) {
+        for estimator in self.kinds() {
             let own = estimator.metered(workers)?;
             if all.is_empty() {
                 all = own;
@@ -452,7 +276,8 @@ impl Renderer {
         workers: &dyn Workers,
         control: &Control,
     ) -> Result<(), RenderError> {
-        let (estimator, part) = (&*self.estimators[at], &light.parts[at]);
+        let Some(estimator) = self.estimators().nth(at) else { return Ok(()) };
+        let part = &light.parts[at];
         let tiles = part.done.active(estimator.tiles());
         let units = estimator.units(samples, &tiles);
         let known = part.done.open().map(|(_, units)| units.clone()).unwrap_or_default();
@@ -522,7 +347,7 @@ impl Renderer {
     pub fn look(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
         let recorded = &self.pipeline.recorded;
         let time_s = scene.exposure_time_s();
-        let parts = self.estimators.iter().zip(&light.parts);
+        let parts = self.estimators().zip(&light.parts);
         // The halves are added up, and each stands for all the light.
         let share_s = time_s / self.halves() as f64;
         let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, share_s)).collect();
@@ -550,7 +375,7 @@ impl Renderer {
             rays: light.rays(),
             losses: light.losses.clone(),
             detected: light.detected(),
-            estimators: self.estimators().take(self.kinds()).map(Estimator::name).collect(),
+            estimators: self.kinds().iter().map(|estimator| estimator.name()).collect(),
             partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
             noise: self.noise(light),
             ledger: self.ledger.clone(),
@@ -617,8 +442,9 @@ impl Renderer {
         self.pipeline.judged_channels()
     }
 
+    /// All estimators: those of the first half, then those of the second.
     pub(crate) fn estimators(&self) -> impl Iterator<Item = &dyn Estimator> {
-        self.estimators.iter().map(|e| &**e)
+        self.halves.iter().flatten().map(|e| &**e)
     }
 
     /// Number of sums for all the light of one estimator: one for each pixel and channel.
@@ -632,13 +458,13 @@ impl Renderer {
 }
 
 /// Returns the estimators unchanged, or twice with independently scrambled random numbers if the scene limits the noise.
-fn halved(scene: &Scene, estimators: Vec<Box<dyn Estimator>>) -> Vec<Box<dyn Estimator>> {
+fn halved(scene: &Scene, estimators: Vec<Box<dyn Estimator>>) -> Vec<Vec<Box<dyn Estimator>>> {
     if scene.render.noise.is_none() {
-        return estimators;
+        return vec![estimators];
     }
     let seed = scene.render.seed;
-    let half = |half| estimators.iter().map(move |e| e.reseeded(seed, half_seed(seed, half)));
-    half(0).chain(half(1)).collect()
+    let half = |half| estimators.iter().map(|e| e.reseeded(seed, half_seed(seed, half))).collect();
+    vec![half(0), half(1)]
 }
 
 /// Returns the seed of the random numbers of one half of the samples.

@@ -29,6 +29,7 @@ use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Radiance};
 use spectra_core::workers::each_of;
 use spectra_optics::FrontOpening;
+use spectra_scene::LightKind;
 use spectra_tracer::{Chance, Interior, Particle, StrayMatter, Walker};
 use std::ops::Range;
 use std::sync::Arc;
@@ -414,6 +415,10 @@ impl Veil {
 impl Estimator for Veil {
     fn name(&self) -> &'static str {
         ESTIMATOR
+    }
+
+    fn light(&self) -> LightKind {
+        LightKind::Glare
     }
 
     fn tiles(&self) -> usize {

@@ -83,7 +83,7 @@ pub(crate) fn checked<T: Send>(
     let check = |index: usize, other: &mut Option<Arc<Scene>>| -> Result<T, SessionError> {
         let scene = Arc::new(series.looked_at(index, other.take())?);
         // Finds the faults that show only once the stages are put together.
-        Renderer::check(&scene, look.isa).map_err(|error| SessionError::of(&error, &scene))?;
+        Renderer::check(&scene).map_err(|error| SessionError::of(&error, &scene))?;
         look.memory_bytes.map_or(Ok(()), |bytes| spectra_render::fits(&scene, bytes))?;
         let kept = keep(index, &scene);
         *other = Some(scene);

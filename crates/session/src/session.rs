@@ -11,7 +11,7 @@ use spectra_core::resources::Resources;
 use spectra_core::sink::Sink;
 use spectra_core::stage::{Still, WavelengthDensity};
 use spectra_core::{Isa, frame::ExposureFrame};
-use spectra_render::{Effort, Light, RenderError, Renderer};
+use spectra_render::{Effort, Light, RenderError, RenderOptions, Renderer};
 use spectra_scene::{Developed, Scene, Search, Series, Shot, load_series, series_of_text, series_of_tree};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -192,7 +192,10 @@ impl Session {
         density: Option<Arc<dyn WavelengthDensity>>,
         workers: &dyn Workers,
     ) -> Result<(Renderer, Light), RenderError> {
-        let renderer = Renderer::with_effort(Arc::clone(scene), self.isa, density, self.effort, workers)?;
+        let renderer = Renderer::new(
+            Arc::clone(scene),
+            &RenderOptions { isa: self.isa, density, effort: self.effort, workers, ..RenderOptions::default() },
+        )?;
         let light = renderer.begin()?;
         Ok((renderer, light))
     }

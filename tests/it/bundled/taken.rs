@@ -4,7 +4,7 @@ use super::plane::Plane;
 use crate::common::repository;
 use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_render::{Alone, Control, Effort, GhostRays, Renderer, Rendering};
+use spectra_render::{Alone, Control, Effort, GhostRays, RenderOptions, Renderer, Rendering, Traced};
 use spectra_scene::{Developed, LightKind, Scene, Search, Shot, load_series};
 use std::sync::{Arc, OnceLock};
 
@@ -52,8 +52,10 @@ impl Taken {
         let scene = Arc::new(scene.unwrap_or_else(|faults| panic!("{name}: {faults}")));
         let (isa, shared) = (Isa::detect(), Arc::clone(&scene));
         let renderer = match take.ghosts {
-            Some(rays) => Renderer::of_ghosts(shared, isa, rays, &Alone).map(|found| found.expect("its lens reflects")),
-            None => Renderer::with_effort(shared, isa, None, Effort::Draft, &Alone),
+            Some(rays) => {
+                Renderer::new(shared, &RenderOptions { isa, traced: Traced::Ghosts(rays), ..RenderOptions::default() })
+            }
+            None => Renderer::new(shared, &RenderOptions { isa, effort: Effort::Draft, ..RenderOptions::default() }),
         };
         let renderer = renderer.unwrap_or_else(|error| panic!("{name}: {error}"));
         let rendering = renderer.run(&Alone, &Control::new()).unwrap_or_else(|error| panic!("{name}: {error}"));

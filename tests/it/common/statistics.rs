@@ -1,8 +1,7 @@
 //! Renders pictures with independent seeds and estimates figures from them.
 
-use spectra_core::Isa;
 use spectra_optics::Effort;
-use spectra_render::{Control, Renderer, Rendering, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 use std::ops::Range;
 use std::path::Path;
@@ -15,13 +14,14 @@ pub fn load(path: &Path, settings: &[&str]) -> Scene {
 
 /// Prepares a scene once: what is searched before the first ray serves all seeds.
 pub fn ready(scene: Scene) -> Renderer {
-    Renderer::on(scene, Isa::detect(), &Threads(2)).expect("the scene can be rendered")
+    Renderer::new(scene, &RenderOptions { workers: &Threads(2), ..RenderOptions::default() })
+        .expect("the scene can be rendered")
 }
 
 /// Prepares a scene as a draft. The search for pupils and ghosts takes a part of the time, so more rays are lost on their way. Use it
 /// for figures that do not depend on how many are lost.
 pub fn drafted(scene: Scene) -> Renderer {
-    Renderer::with_effort(scene.into(), Isa::detect(), None, Effort::Draft, &Threads(2))
+    Renderer::new(scene, &RenderOptions { effort: Effort::Draft, workers: &Threads(2), ..RenderOptions::default() })
         .expect("the scene can be rendered")
 }
 

@@ -6,7 +6,7 @@ mod walk;
 use crate::common::statistics::{self, Estimate, bits, estimates, over_seeds, ready, rendered};
 use spectra_core::{Isa, RayBatch};
 use spectra_lens::{Coating, Lens};
-use spectra_render::{Control, Light as Sums, Renderer, Rendering, Threads};
+use spectra_render::{Control, Light as Sums, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::{FileResources, Scene};
 use spectra_tracer::{Indices, Path as LightPath, Tracer, Travel};
 use std::path::Path;
@@ -274,7 +274,7 @@ fn left(setup: &Setup, set: &[&str]) -> f64 {
     ledger.not_traced_w / ledger.emitted_w
 }
 
-/// For a thin beam along the axis of an uncoated Biotar, two reflections leave 1.6 % untraced and four leave less than 0.1 %. This is
+/// Two reflections of a thin beam along the axis of an uncoated Biotar leave 1.6 % untraced, and four leave less than 0.1 %. This is
 /// the sum of products of Fresnel's factors; the branches below 1e-8, which are cut, make up 0.2 % of it.
 #[test]
 fn on_the_axis_reflections_leave_the_sum_of_products() {
@@ -359,13 +359,14 @@ fn the_picture_has_the_light_of_the_books() {
 
 #[test]
 fn threads_batches_and_steps_change_no_bit() {
-    let renderer = |set: &[&str]| Renderer::new(BIOTAR.scene(set), Isa::detect()).expect("ready");
+    let renderer = |set: &[&str]| Renderer::new(BIOTAR.scene(set), &RenderOptions::default()).expect("ready");
     let whole = renderer(&[]);
     let run = |r: &Renderer, threads| bits(&r.run(&Threads(threads), &Control::new()).expect("rendered"));
     let want = run(&whole, 1);
     assert_eq!(run(&whole, 3), want);
     assert_eq!(run(&renderer(&["render.batch=40"]), 2), want);
-    let scalar = Renderer::new(BIOTAR.scene(&[]), Isa::Baseline).expect("ready");
+    let scalar = Renderer::new(BIOTAR.scene(&[]), &RenderOptions { isa: Isa::Baseline, ..RenderOptions::default() })
+        .expect("ready");
     assert_eq!(run(&scalar, 2), want);
     // Traces three samples, saves and loads the light, then traces the rest.
     let (threads, control) = (Threads(2), Control::new());

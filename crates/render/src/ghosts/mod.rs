@@ -68,7 +68,7 @@ use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Receive};
 use spectra_core::workers::each_of;
 use spectra_optics::FrontOpening;
-use spectra_scene::GhostSpread;
+use spectra_scene::{GhostSpread, LightKind};
 use spectra_tracer::{Indices, Path, Route, Tracer, Travel};
 use spreading::Spreading;
 use std::ops::Range;
@@ -179,15 +179,6 @@ impl Ghosts {
     /// Searches the paths of the light of a share of the source and finds the scale of the sums. `None` if nothing reflects, or if the
     /// brightest block of 32 x 32 pixels has no more than `matters` (W/m2, summed over its channels).
     pub(crate) fn new(
-        pipeline: &Pipeline,
-        matters: Option<f64>,
-        workers: &dyn Workers,
-    ) -> Result<Option<Self>, RenderError> {
-        Self::with_rays(pipeline, matters, GhostRays::Found, workers)
-    }
-
-    /// Searches like [`Ghosts::new`], with a choice of how rays are shared out.
-    pub(crate) fn with_rays(
         pipeline: &Pipeline,
         matters: Option<f64>,
         share: GhostRays,
@@ -522,6 +513,10 @@ fn spans(rays: Range<u64>, capacity: usize) -> impl Iterator<Item = (u64, usize)
 impl Estimator for Ghosts {
     fn name(&self) -> &'static str {
         ESTIMATOR
+    }
+
+    fn light(&self) -> LightKind {
+        LightKind::Ghosts
     }
 
     fn tiles(&self) -> usize {
