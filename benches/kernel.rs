@@ -266,7 +266,7 @@ fn main() {
             } else {
                 "SCHOTT/SF5"
             };
-            spectra_glass::Catalogue::bundled().medium(name).expect("a bundled glass")
+            spectra_glass::Catalog::bundled().medium(name).expect("a bundled glass")
         },
         sphere,
     );

@@ -29,7 +29,7 @@ import import_film as base  # noqa: E402
 
 ORDER = (2, 1, 0)
 HINGE, SPREAD, PAPER = 1.7, 0.01, 0.05
-# Stray light of the room, as in crates/film/src/look.rs.
+# Stray light of the room, as in crates/film/src/viewing_options.rs.
 FLARE = 0.005
 # If the gray scale is gray within this CIELAB a*, b*, the curves stay as digitized.
 NEUTRAL = 1.95

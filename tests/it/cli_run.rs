@@ -495,7 +495,7 @@ fn a_metered_scene_is_that_of_the_metered_time() {
             written.contains(&format!("\"metered_time_s\": {}", exact.trim_end_matches(" s"))),
             "{exact}: {written}"
         );
-        let words = spectra_core::shutter::words(time_s);
+        let words = spectra_core::shutter::format_time(time_s);
         assert!(said.contains(&format!("at {words} (metered, average)")), "{words}: {said}");
         // The mean of the meter is 10/S lx s, that of a mid gray.
         let mean = metered["meter"].iter().map(|v| f64::from(*v)).sum::<f64>() / metered["meter"].len() as f64;

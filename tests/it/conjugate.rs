@@ -1,7 +1,7 @@
 //! Tests the object point of an image point, by real rays.
 
 use glam::DVec3;
-use spectra_analysis::Light;
+use spectra_analysis::AnalysisLight;
 use spectra_analysis::focus::conjugate;
 use spectra_lens::Lens;
 use spectra_optics::stop_down;
@@ -15,7 +15,7 @@ fn slow_lens() -> Lens {
     stop_down(lens, 22.0).expect("f/22")
 }
 
-const LIGHT: Light = Light::Wavelength(587.5618);
+const LIGHT: AnalysisLight = AnalysisLight::Wavelength(587.5618);
 
 /// On the axis, paraxial optics applies: an image plane at the image of an object gives back the object.
 #[test]

@@ -329,7 +329,7 @@ fn kinds_of_depth_and_near_things_are_asked_about() {
         std::fs::write(at("scene.yaml"), text).expect("written");
         let scene = spectra_scene::load(&at("scene.yaml"), &[]).unwrap_or_else(|faults| panic!("{faults}"));
         scene.source.prepare().unwrap_or_else(|faults| panic!("{faults}"));
-        scene.source.doubts().iter().map(|doubt| format!("{doubt}\n")).collect::<String>()
+        scene.source.warnings().iter().map(|doubt| format!("{doubt}\n")).collect::<String>()
     };
     for (file, wrong, words, right) in [
         ("ray.exr", "{}", "did you mean `kind: ray`?", "{kind: ray}"),
@@ -391,7 +391,7 @@ fn mistaken_depths_are_asked_about() {
         std::fs::write(at("scene.yaml"), text).expect("written");
         let scene = spectra_scene::load(&at("scene.yaml"), &[]).map_err(|faults| faults.to_string())?;
         scene.source.prepare().map_err(|faults| faults.to_string())?;
-        Ok::<String, String>(scene.source.doubts().iter().map(|doubt| format!("{doubt}\n")).collect())
+        Ok::<String, String>(scene.source.warnings().iter().map(|doubt| format!("{doubt}\n")).collect())
     };
     // Each case: the file, the depth settings as written, the words of the question, and the settings to write.
     for (file, wrong, words, right) in [

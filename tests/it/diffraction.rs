@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use spectra_core::RayBatch;
-use spectra_diffraction::{Light, PixelSpread, Pupil, Waves};
+use spectra_diffraction::{ChannelLight, PixelSpread, Pupil, Wavefronts};
 use spectra_lens::Lens;
 use spectra_optics::{Criterion, FocusSearch, Optics};
 use spectra_plugins as _;
@@ -47,7 +47,7 @@ impl Traced {
     fn look(&self, diffraction: Option<bool>) -> Rendering {
         let mut scene = Scene::clone(self.renderer.scene());
         scene.render.diffraction = diffraction;
-        self.renderer.look(&scene, &self.light).expect("memory")
+        self.renderer.rendering(&scene, &self.light).expect("memory")
     }
 }
 
@@ -206,7 +206,7 @@ fn the_slope_of_the_wavefront_is_where_rays_land() {
     let scene = scene("{file: zeiss-biotar-50-f1.4, focus: infinity, f-number: 2.8}", &[]);
     let lens = &scene.lens;
     let pupil = Pupil::new(lens).expect("an opening");
-    let waves = Waves::new(lens, lens.reference_nm).expect("indices");
+    let waves = Wavefronts::new(lens, lens.reference_nm).expect("indices");
     let axes = [DVec3::X, DVec3::Y];
     for point in [DVec3::ZERO, DVec3::new(3.0, -9.0, 0.0)] {
         let opening = pupil.seen_from(point, axes).expect("it sees the opening");
@@ -302,8 +302,8 @@ fn contrasts_agree(every: usize) -> u32 {
         let point = DVec3::new(0.0, film_y.parse().expect("mm"), 0.0);
         let axes = [DVec3::X, DVec3::Y];
         let opening = Pupil::new(&lens).unwrap().seen_from(point, axes).expect("it sees the opening");
-        let wave = Waves::new(&lens, 550.0).unwrap().seen_from(point, axes, &opening).expect("a wavefront");
-        let (light, pitch) = (Light::line(550.0), [0.004; 2]);
+        let wave = Wavefronts::new(&lens, 550.0).unwrap().seen_from(point, axes, &opening).expect("a wavefront");
+        let (light, pitch) = (ChannelLight::line(550.0), [0.004; 2]);
         let plain = PixelSpread::new(&opening, &light, pitch, 128, 0.0);
         let kernel = plain.clone().with_wave(&opening, &wave, &light, pitch);
         let [edge, light] = [&plain, &kernel].map(|kernel| [true, false].map(|across| lines(kernel, across)));

@@ -149,7 +149,7 @@ fn broken(factor: f64, at_once: bool) -> (Result<(), RenderError>, Option<Render
     bits.store(factor.to_bits(), Relaxed);
     let mut light = renderer.begin().expect("memory");
     let traced = renderer.advance(&mut light, 4096, &Threads(2), &Control::new());
-    (traced, Some(renderer.look(&scene, &light).expect("memory")))
+    (traced, Some(renderer.rendering(&scene, &light).expect("memory")))
 }
 
 #[test]

@@ -198,7 +198,7 @@ fn negatives_are_kept_while_they_are_printed_otherwise() {
             assert_eq!(is_same, *is_kept, "{i}");
             let times = scene.film_times(&exposure);
             let shot = || Shot::new(scene, &exposure, &times, &[], Isa::detect());
-            let (again, anew) = (shot().keeping(&kept), shot());
+            let (again, anew) = (shot().with_negatives(&kept), shot());
             assert_eq!(again.pictures().expect("a picture"), anew.pictures().expect("a picture"), "{i}");
             before = Some(scene);
         }
@@ -211,8 +211,8 @@ fn long_exposures_beyond_the_sheet_are_doubted() {
     for (stock, doubted) in [("kodak-portra-400", true), ("ilford-hp5-plus", false)] {
         let scene = load("biotar-trix.yaml", &[&format!("film={{stock: {stock}, exposure: 30 s}}")]);
         let film = &scene.films[0].film;
-        assert_eq!(film.long_exposure_doubt(30.0).is_some(), doubted, "{stock}");
-        assert!(film.long_exposure_doubt(1.0).is_none() && film.long_exposure_doubt(0.01).is_none());
+        assert_eq!(film.long_exposure_warning(30.0).is_some(), doubted, "{stock}");
+        assert!(film.long_exposure_warning(1.0).is_none() && film.long_exposure_warning(0.01).is_none());
     }
 }
 

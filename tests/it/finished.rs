@@ -3,7 +3,7 @@
 use crate::common::{good, run, shown, text};
 use exr::prelude::{AnyChannels, FlatSamples, Image, Layer, ReadChannels, ReadLayers};
 use spectra_color::{RgbSpace, Transfer, xyz_of_light, xyz_of_reflectance};
-use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize, ImageState, Wanted};
+use spectra_core::frame::{ExposureChannel, ExposureFrame, ExtraRequest, FrameSize, ImageState};
 use spectra_pictures::write::{LinearSpace, picture_exr};
 use spectra_plugins as _;
 use spectra_spectrum::{Observer, find_emission, find_reflectance};
@@ -83,9 +83,9 @@ fn a_color_chart_in_aces_cg() {
     let imager = spectra_testing::imager(scene);
     let response = imager.response().expect("it records by itself");
     let frame = ExposureFrame { size, channels };
-    let finished = response.finish(&frame, Wanted { open: true, layers: false }).expect("a picture");
-    assert_eq!((response.image_state(), finished.beside.white.as_deref()), (ImageState::SceneReferred, Some("40 lx")));
-    let open = finished.beside.open.expect("asked for");
+    let finished = response.finish(&frame, ExtraRequest { unclamped: true, layers: false }).expect("a picture");
+    assert_eq!((response.image_state(), finished.extra.white.as_deref()), (ImageState::SceneReferred, Some("40 lx")));
+    let open = finished.extra.unclamped.expect("asked for");
     for half in [false, true] {
         let mut file = Cursor::new(Vec::new());
         let colors = (LinearSpace::AcesCg, ImageState::SceneReferred);

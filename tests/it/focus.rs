@@ -1,7 +1,7 @@
 //! Tests focus as on a camera: through the plates in front of the frame, and by default where the picture is sharpest.
 
 use glam::DVec3;
-use spectra_analysis::Light;
+use spectra_analysis::AnalysisLight;
 use spectra_analysis::focus::conjugate;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::spectral::SystemResponse;
@@ -126,7 +126,8 @@ fn the_sharpest_distance_is_the_one_asked_for() {
     println!("spots {spots:?} mm, smallest for {sharpest:.4} m");
     assert!((sharpest - 1.0).abs() < 0.01, "{sharpest} m: {spots:?}");
     let scene = load("biotar-color.yaml", &[focus, cover, "lens.f-number=f/5.6", POINT]).expect("a scene");
-    let found = conjugate(&scene.lens, Light::Wavelength(587.5618), DVec3::ZERO).expect("media").expect("light");
+    let found =
+        conjugate(&scene.lens, AnalysisLight::Wavelength(587.5618), DVec3::ZERO).expect("media").expect("light");
     assert!((found.distance_mm - 1000.0).abs() < 10.0, "{} mm", found.distance_mm);
 }
 

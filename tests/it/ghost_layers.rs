@@ -119,7 +119,7 @@ fn threads_batches_and_saved_light_change_no_bit_of_a_path() {
     light.save(&mut file).expect("written");
     let mut light = Light::load(&whole, &mut &file[..]).expect("of this scene");
     whole.advance(&mut light, 2, &threads, &control).expect("rendered");
-    assert_eq!(all_bits(&whole.look(whole.scene(), &light).expect("memory")), want);
+    assert_eq!(all_bits(&whole.rendering(whole.scene(), &light).expect("memory")), want);
     // Light saved with other ghost paths is refused, and the message says why.
     for (output, has) in [("[exr]", 0), ("[{kind: exr, ghost-paths: 3}]", 3)] {
         let error = Light::load(&renderer(output, &[CLEAR]), &mut &file[..]).err().expect("other sums").to_string();

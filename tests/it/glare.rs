@@ -6,7 +6,7 @@ use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
 use spectra_render::{Control, Light, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
-use spectra_tracer::{Chance, Interior, StrayMatter, Walker};
+use spectra_tracer::{Interior, StrayReflectances, WalkNumbers, Walker};
 
 const HE_NE_NM: f64 = 632.816;
 
@@ -53,13 +53,13 @@ fn the_veil_of_a_white_wall_is_that_of_a_white_field() {
     assert_eq!(rendering.estimators, ["backward", "glare"]);
     let share = rendering.glare.expect("asked for");
     let scene = scene(WHITE, &[]).expect("a scene");
-    let matter = StrayMatter { paint: 0.2, imager: 0.3, imager_mirror: 0.0 };
+    let matter = StrayReflectances { paint: 0.2, imager: 0.3, imager_mirror: 0.0 };
     let interior = Interior::new(&scene.lens, [36.0, 24.0], [HE_NE_NM; 2], matter).expect("straight");
     let mut walker = Walker::new(&interior);
     walker.set_wavelength(HE_NE_NM);
     let (mut stray, mut all, mut squares) = (0.0, 0.0, 0.0);
     for walk in 0..300_000 {
-        let mut chance = Chance::new(77, walk);
+        let mut chance = WalkNumbers::new(77, walk);
         let at = [36.0 * (chance.number() - 0.5), 24.0 * (chance.number() - 0.5)];
         if let Some(out) = walker.from_imager(at, &mut chance) {
             let own = if out.is_straight() { 0.0 } else { out.weight };
@@ -138,7 +138,7 @@ fn threads_batches_and_steps_change_no_bit() {
         light.save(&mut file).expect("written");
         let mut light = Light::load(&whole, &mut &file[..]).expect("of this scene");
         whole.advance(&mut light, 5, &threads, &control).expect("rendered");
-        assert_eq!(bits(&whole.look(whole.scene(), &light).expect("memory")), want);
+        assert_eq!(bits(&whole.rendering(whole.scene(), &light).expect("memory")), want);
     }
 }
 

@@ -185,7 +185,7 @@ fn absorption_counts_in_every_lens() {
         let (violet, green) = (share(420.0), share(550.0));
         println!("{name}: 420 nm {violet:.4}, 550 nm {green:.4}");
         assert!(violet < 0.99 && violet < green && green < 1.0, "{name}");
-        let borrowed = lens.borrowed_absorption();
+        let borrowed = lens.substituted_absorption();
         assert!(!borrowed.is_empty());
         for (label, lender) in borrowed {
             assert!(lender.full_name.contains('/') && lender.distance < 10.0, "{name}: {label} from {lender}");

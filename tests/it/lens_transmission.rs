@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use spectra_core::{Isa, RayBatch};
-use spectra_glass::Catalogue;
+use spectra_glass::Catalog;
 use spectra_lens::{Coating, Lens};
 use spectra_plugins as _;
 use spectra_scene::FileResources;
@@ -143,7 +143,7 @@ fn glass_absorbs_along_the_path() {
              - {{kind: plane, thickness: 10}}\n"
         ))
     };
-    let glass = Catalogue::bundled().find("SCHOTT/N-SF11").expect("known");
+    let glass = Catalog::bundled().find("SCHOTT/N-SF11").expect("known");
     for nm in [395.0, 404.66, 436.0, 500.0] {
         for sin in [0.0, 0.5] {
             let ray = (DVec3::new(0.0, 0.0, -3.0), DVec3::new(0.0, sin, (1.0 - sin * sin).sqrt()), nm);

@@ -137,7 +137,7 @@ const DOUBTED: [(&str, &str, &str); 4] = [
 #[test]
 fn glasses_are_plausible() {
     for (name, lens) in library() {
-        let doubts = lens.glass_doubts();
+        let doubts = lens.glass_warnings();
         match DOUBTED.iter().find(|(doubted, ..)| *doubted == name) {
             None => assert!(doubts.is_empty(), "{name}: {doubts:?}"),
             Some((_, wanted, reason)) => {
@@ -154,7 +154,7 @@ fn glasses_are_plausible() {
 /// below. Imported lenses are checked as well. A singlet, and glasses of one index that all exist, cause no warning.
 #[test]
 fn misread_glasses_are_doubted() {
-    let transcribed = load("data/lenses/nikon-retrofocus-100-f2.8.yaml").glass_doubts();
+    let transcribed = load("data/lenses/nikon-retrofocus-100-f2.8.yaml").glass_warnings();
     assert_eq!(transcribed.len(), 2, "{transcribed:?}");
     assert!(transcribed[0].contains("0.83 % of the focal length"), "{transcribed:?}");
     let twins = "the media behind surfaces 5 and 7 have the same index, 1.76684, but Abbe numbers of 46.2 and 27.5, and no glass of the \
@@ -183,7 +183,7 @@ fn misread_glasses_are_doubted() {
     let singlet = "name: singlet\nsurfaces:\n  - {radius: 50, thickness: 5, nd: 1.5168, vd: 64.2, semi-diameter: 8, stop: true}\n  \
                    - {radius: -50, thickness: 47, semi-diameter: 8}\n";
     std::fs::write(at("singlet.yaml"), singlet).expect("written");
-    assert!(load(shown(&at("singlet.yaml"))).glass_doubts().is_empty());
+    assert!(load(shown(&at("singlet.yaml"))).glass_warnings().is_empty());
 }
 
 /// Each lens states the origin of its semi-diameters, in the file and in `lens info`.

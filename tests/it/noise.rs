@@ -4,7 +4,7 @@ use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
 use spectra_render::{RenderOptions, Renderer, Rendering};
-use spectra_session::{Alone, Control, Session, Threads, Workers};
+use spectra_session::{Control, Session, SingleThread, Threads, Workers};
 use std::path::Path;
 
 const WIDTH: usize = 48;
@@ -118,7 +118,7 @@ fn few_samples_are_as_bright_as_many() {
         println!("{samples}: {:+.4} % +- {:.4} %", 100.0 * (few / many - 1.0), 100.0 * error / many);
         assert!((few - many).abs() < 4.0 * error, "{samples}: {few} and {many} +- {error}");
         assert!(error < 0.001 * many, "{samples}: {error}");
-        let by = |batch: &'static str| bits(&render("biotar-ortho", &even(&[samples, batch]), &Alone).exposure);
+        let by = |batch: &'static str| bits(&render("biotar-ortho", &even(&[samples, batch]), &SingleThread).exposure);
         assert!(by("render.batch=8") == by("render.batch=256"), "{samples}");
     }
 }
@@ -128,7 +128,7 @@ fn pictures(scene: &str, more: &[&str], seeds: std::ops::Range<u64>) -> Vec<Vec<
     let scene = spectra_scene::load(&path(scene), &settings(more)).unwrap_or_else(|faults| panic!("{faults}"));
     let renderer = Renderer::new(scene, &RenderOptions::default()).expect("ready");
     let one = |seed: u64| {
-        let picture = renderer.reseeded(seed).run(&Alone, &Control::new());
+        let picture = renderer.reseeded(seed).run(&SingleThread, &Control::new());
         let mut channels = picture.expect("rendered").exposure.channels;
         let at = channels.iter().position(|c| c.name == "Y").unwrap_or(0);
         channels.swap_remove(at).values
@@ -224,7 +224,7 @@ fn dark_and_busy_parts_get_more_samples() {
 fn the_same_bits_however_the_work_is_done() {
     for scene in ["biotar-ortho", "gray-card"] {
         let whole = render(scene, &["render.samples=1024"], &Threads(3));
-        let alone = render(scene, &["render.samples=1024", "render.batch=100"], &Alone);
+        let alone = render(scene, &["render.samples=1024", "render.batch=100"], &SingleThread);
         assert_eq!(bits(&whole.exposure), bits(&alone.exposure), "{scene}");
         let open =
             || Session::open(&path(scene), &settings(&["render.samples=1024"]), Isa::detect()).expect("a session");
@@ -235,7 +235,7 @@ fn the_same_bits_however_the_work_is_done() {
         let mut second = open();
         second.load(&mut file.as_slice()).expect("taken up");
         second.advance(1024, &Threads(2), &Control::new()).expect("rendered");
-        assert_eq!(bits(&second.look().expect("memory").exposure), bits(&whole.exposure), "{scene}: taken up");
+        assert_eq!(bits(&second.rendering().expect("memory").exposure), bits(&whole.exposure), "{scene}: taken up");
     }
 }
 

@@ -9,7 +9,7 @@ use spectra_core::spectral::Grid;
 use spectra_core::stage::{ColorModel, Film, Imager, Response, Source, WavelengthSampler};
 use spectra_core::surface::Surface;
 use spectra_glass::Formula;
-use spectra_lens::{Coating, Shape};
+use spectra_lens::{ApertureShape, Coating};
 use spectra_plugins as _;
 use spectra_scene::{FileResources, Output};
 use spectra_spectrum::SpectrumKind;
@@ -96,7 +96,7 @@ fn built(stage: &str, params: &Params, context: &Context<'_>) -> Vec<Fault> {
         "output" => registry::build::<dyn Output>(params, context).err(),
         "spectrum" => registry::build::<dyn SpectrumKind>(params, context).err(),
         "coating" => registry::build::<Coating>(params, context).err(),
-        "aperture" => registry::build::<Shape>(params, context).err(),
+        "aperture" => registry::build::<ApertureShape>(params, context).err(),
         "formula" => registry::build::<Formula>(params, context).err(),
         other => panic!("a kind of stage that this test does not know: {other}"),
     };

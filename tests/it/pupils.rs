@@ -5,7 +5,7 @@ use glam::DVec3;
 use spectra_core::numbers::Numbers;
 use spectra_core::surface::Travel;
 use spectra_core::{Isa, RayBatch, loss::ALIVE};
-use spectra_lens::{Displacement, Iris, Lens, Shape};
+use spectra_lens::{ApertureShape, Displacement, Iris, Lens};
 use spectra_optics::{AimPattern, FrontPupil, RearPupil, stop_down};
 use spectra_plugins as _;
 use spectra_scene::FileResources;
@@ -279,7 +279,7 @@ fn an_iris_of_three_blades_loses_nothing() {
     let stop = lens.stop().expect("it has one");
     let iris = Iris { blades: 3, blade_radius_mm: f64::INFINITY, rotation_rad: 0.3 };
     lens.elements[stop].apertures.push(spectra_lens::Aperture {
-        shape: Shape::Iris(iris),
+        shape: ApertureShape::Iris(iris),
         center_mm: [0.0; 2],
         obscures: false,
     });

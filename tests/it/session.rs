@@ -1,13 +1,13 @@
 //! Tests sessions: the bits of a picture after changes, and what is computed again.
 
 use spectra_core::params::Faults;
-use spectra_core::resources::{Found, Resource, ResourceError, Resources};
+use spectra_core::resources::{FoundFile, Resource, ResourceError, Resources};
 use spectra_core::sink::Memory;
 use spectra_core::{Isa, params::Params};
 use spectra_plugins as _;
 use spectra_render::{Light, RenderOptions, Renderer, Traced};
 use spectra_scene::{Direction, FileResources};
-use spectra_session::{Alone, Control, Session, SessionError, Threads, Workers};
+use spectra_session::{Control, Session, SessionError, SingleThread, Threads, Workers};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -27,7 +27,7 @@ fn session(scene: &str, set: &[&str]) -> Session {
 
 /// Returns the bits of the exposure, channel after channel.
 fn bits(session: &mut Session) -> Vec<u32> {
-    let exposure = session.look().expect("there is memory").exposure;
+    let exposure = session.rendering().expect("there is memory").exposure;
     exposure.channels.iter().flat_map(|c| c.values.iter().map(|v| v.to_bits())).collect()
 }
 
@@ -61,7 +61,7 @@ fn steps_are_a_run_of_their_sum() {
 fn numbers_that_do_not_extend_refuse_to_step() {
     let mut session =
         session("gray-card", &["imager.resolution=[8, 8]", "render.numbers=stratified", "render.samples=16"]);
-    let error = session.step(4, &Alone, &Control::new()).expect_err("strata are laid out for 16").to_string();
+    let error = session.step(4, &SingleThread, &Control::new()).expect_err("strata are laid out for 16").to_string();
     assert!(error.contains("stratified"), "{error}");
     go(&mut session, 16);
 }
@@ -105,7 +105,7 @@ fn light_is_saved_and_taken_up() {
 fn stopped(session: &mut Session, samples: u64) {
     struct Tired<'a>(&'a Control);
     impl Workers for Tired<'_> {
-        fn each(&self, work: &(dyn Fn() + Sync)) {
+        fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
             std::thread::scope(|scope| {
                 scope.spawn(work);
                 while self.0.total_rays() == 0 || 3 * self.0.rays() < self.0.total_rays() {
@@ -116,7 +116,7 @@ fn stopped(session: &mut Session, samples: u64) {
         }
     }
     // The wait for rays would never end while pupils are searched and no ray is traced, so the search is done first.
-    session.prepare(&Alone).expect("ready");
+    session.prepare(&SingleThread).expect("ready");
     let control = Control::new();
     session.advance(samples, &Tired(&control), &control).expect("stopped");
 }
@@ -134,7 +134,7 @@ fn estimators_of_one_scene_add() {
         .expect("ready")
     };
     let look = |renderer: &Renderer, light: &Light| -> Vec<f32> {
-        let exposure = renderer.look(session.scene(), light).expect("memory").exposure;
+        let exposure = renderer.rendering(session.scene(), light).expect("memory").exposure;
         exposure.channels.iter().flat_map(|c| c.values.clone()).collect()
     };
     let whole = renderer(&both);
@@ -146,7 +146,7 @@ fn estimators_of_one_scene_add() {
         let control = Control::new();
         struct Until<'a>(&'a Control, u64);
         impl Workers for Until<'_> {
-            fn each(&self, work: &(dyn Fn() + Sync)) {
+            fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
                 std::thread::scope(|scope| {
                     let worker = scope.spawn(work);
                     while self.0.rays() < self.1 && !worker.is_finished() {
@@ -163,7 +163,7 @@ fn estimators_of_one_scene_add() {
         part.save(&mut file).expect("saved");
         let again = renderer(&both);
         let mut part = Light::load(&again, &mut file.as_slice()).expect("taken up");
-        again.advance(&mut part, 64, &Alone, &Control::new()).expect("ended");
+        again.advance(&mut part, 64, &SingleThread, &Control::new()).expect("ended");
         assert_eq!(look(&again, &part), look(&whole, &light), "{rays}");
     }
     // Each estimator gives the whole picture, so both together give twice the light: their sums add.
@@ -204,7 +204,7 @@ fn development_traces_no_ray() {
     ] {
         let mut changed = session(scene, set);
         go(&mut changed, 8);
-        let rays = changed.look().expect("memory").rays;
+        let rays = changed.rendering().expect("memory").rays;
         let mut all = set.to_vec();
         for change in changes {
             let kept = match changed.change(change) {
@@ -213,7 +213,7 @@ fn development_traces_no_ray() {
             };
             assert!(kept.light && kept.density && kept.lens && kept.source, "{scene} {change}: {kept:?}");
             all.push(change);
-            assert_eq!(changed.look().expect("memory").rays, rays);
+            assert_eq!(changed.rendering().expect("memory").rays, rays);
             let mut fresh = session(scene, &all);
             go(&mut fresh, 8);
             assert_eq!(bits(&mut changed), bits(&mut fresh), "{scene} {change}");
@@ -230,7 +230,7 @@ impl Resources for Counting {
         self.1.fetch_add(1, Relaxed);
         self.0.read(path, folders, endings, limit)
     }
-    fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<Found, ResourceError> {
+    fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit: u64) -> Result<FoundFile, ResourceError> {
         self.1.fetch_add(1, Relaxed);
         self.0.find(path, folders, endings, limit)
     }
@@ -302,7 +302,7 @@ fn it_works_without_threads_and_disk() {
         session.write(&memory).expect("written");
         memory.into_files()
     };
-    let (alone, threads) = (made(&Alone), made(&Threads(3)));
+    let (alone, threads) = (made(&SingleThread), made(&Threads(3)));
     let mut names: Vec<&str> = alone.iter().map(|(name, _)| name.as_str()).collect();
     names.sort_unstable();
     assert_eq!(names, ["card.exr", "card.png", "card.tiff"]);
@@ -316,7 +316,7 @@ fn it_works_without_threads_and_disk() {
 struct Stopped;
 
 impl Workers for Stopped {
-    fn each(&self, work: &(dyn Fn() + Sync)) {
+    fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
         work();
     }
     fn should_stop(&self) -> bool {
@@ -332,9 +332,9 @@ fn what_a_frame_sees_is_searched_by_those_who_are_asked() {
     /// Workers that count how often they are called.
     struct Counting(AtomicUsize);
     impl Workers for Counting {
-        fn each(&self, work: &(dyn Fn() + Sync)) {
+        fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
             self.0.fetch_add(1, Relaxed);
-            Threads(3).each(work);
+            Threads(3).run_on_all(work);
         }
     }
     let small = ["imager.resolution=[24, 16]", "render.samples=4"];
@@ -386,7 +386,7 @@ fn a_lens_is_focused_once() {
     let before = Arc::clone(&whole.scene().lens);
     for change in ["lens.focus=1.5 m", "imager.tilt=[3 deg, 0 deg]"] {
         draft.change(change).expect("it can be");
-        whole.change_after(change, &draft, &Alone).expect("it can be");
+        whole.change_after(change, &draft, &SingleThread).expect("it can be");
         assert!(Arc::ptr_eq(&whole.scene().lens, &draft.scene().lens), "{change}");
     }
     assert!(!Arc::ptr_eq(&whole.scene().lens, &before));
@@ -397,7 +397,7 @@ fn a_lens_is_focused_once() {
     go(&mut fresh, 4);
     assert_eq!(bits(&mut whole), bits(&mut fresh));
     // Another kind of light requires new focusing, whatever was drafted.
-    whole.change_after("film.stock=kodak-tri-x-400", &draft, &Alone).expect("it can be");
+    whole.change_after("film.stock=kodak-tri-x-400", &draft, &SingleThread).expect("it can be");
     assert!(!Arc::ptr_eq(&whole.scene().lens, &focused));
 }
 
@@ -419,7 +419,7 @@ fn a_draft_is_as_bright_as_the_whole() {
         go(&mut whole, 64);
         go(&mut draft, 64);
         let mean = |session: &mut Session| {
-            let exposure = session.look().expect("light").exposure;
+            let exposure = session.rendering().expect("light").exposure;
             let time_s = session.scene().film_times(&exposure).first().expect("a film").time_s;
             let values = &exposure.channels[0].values;
             (values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len() as f64, time_s)

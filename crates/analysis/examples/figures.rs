@@ -2,7 +2,7 @@
 
 use spectra_analysis::figure;
 use spectra_color::{chromaticity, xyz_of_light};
-use spectra_spectrum::{Found, Observer, find};
+use spectra_spectrum::{AnySpectrum, Observer, find};
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     figure::spectrum(&lights).write(&folder.join("lights.png"))?;
     let mut points = Vec::new();
     for name in ["A", "D65", "FL11", "LED-B3", "line:C'", "gaussian:550,20"] {
-        if let (name, Found::Emission(light)) = load(name)? {
+        if let (name, AnySpectrum::Emission(light)) = load(name)? {
             let xy = xyz_of_light(&light, Observer::cie_1931_2deg()).and_then(chromaticity);
             points.extend(xy.map(|xy| (name, xy)));
         }

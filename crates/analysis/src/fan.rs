@@ -2,7 +2,7 @@
 
 use spectra_glass::DispersionError;
 use spectra_lens::Section;
-use spectra_optics::{Bundle, Line, ObjectPoint, Optics};
+use spectra_optics::{Bundle, ObjectPoint, Optics, WindowLine};
 use spectra_tracer::{Indices, RayPath};
 
 /// Rays of a first look across the lens.
@@ -17,7 +17,7 @@ const ACCURACY_DEG: f64 = 0.01;
 #[derive(Debug)]
 pub struct Fan<'o> {
     bundle: Bundle<'o>,
-    line: Line,
+    line: WindowLine,
     /// Where the lowest and the highest ray cross the line, mm along it.
     ends_mm: [f64; 2],
 }
@@ -36,7 +36,7 @@ pub struct FieldPoint {
 
 impl FieldPoint {
     /// Returns the bundle of the point and the line across its window in the section.
-    fn bundle(self, optics: &Optics, wavelength_nm: f64) -> Result<Option<(Bundle<'_>, Line)>, DispersionError> {
+    fn bundle(self, optics: &Optics, wavelength_nm: f64) -> Result<Option<(Bundle<'_>, WindowLine)>, DispersionError> {
         let point = ObjectPoint::on_plane(optics, self.object_mm, self.field_rad).in_section(self.section);
         let Some(bundle) = Bundle::before(optics, point, Indices::At(wavelength_nm))? else { return Ok(None) };
         let way = match self.section {
@@ -44,7 +44,7 @@ impl FieldPoint {
             Section::Y => [0.0, 1.0],
         };
         let reach_mm = bundle.reach_mm();
-        let line = Line { from: way.map(|w| -w * reach_mm), way, length_mm: 2.0 * reach_mm };
+        let line = WindowLine { from: way.map(|w| -w * reach_mm), way, length_mm: 2.0 * reach_mm };
         Ok(Some((bundle, line)))
     }
 

@@ -1,6 +1,6 @@
 //! The ghosts of a lens one by one: axial light from infinity that two or four surfaces reflect.
 
-use crate::draw::{DrawnRay, View};
+use crate::draw::{DrawnRay, SectionView};
 use glam::DVec3;
 use serde::Serialize;
 use spectra_core::RayBatch;
@@ -9,7 +9,7 @@ use spectra_core::math::{cos, sin, sin_cos_turns};
 use spectra_glass::{DispersionError, lines};
 use spectra_lens::Section;
 use spectra_optics::{FrontOpening, Optics};
-use spectra_tracer::{Branches, Indices, Ledger, Path, Route, Tracer, Travel};
+use spectra_tracer::{Indices, Ledger, Path, PathSearch, Route, Tracer, Travel};
 use std::sync::Arc;
 
 /// A ghost: axial light from infinity along one path of reflections.
@@ -100,7 +100,7 @@ pub fn ghosts(lens: &Optics, search: GhostSearch) -> Result<Ghosts, DispersionEr
         }
         disk.ledger
     };
-    let branches = Branches { elements, surfaces: &surfaces, order: search.order, least };
+    let branches = PathSearch { elements, surfaces: &surfaces, order: search.order, least };
     let left = branches.follow(&mut Vec::new(), 0.0, &mut visit);
     let entered = first.ledger.launched - first.ledger.steps.first().map_or(0.0, |step| step.missed + step.vignetted);
     // Paths of four reflections are many, so fewer rays measure their colors.
@@ -183,7 +183,7 @@ pub fn ghost_rays(
     let path = Path::reflected(tracer.surfaces(), Travel::Forward, reflections).expect("surfaces in their order");
     let route = tracer.route(&path);
     let Some(opening) = FrontOpening::of(lens) else { return Ok(Vec::new()) };
-    let view = View { section };
+    let view = SectionView { section };
     let (sin, cos) = (sin(field_rad), cos(field_rad));
     let (direction, side) = (view.across(sin, cos), view.across(cos, -sin));
     let start = |k: usize| -> DVec3 {

@@ -5,10 +5,10 @@
 //! Light is followed from the image back to the field by random walks that assume no sequence of surfaces ([`spectra_tracer::Interior`]).
 
 use serde::Serialize;
-use spectra_core::workers::{Workers, each_of};
+use spectra_core::workers::{Workers, map_pieces};
 use spectra_glass::lines;
 use spectra_lens::Lens;
-use spectra_tracer::{Chance, Interior, Particle, StrayError, StrayLedger, StrayMatter, Walker};
+use spectra_tracer::{Interior, Particle, StrayError, StrayLedger, StrayReflectances, WalkNumbers, Walker};
 use std::convert::Infallible;
 
 /// Number of walks in one piece of work.
@@ -26,7 +26,7 @@ pub struct GlareTask {
     /// Diameter of the area at the center of that image where light is measured, mm.
     pub detector_mm: f64,
     /// Reflectances of everything inside that is not glass: paint and imager.
-    pub matter: StrayMatter,
+    pub matter: StrayReflectances,
     /// Wavelength, nm.
     pub wavelength_nm: f64,
     /// Number of walks.
@@ -44,7 +44,7 @@ impl GlareTask {
             frame_mm,
             disk_mm: 0.1 * diagonal,
             detector_mm: 0.05 * diagonal,
-            matter: StrayMatter::default(),
+            matter: StrayReflectances::default(),
             wavelength_nm,
             walks: 1 << 20,
         }
@@ -174,7 +174,7 @@ pub fn glare(lens: &Lens, task: &GlareTask, workers: &dyn Workers) -> Result<Gla
         walker.set_wavelength(task.wavelength_nm);
         let mut sums = Sums::default();
         for walk in piece * PIECE..((piece + 1) * PIECE).min(task.walks) {
-            let mut chance = Chance::new(SEED, walk as u64);
+            let mut chance = WalkNumbers::new(SEED, walk as u64);
             let (u, v) = (chance.number(), chance.number());
             let (x, y) = spectra_core::math::concentric_disk(u, v);
             let from = [x, y].map(|c| 0.5 * task.detector_mm * c);
@@ -190,7 +190,7 @@ pub fn glare(lens: &Lens, task: &GlareTask, workers: &dyn Workers) -> Result<Gla
         sums.ledger = walker.ledger;
         Ok(sums)
     };
-    let pieces = each_of(workers, task.walks.div_ceil(PIECE), || Walker::new(&interior), piece);
+    let pieces = map_pieces(workers, task.walks.div_ceil(PIECE), || Walker::new(&interior), piece);
     let sums = pieces.unwrap_or_default().into_iter().fold(Sums::default(), |mut sum, s| {
         sum.black += s.black;
         sum.all += s.all;

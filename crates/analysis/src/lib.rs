@@ -13,6 +13,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod analysis_light;
 pub mod draw;
 pub mod fan;
 pub mod figure;
@@ -20,9 +21,8 @@ pub mod focus;
 pub mod ghosts;
 pub mod glare;
 pub mod info;
-mod light;
 pub mod picture;
 pub mod terms;
 pub mod trace;
 
-pub use light::Light;
+pub use analysis_light::AnalysisLight;

@@ -3,12 +3,12 @@
 
 use glam::DVec3;
 use spectra_analysis::glare::{BlackDisk, Glare, GlareTask, glare};
-use spectra_core::workers::{Alone, Workers};
+use spectra_core::workers::{SingleThread, Workers};
 use spectra_lens::{Coating, Lens};
 use spectra_optics::stop_down;
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
-use spectra_tracer::{Chance, Interior, Particle, Walker};
+use spectra_tracer::{Interior, Particle, WalkNumbers, Walker};
 
 const NM: f64 = 546.074;
 
@@ -23,7 +23,7 @@ fn task(walks: usize) -> GlareTask {
 }
 
 fn found(lens: &Lens, task: &GlareTask) -> Glare {
-    let glare = glare(lens, task, &Alone).expect("a straight lens");
+    let glare = glare(lens, task, &SingleThread).expect("a straight lens");
     println!("{} {:?} paint {}: {glare:?}", lens.name, lens.coating, task.matter.paint);
     let l = glare.ledger;
     let sum = l.white + l.black + l.paint + l.glass + l.coatings + l.imager + l.not_traced;
@@ -68,7 +68,7 @@ fn the_index_is_the_share_of_the_light_in_the_black_disk() {
     let [mut veil, mut all, mut squares] = [0.0_f64, 0.0, 0.0];
     let walks = 3_000_000;
     for walk in 0..walks {
-        let mut chance = Chance::new(2, walk as u64);
+        let mut chance = WalkNumbers::new(2, walk as u64);
         let z = height * chance.number();
         let (s, c) = spectra_core::math::sin_cos_turns(chance.number());
         let across = (2.0 * r * z - z * z).sqrt();
@@ -108,7 +108,7 @@ fn the_index_is_the_share_of_the_light_in_the_black_disk() {
 struct Threads(usize);
 
 impl Workers for Threads {
-    fn each(&self, work: &(dyn Fn() + Sync)) {
+    fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
         std::thread::scope(|scope| (0..self.0).for_each(|_| drop(scope.spawn(work))));
     }
 }
@@ -116,6 +116,6 @@ impl Workers for Threads {
 #[test]
 fn the_bits_are_the_same_on_any_threads() {
     let lens = biotar(4.0, Coating::Bare);
-    let one = glare(&lens, &task(20_000), &Alone);
+    let one = glare(&lens, &task(20_000), &SingleThread);
     assert_eq!(one, glare(&lens, &task(20_000), &Threads(3)));
 }

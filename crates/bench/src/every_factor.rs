@@ -18,7 +18,7 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 use spectra_core::surface::Action;
 use spectra_lens::Coating;
 use spectra_scene::Scene;
-use spectra_spectrum::{GaussianMixture, Outside, Scale, Shape, Tabulated, fit_gaussians};
+use spectra_spectrum::{GaussianMixture, Outside, Scale, SpectralFunction, Tabulated, fit_gaussians};
 use std::sync::Arc;
 
 /// The strategy fitted to a system.
@@ -37,7 +37,7 @@ pub(crate) struct EveryFactor {
 /// A factor as Gaussian terms and a remainder.
 struct Factor {
     mixture: GaussianMixture,
-    shape: Shape,
+    shape: SpectralFunction,
     /// Probabilities of the terms, and of the remainder if there is one.
     shares: Vec<f64>,
     has_rest: bool,
@@ -63,7 +63,7 @@ impl Factor {
         shares.iter_mut().for_each(|share| *share /= all);
         let wavelengths: Vec<f64> = grid.wavelengths_nm().collect();
         let table = Tabulated::new(&wavelengths, values, Outside::Zero, Scale::Linear).map_err(|e| e.to_string())?;
-        Ok(Self { mixture, shape: Shape::tabulated(table), shares, has_rest })
+        Ok(Self { mixture, shape: SpectralFunction::tabulated(table), shares, has_rest })
     }
 
     fn upper(&self) -> Vec<f64> {
@@ -95,10 +95,19 @@ impl EveryFactor {
         let (min_nm, max_nm) = (grid.start_nm, grid.end_nm());
         let all = system.source.seen_by(&channel.response);
         let by_film: Vec<f64> = (source.mixture.terms().iter())
-            .map(|t| film.shape.times(&Shape::mixture(GaussianMixture::new(vec![*t]))).integral(min_nm, max_nm, 1.0))
+            .map(|t| {
+                film.shape
+                    .times(&SpectralFunction::mixture(GaussianMixture::new(vec![*t])))
+                    .integral(min_nm, max_nm, 1.0)
+            })
             .collect();
         let by_source: Vec<f64> = (film.mixture.terms().iter())
-            .map(|t| source.shape.times(&Shape::mixture(GaussianMixture::new(vec![*t]))).integral(min_nm, max_nm, 1.0))
+            .map(|t| {
+                source
+                    .shape
+                    .times(&SpectralFunction::mixture(GaussianMixture::new(vec![*t])))
+                    .integral(min_nm, max_nm, 1.0)
+            })
             .collect();
         // The integral with a remainder is the whole integral minus the integrals with the terms.
         let mut integrals = Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! [`bench()`] takes a scene and measures every strategy on it in two ways. One is the spectral integral alone: the exposure of each
 //! channel, compared with exact quadrature. The other is the rendered scene: every pixel, compared with a reference render with many more
-//! samples. The result is a [`Report`]: [`table`] formats it as text, [`csv()`] for a spreadsheet, [`picture()`] draws it, and `serde`
+//! samples. The result is a [`Report`]: [`table()`] formats it as text, [`csv()`] for a spreadsheet, [`picture()`] draws it, and `serde`
 //! writes it as JSON.
 //!
 //! Errors are relative root-mean-square errors of linear exposure over seeds. Their 95 % intervals, and those of the slopes, are

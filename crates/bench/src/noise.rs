@@ -122,7 +122,7 @@ fn row(scene: Scene, direction: &str, settings: &NoiseSettings) -> Result<NoiseR
             renderer.advance(&mut light, samples, &workers, &control).map_err(failed)?;
         }
         spent_s += begun.elapsed().as_secs_f64();
-        let rendering = renderer.look(&scene, &light).map_err(failed)?;
+        let rendering = renderer.rendering(&scene, &light).map_err(failed)?;
         rays += rendering.rays;
         estimators = rendering.estimators;
         frames.push(rendering.exposure);

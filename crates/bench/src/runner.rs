@@ -5,7 +5,7 @@ use crate::frame::{RENDERS, Truth, renders};
 use crate::integral::{Draws, Measured, exact, measure};
 use crate::report::{ChannelBias, LeftOut, Measure, NumberKind, OfSeed, Point, Reference, Report, Series};
 use crate::statistics::{fit, in_standard_errors, mean_and_variance_of_mean};
-use crate::strategy::{Said, Strategy, all, resolve};
+use crate::strategy::{SceneDefaults, Strategy, all, resolve};
 use crate::{BenchError, colors};
 use spectra_core::Isa;
 use spectra_core::spectral::{Channel, SystemResponse};
@@ -207,7 +207,7 @@ impl<'a> Run<'a> {
         }
         let names = system.channels.iter().map(|c| c.name.clone()).collect();
         let first_seed = settings.seed.unwrap_or(scene.render.seed);
-        let said = Said::by(scene, overrides)?;
+        let said = SceneDefaults::by(scene, overrides)?;
         let wanted = if settings.strategies.is_empty() { all() } else { settings.strategies.clone() };
         let (mut entrants, mut left_out) = (Vec::new(), Vec::new());
         for strategy in &wanted {

@@ -132,14 +132,14 @@ pub(crate) fn all() -> Vec<Strategy> {
 }
 
 /// Values of the scene file, with `overrides` applied.
-pub(crate) struct Said {
+pub(crate) struct SceneDefaults {
     /// Strategy of the scene.
     kind: Option<String>,
     /// Spectrum of the source.
     light: Option<String>,
 }
 
-impl Said {
+impl SceneDefaults {
     pub(crate) fn by(scene: &Scene, overrides: &[String]) -> Result<Self, BenchError> {
         let mut root = yaml::parse_bytes(&scene.name, scene.text.as_bytes())?;
         for text in overrides {
@@ -157,7 +157,7 @@ impl Said {
 /// strategy.
 pub(crate) fn resolve(
     strategy: &Strategy,
-    said: &Said,
+    said: &SceneDefaults,
     scene: &Scene,
     system: &SystemResponse,
 ) -> (Strategy, Option<String>) {
@@ -177,7 +177,7 @@ pub(crate) fn resolve(
 }
 
 /// Returns keys that a strategy requires, derived from the light and the channels of the scene.
-fn needed(kind: &str, said: &Said, system: &SystemResponse) -> Option<String> {
+fn needed(kind: &str, said: &SceneDefaults, system: &SystemResponse) -> Option<String> {
     match kind {
         // Use the mean and standard deviation of the light that the channels see.
         "truncated-gaussian" => {

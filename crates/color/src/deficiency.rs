@@ -31,15 +31,15 @@ impl Deficiency {
 
     /// Converts a color in linear sRGB to the one that this eye sees, in linear sRGB. Results may lie slightly outside 0 to 1.
     #[must_use]
-    pub fn seen(self, linear_srgb: [f64; 3]) -> [f64; 3] {
+    pub fn simulate(self, linear_srgb: [f64; 3]) -> [f64; 3] {
         crate::matrix::apply(&self.matrix(), linear_srgb)
     }
 
     /// Converts 8-bit sRGB code values to the code values of what this eye sees, clipped to the gamut.
     #[must_use]
-    pub fn seen_srgb8(self, code: [u8; 3]) -> [u8; 3] {
+    pub fn simulate_srgb8(self, code: [u8; 3]) -> [u8; 3] {
         let srgb = crate::RgbSpace::srgb();
-        let seen = self.seen(srgb.decode(code.map(crate::from_u8)));
+        let seen = self.simulate(srgb.decode(code.map(crate::from_u8)));
         srgb.encode(seen.map(|v| v.clamp(0.0, 1.0))).map(crate::to_u8)
     }
 }
@@ -53,16 +53,16 @@ mod tests {
     fn grays_stay_and_confused_colors_meet() {
         for eye in [Deficiency::Protan, Deficiency::Deutan, Deficiency::Tritan] {
             for gray in [0, 37, 128, 255] {
-                let seen = eye.seen_srgb8([gray; 3]);
+                let seen = eye.simulate_srgb8([gray; 3]);
                 assert!(seen.iter().all(|v| v.abs_diff(gray) <= 1), "{eye:?} {gray}: {seen:?}");
             }
         }
         let apart = |a: [u8; 3], b: [u8; 3]| a.iter().zip(b).map(|(a, b)| i32::from(a.abs_diff(b))).sum::<i32>();
         let (red, green) = ([213, 94, 0], [120, 140, 10]);
-        let deutan = apart(Deficiency::Deutan.seen_srgb8(red), Deficiency::Deutan.seen_srgb8(green));
+        let deutan = apart(Deficiency::Deutan.simulate_srgb8(red), Deficiency::Deutan.simulate_srgb8(green));
         assert!(2 * deutan < apart(red, green), "{deutan} of {}", apart(red, green));
         let (yellow, blue) = ([240, 230, 60], [0, 90, 200]);
-        let far = apart(Deficiency::Deutan.seen_srgb8(yellow), Deficiency::Deutan.seen_srgb8(blue));
+        let far = apart(Deficiency::Deutan.simulate_srgb8(yellow), Deficiency::Deutan.simulate_srgb8(blue));
         assert!(far > 250, "{far}");
     }
 }

@@ -28,7 +28,7 @@ mod dominant;
 mod gamut;
 pub mod matrix;
 mod primaries;
-mod real;
+mod real_gamut;
 mod rendering;
 pub mod rgb;
 mod round_trip;
@@ -43,7 +43,7 @@ pub use difference::ciede2000;
 pub use dominant::{Dominant, dominant_wavelength};
 pub use gamut::{Gamut, into_gamut, oklab, xyz_of_oklab};
 pub use primaries::{srgb_light, srgb_primaries};
-pub use real::{Fitted, MARGIN, Place, RealColors, fit};
+pub use real_gamut::{GamutFit, GamutPosition, MARGIN, RealGamut, fit_to_gamut};
 pub use rendering::{
     ColorRendering, Fidelity, cam02_ucs, cie_test_colors, color_evaluation_samples, color_rendering, fidelity,
     fidelity_index, luminous_efficacy, uv_1976,

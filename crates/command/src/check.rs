@@ -10,7 +10,7 @@ use serde_json::json;
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults, Warning};
 use spectra_scene::{SeriesKind, diagnostics};
-use spectra_session::{Checked, Look, SessionError, Threads};
+use spectra_session::{CheckSettings, Checked, SessionError, Threads};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -41,7 +41,7 @@ pub(crate) fn check(arguments: &Check, isa: Isa) -> Outcome {
         match &result {
             Ok(good) => {
                 for warning in &good.warnings {
-                    console::said(warning, Some(path));
+                    console::scene_warning(warning, Some(path));
                 }
                 for note in &good.notes {
                     console::note(&format!("note: {}: {note}", path.display()));
@@ -78,7 +78,7 @@ fn check_one(path: &Path, overrides: &[String], isa: Isa, is_shown: bool) -> Res
     let shown = Mutex::new(Shown::new(is_shown));
     let seen = |done: usize, of: usize| shown.lock().unwrap_or_else(PoisonError::into_inner).tick(done, of);
     let (workers, memory_bytes) = (&Threads(limits::processors()), memory::available());
-    let found = spectra_session::check(&series, Look { isa, workers, memory_bytes, seen: &seen });
+    let found = spectra_session::check(&series, CheckSettings { isa, workers, memory_bytes, on_progress: &seen });
     shown.lock().unwrap_or_else(PoisonError::into_inner).end();
     let Checked { warnings, notes, memory_bytes } = found.map_err(|error| match error {
         SessionError::Faults(faults) => faults,

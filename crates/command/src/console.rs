@@ -12,7 +12,7 @@ use std::thread::ThreadId;
 
 /// Output of a command whose streams were captured in memory.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Kept {
+pub(crate) struct CapturedOutput {
     /// Bytes written to standard output.
     pub out: Vec<u8>,
     /// Bytes written to standard error.
@@ -20,20 +20,20 @@ pub(crate) struct Kept {
 }
 
 /// Output so far of each thread whose streams are captured. There are only a few such threads at a time.
-static KEPT: Mutex<Vec<(ThreadId, Kept)>> = Mutex::new(Vec::new());
+static KEPT: Mutex<Vec<(ThreadId, CapturedOutput)>> = Mutex::new(Vec::new());
 
 /// Calls `then` with the captured output of this thread, or with `None` if the thread writes to the streams of the process.
-fn with_kept<T>(then: impl FnOnce(Option<&mut Kept>) -> T) -> T {
+fn with_captured<T>(then: impl FnOnce(Option<&mut CapturedOutput>) -> T) -> T {
     let own = std::thread::current().id();
     let mut all = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     then(all.iter_mut().find(|(thread, _)| *thread == own).map(|(_, kept)| kept))
 }
 
 /// Runs `work` with the streams of this thread captured in memory; returns its result and its output.
-pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Kept) {
+pub(crate) fn captured<T>(work: impl FnOnce() -> T) -> (T, CapturedOutput) {
     let own = std::thread::current().id();
     let all = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    all().push((own, Kept::default()));
+    all().push((own, CapturedOutput::default()));
     let done = work();
     let mut all = all();
     let at = all.iter().position(|(thread, _)| *thread == own);
@@ -41,8 +41,8 @@ pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Kept) {
 }
 
 /// Whether the streams of this thread are captured in memory. The process then belongs to another program.
-pub(crate) fn is_kept() -> bool {
-    with_kept(|kept| kept.is_some())
+pub(crate) fn is_captured() -> bool {
+    with_captured(|kept| kept.is_some())
 }
 
 /// Standard output of the command, as a writer.
@@ -50,14 +50,14 @@ pub(crate) struct Out;
 
 impl Write for Out {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        with_kept(|kept| match kept {
+        with_captured(|kept| match kept {
             Some(kept) => kept.out.write(bytes),
             None => io::stdout().write(bytes),
         })
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        if is_kept() { Ok(()) } else { io::stdout().flush() }
+        if is_captured() { Ok(()) } else { io::stdout().flush() }
     }
 }
 
@@ -73,7 +73,7 @@ pub(crate) fn out(text: &str) -> io::Result<()> {
 /// Writes a message of the argument parser: help and version to standard output, errors to standard error.
 pub(crate) fn parsed(said: &clap::Error) {
     // It is not an error if the reader has gone away.
-    if !is_kept() {
+    if !is_captured() {
         drop(said.print());
     } else if said.use_stderr() {
         note(said.render().to_string().trim_end_matches('\n'));
@@ -101,7 +101,7 @@ pub(crate) fn pretty_json(value: &impl serde::Serialize) -> io::Result<()> {
 
 /// Writes a line to standard error. A failure is ignored, because there is nowhere left to report it.
 pub(crate) fn note(line: &str) {
-    let _ = with_kept(|kept| match kept {
+    let _ = with_captured(|kept| match kept {
         Some(kept) => writeln!(kept.err, "{line}"),
         None => writeln!(io::stderr().lock(), "{line}"),
     });
@@ -113,7 +113,7 @@ pub(crate) fn warning(text: &str) {
 }
 
 /// Writes a warning about a scene to standard error: its place in the file (or else the scene file), the text, then the hint.
-pub(crate) fn said(warning: &Warning, scene: Option<&Path>) {
+pub(crate) fn scene_warning(warning: &Warning, scene: Option<&Path>) {
     let Fault { message, hint, .. } = &warning.0;
     let place = warning.0.place_text().or_else(|| scene.map(|path| path.display().to_string()));
     let place = place.map_or_else(String::new, |place| format!("{place}: "));
@@ -137,7 +137,7 @@ pub(crate) fn faults(faults: &Faults) {
 
 /// Whether standard error can show a moving progress bar.
 pub(crate) fn stderr_moves() -> bool {
-    !is_kept() && io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+    !is_captured() && io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
 /// Whether standard error shows colors (<https://no-color.org>).

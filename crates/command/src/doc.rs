@@ -167,7 +167,7 @@ fn keys(name: &str) -> Result<Page, Vec<String>> {
 
 /// Looks up a name without a page: a lens, a film, a spectrum or a term of photography. Returns what it is and the command that shows it.
 fn elsewhere(name: &str) -> Option<(String, String)> {
-    if let Some((what, command)) = crate::glossary::meant(name) {
+    if let Some((what, command)) = crate::glossary::lookup(name) {
         return Some((what.to_owned(), command.to_owned()));
     }
     let (kind, name) = bundled::meanings(name).into_iter().next()?;

@@ -39,7 +39,7 @@ impl EyeName {
     }
 
     /// Returns a figure with all its colors converted to what this eye sees.
-    pub(crate) fn sees(self, canvas: Canvas) -> Canvas {
-        canvas.with_colors(|code| self.deficiency().seen_srgb8(code))
+    pub(crate) fn simulate(self, canvas: Canvas) -> Canvas {
+        canvas.with_colors(|code| self.deficiency().simulate_srgb8(code))
     }
 }

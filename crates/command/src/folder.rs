@@ -52,7 +52,7 @@ impl Sink for Target {
     fn file(&self, name: &str, content: Content<'_>) -> Result<(), WriteFault> {
         // The folder may have been deleted since the render began. If it cannot be created, writing the file reports the error.
         let _ = std::fs::create_dir_all(&self.folder);
-        files::Folder(self.folder.clone()).file(name, content)
+        files::DiskFolder(self.folder.clone()).file(name, content)
     }
 }
 
@@ -74,7 +74,7 @@ impl Folder for Target {
         // Leftovers are removed once per folder, however many pictures are written to it.
         static SWEPT: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
         if SWEPT.lock().unwrap_or_else(PoisonError::into_inner).insert(self.folder.clone()) {
-            leftover::sweep(&self.folder);
+            leftover::remove_stale_temporaries(&self.folder);
         }
         Ok(())
     }
@@ -140,7 +140,7 @@ impl Sink for Temporary {
     fn file(&self, name: &str, content: Content<'_>) -> Result<(), WriteFault> {
         let path = Self::path(name);
         let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        files::Folder(std::env::temp_dir()).file(&file, content)
+        files::DiskFolder(std::env::temp_dir()).file(&file, content)
     }
 }
 

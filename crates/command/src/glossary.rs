@@ -73,7 +73,7 @@ const WORDS: [(&[&str], &str, &str); 26] = [
 ];
 
 /// Looks up a word of the glossary: returns what it means here and the command that tells more.
-pub(crate) fn meant(word: &str) -> Option<(&'static str, &'static str)> {
+pub(crate) fn lookup(word: &str) -> Option<(&'static str, &'static str)> {
     let key = normalized(word.trim());
     let one = key.strip_suffix('s').unwrap_or(&key);
     let is = |known: &&str| {

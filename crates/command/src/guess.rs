@@ -40,7 +40,7 @@ const OTHER_ARGUMENTS: [(&str, &str); 6] = [
 
 /// Returns an error with a hint for an unknown command or argument of the command line `line`, whose first word is the program.
 /// Returns `None` for other errors, and if no better command is known.
-pub(crate) fn meant(error: &clap::Error, line: &[OsString]) -> Option<Fault> {
+pub(crate) fn suggestion(error: &clap::Error, line: &[OsString]) -> Option<Fault> {
     if error.kind() == ErrorKind::UnknownArgument && holds(line, &["film", "develop"]) {
         let Some(ContextValue::String(typed)) = error.get(ContextKind::InvalidArg) else { return None };
         let (_, hint) = OTHER_ARGUMENTS.iter().find(|(argument, _)| argument == typed)?;
@@ -142,7 +142,7 @@ mod tests {
             ("D65", "spectrum info D65"),
         ] {
             let error = Arguments::try_parse_from(["spectra", typed]).expect_err(typed);
-            let hint = meant(&error, &[]).and_then(|fault| fault.hint).unwrap_or_default();
+            let hint = suggestion(&error, &[]).and_then(|fault| fault.hint).unwrap_or_default();
             assert_eq!(hint, format!("did you mean `spectra {command}`?"));
         }
         let line = |words: &str| words.split(' ').map(OsString::from).collect::<Vec<_>>();
@@ -155,7 +155,7 @@ mod tests {
             ("spectra film develop a.png --stock tri-x --filter red", "lens.filters=[wratten-12]"),
         ] {
             let error = Arguments::try_parse_from(line(typed)).expect_err(typed);
-            let said = meant(&error, &line(typed)).and_then(|fault| fault.hint).unwrap_or_default();
+            let said = suggestion(&error, &line(typed)).and_then(|fault| fault.hint).unwrap_or_default();
             assert!(said.contains(hint), "{typed}: {said}");
         }
         for (typed, hint) in [
@@ -177,6 +177,6 @@ mod tests {
         }
         // The parser's hint for `spectra lst` is good enough.
         let error = Arguments::try_parse_from(["spectra", "lst"]).expect_err("no command");
-        assert!(meant(&error, &[]).is_none() && error.to_string().contains("list"), "{error}");
+        assert!(suggestion(&error, &[]).is_none() && error.to_string().contains("list"), "{error}");
     }
 }

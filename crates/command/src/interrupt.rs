@@ -24,13 +24,13 @@ impl Interrupt {
     pub(crate) fn stops(&self, control: &Arc<Control>) {
         *self.control.lock().unwrap_or_else(PoisonError::into_inner) = Arc::clone(control);
         // A signal may have arrived while no render was registered.
-        if self.happened() {
+        if self.is_requested() {
             control.stop();
         }
     }
 
     /// Whether a request to stop has arrived.
-    pub(crate) fn happened(&self) -> bool {
+    pub(crate) fn is_requested(&self) -> bool {
         self.count.load(SeqCst) > 0
     }
 
@@ -45,7 +45,7 @@ impl Interrupt {
 pub(crate) fn listen(control: &Arc<Control>, folder: &Path) -> Interrupt {
     let (count, first) = (Arc::new(AtomicU32::new(0)), Arc::new(AtomicU8::new(CTRL_C)));
     let control = Arc::new(Mutex::new(Arc::clone(control)));
-    if console::is_kept() {
+    if console::is_captured() {
         // Signals belong to the program that called the command.
         return Interrupt { count, signal: first, control };
     }

@@ -16,6 +16,7 @@ mod doc;
 mod eye;
 mod film;
 mod folder;
+mod formatting;
 mod frames;
 mod glass;
 mod glossary;
@@ -38,7 +39,6 @@ mod spectrum;
 mod time_limit;
 mod version;
 mod view;
-mod words;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -65,7 +65,7 @@ pub fn main_with_notices(unpack: Unpack, notices: &'static str) -> ExitCode {
 
 /// Result of a command line that ran in this process.
 #[derive(Clone, Debug)]
-pub struct Called {
+pub struct CommandOutput {
     /// Exit code of the command line.
     pub code: u8,
     /// Bytes that the command wrote to standard output.
@@ -77,10 +77,10 @@ pub struct Called {
 /// Runs a command line in this process; `arguments` excludes the name of the program. The result is that of a separate process,
 /// with three exceptions. Signals are left to the caller, `--time-limit` does not end the process before the first ray, and no
 /// stream counts as a terminal.
-pub fn call(arguments: impl IntoIterator<Item = OsString>, unpack: Unpack) -> Called {
+pub fn call(arguments: impl IntoIterator<Item = OsString>, unpack: Unpack) -> CommandOutput {
     let line = std::iter::once(OsString::from("spectra")).chain(arguments);
-    let (code, kept) = console::kept(|| answer(line, unpack, ""));
-    Called { code, out: kept.out, err: kept.err }
+    let (code, kept) = console::captured(|| answer(line, unpack, ""));
+    CommandOutput { code, out: kept.out, err: kept.err }
 }
 
 /// Replaces `~` in an argument like `--output=~/picture.png` with the user's home folder. Shells do this only at the beginning of
@@ -109,7 +109,7 @@ fn answer(line: impl Iterator<Item = OsString>, unpack: Unpack, notices: &str) -
         Ok(arguments) => arguments,
         Err(error) => {
             // clap also reports help and version as errors, with exit code 0.
-            match guess::meant(&error, &line) {
+            match guess::suggestion(&error, &line) {
                 Some(hint) => console::faults(&hint.into()),
                 None => console::parsed(&error),
             }

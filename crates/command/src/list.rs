@@ -10,7 +10,7 @@ use spectra_core::names;
 use spectra_core::params::Fault;
 use spectra_core::registry::{self, Documentation, Listed};
 use spectra_film::stock::{Process, Stock};
-use spectra_glass::Catalogue;
+use spectra_glass::Catalog;
 use spectra_lens::Section;
 use spectra_optics::Optics;
 use spectra_scene::bundled::{self, Bundled};
@@ -171,7 +171,7 @@ fn items_of(kind: &str) -> Vec<Item> {
             let all = spectra_spectrum::bundled_spectra().filter(|(_, path)| path.starts_with("spectra/sensors/"));
             all.filter_map(|(name, path)| spectrum("sensor", name, path)).collect()
         }
-        "glass" => Catalogue::bundled().glasses().map(|glass| glass_item(&glass)).collect(),
+        "glass" => Catalog::bundled().glasses().map(|glass| glass_item(&glass)).collect(),
         "format" => formats(),
         _ => Vec::new(),
     }

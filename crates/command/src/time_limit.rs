@@ -1,8 +1,8 @@
 //! Enforces `--time-limit` while the scene is set up, before any light is traced.
 
 use crate::console;
+use crate::formatting;
 use crate::outcome::DONE;
-use crate::words;
 use serde_json::json;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering::SeqCst};
@@ -22,7 +22,7 @@ impl SetUp {
     /// called the command in its own process, because that process must not end here.
     pub(crate) fn watched(deadline: Option<Instant>, limit_s: f64, is_json: bool, is_quiet: bool) -> Self {
         let state = Arc::new(AtomicU8::new(SETTING_UP));
-        if let Some(deadline) = deadline.filter(|_| !console::is_kept()) {
+        if let Some(deadline) = deadline.filter(|_| !console::is_captured()) {
             let state = Arc::clone(&state);
             // If no thread can be started, the limit applies only once light is traced.
             let _ = std::thread::Builder::new().name("time limit".to_owned()).spawn(move || {
@@ -55,8 +55,10 @@ impl Drop for SetUp {
 }
 
 fn say(limit_s: f64, is_json: bool, is_quiet: bool) {
-    let text =
-        format!("the time limit of {} ended before rendering began: nothing was written", words::duration(limit_s));
+    let text = format!(
+        "the time limit of {} ended before rendering began: nothing was written",
+        formatting::duration(limit_s)
+    );
     if is_json {
         let _ = console::json(&json!({ "event": "stopping", "message": text }));
     } else if !is_quiet {

@@ -8,7 +8,7 @@ use crate::outcome::{Failure, Outcome};
 use spectra_core::Isa;
 use spectra_core::params::Fault;
 use spectra_session::{PICTURES, is_picture};
-use spectra_view::View;
+use spectra_view::ViewerSettings;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -32,7 +32,7 @@ pub(crate) fn view(arguments: &arguments::View, isa: Isa) -> Outcome {
         None => spectra_view::color_tester(arguments.port, ready),
         Some(scene) => {
             let (stock, overrides) = film(arguments, scene)?;
-            let view = View {
+            let view = ViewerSettings {
                 scene: scene.clone(),
                 stock,
                 overrides,

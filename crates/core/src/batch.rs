@@ -86,9 +86,9 @@ struct Scratch {
     /// Cosine of incidence between the loops; afterwards the margin by which the ray passes, negative or NaN if it ends.
     cosine_then_margin: Column<f64>,
     valid: Column<f64>,
-    /// Value that a shape with a stepwise intersection keeps between steps; afterwards [`Weighing::versine`].
+    /// Value that a shape with a stepwise intersection keeps between steps; afterwards [`WeightColumns::versine`].
     kept_then_versine: Column<f64>,
-    /// Size of the last step of a stepwise intersection, mm; afterwards [`Weighing::way_mm`].
+    /// Size of the last step of a stepwise intersection, mm; afterwards [`WeightColumns::way_mm`].
     step_then_way: Column<f64>,
 }
 
@@ -139,7 +139,7 @@ pub struct Columns<'a> {
 /// Read access to the columns that the weight of a ray may depend on, and write access to the weights. Code that only changes
 /// weights leaves the rays in place, so cached values of their positions stay valid.
 #[derive(Debug)]
-pub struct Weighing<'a> {
+pub struct WeightColumns<'a> {
     /// Positions, mm.
     pub position: [&'a [f64]; 3],
     /// Unit directions.
@@ -149,7 +149,7 @@ pub struct Weighing<'a> {
     /// State: [`ALIVE`], or cause and surface of the loss.
     pub state: &'a [u64],
     /// Distance that each living ray traveled to the last surface, mm; negative if it ran backward. Valid if the surface
-    /// records it ([`notes_meeting`](crate::surface::Surface::notes_meeting)); code that computes the distance itself may store
+    /// records it ([`notes_meeting`](crate::surface::Surface::records_intersection)); code that computes the distance itself may store
     /// it here.
     pub way_mm: &'a mut [f64],
     /// Versine, 1 - cos, of the angle by which the last surface deflected each ray. Valid under the same condition as `way_mm`,
@@ -316,9 +316,9 @@ impl RayBatch {
 
     /// Returns the weights, writable, and the columns that they may depend on.
     #[inline(always)]
-    pub fn weighing(&mut self) -> Weighing<'_> {
+    pub fn weight_columns(&mut self) -> WeightColumns<'_> {
         let (c, s) = self.split();
-        Weighing {
+        WeightColumns {
             way_mm: s.step_then_way,
             versine: s.kept_then_versine,
             position: [c.x, c.y, c.z],

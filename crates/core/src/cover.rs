@@ -32,7 +32,7 @@ impl CoverStack {
 
     /// Returns the same plates with every index fixed at its value at one wavelength, nm.
     #[must_use]
-    pub fn held_at(&self, wavelength_nm: f64) -> Self {
+    pub fn at_wavelength(&self, wavelength_nm: f64) -> Self {
         let held = |p: &CoverPlate| CoverPlate { index: vec![self.index(p, wavelength_nm); self.grid.count], ..*p };
         Self { grid: self.grid, plates: self.plates.iter().map(held).collect() }
     }
@@ -81,6 +81,6 @@ mod tests {
         assert!((two.shift_mm(500.0) - 2.0 / 3.0 - 0.375).abs() < 1e-15);
         let colored = CoverStack::new(&grid, vec![CoverPlate { thickness_mm: 1.0, index: vec![1.6, 1.5, 1.45] }]);
         assert_eq!(colored.shift_mm(300.0).to_bits(), colored.shift_mm(400.0).to_bits(), "held beyond the band");
-        assert_eq!(colored.held_at(450.0).shift_mm(600.0).to_bits(), colored.shift_mm(450.0).to_bits());
+        assert_eq!(colored.at_wavelength(450.0).shift_mm(600.0).to_bits(), colored.shift_mm(450.0).to_bits());
     }
 }

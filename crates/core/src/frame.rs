@@ -159,39 +159,39 @@ impl ImageState {
 
 /// Data requested of a picture in addition to what a screen shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wanted {
-    /// The picture without conversion to a gamut; see [`Beside::open`].
-    pub open: bool,
+pub struct ExtraRequest {
+    /// The picture without conversion to a gamut; see [`ExtraData::unclamped`].
+    pub unclamped: bool,
     /// Exposure and density, layer by layer.
     pub layers: bool,
 }
 
 /// A finished picture: what a screen shows, and additional data.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finished {
+pub struct FinishedPicture {
     /// The picture for a screen.
-    pub shown: DisplayPicture,
+    pub display: DisplayPicture,
     /// Additional data of the picture.
-    pub beside: Beside,
+    pub extra: ExtraData,
 }
 
 /// Data of a picture in addition to what a screen shows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Beside {
+pub struct ExtraData {
     /// The picture without conversion to a gamut: values below 0 are colors that sRGB cannot have, values above 1 are light
     /// beyond white. For [`ImageState::Data`], the values of the scale themselves. `None` if unknown or not wanted.
-    pub open: Option<DisplayPicture>,
+    pub unclamped: Option<DisplayPicture>,
     /// Layers by their names (`exposure.red`, `density.red`), of the picture's size; empty if unknown or not wanted.
     pub layers: Vec<ExposureChannel>,
     /// Amount of light that the value 1 stands for, such as `0.4 lx s`, if it stands for one.
     pub white: Option<String>,
 }
 
-impl Finished {
+impl FinishedPicture {
     /// Wraps a picture for a screen, without additional data.
     #[must_use]
     pub fn of(shown: DisplayPicture) -> Self {
-        Self { shown, beside: Beside::default() }
+        Self { display: shown, extra: ExtraData::default() }
     }
 }
 

@@ -23,6 +23,7 @@
 pub mod batch;
 pub mod cover;
 pub mod frame;
+pub mod frame_view;
 pub mod loss;
 pub mod names;
 pub mod numbers;
@@ -37,7 +38,6 @@ pub mod sink;
 pub mod spectral;
 pub mod stage;
 pub mod surface;
-pub mod view;
 pub mod workers;
 
 pub use batch::RayBatch;

@@ -264,17 +264,17 @@ impl Numbers {
             };
             return isa.run(FillLattice { step, key: self.key(stream, dimension), first, out });
         }
-        self.fill_sobol(isa, std::iter::once(Stretch { stream, first, count: out.len() }), d, out);
+        self.fill_sobol(isa, std::iter::once(SampleSpan { stream, first, count: out.len() }), d, out);
     }
 
     /// Writes the numbers of several runs of samples one after the other, each as [`Numbers::fill_rotated`] writes it.
     ///
     /// # Panics
     /// If `out` has no room for all of them.
-    pub fn fill_stretches(
+    pub fn fill_spans(
         &self,
         isa: Isa,
-        stretches: impl Iterator<Item = Stretch>,
+        stretches: impl Iterator<Item = SampleSpan>,
         group: u32,
         dimension: u32,
         out: &mut [f64],
@@ -283,7 +283,7 @@ impl Numbers {
             return self.fill_sobol(isa, stretches, dimension as usize, out);
         }
         let mut rest = out;
-        for Stretch { stream, first, count } in stretches {
+        for SampleSpan { stream, first, count } in stretches {
             let (now, later) = rest.split_at_mut(count);
             self.fill_rotated(isa, stream, first, group, dimension, now);
             rest = later;
@@ -292,7 +292,7 @@ impl Numbers {
 
     /// Writes the Sobol numbers of several runs. A pixel has few samples, so points and keys of many runs are gathered and
     /// scrambled together.
-    fn fill_sobol(&self, isa: Isa, stretches: impl Iterator<Item = Stretch>, d: usize, out: &mut [f64]) {
+    fn fill_sobol(&self, isa: Isa, stretches: impl Iterator<Item = SampleSpan>, d: usize, out: &mut [f64]) {
         let (mut points, mut keys, mut gathered, mut written) = ([0_u32; TOGETHER], [0_u32; TOGETHER], 0, 0);
         let scramble = |points: &[u32], keys: &[u32], out: &mut [f64]| {
             if d == Dimension::Wavelength as usize {
@@ -301,7 +301,7 @@ impl Numbers {
                 isa.run(Scramble { points, keys, out });
             }
         };
-        for Stretch { stream, first, count } in stretches {
+        for SampleSpan { stream, first, count } in stretches {
             let (mut at, end) = (first, first + count as u64);
             while at < end {
                 // One aligned block of 256 points shares all but the low eight bits of the index.
@@ -435,7 +435,7 @@ impl Vectorized for FillLattice<'_> {
 
 /// A run of consecutive samples of a stream.
 #[derive(Clone, Copy, Debug)]
-pub struct Stretch {
+pub struct SampleSpan {
     /// Number of the stream.
     pub stream: u64,
     /// First sample of the run.

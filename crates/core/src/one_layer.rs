@@ -78,6 +78,6 @@ impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync + 'static> Film for OneLayer<T>
     }
 
     fn describe(&self) -> String {
-        format!("{}, exposed for {}", self.channel.name, crate::shutter::words(self.exposure_time_s))
+        format!("{}, exposed for {}", self.channel.name, crate::shutter::format_time(self.exposure_time_s))
     }
 }

@@ -41,7 +41,7 @@ pub struct Resource {
 
 /// A file that was found but not read.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct FoundFile {
     /// Name of the file in messages: a path, or `bundled:...`.
     pub name: String,
     content: Content,
@@ -58,7 +58,7 @@ pub trait ReadSeek: BufRead + Seek + Send {}
 
 impl<R: BufRead + Seek + Send> ReadSeek for R {}
 
-impl Found {
+impl FoundFile {
     /// Creates a reference to a file on disk.
     #[must_use]
     pub fn on_disk(name: String, path: PathBuf) -> Self {
@@ -131,8 +131,14 @@ pub trait Resources: Send + Sync {
     ///
     /// # Errors
     /// [`ResourceError`].
-    fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64) -> Result<Found, ResourceError> {
-        self.read(path, folders, endings, limit_bytes).map(|read| Found::bytes(read.name, read.bytes))
+    fn find(
+        &self,
+        path: &str,
+        folders: &[&str],
+        endings: &[&str],
+        limit_bytes: u64,
+    ) -> Result<FoundFile, ResourceError> {
+        self.read(path, folders, endings, limit_bytes).map(|read| FoundFile::bytes(read.name, read.bytes))
     }
 
     /// Reads and parses a YAML document (a lens, a film stock), found as by [`Resources::read`].

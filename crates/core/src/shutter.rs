@@ -7,7 +7,7 @@ const WHOLE: (f64, f64) = (1e-6, 1e-3);
 /// number is shown exactly. Other times are rounded to what a shutter can distinguish: two digits below 0.3 s, three from there
 /// on. Below 1e-7 s and from 1e5 s on, the time is shown as a plain number.
 #[must_use]
-pub fn words(seconds: f64) -> String {
+pub fn format_time(seconds: f64) -> String {
     if !(1e-7..1e5).contains(&seconds) {
         return match seconds {
             0.0 => "0 s".to_owned(),
@@ -88,7 +88,7 @@ mod tests {
             "0 s",
             "1.2e-9 s",
         ];
-        assert_eq!(times.map(words), wanted);
+        assert_eq!(times.map(format_time), wanted);
     }
 
     /// The text is never farther from the time than a third of a third-stop.
@@ -96,7 +96,7 @@ mod tests {
     fn words_stay_near_the_time() {
         for i in 0..4000 {
             let seconds = 1e-7 * crate::math::pow(1e11, f64::from(i) / 4000.0);
-            let text = words(seconds);
+            let text = format_time(seconds);
             let number = text.trim_end_matches(" s");
             let said = match number.split_once('/') {
                 Some((_, below)) => 1.0 / below.parse::<f64>().expect("a number"),

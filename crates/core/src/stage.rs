@@ -17,7 +17,7 @@
 
 use crate::RayBatch;
 use crate::cover::CoverStack;
-use crate::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, ImageState, RawFrame, Wanted};
+use crate::frame::{DisplayPicture, ExposureFrame, ExtraRequest, FinishedPicture, FrameSize, ImageState, RawFrame};
 use crate::isa::Isa;
 use crate::params::{Faults, Warning};
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
@@ -36,7 +36,7 @@ pub trait Source: Send + Sync {
     }
 
     /// Warnings about the large files of this source, available once [`Source::prepare`] has read them.
-    fn doubts(&self) -> &[Warning] {
+    fn warnings(&self) -> &[Warning] {
         &[]
     }
 
@@ -290,8 +290,8 @@ pub trait Response: Send + Sync {
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture>;
 
     /// Returns the picture of [`Response::display`] with the extra data that are `wanted`, as far as they are known.
-    fn finish(&self, exposure: &ExposureFrame, _wanted: Wanted) -> Option<Finished> {
-        self.display(exposure).map(Finished::of)
+    fn finish(&self, exposure: &ExposureFrame, _wanted: ExtraRequest) -> Option<FinishedPicture> {
+        self.display(exposure).map(FinishedPicture::of)
     }
 
     /// Image state of the picture: what its values stand for.
@@ -318,7 +318,7 @@ impl<R: Response + ?Sized> Response for Box<R> {
         (**self).display(exposure)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Option<FinishedPicture> {
         (**self).finish(exposure, wanted)
     }
 
@@ -372,7 +372,7 @@ pub type Negative = Box<dyn Any + Send + Sync>;
 
 /// Reason why a film cannot distinguish tones in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Beyond {
+pub enum Misexposure {
     /// The frame has too little light.
     Dark,
     /// The frame has too much light.
@@ -433,7 +433,7 @@ pub trait Film: Any + Send + Sync {
 
     /// Tells whether nearly all of a frame is too dark or too bright for the film to distinguish tones. Its exposure is that of
     /// [`Film::develop`]. `None` if neither is so, or if the film does not know.
-    fn beyond(&self, _exposure: &ExposureFrame) -> Option<Beyond> {
+    fn misexposure(&self, _exposure: &ExposureFrame) -> Option<Misexposure> {
         None
     }
 
@@ -450,7 +450,7 @@ pub trait Film: Any + Send + Sync {
 
     /// Returns a sentence that warns if it is unknown whether an exposure of `time_s` seconds counts in full (reciprocity
     /// failure); `None` if it is known.
-    fn long_exposure_doubt(&self, _time_s: f64) -> Option<String> {
+    fn long_exposure_warning(&self, _time_s: f64) -> Option<String> {
         None
     }
 
@@ -478,8 +478,8 @@ pub trait Film: Any + Send + Sync {
     ///
     /// # Errors
     /// As [`Film::develop`].
-    fn finish(&self, exposure: &ExposureFrame, _wanted: Wanted) -> Result<Finished, String> {
-        self.develop(exposure).map(Finished::of)
+    fn finish(&self, exposure: &ExposureFrame, _wanted: ExtraRequest) -> Result<FinishedPicture, String> {
+        self.develop(exposure).map(FinishedPicture::of)
     }
 
     /// Develops the film without printing, scanning or viewing it, with the `wanted` data that depend on the developed film
@@ -487,7 +487,7 @@ pub trait Film: Any + Send + Sync {
     ///
     /// # Errors
     /// As [`Film::develop`].
-    fn negative(&self, _exposure: &ExposureFrame, _wanted: Wanted) -> Result<Option<Negative>, String> {
+    fn negative(&self, _exposure: &ExposureFrame, _wanted: ExtraRequest) -> Result<Option<Negative>, String> {
         Ok(None)
     }
 
@@ -495,7 +495,7 @@ pub trait Film: Any + Send + Sync {
     ///
     /// # Errors
     /// As [`Film::develop`]; a negative of another kind of film.
-    fn print(&self, _negative: &Negative, _wanted: Wanted) -> Result<Finished, String> {
+    fn print(&self, _negative: &Negative, _wanted: ExtraRequest) -> Result<FinishedPicture, String> {
         Err("this film makes no negative".to_owned())
     }
 

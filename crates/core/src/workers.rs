@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 /// A set of worker threads that run the same closure.
 pub trait Workers: Sync {
     /// Calls `work` once on each thread, and returns when all calls have returned.
-    fn each(&self, work: &(dyn Fn() + Sync));
+    fn run_on_all(&self, work: &(dyn Fn() + Sync));
 
     /// Returns whether the caller no longer wants the result. Once true, it stays true. Work that checks this ends early, with
     /// an error of its own.
@@ -17,10 +17,10 @@ pub trait Workers: Sync {
 
 /// Workers that consist of the calling thread only.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Alone;
+pub struct SingleThread;
 
-impl Workers for Alone {
-    fn each(&self, work: &(dyn Fn() + Sync)) {
+impl Workers for SingleThread {
+    fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
         work();
     }
 }
@@ -30,7 +30,7 @@ impl Workers for Alone {
 ///
 /// # Errors
 /// The first error, in the order of the pieces, among those that occurred before the work stopped.
-pub fn each_of<S, T: Send, E: Send>(
+pub fn map_pieces<S, T: Send, E: Send>(
     workers: &dyn Workers,
     pieces: usize,
     fresh: impl Fn() -> S + Sync,
@@ -38,7 +38,7 @@ pub fn each_of<S, T: Send, E: Send>(
 ) -> Result<Vec<T>, E> {
     let next = AtomicUsize::new(0);
     let done: Mutex<Vec<(usize, Result<T, E>)>> = Mutex::new(Vec::with_capacity(pieces));
-    workers.each(&|| {
+    workers.run_on_all(&|| {
         let mut state = fresh();
         loop {
             let piece = next.fetch_add(1, Relaxed);

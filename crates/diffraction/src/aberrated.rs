@@ -7,7 +7,7 @@
 //! At each frequency of a lattice, the wanted contrast is (wave rays + e^2 edge) / (rays^2 + e^2), with the contrasts of wavefront, rays
 //! and edge, and e = 0.1. Contrast that the rays lost altogether therefore stays lost. Phases stay those of the rays.
 
-use crate::{Light, Polygon, Wave};
+use crate::{ChannelLight, Polygon, Wavefront};
 use spectra_core::math;
 use std::f64::consts::TAU;
 
@@ -31,7 +31,12 @@ pub(crate) struct Correction {
 /// Computes the correction to the pattern of a perfect lens with this opening. Rays with the aberrations of `wave`, spread by the corrected
 /// pattern, have the contrast of the wavefront. The weights sum to 0. Opposite pixels get the same weight, so phases stay those of the
 /// rays. `None` if the correction is negligible, or if aberrations are so large that rays alone describe the light.
-pub(crate) fn correction(opening: &Polygon, wave: &Wave, light: &Light, pitch_mm: [f64; 2]) -> Option<Correction> {
+pub(crate) fn correction(
+    opening: &Polygon,
+    wave: &Wavefront,
+    light: &ChannelLight,
+    pitch_mm: [f64; 2],
+) -> Option<Correction> {
     let mean = light.mean_mm();
     let across = 2.0 * opening.reach();
     let pitch = pitch_mm[0].min(pitch_mm[1]);
@@ -70,7 +75,7 @@ pub(crate) fn correction(opening: &Polygon, wave: &Wave, light: &Light, pitch_mm
 }
 
 /// Returns the largest distance of the rays' landing points from their mean, mm.
-fn spots(opening: &Polygon, wave: &Wave) -> f64 {
+fn spots(opening: &Polygon, wave: &Wavefront) -> f64 {
     let [cx, cy] = opening.center();
     let places =
         opening.rings().iter().flatten().flat_map(|[x, y]| [0.33, 0.67, 1.0].map(|t| [cx + t * x, cy + t * y]));
@@ -133,7 +138,7 @@ struct Cells {
 }
 
 impl Cells {
-    fn new(opening: &Polygon, wave: &Wave, mm: f64, side: usize, pitch_mm: [f64; 2]) -> Option<Self> {
+    fn new(opening: &Polygon, wave: &Wavefront, mm: f64, side: usize, pitch_mm: [f64; 2]) -> Option<Self> {
         let step = pitch_mm.map(|pitch| mm / (side as f64 * pitch));
         let [low, high] = opening.bounds();
         let mut steps = [1; 2];

@@ -5,8 +5,8 @@
 //! the energy is exact.
 
 use crate::aberrated::{Correction, correction};
-use crate::light::Light;
-use crate::{Polygon, Wave, Wings};
+use crate::channel_light::ChannelLight;
+use crate::{Polygon, Wavefront, Wings};
 use spectra_core::math;
 use std::f64::consts::{PI, TAU};
 
@@ -29,7 +29,7 @@ impl PixelSpread {
     /// Computes the spread of a channel's light by an opening. Pixels have the size `pitch_mm` (mm). The weights reach out to `radius`
     /// pixels, where they fade out. `elsewhere` is the fraction of the light that goes beyond. The weights and `elsewhere` sum to 1.
     #[must_use]
-    pub fn new(opening: &Polygon, light: &Light, pitch_mm: [f64; 2], radius: usize, elsewhere: f64) -> Self {
+    pub fn new(opening: &Polygon, light: &ChannelLight, pitch_mm: [f64; 2], radius: usize, elsewhere: f64) -> Self {
         let wings = Wings::new(opening);
         let mut own = Self { radius, weights: vec![0.0; (2 * radius + 1) * (2 * radius + 1)] };
         let far_mm = radius as f64 * pitch_mm[0].min(pitch_mm[1]);
@@ -75,7 +75,7 @@ impl PixelSpread {
     /// Corrects the weights for a wavefront's aberrations: rays with these aberrations, spread by the result, have the contrast of the
     /// wavefront.
     #[must_use]
-    pub fn with_wave(mut self, opening: &Polygon, wave: &Wave, light: &Light, pitch_mm: [f64; 2]) -> Self {
+    pub fn with_wave(mut self, opening: &Polygon, wave: &Wavefront, light: &ChannelLight, pitch_mm: [f64; 2]) -> Self {
         if let Some(Correction { reach, weights }) = correction(opening, wave, light, pitch_mm) {
             let r = reach as isize;
             let places = (-r..r + 1).flat_map(|j| (-r..r + 1).map(move |i| [i, j]));
@@ -96,7 +96,7 @@ impl PixelSpread {
     }
 
     /// Samples the pattern itself and distributes it to the pixels near the middle.
-    fn add_near(&mut self, opening: &Polygon, light: &Light, pitch_mm: [f64; 2], near_mm: f64, far_mm: f64) {
+    fn add_near(&mut self, opening: &Polygon, light: &ChannelLight, pitch_mm: [f64; 2], near_mm: f64, far_mm: f64) {
         let [shortest, longest] = light.range_mm();
         let across = 2.0 * opening.reach();
         let pitch = pitch_mm[0].min(pitch_mm[1]);
@@ -161,7 +161,7 @@ impl PixelSpread {
 }
 
 /// Returns the distance up to which the pattern itself is integrated, mm.
-pub(crate) fn near_mm(opening: &Polygon, light: &Light) -> f64 {
+pub(crate) fn near_mm(opening: &Polygon, light: &ChannelLight) -> f64 {
     FRINGES * light.range_mm()[1] / (2.0 * opening.reach())
 }
 

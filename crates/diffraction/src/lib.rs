@@ -15,7 +15,7 @@
 //! others leave of 1. Tests compare this middle with the pattern.
 //!
 //! **Aberrations.** Near the core the aberrations of the lens matter, too. There the wavefront, traced through the lens, gives the combined
-//! effect of rays and edges ([`Waves`], [`Wave`], `aberrated`).
+//! effect of rays and edges ([`Wavefronts`], [`Wavefront`], `aberrated`).
 //!
 //! **Far.** From 0.6 of the core's radius on, light fades over to two other ways. Pixels whose spikes would be seen have them drawn as
 //! lines of boxes to the edge of the frame (`star`). All other light, and what bent edges and the flanks of spikes send, is smooth and goes
@@ -27,19 +27,19 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod aberrated;
+mod channel_light;
 mod kernel;
-mod light;
 mod polygon;
 mod pupil;
 mod spread;
 mod star;
-mod wave;
+mod wavefront;
 mod wings;
 
+pub use channel_light::ChannelLight;
 pub use kernel::PixelSpread;
-pub use light::Light;
 pub use polygon::Polygon;
-pub use pupil::{Pupil, Waves};
-pub use spread::{Account, Spread, View, brightest_star};
-pub use wave::Wave;
+pub use pupil::{Pupil, Wavefronts};
+pub use spread::{LensView, Spread, SpreadReport, brightest_star};
+pub use wavefront::Wavefront;
 pub use wings::{Fan, Wings};

@@ -1,11 +1,11 @@
 //! The opening of a lens as seen from a point on film.
 
-use crate::{Polygon, Wave};
+use crate::{Polygon, Wavefront};
 use glam::{DVec2, DVec3};
 use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::sin_cos_turns;
-use spectra_lens::{Aperture, Element, Shape};
+use spectra_lens::{Aperture, ApertureShape, Element};
 use spectra_numerics::linear::least_squares;
 use spectra_optics::{Bundle, Clipping, Optics};
 use spectra_tracer::{Indices, Tracer, Travel};
@@ -183,13 +183,13 @@ impl<'o> Pupil<'o> {
 }
 
 /// The wavefronts of a lens at one wavelength, for points at its focus distance.
-pub struct Waves<'a> {
+pub struct Wavefronts<'a> {
     optics: &'a Optics,
     tracer: Arc<Tracer>,
     nm: f64,
 }
 
-impl<'a> Waves<'a> {
+impl<'a> Wavefronts<'a> {
     /// Prepares a lens at a wavelength, nm; `None` if a glass is not defined there.
     #[must_use]
     pub fn new(optics: &'a Optics, nm: f64) -> Option<Self> {
@@ -199,7 +199,7 @@ impl<'a> Waves<'a> {
     /// Returns the wavefront of the light that reaches a point of the film through an opening, given in direction cosines along two unit
     /// vectors. Point (mm) and vectors are in the frame of the image plane. `None` if too few rays come through.
     #[must_use]
-    pub fn seen_from(&self, point: DVec3, axes: [DVec3; 2], opening: &Polygon) -> Option<Wave> {
+    pub fn seen_from(&self, point: DVec3, axes: [DVec3; 2], opening: &Polygon) -> Option<Wavefront> {
         let normal = axes[0].cross(axes[1]);
         // Vector toward the lens.
         let rear = self.optics.image_pose.local_point(self.optics.elements.last()?.pose.origin_mm) - point;
@@ -249,7 +249,7 @@ impl<'a> Waves<'a> {
             .map(|i| (cosines[i], paths[i] + rest(i)))
             .filter(|(_, mm)| mm.is_finite())
             .unzip();
-        Wave::fitted(&places, &mm)
+        Wavefront::fitted(&places, &mm)
     }
 }
 
@@ -262,7 +262,7 @@ fn reach_along(from: DVec2, way: DVec2, radius: f64) -> f64 {
 /// Returns the radius of the clear aperture of an element about its vertex, if it is round.
 fn rim(e: &Element) -> Option<f64> {
     let round = e.apertures.iter().filter(|a| a.center_mm == [0.0; 2] && !a.obscures).filter_map(|a| match a.shape {
-        Shape::Ring { outer_mm, .. } => Some(outer_mm),
+        ApertureShape::Ring { outer_mm, .. } => Some(outer_mm),
         _ => None,
     });
     round.chain(e.semi_diameter_mm).reduce(f64::min).filter(|r| r.is_finite())
@@ -293,7 +293,7 @@ fn opening(e: &Element) -> Result<Option<Rings>, String> {
 }
 
 fn circle(radius_mm: f64) -> Aperture {
-    Aperture { shape: Shape::Ring { inner_mm: 0.0, outer_mm: radius_mm }, center_mm: [0.0; 2], obscures: false }
+    Aperture { shape: ApertureShape::Ring { inner_mm: 0.0, outer_mm: radius_mm }, center_mm: [0.0; 2], obscures: false }
 }
 
 /// A polynomial map of the plane.

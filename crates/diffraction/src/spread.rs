@@ -10,7 +10,7 @@
 
 use crate::kernel::{fade, near_mm};
 use crate::star::{Spike, Spikes, fading};
-use crate::{Light, PixelSpread, Polygon, Wave, Wings};
+use crate::{ChannelLight, PixelSpread, Polygon, Wavefront, Wings};
 use rayon::prelude::*;
 use spectra_core::frame::FrameSize;
 use spectra_numerics::convolve::Convolver;
@@ -32,28 +32,28 @@ const OF_BRIGHTEST: f64 = 1e-4;
 const MOST: usize = 6000;
 
 /// The lens as seen from places of a frame: at a column and row, in pixels from the upper left corner of the picture.
-pub trait View: Sync {
+pub trait LensView: Sync {
     /// Returns the opening seen from a place, in direction cosines; `None` if none is seen.
     fn opening(&self, at: [f64; 2]) -> Option<Polygon>;
 
     /// Returns the wavefront over that opening; `None` for a perfect lens, or if the wavefront is not known.
-    fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wave>;
+    fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wavefront>;
 }
 
 /// The view of a perfect lens, whose openings the closure returns.
-impl<F: Fn([f64; 2]) -> Option<Polygon> + Sync> View for F {
+impl<F: Fn([f64; 2]) -> Option<Polygon> + Sync> LensView for F {
     fn opening(&self, at: [f64; 2]) -> Option<Polygon> {
         self(at)
     }
 
-    fn wave(&self, _: [f64; 2], _: &Polygon) -> Option<Wave> {
+    fn wave(&self, _: [f64; 2], _: &Polygon) -> Option<Wavefront> {
         None
     }
 }
 
 /// What diffraction did to one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Account {
+pub struct SpreadReport {
     /// Fraction of the channel's light that diffraction moves outside the frame.
     pub left: f64,
     /// Fraction of the light of a pixel in the middle of the frame that stays in that pixel.
@@ -65,7 +65,7 @@ pub struct Account {
 /// Returns the brightness of the brightest star, as a fraction of the frame's median, where the star leaves the pixels around its light.
 /// `None` if the middle of the frame sees no opening, or if there is no light.
 #[must_use]
-pub fn brightest_star(size: FrameSize, light: &Light, seen: &dyn View, plane: &[f32]) -> Option<f64> {
+pub fn brightest_star(size: FrameSize, light: &ChannelLight, seen: &dyn LensView, plane: &[f32]) -> Option<f64> {
     let pitch_mm = [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)];
     let middle = seen.opening([0.5 * f64::from(size.width_px), 0.5 * f64::from(size.height_px)])?;
     let pitch = pitch_mm[0].min(pitch_mm[1]);
@@ -77,7 +77,7 @@ pub fn brightest_star(size: FrameSize, light: &Light, seen: &dyn View, plane: &[
 
 /// Whether two openings with their wavefronts spread light alike. Their shapes must agree within a thousandth of their size, wherever they
 /// lie, and their wavefronts within a hundredth of a wavelength.
-fn are_alike(a: &(Polygon, Option<Wave>), b: &(Polygon, Option<Wave>), mean_mm: f64) -> bool {
+fn are_alike(a: &(Polygon, Option<Wavefront>), b: &(Polygon, Option<Wavefront>), mean_mm: f64) -> bool {
     let [(a, wave_a), (b, wave_b)] = [a, b];
     let size = b.reach();
     let about_center = |p: &Polygon| {
@@ -95,7 +95,7 @@ fn are_alike(a: &(Polygon, Option<Wave>), b: &(Polygon, Option<Wave>), mean_mm: 
     let [ca, cb] = [a.center(), b.center()];
     let places = b.rings().iter().flatten().flat_map(|[x, y]| [0.5, 1.0].map(|t| [t * x, t * y]));
     // Optical path of each wavefront relative to its own center.
-    let path = |wave: &Wave, c: [f64; 2], p: [f64; 2]| wave.at([c[0] + p[0], c[1] + p[1]]).0 - wave.at(c).0;
+    let path = |wave: &Wavefront, c: [f64; 2], p: [f64; 2]| wave.at([c[0] + p[0], c[1] + p[1]]).0 - wave.at(c).0;
     shapes && places.into_iter().all(|p| (path(wave_a, ca, p) - path(wave_b, cb, p)).abs() < 0.01 * mean_mm)
 }
 
@@ -107,7 +107,7 @@ fn radius(near_mm: f64, pitch_mm: f64) -> usize {
 /// Returns the largest fraction of a pixel's light that its star brings to another pixel at a distance, at least that of a round opening.
 fn star_peak(opening: &Polygon, mean_mm: f64, pitch_mm: [f64; 2], end_mm: f64) -> f64 {
     let wings = Wings::new(opening);
-    let around = wings.beyond(end_mm, mean_mm) / (TAU * end_mm * end_mm) * pitch_mm[0] * pitch_mm[1];
+    let around = wings.fraction_beyond(end_mm, mean_mm) / (TAU * end_mm * end_mm) * pitch_mm[0] * pitch_mm[1];
     Spike::all(&wings, mean_mm, pitch_mm).iter().map(|spike| spike.peak(end_mm)).fold(around, f64::max)
 }
 
@@ -121,8 +121,8 @@ fn median(plane: &[f32]) -> f32 {
 pub struct Spread<'a> {
     size: FrameSize,
     pitch_mm: [f64; 2],
-    seen: &'a dyn View,
-    light: Light,
+    seen: &'a dyn LensView,
+    light: ChannelLight,
     radius: usize,
     middle: Polygon,
     /// Light that goes farther than the pixels around, cell by cell, as seen from the middle of the frame: all of it, and without spikes.
@@ -148,7 +148,7 @@ fn lighten(light: &mut [f64]) {
 impl<'a> Spread<'a> {
     /// Prepares spreading for a channel's light on a frame. `None` if the middle of the frame sees no opening.
     #[must_use]
-    pub fn new(size: FrameSize, light: Light, seen: &'a dyn View) -> Option<Self> {
+    pub fn new(size: FrameSize, light: ChannelLight, seen: &'a dyn LensView) -> Option<Self> {
         let (width, height) = (size.width_px as usize, size.height_px as usize);
         let pitch_mm = [size.width_mm / width as f64, size.height_mm / height as f64];
         let middle = seen.opening([0.5 * width as f64, 0.5 * height as f64])?;
@@ -162,7 +162,7 @@ impl<'a> Spread<'a> {
             (opening, wave)
         };
         let count = (zones[0] + 1) * (zones[1] + 1);
-        let mut openings: Vec<(Polygon, Option<Wave>)> = (0..count).into_par_iter().map(node).collect();
+        let mut openings: Vec<(Polygon, Option<Wavefront>)> = (0..count).into_par_iter().map(node).collect();
         // A small part of a frame sees the same opening everywhere: compute its kernel only once.
         let mut zones = zones;
         let center = openings.len() / 2;
@@ -194,8 +194,8 @@ impl<'a> Spread<'a> {
         let (mean, end) = (own.light.mean_mm(), own.end_mm());
         let sums = own.cells.each_ref().map(|cells| cells.iter().sum::<f64>());
         let spikes: f64 = Spike::all(&wings, mean, pitch_mm).iter().map(|s| s.light(end)).sum();
-        own.beyond[0] = (wings.beyond(1.0, mean) * fading(end) - sums[0]).max(0.0);
-        own.beyond[1] = (wings.beyond(1.0, mean) * fading(end) - spikes - sums[1]).max(0.0);
+        own.beyond[0] = (wings.fraction_beyond(1.0, mean) * fading(end) - sums[0]).max(0.0);
+        own.beyond[1] = (wings.fraction_beyond(1.0, mean) * fading(end) - spikes - sums[1]).max(0.0);
         let elsewhere = sums[0] + own.beyond[0];
         own.kernels = openings
             .par_iter()
@@ -257,13 +257,13 @@ impl<'a> Spread<'a> {
     ///
     /// # Panics
     /// Panics if the plane does not have the size of the frame.
-    pub fn apply(&self, plane: &mut [f32]) -> Account {
+    pub fn apply(&self, plane: &mut [f32]) -> SpreadReport {
         let (width, height) = (self.size.width_px as usize, self.size.height_px as usize);
         assert_eq!(plane.len(), width * height, "the plane has the frame's size");
         let before: f64 = plane.iter().map(|v| f64::from(*v)).sum();
         // No light, or too much for a finite number.
         if !(before > 0.0 && before.is_finite()) {
-            return Account::default();
+            return SpreadReport::default();
         }
         let bright = self.bright(plane);
         let mut rest = plane.to_vec();
@@ -284,7 +284,7 @@ impl<'a> Spread<'a> {
         let after: f64 = spread.iter().sum();
         let center = self.kernels.len() / 2;
         let stays = self.kernels.get(center).map_or(1.0, |kernel| kernel.weight(0, 0));
-        Account { left: 1.0 - after / before, stays, stars: bright.len() }
+        SpreadReport { left: 1.0 - after / before, stays, stars: bright.len() }
     }
 
     /// Returns the pixels whose spikes are drawn.

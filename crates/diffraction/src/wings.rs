@@ -69,7 +69,7 @@ impl Wings {
     /// Returns the fraction of the light of a wavelength (mm) that falls farther than `r_mm` from the middle. It is what the edges send
     /// there: wavelength times circumference over 2 pi^2 times area times r.
     #[must_use]
-    pub fn beyond(&self, r_mm: f64, wavelength_mm: f64) -> f64 {
+    pub fn fraction_beyond(&self, r_mm: f64, wavelength_mm: f64) -> f64 {
         wavelength_mm * self.around / (2.0 * PI * PI * self.area * r_mm)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::prescription::Medium;
 use spectra_glass::lines::F;
-use spectra_glass::{Catalogue, FindError, Glass};
+use spectra_glass::{Catalog, FindError, Glass};
 
 /// Largest difference between a stated index and that of a catalog glass for the two to be the same glass.
 const SAME_INDEX: f64 = 0.002;
@@ -49,7 +49,7 @@ const EVERYDAY: [(&str, &str); 28] = [
 
 /// A user's own glass catalog, read from an AGF file.
 #[derive(Clone, Debug)]
-pub struct OwnCatalogue {
+pub struct UserCatalog {
     /// Name of the file as written in a lens file.
     pub file: String,
     /// Glasses of the catalog.
@@ -58,18 +58,18 @@ pub struct OwnCatalogue {
 
 /// Catalogs in which the names of a file's glasses are searched, in this order, before all bundled ones.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Catalogues<'a> {
+pub(crate) struct Catalogs<'a> {
     /// The user's own catalogs.
-    pub(crate) own: &'a [OwnCatalogue],
+    pub(crate) own: &'a [UserCatalog],
     /// Makers whose catalogs the file names.
     pub(crate) makers: &'a [&'static str],
 }
 
-impl Catalogues<'_> {
+impl Catalogs<'_> {
     /// Returns the glass of the user's own catalogs with this name, as named in a lens file.
-    fn own(&self, name: &str, stated: Option<(f64, f64)>) -> Option<Medium> {
+    fn user_glass(&self, name: &str, stated: Option<(f64, f64)>) -> Option<Medium> {
         let fits = |glass: &&Glass| glass.name.eq_ignore_ascii_case(name) && fits(glass, stated);
-        let of = |own: &OwnCatalogue| own.glasses.iter().find(fits).map(|glass| format!("{}#{}", own.file, glass.name));
+        let of = |own: &UserCatalog| own.glasses.iter().find(fits).map(|glass| format!("{}#{}", own.file, glass.name));
         self.own.iter().find_map(of).map(|name| Medium::Glass { name, nd: None, vd: None })
     }
 }
@@ -89,7 +89,7 @@ fn chosen(named: &[Glass], stated: Option<(f64, f64)>) -> Option<&Glass> {
 }
 
 /// A medium and an optional note: whether the medium changes the path of light, and the text.
-pub(crate) struct Found {
+pub(crate) struct FoundMedium {
     pub(crate) medium: Medium,
     pub(crate) note: Option<(bool, String)>,
 }
@@ -118,36 +118,36 @@ pub(crate) fn maker_of_catalogue(catalogue: &str) -> Option<&'static str> {
 
 /// Returns the name in a design program's miscellaneous catalog of a medium that belongs to no maker.
 pub(crate) fn everyday_name(full_name: &str) -> Option<&'static str> {
-    let catalogue = Catalogue::bundled();
+    let catalogue = Catalog::bundled();
     let same = |ours: &str| catalogue.find(ours).is_ok_and(|glass| glass.full_name() == full_name);
     EVERYDAY.iter().find(|(_, ours)| same(ours)).map(|(theirs, _)| *theirs)
 }
 
 /// Finds the medium in the catalogs that is nearest to what the file means. `stated` are the nd and Vd that the file gives with the name.
-pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, catalogues: Catalogues<'_>) -> Found {
-    let quiet = |medium| Found { medium, note: None };
+pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, catalogues: Catalogs<'_>) -> FoundMedium {
+    let quiet = |medium| FoundMedium { medium, note: None };
     if name.eq_ignore_ascii_case("air") {
         return quiet(Medium::Air);
     }
     if name.eq_ignore_ascii_case("vacuum") {
         return quiet(Medium::Glass { name: "vacuum".to_owned(), nd: None, vd: None });
     }
-    if let Some(medium) = catalogues.own(name, stated) {
+    if let Some(medium) = catalogues.user_glass(name, stated) {
         return quiet(medium);
     }
     match find(name, stated, catalogues.makers) {
         Some((glass, None)) => with_stated(&glass, stated),
         Some((glass, Some(told))) => {
             let found = with_stated(&glass, stated);
-            Found { note: found.note.or(Some(told)), ..found }
+            FoundMedium { note: found.note.or(Some(told)), ..found }
         }
         None => match stated {
             Some((nd, vd)) => {
                 let text = format!("glass {name} is not in any catalog: carried by its nd {nd} and Vd {vd}");
-                let Found { medium, note } = model(nd, vd);
-                Found { medium, note: note.or(Some((false, text))) }
+                let FoundMedium { medium, note } = model(nd, vd);
+                FoundMedium { medium, note: note.or(Some((false, text))) }
             }
-            None => Found {
+            None => FoundMedium {
                 medium: Medium::Unknown { name: name.to_owned() },
                 note: Some((
                     true,
@@ -162,20 +162,20 @@ pub(crate) fn look_up(name: &str, stated: Option<(f64, f64)>, catalogues: Catalo
 }
 
 /// Returns a glass that is defined by nd and Vd; without dispersion if Vd is not usable.
-pub(crate) fn model(nd: f64, vd: f64) -> Found {
+pub(crate) fn model(nd: f64, vd: f64) -> FoundMedium {
     if nd == 1.0 {
-        return Found { medium: Medium::Air, note: None };
+        return FoundMedium { medium: Medium::Air, note: None };
     }
     if (5.0..=200.0).contains(&vd) {
-        return Found { medium: Medium::Model { nd, vd: Some(vd), ng: None }, note: None };
+        return FoundMedium { medium: Medium::Model { nd, vd: Some(vd), ng: None }, note: None };
     }
     let note = (vd != 0.0).then(|| (true, format!("an Abbe number of {vd}: carried without dispersion")));
-    Found { medium: Medium::Model { nd, vd: None, ng: None }, note }
+    FoundMedium { medium: Medium::Model { nd, vd: None, ng: None }, note }
 }
 
 /// Returns a glass defined by nd, Vd and the deviation of its relative partial dispersion of g and F from the normal line: ng = nF + (P +
 /// deviation) (nF - nC).
-pub(crate) fn model_off_normal(nd: f64, vd: f64, deviation: f64) -> Found {
+pub(crate) fn model_off_normal(nd: f64, vd: f64, deviation: f64) -> FoundMedium {
     let mut found = model(nd, vd);
     if deviation != 0.0 {
         match &mut found.medium {
@@ -217,7 +217,7 @@ fn rounded(value: f64) -> f64 {
 
 /// Finds the glass of a name, with a note about the choice if one is needed.
 fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glass, Option<(bool, String)>)> {
-    let catalogue = Catalogue::bundled();
+    let catalogue = Catalog::bundled();
     // Skip the search for similar names: some files ask for an unknown name many times.
     let by = |full: &str| match stated {
         _ if !catalogue.knows(full) => Err(FindError::Unknown { name: full.to_owned(), nearest: Vec::new() }),
@@ -267,18 +267,18 @@ fn find(name: &str, stated: Option<(f64, f64)>, makers: &[&str]) -> Option<(Glas
 }
 
 /// Returns the glass with the stated figures if they are compatible with it; otherwise without them, and with a note.
-fn with_stated(glass: &Glass, stated: Option<(f64, f64)>) -> Found {
+fn with_stated(glass: &Glass, stated: Option<(f64, f64)>) -> FoundMedium {
     let name = glass.full_name();
     match stated {
-        Some((nd, vd)) if (nd - glass.nd()).abs() <= SAME_INDEX => Found {
+        Some((nd, vd)) if (nd - glass.nd()).abs() <= SAME_INDEX => FoundMedium {
             medium: Medium::Glass { name, nd: Some(nd), vd: (5.0..=200.0).contains(&vd).then_some(vd) },
             note: None,
         },
         Some((nd, _)) => {
             let text = format!("{name} has nd {:.5}; the nd {nd} stated in the file is ignored", glass.nd());
-            Found { medium: Medium::Glass { name, nd: None, vd: None }, note: Some((false, text)) }
+            FoundMedium { medium: Medium::Glass { name, nd: None, vd: None }, note: Some((false, text)) }
         }
-        None => Found { medium: Medium::Glass { name, nd: None, vd: None }, note: None },
+        None => FoundMedium { medium: Medium::Glass { name, nd: None, vd: None }, note: None },
     }
 }
 
@@ -306,7 +306,7 @@ mod tests {
             ("LZ_LF5", &["SCHOTT"], "LZOS/LF5"),
             ("PMMA", &[], "poly_methyl_methacrylate/Sultanova"),
         ] {
-            let found = look_up(theirs, None, Catalogues { makers, ..Catalogues::default() });
+            let found = look_up(theirs, None, Catalogs { makers, ..Catalogs::default() });
             assert_eq!(name(&found.medium), ours, "{theirs}");
         }
     }
@@ -314,34 +314,34 @@ mod tests {
     /// Among glasses of one name the first catalog has precedence, unless the file states figures to the last digit, which then decide.
     #[test]
     fn figures_choose_among_makers() {
-        let catalogue = Catalogue::bundled();
+        let catalogue = Catalog::bundled();
         let makers = &["OHARA", "SCHOTT", "HOYA"];
         for full in ["OHARA/F2", "SCHOTT/F2", "HOYA/F2", "OHARA/SK16", "SCHOTT/SK16"] {
             let glass = catalogue.find(full).expect("bundled");
             let stated = Some((glass.nd(), glass.vd()));
-            let found = look_up(&glass.name, stated, Catalogues { makers, ..Catalogues::default() });
+            let found = look_up(&glass.name, stated, Catalogs { makers, ..Catalogs::default() });
             assert_eq!(name(&found.medium), full);
         }
-        let found = look_up("F2", Some((1.6201, 36.3)), Catalogues { makers, ..Catalogues::default() });
+        let found = look_up("F2", Some((1.6201, 36.3)), Catalogs { makers, ..Catalogs::default() });
         assert_eq!(name(&found.medium), "OHARA/F2");
     }
 
     #[test]
     fn what_nobody_knows_is_told() {
-        let found = look_up("UNOBTAINIUM", None, Catalogues::default());
+        let found = look_up("UNOBTAINIUM", None, Catalogs::default());
         assert_eq!(name(&found.medium), "UNOBTAINIUM");
         assert!(found.note.is_some_and(|(alters, text)| alters && text.contains("UNOBTAINIUM")));
-        let found = look_up("UNOBTAINIUM", Some((1.6, 50.0)), Catalogues::default());
+        let found = look_up("UNOBTAINIUM", Some((1.6, 50.0)), Catalogs::default());
         assert_eq!(found.medium, Medium::Model { nd: 1.6, vd: Some(50.0), ng: None });
         assert!(found.note.is_some_and(|(alters, text)| !alters && text.contains("UNOBTAINIUM")));
     }
 
     #[test]
     fn figures_that_are_not_the_glass_are_told() {
-        let found = look_up("N-BK7", Some((1.52, 64.0)), Catalogues::default());
+        let found = look_up("N-BK7", Some((1.52, 64.0)), Catalogs::default());
         assert!(matches!(found.medium, Medium::Glass { nd: None, .. }));
         assert!(found.note.is_some_and(|(_, text)| text.contains("1.51680") && text.contains("1.52")));
-        let found = look_up("N-BK7", Some((1.5168, 64.17)), Catalogues::default());
+        let found = look_up("N-BK7", Some((1.5168, 64.17)), Catalogs::default());
         assert!(matches!(found.medium, Medium::Glass { nd: Some(1.5168), vd: Some(64.17), .. }));
     }
 

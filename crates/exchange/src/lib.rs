@@ -29,20 +29,20 @@ pub mod csv;
 mod decode;
 mod glass;
 mod number;
-mod place;
 mod prescription;
 mod reference;
 mod scale;
 pub mod seq;
+mod source;
 mod stop;
 pub mod yaml;
 pub mod zmx;
 
 pub use decode::text;
-pub use glass::OwnCatalogue;
+pub use glass::UserCatalog;
 pub use prescription::{
-    Aperture, ApertureShape, CoordinateBreak, Displacement, FieldKind, Fields, Item, Medium, Note, Ordering,
-    Prescription, Shape, Surface, SystemAperture, Wavelength,
+    Aperture, ApertureShape, AxisItem, CoordinateBreak, Displacement, FieldKind, Fields, Medium, Note, Prescription,
+    Surface, SurfaceShape, SystemAperture, Wavelength, ZernikeOrdering,
 };
 
 use spectra_core::params::Faults;
@@ -117,7 +117,7 @@ pub fn read(format: Format, name: &str, bytes: &[u8]) -> Result<Prescription, Fa
 ///
 /// # Errors
 /// The same as for [`read`].
-pub fn read_with(format: Format, name: &str, bytes: &[u8], own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
+pub fn read_with(format: Format, name: &str, bytes: &[u8], own: &[UserCatalog]) -> Result<Prescription, Faults> {
     if bytes.len() as u64 > MAX_BYTES {
         let fault =
             spectra_core::params::Fault::new(format!("{name}: {} bytes; at most {MAX_BYTES} can be read", bytes.len()));

@@ -14,7 +14,7 @@ pub struct Prescription {
     /// Spectral line of the stated indices, if it is not d.
     pub reference_line: Option<String>,
     /// Surfaces and coordinate breaks, in the order of the light, without the object and the image.
-    pub items: Vec<Item>,
+    pub items: Vec<AxisItem>,
     /// Wavelengths listed in the file.
     pub wavelengths: Vec<Wavelength>,
     /// Index of the primary wavelength.
@@ -57,14 +57,14 @@ impl std::fmt::Display for Note {
 
 /// One step along the axis of a lens.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Item {
+pub enum AxisItem {
     /// A surface of the lens.
     Surface(Box<Surface>),
     /// A coordinate break, which moves the axis for everything that follows.
     Break(CoordinateBreak),
 }
 
-impl Item {
+impl AxisItem {
     /// Distance to the next item along the (new) z axis, mm.
     #[must_use]
     pub fn thickness_mm(&self) -> f64 {
@@ -115,14 +115,14 @@ impl Displacement {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
     /// Shape of the surface.
-    pub shape: Shape,
+    pub shape: SurfaceShape,
     /// Distance to the next vertex, mm; for the last surface, to the image plane.
     pub thickness_mm: f64,
     /// Medium behind the surface. A mirror ignores it: the medium in front continues.
     pub medium: Medium,
     /// Whether the surface reflects.
     pub mirror: bool,
-    /// Whether the surface is the aperture stop (true for [`Shape::Stop`] too).
+    /// Whether the surface is the aperture stop (true for [`SurfaceShape::Stop`] too).
     pub stop: bool,
     /// Clear semi-diameter beyond which light is blocked, mm.
     pub semi_diameter_mm: Option<f64>,
@@ -139,7 +139,7 @@ pub struct Surface {
 /// Shape of a surface. Lengths are in mm, coefficients in mm^(1-power). A radius is positive if its center lies at larger z.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs, reason = "the fields are those of the kinds of the same names in a lens file")]
-pub enum Shape {
+pub enum SurfaceShape {
     /// A flat surface.
     #[default]
     Plane,
@@ -205,7 +205,7 @@ pub enum Shape {
         conic: f64,
         normalization_radius: f64,
         coefficients: Vec<f64>,
-        ordering: Ordering,
+        ordering: ZernikeOrdering,
     },
     /// A kind of surface of this program that no other program has.
     Other {
@@ -213,7 +213,7 @@ pub enum Shape {
     },
 }
 
-impl Shape {
+impl SurfaceShape {
     /// Returns a plane, a sphere or a conic, whichever is the simplest. An infinite radius gives a plane.
     #[must_use]
     pub fn conic(radius: f64, conic: f64) -> Self {
@@ -229,7 +229,7 @@ impl Shape {
 
 /// Ordering and normalization of Zernike terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ordering {
+pub enum ZernikeOrdering {
     /// Noll's ordering, orthonormal.
     Noll,
     /// Fringe ordering (University of Arizona), amplitude 1 at the edge.
@@ -369,8 +369,8 @@ impl Prescription {
     /// Iterates over the surfaces, without coordinate breaks.
     pub fn surfaces(&self) -> impl Iterator<Item = &Surface> {
         self.items.iter().filter_map(|item| match item {
-            Item::Surface(surface) => Some(&**surface),
-            Item::Break(_) => None,
+            AxisItem::Surface(surface) => Some(&**surface),
+            AxisItem::Break(_) => None,
         })
     }
 }

@@ -1,7 +1,7 @@
 //! The reference wavelength: the one at which the other program states focal lengths and focus.
 
-use crate::prescription::{Item, Medium, Prescription};
-use spectra_glass::{Catalogue, Line, lines};
+use crate::prescription::{AxisItem, Medium, Prescription};
+use spectra_glass::{Catalog, Line, lines};
 
 /// Makes the primary wavelength the reference line of the lens, if all of its glasses are known there by name. Indices stated at d next to
 /// such a name are then removed.
@@ -15,7 +15,7 @@ pub(crate) fn set(lens: &mut Prescription) {
     }
     lens.reference_line = Some(line.label());
     for item in &mut lens.items {
-        if let Item::Surface(surface) = item
+        if let AxisItem::Surface(surface) = item
             && let Medium::Glass { nd, vd, .. } = &mut surface.medium
         {
             (*nd, *vd) = (None, None);
@@ -37,7 +37,7 @@ fn is_known(medium: &Medium, line: Line) -> bool {
     match medium {
         Medium::Air => true,
         Medium::Glass { name, nd, .. } => {
-            Catalogue::bundled().find(name).map_or(nd.is_none(), |glass| covers(glass.range_nm))
+            Catalog::bundled().find(name).map_or(nd.is_none(), |glass| covers(glass.range_nm))
         }
         Medium::Model { .. } | Medium::Unknown { .. } => false,
     }

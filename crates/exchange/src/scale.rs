@@ -1,6 +1,8 @@
 //! Scaling of a prescription: all lengths times a factor, while angles, f-number and glasses stay the same.
 
-use crate::{Aperture, ApertureShape, Displacement, FieldKind, Item, Prescription, Shape, Surface, SystemAperture};
+use crate::{
+    Aperture, ApertureShape, AxisItem, Displacement, FieldKind, Prescription, Surface, SurfaceShape, SystemAperture,
+};
 
 impl Prescription {
     /// Returns the prescription with all lengths times `factor`: radii, gaps, rims, apertures and displacements. A coefficient of r^k is
@@ -12,8 +14,8 @@ impl Prescription {
         for item in &mut self.items {
             *item.thickness_mm_mut() *= factor;
             match item {
-                Item::Surface(surface) => scale_surface(surface, factor),
-                Item::Break(axis) => scale_displacement(&mut axis.by, factor),
+                AxisItem::Surface(surface) => scale_surface(surface, factor),
+                AxisItem::Break(axis) => scale_displacement(&mut axis.by, factor),
             }
         }
         self.object_distance_mm = self.object_distance_mm.map(|mm| mm * factor);
@@ -49,34 +51,34 @@ fn scale_powers(coefficients: &mut [f64], first: i32, step: i32, factor: f64) {
     }
 }
 
-fn scale_shape(shape: &mut Shape, factor: f64) {
+fn scale_shape(shape: &mut SurfaceShape, factor: f64) {
     match shape {
-        Shape::Plane | Shape::Stop | Shape::TiltedPlane { .. } | Shape::Other { .. } => {}
-        Shape::Sphere { radius }
-        | Shape::Conic { radius, .. }
-        | Shape::Cylinder { radius, .. }
-        | Shape::Grating { radius, .. } => {
+        SurfaceShape::Plane | SurfaceShape::Stop | SurfaceShape::TiltedPlane { .. } | SurfaceShape::Other { .. } => {}
+        SurfaceShape::Sphere { radius }
+        | SurfaceShape::Conic { radius, .. }
+        | SurfaceShape::Cylinder { radius, .. }
+        | SurfaceShape::Grating { radius, .. } => {
             *radius *= factor;
         }
-        Shape::EvenAsphere { radius, coefficients, .. } => {
+        SurfaceShape::EvenAsphere { radius, coefficients, .. } => {
             *radius *= factor;
             scale_powers(coefficients, 2, 2, factor);
         }
-        Shape::OddAsphere { radius, coefficients, .. } => {
+        SurfaceShape::OddAsphere { radius, coefficients, .. } => {
             *radius *= factor;
             scale_powers(coefficients, 1, 1, factor);
         }
-        Shape::Toroid { radius, coefficients, rotation_radius, .. } => {
+        SurfaceShape::Toroid { radius, coefficients, rotation_radius, .. } => {
             *radius *= factor;
             *rotation_radius *= factor;
             scale_powers(coefficients, 2, 2, factor);
         }
-        Shape::Biconic { radius_x, radius_y, .. } => {
+        SurfaceShape::Biconic { radius_x, radius_y, .. } => {
             *radius_x *= factor;
             *radius_y *= factor;
         }
-        Shape::ThinLens { focal_length } => *focal_length *= factor,
-        Shape::Zernike { radius, normalization_radius, coefficients, .. } => {
+        SurfaceShape::ThinLens { focal_length } => *focal_length *= factor,
+        SurfaceShape::Zernike { radius, normalization_radius, coefficients, .. } => {
             *radius *= factor;
             *normalization_radius *= factor;
             coefficients.iter_mut().for_each(|mm| *mm *= factor);
@@ -117,12 +119,15 @@ mod tests {
         let even = vec![1e-3, -2e-5, 3e-8];
         let odd = vec![1e-3, -2e-4, 3e-6, 1e-7];
         let (mut a, mut b) = (
-            Shape::EvenAsphere { radius: 60.0, conic: -0.7, coefficients: even.clone() },
-            Shape::OddAsphere { radius: 60.0, conic: -0.7, coefficients: odd.clone() },
+            SurfaceShape::EvenAsphere { radius: 60.0, conic: -0.7, coefficients: even.clone() },
+            SurfaceShape::OddAsphere { radius: 60.0, conic: -0.7, coefficients: odd.clone() },
         );
         scale_shape(&mut a, factor);
         scale_shape(&mut b, factor);
-        let (Shape::EvenAsphere { radius, coefficients, .. }, Shape::OddAsphere { coefficients: others, .. }) = (a, b)
+        let (
+            SurfaceShape::EvenAsphere { radius, coefficients, .. },
+            SurfaceShape::OddAsphere { coefficients: others, .. },
+        ) = (a, b)
         else {
             panic!("shapes stay")
         };

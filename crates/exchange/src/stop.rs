@@ -5,8 +5,8 @@
 //! n' u' = n u - y (n' - n) c at each surface, where each mirror reverses the sign of n.
 
 use crate::number::shortest;
-use crate::prescription::{Item, Medium, Prescription, Shape, Surface, SystemAperture};
-use spectra_glass::{Catalogue, lines};
+use crate::prescription::{AxisItem, Medium, Prescription, Surface, SurfaceShape, SystemAperture};
+use spectra_glass::{Catalog, lines};
 
 /// Relative tolerance within which the computed size and the size of an aperture on the stop are the same.
 const SAME: f64 = 1e-4;
@@ -27,7 +27,7 @@ pub(crate) fn size(lens: &mut Prescription, line: usize, mark: &str) {
     };
     match semi_diameter_mm(lens, mark) {
         Ok((at, size)) => {
-            if let Item::Surface(stop) = &mut lens.items[at]
+            if let AxisItem::Surface(stop) = &mut lens.items[at]
                 && limit(stop, size)
             {
                 let text = format!(
@@ -58,7 +58,7 @@ fn limit(stop: &mut Surface, size: f64) -> bool {
 /// Returns the index of the stop among the items and its semi-diameter, or the reason why there is none with a hint what to write.
 fn semi_diameter_mm(lens: &Prescription, mark: &str) -> Result<(usize, f64), String> {
     const WRITE: &str = "write `semi-diameter: ...` at the stop of the imported lens file";
-    let is_stop = |item: &Item| matches!(item, Item::Surface(surface) if surface.stop);
+    let is_stop = |item: &AxisItem| matches!(item, AxisItem::Surface(surface) if surface.stop);
     let Some(stop) = lens.items.iter().position(is_stop) else {
         return Err(format!(
             "no surface is the stop; write {mark} at one, or `stop: true` and `semi-diameter: ...` in the imported lens file"
@@ -121,7 +121,7 @@ fn trace(lens: &Prescription, stop: usize, nm: f64, [mut y, mut slope]: [f64; 2]
         if at == stop {
             at_stop = y;
         }
-        if let Item::Surface(surface) = item {
+        if let AxisItem::Surface(surface) = item {
             let after = if surface.mirror { -n } else { index(&surface.medium, nm)?.copysign(n) };
             let (curvature, power) = bend(&surface.shape);
             let power = (after - n) * curvature + power;
@@ -135,21 +135,23 @@ fn trace(lens: &Prescription, stop: usize, nm: f64, [mut y, mut slope]: [f64; 2]
 }
 
 /// Returns the curvature at the vertex in y-z, 1/mm, and the power of an ideal lens, 1/mm.
-fn bend(shape: &Shape) -> (f64, f64) {
+fn bend(shape: &SurfaceShape) -> (f64, f64) {
     let square = |coefficients: &[f64], at: usize| 2.0 * coefficients.get(at).copied().unwrap_or(0.0);
     match shape {
-        Shape::Plane | Shape::Stop | Shape::TiltedPlane { .. } | Shape::Other { .. } => (0.0, 0.0),
-        Shape::Sphere { radius }
-        | Shape::Conic { radius, .. }
-        | Shape::Grating { radius, .. }
-        | Shape::Zernike { radius, .. }
-        | Shape::Biconic { radius_y: radius, .. } => (1.0 / radius, 0.0),
-        Shape::EvenAsphere { radius, coefficients, .. } | Shape::Toroid { radius, coefficients, .. } => {
+        SurfaceShape::Plane | SurfaceShape::Stop | SurfaceShape::TiltedPlane { .. } | SurfaceShape::Other { .. } => {
+            (0.0, 0.0)
+        }
+        SurfaceShape::Sphere { radius }
+        | SurfaceShape::Conic { radius, .. }
+        | SurfaceShape::Grating { radius, .. }
+        | SurfaceShape::Zernike { radius, .. }
+        | SurfaceShape::Biconic { radius_y: radius, .. } => (1.0 / radius, 0.0),
+        SurfaceShape::EvenAsphere { radius, coefficients, .. } | SurfaceShape::Toroid { radius, coefficients, .. } => {
             (1.0 / radius + square(coefficients, 0), 0.0)
         }
-        Shape::OddAsphere { radius, coefficients, .. } => (1.0 / radius + square(coefficients, 1), 0.0),
-        Shape::Cylinder { radius, along_x } => (if *along_x { 1.0 / radius } else { 0.0 }, 0.0),
-        Shape::ThinLens { focal_length } => (0.0, 1.0 / focal_length),
+        SurfaceShape::OddAsphere { radius, coefficients, .. } => (1.0 / radius + square(coefficients, 1), 0.0),
+        SurfaceShape::Cylinder { radius, along_x } => (if *along_x { 1.0 / radius } else { 0.0 }, 0.0),
+        SurfaceShape::ThinLens { focal_length } => (0.0, 1.0 / focal_length),
     }
 }
 
@@ -157,7 +159,7 @@ fn index(medium: &Medium, nm: f64) -> Result<f64, String> {
     let (name, index) = match medium {
         Medium::Air => return Ok(1.0),
         Medium::Glass { name, nd, .. } => {
-            let known = Catalogue::bundled().medium(name).ok().map(|medium| medium.index(nm));
+            let known = Catalog::bundled().medium(name).ok().map(|medium| medium.index(nm));
             (name.clone(), known.filter(|n| n.is_finite()).or(*nd))
         }
         Medium::Model { nd, vd, .. } => {
@@ -170,9 +172,9 @@ fn index(medium: &Medium, nm: f64) -> Result<f64, String> {
 }
 
 /// Whether any of these items is decentered.
-fn is_decentered(items: &[Item]) -> bool {
+fn is_decentered(items: &[AxisItem]) -> bool {
     items.iter().any(|item| match item {
-        Item::Surface(surface) => surface.displacement.decenter_mm != [0.0; 2],
-        Item::Break(axis) => axis.by.decenter_mm != [0.0; 2],
+        AxisItem::Surface(surface) => surface.displacement.decenter_mm != [0.0; 2],
+        AxisItem::Break(axis) => axis.by.decenter_mm != [0.0; 2],
     })
 }

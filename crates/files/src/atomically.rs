@@ -41,9 +41,9 @@ pub fn write_atomically(
 
 /// A folder on disk that writes each file with [`write_atomically`].
 #[derive(Clone, Debug)]
-pub struct Folder(pub PathBuf);
+pub struct DiskFolder(pub PathBuf);
 
-impl Sink for Folder {
+impl Sink for DiskFolder {
     fn file(&self, name: &str, content: Content<'_>) -> Result<(), WriteFault> {
         write_atomically(&self.0.join(name), |file| content(file)).map_err(|error| match error {
             WriteError::Io { cause, .. } => WriteFault::Io(cause),

@@ -14,12 +14,12 @@ pub fn remove_own(folder: &Path) {
 
 /// Removes temporary files in `folder`, known by their names, that killed runs have left: their process is gone, and nobody holds
 /// them.
-pub fn sweep(folder: &Path) {
+pub fn remove_stale_temporaries(folder: &Path) {
     remove(folder, |name, modified| {
         if process_of(name).is_none_or(is_alive) {
             return false;
         }
-        match is_held(&folder.join(name)) {
+        match is_locked(&folder.join(name)) {
             Some(is_held) => !is_held,
             // A file system without locks: the age of the file decides.
             None => SystemTime::now().duration_since(modified).is_ok_and(|age| age > OLD),
@@ -29,7 +29,7 @@ pub fn sweep(folder: &Path) {
 
 /// Returns whether a writer holds the file; `None` if that is not known. Inside a container the writer's process may have another
 /// number.
-fn is_held(path: &Path) -> Option<bool> {
+fn is_locked(path: &Path) -> Option<bool> {
     if !super::atomically::HOLDS {
         return None;
     }
@@ -99,7 +99,7 @@ mod tests {
         // This imitates a writer in another container, whose processes are not visible here.
         let held = File::open(folder.path().join(".held.exr.4294967290-1.tmp")).expect("there");
         held.lock().expect("locked");
-        sweep(folder.path());
+        remove_stale_temporaries(folder.path());
         for (name, _, stays) in &cases {
             assert_eq!(folder.path().join(name).exists(), *stays, "{name}");
         }

@@ -24,7 +24,7 @@ mod folder;
 pub mod leftover;
 mod temporary;
 
-pub use atomically::{Folder, copy_atomically, write_atomically};
+pub use atomically::{DiskFolder, copy_atomically, write_atomically};
 pub use folder::write_folder;
 pub use spectra_core::sink::WriteFault;
 

@@ -14,8 +14,8 @@
 //! and a sine of the frequency f is developed 1 + gain (1 - 1 / (1 + (2 pi l f)^2)) times as strongly. There cannot be less than no silver
 //! or more than all of it: near either end of the curve the change d is reduced to d / (1 + |d| / room).
 
+use crate::cache::Cache;
 use crate::cells::{BOTH_WAYS, Cells, with_margin};
-use crate::known::Known;
 use crate::raster::Raster;
 use crate::scatter::PointSpread;
 use spectra_numerics::convolve::{Convolver, Kernel};
@@ -23,7 +23,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Cache of diffusion kernels on a plane, by the diffusion length in mm.
-static DIFFUSIONS: Known<(f64, Raster), Diffusion> = Known::new();
+static DIFFUSIONS: Cache<(f64, Raster), Diffusion> = Cache::new();
 
 /// Strength and width of the adjacency effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,7 +137,7 @@ impl Edges {
     pub fn new(adjacency: &Adjacency, raster: &Raster) -> Self {
         let good = |v: f64| v > 0.0 && v.is_finite();
         assert!(good(raster.pitch_mm) && good(adjacency.length_mm), "a pitch and a length above 0");
-        let diffusion = DIFFUSIONS.of((adjacency.length_mm, *raster), || {
+        let diffusion = DIFFUSIONS.get_or_compute((adjacency.length_mm, *raster), || {
             let mut cell_px = 1;
             while adjacency.length_mm >= 2.0 * CELLS_A_LENGTH * raster.pitch_mm * cell_px as f64 {
                 cell_px *= 2;

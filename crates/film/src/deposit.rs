@@ -62,7 +62,7 @@ impl Deposit {
 
     /// Returns the light that reaches each of several receivers: the sum over the band of weight times transmittance.
     #[must_use]
-    pub fn seen(&self, amounts: &[f64], weights: &[Vec<f64>]) -> Vec<f64> {
+    pub fn receiver_sums(&self, amounts: &[f64], weights: &[Vec<f64>]) -> Vec<f64> {
         let passes = self.transmittance(amounts);
         weights.iter().map(|w| w.iter().zip(&passes).map(|(w, t)| w * t).sum()).collect()
     }
@@ -122,13 +122,13 @@ mod tests {
         };
         let weights = [bell(440.0, 20.0), bell(540.0, 20.0), bell(640.0, 20.0)].to_vec();
         for amounts in [[0.0, 0.0, 0.0], [1.0, 0.5, 2.0], [3.0, 3.0, 3.0], [0.1, 2.5, 0.0]] {
-            let wanted: Vec<f64> = deposit.seen(&amounts, &weights).into_iter().map(|v| -log10(v)).collect();
+            let wanted: Vec<f64> = deposit.receiver_sums(&amounts, &weights).into_iter().map(|v| -log10(v)).collect();
             let found = deposit.amounts_for(&wanted, &weights, &[0.5; 3]).expect("there are such amounts");
             assert!(found.iter().zip(amounts).all(|(a, b)| (a - b).abs() < 1e-9), "{amounts:?} {found:?}");
         }
         let mut narrow = vec![0.0; BAND.count];
         narrow[(540 - 350) as usize] = 1.0;
-        let passes = deposit.seen(&[0.0, 1.3, 0.0], &[narrow])[0];
+        let passes = deposit.receiver_sums(&[0.0, 1.3, 0.0], &[narrow])[0];
         assert!((-log10(passes) - 1.4).abs() < 1e-12);
     }
 }

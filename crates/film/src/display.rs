@@ -10,7 +10,9 @@ use crate::lookup::PIXELS_A_TASK;
 use rayon::prelude::*;
 use spectra_color::matrix::{Matrix, apply};
 use spectra_color::{Gamut, RgbSpace, into_gamut};
-use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, Wanted};
+use spectra_core::frame::{
+    DisplayPicture, ExposureChannel, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, FrameSize,
+};
 
 /// Rule that finds the exposure shown as white, from the frame alone. The same frame always gives the same exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +80,7 @@ pub fn channel<'a>(frame: &'a ExposureFrame, name: &str) -> Result<&'a ExposureC
 /// # Errors
 /// [`MissingChannel`].
 pub fn show_xyz(frame: &ExposureFrame, white: White, gamut: Gamut) -> Result<DisplayPicture, MissingChannel> {
-    finish_xyz(frame, white, gamut, None, Wanted::default()).map(|finished| finished.shown)
+    finish_xyz(frame, white, gamut, None, ExtraRequest::default()).map(|finished| finished.display)
 }
 
 /// Converts a frame as [`show_xyz`] does, with the additional results in `wanted`. `adapted` converts XYZ under the light of the scene to
@@ -91,8 +93,8 @@ pub fn finish_xyz(
     white: White,
     gamut: Gamut,
     adapted: Option<&Matrix>,
-    wanted: Wanted,
-) -> Result<Finished, MissingChannel> {
+    wanted: ExtraRequest,
+) -> Result<FinishedPicture, MissingChannel> {
     let [x, y, z] = [channel(frame, "X")?, channel(frame, "Y")?, channel(frame, "Z")?];
     let white = match white {
         White::Auto(auto) => auto.white(&y.values),
@@ -112,10 +114,10 @@ pub fn finish_xyz(
         DisplayPicture { width_px, height_px, rgb }
     };
     let shown = picture(&|rgb| into_gamut(rgb, srgb, gamut));
-    let open = wanted.open.then(|| picture(&|rgb| rgb));
+    let open = wanted.unclamped.then(|| picture(&|rgb| rgb));
     let unit = &y.unit;
     let white = white.map(|white| if unit.is_empty() { format!("{white}") } else { format!("{white} {unit}") });
-    Ok(Finished { shown, beside: Beside { open, layers: Vec::new(), white } })
+    Ok(FinishedPicture { display: shown, extra: ExtraData { unclamped: open, layers: Vec::new(), white } })
 }
 
 #[cfg(test)]

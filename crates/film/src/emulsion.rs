@@ -3,9 +3,9 @@
 //! The integral densities of a sheet are separated into amounts of dye. A neutral subject gets the densities of the sheet. For other colors
 //! the exposure of each layer is first shifted by the inhibition of the other layers' dyes, relative to that of a neutral subject.
 
+use crate::cache::Cache;
 use crate::curve::CharacteristicCurve;
 use crate::deposit::Deposit;
-use crate::known::Known;
 use crate::lookup::{Lookup, PIXELS_A_TASK, Pair, from_octaves, octaves};
 use crate::stock::{Densitometry, Process, Stock};
 use rayon::prelude::*;
@@ -37,14 +37,14 @@ pub enum EmulsionError {
 }
 
 /// Caches of curves sampled over the exposure, by curve and exposure factor: of one layer, and of three layers that interact.
-static SAMPLED: Known<(AmountCurve, u64), Lookup> = Known::new();
-static TOGETHER: Known<(Emulsion, u64), [Pair; 3]> = Known::new();
+static SAMPLED: Cache<(AmountCurve, u64), Lookup> = Cache::new();
+static TOGETHER: Cache<(Emulsion, u64), [Pair; 3]> = Cache::new();
 
 /// Dyes, the curves of a film that has them, and the weights of the three filters of its densitometry.
 type Measured = (Deposit, Vec<CharacteristicCurve>, Vec<Vec<f64>>);
 
 /// Cache of the amounts of dye in the curves of color films.
-static AMOUNTS: Known<Measured, Result<Vec<AmountCurve>, EmulsionError>> = Known::new();
+static AMOUNTS: Cache<Measured, Result<Vec<AmountCurve>, EmulsionError>> = Cache::new();
 
 /// A stock with one development, ready to convert exposures to amounts; see [`Deposit`] for their unit.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,8 +81,8 @@ fn amounts(
     products: &[Vec<f64>],
 ) -> Result<Vec<AmountCurve>, EmulsionError> {
     let layers = deposit.layers();
-    let clear: Vec<f64> = deposit.seen(&vec![0.0; layers], products).into_iter().map(|v| -log10(v)).collect();
-    let spans: Vec<(f64, f64)> = curves.iter().map(CharacteristicCurve::span).collect();
+    let clear: Vec<f64> = deposit.receiver_sums(&vec![0.0; layers], products).into_iter().map(|v| -log10(v)).collect();
+    let spans: Vec<(f64, f64)> = curves.iter().map(CharacteristicCurve::exposure_range).collect();
     let low = spans.iter().fold(f64::INFINITY, |a, s| a.min(s.0));
     let high = spans.iter().fold(f64::NEG_INFINITY, |a, s| a.max(s.1));
     let steps = (((high - low) * SAMPLES_A_DECADE).ceil() as usize).max(1);
@@ -139,7 +139,7 @@ impl Emulsion {
         let names: Vec<&str> = stock.layers.iter().map(|l| l.name.as_str()).collect();
         let products = stock.densitometry.products(&names).ok_or(EmulsionError::Layers)?;
         let key = (deposit.clone(), curves, products);
-        let amounts = AMOUNTS.of(key.clone(), || amounts(&key.0, &key.1, &key.2));
+        let amounts = AMOUNTS.get_or_compute(key.clone(), || amounts(&key.0, &key.1, &key.2));
         let curves = Result::clone(&amounts)?;
         let sign = if stock.process == Process::Reversal { -1.0 } else { 1.0 };
         let signed = |row: &Vec<f64>| row.iter().map(|v| sign * v).collect();
@@ -241,7 +241,7 @@ impl Emulsion {
     }
 
     fn develop_together(&self, [a, b, c]: [&mut Vec<f32>; 3], effect: f64) {
-        let sampled = TOGETHER.of((self.clone(), effect.to_bits()), || {
+        let sampled = TOGETHER.get_or_compute((self.clone(), effect.to_bits()), || {
             [0, 1, 2].map(|i| {
                 let own = per_octave(|x| self.amount(i, x), effect);
                 Pair::new(&own, &per_octave(|x| x + self.relief(i, x), effect))
@@ -261,7 +261,7 @@ impl Emulsion {
     pub fn develop(&self, layer: usize, plane: &mut [f32], effect: f64) {
         let curve = &self.curves[layer];
         let made = || per_octave(|log10_exposure| curve.at(log10_exposure), effect);
-        let sampled = SAMPLED.of((curve.clone(), effect.to_bits()), made);
+        let sampled = SAMPLED.get_or_compute((curve.clone(), effect.to_bits()), made);
         let unexposed = curve.at(f64::NEG_INFINITY) as f32;
         plane.par_chunks_mut(PIXELS_A_TASK).for_each(|pixels| {
             for h in pixels {

@@ -13,6 +13,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod adjacency;
+mod cache;
 mod cells;
 mod cube;
 pub mod curve;
@@ -22,8 +23,6 @@ pub mod display;
 pub mod emulsion;
 pub mod grain;
 pub mod halation;
-mod known;
-pub mod look;
 mod lookup;
 pub mod optics;
 pub mod positive;
@@ -32,3 +31,4 @@ pub mod push;
 pub mod raster;
 pub mod scatter;
 pub mod stock;
+pub mod viewing_options;

@@ -147,7 +147,7 @@ fn weights(deviation: f64) -> Vec<f32> {
     }
     let deviation = variance.sqrt();
     let radius = (REACH * deviation).ceil() as usize;
-    let beyond = |i: usize| normal::below(-(i as f64 + 0.5) / deviation);
+    let beyond = |i: usize| normal::cdf(-(i as f64 + 0.5) / deviation);
     let part = |i: usize| if i == 0 { 1.0 - 2.0 * beyond(0) } else { beyond(i - 1) - beyond(i) };
     let all = 1.0 - 2.0 * beyond(radius);
     (0..=radius).map(|i| (part(i) / all) as f32).collect()

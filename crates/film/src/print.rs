@@ -1,8 +1,8 @@
 //! A paper print of a black-and-white negative, viewed as a scan.
 
 use crate::curve::{CurveError, ToeShoulder};
-use crate::look::{FLARE, PictureBlack};
 use crate::lookup::{Lookup, PIXELS_A_TASK};
+use crate::viewing_options::{FLARE, PictureBlack};
 use rayon::prelude::*;
 use spectra_core::math::{exp, log10};
 use std::f64::consts::LN_10;

@@ -124,7 +124,7 @@ fn assumed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> 
             true => (most - fog - contrast * silver(x + moved)).max(least),
             false => (curve.unexposed_density() + fog + contrast * silver(x + moved)).min(10.0),
         };
-        let (low, high) = curve.span();
+        let (low, high) = curve.exposure_range();
         let at = |i: usize| low - moved + (high - low) * i as f64 / POINTS as f64;
         let points: Vec<[f64; 2]> = (0..=POINTS).map(|i| [at(i), density(at(i))]).collect();
         Ok(TabulatedCurve::new(&points)?.into())
@@ -177,8 +177,8 @@ pub fn pushed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushErro
         if reach(middle).is_some_and(|r| r > stops) { right = middle } else { left = middle }
     }
     let minutes = 0.5 * (left + right);
-    let low = series.iter().map(|(_, d)| d.curve.span().0).fold(f64::INFINITY, f64::min);
-    let high = series.iter().map(|(_, d)| d.curve.span().1).fold(f64::NEG_INFINITY, f64::max);
+    let low = series.iter().map(|(_, d)| d.curve.exposure_range().0).fold(f64::INFINITY, f64::min);
+    let high = series.iter().map(|(_, d)| d.curve.exposure_range().1).fold(f64::NEG_INFINITY, f64::max);
     let points: Vec<[f64; 2]> = (0..=POINTS)
         .map(|i| low + (high - low) * i as f64 / POINTS as f64)
         .map(|x| [x, density(&series, minutes, x)])

@@ -209,7 +209,7 @@ impl Glass {
         }
     }
 
-    /// Returns `MAKER/NAME`, as [`crate::Catalogue::find`] reads it.
+    /// Returns `MAKER/NAME`, as [`crate::Catalog::find`] reads it.
     #[must_use]
     pub fn full_name(&self) -> String {
         format!("{}/{}", self.maker, self.name)

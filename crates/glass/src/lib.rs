@@ -1,6 +1,6 @@
 //! Refractive index: dispersion formulas, catalogues, fast evaluation.
 //!
-//! - [`Formula`] is n(lambda) as makers and papers write it; [`Glass`] is a named medium with its data; [`Catalogue`] finds one
+//! - [`Formula`] is n(lambda) as makers and papers write it; [`Glass`] is a named medium with its data; [`Catalog`] finds one
 //!   by name, or the nearest to a patent's (n, V).
 //! - [`Medium`] is a medium that light travels in; [`Dispersion`] is its index, fitted for tracing.
 //! - [`fit`] makes formulas from tables, [`interface`] has Fresnel's equations, [`agf`] reads users' catalogues.
@@ -22,7 +22,7 @@
 
 pub mod agf;
 pub mod air;
-mod catalogue;
+mod catalog;
 mod dispersion;
 pub mod file;
 pub mod fit;
@@ -32,12 +32,14 @@ pub mod interface;
 pub mod lines;
 mod medium;
 
-pub use catalogue::{
-    Absorption, Beside, Candidate, Catalogue, CatalogueError, Chosen, Deviation, Era, EraError, FindError,
-    LISTED_TOLERANCE_ND, LISTED_TOLERANCE_VD, Lender, ListedCheck, Match, Query,
+pub use catalog::{
+    Absorption, AbsorptionSubstitute, Candidate, Catalog, CatalogError, ChosenGlass, Deviation, Era, EraError,
+    FindError, GlassFacts, LISTED_TOLERANCE_ND, LISTED_TOLERANCE_VD, ListedCheck, Match, Query,
 };
 pub use dispersion::{Dispersion, DispersionError, Rational};
-pub use formula::{Closed, Form, Formula, FormulaEntry, Melt, ModelGlass, NumberedFormula, Table, TableError};
+pub use formula::{
+    ClosedForm, ClosedFormula, Formula, FormulaEntry, Melt, ModelGlass, NumberedFormula, Table, TableError,
+};
 pub use glass::{Category, Extinction, Glass, Status, Thermal};
 pub use lines::{Line, LineTriple};
 pub use medium::Medium;

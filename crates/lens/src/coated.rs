@@ -1,7 +1,7 @@
 //! The coating of each surface of a lens, and the media whose absorption is taken from a similar glass.
 
 use crate::{Coating, Element, Lens, LensMedium};
-use spectra_glass::Lender;
+use spectra_glass::AbsorptionSubstitute;
 
 impl Lens {
     /// Returns the coating of an element: its own, or else the lens's. A lens coating other than `ideal` does not apply to a cemented
@@ -24,7 +24,7 @@ impl Lens {
     /// Lists the media whose absorption is taken from another glass, each with its label and that glass. They are listed whether or not
     /// absorption is switched on.
     #[must_use]
-    pub fn borrowed_absorption(&self) -> Vec<(&str, Lender)> {
+    pub fn substituted_absorption(&self) -> Vec<(&str, AbsorptionSubstitute)> {
         let lender = |m: &LensMedium| m.medium.absorption(self.year)?.lender;
         self.media.iter().filter_map(|m| Some((m.label.as_str(), lender(m)?))).collect()
     }

@@ -1,6 +1,6 @@
 //! Adds the imager as a mirror behind a lens.
 
-use crate::{Aperture, Coating, Element, Lens, LensMedium, MeasuredCoating, Shape};
+use crate::{Aperture, ApertureShape, Coating, Element, Lens, LensMedium, MeasuredCoating};
 use spectra_core::surface::{Kernel, Plane};
 use spectra_glass::Medium;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ impl Lens {
         // The medium behind the imager does not matter, except that it must be a different one.
         self.media.push(LensMedium { medium: Medium::Constant(1.5), stated_nd: None, label: "imager".to_owned() });
         let coating = Coating::Measured(Arc::new(MeasuredCoating::new(|nm| 1.0 - reflectance(nm))));
-        let shape = Shape::Polygon(corners_mm);
+        let shape = ApertureShape::Polygon(corners_mm);
         self.elements.push(Element {
             coating: Some(coating),
             apertures: vec![Aperture { shape, center_mm: [0.0; 2], obscures: false }],

@@ -13,30 +13,30 @@ mod cover;
 mod element;
 mod first_order;
 mod focus;
+mod glass_checks;
 mod group;
 mod imager;
 mod lens;
 mod losses;
 mod matte_box;
 mod misalignment;
-mod misread;
 pub mod onion;
 mod origin;
 mod pose;
 mod prescription;
 mod prism;
 mod reverse;
-mod rims;
 mod scaled;
 pub mod scatter;
 mod schema;
 mod separation;
+mod shape_checks;
 pub mod solid;
 mod surface_file;
 mod symmetry;
 
 pub use aperture::read as read_apertures;
-pub use aperture::{Aperture, ApertureEntry, ApertureForm, Iris, Mask, Opening, Shape};
+pub use aperture::{Aperture, ApertureEntry, ApertureForm, ApertureShape, Iris, Mask, Opening};
 pub use coating::{
     Coating, CoatingEntry, CoatingForm, MeasuredCoating, Reflectance, Stack, StackLayer, StatedCoating, Transmittance,
     read_coating, read_stated_coating,
@@ -54,7 +54,7 @@ pub use pose::{AxisBreak, Displacement, Pose};
 pub use prescription::{lens_schema, load, parse, unknown_group};
 pub use reverse::ReverseError;
 pub use scaled::ScaleError;
-pub use scatter::{DustForm, HazeForm, Layer, Lobe, Pattern, Run, ScratchesForm, Soil, read_layers};
+pub use scatter::{DustForm, HazeForm, Layer, LayerKind, Lobe, Pattern, Run, ScratchesForm, read_layers};
 pub use schema::{aperture_keys, coating_keys, surface_keys};
 pub use separation::{Separation, SeparationForm, read_separation};
 pub use solid::{Solid, SolidError};

@@ -1,8 +1,8 @@
 //! Describes in words which losses of a lens are counted, as shown beside every T-number.
 
-use crate::{Coating, Lens, Soil};
+use crate::{Coating, LayerKind, Lens};
 use spectra_core::surface::Action;
-use spectra_glass::{Lender, Medium};
+use spectra_glass::{AbsorptionSubstitute, Medium};
 
 /// Loss above which a warning says that an assumed absorption darkens a lens, stops.
 const DARK_STOPS: f64 = 1.0;
@@ -15,9 +15,9 @@ impl Lens {
         let own = self.elements.iter().filter(refracts).filter(|e| e.coating.is_some()).count();
         let all = self.elements.iter().filter(refracts).count();
         let mut coating = match own {
-            0 => self.coating.words(),
+            0 => self.coating.describe(),
             _ if own == all => "each surface coated as stated".to_owned(),
-            _ => format!("{}, {own} of {all} surfaces as stated", self.coating.words()),
+            _ => format!("{}, {own} of {all} surfaces as stated", self.coating.describe()),
         };
         if self.coating_assumed && own < all {
             coating += &self.year.map_or(" (assumed: no year is stated)".to_owned(), |y| format!(" (assumed for {y})"));
@@ -33,7 +33,7 @@ impl Lens {
 
     /// Describes the layers on surfaces, and on how many: `haze on 8 surfaces`; `None` if there are none.
     fn layer_words(&self) -> Option<String> {
-        let on = |soil: Soil| {
+        let on = |soil: LayerKind| {
             let many = self
                 .elements
                 .iter()
@@ -41,7 +41,8 @@ impl Lens {
                 .count();
             (many > 0).then(|| format!("{} on {many} surface{}", soil.key(), if many == 1 { "" } else { "s" }))
         };
-        let words: Vec<String> = [Soil::Haze, Soil::Dust, Soil::Scratches].into_iter().filter_map(on).collect();
+        let words: Vec<String> =
+            [LayerKind::Haze, LayerKind::Dust, LayerKind::Scratches].into_iter().filter_map(on).collect();
         (!words.is_empty()).then(|| words.join(", "))
     }
 
@@ -53,7 +54,7 @@ impl Lens {
         let glasses = self.media.iter().filter(|m| !matches!(m.medium, Medium::Air | Medium::Vacuum));
         let known: Vec<bool> = glasses.map(|m| m.medium.absorption(self.year).is_some()).collect();
         let (all, clear) = (known.len(), known.iter().filter(|known| !**known).count());
-        let parts = [(self.borrowed_absorption().len(), "from a similar glass"), (clear, "unknown, taken as clear")];
+        let parts = [(self.substituted_absorption().len(), "from a similar glass"), (clear, "unknown, taken as clear")];
         let parts: Vec<String> =
             parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} of {all} {what}")).collect();
         match (all, parts.is_empty()) {
@@ -66,7 +67,7 @@ impl Lens {
     /// Returns the medium whose assumed absorption takes most light on the axis, the glass whose absorption is assumed for it, and the
     /// total loss of all assumed absorptions at the reference line, stops. Returns `None` below one stop, or if glass does not absorb.
     #[must_use]
-    pub fn darkened_by_assumption(&self) -> Option<(&str, Lender, f64)> {
+    pub fn darkened_by_assumption(&self) -> Option<(&str, AbsorptionSubstitute, f64)> {
         let nm = self.reference_nm;
         let mut stops = vec![0.0; self.media.len()];
         for element in &self.elements {

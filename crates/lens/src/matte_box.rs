@@ -1,6 +1,6 @@
 //! A matte box: a rectangular opening in front of the lens.
 
-use crate::aperture::{Aperture, Shape};
+use crate::aperture::{Aperture, ApertureShape};
 use crate::pose::{AxisBreak, Displacement};
 use crate::{Element, Lens};
 use spectra_core::surface::{Action, Kernel, Plane};
@@ -32,7 +32,7 @@ impl Lens {
         element.thickness_mm = opening.distance_mm;
         element.semi_diameter_mm = Some((half_width_mm * half_width_mm + half_height_mm * half_height_mm).sqrt());
         element.apertures = vec![Aperture {
-            shape: Shape::Rectangle { half_width_mm, half_height_mm },
+            shape: ApertureShape::Rectangle { half_width_mm, half_height_mm },
             center_mm: [0.0; 2],
             obscures: false,
         }];

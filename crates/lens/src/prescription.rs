@@ -2,7 +2,7 @@
 
 use crate::prism::{self, PRISM, PrismParams};
 use crate::schema::SurfaceOrBreak;
-use crate::surface_file::{BREAK, BreakParams, Place, displacement};
+use crate::surface_file::{BREAK, BreakParams, SurfaceKeys, displacement};
 use crate::{
     Coating, CoatingForm, DustForm, Element, FocusLaw, FocusTable, Group, GroupTravel, HazeForm, Lens, LensMedium,
     Rims, ScratchesForm, aperture, read_coating, read_layers, read_separation, read_stated_coating, separation,
@@ -11,15 +11,15 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use spectra_core::names;
 use spectra_core::params::{
-    Angle, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Part, Positive, Quantity, Ratio, StageNode, Value,
-    Whole, keys_of,
+    Angle, Deferred, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, Quantity, Ratio, StageNode,
+    Value, Whole, keys_of,
 };
 use spectra_core::registry::{self, Context};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::BAND;
 use spectra_core::surface::{Action, Kernel, Plane, Surface};
 use spectra_glass::file::{self, Figures, StatedLines};
-use spectra_glass::{Beside, Catalogue, LineTriple, Medium, ModelGlass};
+use spectra_glass::{Catalog, GlassFacts, LineTriple, Medium, ModelGlass};
 use std::sync::Arc;
 
 /// A lens: its prescription, surface by surface, and the source of its figures.
@@ -78,24 +78,24 @@ pub(crate) struct LensFile {
     /// `{fitted: ...}` to measured light, with a note on what was measured. Not known if absent.
     rims: Option<Rims>,
     /// Surfaces of the lens, one or more, in the order in which light meets them.
-    surfaces: Vec<Part<SurfaceOrBreak>>,
+    surfaces: Vec<Deferred<SurfaceOrBreak>>,
     /// Groups of surfaces that move together, in focusing or by misalignment; none if absent.
     #[serde(default)]
-    groups: Vec<Part<GroupParams>>,
+    groups: Vec<Deferred<GroupParams>>,
     /// Focusing laws: how groups move in focusing. The whole lens moves if absent.
     #[serde(default)]
-    focus: Vec<Part<FocusParams>>,
+    focus: Vec<Deferred<FocusParams>>,
     /// Coating of all surfaces that state none: `ideal`, `bare`, `single-layer`, `three-layer`, a layer or a stack; with
     /// `assumed: true` if it is not known. If absent, the usual coating of lenses of the `year`: `bare` before 1940 or without a year,
     /// `single-layer` before 1970, then `three-layer`.
-    coating: Option<Part<CoatingForm>>,
+    coating: Option<Deferred<CoatingForm>>,
     /// Haze on all surfaces where glass meets air, except those that state their own: the fraction of the light that each scatters, and how
     /// wide. None if absent.
-    haze: Option<Part<HazeForm>>,
+    haze: Option<Deferred<HazeForm>>,
     /// Dust on the same surfaces: the fraction that it covers, and the size of its grains. None if absent.
-    dust: Option<Part<DustForm>>,
+    dust: Option<Deferred<DustForm>>,
     /// Scratches on the same surfaces: the fraction that they cover or a drawing of them, and their width. None if absent.
-    scratches: Option<Part<ScratchesForm>>,
+    scratches: Option<Deferred<ScratchesForm>>,
     /// Whether glass absorbs light, as its catalogue says.
     #[serde(default = "yes")]
     absorption: bool,
@@ -164,7 +164,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         faults.push(fault.hint("such as `- {kind: sphere, radius: 50, thickness: 5, glass: SCHOTT/N-BK7}`"));
     }
     let context = Context::new(resources, BAND);
-    let place_keys = keys_of::<Place>();
+    let place_keys = keys_of::<SurfaceKeys>();
     let mut medium_before = 0;
     let mut along = true;
     let mut breaks = Vec::new();
@@ -178,7 +178,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         }
         let (place, shape) = params.split(&place_keys);
         if params.kind() == Some(PRISM) {
-            let stated = faults.take(place.parse::<Place>());
+            let stated = faults.take(place.parse::<SurfaceKeys>());
             let own = faults.take(shape.parse::<PrismParams>());
             let (Some(stated), Some(own)) = (stated, own) else { continue };
             faults.extend(prism::misplaced(&place));
@@ -215,7 +215,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
         }
         let surface = registry::build::<dyn Surface>(&shape, &context);
         let surface = faults.take(surface.map_err(|faults| with_keys_of_all(faults, &place_keys)));
-        let stated = faults.take(place.parse::<Place>());
+        let stated = faults.take(place.parse::<SurfaceKeys>());
         let (Some(surface), Some(stated)) = (surface, stated) else { continue };
         let semi_diameter_mm = stated.semi_diameter.map(|s| s.mm());
         let number = lens.elements.len() + 1;
@@ -351,7 +351,7 @@ pub fn parse(params: &Params, resources: &dyn Resources) -> Result<Lens, Faults>
     }
     lens.arrange();
     if faults.is_empty() {
-        let doubts = lens.doubts();
+        let doubts = lens.prescription_warnings();
         lens.warnings.extend(doubts);
     }
     faults.into_result(lens)
@@ -376,9 +376,9 @@ fn with_keys_of_all(mut faults: Faults, of_all: &[String]) -> Faults {
 
 /// Collects the nodes of haze, dust and scratches in the order that [`read_layers`] expects.
 fn soils<'a>(
-    haze: &'a Option<Part<HazeForm>>,
-    dust: &'a Option<Part<DustForm>>,
-    scratches: &'a Option<Part<ScratchesForm>>,
+    haze: &'a Option<Deferred<HazeForm>>,
+    dust: &'a Option<Deferred<DustForm>>,
+    scratches: &'a Option<Deferred<ScratchesForm>>,
 ) -> [Option<&'a StageNode>; 3] {
     [haze.as_deref(), dust.as_deref(), scratches.as_deref()]
 }
@@ -507,7 +507,7 @@ fn reach_mm(surface: &dyn Surface, semi_diameter_mm: f64) -> Option<f64> {
 
 /// Returns the index that a surface states besides its glass or instead of one, with its Abbe number and the lines of both.
 fn stated_figures(
-    stated: &Place,
+    stated: &SurfaceKeys,
     place: &Params,
     reference: LineTriple,
 ) -> Result<Option<(f64, Option<f64>, LineTriple)>, Fault> {
@@ -527,7 +527,7 @@ fn stated_figures(
 
 /// Returns the medium that a surface states, or `None` for air. `nd` and `vd` of a surface refer to the reference lines.
 fn medium(
-    stated: &Place,
+    stated: &SurfaceKeys,
     place: &Params,
     number: usize,
     resources: &dyn Resources,
@@ -568,8 +568,8 @@ fn medium(
         let medium = if file::is_file(name) || name.eq_ignore_ascii_case("vacuum") {
             file::medium(name, place, "glass", resources)?
         } else {
-            let beside = Beside { figures, maker: lens.maker.as_deref(), year: lens.year };
-            let chosen = Catalogue::bundled().choose(name, beside);
+            let beside = GlassFacts { figures, maker: lens.maker.as_deref(), year: lens.year };
+            let chosen = Catalog::bundled().choose(name, beside);
             let chosen = chosen.map_err(|e| place.fault("glass", e.message()).hint(e.hint()))?;
             lens.warnings.extend(chosen.note.map(|note| format!("surface {number}: {note}")));
             Medium::from(chosen.glass)

@@ -1,6 +1,6 @@
 //! Scaling: multiplies all lengths of a lens by a factor, so that angles, f-numbers and glasses stay the same.
 
-use crate::aperture::{Aperture, Shape};
+use crate::aperture::{Aperture, ApertureShape};
 use crate::focus::GroupTravel;
 use crate::pose::{AxisBreak, Displacement};
 use crate::solid::Solid;
@@ -74,21 +74,25 @@ impl Aperture {
     fn scaled(&self, factor: f64) -> Option<Self> {
         let by = |mm: &f64| mm * factor;
         let shape = match &self.shape {
-            Shape::Ring { inner_mm, outer_mm } => Shape::Ring { inner_mm: by(inner_mm), outer_mm: by(outer_mm) },
-            Shape::Rectangle { half_width_mm, half_height_mm } => {
-                Shape::Rectangle { half_width_mm: by(half_width_mm), half_height_mm: by(half_height_mm) }
+            ApertureShape::Ring { inner_mm, outer_mm } => {
+                ApertureShape::Ring { inner_mm: by(inner_mm), outer_mm: by(outer_mm) }
             }
-            Shape::Ellipse { half_width_mm, half_height_mm } => {
-                Shape::Ellipse { half_width_mm: by(half_width_mm), half_height_mm: by(half_height_mm) }
+            ApertureShape::Rectangle { half_width_mm, half_height_mm } => {
+                ApertureShape::Rectangle { half_width_mm: by(half_width_mm), half_height_mm: by(half_height_mm) }
             }
-            Shape::Polygon(corners) => Shape::Polygon(corners.iter().map(|corner| corner.each_ref().map(by)).collect()),
-            Shape::Iris(iris) => {
+            ApertureShape::Ellipse { half_width_mm, half_height_mm } => {
+                ApertureShape::Ellipse { half_width_mm: by(half_width_mm), half_height_mm: by(half_height_mm) }
+            }
+            ApertureShape::Polygon(corners) => {
+                ApertureShape::Polygon(corners.iter().map(|corner| corner.each_ref().map(by)).collect())
+            }
+            ApertureShape::Iris(iris) => {
                 let mut iris = *iris;
                 iris.blade_radius_mm *= factor;
-                Shape::Iris(iris)
+                ApertureShape::Iris(iris)
             }
-            Shape::Mask(mask) => Shape::Mask(mask.scaled(factor)),
-            Shape::Drawing(_) => return None,
+            ApertureShape::Mask(mask) => ApertureShape::Mask(mask.scaled(factor)),
+            ApertureShape::Drawing(_) => return None,
         };
         Some(Self { shape, center_mm: self.center_mm.each_ref().map(by), obscures: self.obscures })
     }

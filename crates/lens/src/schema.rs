@@ -3,7 +3,7 @@
 use crate::aperture::ApertureKeys;
 use crate::coating::CoatingKeys;
 use crate::prism::PrismParams;
-use crate::surface_file::{BREAK, BreakParams, Place};
+use crate::surface_file::{BREAK, BreakParams, SurfaceKeys};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::json;
 use spectra_core::params::Kinds;
@@ -12,7 +12,7 @@ use std::borrow::Cow;
 /// Returns the schema of the keys that every surface may have besides the parameters of its kind, as a map.
 #[must_use]
 pub fn surface_keys(generator: &mut SchemaGenerator) -> Schema {
-    Place::json_schema(generator)
+    SurfaceKeys::json_schema(generator)
 }
 
 /// Returns the schema of the keys that every coating may have besides the parameters of its kind, as a map.
@@ -45,7 +45,7 @@ impl JsonSchema for SurfaceOrBreak {
         };
         let is = |kind: &str| json!({ "properties": { "kind": { "const": kind } }, "required": ["kind"] });
         let is_bend = is(BREAK);
-        let place = Place::json_schema(generator);
+        let place = SurfaceKeys::json_schema(generator);
         let prism = Kinds {
             key: "kind",
             kinds: vec![(crate::prism::PRISM, PrismParams::json_schema(generator))],

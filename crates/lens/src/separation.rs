@@ -8,7 +8,7 @@ use crate::aperture::{Aperture, ApertureForm, read as read_apertures};
 use crate::coating::Coating;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Length, Params, Part, Positive, StageNode};
+use spectra_core::params::{Deferred, Faults, Length, Params, Positive, StageNode};
 use spectra_core::resources::Resources;
 
 /// The key of a separation in a lens file.
@@ -28,7 +28,7 @@ pub struct SeparationForm {
     depth: Option<Positive<Length>>,
     /// Where the gap is, written as for `haze`. All over the surface if absent.
     #[serde(rename = "where")]
-    place: Option<Part<ApertureForm>>,
+    place: Option<Deferred<ApertureForm>>,
 }
 
 /// A gap of air in a cemented surface.

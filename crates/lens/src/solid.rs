@@ -68,7 +68,7 @@ pub enum SolidError {
 
 /// A ray that has passed through a prism.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passed {
+pub struct PassedRay {
     /// Point where the ray leaves the prism, mm in the frame of the prism.
     pub position: DVec3,
     /// Unit direction of the ray where it leaves the prism.
@@ -204,8 +204,8 @@ impl Solid {
         position: DVec3,
         direction: DVec3,
         index: f64,
-        mut face: impl FnMut(&Face),
-    ) -> Result<Passed, Loss> {
+        mut face: impl FnMut(&FaceHit),
+    ) -> Result<PassedRay, Loss> {
         let across = DVec2::new(direction.y, direction.z);
         let speed = across.length();
         if speed < ALONG {
@@ -221,7 +221,7 @@ impl Solid {
             let Some((k, t)) = self.nearest(p, d, inside, last) else {
                 return match (inside, step) {
                     (false, 0) => Err(Loss::Missed),
-                    (false, _) => Ok(Passed { position: p, direction: d, outside_mm, inside_mm }),
+                    (false, _) => Ok(PassedRay { position: p, direction: d, outside_mm, inside_mm }),
                     (true, _) => Err(Loss::Absorbed),
                 };
             };
@@ -243,15 +243,20 @@ impl Solid {
                     // The ray meets the back of a mirror, or is totally reflected on the outside.
                     return Err(Loss::Absorbed);
                 }
-                face(&Face {
+                face(&FaceHit {
                     direction: d,
                     normal,
                     cosine,
-                    bend: if self.silvered[k] { Bend::Mirror } else { Bend::Total },
+                    bend: if self.silvered[k] { FaceEvent::Mirror } else { FaceEvent::Total },
                 });
                 d = (d + 2.0 * cosine * normal).normalize();
             } else {
-                face(&Face { direction: d, normal, cosine, bend: if inside { Bend::Out } else { Bend::In } });
+                face(&FaceHit {
+                    direction: d,
+                    normal,
+                    cosine,
+                    bend: if inside { FaceEvent::Out } else { FaceEvent::In },
+                });
                 d = (ratio * d + (ratio * cosine - inner.sqrt()) * normal).normalize();
                 inside = !inside;
             }
@@ -262,7 +267,7 @@ impl Solid {
 
 /// A meeting of a ray with a face of a prism.
 #[derive(Clone, Copy, Debug)]
-pub struct Face {
+pub struct FaceHit {
     /// Unit direction of the ray in front of the face.
     pub direction: DVec3,
     /// Unit normal of the face, pointing against the light.
@@ -270,10 +275,10 @@ pub struct Face {
     /// Cosine of the angle of incidence.
     pub cosine: f64,
     /// What the light does at the face.
-    pub bend: Bend,
+    pub bend: FaceEvent,
 }
 
-impl Face {
+impl FaceHit {
     /// Returns what the face does to s and p light: by its coating between a medium of index `n` and glass of index `inside`, or by its
     /// silver.
     pub fn polarizes(
@@ -284,17 +289,17 @@ impl Face {
     ) -> Polarizing {
         let cosine = self.cosine.min(1.0);
         match self.bend {
-            Bend::In => coating.through(n, inside, cosine, wavelength_nm),
-            Bend::Out => coating.through(inside, n, cosine, wavelength_nm),
-            Bend::Mirror => Polarizing::evenly(reflectance, true),
-            Bend::Total => Amplitudes::of(&Coating::Bare).back(inside, n, cosine, wavelength_nm),
+            FaceEvent::In => coating.through(n, inside, cosine, wavelength_nm),
+            FaceEvent::Out => coating.through(inside, n, cosine, wavelength_nm),
+            FaceEvent::Mirror => Polarizing::evenly(reflectance, true),
+            FaceEvent::Total => Amplitudes::of(&Coating::Bare).back(inside, n, cosine, wavelength_nm),
         }
     }
 }
 
 /// What light does at a face of a prism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bend {
+pub enum FaceEvent {
     /// The light enters the glass.
     In,
     /// The light leaves the glass.

@@ -5,7 +5,7 @@ use crate::separation::SeparationForm;
 use crate::{AxisBreak, CoatingForm, Displacement, DustForm, HazeForm, ScratchesForm, aperture};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Angle, Length, Part, Positive, Ratio};
+use spectra_core::params::{Angle, Deferred, Length, Positive, Ratio};
 
 /// Longest length in a lens, mm: 1000 km. Anything longer is a typing mistake in the exponent.
 const LONGEST_MM: f64 = 1e9;
@@ -13,7 +13,7 @@ const LONGEST_MM: f64 = 1e9;
 /// The keys that every surface may have, whatever its kind; all other keys belong to the kind.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct Place {
+pub(crate) struct SurfaceKeys {
     /// Distance to the next vertex along the axis (for the last surface, to the image plane), mm if bare: positive in
     /// the direction of the light before any mirror. 0 if absent.
     #[serde(default)]
@@ -21,7 +21,7 @@ pub(crate) struct Place {
     pub thickness: Option<Length>,
     /// Medium behind the surface: a name in the catalogue such as `SCHOTT/N-BK7`, `air`, or its `nd` and `vd`. If absent, air;
     /// behind a mirror or a stop, the medium in front of it.
-    pub glass: Option<Part<GlassForm>>,
+    pub glass: Option<Deferred<GlassForm>>,
     /// Index at the reference line, 1 to 4, as the patent states it; the glass gives the dispersion.
     #[schemars(range(min = 1, max = 4))]
     pub nd: Option<f64>,
@@ -45,7 +45,7 @@ pub(crate) struct Place {
     /// Leg of the 45 degree chamfer at the edge, mm if bare: positive toward +z. None if absent.
     pub chamfer: Option<Length>,
     /// Further limits to the light: one aperture or a list; see its `shape`. None if absent.
-    pub aperture: Option<Part<aperture::ApertureForm>>,
+    pub aperture: Option<Deferred<aperture::ApertureForm>>,
     /// Whether the surface is a mirror; it then has no glass of its own.
     #[serde(default)]
     pub mirror: bool,
@@ -60,17 +60,17 @@ pub(crate) struct Place {
     #[serde(default)]
     pub reversed: bool,
     /// Coating of this surface: `ideal`, `bare`, or a layer; the lens's if absent.
-    pub coating: Option<Part<CoatingForm>>,
+    pub coating: Option<Deferred<CoatingForm>>,
     /// Separated cement between two glasses, given by the width of the gap of air and how far it reaches in. None if absent.
-    pub separation: Option<Part<SeparationForm>>,
+    pub separation: Option<Deferred<SeparationForm>>,
     /// Haze on the surface: the fraction of the light that it scatters, and how wide; the lens's if absent.
-    pub haze: Option<Part<HazeForm>>,
+    pub haze: Option<Deferred<HazeForm>>,
     /// Dust on the surface: the fraction that it covers, and the size of its grains; the lens's if absent.
-    pub dust: Option<Part<DustForm>>,
+    pub dust: Option<Deferred<DustForm>>,
     /// Scratches on the surface: the fraction that they cover or a drawing of them, and their width; the lens's if absent.
-    pub scratches: Option<Part<ScratchesForm>>,
+    pub scratches: Option<Deferred<ScratchesForm>>,
     /// Rings that turning left on the surface, given by their period and height: they show in out-of-focus highlights. None if absent.
-    pub onion_rings: Option<Part<OnionRingsForm>>,
+    pub onion_rings: Option<Deferred<OnionRingsForm>>,
     /// Fraction of the light that a mirror reflects, 0 to 1; all of it if absent.
     #[schemars(range(min = 0, max = 1))]
     pub reflectance: Option<Ratio>,

@@ -4,7 +4,7 @@ use std::str::FromStr;
 use svgtypes::LengthUnit;
 
 /// Returns the first 40 characters of a user's text, for a message.
-pub(super) fn short(text: &str) -> String {
+pub(super) fn shortened(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
@@ -27,5 +27,5 @@ pub(super) fn length(text: &str) -> Option<(f64, Option<f64>)> {
 /// Parses a length and returns it in user units, 96 to the inch.
 pub(super) fn plain_length(text: &str) -> Result<f64, String> {
     let found = length(text).map(|(number, mm)| mm.map_or(number, |mm| number * mm * 96.0 / 25.4));
-    found.filter(|v| v.is_finite()).ok_or_else(|| format!("not a length: `{}`", short(text)))
+    found.filter(|v| v.is_finite()).ok_or_else(|| format!("not a length: `{}`", shortened(text)))
 }

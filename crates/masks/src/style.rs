@@ -1,7 +1,7 @@
 //! Computes how an element of an SVG file is painted, from its attributes, `style`, style sheets and inherited properties.
 
 use super::FillRule;
-use super::attribute::{plain_length, short};
+use super::attribute::{plain_length, shortened};
 use super::outline::{Cap, Join, Pen};
 use roxmltree::Node;
 use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
@@ -119,7 +119,7 @@ impl Style {
             style.rule = match value {
                 "evenodd" => FillRule::EvenOdd,
                 "nonzero" => FillRule::NonZero,
-                other => return Err(format!("unknown fill-rule `{}`", short(other))),
+                other => return Err(format!("unknown fill-rule `{}`", shortened(other))),
             };
         }
         for (name, to) in [("fill-opacity", &mut style.fill_opacity), ("stroke-opacity", &mut style.stroke_opacity)] {
@@ -146,7 +146,7 @@ impl Style {
         }
         if let Some(value) = get("stroke-miterlimit") {
             let limit = value.parse::<f64>().ok().filter(|v| *v >= 1.0);
-            style.pen.miter_limit = limit.ok_or_else(|| format!("not a miter limit: `{}`", short(value)))?;
+            style.pen.miter_limit = limit.ok_or_else(|| format!("not a miter limit: `{}`", shortened(value)))?;
         }
         if let Some(value) = get("stroke-width") {
             style.pen.width = plain_length(value)?;
@@ -161,7 +161,7 @@ impl Style {
 fn opacity(text: &str) -> Result<f64, String> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
     let value = number.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-    value.map(|v| (v * scale).clamp(0.0, 1.0)).ok_or_else(|| format!("not an opacity: `{}`", short(text)))
+    value.map(|v| (v * scale).clamp(0.0, 1.0)).ok_or_else(|| format!("not an opacity: `{}`", shortened(text)))
 }
 
 fn paint(text: &str, current: Color, name: &str) -> Result<Option<Color>, String> {
@@ -172,12 +172,12 @@ fn paint(text: &str, current: Color, name: &str) -> Result<Option<Color>, String
         Ok(svgtypes::Paint::FuncIRI(..)) => {
             Err(format!("`{name}` with a gradient or pattern is not understood in an aperture"))
         }
-        _ => Err(format!("not a color for `{name}`: `{}`", short(text))),
+        _ => Err(format!("not a color for `{name}`: `{}`", shortened(text))),
     }
 }
 
 fn color(text: &str) -> Result<Color, String> {
-    svgtypes::Color::from_str(text).map(display).map_err(|_| format!("not a color: `{}`", short(text)))
+    svgtypes::Color::from_str(text).map(display).map_err(|_| format!("not a color: `{}`", shortened(text)))
 }
 
 /// Returns the luminance of an sRGB color on its encoded scale, with the weights of Rec. 709, as for picture masks.

@@ -4,7 +4,7 @@
 //! transforms, fill rules, strokes, opacity, `style` and style sheets (SVG 1.1). Any other element that would be painted is a fault:
 //! a difference between an aperture and its drawing would be noticed only late.
 
-use super::attribute::{length, plain_length, short};
+use super::attribute::{length, plain_length, shortened};
 use super::outline::{Path, Point, stroked};
 use super::style::Style;
 use super::{Drawing, FLATNESS_MM, FillRule, Painted};
@@ -64,7 +64,7 @@ pub fn read(name: &str, bytes: &[u8], width_mm: Option<f64>, open: Option<Open>)
     let place = |node: Node<'_, '_>| span_of(text, node.range().start);
     let fault = |node: Node<'_, '_>, text: String| Fault::new(text).at(Arc::clone(&file), place(node));
     if root.tag_name().name() != "svg" {
-        return Err(fault(root, format!("this is not an SVG, but `{}`", short(root.tag_name().name()))).into());
+        return Err(fault(root, format!("this is not an SVG, but `{}`", shortened(root.tag_name().name()))).into());
     }
     let page = page(root, width_mm).map_err(|(text, hint)| fault(root, text).hint(hint))?;
     let mut sheet = StyleSheet::new();
@@ -279,7 +279,7 @@ impl<'a, 'i> Painter<'a, 'i> {
                 }
             }
             "text" => self.fault(node, "text is not understood in an aperture: convert it to paths".to_owned()),
-            other => self.fault(node, format!("`{}` is not understood in an aperture", short(other))),
+            other => self.fault(node, format!("`{}` is not understood in an aperture", shortened(other))),
         }
     }
 
@@ -289,8 +289,10 @@ impl<'a, 'i> Painter<'a, 'i> {
         let id = href.and_then(|text| text.trim().strip_prefix('#'));
         let found = id.and_then(|id| self.document.descendants().find(|n| n.attribute("id") == Some(id)));
         let Some(target) = found else {
-            return self
-                .fault(node, format!("`use` refers to nothing in this file: `{}`", short(href.unwrap_or_default())));
+            return self.fault(
+                node,
+                format!("`use` refers to nothing in this file: `{}`", shortened(href.unwrap_or_default())),
+            );
         };
         let moved = (self.coordinate(node, "x", 0), self.coordinate(node, "y", 1));
         let (Ok(x), Ok(y)) = moved else { return self.fault(node, "`use` has an invalid position".to_owned()) };
@@ -313,7 +315,7 @@ impl<'a, 'i> Painter<'a, 'i> {
             let [w, h] = self.page;
             let whole = [w, h, ((w * w + h * h) / 2.0).sqrt()][of];
             let share = number.parse::<f64>().ok().filter(|v| v.is_finite());
-            return share.map(|s| 0.01 * s * whole).ok_or_else(|| format!("not a length: `{}`", short(text)));
+            return share.map(|s| 0.01 * s * whole).ok_or_else(|| format!("not a length: `{}`", shortened(text)));
         }
         plain_length(text).map_err(|e| format!("{name}: {e}"))
     }
@@ -361,7 +363,7 @@ impl<'a, 'i> Painter<'a, 'i> {
                     if i == 0 { path.begin([x, y]) } else { path.line([x, y]) }
                 }
                 if path.parts.is_empty() && !text.trim().is_empty() {
-                    return Err(format!("not a list of points: `{}`", short(text)));
+                    return Err(format!("not a list of points: `{}`", shortened(text)));
                 }
                 if name == "polygon" {
                     path.close();

@@ -14,7 +14,7 @@ pub use libm::{
 /// but additions.
 #[inline(always)]
 #[must_use]
-pub fn whole(at: f64, last: f64) -> (u32, f64) {
+pub fn floor_index(at: f64, last: f64) -> (u32, f64) {
     const WHOLE: f64 = (1_u64 << 52) as f64;
     let at = if at > 0.0 { at } else { 0.0 };
     let at = if at < last { at } else { last };
@@ -199,13 +199,13 @@ mod tests {
         for i in 0..100_000 {
             let at = f64::from(i) * 0.125 - 100.0;
             let want = (at as u32).min(7777);
-            assert_eq!(whole(at, 7777.0), (want, f64::from(want)), "{at}");
+            assert_eq!(floor_index(at, 7777.0), (want, f64::from(want)), "{at}");
         }
         let below = |x: f64| f64::from_bits(x.to_bits() - 1);
         for (at, want) in [(below(3.0), 2), (3.0, 3), (f64::NAN, 0), (f64::INFINITY, 9), (-0.0, 0), (below(9.0), 8)] {
-            assert_eq!(whole(at, 9.0), (want, f64::from(want)), "{at}");
+            assert_eq!(floor_index(at, 9.0), (want, f64::from(want)), "{at}");
         }
-        assert_eq!(whole(4e9, 4_294_967_295.0).0, 4_000_000_000);
+        assert_eq!(floor_index(4e9, 4_294_967_295.0).0, 4_000_000_000);
     }
 
     /// Moments of a uniform unit disk: E r^2 = 1/2, E r^4 = 1/3, E x = 0, E x^2 = 1/4.

@@ -7,7 +7,7 @@ pub const FAR: f64 = 25.0;
 
 /// Returns the share of the distribution below `z` standard deviations.
 #[must_use]
-pub fn below(z: f64) -> f64 {
+pub fn cdf(z: f64) -> f64 {
     0.5 * erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
 }
 
@@ -15,7 +15,7 @@ pub fn below(z: f64) -> f64 {
 /// 1e-16; relative error about 1e-15.
 #[must_use]
 pub fn quantile(u: f64) -> f64 {
-    if u < 0.5 { -upper_quantile(u) } else { upper_quantile(1.0 - u) }
+    if u < 0.5 { -inverse_survival(u) } else { inverse_survival(1.0 - u) }
 }
 
 /// Returns Mills' ratio for `z` beyond [`FAR`], to the last digits: the eighth convergent of its continued fraction.
@@ -92,7 +92,7 @@ pub fn exp_of_negative(x: f64) -> f64 {
 /// PPND16 of AS 241; all three rational approximations are evaluated side by side.
 #[inline(always)]
 #[must_use]
-pub fn upper_quantile(share: f64) -> f64 {
+pub fn inverse_survival(share: f64) -> f64 {
     let d = 0.5 - share;
     let root = (-log(share)).sqrt();
     let central = d <= 0.425;
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn quantiles_are_the_tables() {
         for (u, z) in [(0.5, 0.0), (0.9, 1.281_551_566), (0.975, 1.959_963_985), (0.001, -3.090_232_306)] {
-            assert!((quantile(u) - z).abs() < 1e-9 && (below(z) - u).abs() < 1e-9, "{u}");
+            assert!((quantile(u) - z).abs() < 1e-9 && (cdf(z) - u).abs() < 1e-9, "{u}");
         }
     }
 
@@ -229,7 +229,7 @@ mod tests {
     fn normal_quantile_inverts_erfc() {
         for i in 1..3000 {
             let share = 0.5 * libm::exp(-f64::from(i) * 0.23);
-            let z = upper_quantile(share);
+            let z = inverse_survival(share);
             let back = 0.5 * libm::erfc(z * std::f64::consts::FRAC_1_SQRT_2);
             // The share changes by a factor z^2 times the relative rounding of z.
             let tolerance = 8e-16 * (4.0 + z * z);

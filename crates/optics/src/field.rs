@@ -153,19 +153,19 @@ fn guess(at: f64, last: Option<(f64, [f64; 2])>, before: Option<(f64, [f64; 2])>
 
 fn chief_ray(optics: &Optics, bundle: &Bundle<'_>, field_rad: f64, place: [f64; 2]) -> Option<ChiefRay> {
     let (start_mm, direction) = bundle.ray(place);
-    let Landing { image_mm, direction: exit_direction } = landing(optics, bundle, place)?;
+    let ImageHit { image_mm, direction: exit_direction } = landing(optics, bundle, place)?;
     let foci_mm = foci_mm(optics, bundle, place).unwrap_or_default();
     Some(ChiefRay { field_rad, start_mm, direction, image_mm, exit_direction, foci_mm })
 }
 
 /// The point and direction in which a ray meets the image plane, in its frame.
-struct Landing {
+struct ImageHit {
     image_mm: [f64; 2],
     direction: DVec3,
 }
 
 /// Returns where the ray through a point of the window lands. Plates in front of the frame act as if the frame were nearer.
-fn landing(optics: &Optics, bundle: &Bundle<'_>, place: [f64; 2]) -> Option<Landing> {
+fn landing(optics: &Optics, bundle: &Bundle<'_>, place: [f64; 2]) -> Option<ImageHit> {
     let path = bundle.path(place);
     let last = *path.points.last().filter(|_| path.end.is_none())?;
     let image = &optics.image_pose;
@@ -174,7 +174,7 @@ fn landing(optics: &Optics, bundle: &Bundle<'_>, place: [f64; 2]) -> Option<Land
     let depth_mm = optics.cover.as_ref().map_or(0.0, |c| c.depth_mm(slope, optics.reference_nm));
     let t = -p.z / d.z - depth_mm / d.z;
     let image_mm = [p.x + t * d.x, p.y + t * d.y];
-    image_mm.iter().all(|c| c.is_finite()).then_some(Landing { image_mm, direction: d })
+    image_mm.iter().all(|c| c.is_finite()).then_some(ImageHit { image_mm, direction: d })
 }
 
 /// Returns where rays close to the one through a point of the window meet. At z behind the image plane they are at x + z u. Position x and
@@ -188,7 +188,7 @@ fn foci_mm(optics: &Optics, bundle: &Bundle<'_>, place: [f64; 2]) -> Option<[Opt
             landing(optics, bundle, place)
         };
         let (a, b) = (moved(-h)?, moved(h)?);
-        let slope = |l: &Landing| [l.direction.x / l.direction.z, l.direction.y / l.direction.z];
+        let slope = |l: &ImageHit| [l.direction.x / l.direction.z, l.direction.y / l.direction.z];
         let (ua, ub) = (slope(&a), slope(&b));
         let by = |i: usize| (b.image_mm[i] - a.image_mm[i], ub[i] - ua[i]);
         Some([by(0), by(1)])

@@ -20,7 +20,7 @@ mod optics;
 pub use aim::{AimPart, AimPattern, AimRegion, Effort, FrontPupil, RIM_EVERY, RearPupil, has_sizes};
 pub use aperture_error::{ApertureError, LimitingRim};
 pub use beam::Beam;
-pub use bundle::{Bundle, Extent, Line, ObjectPoint, RayPattern};
+pub use bundle::{Bundle, Extent, ObjectPoint, RayPattern, WindowLine};
 pub use f_number::stop_down;
 pub use field::{ChiefRay, FieldLimit};
 pub use focus::{Criterion, FocusSearch};

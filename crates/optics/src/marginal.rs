@@ -5,7 +5,7 @@
 //! same f-number, and a gray card is as bright through a decentered lens at f/4 as through any other.
 
 use crate::aperture_error::ApertureError;
-use crate::bundle::{Bundle, Line, ObjectPoint};
+use crate::bundle::{Bundle, ObjectPoint, WindowLine};
 use crate::{Clipping, Optics};
 use glam::{DVec2, DVec3};
 use spectra_core::loss::ALIVE;
@@ -81,7 +81,7 @@ pub(crate) fn axial_bundle(optics: &Optics, clipping: Clipping) -> Result<Bundle
 
 /// Returns the last passing ray on a line outward from the middle, for rays parallel to the axis. If something stands in the middle, as
 /// in many mirror telescopes, this is the outermost passing ray. Returns `None` if nothing passes, or nothing limits the light.
-fn edge(optics: &Optics, bundle: &Bundle<'_>, line: &Line) -> Option<AxialRay> {
+fn edge(optics: &Optics, bundle: &Bundle<'_>, line: &WindowLine) -> Option<AxialRay> {
     let zones = bundle.zones(line, PROBES, ACCURACY);
     let zone = zones.first().filter(|zone| zone[0] == 0.0).or(zones.last())?;
     if zone[1] >= line.length_mm { None } else { AxialRay::trace(optics, bundle, line.at(zone[1])) }
@@ -107,7 +107,7 @@ impl Optics {
         let bundle = axial_bundle(self, Clipping::RoundStop)?;
         let edges = (0..SPOKES).map(|k| {
             let (sin, cos) = math::sin_cos_turns(k as f64 / SPOKES as f64);
-            edge(self, &bundle, &Line { from: middle, way: [cos, sin], length_mm: 2.0 * bundle.reach_mm() })
+            edge(self, &bundle, &WindowLine { from: middle, way: [cos, sin], length_mm: 2.0 * bundle.reach_mm() })
         });
         let edges: Vec<AxialRay> = edges.collect::<Option<_>>().ok_or(ApertureError::Unlimited)?;
         let stop_height_mm = edges.iter().filter_map(|ray| ray.stop_height_mm).reduce(f64::max);

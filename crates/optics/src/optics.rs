@@ -1,8 +1,8 @@
 //! A lens made ready to trace, with a cache of its tracers.
 
 use spectra_glass::DispersionError;
+use spectra_lens::ApertureShape;
 use spectra_lens::Lens;
-use spectra_lens::Shape;
 use spectra_tracer::{Indices, Tracer};
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -28,7 +28,7 @@ impl Clipping {
             Self::AsStated => {}
             Self::RoundIris => {
                 for element in &mut lens.elements {
-                    element.apertures.retain(|aperture| !matches!(aperture.shape, Shape::Iris(_)));
+                    element.apertures.retain(|aperture| !matches!(aperture.shape, ApertureShape::Iris(_)));
                 }
             }
             Self::RoundStop => {

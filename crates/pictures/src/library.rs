@@ -2,7 +2,7 @@
 //!
 //! A plain build has no such library. Code that needs one tells the user how to get it ([`WITHOUT`]).
 
-use spectra_core::resources::Found;
+use spectra_core::resources::FoundFile;
 use spectra_core::sink::Out;
 
 /// Message for the user if no picture library is linked.
@@ -69,13 +69,13 @@ pub trait PictureLibrary: Sync {
     ///
     /// # Errors
     /// What is wrong with the file, without a full stop: another format, broken, or larger than `limits`.
-    fn read(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String>;
+    fn read(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, String>;
 
     /// Reads the header of the first picture: the result of [`PictureLibrary::read`] without pixels and alpha.
     ///
     /// # Errors
     /// The errors of [`PictureLibrary::read`].
-    fn header(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String>;
+    fn header(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, String>;
 
     /// Writes a tiled OpenEXR file: 32-bit floats, lossless. The same picture gives the same bytes.
     ///

@@ -17,20 +17,20 @@ pub struct Canvas {
     pub(crate) height: f64,
     pub(crate) title: String,
     pub(crate) background: Color,
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<DrawnPart>,
     clip: Option<Rect>,
 }
 
 /// A part of a drawing.
 #[derive(Clone, Debug)]
-pub(crate) struct Part {
-    pub kind: PartKind,
+pub(crate) struct DrawnPart {
+    pub kind: DrawnPartKind,
     /// Clip rectangle; `None` shows the whole part.
     pub clip: Option<Rect>,
 }
 
 #[derive(Clone, Debug)]
-pub(crate) enum PartKind {
+pub(crate) enum DrawnPartKind {
     Fill { polygon: Vec<Point>, paint: Paint },
     Line { points: Vec<Point>, closed: bool, stroke: Stroke },
     Text { text: String, strokes: Vec<Vec<Point>>, stroke: Stroke, halo: Option<Stroke> },
@@ -62,8 +62,8 @@ impl Canvas {
         self.clip = clip;
     }
 
-    fn add(&mut self, kind: PartKind) {
-        self.parts.push(Part { kind, clip: self.clip });
+    fn add(&mut self, kind: DrawnPartKind) {
+        self.parts.push(DrawnPart { kind, clip: self.clip });
     }
 
     /// Draws a straight line between two points.
@@ -73,17 +73,17 @@ impl Canvas {
 
     /// Draws a line through several points.
     pub fn polyline(&mut self, points: &[Point], stroke: &Stroke) {
-        self.add(PartKind::Line { points: points.to_vec(), closed: false, stroke: stroke.clone() });
+        self.add(DrawnPartKind::Line { points: points.to_vec(), closed: false, stroke: stroke.clone() });
     }
 
     /// Draws a line around a polygon.
     pub fn outline(&mut self, points: &[Point], stroke: &Stroke) {
-        self.add(PartKind::Line { points: points.to_vec(), closed: true, stroke: stroke.clone() });
+        self.add(DrawnPartKind::Line { points: points.to_vec(), closed: true, stroke: stroke.clone() });
     }
 
     /// Draws a filled polygon. Where it overlaps itself, it is filled.
     pub fn polygon(&mut self, points: &[Point], paint: impl Into<Paint>) {
-        self.add(PartKind::Fill { polygon: points.to_vec(), paint: paint.into() });
+        self.add(DrawnPartKind::Fill { polygon: points.to_vec(), paint: paint.into() });
     }
 
     /// Draws a filled rectangle.
@@ -104,7 +104,7 @@ impl Canvas {
     /// Draws a line of text with its baseline at a point. `_{...}` is a subscript and `^{...}` a superscript, as in `n_{d}` and `10^{-3}`.
     pub fn text(&mut self, at: Point, text: &str, style: &TextStyle) {
         let stroke = |color, width| Stroke::new(color, width).round();
-        self.add(PartKind::Text {
+        self.add(DrawnPartKind::Text {
             text: plain(text),
             strokes: style.strokes(at, text),
             stroke: stroke(style.color, style.pen()),
@@ -119,15 +119,15 @@ impl Canvas {
         color(&mut self.background);
         for part in &mut self.parts {
             match &mut part.kind {
-                PartKind::Fill { paint: Paint::Solid(solid), .. } => color(solid),
-                PartKind::Fill { paint: Paint::Gradient { stops, .. }, .. } => {
+                DrawnPartKind::Fill { paint: Paint::Solid(solid), .. } => color(solid),
+                DrawnPartKind::Fill { paint: Paint::Gradient { stops, .. }, .. } => {
                     stops.iter_mut().for_each(|stop| color(&mut stop.color));
                 }
-                PartKind::Fill { paint: Paint::Picture(picture), .. } => {
+                DrawnPartKind::Fill { paint: Paint::Picture(picture), .. } => {
                     picture.rgb.iter_mut().for_each(|rgb| *rgb = change(*rgb));
                 }
-                PartKind::Line { stroke, .. } => color(&mut stroke.color),
-                PartKind::Text { stroke, halo, .. } => {
+                DrawnPartKind::Line { stroke, .. } => color(&mut stroke.color),
+                DrawnPartKind::Text { stroke, halo, .. } => {
                     color(&mut stroke.color);
                     halo.iter_mut().for_each(|halo| color(&mut halo.color));
                 }
@@ -141,7 +141,7 @@ impl Canvas {
     pub fn to_pixels(&self, scale: f64) -> Pixels {
         // Overlapping light soon clips to white, even where it covers only part of a pixel, so that edges turn into stairs. Render it to
         // finer pixels and average them after all light is added.
-        let shines = |part: &Part| matches!(&part.kind, PartKind::Line { stroke, .. } if stroke.is_light);
+        let shines = |part: &DrawnPart| matches!(&part.kind, DrawnPartKind::Line { stroke, .. } if stroke.is_light);
         if self.parts.iter().any(shines) {
             return self.on_pixels(scale * f64::from(FINER)).shrunk(FINER);
         }
@@ -152,8 +152,8 @@ impl Canvas {
         let mut raster = Raster::new(self.width, self.height, scale, self.background);
         for part in &self.parts {
             match &part.kind {
-                PartKind::Fill { polygon, paint } => raster.fill(std::slice::from_ref(polygon), paint, part.clip),
-                PartKind::Line { points, closed, stroke } => {
+                DrawnPartKind::Fill { polygon, paint } => raster.fill(std::slice::from_ref(polygon), paint, part.clip),
+                DrawnPartKind::Line { points, closed, stroke } => {
                     let area = stroke.outline(points, *closed);
                     if stroke.is_light {
                         raster.shine(&area, &stroke.color.into(), part.clip);
@@ -161,7 +161,7 @@ impl Canvas {
                         raster.fill(&area, &stroke.color.into(), part.clip);
                     }
                 }
-                PartKind::Text { strokes, stroke, halo, .. } => {
+                DrawnPartKind::Text { strokes, stroke, halo, .. } => {
                     for stroke in halo.iter().chain([stroke]) {
                         debug_assert_eq!(stroke.cap, Cap::Round);
                         let areas: Vec<_> = strokes.iter().flat_map(|s| stroke.outline(s, false)).collect();

@@ -1,6 +1,6 @@
 //! Output of a drawing as SVG 1.1.
 
-use crate::canvas::{Canvas, PartKind};
+use crate::canvas::{Canvas, DrawnPartKind};
 use crate::color::Color;
 use crate::geometry::{Point, Rect};
 use crate::paint::{Paint, Picture};
@@ -18,11 +18,11 @@ impl Canvas {
             let clip = part.clip.map(|rect| svg.clip(rect));
             let clip = clip.map_or(String::new(), |id| format!(" clip-path=\"url(#{id})\""));
             match &part.kind {
-                PartKind::Fill { polygon, paint } => svg.fill(polygon, paint, &clip),
-                PartKind::Line { points, closed, stroke } => {
+                DrawnPartKind::Fill { polygon, paint } => svg.fill(polygon, paint, &clip),
+                DrawnPartKind::Line { points, closed, stroke } => {
                     svg.stroke(&path(std::slice::from_ref(points), *closed), stroke, &clip);
                 }
-                PartKind::Text { text, strokes, stroke, halo } => {
+                DrawnPartKind::Text { text, strokes, stroke, halo } => {
                     let way = path(strokes, false);
                     svg.line(&format!("<g role=\"img\" aria-label=\"{}\"{clip}>", escaped(text)));
                     halo.iter().chain([stroke]).for_each(|stroke| svg.stroke(&way, stroke, ""));

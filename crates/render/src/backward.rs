@@ -11,11 +11,11 @@
 //! ray to the rim along. That ray stands for 16 and weighs little, so it hardly matters whether it ends. Neighboring pixels bring it with
 //! different samples. Rays to the rim have streams of their own and are in no count of rays.
 
-use crate::blame::Blame;
 use crate::error::RenderError;
-use crate::estimator::{Estimator, Scratch, Unit};
+use crate::estimator::{Estimator, Scratch, UnitResult};
+use crate::finite_check::FiniteCheck;
 use crate::meter;
-use crate::no_number::Step;
+use crate::non_finite::Step;
 use crate::pilot::{self, PILOT_SEED};
 use crate::pipeline::{Pipeline, SCATTER, ThreadState};
 use crate::sums::{ExactSums, PILOT_RAYS};
@@ -25,7 +25,7 @@ use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::frame::FrameSize;
-use spectra_core::numbers::{Numbers, StageKey, Stretch};
+use spectra_core::numbers::{Numbers, SampleSpan, StageKey};
 use spectra_core::stage::{Launch, Radiance};
 use spectra_optics::{AimPart, RIM_EVERY, RearPupil};
 use spectra_scene::LightKind;
@@ -126,13 +126,13 @@ impl Backward {
         let (name, stream) = if part == AimPart::Rim { (RIM, RIM_STREAM) } else { (ESTIMATOR, 0) };
         let len = spans.iter().map(|span| span.count).sum();
         for (dimension, column) in state.numbers.iter_mut().enumerate() {
-            let stretches = spans.iter().map(|span| Stretch {
+            let stretches = spans.iter().map(|span| SampleSpan {
                 stream: stream | u64::from(span.pixel),
                 first: u64::from(span.first),
                 count: span.count,
             });
             let (group, out) = (self.pipeline.group(dimension), column.slice_mut(len));
-            self.numbers.fill_stretches(isa, stretches, group, dimension as u32, out);
+            self.numbers.fill_spans(isa, stretches, group, dimension as u32, out);
         }
         let start = |rays: &mut RayBatch| {
             let mut from = 0;
@@ -247,7 +247,7 @@ impl Backward {
     ) -> Result<(), RenderError> {
         self.steps(state, spans, part, &mut |_, _| {});
         if !state.contributions(&self.pipeline, self.scale) {
-            let mut blame = Blame::default();
+            let mut blame = FiniteCheck::default();
             self.steps(state, spans, part, &mut |step, rays| blame.look(step, rays));
             return Err(blame.error(&self.pipeline, state, self.scale));
         }
@@ -361,18 +361,25 @@ impl Estimator for Backward {
         Scratch(ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch))
     }
 
-    fn run(&self, samples: &Range<u64>, tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+    fn run(
+        &self,
+        samples: &Range<u64>,
+        tiles: &[u32],
+        unit: u64,
+        scratch: &mut Scratch,
+        sums: &ExactSums,
+    ) -> UnitResult {
         let (tile, samples) = Self::piece(samples, tiles, unit);
         let tile = self.tiling().tile(tile);
         let count = (samples.end - samples.start) as u32;
         let state = &mut scratch.0;
         let booked = (state.work.losses.clone(), state.detected);
         match self.unit(state, &tile, samples.start as u32, count, sums) {
-            Ok(()) => Unit { rays: u64::from(tile.len()) * u64::from(count), error: None },
+            Ok(()) => UnitResult { rays: u64::from(tile.len()) * u64::from(count), error: None },
             Err(error) => {
                 // None of this unit is in the sums, so its losses and detected rays are not counted either.
                 (state.work.losses, state.detected) = booked;
-                Unit { rays: 0, error: Some(error) }
+                UnitResult { rays: 0, error: Some(error) }
             }
         }
     }

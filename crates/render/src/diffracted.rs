@@ -11,7 +11,9 @@ use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::frame::ExposureChannel;
 use spectra_core::spectral::{Channel, SpectralPower};
-use spectra_diffraction::{Account, Light, Polygon, Pupil, Spread, View, Wave, Waves, brightest_star};
+use spectra_diffraction::{
+    ChannelLight, LensView, Polygon, Pupil, Spread, SpreadReport, Wavefront, Wavefronts, brightest_star,
+};
 use spectra_scene::Scene;
 
 /// What diffraction did to one channel.
@@ -35,7 +37,7 @@ pub(crate) fn fault(scene: &Scene) -> Option<String> {
 /// Returns the brightness of the brightest star, as a fraction of the median of the frame, where the star leaves the pixels around its
 /// light. Takes the channel in which it is largest; `None` if it cannot be computed.
 pub(crate) fn star(scene: &Scene, planes: &[ExposureChannel], recorded: &[usize]) -> Option<f64> {
-    let seen = Seen { scene, pupil: &Pupil::new(&scene.lens).ok()?, waves: None };
+    let seen = SceneLensView { scene, pupil: &Pupil::new(&scene.lens).ok()?, waves: None };
     let one = |number: &usize| {
         let (channel, plane) = (scene.channels.get(*number)?, planes.get(*number)?);
         brightest_star(scene.imager.size(), &light(scene.source.spectrum(), channel)?, &seen, &plane.values)
@@ -54,16 +56,16 @@ pub(crate) fn spread(
     let one = |number: &usize| -> Option<Diffracted> {
         let (channel, plane) = (scene.channels.get(*number)?, planes.get_mut(*number)?);
         let light = light(scene.source.spectrum(), channel)?;
-        let waves = Waves::new(&scene.lens, light.mean_mm() * 1e6);
-        let seen = Seen { scene, pupil: &pupil, waves };
-        let Account { left, stays, stars } = Spread::new(size, light, &seen)?.apply(&mut plane.values);
+        let waves = Wavefronts::new(&scene.lens, light.mean_mm() * 1e6);
+        let seen = SceneLensView { scene, pupil: &pupil, waves };
+        let SpreadReport { left, stays, stars } = Spread::new(size, light, &seen)?.apply(&mut plane.values);
         Some(Diffracted { channel: channel.name.clone(), left, stays, stars })
     };
     Ok(recorded.iter().filter_map(one).collect())
 }
 
 /// Returns the light of a source as the channel sees it, by wavelength; `None` if the channel sees none.
-fn light(source: &SpectralPower, channel: &Channel) -> Option<Light> {
+fn light(source: &SpectralPower, channel: &Channel) -> Option<ChannelLight> {
     let grid = source.grid;
     let continuum = grid.wavelengths_nm().zip(&source.continuum).zip(&channel.response);
     let continuum = continuum.map(|((nm, power), response)| [nm, power * response.abs() * grid.step_nm]);
@@ -71,23 +73,23 @@ fn light(source: &SpectralPower, channel: &Channel) -> Option<Light> {
         .lines
         .iter()
         .map(|line| [line.wavelength_nm, line.power * grid.interpolate(&channel.response, line.wavelength_nm).abs()]);
-    Light::of(&continuum.chain(lines).collect::<Vec<_>>())
+    ChannelLight::of(&continuum.chain(lines).collect::<Vec<_>>())
 }
 
 /// The lens as seen from points of the frame.
-struct Seen<'a> {
+struct SceneLensView<'a> {
     scene: &'a Scene,
     pupil: &'a Pupil<'a>,
-    waves: Option<Waves<'a>>,
+    waves: Option<Wavefronts<'a>>,
 }
 
-impl View for Seen<'_> {
+impl LensView for SceneLensView<'_> {
     fn opening(&self, at: [f64; 2]) -> Option<Polygon> {
         let (point, axes) = place(self.scene, at)?;
         self.pupil.seen_from(point, axes)
     }
 
-    fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wave> {
+    fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wavefront> {
         let (point, axes) = place(self.scene, at)?;
         self.waves.as_ref()?.seen_from(point, axes, opening)
     }

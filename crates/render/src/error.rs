@@ -2,7 +2,7 @@
 
 use crate::Workers;
 use crate::memory::bytes;
-use crate::no_number::NoNumber;
+use crate::non_finite::NonFinite;
 use spectra_core::params::{Fault, Faults};
 use spectra_scene::Scene;
 
@@ -44,7 +44,7 @@ pub enum RenderError {
     Diffraction(String),
     /// A stage gave a number that no light can have: NaN or infinite.
     #[error("{0}")]
-    NoNumber(NoNumber),
+    NonFinite(NonFinite),
     /// A sum, or one contribution to it, did not fit into the integers.
     #[error(
         "the sums overflowed: a ray was {times:.1e} times as bright as the brightest of the {} pilot rays",
@@ -94,7 +94,7 @@ impl RenderError {
                 &text,
                 "write `diffraction: false`, or use a stop with blades or one drawn as a black and white SVG",
             ),
-            Self::NoNumber(found) => at(
+            Self::NonFinite(found) => at(
                 found.step.section(),
                 &text,
                 "that stage or its data is faulty: try another one, or another `wavelengths: {band: ...}`",

@@ -43,7 +43,14 @@ pub trait Estimator: Send + Sync {
     fn scratch(&self) -> Scratch;
 
     /// Traces one unit of a span of samples of these tiles and adds its light to `sums`.
-    fn run(&self, samples: &Range<u64>, tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit;
+    fn run(
+        &self,
+        samples: &Range<u64>,
+        tiles: &[u32],
+        unit: u64,
+        scratch: &mut Scratch,
+        sums: &ExactSums,
+    ) -> UnitResult;
 
     /// Estimates the noise of a pixel after this many samples, as a fraction of the light of this estimator, in the median over the frame.
     /// `None` if the estimator makes no such estimate.
@@ -64,7 +71,7 @@ pub trait Estimator: Send + Sync {
 
 /// The result of one unit of work.
 #[derive(Debug)]
-pub struct Unit {
+pub struct UnitResult {
     /// Number of rays whose light is in the sums.
     pub rays: u64,
     /// The reason why rays of the unit are missing from the sums, if any are.

@@ -4,7 +4,7 @@ use crate::backward::Backward;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
 use crate::ghosts::{GhostRays, Ghosts, LightLedger, MATTERS};
-use crate::pipeline::{Pipeline, Share};
+use crate::pipeline::{Pipeline, SourcePart};
 use crate::veil::Veil;
 use crate::{RenderError, Traced, Workers};
 use spectra_scene::{Direction, LightKind, Lights};
@@ -32,7 +32,8 @@ impl Estimators {
             }
             Traced::Ghosts(rays) => {
                 let mut own = Self::default();
-                let share = if pipeline.scene.source.split().is_some() { Share::Lights } else { Share::Whole };
+                let share =
+                    if pipeline.scene.source.split().is_some() { SourcePart::Lights } else { SourcePart::Whole };
                 own.add_ghosts(&pipeline.of_share(share), None, *rays, workers)?;
                 Ok(own)
             }
@@ -52,7 +53,7 @@ impl Estimators {
                 // Ghosts of the bright lights, or of the whole source if no part of it is brighter than the rest.
                 match scene.source.split() {
                     Some(_) => {
-                        own.add_ghosts(&pipeline.of_share(Share::Lights), None, GhostRays::default(), workers)?;
+                        own.add_ghosts(&pipeline.of_share(SourcePart::Lights), None, GhostRays::default(), workers)?;
                     }
                     None => own.add_ghosts(pipeline, None, GhostRays::default(), workers)?,
                 }
@@ -90,7 +91,7 @@ impl Estimators {
         workers: &dyn Workers,
     ) -> Result<(), RenderError> {
         let share = |share| Arc::new(pipeline.of_share(share));
-        let (of_lights, of_rest) = (share(Share::Lights), share(Share::Rest));
+        let (of_lights, of_rest) = (share(SourcePart::Lights), share(SourcePart::Rest));
         let rest = Backward::new(of_rest.clone(), workers)?;
         let mean = rest.mean();
         self.all.push(Box::new(rest));
@@ -132,8 +133,8 @@ impl Estimators {
         let emits = |split: &spectra_core::stage::Split<'_>| split.lights.emit().is_some();
         if scene.source.split().as_ref().is_some_and(emits) {
             let share = |share| Arc::new(pipeline.of_share(share));
-            self.all.push(Box::new(Veil::new(share(Share::Lights), true, ghosts_order, matter)?));
-            self.all.push(Box::new(Veil::new(share(Share::Rest), false, 0, matter)?));
+            self.all.push(Box::new(Veil::new(share(SourcePart::Lights), true, ghosts_order, matter)?));
+            self.all.push(Box::new(Veil::new(share(SourcePart::Rest), false, 0, matter)?));
         } else {
             let from_source = scene.render.direction == Direction::Forward;
             self.all.push(Box::new(Veil::new(Arc::clone(pipeline), from_source, ghosts_order, matter)?));

@@ -89,16 +89,16 @@ impl Footprint {
 }
 
 /// A box of pixels: first and last column, first and last row.
-pub(crate) type Box = [[usize; 2]; 2];
+pub(crate) type PixelBox = [[usize; 2]; 2];
 
 /// The frame over which light is spread.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ground {
+pub(crate) struct FrameGrid {
     /// Number of columns and rows.
     size: [i64; 2],
 }
 
-impl Ground {
+impl FrameGrid {
     pub fn new(width: u32, height: u32) -> Self {
         Self { size: [width, height].map(i64::from) }
     }
@@ -110,14 +110,14 @@ impl Ground {
 
     /// Returns the box that holds one pixel.
     #[inline]
-    pub fn one(&self, pixel: u32) -> Box {
+    pub fn one(&self, pixel: u32) -> PixelBox {
         let (pixel, width) = (pixel as usize, self.size[0] as usize);
         [[pixel % width; 2], [pixel / width; 2]]
     }
 
     /// Calls `add` for each box of pixels of a footprint around a pixel. Together the boxes hold [`Footprint::pixels`] pixels.
     #[inline]
-    pub fn each_box(&self, pixel: u32, footprint: &Footprint, mut add: impl FnMut(Box)) {
+    pub fn each_box(&self, pixel: u32, footprint: &Footprint, mut add: impl FnMut(PixelBox)) {
         let middle = [i64::from(pixel) % self.size[0], i64::from(pixel) / self.size[0]];
         let half = footprint.half;
         let inside = |axis: usize| middle[axis] >= half && middle[axis] + half < self.size[axis];
@@ -129,7 +129,7 @@ impl Ground {
     }
 
     /// Calls `add` for each box of a footprint whose light is folded back at edges of the ghost or of the frame.
-    fn each_folded(&self, middle: [i64; 2], footprint: &Footprint, add: &mut impl FnMut(Box)) {
+    fn each_folded(&self, middle: [i64; 2], footprint: &Footprint, add: &mut impl FnMut(PixelBox)) {
         let (axis, half) = (footprint.axis(), footprint.half);
         let frame = |axis: usize| [-middle[axis], self.size[axis] - 1 - middle[axis]];
         let room = |beside: i64| Some((beside, footprint.on_this_side(axis, beside, frame(axis))?));
@@ -205,7 +205,7 @@ pub(crate) fn shared(value: i64, pixels: i64) -> (i64, i64) {
 mod tests {
     use super::*;
 
-    fn spread(ground: &Ground, pixel: u32, footprint: &Footprint, value: i64) -> Vec<i64> {
+    fn spread(ground: &FrameGrid, pixel: u32, footprint: &Footprint, value: i64) -> Vec<i64> {
         let [width, height] = ground.size.map(|size| size as usize);
         let mut cells = vec![0; width * height];
         let (share, left) = shared(value, footprint.pixels());
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn shares_add_up_to_the_ray() {
         for (width, height) in [(40, 30), (7, 5), (1, 9), (1, 1)] {
-            let ground = Ground::new(width, height);
+            let ground = FrameGrid::new(width, height);
             for k in 0..200 {
                 let turn = 0.37 * f64::from(k);
                 let half = f64::from(k % 15);
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn light_stays_on_its_side_of_edges() {
-        let ground = Ground::new(64, 64);
+        let ground = FrameGrid::new(64, 64);
         for k in 0..60 {
             let turn = 0.21 * f64::from(k);
             let edges = [edge(turn, 2.5), edge(turn + 0.4 * f64::from(k % 8), 4.0)];
@@ -260,7 +260,7 @@ mod tests {
 
     #[test]
     fn a_footprint_is_a_square() {
-        let ground = Ground::new(64, 64);
+        let ground = FrameGrid::new(64, 64);
         let cells = spread(&ground, 32 * 64 + 32, &Footprint::new(5.2, [None; 2]), 121 * 7);
         let lit = |at: usize| (at % 64).abs_diff(32).max((at / 64).abs_diff(32)) <= 5;
         assert!(cells.iter().enumerate().all(|(at, value)| *value == if lit(at) { 7 } else { 0 }));
@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn an_even_ghost_stays_even_up_to_its_edges() {
         let (side, half) = (80_usize, 6.0);
-        let ground = Ground::new(side as u32, side as u32);
+        let ground = FrameGrid::new(side as u32, side as u32);
         for turn in [0.0, 0.3, 0.7, 1.1, 1.571, 2.5, 4.0, 5.9] {
             let mut cells = vec![0_i64; side * side];
             let away = |pixel: usize| {

@@ -7,14 +7,14 @@
 //! per sample. A census of 65 536 trial rays finds how many pixels these are. One ray would not be enough: the samples of a backward pixel
 //! fill the pupil evenly, but rays from a light land at random.
 
-use crate::blame::Blame;
 use crate::error::RenderError;
-use crate::estimator::{Estimator, Scratch, Unit};
-use crate::haze::Haze;
+use crate::estimator::{Estimator, Scratch, UnitResult};
+use crate::finite_check::FiniteCheck;
 use crate::meter;
-use crate::no_number::Step;
+use crate::non_finite::Step;
 use crate::pilot::{self, PILOT_SEED};
-use crate::pipeline::{Pipeline, SCATTER, Share, ThreadState};
+use crate::pipeline::{Pipeline, SCATTER, SourcePart, ThreadState};
+use crate::scattered_light::Haze;
 use crate::spots::{Land, PLACES, Spots};
 use crate::sums::{ExactSums, OwnSums, PILOT_RAYS};
 use crate::{Done, Workers};
@@ -79,7 +79,7 @@ impl Forward {
     pub(crate) fn new(pipeline: Arc<Pipeline>, workers: &dyn Workers) -> Result<Self, RenderError> {
         let seed = pipeline.seed;
         let mut own = Self::aimed(pipeline, workers)?;
-        if own.pipeline.share == Share::Lights && !own.pipeline.scene.render.rays_stated {
+        if own.pipeline.share == SourcePart::Lights && !own.pipeline.scene.render.rays_stated {
             own.a_sample = Some(own.lights_a_sample());
         }
         if Haze::suits(&own.pipeline) {
@@ -297,7 +297,7 @@ impl Forward {
             };
             if !is_good {
                 // Trace in a fresh state: positions left over from rays that ended in another batch must not be blamed.
-                let mut blame = Blame::default();
+                let mut blame = FiniteCheck::default();
                 let mut again = ThreadState::new(&self.pipeline, state.rays.capacity());
                 self.steps(&mut again, at, len as usize, &mut |step, rays| blame.look(step, rays));
                 return (at - first, Some(blame.error(&self.pipeline, &mut again, self.scale)));
@@ -429,11 +429,18 @@ impl Estimator for Forward {
         Scratch(state)
     }
 
-    fn run(&self, samples: &Range<u64>, _tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+    fn run(
+        &self,
+        samples: &Range<u64>,
+        _tiles: &[u32],
+        unit: u64,
+        scratch: &mut Scratch,
+        sums: &ExactSums,
+    ) -> UnitResult {
         let paths = self.paths(samples);
         let first = paths.start + unit * PATHS_PER_UNIT;
         let (rays, error) = self.unit(&mut scratch.0, first, PATHS_PER_UNIT.min(paths.end - first), sums);
-        Unit { rays, error }
+        UnitResult { rays, error }
     }
 
     fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {

@@ -6,7 +6,7 @@
 //! difference. Saved light holds all of these sums.
 
 use crate::estimator::Estimator;
-use crate::light::Part;
+use crate::light::EstimatorSums;
 use crate::{Light, RenderError, Renderer};
 use spectra_core::frame::ExposureChannel;
 use spectra_scene::{GhostPaths, LightKind, LightLayer, Scene};
@@ -14,12 +14,12 @@ use std::ops::Range;
 
 /// Selects some of an estimator's sums: one set of sums, less some others.
 #[derive(Clone, Debug)]
-struct Taken {
+struct SumSelection {
     from: usize,
     less: Range<usize>,
 }
 
-impl Taken {
+impl SumSelection {
     /// Selects the sums of `paths` in an estimator with separate sums for the paths `apart`; `None` if it does not have that path.
     fn of(paths: &GhostPaths, apart: &[Vec<usize>]) -> Option<Self> {
         match paths {
@@ -75,11 +75,11 @@ impl Renderer {
         let time_s = scene.exposure_time_s();
         let own = self.estimators().zip(&light.parts).zip(weights);
         let own = own.filter(|((e, _), _)| layer.is_none_or(|(kind, _)| kind == e.light()));
-        let taken = |e: &dyn Estimator| Taken::of(layer.map_or(&GhostPaths::All, |(_, paths)| paths), e.paths());
-        let parts: Vec<(&Part, &Vec<f64>, Taken)> =
+        let taken = |e: &dyn Estimator| SumSelection::of(layer.map_or(&GhostPaths::All, |(_, paths)| paths), e.paths());
+        let parts: Vec<(&EstimatorSums, &Vec<f64>, SumSelection)> =
             own.filter_map(|((e, part), w)| Some((part, w, taken(e)?))).collect();
         let cells = self.cells();
-        let sum = |part: &Part, taken: &Taken, cell: usize| -> i64 {
+        let sum = |part: &EstimatorSums, taken: &SumSelection, cell: usize| -> i64 {
             let all = part.sums.get(taken.from * cells + cell);
             taken.less.clone().fold(all, |left, of| left - part.sums.get(of * cells + cell))
         };

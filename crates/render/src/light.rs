@@ -6,7 +6,7 @@ use spectra_core::LossCounts;
 
 /// The light of a scene so far: the sums of each of its estimators, and the rays lost along the way.
 pub struct Light {
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<EstimatorSums>,
     pub(crate) losses: LossCounts,
     /// What the meters see, once measured: see [`crate::Estimator::metered`].
     pub(crate) metered: Option<Vec<Vec<f64>>>,
@@ -17,7 +17,7 @@ pub struct Light {
 }
 
 /// The sums and counters of one estimator.
-pub(crate) struct Part {
+pub(crate) struct EstimatorSums {
     pub sums: ExactSums,
     pub done: Done,
     pub rays: u64,

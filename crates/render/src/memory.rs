@@ -1,7 +1,7 @@
 //! Computes how much memory a picture needs, before any light is traced.
 
 use spectra_core::params::{Faults, Value};
-use spectra_scene::{Holds, Lights, Scene};
+use spectra_scene::{FileContent, Lights, Scene};
 
 /// Bytes of a sum, of which there is one for each pixel and channel.
 const SUM: u64 = 8;
@@ -24,7 +24,7 @@ pub fn memory_needed(scene: &Scene) -> u64 {
 fn needed(scene: &Scene, paths: u64) -> u64 {
     let pixels = scene.imager.size().pixels() as u64;
     let channels = scene.channels.len() as u64;
-    let is_shown = scene.output.iter().any(|o| matches!(o.holds(), Holds::Picture | Holds::Numbers));
+    let is_shown = scene.output.iter().any(|o| matches!(o.content(), FileContent::Picture | FileContent::Numbers));
     // A meter's channels have no sums, but need as much while the meter looks. Lights that are rendered separately have their own sums.
     // Whether there are any is not known before the source is read.
     let apart = match scene.render.lights {

@@ -7,14 +7,14 @@
 //! If a film meters, light is recorded for 1 s, and the result is scaled to the time that the meter finds (`Scene::film_times`).
 
 use crate::Workers;
-use crate::blame::Blame;
 use crate::error::RenderError;
-use crate::no_number::Step;
+use crate::finite_check::FiniteCheck;
+use crate::non_finite::Step;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::ExactSums;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::Numbers;
-use spectra_core::workers::each_of;
+use spectra_core::workers::map_pieces;
 use spectra_core::{Isa, RayBatch};
 use spectra_optics::Effort;
 use std::ops::Range;
@@ -52,14 +52,14 @@ pub(crate) fn rays_for(pixels: usize, effort: Effort) -> u64 {
 }
 
 /// A pixel that the meter looks at, for itself and its neighbors.
-struct Place {
+struct MeterPoint {
     pixel: u32,
     /// Pixels that get the value of this one, as a range of the metered pixels.
     stands_for: Range<usize>,
 }
 
 /// Returns at most `most` places that cover `pixels` evenly.
-fn places(pixels: &[u32], most: u64, numbers: &Numbers, isa: Isa) -> Vec<Place> {
+fn places(pixels: &[u32], most: u64, numbers: &Numbers, isa: Isa) -> Vec<MeterPoint> {
     let count = pixels.len().min(most as usize);
     let mut choice = vec![0.0; count];
     numbers.fill(isa, CHOICE, 0, 0, &mut choice);
@@ -67,7 +67,7 @@ fn places(pixels: &[u32], most: u64, numbers: &Numbers, isa: Isa) -> Vec<Place> 
     let place = |(at, u): (usize, f64)| {
         let stands_for = border(at)..border(at + 1);
         let chosen = stands_for.start + (u * stands_for.len() as f64) as usize;
-        Place { pixel: pixels[chosen.min(stands_for.end - 1)], stands_for }
+        MeterPoint { pixel: pixels[chosen.min(stands_for.end - 1)], stands_for }
     };
     choice.into_iter().enumerate().map(place).collect()
 }
@@ -91,7 +91,7 @@ pub(crate) fn backward(
     let numbers = Numbers::sobol(pipeline.seed ^ SEED);
     let places = places(&pixels, rays, &numbers, isa);
     let samples = (rays / places.len() as u64).max(1) as usize;
-    let units: Vec<&[Place]> = places.chunks(PLACES_PER_UNIT).collect();
+    let units: Vec<&[MeterPoint]> = places.chunks(PLACES_PER_UNIT).collect();
     let work = |state: &mut ThreadState, at: usize| {
         if workers.should_stop() {
             return Err(RenderError::Stopped);
@@ -99,7 +99,7 @@ pub(crate) fn backward(
         unit(pipeline, (name, follow), &numbers, state, at as u64, units[at], samples)
     };
     let fresh = || ThreadState::new(pipeline, scene.render.batch);
-    let sums = each_of(workers, units.len(), fresh, work)?;
+    let sums = map_pieces(workers, units.len(), fresh, work)?;
     for (place, of_channels) in places.iter().zip(sums.iter().flat_map(|sums| sums.chunks_exact(channels))) {
         for (plane, sum) in planes.iter_mut().zip(of_channels) {
             for pixel in &pixels[place.stands_for.clone()] {
@@ -117,7 +117,7 @@ fn unit(
     numbers: &Numbers,
     state: &mut ThreadState,
     stream: u64,
-    places: &[Place],
+    places: &[MeterPoint],
     samples: usize,
 ) -> Result<Vec<f64>, RenderError> {
     let channels = pipeline.responses.channels();
@@ -153,7 +153,7 @@ fn unit(
             }
         }
         if sums.iter().any(|sum| !sum.is_finite()) {
-            let mut blame = Blame::default();
+            let mut blame = FiniteCheck::default();
             trace(state, &mut |step, rays| blame.look(step, rays));
             return Err(blame.error(pipeline, state, 1.0));
         }
@@ -188,7 +188,7 @@ pub(crate) fn forward(
         unit(state, first, a_unit.min(rays - first), &sums).map_or(Ok(()), Err)
     };
     let fresh = || ThreadState::new(pipeline, scene.render.batch);
-    each_of(workers, rays.div_ceil(a_unit) as usize, fresh, work)?;
+    map_pieces(workers, rays.div_ceil(a_unit) as usize, fresh, work)?;
     let weight = 1.0 / scale / size.pixel_area_mm2() / rays as f64;
     Ok(planes(&sums, channels, |_| weight, size.pixels()))
 }

@@ -1,7 +1,7 @@
 //! The noise of a picture, and the rounds after which it is measured.
 //!
 //! A round ends after 32, 40, 48, ..., 128, 144, 160, ... samples of a half. Only then is it decided which tiles go on, so that a render
-//! that was stopped decides as one without a stop. `judge.rs` measures the noise.
+//! that was stopped decides as one without a stop. `block_noise.rs` measures the noise.
 
 /// Samples of a half after which it is first decided where to go on. Later rounds add a quarter to an eighth of the samples so far.
 const FIRST_ROUND: u64 = 32;

@@ -3,7 +3,7 @@
 use crate::GhostRays;
 use spectra_core::Isa;
 use spectra_core::stage::WavelengthDensity;
-use spectra_core::workers::{Alone, Workers};
+use spectra_core::workers::{SingleThread, Workers};
 use spectra_optics::Effort;
 use spectra_scene::Direction;
 use std::sync::Arc;
@@ -38,6 +38,6 @@ pub enum Traced {
 
 impl Default for RenderOptions<'_> {
     fn default() -> Self {
-        Self { isa: Isa::detect(), density: None, effort: Effort::Full, workers: &Alone, traced: Traced::All }
+        Self { isa: Isa::detect(), density: None, effort: Effort::Full, workers: &SingleThread, traced: Traced::All }
     }
 }

@@ -1,8 +1,8 @@
 //! Traces a few thousand rays before all others: to see how bright the brightest are, and whether a stage is broken.
 
 use crate::RenderError;
-use crate::blame::Blame;
-use crate::no_number::Step;
+use crate::finite_check::FiniteCheck;
+use crate::non_finite::Step;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{PILOT_RAYS, scale_for};
 use spectra_core::RayBatch;
@@ -21,7 +21,7 @@ pub(crate) fn scale(
 ) -> Result<f64, RenderError> {
     let mut state = ThreadState::new(pipeline, PILOT_RAYS as usize);
     for batch in 0..PILOT_BATCHES {
-        let mut blame = Blame::default();
+        let mut blame = FiniteCheck::default();
         trace(&mut state, batch, &mut |step, rays| blame.look(step, rays));
         // This shows a broken stage before any light is traced, if a few thousand rays are enough to find it.
         if let Some(error) = blame.no_number(pipeline) {

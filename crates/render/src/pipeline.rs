@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// The part of a source's light that is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Share {
+pub(crate) enum SourcePart {
     /// All light of the source.
     Whole,
     /// The bright lights of the source: see [`spectra_core::stage::Split`].
@@ -28,7 +28,7 @@ pub(crate) enum Share {
     Rest,
 }
 
-impl Share {
+impl SourcePart {
     /// Returns the source that emits this share of the light.
     pub(crate) fn of(self, scene: &Scene) -> &dyn Source {
         match (self, scene.source.split()) {
@@ -46,7 +46,7 @@ pub struct Pipeline {
     /// Seed of the picture: that of the scene, unless the renderer was reseeded.
     pub(crate) seed: u64,
     /// The part of the source's light that is traced.
-    pub(crate) share: Share,
+    pub(crate) share: SourcePart,
     pub(crate) isa: Isa,
     pub(crate) effort: Effort,
     pub(crate) tracer: Arc<Tracer>,
@@ -75,13 +75,13 @@ impl Pipeline {
         }
         // The channels of meters are not recorded: whether a camera meters must not change the picture's samples.
         let recorded = scene.picture_channels();
-        let system = system(scene, Share::Whole, &recorded);
+        let system = system(scene, SourcePart::Whole, &recorded);
         let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
         let density = options.density.clone().map_or_else(fitted, Ok)?;
         let tracer = tracer(scene)?;
         let responses = Responses::new(scene.grid, &system.channels);
         let draws = draws(scene);
-        let (scene, tracer, share, seed) = (Arc::clone(scene), tracer, Share::Whole, scene.render.seed);
+        let (scene, tracer, share, seed) = (Arc::clone(scene), tracer, SourcePart::Whole, scene.render.seed);
         Ok(Self { scene, seed, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
     }
 
@@ -99,7 +99,7 @@ impl Pipeline {
     }
 
     /// Returns a copy for a share of the source's light, with its own wavelength density if one can be fitted.
-    pub(crate) fn of_share(&self, share: Share) -> Self {
+    pub(crate) fn of_share(&self, share: SourcePart) -> Self {
         let system = system(&self.scene, share, &self.recorded);
         let density = self.scene.sampler.prepare(&system).map_or_else(|_| Arc::clone(&self.density), Arc::from);
         Self { share, density, responses: Responses::new(self.scene.grid, &system.channels), ..self.clone() }
@@ -185,7 +185,7 @@ fn draws(scene: &Scene) -> bool {
 }
 
 /// Returns the spectrum of a share of the source and the responses of the recorded channels.
-fn system(scene: &Scene, share: Share, recorded: &[usize]) -> SystemResponse {
+fn system(scene: &Scene, share: SourcePart, recorded: &[usize]) -> SystemResponse {
     let channels = recorded.iter().filter_map(|at| scene.channels.get(*at)).cloned().collect();
     SystemResponse { grid: scene.grid, source: share.of(scene).spectrum().clone(), channels }
 }

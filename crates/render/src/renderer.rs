@@ -7,14 +7,14 @@ use crate::estimators::Estimators;
 use crate::forward::Forward;
 use crate::ghosts::{LightLedger, MATTERS};
 use crate::landing::Landing;
-use crate::light::{Light, Part};
+use crate::light::{EstimatorSums, Light};
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::rendering::{GhostNoise, Rendering};
 use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, PILOT_RAYS};
 use crate::veil::{self};
-use crate::{Alone, Control, RenderError, RenderOptions, Workers};
+use crate::{Control, RenderError, RenderOptions, SingleThread, Workers};
 use spectra_core::LossCounts;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
@@ -107,7 +107,7 @@ impl Renderer {
     /// cannot emit, or if nothing passes the lens.
     #[must_use]
     pub fn landing(&self) -> Option<Landing> {
-        let forward = Forward::aimed(Arc::clone(&self.pipeline), &Alone).ok()?;
+        let forward = Forward::aimed(Arc::clone(&self.pipeline), &SingleThread).ok()?;
         let mut state = ThreadState::new(&self.pipeline, PILOT_RAYS as usize);
         let mut landing = None;
         forward.steps(&mut state, 0, PILOT_RAYS as usize, &mut |step, rays| {
@@ -125,8 +125,8 @@ impl Renderer {
     pub fn run(&self, workers: &dyn Workers, control: &Control) -> Result<Rendering, RenderError> {
         let mut light = self.begin()?;
         self.advance(&mut light, u64::from(self.scene.render.samples), workers, control)?;
-        let mut rendering = self.look(&self.scene, &light)?;
-        rendering.warnings = self.remarks(&light, &rendering);
+        let mut rendering = self.rendering(&self.scene, &light)?;
+        rendering.warnings = self.warnings(&light, &rendering);
         Ok(rendering)
     }
 
@@ -134,7 +134,7 @@ impl Renderer {
     /// finished first, even if it is longer.
     ///
     /// # Errors
-    /// Returns [`RenderError::NoNumber`] or [`RenderError::Overflow`] as soon as a ray shows it; `light` then holds the light of all rays
+    /// Returns [`RenderError::NonFinite`] or [`RenderError::Overflow`] as soon as a ray shows it; `light` then holds the light of all rays
     /// before. Returns [`RenderError::DoesNotExtend`] if the random numbers are laid out for another number of samples.
     pub fn advance(
         &self,
@@ -176,7 +176,7 @@ impl Renderer {
         let part = |estimator: &dyn Estimator| {
             let cells = self.cells().checked_mul(1 + estimator.paths().len());
             let sums = cells.and_then(ExactSums::new).ok_or_else(|| self.too_large())?;
-            Ok(Part { sums, done: Done::default(), rays: 0, detected: 0 })
+            Ok(EstimatorSums { sums, done: Done::default(), rays: 0, detected: 0 })
         };
         let parts = self.estimators().map(part).collect::<Result<_, RenderError>>()?;
         let halves = self.halves();
@@ -195,7 +195,7 @@ impl Renderer {
 
     /// Whether the requested noise is reached everywhere.
     fn is_clean(&self, light: &Light) -> bool {
-        let ended = |(e, part): (&dyn Estimator, &Part)| part.done.ended().len() == e.tiles();
+        let ended = |(e, part): (&dyn Estimator, &EstimatorSums)| part.done.ended().len() == e.tiles();
         self.halves() == 2 && self.estimators().zip(&light.parts).all(ended)
     }
 
@@ -244,7 +244,7 @@ impl Renderer {
         // A picture that is taken as already exposed shows the meter its mid gray.
         for (plane, at) in all.iter_mut().zip(self.scene.meter_channels()) {
             let mut films = self.scene.films.iter().filter(|film| film.channels.contains(&at));
-            if films.any(|film| self.scene.is_as_taken(film)) {
+            if films.any(|film| self.scene.uses_source_exposure(film)) {
                 let response = &self.scene.channels[at].response;
                 let gray = self.scene.source.gray_over_mean(response).unwrap_or(1.0);
                 let mean = plane.iter().sum::<f64>() / plane.len().max(1) as f64;
@@ -261,7 +261,7 @@ impl Renderer {
             let gray = self.scene.source.gray_over_mean(&self.scene.channels[at].response)?;
             let values = &planes.get(at)?.values;
             let mean = values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len().max(1) as f64;
-            let shown = self.scene.films.iter().any(|f| f.channels.contains(&at) && self.scene.is_as_taken(f));
+            let shown = self.scene.films.iter().any(|f| f.channels.contains(&at) && self.scene.uses_source_exposure(f));
             all[at] = (if shown { mean } else { gray * mean }) as f32;
         }
         Some(all)
@@ -290,7 +290,7 @@ impl Renderer {
             failed.store(true, Relaxed);
             failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
         };
-        workers.each(&|| {
+        workers.run_on_all(&|| {
             let mut scratch = estimator.scratch();
             let (mut done, mut rays) = (Units::default(), 0);
             while !control.should_stop() && !failed.load(Relaxed) {
@@ -344,7 +344,7 @@ impl Renderer {
     /// # Errors
     /// Returns [`RenderError::Memory`] if the exposure does not fit into memory, and [`RenderError::Diffraction`] if diffraction cannot be
     /// computed.
-    pub fn look(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
+    pub fn rendering(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
         let recorded = &self.pipeline.recorded;
         let time_s = scene.exposure_time_s();
         let parts = self.estimators().zip(&light.parts);

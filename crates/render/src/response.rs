@@ -2,7 +2,7 @@
 
 use crate::sums::rounded;
 use spectra_core::isa::Vectorized;
-use spectra_core::math::whole;
+use spectra_core::math::floor_index;
 use spectra_core::spectral::{Channel, Grid};
 
 /// The responses of all channels, one table each, linear between their points.
@@ -118,7 +118,7 @@ fn locate(
         let p = (wavelength_nm[i] - grid.start_nm) * inverse_step;
         let inside = (p >= 0.0) & (p <= top);
         let p = if inside { p } else { 0.0 };
-        let (at, below) = whole(p, last);
+        let (at, below) = floor_index(p, last);
         point[i] = at;
         part[i] = p - below;
         lit[i] = if inside { weight[i] } else { 0.0 };

@@ -14,7 +14,7 @@
 //! brings much light: 16 samples leave blotches of color all over the frame.
 
 use crate::error::RenderError;
-use crate::estimator::{Estimator, Scratch, Unit};
+use crate::estimator::{Estimator, Scratch, UnitResult};
 use crate::landing;
 use crate::meter;
 use crate::pilot::PILOT_SEED;
@@ -27,10 +27,10 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::loss::{ALIVE, Loss};
 use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Radiance};
-use spectra_core::workers::each_of;
+use spectra_core::workers::map_pieces;
 use spectra_optics::FrontOpening;
 use spectra_scene::LightKind;
-use spectra_tracer::{Chance, Interior, Particle, StrayMatter, Walker};
+use spectra_tracer::{Interior, Particle, StrayReflectances, WalkNumbers, Walker};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -145,7 +145,7 @@ impl Veil {
         pipeline: Arc<Pipeline>,
         from_source: bool,
         ghosts_order: u32,
-        matter: StrayMatter,
+        matter: StrayReflectances,
     ) -> Result<Self, RenderError> {
         let scene = &pipeline.scene;
         if from_source {
@@ -229,7 +229,7 @@ impl Veil {
                         scattered: 0,
                         diffused: 0,
                     };
-                    walker.from_front(start, &mut Chance::new(self.seed ^ SEED, first + i as u64), |p| {
+                    walker.from_front(start, &mut WalkNumbers::new(self.seed ^ SEED, first + i as u64), |p| {
                         if self.is_ours(p) {
                             weights.push(p.weight / plan.frame.area_mm2());
                             nm.push(wavelength);
@@ -243,7 +243,7 @@ impl Veil {
                 let c = state.rays.columns_mut();
                 for i in 0..len {
                     walker.set_wavelength(c.wavelength_nm[i]);
-                    let mut chance = Chance::new(self.seed ^ SEED, first + i as u64);
+                    let mut chance = WalkNumbers::new(self.seed ^ SEED, first + i as u64);
                     let out = walker.from_imager(plan.frame.at(u[i], v[i]), &mut chance);
                     let Some(out) = out.filter(|out| self.is_ours(out)) else {
                         c.state[i] = Loss::Absorbed.state(0);
@@ -373,7 +373,7 @@ impl Veil {
     }
 
     /// Measures the glare with few walks, W/m2 at each pixel, channel by channel.
-    fn seen(mut self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+    fn meter(mut self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
         let (scene, many) = (Arc::clone(&self.pipeline.scene), self.channels() * self.nodes());
         let (pixels, channels) = (scene.imager.size().pixels(), self.channels());
         if scene.metered_pixels().is_empty() {
@@ -388,7 +388,7 @@ impl Veil {
             Ok(lattice)
         };
         let fresh = || ThreadState::new(&self.pipeline, scene.render.batch);
-        let units = each_of(workers, METER_UNITS, fresh, walk)?;
+        let units = map_pieces(workers, METER_UNITS, fresh, walk)?;
         let lattice: Vec<f64> = (0..many).map(|node| units.iter().map(|unit| unit[node]).sum()).collect();
         let largest = lattice.iter().fold(0.0_f64, |most, value| if value.abs() <= most { most } else { value.abs() });
         if !largest.is_finite() {
@@ -447,7 +447,14 @@ impl Estimator for Veil {
         Scratch(ThreadState::new(&self.pipeline, self.pipeline.scene.render.batch))
     }
 
-    fn run(&self, samples: &Range<u64>, _tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+    fn run(
+        &self,
+        samples: &Range<u64>,
+        _tiles: &[u32],
+        unit: u64,
+        scratch: &mut Scratch,
+        sums: &ExactSums,
+    ) -> UnitResult {
         let samples = Self::samples_of(samples, unit);
         let walks = samples.start * WALKS_A_SAMPLE..samples.end * WALKS_A_SAMPLE;
         let rays = walks.end - walks.start;
@@ -460,10 +467,10 @@ impl Estimator for Veil {
             lattice[node] += value.round_ties_even() as i64;
         });
         if !(largest < LARGEST) {
-            return Unit { rays: 0, error: Some(RenderError::Overflow { times: largest / LARGEST }) };
+            return UnitResult { rays: 0, error: Some(RenderError::Overflow { times: largest / LARGEST }) };
         }
         self.spread(&lattice, sums);
-        Unit { rays, error: None }
+        UnitResult { rays, error: None }
     }
 
     fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
@@ -475,7 +482,7 @@ impl Estimator for Veil {
         let Some(pipeline) = self.pipeline.of_meters() else { return Ok(Vec::new()) };
         let seed = pipeline.seed ^ meter::SEED;
         let numbers = pipeline.numbers(mix64(seed ^ SEED));
-        Self { pipeline: Arc::new(pipeline), plan: Arc::clone(&self.plan), numbers, seed, scale: 1.0 }.seen(workers)
+        Self { pipeline: Arc::new(pipeline), plan: Arc::clone(&self.plan), numbers, seed, scale: 1.0 }.meter(workers)
     }
 }
 
@@ -490,7 +497,7 @@ pub(crate) fn check(pipeline: &Pipeline) -> Result<(), RenderError> {
 }
 
 /// Builds the interior of the lens and the camera.
-fn interior(pipeline: &Pipeline, frame: &Frame, matter: StrayMatter) -> Result<Interior, RenderError> {
+fn interior(pipeline: &Pipeline, frame: &Frame, matter: StrayReflectances) -> Result<Interior, RenderError> {
     let scene = &pipeline.scene;
     let band_nm = [scene.grid.start_nm, scene.grid.end_nm()];
     let interior = Interior::new(&scene.lens, frame.half().map(|h| 2.0 * h), band_nm, matter);

@@ -7,7 +7,7 @@ use spectra_core::workers::Workers;
 pub struct Threads(pub usize);
 
 impl Workers for Threads {
-    fn each(&self, work: &(dyn Fn() + Sync)) {
+    fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
         std::thread::scope(|scope| {
             for number in 1..self.0 {
                 let thread = std::thread::Builder::new().name(format!("render {number}"));

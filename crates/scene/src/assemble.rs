@@ -1,22 +1,22 @@
 //! Assembly of a [`Scene`] from a scene file; all faults are reported together.
 
-use crate::advice::{self, FileIs};
-use crate::cast;
-use crate::earlier::Earlier;
+use crate::build_messages::BuildMessages;
+use crate::color_cast;
 use crate::filters;
 use crate::focus::FocusLight;
-use crate::lens_section::{LensSection, SetLens, held_lens, size_hint};
+use crate::hints::{self, FileIs};
+use crate::lens_section::{ConfiguredLens, LensSection, configure_lens, size_hint};
 use crate::resources::read_yaml;
-use crate::said::Said;
+use crate::reuse::ReusableStages;
 use crate::{
-    ConePattern, Direction, GhostSpread, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, doubts,
-    films, lamps, landing, language, output, responses, sight, yaml,
+    ConePattern, Direction, GhostSpread, Lights, NumberFamily, Output, Reflections, RenderSettings, Scene, films,
+    frame_view, lamps, landing, language, output, responses, warnings, yaml,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::{
-    Fault, Faults, Node, Params, Part, Ratio, StageNode, Value, Warnings, Wavelength, Whole, keys_of,
+    Deferred, Fault, Faults, Node, Params, Ratio, StageNode, Value, Warnings, Wavelength, Whole, keys_of,
 };
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::resources::Resources;
@@ -24,7 +24,7 @@ use spectra_core::spectral::{BAND, Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
 use spectra_lens::MATTE_BOX;
 use spectra_optics::Optics;
-use spectra_tracer::StrayMatter;
+use spectra_tracer::StrayReflectances;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -58,36 +58,36 @@ pub(crate) struct SceneFile {
     /// Version of the format: 1.
     spectra: Whole<1, 1>,
     /// What is in front of the lens.
-    source: Part<StageOf<dyn Source>>,
+    source: Deferred<StageOf<dyn Source>>,
     /// How wavelengths are drawn, and from which band; `source-times-response` over 350 to 830 nm if absent.
     #[serde(default)]
-    wavelengths: Option<Part<StageOf<dyn WavelengthSampler>>>,
+    wavelengths: Option<Deferred<StageOf<dyn WavelengthSampler>>>,
     /// The lens: its file, f-number, focus and filters.
-    lens: Part<LensSection>,
+    lens: Deferred<LensSection>,
     /// What records the light.
-    imager: Part<StageOf<dyn Imager>>,
+    imager: Deferred<StageOf<dyn Imager>>,
     /// The film on a film imager, or a list of films that get the same light; other imagers take none.
     #[serde(default)]
-    film: Option<Part<films::FilmForm>>,
+    film: Option<Deferred<films::FilmForm>>,
     /// How many rays are traced, and how.
     #[serde(default)]
-    render: Option<Part<RenderSection>>,
+    render: Option<Deferred<RenderSection>>,
     /// The files to write, named after the scene; EXR and PNG if absent.
     #[serde(default)]
-    output: Option<Vec<Part<StageOf<dyn Output>>>>,
+    output: Option<Vec<Deferred<StageOf<dyn Output>>>>,
     // The following keys are consumed before a scene is assembled. They are listed so that a misspelled one is reported.
     /// Scenes that this one builds on: a file or a list of files. Maps merge, and the values of this scene win.
     #[serde(default)]
-    include: Option<Part<language::IncludeForm>>,
+    include: Option<Deferred<language::IncludeForm>>,
     /// Values with names: `$name` stands for the value, `${name}` for its text within another text.
     #[serde(default)]
-    variables: Option<Part<BTreeMap<String, StageNode>>>,
+    variables: Option<Deferred<BTreeMap<String, StageNode>>>,
     /// Values to render one picture each of: paths with lists of values, in all combinations; or a list of maps.
     #[serde(default)]
-    sweep: Option<Part<language::SweepForm>>,
+    sweep: Option<Deferred<language::SweepForm>>,
     /// A sequence of frames, and the values that change over it.
     #[serde(default)]
-    animation: Option<Part<language::AnimationForm>>,
+    animation: Option<Deferred<language::AnimationForm>>,
 }
 
 /// The keys of the `wavelengths` section itself; its other keys belong to the sampler.
@@ -107,7 +107,7 @@ struct RenderSection {
     /// default). With `both`, lights that are far brighter than the rest of the source are traced from the source, and the rest
     /// from the imager. `auto` is `backward` if source and imager allow it, and `both` if that gives much less noise.
     #[serde(default)]
-    direction: Way,
+    direction: RequestedDirection,
     /// Backward: samples per pixel, a whole number from 1 to 4194304; 64 if absent. With `noise`, the largest number of samples
     /// per pixel; 8192 if absent.
     samples: Option<Whole<1, MAX_SAMPLES>>,
@@ -172,12 +172,12 @@ struct GlareParams {
 impl GlareSection {
     /// Returns the causes of glare that are asked for, together with the mirror-like reflectance of the imager; `None` if glare
     /// is off.
-    fn matter(self, imager_mirror: f64) -> Option<StrayMatter> {
-        let usual = StrayMatter { imager_mirror, ..StrayMatter::default() };
+    fn matter(self, imager_mirror: f64) -> Option<StrayReflectances> {
+        let usual = StrayReflectances { imager_mirror, ..StrayReflectances::default() };
         match self {
             Self::Switch(false) => None,
             Self::Switch(true) => Some(usual),
-            Self::Of(own) => Some(StrayMatter {
+            Self::Of(own) => Some(StrayReflectances {
                 paint: own.paint.map_or(usual.paint, Ratio::number),
                 imager: own.imager.map_or(usual.imager, Ratio::number),
                 ..usual
@@ -216,7 +216,7 @@ const GELATIN: f64 = (0.52 / 2.52) * (0.52 / 2.52);
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
-enum Way {
+enum RequestedDirection {
     #[default]
     Auto,
     Forward,
@@ -244,7 +244,7 @@ pub(crate) fn read(path: &Path) -> Result<Node, Faults> {
     {
         return yaml::parse_bytes(&format!("bundled:{bundled}"), bytes);
     }
-    read_yaml(path).map_err(|faults| advice::unreadable(faults, path))
+    read_yaml(path).map_err(|faults| hints::unreadable(faults, path))
 }
 
 /// Returns the scene as written, with the overrides below it as comments. Settings that do not change a picture are left out, so
@@ -271,12 +271,12 @@ pub(crate) fn assemble(
     text: String,
     params: &Params,
     resources: &dyn Resources,
-    earlier: Earlier<'_>,
+    earlier: ReusableStages<'_>,
 ) -> Result<Scene, Faults> {
-    if let Some(fault) = advice::other_file(params.node(), FileIs::Scene) {
+    if let Some(fault) = hints::other_file(params.node(), FileIs::Scene) {
         return Err(Fault { message: fault.message, hint: fault.hint, ..params.fault_here("") }.into());
     }
-    all_stages(name, text, params, resources, earlier).map_err(|faults| advice::advised(faults, params))
+    all_stages(name, text, params, resources, earlier).map_err(|faults| hints::with_hints(faults, params))
 }
 
 fn all_stages(
@@ -284,7 +284,7 @@ fn all_stages(
     text: String,
     params: &Params,
     resources: &dyn Resources,
-    earlier: Earlier<'_>,
+    earlier: ReusableStages<'_>,
 ) -> Result<Scene, Faults> {
     let mut faults = Faults::new();
     let mut earlier = earlier.fitting(params);
@@ -302,10 +302,10 @@ fn all_stages(
     let [wavelengths, source, lens, imager, film, render] = parts;
     let film_is_wanted = film.is_some() || several.is_some();
     let (band, sampler) =
-        wavelengths.unwrap_or_else(|| params.nothing_said("wavelengths")).split(&keys_of::<BandSection>());
+        wavelengths.unwrap_or_else(|| params.default_stage("wavelengths")).split(&keys_of::<BandSection>());
     let grid = faults.take(band.parse::<BandSection>().and_then(|b| grid_of(&b, &band))).unwrap_or(BAND);
     let warnings = Warnings::new();
-    let said = earlier.said();
+    let said = earlier.take_messages();
     said.warnings.into_iter().for_each(|warning| warnings.push(warning));
     said.ends.into_iter().for_each(|end| warnings.push_end(end));
     let context = Context { warnings: Some(&warnings), ..Context::new(resources, grid) };
@@ -324,13 +324,14 @@ fn all_stages(
     };
     let lens_place = lens.clone();
     let cover = imager.as_ref().and_then(|imager| imager.cover());
-    let hold = |faults: &mut Faults| lens.as_ref().and_then(|p| faults.take(held_lens(p, resources, cover.clone())));
+    let hold =
+        |faults: &mut Faults| lens.as_ref().and_then(|p| faults.take(configure_lens(p, resources, cover.clone())));
     let is_view_known = earlier.source.is_some() && (earlier.same_view || earlier.is_check);
     // A lens that can be taken over from the earlier scene is not read again.
     let held = if is_view_known && earlier.may_have_lens() { None } else { Some(hold(&mut of_lens)) };
     let seen = || {
         let (held, imager) = held.as_ref()?.as_ref().zip(imager.as_ref())?;
-        sight::seen(&Optics::new(held.lens.clone()), &**imager, earlier.search)
+        frame_view::find_view(&Optics::new(held.lens.clone()), &**imager, earlier.search)
     };
     let (source, dark) = match earlier.source.take() {
         Some(source) if is_view_known => (Some(source), said.dark),
@@ -352,7 +353,7 @@ fn all_stages(
         Some(items) => behind.take(films::several(items, params, &context)),
         None => film.and_then(|p| behind.take(registry::build::<dyn Film>(&p, &context))).map(films::one),
     };
-    let render = render.unwrap_or_else(|| params.nothing_said("render"));
+    let render = render.unwrap_or_else(|| params.default_stage("render"));
     let settings = behind.take(render.parse::<RenderSection>());
     let output = file.as_ref().and_then(|f| behind.take(output::read(f.output.as_deref(), params, &context)));
     let mut channels = imager.as_ref().and_then(|imager| match (imager.response(), &films) {
@@ -399,7 +400,7 @@ fn all_stages(
             held.and_then(|held| of_lens.take(held.focused(focus_light.as_ref())))
         }
     };
-    if let (Some(place), Some(SetLens { lens, .. }), Some(source), Some(light)) =
+    if let (Some(place), Some(ConfiguredLens { lens, .. }), Some(source), Some(light)) =
         (imager_place, &lens, &source, &focus_light)
         && imager.is_some()
     {
@@ -414,7 +415,7 @@ fn all_stages(
         }
     }
     faults.extend(of_lens);
-    if let (Some(place), Some(SetLens { lens, .. }), Some(source)) = (lens_place, &lens, &source)
+    if let (Some(place), Some(ConfiguredLens { lens, .. }), Some(source)) = (lens_place, &lens, &source)
         && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
     {
         let fault = place.fault("matte-box.distance", "the source stands between the matte box and the lens");
@@ -445,16 +446,26 @@ fn all_stages(
         films.iter_mut().filter_map(|film| Arc::get_mut(&mut film.film)).for_each(|film| film.set_frame(frame));
     }
     let channels: Arc<[Channel]> = channels.into();
-    let SetLens { lens, focus, warnings: of_focus } = lens;
+    let ConfiguredLens { lens, focus, warnings: of_focus } = lens;
     let pictured = films::pictured(&films, &channels);
     let pays = || source.split().is_some_and(|split| split.pays);
     let apart = render.lights == Lights::Forward || render.lights == Lights::Auto && pays();
     let ghosts = render.reflections.order.map_or(apart, |order| order > 0);
-    let whole = doubts::Whole { params, resources, lens: &lens, source: &*source, channels: &pictured, grid, ghosts };
-    let said = Said { warnings: warnings.all(), ends: warnings.ends(), dark };
-    whole.doubt(said.dark.as_ref(), &warnings);
+    let whole = warnings::AssembledScene {
+        params,
+        resources,
+        lens: &lens,
+        source: &*source,
+        channels: &pictured,
+        grid,
+        ghosts,
+    };
+    let said = BuildMessages { warnings: warnings.all(), ends: warnings.ends(), dark };
+    whole.warn(said.dark.as_ref(), &warnings);
     of_focus.iter().for_each(|fault| warnings.push(fault.clone()));
-    cast::casts(&films, &channels, source.white(), &grid, params).into_iter().for_each(|cast| warnings.push(cast.0));
+    color_cast::casts(&films, &channels, source.white(), &grid, params)
+        .into_iter()
+        .for_each(|cast| warnings.push(cast.0));
     for text in films::warnings(&films) {
         warnings.push(params.fault("film", text));
     }
@@ -523,13 +534,13 @@ fn render_settings(
     let has_lights = source.split().is_some_and(|split| split.lights.emit().is_some());
     let lights_forward = can_forward || has_lights && imager.receive().is_some();
     let direction = match s.direction {
-        Way::Auto if can_backward => Direction::Backward,
-        Way::Auto | Way::Forward => Direction::Forward,
-        Way::Backward | Way::Both => Direction::Backward,
+        RequestedDirection::Auto if can_backward => Direction::Backward,
+        RequestedDirection::Auto | RequestedDirection::Forward => Direction::Forward,
+        RequestedDirection::Backward | RequestedDirection::Both => Direction::Backward,
     };
     let lights = match s.direction {
-        Way::Auto if can_backward && lights_forward => Lights::Auto,
-        Way::Both => Lights::Forward,
+        RequestedDirection::Auto if can_backward && lights_forward => Lights::Auto,
+        RequestedDirection::Both => Lights::Forward,
         _ => Lights::Same,
     };
     if lights == Lights::Forward && can_backward && !lights_forward {

@@ -2,7 +2,7 @@
 
 use spectra_core::names::{self, Match};
 use spectra_film::stock::Stock;
-use spectra_glass::Catalogue;
+use spectra_glass::Catalog;
 
 /// Kinds of bundled data that a name can refer to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ impl Bundled {
             Self::Lens => files("lenses/"),
             Self::Stock => Stock::bundled().map(str::to_owned).collect(),
             Self::Spectrum => spectra_spectrum::bundled_spectra().map(|(name, _)| name.to_owned()).collect(),
-            Self::Glass => Catalogue::bundled().full_names().collect(),
+            Self::Glass => Catalog::bundled().full_names().collect(),
         }
     }
 
@@ -80,7 +80,7 @@ impl Bundled {
     /// All names that it could stand for; an empty list if there is none.
     pub fn find(self, typed: &str) -> Result<String, Vec<String>> {
         if self == Self::Glass {
-            return match Catalogue::bundled().find(typed) {
+            return match Catalog::bundled().find(typed) {
                 Ok(glass) => Ok(glass.full_name()),
                 Err(spectra_glass::FindError::Ambiguous { candidates, .. }) => {
                     Err(candidates.into_iter().map(|c| c.full_name).collect())

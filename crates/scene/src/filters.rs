@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::exp;
-use spectra_core::params::{Faults, Length, Params, Part, Positive, StageNode, keys_of};
+use spectra_core::params::{Deferred, Faults, Length, Params, Positive, StageNode, keys_of};
 use spectra_core::resources::Resources;
 use spectra_core::spectral::{Channel, Grid};
 use spectra_glass::Medium;
@@ -20,7 +20,7 @@ struct FrontSection {
     /// Filters, in any order: a name of a transmittance, `{file: ...}`, `{glass: ..., thickness: ...}`, or `{mired: ...}`.
     #[serde(default)]
     #[schemars(length(max = 16))]
-    filters: Vec<Part<FilterForm>>,
+    filters: Vec<Deferred<FilterForm>>,
 }
 
 /// A filter with a measured transmittance.
@@ -40,7 +40,7 @@ pub(crate) struct Plate {
     /// Thickness of the plate, mm if bare.
     thickness: Positive<Length>,
     /// Coating of both faces: `ideal`, `bare`, or a layer; `bare` if absent.
-    coating: Option<Part<spectra_lens::CoatingForm>>,
+    coating: Option<Deferred<spectra_lens::CoatingForm>>,
 }
 
 /// An ideal color conversion filter.
@@ -168,7 +168,7 @@ fn plate(medium: &Medium, thickness_mm: f64, coating: &Coating, grid: Grid) -> O
 mod tests {
     use super::*;
     use spectra_core::spectral::BAND;
-    use spectra_glass::Catalogue;
+    use spectra_glass::Catalog;
 
     /// Light of a black body of 5500 K has, after +131 mired, the chromaticity of one of about 3197 K. Wien's law approximates
     /// Planck's.
@@ -193,7 +193,7 @@ mod tests {
     /// hardly anything there (SCHOTT's data sheet: internal transmittance 0.998 at 580 nm).
     #[test]
     fn a_plate_of_crown_passes_92_percent() {
-        let glass = Catalogue::bundled().medium("SCHOTT/N-BK7").unwrap();
+        let glass = Catalog::bundled().medium("SCHOTT/N-BK7").unwrap();
         let thin = plate(&glass, 1e-6, &Coating::Bare, BAND).unwrap();
         let at = |table: &[f64], nm: f64| BAND.interpolate(table, nm);
         assert!((at(&thin, 587.56) - 0.919_07).abs() < 2e-5, "{}", at(&thin, 587.56));

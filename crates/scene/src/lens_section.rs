@@ -14,14 +14,14 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::cover::CoverStack;
 use spectra_core::params::{
-    Angle, Dimension, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Part, Positive, Reading,
+    Angle, Deferred, Dimension, FNumber, Fault, Faults, Length, Node, OrInfinity, Params, Positive, Reading,
     SpatialFrequency, StageNode, Value, Wavelength,
 };
 use spectra_core::resources::Resources;
 use spectra_exchange::Format;
 use spectra_lens::{
-    ApertureForm, CoatingForm, DustForm, FocusError, HazeForm, Lens, MatteBox, Misalignment, ScaleError, ScratchesForm,
-    SeparationForm, Shape,
+    ApertureForm, ApertureShape, CoatingForm, DustForm, FocusError, HazeForm, Lens, MatteBox, Misalignment, ScaleError,
+    ScratchesForm, SeparationForm,
 };
 use spectra_optics::{ApertureError, Criterion, FocusSearch, Optics, stop_down};
 use std::sync::Arc;
@@ -41,42 +41,42 @@ pub(crate) struct LensSection {
     reverse: bool,
     /// Coating of all surfaces: `ideal` (no reflection), `bare`, `single-layer`, `three-layer`, a layer or a stack. If absent,
     /// that of the lens file, or else the usual coating for the year of the lens.
-    coating: Option<Part<CoatingForm>>,
+    coating: Option<Deferred<CoatingForm>>,
     /// Separated cement in all surfaces between two glasses, instead of what the lens file says: the width of the air gap, and
     /// how far it reaches in from the edge.
-    separation: Option<Part<SeparationForm>>,
+    separation: Option<Deferred<SeparationForm>>,
     /// Haze on all surfaces between glass and air, instead of what the lens file says: the share of the light that each surface
     /// scatters, and how widely.
-    haze: Option<Part<HazeForm>>,
+    haze: Option<Deferred<HazeForm>>,
     /// Dust on all surfaces between glass and air, instead of what the lens file says: the share that it covers, and the size of
     /// its grains.
-    dust: Option<Part<DustForm>>,
+    dust: Option<Deferred<DustForm>>,
     /// Scratches on all surfaces between glass and air, instead of what the lens file says: the share that they cover or a
     /// drawing of them, and their width.
-    scratches: Option<Part<ScratchesForm>>,
+    scratches: Option<Deferred<ScratchesForm>>,
     /// Whether glass absorbs light. If absent, as in the lens file, or else true.
     absorption: Option<bool>,
     /// F-number, set with the real marginal ray; as in the lens file if absent. The f-number in the name of a lens means wide
     /// open.
     f_number: Option<FNumber>,
     /// Shape of the opening at the stop, such as blades or a mask: one or a list, as in a lens file; round if absent.
-    aperture: Option<Part<ApertureForm>>,
+    aperture: Option<Deferred<ApertureForm>>,
     /// Distance from the first vertex that is in focus, mm if bare, or `infinity`; the lens file's focus if absent. An object at
     /// this distance on the axis has the highest contrast, in the light and at the aperture of the scene. To focus by another
     /// criterion, write a map.
-    focus: Option<Part<FocusForm>>,
+    focus: Option<Deferred<FocusForm>>,
     /// Factor by which the lens squeezes the picture horizontally, 0.1 to 10; it sets the shape of the pixels in the files. If
     /// absent, as in the lens file.
     #[schemars(range(min = 0.1, max = 10))]
     squeeze: Option<f64>,
     /// Misalignment: groups of the lens that are displaced or tilted. None if absent.
     #[serde(default)]
-    adjust: Vec<Part<AdjustParams>>,
+    adjust: Vec<Deferred<AdjustParams>>,
     /// Filters in front of the lens, at most 16, each a name of a transmittance or a map; none if absent.
     #[expect(dead_code, reason = "states the key; filters are read by themselves")]
-    filters: Option<Part<Vec<FilterForm>>>,
+    filters: Option<Deferred<Vec<FilterForm>>>,
     /// A matte box: a rectangular opening in front of the lens; none if absent.
-    matte_box: Option<Part<MatteBoxParams>>,
+    matte_box: Option<Deferred<MatteBoxParams>>,
 }
 
 /// A matte box in front of the lens.
@@ -160,7 +160,7 @@ struct AdjustParams {
 }
 
 /// The requested focus, and the search for it.
-struct Wanted {
+struct FocusRequest {
     distance_mm: f64,
     by: FocusBy,
     search: Option<FocusSearch>,
@@ -170,7 +170,7 @@ struct Wanted {
 
 /// A lens as set by a scene.
 #[derive(Clone)]
-pub(crate) struct SetLens {
+pub(crate) struct ConfiguredLens {
     pub(crate) lens: Arc<Optics>,
     pub(crate) focus: Focus,
     /// Warnings about how the lens is set.
@@ -179,19 +179,19 @@ pub(crate) struct SetLens {
 
 /// A lens that is set completely except for the focus by real rays, which depends on the light of the scene. It is focused by
 /// first order.
-pub(crate) struct HeldLens {
+pub(crate) struct UnfocusedLens {
     pub(crate) lens: Lens,
     params: Params,
-    focus: Option<Part<FocusForm>>,
+    focus: Option<Deferred<FocusForm>>,
     matte_box: Option<MatteBox>,
 }
 
 /// Sets the lens of a scene, with these cover plates in front of the frame.
-pub(crate) fn held_lens(
+pub(crate) fn configure_lens(
     params: &Params,
     resources: &dyn Resources,
     cover: Option<CoverStack>,
-) -> Result<HeldLens, Faults> {
+) -> Result<UnfocusedLens, Faults> {
     let mut faults = Faults::new();
     if let Some(kind) = params.kind() {
         let fault = params.fault("kind", "a lens has no `kind`: name its file with `file`");
@@ -219,7 +219,7 @@ pub(crate) fn held_lens(
     if let Some(wanted) = section.focal_length {
         lens = faults.take(at_focal_length(&lens, wanted.mm(), params)).unwrap_or(lens);
     }
-    lens = as_built(lens, &section, params, resources, &mut faults);
+    lens = with_build_options(lens, &section, params, resources, &mut faults);
     if let Some(f_number) = section.f_number {
         let stopped = stop_down(lens.clone(), f_number.number());
         lens = faults.take(stopped.map_err(|e| aperture_fault(params, &e))).unwrap_or(lens);
@@ -239,12 +239,12 @@ pub(crate) fn held_lens(
     let matte_box = section.matte_box.and_then(|node| faults.take(node.parse::<MatteBoxParams>()));
     let matte_box =
         matte_box.map(|p| MatteBox { distance_mm: p.distance.mm(), width_mm: p.width.mm(), height_mm: p.height.mm() });
-    faults.into_result(HeldLens { lens, params: params.clone(), focus: section.focus, matte_box })
+    faults.into_result(UnfocusedLens { lens, params: params.clone(), focus: section.focus, matte_box })
 }
 
-impl HeldLens {
+impl UnfocusedLens {
     /// Focuses the lens in the light of the scene. Without light, because another section is faulty, the lens stays as it is.
-    pub(crate) fn focused(self, light: Option<&FocusLight>) -> Result<SetLens, Faults> {
+    pub(crate) fn focused(self, light: Option<&FocusLight>) -> Result<ConfiguredLens, Faults> {
         let Self { mut lens, params, focus: node, matte_box } = self;
         let mut focus = Focus { distance_mm: None, by: FocusBy::File, remark: None };
         let mut warnings = Vec::new();
@@ -267,12 +267,12 @@ impl HeldLens {
         if let Some(opening) = matte_box {
             lens = lens.behind_matte_box(&opening);
         }
-        Ok(SetLens { lens: Arc::new(Optics::new(lens)), focus, warnings })
+        Ok(ConfiguredLens { lens: Arc::new(Optics::new(lens)), focus, warnings })
     }
 }
 
 /// Focuses the lens by real rays if that is requested. Returns it with a remark, if there is one.
-fn by_rays(lens: &Lens, wanted: &Wanted) -> Result<(Lens, Option<String>), FocusError> {
+fn by_rays(lens: &Lens, wanted: &FocusRequest) -> Result<(Lens, Option<String>), FocusError> {
     let Some(search) = &wanted.search else { return Ok((lens.clone(), None)) };
     let found = Optics::new(search.focus(lens.clone())?);
     let apart = search.sections_apart_mm(&found)?.map(|mm| {
@@ -299,7 +299,7 @@ fn with_aperture(lens: &Lens, node: &StageNode, resources: &dyn Resources) -> Re
     let Some(stop) = lens.elements.iter_mut().find(|e| e.stop) else {
         return Err(node.fault("this lens has no stop").hint("state `aperture` at a surface of its file").into());
     };
-    if stop.semi_diameter_mm.is_none() && apertures.iter().any(|a| matches!(a.shape, Shape::Iris(_))) {
+    if stop.semi_diameter_mm.is_none() && apertures.iter().any(|a| matches!(a.shape, ApertureShape::Iris(_))) {
         let fault = node.fault("the stop of this lens has no size, so the size of the blades is unknown");
         return Err(fault.hint("add an f-number, such as `f-number: f/4`, beside `aperture`").into());
     }
@@ -335,7 +335,7 @@ fn at_focal_length(lens: &Lens, wanted_mm: f64, params: &Params) -> Result<Lens,
 const MOST_FOCAL_MM: f64 = 1e7;
 
 /// Returns the lens with its build applied before f-number and focus: reversed, coated, separated, soiled, absorbing.
-fn as_built(
+fn with_build_options(
     mut lens: Lens,
     section: &LensSection,
     params: &Params,
@@ -374,7 +374,7 @@ pub(crate) fn is_too_fast(params: &Params, resources: &dyn Resources) -> bool {
     let Ok(section) = params.parse::<LensSection>() else { return false };
     let file = params.get("file").and_then(|node| node.as_str());
     let Some(lens) = file.and_then(|file| spectra_lens::load(file, resources).ok()) else { return false };
-    let lens = as_built(lens, &section, params, resources, &mut Faults::new());
+    let lens = with_build_options(lens, &section, params, resources, &mut Faults::new());
     let stopped = section.f_number.map(|f_number| stop_down(lens, f_number.number()));
     matches!(stopped, Some(Err(ApertureError::TooFast { .. })))
 }
@@ -447,7 +447,7 @@ fn focus_fault(params: &Params, error: &FocusError) -> Fault {
     params.fault(key, error.to_string()).hint(hint)
 }
 
-fn focus_of(node: &Part<FocusForm>, reference_nm: f64, light: Option<&FocusLight>) -> Result<Wanted, Faults> {
+fn focus_of(node: &Deferred<FocusForm>, reference_nm: f64, light: Option<&FocusLight>) -> Result<FocusRequest, Faults> {
     // If nothing responds to the source, the reference line is used.
     let seen = light.map_or(&[][..], |light| &light.light);
     let seen = if seen.is_empty() { vec![(reference_nm, 1.0)] } else { seen.to_vec() };
@@ -458,7 +458,7 @@ fn focus_of(node: &Part<FocusForm>, reference_nm: f64, light: Option<&FocusLight
             let (object_mm, criterion) = (distance.mm(), Criterion::Contrast { per_mm: default_per_mm });
             let search = light.map(|_| FocusSearch { object_mm, field_rad: 0.0, criterion, light: seen });
             let by = FocusBy::Contrast { per_mm: default_per_mm };
-            return Ok(Wanted { distance_mm: object_mm, by, search, plain: true });
+            return Ok(FocusRequest { distance_mm: object_mm, by, search, plain: true });
         }
     };
     let params = Params::section(node.node().clone(), node.path())?;
@@ -502,7 +502,7 @@ fn focus_of(node: &Part<FocusForm>, reference_nm: f64, light: Option<&FocusLight
     };
     let object_mm = p.distance.mm();
     let search = criterion.map(|criterion| FocusSearch { object_mm, field_rad, criterion, light });
-    faults.into_result(Wanted { distance_mm: object_mm, by, search, plain: false })
+    faults.into_result(FocusRequest { distance_mm: object_mm, by, search, plain: false })
 }
 
 fn adjusted(lens: &Lens, node: &StageNode) -> Result<Lens, Faults> {

@@ -5,45 +5,47 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-mod advice;
 mod assemble;
+mod build_messages;
 pub mod bundled;
-mod cast;
+mod cached_resources;
+mod color_cast;
 pub mod diagnostics;
-mod doubts;
-mod earlier;
 mod films;
 mod filters;
 mod focus;
+mod frame_view;
+mod hints;
 mod lamps;
 mod landing;
 mod language;
 mod lens_section;
 mod light_layer;
 mod metering;
+mod mistake_hints;
 mod negatives;
 mod output;
-mod remembered;
 mod resources;
 mod responses;
-mod said;
+mod reuse;
 mod scene;
 mod schema;
 mod shot;
-mod sight;
-mod slips;
+mod warnings;
 
 pub use spectra_yaml as yaml;
 
-pub use cast::place as place_of_film;
+pub use color_cast::place as place_of_film;
 pub use focus::{Focus, FocusBy};
+pub use frame_view::ViewSearch;
 pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
 };
 pub use lens_section::{size_hint, size_hint_of, stop_hint_of};
 pub use light_layer::{GhostPaths, LightKind, LightLayer};
+pub use mistake_hints::other_films;
 pub use negatives::Negatives;
-pub use output::{Holds, Output, OutputEntry, Told};
+pub use output::{FileContent, Output, OutputEntry, SeriesSummary};
 pub use resources::{FileResources, NO_LENS, NO_LENS_F_NUMBER};
 pub use scene::{
     ConePattern, Direction, FilmTime, GhostSpread, Lights, MID_GRAY, NumberFamily, Reflections, RenderSettings, Scene,
@@ -51,5 +53,3 @@ pub use scene::{
 };
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};
 pub use shot::{Developed, Shot};
-pub use sight::Search;
-pub use slips::other_films;

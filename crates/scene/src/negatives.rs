@@ -1,6 +1,6 @@
 //! A cache of developed films, for printing the same exposure several times.
 
-use spectra_core::frame::{ExposureFrame, Finished, Wanted};
+use spectra_core::frame::{ExposureFrame, ExtraRequest, FinishedPicture};
 use spectra_core::stage::{Film, Negative};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,8 +21,8 @@ impl Negatives {
         place: usize,
         film: &Arc<dyn Film>,
         exposure: &ExposureFrame,
-    ) -> Result<Finished, String> {
-        let wanted = Wanted::default();
+    ) -> Result<FinishedPicture, String> {
+        let wanted = ExtraRequest::default();
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if all.len() <= place {
             all.resize_with(place + 1, || None);

@@ -2,8 +2,8 @@
 
 use crate::light_layer::LightKind;
 use crate::{FileResources, Scene, SceneFilm, Shot};
-use spectra_core::frame::Wanted;
-use spectra_core::params::{Fault, Faults, Node, Params, Part, Value};
+use spectra_core::frame::ExtraRequest;
+use spectra_core::params::{Deferred, Fault, Faults, Node, Params, Value};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::{Film, Imager};
@@ -20,7 +20,7 @@ pub trait Output: Send + Sync {
     fn ending(&self) -> [&'static str; 2];
 
     /// Returns what its files hold.
-    fn holds(&self) -> Holds;
+    fn content(&self) -> FileContent;
 
     /// Checks that the output can be made from what such an imager records.
     ///
@@ -39,8 +39,8 @@ pub trait Output: Send + Sync {
     }
 
     /// Returns what it needs of a picture in addition to what a screen shows.
-    fn wanted(&self) -> Wanted {
-        Wanted::default()
+    fn extra_request(&self) -> ExtraRequest {
+        ExtraRequest::default()
     }
 
     /// Returns the kinds of light for which it holds separate layers.
@@ -69,14 +69,14 @@ pub trait Output: Send + Sync {
     ///
     /// # Errors
     /// Errors of the output stream; [`WriteFault::Format`] if this kind makes no such file.
-    fn write_series(&self, _: &Told<'_>, _: &mut dyn Out) -> Result<(), WriteFault> {
+    fn write_series(&self, _: &SeriesSummary<'_>, _: &mut dyn Out) -> Result<(), WriteFault> {
         Err(WriteFault::Format(format!("{} cannot hold several pictures", self.kind())))
     }
 }
 
 /// Facts about a finished sweep or animation.
 #[derive(Clone, Copy, Debug)]
-pub struct Told<'a> {
+pub struct SeriesSummary<'a> {
     /// Name of the series.
     pub name: &'a str,
     /// Text of the scene file.
@@ -89,7 +89,7 @@ pub struct Told<'a> {
 
 /// Kinds of content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Holds {
+pub enum FileContent {
     /// All recorded light: a picture with such a file loses nothing.
     Light,
     /// The picture to look at, one file for each film.
@@ -113,7 +113,7 @@ fn of_kind(kind: &str, params: &Params, context: &Context<'_>) -> Result<Arc<dyn
 
 /// Reads the `output` section; EXR and PNG if it is absent.
 pub(crate) fn read(
-    items: Option<&[Part<StageOf<dyn Output>>]>,
+    items: Option<&[Deferred<StageOf<dyn Output>>]>,
     params: &Params,
     context: &Context<'_>,
 ) -> Result<Vec<Arc<dyn Output>>, Faults> {
@@ -181,7 +181,8 @@ impl Scene {
     pub fn output_of(&self, ending: &str) -> Option<Arc<dyn Output>> {
         let is_it = |output: &Arc<dyn Output>| output.ending() == ["", ending];
         // A finished picture in linear light normally has a name of its own beside the exposure.
-        let is_picture = |output: &&Arc<dyn Output>| output.holds() == Holds::Picture && output.ending()[1] == ending;
+        let is_picture =
+            |output: &&Arc<dyn Output>| output.content() == FileContent::Picture && output.ending()[1] == ending;
         let own = self.output.iter().find(|output| is_it(output)).or_else(|| self.output.iter().find(is_picture));
         own.cloned().or_else(|| {
             let resources = FileResources::beside(Path::new(""));

@@ -1,12 +1,12 @@
 //! Files for stages: beside the scene first, then bundled.
 
-use crate::advice::{FileIs, other_file};
 use crate::bundled::{Bundled, camera_films, other_kind};
-use crate::slips::other_films;
+use crate::hints::{FileIs, other_file};
+use crate::mistake_hints::other_films;
 use crate::yaml;
 use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile};
-use spectra_core::resources::{Found, Resource, ResourceError, Resources};
+use spectra_core::resources::{FoundFile, Resource, ResourceError, Resources};
 use spectra_exchange::Format;
 use std::borrow::Cow;
 use std::io::Read;
@@ -127,12 +127,18 @@ impl Resources for FileResources {
         Err(ResourceError::NotFound(self.near(path, folders)))
     }
 
-    fn find(&self, path: &str, folders: &[&str], endings: &[&str], limit_bytes: u64) -> Result<Found, ResourceError> {
+    fn find(
+        &self,
+        path: &str,
+        folders: &[&str],
+        endings: &[&str],
+        limit_bytes: u64,
+    ) -> Result<FoundFile, ResourceError> {
         for folder in self.folders() {
             for ending in std::iter::once("").chain(endings.iter().copied()) {
                 let on_disk = plain(&folder.join(of_user(format!("{path}{ending}"))));
                 if on_disk.is_file() {
-                    let found = Found::on_disk(from_here(&on_disk).display().to_string(), on_disk);
+                    let found = FoundFile::on_disk(from_here(&on_disk).display().to_string(), on_disk);
                     let size = found.size_bytes()?;
                     if size > limit_bytes {
                         return Err(ResourceError::TooLarge(size, limit_bytes));
@@ -142,7 +148,7 @@ impl Resources for FileResources {
                 }
             }
         }
-        self.read(path, folders, endings, limit_bytes).map(|read| Found::bytes(read.name, read.bytes))
+        self.read(path, folders, endings, limit_bytes).map(|read| FoundFile::bytes(read.name, read.bytes))
     }
 
     fn document(&self, path: &str, folders: &[&str], endings: &[&str]) -> Result<Params, Faults> {
@@ -152,7 +158,7 @@ impl Resources for FileResources {
         // A lens file of another program is read as the lens file that an import would write.
         let foreign = Format::of_name(path).filter(|_| folders.contains(&"lenses"));
         let missing = match folders {
-            _ if crate::advice::is_file_name(path) => "no such file",
+            _ if crate::hints::is_file_name(path) => "no such file",
             ["lenses"] => "no lens or file of this name",
             ["spectra/film"] => "no film stock or file of this name",
             _ => "no such file",
@@ -168,7 +174,7 @@ impl Resources for FileResources {
                                 Bundled::Lens.names().join(", ")
                             )
                         }
-                        ["spectra/film"] if !crate::advice::is_file_name(path) => other_films(path, &camera_films()),
+                        ["spectra/film"] if !crate::hints::is_file_name(path) => other_films(path, &camera_films()),
                         _ => "a file is looked for beside the scene, then among the bundled ones".to_owned(),
                     }
                 });

@@ -3,8 +3,8 @@
 use crate::Focus;
 // A circle with `output.rs`: a scene has outputs, and each output writes a picture of its scene.
 use crate::Output;
+use crate::build_messages::BuildMessages;
 use crate::focus::FocusLight;
-use crate::said::Said;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
@@ -13,7 +13,7 @@ use spectra_core::params::{Fault, Params, Warning};
 use spectra_core::spectral::{Channel, Grid};
 use spectra_core::stage::{Film, Imager, Source, WavelengthSampler};
 use spectra_optics::Optics;
-use spectra_tracer::StrayMatter;
+use spectra_tracer::StrayReflectances;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -134,7 +134,7 @@ pub struct RenderSettings {
     /// Settings for reflections.
     pub reflections: Reflections,
     /// Causes of veiling glare, if glare is asked for.
-    pub glare: Option<StrayMatter>,
+    pub glare: Option<StrayReflectances>,
     /// Whether diffraction at the edge of the aperture spreads the light. `None` means only if stars around lights would be
     /// visible.
     pub diffraction: Option<bool>,
@@ -220,7 +220,7 @@ pub struct Scene {
     /// The light that the lens was focused in, and warnings about that.
     pub(crate) focused: (Option<FocusLight>, Vec<Fault>),
     /// Messages of the stages from the time when they were built.
-    pub(crate) said: Said,
+    pub(crate) said: BuildMessages,
     /// The imager behind the lens.
     pub imager: Arc<dyn Imager>,
     /// The film on the imager, or several films side by side in the same light; empty for an imager that records by itself.
@@ -284,7 +284,7 @@ impl Scene {
 
     /// Returns whether a film uses the source picture as it was already exposed.
     #[must_use]
-    pub fn is_as_taken(&self, film: &SceneFilm) -> bool {
+    pub fn uses_source_exposure(&self, film: &SceneFilm) -> bool {
         film.film.keeps_exposure() && self.source.is_exposed()
     }
 
@@ -324,7 +324,7 @@ impl Scene {
                 gain: time_s / recorded_s,
                 is_metered: film.film.is_metered() || time_s != recorded_s,
                 meter: film.film.meter(),
-                is_as_taken: self.is_as_taken(film),
+                is_as_taken: self.uses_source_exposure(film),
                 channels: film.channels.clone(),
             }
         };

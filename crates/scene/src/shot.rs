@@ -10,7 +10,9 @@
 use crate::{FilmTime, LightLayer, Negatives, Scene, SceneFilm};
 use serde_json::Value;
 use spectra_core::Isa;
-use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, ImageState, Wanted};
+use spectra_core::frame::{
+    DisplayPicture, ExposureChannel, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, ImageState,
+};
 use spectra_core::sink::WriteFault;
 use std::sync::OnceLock;
 
@@ -18,7 +20,7 @@ use std::sync::OnceLock;
 pub type Developed = (Option<String>, DisplayPicture);
 
 /// All pictures, and the additional data of each.
-type All = (Vec<Developed>, Vec<Beside>);
+type All = (Vec<Developed>, Vec<ExtraData>);
 
 /// The light that a scene recorded, ready to be developed and written to files.
 pub struct Shot<'a> {
@@ -57,7 +59,7 @@ impl<'a> Shot<'a> {
 
     /// Sets the function that makes the report. It is called when the report is first needed.
     #[must_use]
-    pub fn told(self, tell: &'a (dyn Fn() -> Value + Sync)) -> Self {
+    pub fn with_report(self, tell: &'a (dyn Fn() -> Value + Sync)) -> Self {
         Self { tell, ..self }
     }
 
@@ -76,7 +78,7 @@ impl<'a> Shot<'a> {
     /// Uses a cache of negatives, for pictures without additional data. Prints films again that were already developed from this
     /// exposure; develops the others and keeps them.
     #[must_use]
-    pub fn keeping(self, kept: &'a Negatives) -> Self {
+    pub fn with_negatives(self, kept: &'a Negatives) -> Self {
         Self { kept: Some(kept), ..self }
     }
 
@@ -109,22 +111,22 @@ impl<'a> Shot<'a> {
     }
 
     /// Returns the additional data of the picture at an index, as far as an output of the scene wants them
-    /// ([`crate::Output::wanted`]).
+    /// ([`crate::Output::extra_request`]).
     ///
     /// # Errors
     /// [`WriteFault::Format`] with the reason why there is no picture.
-    pub fn beside(&self, film: usize) -> Result<&Beside, WriteFault> {
+    pub fn extra_data(&self, film: usize) -> Result<&ExtraData, WriteFault> {
         let (_, beside) = self.all().map_err(WriteFault::Format)?;
         beside.get(film).ok_or_else(no_film)
     }
 
-    /// Returns the picture at an index without gamut mapping, as far as it is known: see [`Beside::open`]. Otherwise returns the
+    /// Returns the picture at an index without gamut mapping, as far as it is known: see [`ExtraData::unclamped`]. Otherwise returns the
     /// ordinary picture.
     ///
     /// # Errors
     /// [`WriteFault::Format`] with the reason why there is no picture.
-    pub fn open(&self, film: usize) -> Result<&DisplayPicture, WriteFault> {
-        match &self.beside(film)?.open {
+    pub fn unclamped_picture(&self, film: usize) -> Result<&DisplayPicture, WriteFault> {
+        match &self.extra_data(film)?.unclamped {
             Some(open) => Ok(open),
             None => self.picture(film),
         }
@@ -145,12 +147,14 @@ impl<'a> Shot<'a> {
 
     fn developed(&self) -> Result<All, String> {
         let Self { scene, exposure, .. } = self;
-        let outputs = scene.output.iter().map(|output| output.wanted());
-        let wanted =
-            outputs.fold(Wanted::default(), |a, b| Wanted { open: a.open || b.open, layers: a.layers || b.layers });
+        let outputs = scene.output.iter().map(|output| output.extra_request());
+        let wanted = outputs.fold(ExtraRequest::default(), |a, b| ExtraRequest {
+            unclamped: a.unclamped || b.unclamped,
+            layers: a.layers || b.layers,
+        });
         if scene.films.is_empty() {
             let shown = scene.imager.response().and_then(|own| own.finish(exposure, wanted));
-            let Finished { shown, mut beside } =
+            let FinishedPicture { display: shown, extra: mut beside } =
                 shown.ok_or_else(|| "this imager gives no picture without a film".to_owned())?;
             if wanted.layers {
                 let layers = exposure.channels.iter().cloned();
@@ -158,7 +162,7 @@ impl<'a> Shot<'a> {
             }
             return Ok((vec![(None, shown)], vec![beside]));
         }
-        let of = |(place, film): (usize, &SceneFilm)| -> Result<(Developed, Beside), String> {
+        let of = |(place, film): (usize, &SceneFilm)| -> Result<(Developed, ExtraData), String> {
             let finish = |exposure: &ExposureFrame| match self.kept {
                 None => film.film.finish(exposure, wanted),
                 Some(kept) => kept.finish(place, &film.film, exposure),
@@ -168,13 +172,13 @@ impl<'a> Shot<'a> {
                 None => finish(exposure)?,
                 Some(_) => finish(&film.exposure(exposure))?,
             };
-            if let Some([x, y]) = no_number(&finished.shown) {
+            if let Some([x, y]) = no_number(&finished.display) {
                 let film = film.film.name();
                 return Err(format!(
                     "{film}: the color of pixel {x}, {y} is not a number: its `develop` computed a NaN"
                 ));
             }
-            let Finished { shown, beside } = finished;
+            let FinishedPicture { display: shown, extra: beside } = finished;
             Ok(((film.name.clone(), shown), beside))
         };
         let all = scene.films.iter().enumerate().map(of).collect::<Result<Vec<_>, String>>()?;

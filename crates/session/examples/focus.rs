@@ -14,7 +14,7 @@ fn main() -> Result<(), SessionError> {
         let metres = 1.5 + 0.1 * f64::from(step);
         session.change(&format!("lens.focus={metres} m"))?;
         session.advance(16, &Threads(2), &Control::new())?;
-        let sharpness = sharpness(&session.look()?.exposure);
+        let sharpness = sharpness(&session.rendering()?.exposure);
         println!("{metres:9.2}   {sharpness:9.5}   {}", "*".repeat((1000.0 * sharpness) as usize));
     }
     Ok(())

@@ -6,7 +6,7 @@
 
 use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_session::{Alone, Control, Session};
+use spectra_session::{Control, Session, SingleThread};
 use std::time::Instant;
 
 /// Returns the time that this thread has run, in nanoseconds.
@@ -47,11 +47,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let events: usize = given.next().map_or(Ok(100), |text| text.parse())?;
     let only = given.next().unwrap_or_default();
     let mut whole = Session::open(scene.as_ref(), &["imager.resolution=[480, 320]".to_owned()], Isa::detect())?;
-    whole.step(1, &Alone, &Control::new())?;
+    whole.step(1, &SingleThread, &Control::new())?;
     let small =
         ["imager.resolution=[120, 80]", "render.samples=4", "render.reflections.order=0", "render.diffraction=false"];
     let mut draft = whole.draft(&small.map(str::to_owned))?;
-    draft.step(4, &Alone, &Control::new())?;
+    draft.step(4, &SingleThread, &Control::new())?;
     let (mut random, begun) = (Random(1), Instant::now());
     println!(
         "{:<10}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}",
@@ -76,13 +76,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 continue;
             }
             mark();
-            draft.prepare(&Alone)?;
+            draft.prepare(&SingleThread)?;
             mark();
-            draft.advance(4, &Alone, &Control::new())?;
+            draft.advance(4, &SingleThread, &Control::new())?;
             mark();
             draft.develop()?;
             mark();
-            whole.change_after(&text, &draft, &Alone)?;
+            whole.change_after(&text, &draft, &SingleThread)?;
             mark();
             rows.push(std::array::from_fn(|k| (marks[k + 1] - marks[k]) as f64 / 1e6));
         }

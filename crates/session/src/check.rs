@@ -13,7 +13,7 @@ const AT_ONCE: usize = 8;
 
 /// Settings for a check of the pictures of a series.
 #[derive(Clone, Copy)]
-pub struct Look<'a> {
+pub struct CheckSettings<'a> {
     /// Instruction set that the pictures will be traced with.
     pub isa: Isa,
     /// Threads that do the checks.
@@ -21,7 +21,7 @@ pub struct Look<'a> {
     /// Bytes of memory that are still available, if known.
     pub memory_bytes: Option<u64>,
     /// Progress callback: receives how many pictures have been checked, and how many there are.
-    pub seen: &'a (dyn Fn(usize, usize) + Sync),
+    pub on_progress: &'a (dyn Fn(usize, usize) + Sync),
 }
 
 /// Result of checking a series that has no faults.
@@ -39,7 +39,7 @@ pub struct Checked {
 ///
 /// # Errors
 /// Every fault of any picture. A fault that several pictures share is reported once.
-pub fn check(series: &Series, look: Look<'_>) -> Result<Checked, SessionError> {
+pub fn check(series: &Series, look: CheckSettings<'_>) -> Result<Checked, SessionError> {
     let all: Vec<usize> = (0..series.count()).collect();
     let keep = |_, scene: &Scene| {
         // Pixels of large files are checked only for a single picture, not for each of a thousand.
@@ -47,7 +47,7 @@ pub fn check(series: &Series, look: Look<'_>) -> Result<Checked, SessionError> {
             scene.source.prepare()?;
         }
         let notes: Vec<String> = scene.all_notes().cloned().collect();
-        let warnings = scene.warnings.iter().chain(scene.source.doubts()).cloned().collect::<Vec<_>>();
+        let warnings = scene.warnings.iter().chain(scene.source.warnings()).cloned().collect::<Vec<_>>();
         Ok((spectra_render::memory_needed(scene), warnings, notes))
     };
     let of_each = checked(series, &all, look, &keep)?;
@@ -74,7 +74,7 @@ pub(crate) fn each_once<'a, T: PartialEq>(all: impl Iterator<Item = &'a T>) -> V
 pub(crate) fn checked<T: Send>(
     series: &Series,
     indices: &[usize],
-    look: Look<'_>,
+    look: CheckSettings<'_>,
     keep: &(impl Fn(usize, &Scene) -> Result<T, SessionError> + Sync),
 ) -> Result<Vec<T>, SessionError> {
     let results: Vec<Mutex<Option<Result<T, SessionError>>>> = indices.iter().map(|_| Mutex::new(None)).collect();
@@ -89,7 +89,7 @@ pub(crate) fn checked<T: Send>(
         *other = Some(scene);
         kept
     };
-    look.workers.each(&|| {
+    look.workers.run_on_all(&|| {
         if working.fetch_add(1, Relaxed) >= AT_ONCE {
             return;
         }
@@ -99,7 +99,7 @@ pub(crate) fn checked<T: Send>(
             indices.get(at).zip(results.get(at))
         } {
             *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(check(*index, &mut other));
-            (look.seen)(done.fetch_add(1, Relaxed) + 1, indices.len());
+            (look.on_progress)(done.fetch_add(1, Relaxed) + 1, indices.len());
         }
     });
     let mut kept = Vec::with_capacity(indices.len());
@@ -122,12 +122,13 @@ pub(crate) fn checked<T: Send>(
     if faults.is_empty() {
         return Ok(kept);
     }
-    let told = faults.into_iter().map(|(fault, members)| told(series, fault, &members, indices.len()));
+    let told =
+        faults.into_iter().map(|(fault, members)| with_affected_pictures(series, fault, &members, indices.len()));
     Err(SessionError::Faults(Faults(told.collect())))
 }
 
 /// Returns the fault with the pictures that have it in its hint, unless all pictures have it.
-fn told(series: &Series, fault: Fault, members: &[usize], all: usize) -> Fault {
+fn with_affected_pictures(series: &Series, fault: Fault, members: &[usize], all: usize) -> Fault {
     let Some(first) = members.first().filter(|_| members.len() < all) else { return fault };
     let member = series.member(*first);
     let what = if matches!(series.kind(), SeriesKind::Animation { .. }) { "frame" } else { "picture" };

@@ -7,7 +7,7 @@ use crate::still::{F_NUMBER, WHITE_CD_M2};
 use crate::{SessionError, Setting};
 use rayon::prelude::*;
 use spectra_color::{RgbSpace, ciede2000, lab, xyz_of_reflectance};
-use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize, Wanted};
+use spectra_core::frame::{ExposureChannel, ExposureFrame, ExtraRequest, FrameSize};
 use spectra_core::math::{log2, pow};
 use spectra_core::numbers::mix64;
 use spectra_core::params::{Faults, Key, Node, Params, SourceFile, Value};
@@ -60,7 +60,7 @@ pub const RANDOM_COLORS: usize = 10_000;
 const GRAY: f64 = 0.18;
 
 /// The film, and the color model that exposes it.
-pub(crate) struct Chain {
+pub(crate) struct FilmPipeline {
     film: Box<dyn Film>,
     model: Box<dyn ColorModel>,
     channels: Vec<Channel>,
@@ -76,7 +76,7 @@ impl Cube {
     /// # Errors
     /// Faults of the settings; a film that cannot be developed.
     pub fn file(&self, version: &str) -> Result<CubeFile, SessionError> {
-        let chain = Chain::of(&self.settings, &self.illuminant)?;
+        let chain = FilmPipeline::of(&self.settings, &self.illuminant)?;
         let side: Vec<f64> = (0..self.size).map(|i| self.linear(i as f64 / (self.size - 1) as f64)).collect();
         let mut lattice = Vec::with_capacity(self.size * self.size * self.size);
         // Red varies fastest, as in every `.cube` file.
@@ -85,8 +85,9 @@ impl Cube {
                 lattice.extend(side.iter().map(|r| [*r, *g, *b]));
             }
         }
-        let exposures: Vec<Vec<f64>> = lattice.par_iter().map(|rgb| chain.seen(&chain.model.spectrum(*rgb))).collect();
-        let points = chain.shown(&exposures)?;
+        let exposures: Vec<Vec<f64>> =
+            lattice.par_iter().map(|rgb| chain.exposures(&chain.model.spectrum(*rgb))).collect();
+        let points = chain.pictures(&exposures)?;
         let errors = self.errors(&chain, &points)?;
         let film = chain.film.describe();
         let mut text = self.header(&film, version, errors);
@@ -125,15 +126,18 @@ impl Cube {
         sum
     }
 
-    fn errors(&self, chain: &Chain, points: &[[f64; 3]]) -> Result<CubeErrors, SessionError> {
+    fn errors(&self, chain: &FilmPipeline, points: &[[f64; 3]]) -> Result<CubeErrors, SessionError> {
         let space = RgbSpace::srgb();
         let of_code = |code: u64| space.transfer.decode((code & 0xff) as f64 / 255.0);
         let colors: Vec<[f64; 3]> = (0..RANDOM_COLORS as u64)
             .map(mix64)
             .map(|bits| [of_code(bits), of_code(bits >> 8), of_code(bits >> 16)])
             .collect();
-        let mut off =
-            self.differences(points, &colors, &chain.shown_of(colors.iter().map(|rgb| chain.model.spectrum(*rgb)))?);
+        let mut off = self.differences(
+            points,
+            &colors,
+            &chain.pictures_of_lights(colors.iter().map(|rgb| chain.model.spectrum(*rgb)))?,
+        );
         let mean = |off: &[f64]| off.iter().sum::<f64>() / off.len().max(1) as f64;
         let of_colors = mean(&off);
         off.sort_by(f64::total_cmp);
@@ -153,7 +157,7 @@ impl Cube {
             let lines = white.lines.iter().map(|l| Line { power: l.power * surface.at(l.wavelength_nm), ..*l });
             lights.push(SpectralPower { grid: BAND, continuum: lit, lines: lines.collect() });
         }
-        let off = self.differences(points, &seen, &chain.shown_of(lights.into_iter())?);
+        let off = self.differences(points, &seen, &chain.pictures_of_lights(lights.into_iter())?);
         Ok(CubeErrors { colors, reflectances: [mean(&off), largest(&off)] })
     }
 
@@ -194,7 +198,7 @@ impl Cube {
     }
 }
 
-impl Chain {
+impl FilmPipeline {
     /// Builds the film of these settings, metered for a mid gray in the light `illuminant`. Effects that need a pixel's neighbors
     /// are off.
     pub(crate) fn of(settings: &[Setting], illuminant: &Setting) -> Result<Self, Faults> {
@@ -206,7 +210,7 @@ impl Chain {
         let mut root = Node::new(Value::Map(entries), film.span, film.file);
         let mut faults = Faults::new();
         for setting in settings {
-            let node = faults.take(yaml::parse(SourceFile::new(setting.said.as_str(), setting.value.as_str())));
+            let node = faults.take(yaml::parse(SourceFile::new(setting.as_typed.as_str(), setting.value.as_str())));
             if let Some(node) = node {
                 if setting.path == "film.paper.grade" && node.as_str() == Some("auto") {
                     let fault =
@@ -216,7 +220,7 @@ impl Chain {
                 faults.take(root.set_path(&setting.path, node));
             }
         }
-        let light = yaml::parse(SourceFile::new(illuminant.said.as_str(), illuminant.value.as_str()))?;
+        let light = yaml::parse(SourceFile::new(illuminant.as_typed.as_str(), illuminant.value.as_str()))?;
         let named = light.as_str().unwrap_or_default();
         let found = find_emission_in(named, &resources).map_err(|e| e.faults(|text| light.fault(text)));
         let found = faults.take(found);
@@ -234,22 +238,22 @@ impl Chain {
         let factor = WHITE_CD_M2 / lux * PI / (4.0 * F_NUMBER * F_NUMBER) * film.exposure_time_s();
         let gray = model.spectrum([GRAY; 3]);
         let mut chain = Self { film, model, channels, factor, metered: Vec::new() };
-        chain.metered = chain.seen(&gray);
+        chain.metered = chain.exposures(&gray);
         Ok(chain)
     }
 
     /// Returns the picture of each light, sRGB encoded, 0 to 1.
-    fn shown_of(&self, lights: impl Iterator<Item = SpectralPower>) -> Result<Vec<[f64; 3]>, SessionError> {
-        self.shown(&lights.map(|light| self.seen(&light)).collect::<Vec<_>>())
+    fn pictures_of_lights(&self, lights: impl Iterator<Item = SpectralPower>) -> Result<Vec<[f64; 3]>, SessionError> {
+        self.pictures(&lights.map(|light| self.exposures(&light)).collect::<Vec<_>>())
     }
 
     /// Returns the exposure of each channel by a light, lx s.
-    pub(crate) fn seen(&self, light: &SpectralPower) -> Vec<f64> {
+    pub(crate) fn exposures(&self, light: &SpectralPower) -> Vec<f64> {
         self.channels.iter().map(|channel| self.factor * light.seen_by(&channel.response)).collect()
     }
 
     /// Returns the picture of each set of channel exposures, sRGB encoded, 0 to 1. The meter sees mid gray.
-    fn shown(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
+    fn pictures(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
         let picture = self.film.develop(&self.frame(exposures)).map_err(SessionError::Failed)?;
         let space = RgbSpace::srgb();
         let encoded = |rgb: &[f32; 3]| space.encode(rgb.map(|v| f64::from(v).clamp(0.0, 1.0)));
@@ -258,10 +262,10 @@ impl Chain {
 
     /// Returns the picture of each set of channel exposures in linear light of sRGB primaries, not compressed into a gamut if the
     /// film can give such a picture.
-    pub(crate) fn open(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
-        let wanted = Wanted { open: true, ..Wanted::default() };
+    pub(crate) fn unclamped_pictures(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
+        let wanted = ExtraRequest { unclamped: true, ..ExtraRequest::default() };
         let finished = self.film.finish(&self.frame(exposures), wanted).map_err(SessionError::Failed)?;
-        let picture = finished.beside.open.unwrap_or(finished.shown);
+        let picture = finished.extra.unclamped.unwrap_or(finished.display);
         Ok(picture.rgb.iter().map(|rgb| rgb.map(f64::from)).collect())
     }
 

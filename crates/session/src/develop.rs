@@ -5,11 +5,11 @@
 //! of integers) is exposed as it was taken, after its camera's tone curve is removed. Light in floating point is metered as
 //! cameras do.
 
-use crate::made::{MADE, of_nobody};
+use crate::generated::{MADE, without_generated_places};
 use crate::run::{fits, picture};
 use crate::still::WHITE_CD_M2;
-use crate::taken::{Taken, Unfinished};
-use crate::{Ended, Event, Host, Job, LightFrom, Names, Place, Session, SessionError, words};
+use crate::traced_picture::{IncompletePolicy, TracedPicture};
+use crate::{Event, Host, Job, JobEnd, LightFrom, Names, SeriesPosition, Session, SessionError, formatting};
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Warning};
@@ -17,7 +17,7 @@ use spectra_core::registry::{self, Context};
 use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::BAND;
 use spectra_core::stage::Imager;
-use spectra_pictures::read::{Choice, Header, header};
+use spectra_pictures::read::{Header, ReadOptions, header};
 use spectra_scene::{FileResources, FilmTime, NO_LENS, Output, Series, document, series_of_tree, yaml};
 use std::path::Path;
 use std::sync::Arc;
@@ -30,12 +30,12 @@ pub struct Setting {
     /// The value as it would be written in a scene.
     pub value: String,
     /// The user's own words, for messages: `--stock tri-x`.
-    pub said: String,
+    pub as_typed: String,
 }
 
 /// A picture to develop, and the file to write.
 #[derive(Clone, Debug)]
-pub struct Plate {
+pub struct PictureJob {
     /// Picture file to develop.
     pub file: String,
     /// File to write, in the folder of the host.
@@ -47,7 +47,7 @@ pub struct Plate {
 /// Pictures to develop, and how to develop them.
 pub struct Develop<'a> {
     /// Pictures to develop, in order.
-    pub plates: Vec<Plate>,
+    pub plates: Vec<PictureJob>,
     /// Settings of the scene. If they name a lens (`lens.file`), rays are traced through it; otherwise the film is exposed to the
     /// picture's own pixels.
     pub settings: Vec<Setting>,
@@ -81,7 +81,7 @@ pub struct Develop<'a> {
 #[derive(Clone, Debug)]
 pub struct Photograph {
     /// The picture; its output names the scene.
-    pub plate: Plate,
+    pub plate: PictureJob,
     /// Settings of the scene, as in [`Develop`].
     pub settings: Vec<Setting>,
     /// Format that the frame is cut from; 135 if `None`.
@@ -110,7 +110,7 @@ impl Photograph {
             versions: Value::Null,
             unit_of: &|_| None,
         };
-        Ok(scene(&job, &self.plate, None).map_err(of_nobody)?.0)
+        Ok(scene(&job, &self.plate, None).map_err(without_generated_places)?.0)
     }
 }
 
@@ -199,36 +199,36 @@ pub fn picture_ending(overrides: &[String]) -> Result<Option<String>, Fault> {
 ///
 /// # Errors
 /// [`SessionError`]; if one of several pictures fails, the others are developed all the same.
-pub fn develop(job: &Develop<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
+pub fn develop(job: &Develop<'_>, host: &dyn Host) -> Result<JobEnd, SessionError> {
     match &job.plates[..] {
         [plate] if !job.is_series && !job.skip_existing => {
-            one(job, plate, None, Unfinished::IsKept, host).map(|(ended, _)| ended)
+            one(job, plate, None, IncompletePolicy::IsKept, host).map(|(ended, _)| ended)
         }
         // A file that is skipped if it exists must be complete, so an incomplete picture is not written.
         [plate] if !job.is_series => {
             host.hear(Event::Picture(Some(place(plate, 0, 1))));
             if is_there(plate, 0, 1, host) {
-                return Ok(Ended::Whole);
+                return Ok(JobEnd::Whole);
             }
-            one(job, plate, None, Unfinished::IsLeftOut, host).map(|(ended, _)| ended)
+            one(job, plate, None, IncompletePolicy::IsLeftOut, host).map(|(ended, _)| ended)
         }
         plates => all(job, plates, host),
     }
 }
 
 /// Returns the number and the position of a picture among all.
-fn place(plate: &Plate, index: usize, of: usize) -> Place {
+fn place(plate: &PictureJob, index: usize, of: usize) -> SeriesPosition {
     let number = plate.number.unwrap_or(index as u64 + 1);
-    Place { number: u32::try_from(number).unwrap_or(u32::MAX), index, of }
+    SeriesPosition { number: u32::try_from(number).unwrap_or(u32::MAX), index, of }
 }
 
 /// Returns whether a picture's file already exists, and reports it if so.
-fn is_there(plate: &Plate, index: usize, of: usize, host: &dyn Host) -> bool {
+fn is_there(plate: &PictureJob, index: usize, of: usize, host: &dyn Host) -> bool {
     let is_there = host.folder().has(&plate.output);
     if is_there {
         let shown = host.folder().shown(&plate.output);
         host.hear(Event::Series(
-            &format!("{} of {of}: {} already exists", index + 1, words::files(std::slice::from_ref(&shown))),
+            &format!("{} of {of}: {} already exists", index + 1, formatting::files(std::slice::from_ref(&shown))),
             &json!({ "event": "kept", "files": [shown] }),
         ));
     }
@@ -236,12 +236,12 @@ fn is_there(plate: &Plate, index: usize, of: usize, host: &dyn Host) -> bool {
 }
 
 /// Develops pictures one after another.
-fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, SessionError> {
+fn all(job: &Develop<'_>, plates: &[PictureJob], host: &dyn Host) -> Result<JobEnd, SessionError> {
     let begun_s = host.now_s();
     host.hear(Event::Series(
         &format!(
             "{}, {}",
-            words::counted(plates.len() as u64, "picture"),
+            formatting::counted(plates.len() as u64, "picture"),
             if job.meter_each { "each metered" } else { "exposed like the first" }
         ),
         &json!({ "event": "series", "pictures": plates.len(), "metered": if job.meter_each { "each" } else { "first" } }),
@@ -252,10 +252,10 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
     let (mut metered, mut done, mut failed) = (None, 0, Vec::new());
     // A stated exposure is not metered.
     let mut meters = !job.meter_each;
-    let mut ended = Ended::Whole;
+    let mut ended = JobEnd::Whole;
     for (index, plate) in plates.iter().enumerate() {
         if host.is_stopped() {
-            ended = Ended::Stopped;
+            ended = JobEnd::Stopped;
             break;
         }
         host.hear(Event::Picture(Some(place(plate, index, plates.len()))));
@@ -268,7 +268,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
                 plates[..index].iter().filter(|earlier| failed.iter().all(|(file, _)| *file != earlier.file));
             metered = earlier.find_map(|earlier| meter(job, earlier, host));
             if host.is_stopped() {
-                ended = Ended::Stopped;
+                ended = JobEnd::Stopped;
                 break;
             }
             if metered.is_none() {
@@ -280,12 +280,12 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
             }
         }
         let exposure = metered.as_ref().filter(|_| !job.meter_each);
-        match one(job, plate, exposure, Unfinished::IsLeftOut, host) {
-            Ok((Ended::Stopped, _)) => {
-                ended = Ended::Stopped;
+        match one(job, plate, exposure, IncompletePolicy::IsLeftOut, host) {
+            Ok((JobEnd::Stopped, _)) => {
+                ended = JobEnd::Stopped;
                 break;
             }
-            Ok((Ended::Whole, times)) => {
+            Ok((JobEnd::Whole, times)) => {
                 done += 1;
                 metered = metered.or_else(|| times.into_iter().find(|time| time.is_metered));
                 meters &= metered.is_some();
@@ -302,12 +302,12 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
         }
     }
     host.hear(Event::Picture(None));
-    let stopped = ended == Ended::Stopped && host.is_interrupted();
+    let stopped = ended == JobEnd::Stopped && host.is_interrupted();
     host.hear(Event::Series(
         &format!(
             "{done} of {} in {}",
-            words::counted(plates.len() as u64, "picture"),
-            words::duration(host.now_s() - begun_s)
+            formatting::counted(plates.len() as u64, "picture"),
+            formatting::duration(host.now_s() - begun_s)
         ),
         &json!({ "event": "end", "done": done, "of": plates.len(), "interrupted": stopped }),
     ));
@@ -323,7 +323,7 @@ fn all(job: &Develop<'_>, plates: &[Plate], host: &dyn Host) -> Result<Ended, Se
 
 /// Meters a picture whose file already exists. Returns `None` if it cannot be read, or if tracing stops. Through a lens it is
 /// traced with all samples, because fewer would change the last digits of the metered time.
-fn meter(job: &Develop<'_>, plate: &Plate, host: &dyn Host) -> Option<FilmTime> {
+fn meter(job: &Develop<'_>, plate: &PictureJob, host: &dyn Host) -> Option<FilmTime> {
     let (series, light) = scene(job, plate, None).ok()?;
     let mut session = Session::of_series(series, 0, job.isa).ok()?;
     let rendering = match light {
@@ -334,7 +334,7 @@ fn meter(job: &Develop<'_>, plate: &Plate, host: &dyn Host) -> Option<FilmTime> 
             host.hear(Event::Note(&format!("`{}` is traced once more, to expose the others like it", plate.file)));
             let control = host.control();
             session.prepare(host.workers()).ok()?;
-            Taken::of(&mut session, host, &control, Unfinished::IsLeftOut).ok()?.rendering
+            TracedPicture::of(&mut session, host, &control, IncompletePolicy::IsLeftOut).ok()?.rendering
         }
     };
     let exposure = (!rendering.partial).then_some(rendering.exposure)?;
@@ -344,12 +344,12 @@ fn meter(job: &Develop<'_>, plate: &Plate, host: &dyn Host) -> Option<FilmTime> 
 /// Develops a picture, with the exposure metered on another one if `metered` is given.
 fn one(
     job: &Develop<'_>,
-    plate: &Plate,
+    plate: &PictureJob,
     metered: Option<&FilmTime>,
-    unfinished: Unfinished,
+    unfinished: IncompletePolicy,
     host: &dyn Host,
-) -> Result<(Ended, Vec<FilmTime>), SessionError> {
-    let (series, light) = scene(job, plate, metered).map_err(of_nobody)?;
+) -> Result<(JobEnd, Vec<FilmTime>), SessionError> {
+    let (series, light) = scene(job, plate, metered).map_err(without_generated_places)?;
     let of_picture = Names::of_picture(Path::new(&plate.output));
     let none = || SessionError::Request(format!("{}: a picture cannot be written with this ending", plate.output));
     let job = Job {
@@ -366,13 +366,13 @@ fn one(
         unit_of: job.unit_of,
     };
     picture(&job, unfinished, host).map_err(|error| match error {
-        SessionError::Faults(faults) => SessionError::Faults(of_nobody(faults)),
+        SessionError::Faults(faults) => SessionError::Faults(without_generated_places(faults)),
         other => other,
     })
 }
 
 /// Returns the scene of a picture, and where its light comes from.
-fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result<(Series, LightFrom), Faults> {
+fn scene(job: &Develop<'_>, plate: &PictureJob, metered: Option<&FilmTime>) -> Result<(Series, LightFrom), Faults> {
     let files = FileResources::beside(Path::new(""));
     let is_of_meter = |path: &str| METERING.iter().any(|key| path == *key || path.starts_with(&format!("{key}.")));
     let is_kept = |path: &str| metered.is_none() || !is_of_meter(path.trim());
@@ -445,7 +445,7 @@ fn scene(job: &Develop<'_>, plate: &Plate, metered: Option<&FilmTime>) -> Result
     let file = spectra_core::params::Value::String(plate.file.clone());
     faults.take(root.set_path("source.file", Node::new(file, Default::default(), nobody)));
     for setting in job.settings.iter().filter(|s| is_kept(&s.path)) {
-        faults.take(put(&mut root, &setting.path, &setting.value, &setting.said));
+        faults.take(put(&mut root, &setting.path, &setting.value, &setting.as_typed));
     }
     faults.into_result(())?;
     // The record holds the scene as a user would write it.
@@ -470,7 +470,7 @@ fn header_of(file: &str, layer: Option<&str>, files: &dyn Resources) -> Result<H
         };
         Fault::new(format!("picture `{file}`: {error}")).hint(hint)
     })?;
-    let choice = Choice { name: file, layer, ..Choice::default() };
+    let choice = ReadOptions { name: file, layer, ..ReadOptions::default() };
     header(&found, choice)
         .map_err(|trouble| Fault::new(format!("picture `{file}`: {}", trouble.text)).hint(trouble.advice()).into())
 }
@@ -480,7 +480,7 @@ fn header_of(file: &str, layer: Option<&str>, files: &dyn Resources) -> Result<H
 fn frame_mm(format: Option<&Setting>, header: &Header, files: &dyn Resources) -> Result<[f64; 2], Faults> {
     let mut node = yaml::parse(SourceFile::new(MADE, "{kind: film, format: 135, resolution: 1}"))?;
     if let Some(setting) = format {
-        put(&mut node, "format", &setting.value, &setting.said)?;
+        put(&mut node, "format", &setting.value, &setting.as_typed)?;
     }
     let params = Params::stage(node, "imager")?;
     let size = registry::build::<dyn Imager>(&params, &Context::new(files, BAND))?.size();

@@ -1,8 +1,8 @@
 //! The files of one picture.
 
-use crate::{Folder, Names, SessionError, rescue};
+use crate::{Folder, Names, SessionError, exposure_backup};
 use spectra_core::sink::{Sink, WriteFault};
-use spectra_scene::{Holds, Member, Output, Scene, Shot};
+use spectra_scene::{FileContent, Member, Output, Scene, Shot};
 use std::sync::Arc;
 
 /// Files to write for one picture.
@@ -28,8 +28,10 @@ impl Files {
     pub(crate) fn of(names: &Names, scene: &Scene, member: &Member) -> Result<Self, SessionError> {
         let mut files = Vec::new();
         for output in names.outputs(scene)? {
-            let films: Vec<Option<&str>> = match output.holds() {
-                Holds::Picture if !scene.films.is_empty() => scene.films.iter().map(|f| f.name.as_deref()).collect(),
+            let films: Vec<Option<&str>> = match output.content() {
+                FileContent::Picture if !scene.films.is_empty() => {
+                    scene.films.iter().map(|f| f.name.as_deref()).collect()
+                }
                 _ => vec![None],
             };
             for (film, named) in films.into_iter().enumerate() {
@@ -50,7 +52,8 @@ impl Files {
 
     /// Names of the files that hold the picture to look at, one for each film.
     pub(crate) fn shown(&self) -> Vec<String> {
-        let first = self.0.iter().find(|file| file.output.holds() == Holds::Picture).map(|file| file.output.ending());
+        let first =
+            self.0.iter().find(|file| file.output.content() == FileContent::Picture).map(|file| file.output.ending());
         let own = self.0.iter().filter(|file| Some(file.output.ending()) == first);
         own.map(|file| file.name.clone()).collect()
     }
@@ -63,7 +66,7 @@ impl Files {
         sink: &dyn Sink,
         folders: Option<[&dyn Folder; 2]>,
     ) -> Result<(), SessionError> {
-        let is_light = |file: &&File| file.output.holds() == Holds::Light;
+        let is_light = |file: &&File| file.output.content() == FileContent::Light;
         // Pictures are developed and compressed in parallel with the light that they are made from.
         let (light, others) = rayon::join(
             || self.0.iter().filter(is_light).try_for_each(|file| file.write(shot, sink)),
@@ -73,7 +76,7 @@ impl Files {
         light.and(others).map_err(|(file, fault)| {
             let kept = match (&fault, folders) {
                 (WriteFault::Io(_), Some([folder, elsewhere])) if !is_safe => {
-                    format!("; {}", rescue::keep(shot, &file, folder, elsewhere))
+                    format!("; {}", exposure_backup::save_exposure(shot, &file, folder, elsewhere))
                 }
                 _ => String::new(),
             };

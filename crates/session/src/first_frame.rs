@@ -39,7 +39,7 @@ pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_s
     if host.is_stopped() {
         return Ok(None);
     }
-    let rendering = session.look()?;
+    let rendering = session.rendering()?;
     let times = session.scene().film_times(&rendering.exposure);
     // A meter that sees no light leaves the time unchanged.
     if times.iter().any(|time| time.gain == 1.0 || time.time_s > LONGEST_S) {
@@ -57,7 +57,7 @@ pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_s
         .filter(|(_, (f, _))| locked(f))
         .map(|(i, (_, t))| (i, t.time_s))
         .collect();
-    let words: Vec<String> = locked.iter().map(|(_, time_s)| shutter::words(*time_s)).collect();
+    let words: Vec<String> = locked.iter().map(|(_, time_s)| shutter::format_time(*time_s)).collect();
     host.hear(Event::Note(&format!(
         "metered on the first frame: {} for all frames (`film.meter: each` meters each frame by itself, which may flicker)",
         words.join(", ")

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Position of a picture among several.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct SeriesPosition {
     /// Number of the picture in the sweep, or number of the frame.
     pub number: u32,
     /// Number of pictures that come before it.
@@ -45,7 +45,7 @@ pub enum Event<'a> {
     /// A remark on a series, as text and as data.
     Series(&'a str, &'a Value),
     /// The picture of a series that the following events are about; `None` after the last one.
-    Picture(Option<Place>),
+    Picture(Option<SeriesPosition>),
     /// Tracing of a scene has begun.
     Start(&'a Scene),
     /// Tracing of the scene has ended.

@@ -43,7 +43,7 @@ pub enum LightFrom {
 
 /// How a job ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum JobEnd {
     /// Everything was done.
     Whole,
     /// The user stopped the job; finished pictures are written.

@@ -1,6 +1,6 @@
 //! Pictures of surfaces on a developed film, in one light or another.
 
-use crate::cube::Chain;
+use crate::cube::FilmPipeline;
 use crate::{SessionError, Setting};
 use spectra_color::RgbSpace;
 use spectra_core::spectral::BAND;
@@ -10,7 +10,7 @@ use spectra_spectrum::{Emission, Reflectance};
 const GRAY: f64 = 0.18;
 
 /// A film whose development and print, scan or projection stay the same, whatever light its pictures are taken in.
-pub struct FilmInLight(Chain);
+pub struct FilmInLight(FilmPipeline);
 
 impl FilmInLight {
     /// Builds the film of these settings (`film.stock` and any other key of a scene's film). `made_for` names the light that the
@@ -19,7 +19,7 @@ impl FilmInLight {
     /// # Errors
     /// Faults of the settings.
     pub fn new(settings: &[Setting], made_for: &Setting) -> Result<Self, SessionError> {
-        Ok(Self(Chain::of(settings, made_for)?))
+        Ok(Self(FilmPipeline::of(settings, made_for)?))
     }
 
     /// Returns the color of each surface in the picture taken in `light`: XYZ under D65, where Y of a screen's white is 1.
@@ -32,17 +32,17 @@ impl FilmInLight {
     /// The film cannot be developed.
     pub fn pictures(&self, light: &Emission, surfaces: &[&Reflectance]) -> Result<Option<Vec<[f64; 3]>>, SessionError> {
         let chain = &self.0;
-        let white = chain.seen(&light.to_power(&BAND));
+        let white = chain.exposures(&light.to_power(&BAND));
         let filters: Vec<f64> = chain.metered.iter().zip(&white).map(|(gray, white)| gray / (GRAY * white)).collect();
         if filters.iter().any(|f| !(*f > 0.0 && f.is_finite())) {
             return Ok(None);
         }
         let exposed = |surface: &&Reflectance| -> Vec<f64> {
-            let seen = chain.seen(&(light * *surface).to_power(&BAND));
+            let seen = chain.exposures(&(light * *surface).to_power(&BAND));
             seen.iter().zip(&filters).map(|(seen, filter)| seen * filter).collect()
         };
         let exposures: Vec<Vec<f64>> = surfaces.iter().map(exposed).collect();
-        let shown = chain.open(&exposures)?;
+        let shown = chain.unclamped_pictures(&exposures)?;
         Ok(Some(shown.into_iter().map(|rgb| RgbSpace::srgb().to_xyz(rgb)).collect()))
     }
 }

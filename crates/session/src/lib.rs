@@ -21,47 +21,47 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-mod beyond;
 mod check;
 mod contact;
 mod cube;
 mod develop;
 mod error;
+mod exposure_backup;
+mod exposure_warnings;
 mod files;
 mod first_frame;
+pub mod formatting;
+mod generated;
 mod header;
 mod host;
 mod job;
 mod lamp;
-mod made;
 mod names;
 mod pace;
 mod report;
-mod rescue;
 mod run;
 mod series;
 mod session;
 mod still;
 mod summary;
-mod taken;
 mod threads;
-pub mod words;
+mod traced_picture;
 
-pub use check::{Checked, Look, check};
+pub use check::{CheckSettings, Checked, check};
 pub use cube::{Cube, CubeErrors, CubeFile, RANDOM_COLORS};
 pub use develop::{
-    Develop, PICTURES, Photograph, Plate, Setting, TRACED_PX, develop, is_picture, last_number, picture_ending,
+    Develop, PICTURES, Photograph, PictureJob, Setting, TRACED_PX, develop, is_picture, last_number, picture_ending,
 };
 pub use error::SessionError;
 pub use header::films;
-pub use host::{Event, Folder, Host, Place};
-pub use job::{Ended, Job, LightFrom};
+pub use host::{Event, Folder, Host, SeriesPosition};
+pub use job::{Job, JobEnd, LightFrom};
 pub use lamp::FilmInLight;
 pub use names::Names;
 pub use pace::Pace;
 pub use report::Report;
 pub use run::run;
-pub use session::{Kept, Moment, Session};
-pub use spectra_render::{Alone, Control, Rendering, Threads, Workers};
+pub use session::{Session, Snapshot, ValidResults};
+pub use spectra_render::{Control, Rendering, SingleThread, Threads, Workers};
 pub use spectra_scene::Developed;
 pub use threads::make_threads;

@@ -1,20 +1,20 @@
 //! Rendering of every picture of a scene, from its file to output files.
 
-use crate::beyond::beyond;
+use crate::exposure_warnings::exposure_warnings;
 use crate::files::{Files, write_report};
-use crate::job::{Ended, Job, LightFrom};
-use crate::made::{is_made, told};
-use crate::taken::{Taken, Unfinished, prepare};
-use crate::{Event, Host, Report, Session, SessionError, header, series, words};
+use crate::generated::{is_generated, without_generated_place};
+use crate::job::{Job, JobEnd, LightFrom};
+use crate::traced_picture::{IncompletePolicy, TracedPicture, prepare};
+use crate::{Event, Host, Report, Session, SessionError, formatting, header, series};
 use spectra_scene::{FilmTime, SeriesKind, Shot};
 
 /// Renders and writes all pictures of a job.
 ///
 /// # Errors
 /// [`SessionError`]; if there are several pictures, the finished ones are written.
-pub fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
+pub fn run(job: &Job<'_>, host: &dyn Host) -> Result<JobEnd, SessionError> {
     if job.series.kind() == SeriesKind::Single {
-        picture(job, Unfinished::IsKept, host).map(|(ended, _)| ended)
+        picture(job, IncompletePolicy::IsKept, host).map(|(ended, _)| ended)
     } else {
         series::run(job, host)
     }
@@ -23,9 +23,9 @@ pub fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
 /// Renders and writes a scene that is one picture, and returns the exposure times of its films.
 pub(crate) fn picture(
     job: &Job<'_>,
-    unfinished: Unfinished,
+    unfinished: IncompletePolicy,
     host: &dyn Host,
-) -> Result<(Ended, Vec<FilmTime>), SessionError> {
+) -> Result<(JobEnd, Vec<FilmTime>), SessionError> {
     let mut session = Session::of_series(job.series.clone(), 0, job.isa)?;
     let member = session.member();
     let files = Files::of(&job.names, session.scene(), &member)?;
@@ -43,23 +43,23 @@ pub(crate) fn picture(
     names.extend(report_file.clone());
     prepare(job, host, &names)?;
     let control = host.control();
-    session.warnings().for_each(|warning| host.hear(Event::Warning(&told(warning))));
+    session.warnings().for_each(|warning| host.hear(Event::Warning(&without_generated_place(warning))));
     session.scene().all_notes().for_each(|note| host.hear(Event::Note(note)));
     let mut taken = match exposed {
-        Some(rendering) => Taken { rendering, seconds: 0.0, failure: None },
-        None => Taken::of(&mut session, host, &control, unfinished)?,
+        Some(rendering) => TracedPicture { rendering, seconds: 0.0, failure: None },
+        None => TracedPicture::of(&mut session, host, &control, unfinished)?,
     };
     let failure = taken.failure.take();
     let stopped = taken.rendering.partial && host.is_interrupted();
     let (mut files, mut report_file) = (files, report_file);
     if taken.rendering.partial {
-        if unfinished == Unfinished::IsLeftOut {
-            return failure.map_or(Ok((Ended::Stopped, Vec::new())), |text| Err(SessionError::Failed(text)));
+        if unfinished == IncompletePolicy::IsLeftOut {
+            return failure.map_or(Ok((JobEnd::Stopped, Vec::new())), |text| Err(SessionError::Failed(text)));
         }
         let there = names.iter().find(|name| host.folder().has(name));
         // A picture ended by a time limit is what the user asked for, so it keeps its names.
         if let (Some(there), true) = (there, stopped || failure.is_some()) {
-            let there = words::files(&[host.folder().shown(there)]);
+            let there = formatting::files(&[host.folder().shown(there)]);
             host.hear(Event::Note(&format!(
                 "`{there}` was not overwritten. The picture is incomplete and was saved under another name"
             )));
@@ -77,15 +77,16 @@ pub(crate) fn picture(
     let times = scene.film_times(exposure);
     if !taken.rendering.partial {
         // Values that the program wrote are not warned about: a sequence exposed like its first frame may fade to black.
-        let stated = beyond(scene, exposure).into_iter().filter(|warning| !is_made(warning));
+        let stated = exposure_warnings(scene, exposure).into_iter().filter(|warning| !is_generated(warning));
         stated.for_each(|warning| host.hear(Event::Warning(&warning)));
     }
     let attributes = header::attributes(scene, exposure, &times, taken.rendering.partial, job.version);
-    let Taken { rendering, seconds, .. } = &taken;
+    let TracedPicture { rendering, seconds, .. } = &taken;
     let report = Report { job, scene, rendering, times: &times, seconds: *seconds, threads: host.threads() };
     let shown: Vec<String> = names.iter().map(|name| host.folder().shown(name)).collect();
     let told = || report.to_json(&shown[..files.names().len()]);
-    let shot = Shot::new(scene, exposure, &times, &attributes, job.isa).told(&told).with_layers(&rendering.layers);
+    let shot =
+        Shot::new(scene, exposure, &times, &attributes, job.isa).with_report(&told).with_layers(&rendering.layers);
     files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
     if let Some(file) = &report_file {
         write_report(host.folder(), file, shot.report())?;
@@ -94,8 +95,8 @@ pub(crate) fn picture(
     host.hear(Event::Done { report: &report, stopped });
     match failure {
         Some(text) => Err(SessionError::Failed(text)),
-        None if stopped => Ok((Ended::Stopped, times)),
-        None => Ok((Ended::Whole, times)),
+        None if stopped => Ok((JobEnd::Stopped, times)),
+        None => Ok((JobEnd::Whole, times)),
     }
 }
 

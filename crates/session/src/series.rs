@@ -1,16 +1,16 @@
 //! Rendering of several pictures of one scene: the members of a sweep, or the frames of an animation.
 
-use crate::beyond::beyond;
-use crate::check::{Look, checked, each_once};
+use crate::check::{CheckSettings, checked, each_once};
 use crate::contact::Contact;
+use crate::exposure_warnings::exposure_warnings;
 use crate::files::Files;
-use crate::taken::{Taken, Unfinished, prepare};
-use crate::{Ended, Event, Host, Job, Place, Report, Session, SessionError, first_frame, header, words};
+use crate::traced_picture::{IncompletePolicy, TracedPicture, prepare};
+use crate::{Event, Host, Job, JobEnd, Report, SeriesPosition, Session, SessionError, first_frame, formatting, header};
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};
 use spectra_core::sink::WriteFault;
 use spectra_render::Effort;
-use spectra_scene::{Member, Scene, Series, SeriesKind, Shot, Told};
+use spectra_scene::{Member, Scene, Series, SeriesKind, SeriesSummary, Shot};
 use std::collections::HashMap;
 use std::io::Cursor;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ struct Planned {
 }
 
 /// Renders the pictures of a series that the job asks for.
-pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError> {
+pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<JobEnd, SessionError> {
     let series = job.series;
     let Some(report_file) = job.names.report(&format!("{}-series", series.name())) else {
         let text = format!("--output: this names one picture, but the scene makes {}: name a folder", series.count());
@@ -50,7 +50,8 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
         Ok(Planned { index, member, files, size_px: [size.width_px, size.height_px], films, warnings, notes })
     };
     let seen = |done: usize, of: usize| host.hear(Event::Checked { done, of });
-    let look = Look { isa: job.isa, workers: host.workers(), memory_bytes: host.memory_bytes(), seen: &seen };
+    let look =
+        CheckSettings { isa: job.isa, workers: host.workers(), memory_bytes: host.memory_bytes(), on_progress: &seen };
     let planned = checked(series, &job.chosen, look, &plan)?;
     host.hear(Event::Ready);
     for warning in each_once(series.warnings().iter().chain(planned.iter().flat_map(|p| &p.warnings))) {
@@ -64,11 +65,11 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
         &json!({ "event": "series", "scene": series.name(), "count": series.count(), "pictures": planned.len() }),
     ));
     let metered = first_frame::metered(job, host)?;
-    let mut work = Work {
+    let mut work = SeriesRun {
         job,
         series: metered.as_ref().unwrap_or(series),
         host,
-        earlier: if job.skip_existing { earlier(host, &report_file) } else { Map::new() },
+        earlier: if job.skip_existing { previous_entries(host, &report_file) } else { Map::new() },
         contact: contact(job, &planned),
         done: Vec::new(),
         other: None,
@@ -79,7 +80,7 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
     };
     let mut result = Ok(true);
     for (at, picture) in planned.iter().enumerate() {
-        let place = Place { number: picture.member.number, index: at, of: planned.len() };
+        let place = SeriesPosition { number: picture.member.number, index: at, of: planned.len() };
         result = work.picture(picture, place);
         if !matches!(result, Ok(true)) {
             break;
@@ -95,24 +96,26 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<Ended, SessionError>
     host.hear(Event::Series(
         &format!(
             "{done} of {} in {}",
-            words::counted(of as u64, "picture"),
-            words::duration(host.now_s() - work.begun_s)
+            formatting::counted(of as u64, "picture"),
+            formatting::duration(host.now_s() - work.begun_s)
         ),
         &json!({ "event": "end", "done": done, "of": of, "interrupted": stopped }),
     ));
-    Ok(if stopped { Ended::Stopped } else { Ended::Whole })
+    Ok(if stopped { JobEnd::Stopped } else { JobEnd::Whole })
 }
 
 /// Describes the series, for the message before it begins.
 fn what(series: &Series, pictures: usize) -> String {
-    let counted = words::counted(pictures as u64, "picture");
+    let counted = formatting::counted(pictures as u64, "picture");
     match series.kind() {
         SeriesKind::Sweep { axes } if !axes.is_empty() => {
             let axis = axes.iter().map(|axis| format!("{} of {}", axis.values.len(), axis.path));
             format!("a sweep of {counted}: {}", axis.collect::<Vec<_>>().join(" x "))
         }
         SeriesKind::Sweep { .. } => format!("a sweep of {counted}"),
-        SeriesKind::Animation { .. } => format!("{pictures} of {}", words::counted(series.count() as u64, "frame")),
+        SeriesKind::Animation { .. } => {
+            format!("{pictures} of {}", formatting::counted(series.count() as u64, "frame"))
+        }
         SeriesKind::Single => "a picture".to_owned(),
     }
 }
@@ -155,7 +158,7 @@ fn contact(job: &Job<'_>, planned: &[Planned]) -> Option<Contact> {
 }
 
 /// Returns the entries of an earlier run's report, by picture number.
-fn earlier(host: &dyn Host, report_file: &str) -> Map<String, Value> {
+fn previous_entries(host: &dyn Host, report_file: &str) -> Map<String, Value> {
     /// Largest report that is read, bytes; a larger file is not one of ours.
     const LARGEST: u64 = 256 << 20;
     let read = host.folder().read(report_file, LARGEST);
@@ -165,7 +168,7 @@ fn earlier(host: &dyn Host, report_file: &str) -> Map<String, Value> {
 }
 
 /// The work on a series, and the results so far.
-struct Work<'a> {
+struct SeriesRun<'a> {
     job: &'a Job<'a>,
     /// The series to render: that of the job, with the exposure metered on the first frame where all frames share it.
     series: &'a Series,
@@ -184,9 +187,9 @@ struct Work<'a> {
     begun_s: f64,
 }
 
-impl Work<'_> {
+impl SeriesRun<'_> {
     /// Renders a picture and writes its files. Returns false if it was stopped before it was complete.
-    fn picture(&mut self, picture: &Planned, place: Place) -> Result<bool, SessionError> {
+    fn picture(&mut self, picture: &Planned, place: SeriesPosition) -> Result<bool, SessionError> {
         let Self { job, host, .. } = *self;
         if host.is_stopped() {
             return Ok(false);
@@ -206,13 +209,14 @@ impl Work<'_> {
         let mut session = Session::after(self.series.clone(), picture.index, self.other.take(), job.isa, Effort::Full)?;
         let control = host.control();
         session.prepare(host.workers())?;
-        for doubt in session.scene().source.doubts() {
+        for doubt in session.scene().source.warnings() {
             if !self.doubts.contains(doubt) {
                 host.hear(Event::Warning(doubt));
                 self.doubts.push(doubt.clone());
             }
         }
-        let Taken { rendering, seconds, failure } = Taken::of(&mut session, host, &control, Unfinished::IsLeftOut)?;
+        let TracedPicture { rendering, seconds, failure } =
+            TracedPicture::of(&mut session, host, &control, IncompletePolicy::IsLeftOut)?;
         if let Some(text) = failure {
             return Err(SessionError::Failed(text));
         }
@@ -220,7 +224,7 @@ impl Work<'_> {
             return Ok(false);
         }
         let scene = session.into_scene();
-        for warning in beyond(&scene, &rendering.exposure) {
+        for warning in exposure_warnings(&scene, &rendering.exposure) {
             // One warning for each place in the scene file, not one in each of a thousand frames.
             if !self.doubts.iter().any(|said| said.0.place == warning.0.place) {
                 host.hear(Event::Warning(&warning));
@@ -233,7 +237,7 @@ impl Work<'_> {
         let report =
             Report { job, scene: &scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
         let told = || report.to_json(&shown);
-        let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa).told(&told);
+        let shot = Shot::new(&scene, &rendering.exposure, &times, &attributes, job.isa).with_report(&told);
         let shot = shot.with_layers(&rendering.layers);
         picture.files.write(&shot, host.folder(), Some([host.folder(), host.elsewhere()]))?;
         let mut said = entry(&picture.member);
@@ -337,7 +341,7 @@ impl Work<'_> {
         {
             report["pictures"] = self.done.iter().map(|said| said_of(said)).collect();
             let text = self.job.series.text();
-            let told = Told { name, text: &text, report: &report, contact_sheets: &sheets };
+            let told = SeriesSummary { name, text: &text, report: &report, contact_sheets: &sheets };
             for output in scene.output.iter().filter(|output| output.is_of_series()) {
                 let file = format!("{name}-series{}", output.ending()[1]);
                 let written = folder.file(&file, &mut |out| output.write_series(&told, out));

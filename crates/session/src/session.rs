@@ -2,24 +2,24 @@
 //!
 //! It holds the scene, the renderer and the light so far. Stages are shared between scenes by `Arc`. A change sets a value in the tree as
 //! `--set` does and assembles the scene again; sections that are unchanged keep their stages. The light is kept if source, lens, imager,
-//! wavelength density and channels are still the same stages ([`Kept`]).
+//! wavelength density and channels are still the same stages ([`ValidResults`]).
 
 use crate::files::Files;
-use crate::{Alone, Control, Names, Rendering, SessionError, Workers, header, still};
+use crate::{Control, Names, Rendering, SessionError, SingleThread, Workers, header, still};
 use spectra_core::params::{Faults, Node, Warning};
 use spectra_core::resources::Resources;
 use spectra_core::sink::Sink;
 use spectra_core::stage::{Still, WavelengthDensity};
 use spectra_core::{Isa, frame::ExposureFrame};
 use spectra_render::{Effort, Light, RenderError, RenderOptions, Renderer};
-use spectra_scene::{Developed, Scene, Search, Series, Shot, load_series, series_of_text, series_of_tree};
+use spectra_scene::{Developed, Scene, Series, Shot, ViewSearch, load_series, series_of_text, series_of_tree};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The results that remain valid after a change of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kept {
+pub struct ValidResults {
     /// Whether the light is kept, so that nothing is traced again.
     pub light: bool,
     /// Whether the wavelength density is kept.
@@ -32,13 +32,13 @@ pub struct Kept {
 
 /// A saved state of a session: its values, its picture of the series and its stages, without the light.
 #[derive(Clone)]
-pub struct Moment {
+pub struct Snapshot {
     series: Series,
     index: usize,
     scene: Arc<Scene>,
 }
 
-impl Moment {
+impl Snapshot {
     /// The pictures that the scene stands for in this state.
     #[must_use]
     pub fn series(&self) -> &Series {
@@ -106,7 +106,7 @@ impl Session {
         isa: Isa,
         effort: Effort,
     ) -> Result<Self, SessionError> {
-        let scene = series.scene_between(index, other, None, Search { effort, workers: &Alone })?.into();
+        let scene = series.scene_between(index, other, None, ViewSearch { effort, workers: &SingleThread })?.into();
         Ok(Self { series, index, isa, scene, ready: None, density: None, effort })
     }
 
@@ -166,7 +166,7 @@ impl Session {
 
     /// Iterates over the warnings to consider before trusting the picture. Those about large files come once these are read.
     pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
-        self.series.warnings().iter().chain(&self.scene.warnings).chain(self.scene.source.doubts())
+        self.series.warnings().iter().chain(&self.scene.warnings).chain(self.scene.source.warnings())
     }
 
     /// Prepares the scene for tracing, unless that is done already. If the workers are told to stop, the session remains
@@ -230,23 +230,23 @@ impl Session {
     ///
     /// # Errors
     /// Not enough memory; the errors of [`Session::prepare`].
-    pub fn look(&mut self) -> Result<Rendering, SessionError> {
-        self.prepare(&Alone)?;
+    pub fn rendering(&mut self) -> Result<Rendering, SessionError> {
+        self.prepare(&SingleThread)?;
         let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
-        renderer.look(&self.scene, light).map_err(|error| SessionError::of(&error, &self.scene))
+        renderer.rendering(&self.scene, light).map_err(|error| SessionError::of(&error, &self.scene))
     }
 
     /// Returns the light so far without diffraction at the edge of the aperture, which takes seconds to compute: lamps have no
     /// stars.
     ///
     /// # Errors
-    /// The errors of [`Session::look`].
-    pub fn look_without_stars(&mut self) -> Result<Rendering, SessionError> {
-        self.prepare(&Alone)?;
+    /// The errors of [`Session::rendering`].
+    pub fn rendering_without_diffraction(&mut self) -> Result<Rendering, SessionError> {
+        self.prepare(&SingleThread)?;
         let Some((renderer, light)) = &self.ready else { return Err(Faults::new().into()) };
         let mut plain = Scene::clone(&self.scene);
         plain.render.diffraction = Some(false);
-        renderer.look(&plain, light).map_err(|error| SessionError::of(&error, &self.scene))
+        renderer.rendering(&plain, light).map_err(|error| SessionError::of(&error, &self.scene))
     }
 
     /// Exposes the scene's film to its flat picture, pixel by pixel, as through an ideal lens at f/2.8 instead of the scene's
@@ -275,16 +275,16 @@ impl Session {
 
     /// Returns the remarks that a user should read about a rendering of this session.
     #[must_use]
-    pub fn remarks(&self, rendering: &Rendering) -> Vec<String> {
-        self.ready.as_ref().map_or_else(Vec::new, |(renderer, light)| renderer.remarks(light, rendering))
+    pub fn rendering_warnings(&self, rendering: &Rendering) -> Vec<String> {
+        self.ready.as_ref().map_or_else(Vec::new, |(renderer, light)| renderer.warnings(light, rendering))
     }
 
     /// Develops the light so far. Returns one picture for each film, with its name if there are several.
     ///
     /// # Errors
-    /// The errors of [`Session::look`]; an imager that gives no picture.
+    /// The errors of [`Session::rendering`]; an imager that gives no picture.
     pub fn develop(&mut self) -> Result<Vec<Developed>, SessionError> {
-        let exposure: ExposureFrame = self.look()?.exposure;
+        let exposure: ExposureFrame = self.rendering()?.exposure;
         let times = self.scene.film_times(&exposure);
         let shot = Shot::new(&self.scene, &exposure, &times, &[], self.isa);
         shot.pictures().map(<[Developed]>::to_vec).map_err(SessionError::Failed)
@@ -299,9 +299,9 @@ impl Session {
     /// Writes the files that the scene asks for from the light so far, and returns their names.
     ///
     /// # Errors
-    /// The errors of [`Session::look`]; a file that cannot be written.
+    /// The errors of [`Session::rendering`]; a file that cannot be written.
     pub fn write(&mut self, sink: &dyn Sink) -> Result<Vec<String>, SessionError> {
-        let rendering = self.look()?;
+        let rendering = self.rendering()?;
         let (scene, exposure) = (&self.scene, &rendering.exposure);
         let times = scene.film_times(exposure);
         let attributes = header::attributes(scene, exposure, &times, rendering.partial, env!("CARGO_PKG_VERSION"));
@@ -316,8 +316,8 @@ impl Session {
     ///
     /// # Errors
     /// Every fault of the changed scene.
-    pub fn change(&mut self, text: &str) -> Result<Kept, SessionError> {
-        self.change_on(text, &Alone)
+    pub fn change(&mut self, text: &str) -> Result<ValidResults, SessionError> {
+        self.change_on(text, &SingleThread)
     }
 
     /// Sets a value as [`Session::change`] does, and runs the searches that it needs on these workers. Any workers give the same
@@ -325,7 +325,7 @@ impl Session {
     ///
     /// # Errors
     /// The errors of [`Session::change`].
-    pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<Kept, SessionError> {
+    pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<ValidResults, SessionError> {
         self.changed(&[text], self.index, true, None, workers)
     }
 
@@ -334,8 +334,8 @@ impl Session {
     ///
     /// # Errors
     /// Faults of the stages of the changed scene.
-    pub fn change_later(&mut self, text: &str) -> Result<Kept, SessionError> {
-        self.changed(&[text], self.index, false, None, &Alone)
+    pub fn change_later(&mut self, text: &str) -> Result<ValidResults, SessionError> {
+        self.changed(&[text], self.index, false, None, &SingleThread)
     }
 
     /// Sets a value as [`Session::change_later`] does. Takes the focused lens from `other` if it fits, such as from a draft with
@@ -344,7 +344,12 @@ impl Session {
     /// # Errors
     /// The errors of [`Session::change_later`]; an error if the workers are told to stop meanwhile, which leaves everything
     /// unchanged.
-    pub fn change_after(&mut self, text: &str, other: &Self, workers: &dyn Workers) -> Result<Kept, SessionError> {
+    pub fn change_after(
+        &mut self,
+        text: &str,
+        other: &Self,
+        workers: &dyn Workers,
+    ) -> Result<ValidResults, SessionError> {
         self.changed(&[text], self.index, false, Some(&other.scene), workers)
     }
 
@@ -359,21 +364,21 @@ impl Session {
         index: usize,
         other: Option<&Self>,
         workers: &dyn Workers,
-    ) -> Result<Kept, SessionError> {
+    ) -> Result<ValidResults, SessionError> {
         let texts: Vec<&str> = texts.iter().map(AsRef::as_ref).collect();
         self.changed(&texts, index, false, other.map(|other| &*other.scene), workers)
     }
 
-    /// Returns the current state, for [`Session::back_to`].
+    /// Returns the current state, for [`Session::restore`].
     #[must_use]
-    pub fn moment(&self) -> Moment {
-        Moment { series: self.series.clone(), index: self.index, scene: Arc::clone(&self.scene) }
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot { series: self.series.clone(), index: self.index, scene: Arc::clone(&self.scene) }
     }
 
     /// Returns to an earlier state, and keeps the light if it is still valid. This cannot fail, because the state was valid
     /// before.
-    pub fn back_to(&mut self, moment: &Moment) -> Kept {
-        let Moment { series, index, scene } = moment.clone();
+    pub fn restore(&mut self, moment: &Snapshot) -> ValidResults {
+        let Snapshot { series, index, scene } = moment.clone();
         let kept = self.kept(&scene);
         if !kept.light {
             let known = self.ready.take().map(|(renderer, _)| Arc::clone(renderer.density())).or(self.density.take());
@@ -402,9 +407,9 @@ impl Session {
         is_made_ready: bool,
         lens_of: Option<&Scene>,
         workers: &dyn Workers,
-    ) -> Result<Kept, SessionError> {
+    ) -> Result<ValidResults, SessionError> {
         let series = self.series.with_all(texts)?;
-        let search = Search { effort: self.effort, workers };
+        let search = ViewSearch { effort: self.effort, workers };
         let scene: Arc<Scene> = series.scene_between(index, Some(Arc::clone(&self.scene)), lens_of, search)?.into();
         let mut kept = self.kept(&scene);
         let (system, same_light) = (kept.density, kept.light);
@@ -413,7 +418,7 @@ impl Session {
         let density = known.filter(|_| system).cloned();
         self.ready = match ready {
             None => {
-                kept = Kept { light: false, density: density.is_some(), ..kept };
+                kept = ValidResults { light: false, density: density.is_some(), ..kept };
                 None
             }
             Some(ready) if same_light => Some(ready),
@@ -431,7 +436,7 @@ impl Session {
     }
 
     /// Returns which results for the current scene remain valid for another one.
-    fn kept(&self, scene: &Scene) -> Kept {
+    fn kept(&self, scene: &Scene) -> ValidResults {
         let before = &*self.scene;
         let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
             which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()
@@ -454,7 +459,7 @@ impl Session {
             && Arc::ptr_eq(&before.imager, &scene.imager)
             && before.ghost_paths() == scene.ghost_paths()
             && before.render.traces_as(&scene.render);
-        Kept { light: same_light, density: system, lens, source }
+        ValidResults { light: same_light, density: system, lens, source }
     }
 
     /// Frees the memory of the light.
@@ -467,7 +472,7 @@ impl Session {
     /// # Errors
     /// Errors of the stream, and those of [`Session::prepare`].
     pub fn save(&mut self, out: &mut dyn Write) -> Result<(), SessionError> {
-        self.prepare(&Alone)?;
+        self.prepare(&SingleThread)?;
         let Some((_, light)) = &self.ready else { return Ok(()) };
         let scene = self.scene.text.as_bytes();
         out.write_all(&(scene.len() as u64).to_le_bytes())?;
@@ -480,7 +485,7 @@ impl Session {
     /// # Errors
     /// Errors of the stream; light of another scene, which leaves everything unchanged; and the errors of [`Session::prepare`].
     pub fn load(&mut self, from: &mut dyn Read) -> Result<(), SessionError> {
-        self.prepare(&Alone)?;
+        self.prepare(&SingleThread)?;
         let Some((renderer, light)) = &mut self.ready else { return Ok(()) };
         let scene = self.scene.text.as_bytes();
         let mut length = [0; 8];

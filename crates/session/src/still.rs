@@ -77,7 +77,7 @@ pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, Sessio
     let gray = colors.integrals([spectra_scene::MID_GRAY; 3]).into_iter().map(|v| v as f32).collect::<Vec<_>>();
     // For a picture that is exposed as taken, the meter sees its mid gray.
     let meters = scene.meter_channels();
-    for film in scene.films.iter().filter(|film| scene.is_as_taken(film)) {
+    for film in scene.films.iter().filter(|film| scene.uses_source_exposure(film)) {
         for at in film.channels.clone().filter(|at| meters.contains(at)) {
             planes[at].fill(gray[at]);
         }

@@ -1,6 +1,6 @@
 //! The summary of a finished picture, in a photographer's words.
 
-use crate::{LightFrom, Report, words};
+use crate::{LightFrom, Report, formatting};
 use spectra_core::math::log10;
 use spectra_core::params::{Node, Value};
 use spectra_core::{Loss, shutter};
@@ -46,20 +46,20 @@ fn of(report: &Report<'_>) -> String {
     }
     text.push_str(&format!(
         "; {} rays in {}, {}",
-        words::count(rendering.rays),
-        words::duration(report.seconds),
-        words::rate(report.rays_per_second())
+        formatting::count(rendering.rays),
+        formatting::duration(report.seconds),
+        formatting::rate(report.rays_per_second())
     ));
     let losses = &rendering.losses;
     let stopped = losses.of_cause(Loss::Missed) + losses.of_cause(Loss::Vignetted);
     if stopped > 0 {
-        let through = words::percent(rendering.rays.saturating_sub(stopped), rendering.rays);
+        let through = formatting::percent(rendering.rays.saturating_sub(stopped), rendering.rays);
         text.push_str(&format!(", {through} of them through the lens"));
     }
     for (cause, words) in TELLING {
         let many = losses.of_cause(cause);
         if many * 1000 >= rendering.rays.max(1) {
-            text.push_str(&format!(", {} {words}", words::percent(many, rendering.rays)));
+            text.push_str(&format!(", {} {words}", formatting::percent(many, rendering.rays)));
         }
     }
     if let Some(ledger) = rendering.ledger.as_ref().filter(|ledger| ledger.direct_w + ledger.ghosts_w > 0.0) {
@@ -70,7 +70,7 @@ fn of(report: &Report<'_>) -> String {
         let share = |part: f64| spectra_render::percent(part / ledger.emitted_w);
         text.push_str(&format!(
             ", ghosts along {}{why}: {} of what the lights emit, {} not traced after {} reflections",
-            words::counted(ledger.paths.len() as u64, "path"),
+            formatting::counted(ledger.paths.len() as u64, "path"),
             share(ledger.ghosts_w),
             share(ledger.not_traced_w),
             if ledger.order > 2 { "four" } else { "two" }
@@ -94,7 +94,7 @@ fn of(report: &Report<'_>) -> String {
             ", diffraction{why}: {} of the light of a point stays in its pixel, {} leaves the frame, stars of {} pixels",
             spectra_render::percent(mean(|d| d.stays)),
             spectra_render::percent(mean(|d| d.left.max(0.0))),
-            words::count(stars as u64)
+            formatting::count(stars as u64)
         ));
     }
     if let Some(noise) = rendering.noise {
@@ -149,7 +149,7 @@ fn exposed(time: &FilmTime, stops: Option<f64>, has_options: bool) -> String {
         (None, _) => String::new(),
     };
     let named = time.name.as_ref().map_or(String::new(), |name| format!("{name}: "));
-    format!("{named}{} at {}{metered}", time.film, shutter::words(time.time_s))
+    format!("{named}{} at {}{metered}", time.film, shutter::format_time(time.time_s))
 }
 
 /// Formats an f-number: `f/2.8`.

@@ -36,17 +36,17 @@ use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::Line;
 
 // A circle with `document.rs`: a name may refer to a document, which names the spectra that it is made of.
+use crate::any_spectrum::AnySpectrum;
 use crate::document;
 use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::expression::{self, Sign, Tree};
 use crate::filter::{Reflectance, Sensitivity, Transmittance};
-use crate::found::Found;
 use crate::inline;
 use crate::meta::{Kind, Meta};
 use crate::names::{candidates, normalized};
-use crate::piece::Piece;
-use crate::signed::Signed;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::signed_spectrum::SignedSpectrum;
 use crate::table::{MAX_BYTES, Table, TableError};
 use crate::tabulated::Tabulated;
 
@@ -79,23 +79,23 @@ pub fn bundled_spectra() -> impl Iterator<Item = (&'static str, &'static str)> {
 /// # Errors
 /// [`SpectrumError`]: an unknown name (with similar names), a faulty file (with row and column), or a file with several columns
 /// of which none is chosen.
-pub fn find(name: &str) -> Result<Found, SpectrumError> {
-    Loader { by_header: true, ..Loader::new(None) }.piece(name, Kind::Emission)?.into_found(Kind::Emission)
+pub fn find(name: &str) -> Result<AnySpectrum, SpectrumError> {
+    Loader { by_header: true, ..Loader::new(None) }.piece(name, Kind::Emission)?.into_any(Kind::Emission)
 }
 
 /// Finds the spectrum `name`; files are looked up by `files`, next to the scene.
 ///
 /// # Errors
 /// As [`find`].
-pub fn find_in(name: &str, files: &dyn Resources) -> Result<Found, SpectrumError> {
-    Loader { by_header: true, ..Loader::new(Some(files)) }.piece(name, Kind::Emission)?.into_found(Kind::Emission)
+pub fn find_in(name: &str, files: &dyn Resources) -> Result<AnySpectrum, SpectrumError> {
+    Loader { by_header: true, ..Loader::new(Some(files)) }.piece(name, Kind::Emission)?.into_any(Kind::Emission)
 }
 
 /// Finds the spectrum `name` as one of the given kind, which also holds for a file that does not state its kind.
 ///
 /// # Errors
 /// As [`find`], and [`SpectrumError::WrongKind`] for a spectrum of another kind.
-pub fn find_as_in(name: &str, kind: Kind, files: &dyn Resources) -> Result<Found, SpectrumError> {
+pub fn find_as_in(name: &str, kind: Kind, files: &dyn Resources) -> Result<AnySpectrum, SpectrumError> {
     let found = load(name, Some(files), kind)?;
     let same = found.kind() == kind || (kind == Kind::Lines && found.kind() == Kind::Emission);
     if same {
@@ -145,12 +145,12 @@ macro_rules! typed {
             of_kind(name, load(name, Some(files), Kind::$kind)?)
         }
 
-        impl TryFrom<Found> for $kind {
+        impl TryFrom<AnySpectrum> for $kind {
             type Error = Kind;
             /// Returns the spectrum, or as error the kind that it is of.
-            fn try_from(found: Found) -> Result<Self, Kind> {
+            fn try_from(found: AnySpectrum) -> Result<Self, Kind> {
                 match found {
-                    Found::$kind(it) => Ok(it),
+                    AnySpectrum::$kind(it) => Ok(it),
                     other => Err(other.kind()),
                 }
             }
@@ -167,17 +167,17 @@ typed!(find_transmittance, find_transmittance_in, Transmittance, "filter");
 typed!(find_reflectance, find_reflectance_in, Reflectance, "surface");
 typed!(find_sensitivity, find_sensitivity_in, Sensitivity, "detector");
 
-trait OfKind: TryFrom<Found, Error = Kind> {
+trait OfKind: TryFrom<AnySpectrum, Error = Kind> {
     const KIND: Kind;
 }
 
-fn of_kind<T: OfKind>(name: &str, found: Found) -> Result<T, SpectrumError> {
+fn of_kind<T: OfKind>(name: &str, found: AnySpectrum) -> Result<T, SpectrumError> {
     let wrong = |kind: Kind| SpectrumError::WrongKind { name: name.into(), found: kind.word(), wanted: T::KIND.word() };
     T::try_from(found).map_err(wrong)
 }
 
-fn load(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<Found, SpectrumError> {
-    Loader::new(files).piece(name, wanted)?.into_found(wanted)
+fn load(name: &str, files: Option<&dyn Resources>, wanted: Kind) -> Result<AnySpectrum, SpectrumError> {
+    Loader::new(files).piece(name, wanted)?.into_any(wanted)
 }
 
 /// Returns the front matter of a bundled spectrum or a file: name, source, license, range. Returns `None` for a spectrum that
@@ -232,21 +232,21 @@ impl<'a> Loader<'a> {
     }
 
     /// Loads the spectrum of a name or expression; a shape stays a shape.
-    pub(crate) fn piece(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
+    pub(crate) fn piece(&self, name: &str, wanted: Kind) -> Result<PendingSpectrum, SpectrumError> {
         self.part(name, wanted)?.settled()
     }
 
     /// Loads the spectrum of a name or expression as a part of a sum, which is checked as a whole later.
-    pub(crate) fn part(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
+    pub(crate) fn part(&self, name: &str, wanted: Kind) -> Result<PendingSpectrum, SpectrumError> {
         let name = name.trim();
         match expression::parse(name)? {
             Tree::Name { text, .. } => self.single(&text, wanted),
-            tree => self.value(name, &tree, wanted).map(Piece::Signed),
+            tree => self.value(name, &tree, wanted).map(PendingSpectrum::Signed),
         }
     }
 
     /// Evaluates an expression. Its first named spectrum may be of the wanted kind; later factors of a product are filters.
-    fn value(&self, whole: &str, tree: &Tree, wanted: Kind) -> Result<Signed, SpectrumError> {
+    fn value(&self, whole: &str, tree: &Tree, wanted: Kind) -> Result<SignedSpectrum, SpectrumError> {
         let within = |at: usize, len: usize| {
             move |cause: SpectrumError| match cause {
                 placed @ SpectrumError::Within { .. } => placed,
@@ -254,8 +254,10 @@ impl<'a> Loader<'a> {
             }
         };
         match tree {
-            Tree::Number(value) => Signed::number(*value),
-            Tree::Name { text, at, len } => self.single(text, wanted).map(Signed::from).map_err(within(*at, *len)),
+            Tree::Number(value) => SignedSpectrum::number(*value),
+            Tree::Name { text, at, len } => {
+                self.single(text, wanted).map(SignedSpectrum::from).map_err(within(*at, *len))
+            }
             Tree::Negative(part) => self.value(whole, part, wanted)?.scaled(-1.0),
             Tree::Joined { sign, at, parts } => {
                 let is_filter = matches!(sign, Sign::Times | Sign::Over) && parts[0].has_name();
@@ -274,7 +276,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    fn single(&self, name: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
+    fn single(&self, name: &str, wanted: Kind) -> Result<PendingSpectrum, SpectrumError> {
         self.count(name)?;
         if let Some(piece) = inline::single(name, wanted) {
             return piece;
@@ -292,10 +294,10 @@ impl<'a> Loader<'a> {
         } else {
             table(file, self.files, wanted)?
         };
-        from_table(name, &table, column).map(Piece::Typed)
+        from_table(name, &table, column).map(PendingSpectrum::Typed)
     }
 
-    fn document(&self, name: &str, wanted: Kind) -> Result<(Piece, Meta), SpectrumError> {
+    fn document(&self, name: &str, wanted: Kind) -> Result<(PendingSpectrum, Meta), SpectrumError> {
         let Some(files) = self.files else {
             let cause = "a spectrum in YAML must lie beside a scene; its name alone is not enough".to_owned();
             return Err(SpectrumError::Io { name: name.into(), cause });
@@ -414,7 +416,7 @@ fn read_file(name: &str) -> Result<(String, Vec<u8>), SpectrumError> {
     Ok((name.into(), bytes))
 }
 
-fn from_table(name: &str, table: &Table, column: Option<&str>) -> Result<Found, SpectrumError> {
+fn from_table(name: &str, table: &Table, column: Option<&str>) -> Result<AnySpectrum, SpectrumError> {
     let index = match column {
         None if table.columns.len() == 1 => 0,
         None => {
@@ -432,17 +434,19 @@ fn from_table(name: &str, table: &Table, column: Option<&str>) -> Result<Found, 
     };
     let values = table.column_at(index);
     Ok(match table.kind {
-        Kind::Emission => Found::Emission(Emission::tabulated(values)?),
+        Kind::Emission => AnySpectrum::Emission(Emission::tabulated(values)?),
         Kind::Lines => {
             let lines = values.wavelengths_nm().iter().zip(values.values());
             let lines = lines.map(|(w, p)| Line { wavelength_nm: *w, power: *p }).collect();
-            Found::Emission(Emission::new(None, lines)?)
+            AnySpectrum::Emission(Emission::new(None, lines)?)
         }
-        Kind::Transmittance => Found::Transmittance(Transmittance::from_checked(values)),
-        Kind::Reflectance => Found::Reflectance(Reflectance::from_checked(values)),
-        Kind::Sensitivity => Found::Sensitivity(Sensitivity::from_checked(values)),
+        Kind::Transmittance => AnySpectrum::Transmittance(Transmittance::from_checked(values)),
+        Kind::Reflectance => AnySpectrum::Reflectance(Reflectance::from_checked(values)),
+        Kind::Sensitivity => AnySpectrum::Sensitivity(Sensitivity::from_checked(values)),
         // A function that is nowhere negative can serve as a detector; the others cannot.
-        Kind::ColorMatching if values.extremes().0 >= 0.0 => Found::Sensitivity(Sensitivity::from_checked(values)),
+        Kind::ColorMatching if values.extremes().0 >= 0.0 => {
+            AnySpectrum::Sensitivity(Sensitivity::from_checked(values))
+        }
         Kind::ColorMatching | Kind::Components => {
             let (found, wanted) = (table.kind.word(), "emission, transmittance, reflectance or sensitivity");
             return Err(SpectrumError::WrongKind { name: name.into(), found, wanted });

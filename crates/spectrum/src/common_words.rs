@@ -38,7 +38,7 @@ const WORDS: [(&[&str], &str, &str); 19] = [
 ];
 
 /// Returns a hint that says what to write for such a word.
-pub(crate) fn meant(name: &str) -> Option<String> {
+pub(crate) fn hint_for_word(name: &str) -> Option<String> {
     let key = normalized(name);
     let key =
         key.strip_suffix("filter").or(key.strip_suffix("light").filter(|k| *k == "tungsten")).unwrap_or(key.as_str());
@@ -61,7 +61,9 @@ mod tests {
                 assert!(crate::find_emission(word).is_err(), "`{word}` is a spectrum's own name");
             }
         }
-        assert_eq!(meant("Golden Hour").as_deref().map(|hint| &hint[..22]), Some("write `blackbody:3500`"));
-        assert!(meant("yellow filter").is_some() && meant("D65").is_none() && meant("").is_none());
+        assert_eq!(hint_for_word("Golden Hour").as_deref().map(|hint| &hint[..22]), Some("write `blackbody:3500`"));
+        assert!(
+            hint_for_word("yellow filter").is_some() && hint_for_word("D65").is_none() && hint_for_word("").is_none()
+        );
     }
 }

@@ -16,7 +16,7 @@
 use crate::by_name::Loader;
 use crate::kind::{SpectrumKind, of_params};
 use crate::meta::{Kind, Meta};
-use crate::piece::Piece;
+use crate::pending_spectrum::PendingSpectrum;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use spectra_core::params::{Faults, Params, Whole, keys_of};
@@ -111,7 +111,7 @@ pub(crate) fn of_file(
     wanted: Kind,
     loader: &Loader<'_>,
     files: &dyn Resources,
-) -> Result<(Piece, Meta), Faults> {
+) -> Result<(PendingSpectrum, Meta), Faults> {
     let whole = Params::stage(file.node().clone(), "")?;
     let keys = keys_of::<Head>();
     let (head, own) = whole.split(&keys);
@@ -123,12 +123,12 @@ pub(crate) fn of_file(
     faults.into_result(())?;
     let piece = match of {
         Some(kind) => {
-            let found = piece.into_found(kind).map_err(|e| whole.fault_here(e.to_string()))?;
+            let found = piece.into_any(kind).map_err(|e| whole.fault_here(e.to_string()))?;
             if found.kind() != kind {
                 let text = format!("the spectrum in the file is of kind {}", found.kind());
                 return Err(whole.fault("of", text).into());
             }
-            Piece::Typed(found)
+            PendingSpectrum::Typed(found)
         }
         None => piece,
     };

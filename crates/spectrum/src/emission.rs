@@ -9,7 +9,7 @@ use crate::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use crate::error::{SpectrumError, check};
 use crate::filter::{Reflectance, Sensitivity, Transmittance};
 use crate::gaussian::GaussianMixture;
-use crate::shape::Shape;
+use crate::spectral_function::SpectralFunction;
 use crate::tabulated::Tabulated;
 
 /// Emitted power (or radiance) by wavelength: a continuum per nanometer, and lines stored separately.
@@ -38,7 +38,7 @@ use crate::tabulated::Tabulated;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emission {
-    continuum: Option<Shape>,
+    continuum: Option<SpectralFunction>,
     lines: Vec<Line>,
 }
 
@@ -47,7 +47,7 @@ impl Emission {
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless wavelengths of lines are positive and their powers 0 or more.
-    pub fn new(continuum: Option<Shape>, lines: Vec<Line>) -> Result<Self, SpectrumError> {
+    pub fn new(continuum: Option<SpectralFunction>, lines: Vec<Line>) -> Result<Self, SpectrumError> {
         for line in &lines {
             check("wavelength of a line, nm", "positive", line.wavelength_nm, |w| w > 0.0)?;
             check("power of a line", "0 or more", line.power, |p| p >= 0.0)?;
@@ -68,23 +68,26 @@ impl Emission {
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless it is 0 or more.
     pub fn constant(value: f64) -> Result<Self, SpectrumError> {
-        Self::new(Some(Shape::constant(check("power per nm", "0 or more", value, |v| v >= 0.0)?)?), Vec::new())
+        Self::new(
+            Some(SpectralFunction::constant(check("power per nm", "0 or more", value, |v| v >= 0.0)?)?),
+            Vec::new(),
+        )
     }
 
     /// Creates light with 1 per nanometer from `from_nm` to `to_nm`.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`]; see [`Shape::rectangle`].
+    /// [`SpectrumError::OutOfRange`]; see [`SpectralFunction::rectangle`].
     pub fn rectangle(from_nm: f64, to_nm: f64) -> Result<Self, SpectrumError> {
-        Self::new(Some(Shape::rectangle(from_nm, to_nm)?), Vec::new())
+        Self::new(Some(SpectralFunction::rectangle(from_nm, to_nm)?), Vec::new())
     }
 
     /// Creates a Gaussian of peak 1 per nanometer and standard deviation `sigma_nm`.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`]; see [`Shape::gaussian`].
+    /// [`SpectrumError::OutOfRange`]; see [`SpectralFunction::gaussian`].
     pub fn gaussian(center_nm: f64, sigma_nm: f64) -> Result<Self, SpectrumError> {
-        Self::new(Some(Shape::gaussian(center_nm, sigma_nm)?), Vec::new())
+        Self::new(Some(SpectralFunction::gaussian(center_nm, sigma_nm)?), Vec::new())
     }
 
     /// Creates light from a signed sum of Gaussian terms, power per nanometer; it is cut off at 0 if it falls a little below.
@@ -93,15 +96,15 @@ impl Emission {
     /// [`SpectrumError::OutOfRange`] if it is nowhere positive on 350-830 nm, or falls below 0 there by more than a tenth
     /// of its largest value.
     pub fn mixture(terms: GaussianMixture) -> Result<Self, SpectrumError> {
-        Self::new(Some(Shape::positive_mixture(terms)?.0), Vec::new())
+        Self::new(Some(SpectralFunction::positive_mixture(terms)?.0), Vec::new())
     }
 
     /// Creates the light of a black body, W m^-2 sr^-1 nm^-1.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`]; see [`Shape::blackbody`].
+    /// [`SpectrumError::OutOfRange`]; see [`SpectralFunction::blackbody`].
     pub fn blackbody(temperature_k: f64) -> Result<Self, SpectrumError> {
-        Self::new(Some(Shape::blackbody(temperature_k)?), Vec::new())
+        Self::new(Some(SpectralFunction::blackbody(temperature_k)?), Vec::new())
     }
 
     /// Creates light from a table of power per nanometer.
@@ -110,30 +113,30 @@ impl Emission {
     /// [`SpectrumError::OutOfRange`] if a value is negative.
     pub fn tabulated(table: Tabulated) -> Result<Self, SpectrumError> {
         check("power per nm", "0 or more", table.extremes().0, |v| v >= 0.0)?;
-        Self::new(Some(Shape::tabulated(table)), Vec::new())
+        Self::new(Some(SpectralFunction::tabulated(table)), Vec::new())
     }
 
-    /// Creates light from a histogram of measured power; see [`Shape::histogram`].
+    /// Creates light from a histogram of measured power; see [`SpectralFunction::histogram`].
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] if a content is negative, and as [`Shape::histogram`].
+    /// [`SpectrumError::OutOfRange`] if a content is negative, and as [`SpectralFunction::histogram`].
     pub fn histogram(edges_nm: &[f64], contents: &[f64]) -> Result<Self, SpectrumError> {
         for content in contents {
             check("power of a bin", "0 or more", *content, |c| c >= 0.0)?;
         }
-        Self::new(Some(Shape::histogram(edges_nm, contents)?), Vec::new())
+        Self::new(Some(SpectralFunction::histogram(edges_nm, contents)?), Vec::new())
     }
 
     /// First and last measured wavelength, nm, of a table that is continued with constant values beyond them; `None` for
     /// anything else.
     #[must_use]
     pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
-        self.continuum.as_ref().and_then(Shape::flat_beyond_nm)
+        self.continuum.as_ref().and_then(SpectralFunction::flat_beyond_nm)
     }
 
     /// Returns the continuum, per nanometer; `None` if there are only lines.
     #[must_use]
-    pub fn continuum(&self) -> Option<&Shape> {
+    pub fn continuum(&self) -> Option<&SpectralFunction> {
         self.continuum.as_ref()
     }
 
@@ -149,7 +152,7 @@ impl Emission {
         self.continuum.as_ref().map_or(0.0, |c| c.at(wavelength_nm))
     }
 
-    /// Returns the continuum on `grid`; see [`Shape::on_grid`].
+    /// Returns the continuum on `grid`; see [`SpectralFunction::on_grid`].
     #[must_use]
     pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
         self.continuum.as_ref().map_or_else(|| vec![0.0; grid.count], |c| c.on_grid(grid))
@@ -236,7 +239,7 @@ impl Emission {
     }
 
     /// Returns the light that passes matter of this transmittance or reflectance.
-    pub(crate) fn through(&self, shape: &Shape) -> Self {
+    pub(crate) fn through(&self, shape: &SpectralFunction) -> Self {
         Self {
             continuum: self.continuum.as_ref().map(|c| c.times(shape)),
             lines: self.lines.iter().map(|l| Line { power: l.power * shape.at(l.wavelength_nm), ..*l }).collect(),

@@ -196,7 +196,7 @@ impl SpectrumError {
 
 /// Returns a hint for an unknown name: what the writer may have meant.
 fn hint_for_unknown(name: &str, candidates: &[String]) -> String {
-    if let Some(hint) = crate::common_words::meant(name) {
+    if let Some(hint) = crate::common_words::hint_for_word(name) {
         return hint;
     }
     match candidates {

@@ -1,10 +1,10 @@
 //! Position and width of a function of the wavelength.
 
 use crate::emission::Emission;
-use crate::shape::Shape;
+use crate::spectral_function::SpectralFunction;
 use spectra_core::spectral::BAND;
 
-impl Shape {
+impl SpectralFunction {
     /// Returns the two wavelengths, nm, on both sides of the highest value on 350-830 nm at which the function has fallen to
     /// half of that.
     ///
@@ -65,7 +65,7 @@ impl Emission {
     /// Returns the mean wavelength on 350-830 nm, nm, weighted by power, lines included; `None` for no light.
     #[must_use]
     pub fn centroid_nm(&self) -> Option<f64> {
-        let [mut sum, mut moment] = self.continuum().map_or([0.0; 2], Shape::moments);
+        let [mut sum, mut moment] = self.continuum().map_or([0.0; 2], SpectralFunction::moments);
         for line in self.lines().iter().filter(|line| BAND.contains(line.wavelength_nm)) {
             sum += line.power;
             moment += line.power * line.wavelength_nm;

@@ -7,20 +7,20 @@ use spectra_core::spectral::Grid;
 use crate::error::{SpectrumError, check};
 use crate::gaussian::GaussianMixture;
 use crate::meta::{Kind, Scale};
-use crate::shape::Shape;
+use crate::spectral_function::SpectralFunction;
 use crate::tabulated::Tabulated;
 
 /// Fraction of power that passes, by wavelength; from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Transmittance(Shape);
+pub struct Transmittance(SpectralFunction);
 
 /// Fraction of power that is reflected, relative to the perfect diffuser; 0 or more, hardly above 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reflectance(Shape);
+pub struct Reflectance(SpectralFunction);
 
 /// Response of a detector per power that falls on it; 0 or more, in the unit of its table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sensitivity(Shape);
+pub struct Sensitivity(SpectralFunction);
 
 macro_rules! filter {
     ($name:ident, $kind:expr, $what:literal) => {
@@ -30,23 +30,23 @@ macro_rules! filter {
             /// # Errors
             /// [`SpectrumError::OutOfRange`] if it is negative or beyond the bound of its kind.
             pub fn constant(value: f64) -> Result<Self, SpectrumError> {
-                Ok(Self(Shape::constant(check_value($kind, value)?)?))
+                Ok(Self(SpectralFunction::constant(check_value($kind, value)?)?))
             }
 
             /// Creates a rectangle: `value` from `from_nm` to `to_nm`, 0 elsewhere.
             ///
             /// # Errors
-            /// [`SpectrumError::OutOfRange`]; see [`Shape::rectangle`].
+            /// [`SpectrumError::OutOfRange`]; see [`SpectralFunction::rectangle`].
             pub fn rectangle(from_nm: f64, to_nm: f64, value: f64) -> Result<Self, SpectrumError> {
-                Ok(Self(Shape::rectangle(from_nm, to_nm)?.scaled(check_value($kind, value)?)?))
+                Ok(Self(SpectralFunction::rectangle(from_nm, to_nm)?.scaled(check_value($kind, value)?)?))
             }
 
             /// Creates a Gaussian of standard deviation `sigma_nm` and height `peak`.
             ///
             /// # Errors
-            /// [`SpectrumError::OutOfRange`]; see [`Shape::gaussian`].
+            /// [`SpectrumError::OutOfRange`]; see [`SpectralFunction::gaussian`].
             pub fn gaussian(center_nm: f64, sigma_nm: f64, peak: f64) -> Result<Self, SpectrumError> {
-                Ok(Self(Shape::gaussian(center_nm, sigma_nm)?.scaled(check_value($kind, peak)?)?))
+                Ok(Self(SpectralFunction::gaussian(center_nm, sigma_nm)?.scaled(check_value($kind, peak)?)?))
             }
 
             /// Creates a signed sum of Gaussian terms; it counts as 0 where it falls a little below.
@@ -55,7 +55,7 @@ macro_rules! filter {
             /// [`SpectrumError::OutOfRange`] if it is nowhere positive on 350-830 nm, falls below 0 there by more than a
             /// tenth of its largest value, or exceeds the bound of its kind.
             pub fn mixture(terms: GaussianMixture) -> Result<Self, SpectrumError> {
-                let (shape, largest) = Shape::positive_mixture(terms)?;
+                let (shape, largest) = SpectralFunction::positive_mixture(terms)?;
                 check_value($kind, largest)?;
                 Ok(Self(shape))
             }
@@ -68,7 +68,7 @@ macro_rules! filter {
                 let (low, high) = table.extremes();
                 check_value($kind, low)?;
                 check_value($kind, high)?;
-                Ok(Self(Shape::tabulated(table)))
+                Ok(Self(SpectralFunction::tabulated(table)))
             }
 
             /// Creates a spectrum from points, linear between them, with the extension of its kind beyond the ends.
@@ -82,11 +82,11 @@ macro_rules! filter {
 
             /// Creates a spectrum from a column of a file, which its reader has checked.
             pub(crate) fn from_checked(table: Tabulated) -> Self {
-                Self(Shape::tabulated(table))
+                Self(SpectralFunction::tabulated(table))
             }
 
             /// Creates a spectrum from a shape, whose values are checked on 350-830 nm.
-            pub(crate) fn from_shape(shape: Shape) -> Result<Self, SpectrumError> {
+            pub(crate) fn from_shape(shape: SpectralFunction) -> Result<Self, SpectrumError> {
                 let (low, high) = shape.extremes();
                 check_value($kind, low)?;
                 check_value($kind, high)?;
@@ -99,7 +99,7 @@ macro_rules! filter {
                 self.0.at(wavelength_nm)
             }
 
-            /// Returns the values on `grid`; see [`Shape::on_grid`].
+            /// Returns the values on `grid`; see [`SpectralFunction::on_grid`].
             #[must_use]
             pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
                 self.0.on_grid(grid)
@@ -107,7 +107,7 @@ macro_rules! filter {
 
             /// Returns the bare function of wavelength.
             #[must_use]
-            pub fn shape(&self) -> &Shape {
+            pub fn shape(&self) -> &SpectralFunction {
                 &self.0
             }
         }

@@ -9,8 +9,8 @@ use crate::error::SpectrumError;
 use crate::illuminants::daylight;
 use crate::lines::{line_set, named_line};
 use crate::meta::Kind;
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 
 /// A form in which a spectrum is written out in one line; see [`expression!`](crate::expression).
 pub struct Expression {
@@ -22,9 +22,9 @@ pub struct Expression {
 /// Function that reads the part after the `:` as a spectrum; `None` if it is not understood.
 #[derive(Clone, Copy)]
 enum Read {
-    Plain(fn(&str) -> Option<Result<Piece, SpectrumError>>),
+    Plain(fn(&str) -> Option<Result<PendingSpectrum, SpectrumError>>),
     /// Function that is also told which kind of spectrum is wanted.
-    Wanted(fn(&str, Kind) -> Option<Result<Piece, SpectrumError>>),
+    Wanted(fn(&str, Kind) -> Option<Result<PendingSpectrum, SpectrumError>>),
 }
 
 impl Expression {
@@ -33,7 +33,7 @@ impl Expression {
     pub const fn new(
         example: &'static str,
         wanted: &'static str,
-        read: fn(&str) -> Option<Result<Piece, SpectrumError>>,
+        read: fn(&str) -> Option<Result<PendingSpectrum, SpectrumError>>,
     ) -> Self {
         Self { example, wanted, read: Read::Plain(read) }
     }
@@ -43,7 +43,7 @@ impl Expression {
     pub const fn of_wanted(
         example: &'static str,
         wanted: &'static str,
-        read: fn(&str, Kind) -> Option<Result<Piece, SpectrumError>>,
+        read: fn(&str, Kind) -> Option<Result<PendingSpectrum, SpectrumError>>,
     ) -> Self {
         Self { example, wanted, read: Read::Wanted(read) }
     }
@@ -84,16 +84,16 @@ pub(crate) fn examples() -> Vec<&'static str> {
 }
 
 /// Reads a single spectrum that is written out; `None` if `text` is not one.
-pub(crate) fn single(text: &str, wanted: Kind) -> Option<Result<Piece, SpectrumError>> {
+pub(crate) fn single(text: &str, wanted: Kind) -> Option<Result<PendingSpectrum, SpectrumError>> {
     if text.eq_ignore_ascii_case("constant") {
-        return Some(Shape::constant(1.0).map(Piece::Bare));
+        return Some(SpectralFunction::constant(1.0).map(PendingSpectrum::Bare));
     }
     if let Some(kelvin) = color_temperature(text) {
-        return Some(of_color_temperature(kelvin).map(Piece::from));
+        return Some(of_color_temperature(kelvin).map(PendingSpectrum::from));
     }
     if let Some(lines) = line_set(text) {
         let lines = lines.map(|line| Line { wavelength_nm: line.nominal_nm, power: 1.0 });
-        return Some(Emission::new(None, lines.to_vec()).map(Piece::from));
+        return Some(Emission::new(None, lines.to_vec()).map(PendingSpectrum::from));
     }
     let (head, arguments) = match text.split_once(':') {
         Some((head, arguments)) => (head.trim(), Some(arguments.trim())),

@@ -19,6 +19,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod any_spectrum;
 mod bundled;
 mod by_name;
 mod cell;
@@ -32,7 +33,6 @@ mod error;
 mod expression;
 mod extent;
 mod filter;
-mod found;
 mod gaussian;
 mod illuminants;
 mod inline;
@@ -42,17 +42,18 @@ mod lines;
 mod meta;
 mod names;
 mod normal;
-mod piece;
+mod pending_spectrum;
 mod planck;
 mod separator;
-mod shape;
-mod signed;
+mod signed_spectrum;
+mod spectral_function;
 mod sprague;
 pub mod table;
 mod table_error;
 mod tabulated;
 mod truncated;
 
+pub use any_spectrum::AnySpectrum;
 pub use by_name::{
     bundled_meta, bundled_spectra, find, find_as_in, find_emission, find_emission_in, find_in, find_reflectance,
     find_reflectance_in, find_sensitivity, find_sensitivity_in, find_transmittance, find_transmittance_in, function_in,
@@ -64,20 +65,19 @@ pub use document::schema as document_schema;
 pub use emission::Emission;
 pub use error::SpectrumError;
 pub use filter::{Reflectance, Sensitivity, Transmittance};
-pub use found::Found;
 pub use gaussian::{GaussianFit, GaussianFitReport, GaussianMixture, GaussianTerm, NoGaussian, OneTerm, fit_gaussians};
 pub use illuminants::{daylight, daylight_xy, illuminant, illuminant_names};
 pub use inline::Expression;
-pub use kind::{Making, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
+pub use kind::{SpectrumContext, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
 pub use line_color::LineColor;
 pub use lines::{LINE_SETS, LineOrWavelength, NAMED_LINES, NamedLine, balmer, line_set, named_line};
 pub use meta::{Interpolation, Kind, Meta, Outside, Scale, Strengths};
-pub use piece::Piece;
+pub use pending_spectrum::PendingSpectrum;
 pub use planck::planck_radiance;
-pub use shape::Shape;
-pub use signed::Signed;
+pub use signed_spectrum::SignedSpectrum;
 #[doc(hidden)] // for `expression!`
 pub use spectra_core::registry::inventory;
 pub use spectra_core::spectral::{BAND, Grid, Line, SpectralPower};
+pub use spectral_function::SpectralFunction;
 pub use tabulated::Tabulated;
 pub use truncated::TruncatedGaussian;

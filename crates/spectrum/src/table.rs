@@ -25,10 +25,10 @@ use crate::meta::{Interpolation, Kind, Meta, Scale};
 use crate::names::normalized;
 use crate::separator::is_of_number;
 use crate::sprague;
-use crate::tabulated::{Reading, Tabulated};
+use crate::tabulated::{TableInterpretation, Tabulated};
 
 pub use crate::separator::Separator;
-pub use crate::table_error::{MAX_COLUMNS, MAX_ROWS, Place, TableError, TableFault};
+pub use crate::table_error::{MAX_COLUMNS, MAX_ROWS, TableError, TableFault, TablePosition};
 
 /// Size of the largest file that is read, bytes.
 pub const MAX_BYTES: u64 = 32 << 20;
@@ -111,7 +111,7 @@ impl Table {
         Tabulated::from_checked(
             Arc::clone(&self.wavelengths_nm),
             Arc::clone(&self.values[index]),
-            Reading {
+            TableInterpretation {
                 outside: self.meta.outside.unwrap_or(self.kind.outside()),
                 scale: self.meta.scale(),
                 interpolation: self.meta.interpolation,
@@ -125,7 +125,7 @@ impl Table {
 fn whole(file: &str, cause: TableFault) -> TableError {
     let text = Arc::new(SourceFile::new(file, ""));
     let separator = Separator::Comma;
-    let place = Place { file: file.into(), row: 0, column: 0, column_name: String::new(), text, separator };
+    let place = TablePosition { file: file.into(), row: 0, column: 0, column_name: String::new(), text, separator };
     TableError { place: Box::new(place), cause }
 }
 
@@ -165,7 +165,7 @@ impl<'a> Reader<'a> {
         let name = column.checked_sub(1).and_then(|i| self.header.get(i)).cloned().unwrap_or_default();
         let text = Arc::new(SourceFile::new(self.file, self.text));
         let separator = self.separator;
-        let place = Place { file: self.file.into(), row, column, column_name: name, text, separator };
+        let place = TablePosition { file: self.file.into(), row, column, column_name: name, text, separator };
         TableError { place: Box::new(place), cause }
     }
 
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
         }
         let kind = meta
             .kind
-            .or_else(|| self.said_by_header())
+            .or_else(|| self.kind_from_header())
             .or(self.kind)
             .ok_or_else(|| self.fault(first, 0, TableFault::NoKind))?;
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); self.header.len() - 1];
@@ -269,7 +269,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns the kind that the names of columns suggest, if the header is to be used and they agree.
-    fn said_by_header(&self) -> Option<Kind> {
+    fn kind_from_header(&self) -> Option<Kind> {
         let column = normalized(self.by_header?);
         let asked = |name: &&String| column.is_empty() || normalized(name) == column;
         let mut said = self.header[1..].iter().filter(asked).filter_map(|name| Kind::of_header(name));

@@ -18,7 +18,7 @@ pub const MAX_COLUMNS: usize = 256;
 #[error("{place}: {cause}")]
 pub struct TableError {
     /// Place of the error.
-    pub place: Box<Place>,
+    pub place: Box<TablePosition>,
     /// Cause of the error.
     pub cause: TableFault,
 }
@@ -33,7 +33,7 @@ impl TableError {
         }
         // For a row with too many or too few fields the whole row is shown.
         let row = matches!(self.cause, TableFault::FieldCount { .. } | TableFault::Header(_));
-        let place = Place { column: if row { 0 } else { self.place.column }, ..(*self.place).clone() };
+        let place = TablePosition { column: if row { 0 } else { self.place.column }, ..(*self.place).clone() };
         let span = if place.row == 0 { Span::default() } else { place.span() };
         fault.at(Arc::clone(&self.place.text), span)
     }
@@ -41,7 +41,7 @@ impl TableError {
 
 /// Place in a table. Displayed as `mine.csv: row 3, column 2 (red)`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct TablePosition {
     /// Name of the file.
     pub file: String,
     /// Line of the file, from 1; 0 for the whole file.
@@ -56,7 +56,7 @@ pub struct Place {
     pub separator: Separator,
 }
 
-impl Place {
+impl TablePosition {
     /// Returns the span of the field in the text, or that of the row.
     #[must_use]
     pub fn span(&self) -> Span {
@@ -76,7 +76,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for TablePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { file, row, column, column_name, .. } = self;
         match (row, column, column_name.as_str()) {

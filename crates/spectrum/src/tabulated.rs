@@ -15,12 +15,12 @@ const RATE_NM: f64 = 10.0;
 pub struct Tabulated {
     wavelengths_nm: Arc<[f64]>,
     values: Arc<[f64]>,
-    reading: Reading,
+    reading: TableInterpretation,
 }
 
 /// The way in which the numbers of a table are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reading {
+pub(crate) struct TableInterpretation {
     pub outside: Outside,
     pub scale: Scale,
     pub interpolation: Interpolation,
@@ -44,12 +44,13 @@ impl Tabulated {
         for v in values {
             check("value", "finite", *v, |_| true)?;
         }
-        let reading = Reading { outside, scale, interpolation: Interpolation::Linear, at_least_zero: false };
+        let reading =
+            TableInterpretation { outside, scale, interpolation: Interpolation::Linear, at_least_zero: false };
         Ok(Self::from_checked(wavelengths_nm.into(), values.into(), reading))
     }
 
     /// Creates a table whose points a reader has checked.
-    pub(crate) fn from_checked(wavelengths_nm: Arc<[f64]>, values: Arc<[f64]>, reading: Reading) -> Self {
+    pub(crate) fn from_checked(wavelengths_nm: Arc<[f64]>, values: Arc<[f64]>, reading: TableInterpretation) -> Self {
         Self { wavelengths_nm, values, reading }
     }
 

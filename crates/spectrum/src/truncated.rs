@@ -11,7 +11,7 @@ use spectra_core::isa::{Isa, Vectorized};
 use crate::cell;
 use crate::error::{SpectrumError, check};
 use crate::normal::{Mass, SQRT_TAU};
-use spectra_numerics::normal::{self, exp_of_negative, far_mills, log, upper_quantile};
+use spectra_numerics::normal::{self, exp_of_negative, far_mills, inverse_survival, log};
 
 /// Distance from the center, in standard deviations, at which the algorithm for the tail takes over.
 const FAR: f64 = normal::FAR;
@@ -293,7 +293,7 @@ impl Quantile for Central {
         let (share, side) = if lower < upper { (lower, -1.0) } else { (upper, 1.0) };
         // Also covers u = 1 with nothing above the band.
         let share = if share > 1e-300 { share } else { 1e-300 };
-        let z = side * upper_quantile(share);
+        let z = side * inverse_survival(share);
         self.span.clamp(self.center_nm + self.span.sigma_nm * z)
     }
 }

@@ -1,7 +1,7 @@
 //! The laws that every imager must obey.
 
 use crate::film::check_channels;
-use crate::spread::Spread;
+use crate::test_numbers::TestNumbers;
 use glam::DVec3;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::stage::{Imager, Launch, Receive};
@@ -64,7 +64,7 @@ impl ImagerLaws {
 
     fn launched(&self, imager: &dyn Imager, launch: &dyn Launch, batch: usize, isa: Isa) -> Vec<(u32, DVec3, DVec3)> {
         let pixels = imager.size().pixels() as u64;
-        let spread = Spread::new(21);
+        let spread = TestNumbers::new(21);
         let (u, v) = (spread.column(self.rays, 0), spread.column(self.rays, 1));
         let mut out = Vec::new();
         for first in (0..self.rays).step_by(batch) {
@@ -122,7 +122,7 @@ impl ImagerLaws {
     }
 
     fn receives_what_it_launches(&self, imager: &dyn Imager, launch: &dyn Launch, receive: &dyn Receive) {
-        let spread = Spread::new(22);
+        let spread = TestNumbers::new(22);
         let launched = self.launched(imager, launch, 256, Isa::detect());
         for isa in Isa::available() {
             let mut rays = RayBatch::new(launched.len()).on(isa);

@@ -26,14 +26,14 @@ mod ray;
 mod response;
 mod sampler;
 mod source;
-mod spread;
 mod surface;
 mod system;
+mod test_numbers;
 
 pub use build::{assert_fault, color, film, imager, response, source, surface, wavelengths};
 pub use film::FilmLaws;
 pub use imager::ImagerLaws;
-pub use ray::{Line, Rays, ray};
+pub use ray::{Ray, Rays, ray};
 pub use response::ResponseLaws;
 pub use sampler::SamplerLaws;
 pub use source::SourceLaws;

@@ -8,14 +8,14 @@ use spectra_core::surface::{Action, IndexColumns, Interface, Surface, Travel};
 use spectra_core::{Isa, Loss, RayBatch};
 
 /// A ray, as a point, mm, and a unit direction.
-pub type Line = (DVec3, DVec3);
+pub type Ray = (DVec3, DVec3);
 
 /// Traces a ray of 550 nm through a surface whose vertex is the origin, and returns the ray behind the surface. The media have the
 /// refractive indices `(before, after)`, in the sense of travel, which is that of the ray's direction.
 ///
 /// # Errors
 /// The cause of the loss, if the ray ends at the surface.
-pub fn ray(surface: &dyn Surface, ray: Line, indices: (f64, f64), action: Action) -> Result<Line, Loss> {
+pub fn ray(surface: &dyn Surface, ray: Ray, indices: (f64, f64), action: Action) -> Result<Ray, Loss> {
     Rays { indices, action, ..Rays::default() }.meet(surface, &[ray])[0]
 }
 
@@ -65,7 +65,7 @@ impl Rays {
     /// # Panics
     /// If the number of losses that the surface returns is not the number of rays that ended.
     #[must_use]
-    pub fn meet(&self, surface: &dyn Surface, rays: &[Line]) -> Vec<Result<Line, Loss>> {
+    pub fn meet(&self, surface: &dyn Surface, rays: &[Ray]) -> Vec<Result<Ray, Loss>> {
         let mut out = Vec::with_capacity(rays.len());
         for (first, part) in (0..).step_by(self.batch.max(1)).zip(rays.chunks(self.batch.max(1))) {
             let mut batch = self.send(part, first);
@@ -77,7 +77,7 @@ impl Rays {
     }
 
     /// Returns a batch of these rays in front of the surface; their samples are numbered from `first`.
-    pub(crate) fn send(&self, rays: &[Line], first: u64) -> RayBatch {
+    pub(crate) fn send(&self, rays: &[Ray], first: u64) -> RayBatch {
         let mut batch = RayBatch::new(rays.len()).on(self.isa).with_numbers();
         batch.restart(rays.len());
         batch.set_stage(StageKey::new("surface", 0));
@@ -120,7 +120,7 @@ impl Rays {
 }
 
 /// Returns ray `i` behind the surface, or the cause of its loss.
-pub(crate) fn outcome(batch: &RayBatch, i: usize) -> Result<Line, Loss> {
+pub(crate) fn outcome(batch: &RayBatch, i: usize) -> Result<Ray, Loss> {
     match batch.loss(i) {
         Some((loss, number)) => {
             assert_eq!(number, NUMBER, "a ray ended as {} at surface {number}; this is number {NUMBER}", loss.name());

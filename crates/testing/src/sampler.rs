@@ -1,7 +1,7 @@
 //! The laws that every wavelength sampler must obey.
 
-use crate::spread::{Spread, mean_and_error};
 use crate::system::systems;
+use crate::test_numbers::{TestNumbers, mean_and_error};
 use spectra_core::Isa;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::math::{exp, sin};
@@ -89,7 +89,7 @@ impl SamplerLaws {
             assert!(*p > 0.0 || !visible, "{name}: the line of {} nm is never drawn", line.wavelength_nm);
         }
         assert!(density.group() >= 1, "{name}: groups of {}", density.group());
-        let u = Spread::new(31).column(self.samples, 0);
+        let u = TestNumbers::new(31).column(self.samples, 0);
         let drawn = draw(density, &u, 256, Isa::Baseline);
         for (batch, isa) in
             [1, 64, 1000].map(|b| (b, Isa::Baseline)).into_iter().chain(Isa::available().into_iter().map(|i| (256, i)))

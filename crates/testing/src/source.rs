@@ -1,6 +1,6 @@
 //! The laws that every source must obey.
 
-use crate::spread::{Spread, mean_and_error};
+use crate::test_numbers::{TestNumbers, mean_and_error};
 use glam::DVec3;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::math::concentric_disk;
@@ -103,7 +103,7 @@ impl SourceLaws {
     }
 
     fn emitted(&self, source: &dyn Source, emit: &dyn Emit, line: Option<usize>, how: How) -> Vec<f64> {
-        let spread = Spread::new(41);
+        let spread = TestNumbers::new(41);
         let columns: Vec<Vec<f64>> = (0..5).map(|d| spread.column(self.rays, d)).collect();
         let area_mm2 = PI * self.aperture_mm * self.aperture_mm;
         let mut flux = Vec::with_capacity(self.rays);
@@ -140,7 +140,7 @@ impl SourceLaws {
     }
 
     fn answered(&self, source: &dyn Source, radiance: &dyn Radiance, line: Option<usize>, how: How) -> Vec<f64> {
-        let spread = Spread::new(42);
+        let spread = TestNumbers::new(42);
         let columns: Vec<Vec<f64>> = (0..5).map(|d| spread.column(self.rays, d)).collect();
         let distance_mm = source.distance_mm().min(1e9);
         let areas = PI * self.aperture_mm * self.aperture_mm * PI * self.extent_mm * self.extent_mm;

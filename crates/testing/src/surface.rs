@@ -1,7 +1,7 @@
 //! The laws that every surface must obey.
 
-use crate::ray::{Line, Rays, outcome};
-use crate::spread::Spread;
+use crate::ray::{Ray, Rays, outcome};
+use crate::test_numbers::TestNumbers;
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
 use spectra_core::surface::{Action, BentRay, Surface};
@@ -88,8 +88,8 @@ impl SurfaceLaws {
     }
 
     /// Returns rays through points of the vertex plane, from near and far, in one sense of travel.
-    fn some_rays(&self, forward: bool) -> Vec<Line> {
-        let spread = Spread::new(if forward { 1 } else { 2 });
+    fn some_rays(&self, forward: bool) -> Vec<Ray> {
+        let spread = TestNumbers::new(if forward { 1 } else { 2 });
         let sense = if forward { 1.0 } else { -1.0 };
         let ray = |i: usize| {
             let (x, y) = spectra_core::math::concentric_disk(spread.at(i, 0), spread.at(i, 1));
@@ -101,7 +101,7 @@ impl SurfaceLaws {
         (0..self.rays).map(ray).collect()
     }
 
-    fn bends_each(&self, surface: &dyn Surface, rays: &[Line], how: Rays) {
+    fn bends_each(&self, surface: &dyn Surface, rays: &[Ray], how: Rays) {
         let (n, m) = how.indices;
         let met = how.meet(surface, rays);
         let mut alive = 0;
@@ -162,7 +162,7 @@ impl SurfaceLaws {
 
     /// Checks that the phase bends parallel light, whose object is at infinity: the phase difference of neighboring rays must match their
     /// change of direction.
-    fn is_bent_by_its_phase(&self, surface: &dyn Surface, rays: &[Line]) {
+    fn is_bent_by_its_phase(&self, surface: &dyn Surface, rays: &[Ray]) {
         /// Distance between neighbors, mm; differences are good to its square.
         const STEP_MM: f64 = 1e-3;
         let mut compared = 0;
@@ -204,7 +204,7 @@ impl SurfaceLaws {
     }
 
     /// Checks that other batches and other instruction sets give the same rays.
-    fn is_the_same_however_asked(&self, surface: &dyn Surface, rays: &[Line]) {
+    fn is_the_same_however_asked(&self, surface: &dyn Surface, rays: &[Ray]) {
         let clip_mm = 0.8 * self.semi_diameter_mm;
         let how = Rays { indices: INDICES[1], clip_mm, seed: Some(1), ..Rays::default() };
         let want = how.meet(surface, rays);
@@ -239,7 +239,7 @@ impl SurfaceLaws {
         }
     }
 
-    fn clips(&self, surface: &dyn Surface, rays: &[Line]) {
+    fn clips(&self, surface: &dyn Surface, rays: &[Ray]) {
         let clip_mm = 0.7 * self.semi_diameter_mm;
         let open = Rays { action: Action::Pass, ..Rays::default() };
         let free = open.meet(surface, rays);
@@ -282,7 +282,7 @@ impl SurfaceLaws {
         for indices in INDICES {
             let how = Rays { indices, ..Rays::default() };
             let rays = self.some_rays(true);
-            let far: Vec<Line> = rays.iter().map(|(p, d)| (*p * FACTOR, *d)).collect();
+            let far: Vec<Ray> = rays.iter().map(|(p, d)| (*p * FACTOR, *d)).collect();
             let [own, of_larger] = [how.meet(surface, &rays), how.meet(&*larger, &far)];
             let (mut compared, mut apart) = (0, 0);
             for (i, (own, of_larger)) in own.iter().zip(&of_larger).enumerate() {
@@ -346,7 +346,7 @@ impl SurfaceLaws {
     /// Checks that wild rays are met or lost, without panic or NaN.
     fn survives_wild_rays(&self, surface: &dyn Surface) {
         let r = self.semi_diameter_mm;
-        let spread = Spread::new(3);
+        let spread = TestNumbers::new(3);
         for sense in [1.0, -1.0] {
             let mut rays = Vec::new();
             for i in 0..200 {
@@ -380,8 +380,8 @@ impl SurfaceLaws {
 }
 
 /// Returns the index of the first ray that is not the same bit by bit.
-fn differs(a: &[Result<Line, Loss>], b: &[Result<Line, Loss>]) -> Option<usize> {
-    let bits = |(p, d): &Line| [p.x, p.y, p.z, d.x, d.y, d.z].map(f64::to_bits);
+fn differs(a: &[Result<Ray, Loss>], b: &[Result<Ray, Loss>]) -> Option<usize> {
+    let bits = |(p, d): &Ray| [p.x, p.y, p.z, d.x, d.y, d.z].map(f64::to_bits);
     a.iter().zip(b).position(|(a, b)| match (a, b) {
         (Ok(a), Ok(b)) => bits(a) != bits(b),
         (a, b) => a != b,

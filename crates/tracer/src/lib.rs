@@ -7,18 +7,18 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod absorption;
-mod branches;
 mod ghost_paths;
 mod ledger;
 mod path;
+mod path_search;
 mod scatter;
 mod stray;
 mod tracer;
 mod transmission;
 
-pub use branches::Branches;
 pub use ledger::{Ledger, StepLedger};
-pub use path::{Act, Path, PathError, PathStep};
+pub use path::{Interaction, Path, PathError, PathStep};
+pub use path_search::PathSearch;
 pub use spectra_core::surface::Travel;
-pub use stray::{BLACK_PAINT, Chance, Interior, Particle, StrayError, StrayLedger, StrayMatter, Walker};
+pub use stray::{BLACK_PAINT, Interior, Particle, StrayError, StrayLedger, StrayReflectances, WalkNumbers, Walker};
 pub use tracer::{Indices, RayPath, Route, Tracer, Work};

@@ -8,7 +8,7 @@ use crate::Travel;
 
 /// What light does at an element of its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Act {
+pub enum Interaction {
     /// The element acts as the prescription says: a glass surface refracts, a mirror reflects, a stop passes light.
     AsBuilt,
     /// A refracting surface reflects: this is light that the designer did not want.
@@ -21,7 +21,7 @@ pub struct PathStep {
     /// Element at this step: index into [`spectra_lens::Lens::elements`].
     pub element: usize,
     /// What the light does at the element.
-    pub act: Act,
+    pub act: Interaction,
     /// Direction in which the light arrives: in the order of the prescription ([`Travel::Forward`]) or against it.
     pub travel: Travel,
 }
@@ -62,7 +62,7 @@ impl Path {
     /// Returns the straight path through a lens of this many elements.
     #[must_use]
     pub fn through(elements: usize, travel: Travel) -> Self {
-        let step = |element| PathStep { element, act: Act::AsBuilt, travel };
+        let step = |element| PathStep { element, act: Interaction::AsBuilt, travel };
         let steps = match travel {
             Travel::Forward => (0..elements).map(step).collect(),
             Travel::Backward => (0..elements).rev().map(step).collect(),
@@ -93,17 +93,17 @@ impl Path {
             let step = |element, act| PathStep { element, act, travel };
             let way = if travel == Travel::Forward { 1 } else { -1 };
             while next != to as isize {
-                steps.push(step(next as usize, Act::AsBuilt));
+                steps.push(step(next as usize, Interaction::AsBuilt));
                 next += way;
             }
-            steps.push(step(to, Act::Reflect));
+            steps.push(step(to, Interaction::Reflect));
             (travel, next, from) = (turned(travel), to as isize - way, Some(to));
         }
         let rest = match travel {
             Travel::Forward => next.max(0)..elements as isize,
             Travel::Backward => 0..next + 1,
         };
-        let rest = rest.map(|element| PathStep { element: element as usize, act: Act::AsBuilt, travel });
+        let rest = rest.map(|element| PathStep { element: element as usize, act: Interaction::AsBuilt, travel });
         match travel {
             Travel::Forward => steps.extend(rest),
             Travel::Backward => steps.extend(rest.rev()),
@@ -132,7 +132,7 @@ impl Path {
 
     /// Lists the refracting elements at which the path is reflected, in order.
     pub fn reflections(&self) -> impl Iterator<Item = usize> + '_ {
-        self.steps.iter().filter(|s| s.act == Act::Reflect).map(|s| s.element)
+        self.steps.iter().filter(|s| s.act == Interaction::Reflect).map(|s| s.element)
     }
 
     /// Direction in which the path enters: forward at the front, backward at the rear.

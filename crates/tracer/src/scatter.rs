@@ -28,7 +28,7 @@ const WHICH_WAY: u32 = 3;
 
 /// A surface with layers on the path of scattered light.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct ScatterSurface {
     /// Key from which the surface draws its own numbers.
     pub stage: StageKey,
     /// Interval of the numbers of [`FIRST`] for which this surface is the first to scatter.
@@ -37,7 +37,7 @@ pub(crate) struct Place {
 
 /// Multiplies the weights of the live rays of a batch by the fraction that `of` selects.
 pub(crate) fn dim(rays: &mut RayBatch, layers: &[Layer], semi_diameter_mm: Option<f64>, of: impl Fn(Shares) -> f64) {
-    let c = rays.weighing();
+    let c = rays.weight_columns();
     let [x, y, _] = c.position;
     for i in 0..c.weight.len() {
         if c.state[i] == ALIVE {
@@ -47,7 +47,7 @@ pub(crate) fn dim(rays: &mut RayBatch, layers: &[Layer], semi_diameter_mm: Optio
 }
 
 /// The surface that rays met, and the columns of the batch before they met it.
-pub(crate) struct Meeting<'a> {
+pub(crate) struct ScatterEvent<'a> {
     pub layers: &'a [Layer],
     pub semi_diameter_mm: Option<f64>,
     /// Directions in front of the surface.
@@ -65,7 +65,7 @@ pub(crate) struct Meeting<'a> {
 /// One number per ray chooses the surface that scatters it first, whatever lies there. Before that surface light goes straight and is
 /// weighted with the straight fraction. There it is weighted with the scattered fraction over the probability of the choice; behind it,
 /// chance decides. Rays without numbers go straight.
-pub(crate) fn scatter(rays: &mut RayBatch, place: &Place, meeting: &Meeting<'_>) -> usize {
+pub(crate) fn scatter(rays: &mut RayBatch, place: &ScatterSurface, meeting: &ScatterEvent<'_>) -> usize {
     let len = rays.len();
     rays.set_stage(FIRST);
     let c = rays.columns_mut();
@@ -130,7 +130,7 @@ fn stepped(
     after: DVec3,
     [n, n_after]: [f64; 2],
     [x, y]: [f64; 2],
-    meeting: &Meeting<'_>,
+    meeting: &ScatterEvent<'_>,
     wavelength_nm: f64,
 ) -> Option<(DVec3, f64)> {
     // Refraction and reflection change the direction along the normal.

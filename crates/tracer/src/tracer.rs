@@ -27,12 +27,12 @@ pub use work::Work;
 
 use crate::absorption::{Absorption, Absorptions, Grid};
 use crate::path::Path;
-use crate::transmission::{Before, Passage};
+use crate::transmission::{Passage, RaysBefore};
 use glam::DVec3;
 use route::{ImagePlane, arrives, route};
 use spectra_core::surface::{Action, Travel};
 use spectra_glass::{Dispersion, DispersionError, Medium};
-use spectra_lens::{Coating, Element, Layer, Lens, Opening, Shape};
+use spectra_lens::{ApertureShape, Coating, Element, Layer, Lens, Opening};
 
 /// The refractive indices that a tracer uses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -176,7 +176,7 @@ impl Tracer {
     }
 
     /// Returns whether behind an element light may go another way than the one that it goes without chance.
-    pub fn leaves_to_chance(&self, at: usize) -> bool {
+    pub fn is_random_at(&self, at: usize) -> bool {
         self.elements[at].surface.draws() || self.scattered && !self.layers[at].is_empty()
     }
 
@@ -192,7 +192,7 @@ impl Tracer {
     }
 
     /// Whether light meets surfaces at so steep angles that what they pass depends on how it was polarized before: prisms and tilted
-    /// plates. Batches then carry its polarization ([`RayBatch::with_polarization`]); elsewhere it makes no difference of a percent.
+    /// plates. Batches then carry its polarization ([`spectra_core::RayBatch::with_polarization`]); elsewhere it makes no difference of a percent.
     #[must_use]
     pub fn polarizes(&self) -> bool {
         /// Cosine of 30 degrees. At both sides of a plate of index 1.5 the mean of s and p light is wrong by 0.0003 there, at 60 degrees by 0.008.
@@ -217,9 +217,9 @@ impl Tracer {
 
     /// Returns the route straight through the lens, up to the first surface that draws numbers.
     #[must_use]
-    pub fn certain_route(&self, travel: Travel) -> Route {
+    pub fn route_without_chance(&self, travel: Travel) -> Route {
         let path = Path::through(self.elements.len(), travel);
-        self.route(&path.up_to(|at| self.leaves_to_chance(at)))
+        self.route(&path.up_to(|at| self.is_random_at(at)))
     }
 
     /// Whether surfaces have rings that bend light, for which directions are taken down.
@@ -228,8 +228,8 @@ impl Tracer {
     }
 
     /// Room for what is taken down in front of surfaces.
-    fn before(&self, capacity: usize) -> Before {
-        Before::new(capacity, self.absorptions.as_ref().map_or(0, Absorptions::tables))
+    fn before(&self, capacity: usize) -> RaysBefore {
+        RaysBefore::new(capacity, self.absorptions.as_ref().map_or(0, Absorptions::tables))
     }
 
     /// Whether light keeps its weight through it.
@@ -248,7 +248,7 @@ impl Tracer {
 fn round_clip2_mm2(element: &Element) -> f64 {
     let Some(size_mm) = element.semi_diameter_mm else { return f64::INFINITY };
     let iris = element.apertures.iter().find_map(|a| match &a.shape {
-        Shape::Iris(iris) => Some(iris.opening(size_mm).corner_radius_mm()),
+        ApertureShape::Iris(iris) => Some(iris.opening(size_mm).corner_radius_mm()),
         _ => None,
     });
     let reach_mm = iris.unwrap_or(size_mm);

@@ -55,7 +55,7 @@ pub(crate) fn weigh_polarized(
 
 /// The positions and directions of rays in front of a surface, in its frame, and their absorption so far.
 #[derive(Debug)]
-pub(crate) struct Before {
+pub(crate) struct RaysBefore {
     position: [Column<f64>; 3],
     direction: [Column<f64>; 3],
     /// Absorption coefficient of each absorbing medium at each ray's wavelength, 1/mm.
@@ -74,7 +74,7 @@ pub(crate) struct Before {
     n: Vec<Vec<f32>>,
 }
 
-impl Before {
+impl RaysBefore {
     /// Allocates buffers for batches of up to `capacity` rays, in a lens with `absorbing` absorbing media.
     pub(crate) fn new(capacity: usize, absorbing: usize) -> Self {
         let column = || Column::new(capacity);
@@ -94,7 +94,7 @@ impl Before {
     }
 
     /// Switches clear layers to single precision, for batches of up to `capacity` rays in a lens with `media` media.
-    pub(crate) fn swift(self, capacity: usize, media: usize) -> Self {
+    pub(crate) fn in_single_precision(self, capacity: usize, media: usize) -> Self {
         // The columns hold whole chunks.
         let column = vec![1.0; capacity.next_multiple_of(CHUNK)];
         Self { swift: true, per_nm: column.clone(), n: vec![column; media], ..self }
@@ -150,22 +150,22 @@ impl Before {
         let isa = rays.isa();
         let len = rays.len();
         let from = self.position.each_ref().map(|column| column.slice(len));
-        isa.run(Measure { from, direction: self.directions(len), shift_mm, rays: rays.weighing() });
+        isa.run(Measure { from, direction: self.directions(len), shift_mm, rays: rays.weight_columns() });
         self.measure_angles(rays);
     }
 
     /// Computes the angles by which rays were bent, from the recorded directions.
     pub(crate) fn measure_angles(&self, rays: &mut RayBatch) {
         let isa = rays.isa();
-        isa.run(MeasureAngles { direction: self.directions(rays.len()), rays: rays.weighing() });
+        isa.run(MeasureAngles { direction: self.directions(rays.len()), rays: rays.weight_columns() });
     }
 
-    /// Records the absorption of rays by a medium on their way to a surface, from its table. [`Before::weigh_absorbed`] applies it to
+    /// Records the absorption of rays by a medium on their way to a surface, from its table. [`RaysBefore::weigh_absorbed`] applies it to
     /// the weights: one exponential for the whole path through a lens.
     pub(crate) fn absorb(&mut self, rays: &mut RayBatch, table: usize) {
         let isa = rays.isa();
         let len = rays.len();
-        let way_mm = rays.weighing().way_mm;
+        let way_mm = rays.weight_columns().way_mm;
         let (per_mm, depth) = (self.per_mm[table].slice(len), self.depth.slice_mut(len));
         if self.absorbed {
             isa.run(Absorb::<false> { way_mm, per_mm, depth });
@@ -180,7 +180,7 @@ impl Before {
         let isa = rays.isa();
         if std::mem::take(&mut self.absorbed) {
             let depth = self.depth.slice(rays.len());
-            isa.run(WeighAbsorbed { rays: rays.weighing(), depth });
+            isa.run(WeighAbsorbed { rays: rays.weight_columns(), depth });
         }
     }
 
@@ -188,7 +188,7 @@ impl Before {
     /// how many ended.
     pub(crate) fn end_behind(rays: &mut RayBatch, number: u32) -> usize {
         let isa = rays.isa();
-        let c = rays.weighing();
+        let c = rays.weight_columns();
         let many = isa.run(CountBehind { way_mm: c.way_mm, state: c.state }) as usize;
         if many > 0 {
             let is_behind = |i: &usize| c.state[*i] == ALIVE && c.way_mm[*i] < BEHIND_MM;
@@ -201,7 +201,7 @@ impl Before {
 
     /// Adds the path to a surface to the optical path of batches that carry it, in a medium of these indices.
     pub(crate) fn lengthen(rays: &mut RayBatch, index: &[f64]) {
-        let c = rays.weighing();
+        let c = rays.weight_columns();
         for ((path, index), way_mm) in c.optical_path_mm.iter_mut().zip(index).zip(c.way_mm) {
             *path += *index * *way_mm;
         }
@@ -215,7 +215,7 @@ impl Before {
             Passage::Coated(..) => (passage.coating(), None),
             Passage::Apart(_, gap) => (passage.coating(), Some(gap)),
         };
-        let c = rays.weighing();
+        let c = rays.weight_columns();
         let len = c.weight.len();
         if let Passage::Coated(Coating::Bare, _) = passage {
             return isa.run(ReflectBare(Pass { rays: c, n, n_after: n_beyond }));
@@ -240,7 +240,7 @@ impl Before {
     /// Multiplies the weights of polarized rays by the fraction that a surface passes, or reflects if `back` is set, and updates their
     /// polarization. `n_beyond` are the indices on the other side of the surface.
     pub(crate) fn polarize(&self, rays: &mut RayBatch, passage: &Passage, back: bool, [n, n_beyond]: [&[f64]; 2]) {
-        let mut c = rays.weighing();
+        let mut c = rays.weight_columns();
         let amplitudes = passage.coating().map(Amplitudes::of);
         let gap = match passage {
             Passage::Apart(_, gap) => Some(gap),
@@ -287,7 +287,7 @@ impl Before {
         if let Passage::Apart(intact, gap) = passage {
             let came = rays.weights().to_vec();
             self.pass(rays, intact, media, [n, n_after]);
-            let c = rays.weighing();
+            let c = rays.weight_columns();
             for (i, part, coating) in gap.met(c.position, c.state) {
                 let sides = Sides::of(n[i], n_after[i], c.versine[i]);
                 let passed = if sides.step() < SAME_INDEX {
@@ -299,7 +299,7 @@ impl Before {
             }
             return;
         }
-        let rays = rays.weighing();
+        let rays = rays.weight_columns();
         match passage {
             Passage::All | Passage::Apart(..) => {}
             Passage::Mirror(reflectance) => {

@@ -30,12 +30,12 @@
 
 mod controls;
 pub mod parts;
-mod picks;
 mod section;
+mod series_values;
 
 // On WebAssembly there are no threads and no connections; there, another program stands in for the server.
 #[cfg(not(target_family = "wasm"))]
 mod served;
 
 #[cfg(not(target_family = "wasm"))]
-pub use served::{View, color_tester, view};
+pub use served::{ViewerSettings, color_tester, view};

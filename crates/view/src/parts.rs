@@ -1,8 +1,8 @@
 //! Data for a page, wherever its engine runs: controls, the drawing of the lens, pictures and faults in the page's format.
 
 pub use crate::controls::{Control, of_session};
-pub use crate::picks::Picks;
 pub use crate::section::svg;
+pub use crate::series_values::SeriesValues;
 
 use half::f16;
 use half::slice::HalfFloatSliceExt;
@@ -73,7 +73,7 @@ pub fn pixel(exposure: &ExposureFrame, times: &[FilmTime], frame: u64, [x, y]: [
 
 /// Returns an error as JSON, with the path of the control that it concerns.
 #[must_use]
-pub fn said(error: &SessionError, path: &str) -> Value {
+pub fn error_json(error: &SessionError, path: &str) -> Value {
     match error {
         SessionError::Faults(faults) => {
             let all: Vec<Value> = faults.iter().map(fault_json).collect();

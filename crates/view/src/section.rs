@@ -1,6 +1,6 @@
 //! Drawing of the cross-section of a scene's lens, with rays of three fields.
 
-use spectra_analysis::draw::{Fans, Ground, Sheet, View};
+use spectra_analysis::draw::{DrawingBackground, Fans, SectionView, Sheet};
 use spectra_analysis::fan::largest_field_rad;
 use spectra_lens::Section;
 use spectra_scene::Scene;
@@ -30,8 +30,8 @@ pub fn svg(scene: &Scene, is_dark: bool) -> Result<String, String> {
         width: 720.0,
         height: None,
         width_mm: None,
-        ground: if is_dark { Ground::Dark } else { Ground::Light },
-        view: View { section: Section::Y },
+        ground: if is_dark { DrawingBackground::Dark } else { DrawingBackground::Light },
+        view: SectionView { section: Section::Y },
         caption: lens.name.clone(),
         image: true,
     };

@@ -9,10 +9,10 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-mod desk;
 mod module;
+mod request_handler;
 
-pub use desk::Desk;
 pub use module::{call, inbox, outbox, start};
+pub use request_handler::RequestHandler;
 
 use spectra_plugins as _;

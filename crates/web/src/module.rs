@@ -1,14 +1,14 @@
 //! Functions that the module exports to the worker.
 #![allow(unsafe_code)] // names without mangling, and the one call that registers the stages
 
-use crate::Desk;
+use crate::RequestHandler;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 #[derive(Default)]
 struct Module {
     inbox: Vec<u8>,
     outbox: Vec<u8>,
-    desk: Desk,
+    desk: RequestHandler,
 }
 
 static MODULE: LazyLock<Mutex<Module>> = LazyLock::new(Mutex::default);

@@ -57,7 +57,7 @@ fn reported(line: &str) -> Option<(&str, f64)> {
 }
 
 /// One line of the file of times.
-struct Row {
+struct TimeRecord {
     program: String,
     folder: String,
     /// Name of the test; empty for the program as a whole.
@@ -65,12 +65,12 @@ struct Row {
     seconds: f64,
 }
 
-fn rows(file: &Path) -> Result<Vec<Row>, String> {
+fn rows(file: &Path) -> Result<Vec<TimeRecord>, String> {
     let text = std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
     let row = |line: &str| {
         let mut cells = line.split('\t').map(str::to_owned);
         let (program, folder, test) = (cells.next()?, cells.next()?, cells.next()?);
-        Some(Row { program, folder, test, seconds: cells.next()?.parse().ok()? })
+        Some(TimeRecord { program, folder, test, seconds: cells.next()?.parse().ok()? })
     };
     Ok(text.lines().filter_map(row).collect())
 }
@@ -82,7 +82,7 @@ fn plain(program: &str) -> &str {
 }
 
 /// Formats a table of the `most` slowest programs and the `most` slowest tests, slowest first.
-fn table(rows: &[Row], most: usize) -> String {
+fn table(rows: &[TimeRecord], most: usize) -> String {
     let mut programs: BTreeMap<&str, f64> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.test.is_empty()) {
         *programs.entry(plain(&row.program)).or_default() += row.seconds;
@@ -94,7 +94,7 @@ fn table(rows: &[Row], most: usize) -> String {
     for (name, seconds) in programs.iter().take(most) {
         let _ = writeln!(text, "{seconds:8.1} s  {name}");
     }
-    let mut tests: Vec<&Row> = rows.iter().filter(|row| !row.test.is_empty()).collect();
+    let mut tests: Vec<&TimeRecord> = rows.iter().filter(|row| !row.test.is_empty()).collect();
     tests.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
     let _ = writeln!(text, "{} tests; the slowest of them, while others ran", tests.len());
     for row in tests.iter().take(most) {

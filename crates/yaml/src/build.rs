@@ -3,9 +3,9 @@
 //! Events go into flat storage first, without recursion and without copies, so that an alias costs
 //! nothing until it is expanded. [`tree`] then builds nodes from the items.
 
-use super::items::{Item, Placed};
-use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
-use super::slips;
+use super::items::{Item, SpannedItem};
+use super::mistakes;
+use super::reports::{FatalFault, Reports, fault, too_deep, too_many, written};
 use super::tree;
 use super::{MAX_DEPTH, MAX_NODES};
 use serde_saphyr::granit_parser::{Event, Marker, Parser, ScalarStyle, Span as Range, options};
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A list or map that is still open.
-struct Open {
+struct OpenCollection {
     index: usize,
     /// Key of a map whose value comes next.
     key: Option<usize>,
@@ -45,15 +45,15 @@ struct Builder<'a> {
     file: &'a Arc<SourceFile>,
     text: &'a str,
     start: Span,
-    items: Vec<Placed>,
-    open: Vec<Open>,
+    items: Vec<SpannedItem>,
+    open: Vec<OpenCollection>,
     anchors: HashMap<usize, usize>,
     root: Option<usize>,
     reports: Reports,
 }
 
 impl Builder<'_> {
-    fn read(&mut self) -> Result<(), Stop> {
+    fn read(&mut self) -> Result<(), FatalFault> {
         let options = options! {
             emit_comments: false,
             disallow_directives: true,
@@ -63,10 +63,11 @@ impl Builder<'_> {
         for event in Parser::new_from_str_with_options(self.text, options) {
             let (event, range) = event.map_err(|error| {
                 let place = self.point(*error.marker());
-                let bracket =
-                    |open: &Open| self.file.text[self.items[open.index].span.offset..].starts_with(['{', '[']);
+                let bracket = |open: &OpenCollection| {
+                    self.file.text[self.items[open.index].span.offset..].starts_with(['{', '['])
+                };
                 let open = self.open.iter().find(|open| bracket(open)).map(|open| self.items[open.index].span);
-                let slip = slips::behind_error(error.kind(), self.file, place, open);
+                let slip = mistakes::find_mistake(error.kind(), self.file, place, open);
                 fault(self.file, slip.place, slip.message, slip.hint.as_deref())
             })?;
             self.event(event, range)?;
@@ -74,7 +75,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn event(&mut self, event: Event<'_>, range: Range) -> Result<(), Stop> {
+    fn event(&mut self, event: Event<'_>, range: Range) -> Result<(), FatalFault> {
         let tagged = match &event {
             Event::Scalar(.., tag) | Event::SequenceStart(.., tag) | Event::MappingStart(.., tag) => tag.is_some(),
             _ => false,
@@ -131,16 +132,16 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn begin(&mut self, item: Item, range: Range, anchor: usize) -> Result<(), Stop> {
+    fn begin(&mut self, item: Item, range: Range, anchor: usize) -> Result<(), FatalFault> {
         let index = self.add(item, range, anchor)?;
         if self.open.len() >= MAX_DEPTH {
             return Err(too_deep(self.file, self.items[index].span));
         }
-        self.open.push(Open { index, key: None });
+        self.open.push(OpenCollection { index, key: None });
         Ok(())
     }
 
-    fn add(&mut self, item: Item, range: Range, anchor: usize) -> Result<usize, Stop> {
+    fn add(&mut self, item: Item, range: Range, anchor: usize) -> Result<usize, FatalFault> {
         let span = self.span(range);
         let index = self.items.len();
         // Keys are items too, so up to twice the limit is allowed here. The values are counted exactly later.
@@ -150,7 +151,7 @@ impl Builder<'_> {
         if anchor != 0 {
             self.anchors.insert(anchor, index);
         }
-        self.items.push(Placed { item, span });
+        self.items.push(SpannedItem { item, span });
         Ok(index)
     }
 

@@ -15,7 +15,7 @@ pub(super) enum Item {
 }
 
 /// An item with its place in the file.
-pub(super) struct Placed {
+pub(super) struct SpannedItem {
     pub item: Item,
     pub span: Span,
 }

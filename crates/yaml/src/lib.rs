@@ -9,8 +9,8 @@
 
 mod build;
 mod items;
+mod mistakes;
 mod reports;
-mod slips;
 mod syntax;
 #[cfg(test)]
 mod tests;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 const MOST: usize = 100;
 
 /// A fault that ends the parse. It is boxed because it is larger than what most calls return.
-pub(super) type Stop = Box<Fault>;
+pub(super) type FatalFault = Box<Fault>;
 
 /// Faults that do not end the parse.
 #[derive(Default)]
@@ -41,16 +41,16 @@ impl Reports {
     }
 }
 
-pub(super) fn fault(file: &Arc<SourceFile>, span: Span, message: impl Into<String>, hint: Option<&str>) -> Stop {
+pub(super) fn fault(file: &Arc<SourceFile>, span: Span, message: impl Into<String>, hint: Option<&str>) -> FatalFault {
     let place = Some((Arc::clone(file), span.first_line(&file.text)));
     Box::new(Fault { place, hint: hint.map(str::to_owned), ..Fault::new(message) })
 }
 
-pub(super) fn too_deep(file: &Arc<SourceFile>, span: Span) -> Stop {
+pub(super) fn too_deep(file: &Arc<SourceFile>, span: Span) -> FatalFault {
     fault(file, span, format!("nested deeper than {MAX_DEPTH} levels"), None)
 }
 
-pub(super) fn too_many(file: &Arc<SourceFile>, span: Span) -> Stop {
+pub(super) fn too_many(file: &Arc<SourceFile>, span: Span) -> FatalFault {
     fault(
         file,
         span,

@@ -1,7 +1,7 @@
 //! Builds nodes from the items in flat storage, and expands aliases within the limits.
 
-use super::items::{Item, Placed};
-use super::reports::{Reports, Stop, fault, too_deep, too_many, written};
+use super::items::{Item, SpannedItem};
+use super::reports::{FatalFault, Reports, fault, too_deep, too_many, written};
 use super::{MAX_DEPTH, MAX_NODES};
 use spectra_core::params::{Fault, Faults, Key, Node, SourceFile, Span, Value};
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Builds the tree below `root`. An empty file gives a null at `start`.
 pub(super) fn grow(
     file: &Arc<SourceFile>,
-    items: &[Placed],
+    items: &[SpannedItem],
     root: Option<usize>,
     start: Span,
     reports: Reports,
@@ -26,7 +26,7 @@ pub(super) fn grow(
 
 struct Tree<'a> {
     file: &'a Arc<SourceFile>,
-    items: &'a [Placed],
+    items: &'a [SpannedItem],
     reports: Reports,
     count: usize,
 }
@@ -34,11 +34,11 @@ struct Tree<'a> {
 impl Tree<'_> {
     /// Builds the node of an item with `depth` lists and maps around it. `seat` is the place of its key, used
     /// for a missing value. The recursion is bounded by the depth.
-    fn node(&mut self, index: usize, seat: Option<Span>, depth: usize) -> Result<Node, Stop> {
-        let &Placed { ref item, mut span } = &self.items[index];
+    fn node(&mut self, index: usize, seat: Option<Span>, depth: usize) -> Result<Node, FatalFault> {
+        let &SpannedItem { ref item, mut span } = &self.items[index];
         if let Item::Alias(target) = item {
             // The only new fault possible there is the size, which the alias causes; so the alias is its place.
-            let here = |stop: Stop| Box::new(Fault { place: Some((Arc::clone(self.file), span)), ..*stop });
+            let here = |stop: FatalFault| Box::new(Fault { place: Some((Arc::clone(self.file), span)), ..*stop });
             return self.node(self.unalias(*target), None, depth).map_err(here);
         }
         self.count += 1;
@@ -68,7 +68,7 @@ impl Tree<'_> {
         Ok(Node::new(value, span, Arc::clone(self.file)))
     }
 
-    fn map(&mut self, entries: &[(usize, usize)], depth: usize) -> Result<Vec<(Key, Node)>, Stop> {
+    fn map(&mut self, entries: &[(usize, usize)], depth: usize) -> Result<Vec<(Key, Node)>, FatalFault> {
         let mut nodes = Vec::with_capacity(entries.len());
         let mut seen: HashMap<String, usize> = HashMap::with_capacity(entries.len());
         for &(key, value) in entries {

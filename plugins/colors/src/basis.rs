@@ -1,6 +1,6 @@
 //! Color models whose spectrum is a weighted sum of three basis spectra, one per channel.
 
-use spectra_color::{fit, matrix};
+use spectra_color::{fit_to_gamut, matrix};
 use spectra_core::batch::CONTINUUM;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::{Grid, Line, SpectralPower};
@@ -68,11 +68,11 @@ impl ColorModel for Basis {
 
     /// Returns the color, moved into sRGB if it lies outside, because a negative amount of a spectrum would be negative light.
     fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3] {
-        fit(linear_srgb, ColorGamut::Srgb).rgb.map(|v| v as f32)
+        fit_to_gamut(linear_srgb, ColorGamut::Srgb).rgb.map(|v| v as f32)
     }
 
     fn spectrum(&self, linear_srgb: [f64; 3]) -> SpectralPower {
-        let linear_srgb = fit(linear_srgb, ColorGamut::Srgb).rgb;
+        let linear_srgb = fit_to_gamut(linear_srgb, ColorGamut::Srgb).rgb;
         let mix = |powers: [f64; 3]| powers.iter().zip(linear_srgb).map(|(p, c)| p * c).sum::<f64>();
         SpectralPower {
             grid: self.grid,

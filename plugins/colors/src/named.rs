@@ -9,7 +9,9 @@ use spectra_core::registry::{self, Context, Stage};
 use spectra_core::resources::{Resource, ResourceError, Resources};
 use spectra_core::spectral::{BAND, Line, SpectralPower};
 use spectra_core::stage::ColorModel;
-use spectra_spectrum::{Emission, Kind, Observer, Outside, Piece, Scale, Shape, SpectrumError, Tabulated, illuminant};
+use spectra_spectrum::{
+    Emission, Kind, Observer, Outside, PendingSpectrum, Scale, SpectralFunction, SpectrumError, Tabulated, illuminant,
+};
 use std::sync::Arc;
 
 spectra_spectrum::expression_of_wanted!(
@@ -41,7 +43,7 @@ spectra_spectrum::expression_of_wanted!("srgb-b", "write srgb-b alone", |_, want
 spectra_spectrum::expression_of_wanted!("srgb-w", "write srgb-w alone", |_, wanted| of_color([255.0; 3], None, wanted));
 
 spectra_spectrum::expression_of_wanted!("rgb-lines", "write rgb-lines alone", |_, _| Some(
-    rgb_lines().map(Piece::from)
+    rgb_lines().map(PendingSpectrum::from)
 ));
 
 /// Returns three spectral lines with the hues of sRGB's red, green and blue, whose powers add up to white (D65). Such light looks like
@@ -82,7 +84,11 @@ fn code_values(text: &str) -> Option<[f64; 3]> {
 }
 
 /// Returns the spectrum of a color by the named model, or by the default one; `None` if there is no model of that name.
-fn of_color(code_values: [f64; 3], model: Option<&str>, wanted: Kind) -> Option<Result<Piece, SpectrumError>> {
+fn of_color(
+    code_values: [f64; 3],
+    model: Option<&str>,
+    wanted: Kind,
+) -> Option<Result<PendingSpectrum, SpectrumError>> {
     let entries = <dyn ColorModel as Stage>::entries();
     let name = match model {
         Some(name) => entries.iter().find(|entry| entry.name == name)?.name,
@@ -91,7 +97,7 @@ fn of_color(code_values: [f64; 3], model: Option<&str>, wanted: Kind) -> Option<
     Some(spectrum(code_values, name, wanted))
 }
 
-fn spectrum(code_values: [f64; 3], model: &str, wanted: Kind) -> Result<Piece, SpectrumError> {
+fn spectrum(code_values: [f64; 3], model: &str, wanted: Kind) -> Result<PendingSpectrum, SpectrumError> {
     let is_light = matches!(wanted, Kind::Emission | Kind::Lines);
     let under = if is_light { illuminant("D65")? } else { Emission::constant(1.0)? };
     let model = build(model, &under.to_power(&BAND))?;
@@ -100,16 +106,16 @@ fn spectrum(code_values: [f64; 3], model: &str, wanted: Kind) -> Result<Piece, S
     let wavelengths: Vec<f64> = grid.wavelengths_nm().collect();
     let outside = if is_light { Outside::Zero } else { Outside::Constant };
     let is_dark = continuum.iter().all(|v| *v == 0.0);
-    let shape = Shape::tabulated(Tabulated::new(&wavelengths, &continuum, outside, Scale::Linear)?);
+    let shape = SpectralFunction::tabulated(Tabulated::new(&wavelengths, &continuum, outside, Scale::Linear)?);
     if is_light {
         let continuum = (!is_dark || lines.is_empty()).then_some(shape);
-        return Emission::new(continuum, lines).map(Piece::from);
+        return Emission::new(continuum, lines).map(PendingSpectrum::from);
     }
     if lines.iter().any(|line| line.power != 0.0) {
         let (left, right) = ("a color model of spectral lines", wanted.word());
         return Err(SpectrumError::NotTogether { left, right, operation: "meaning" });
     }
-    Ok(Piece::Bare(shape))
+    Ok(PendingSpectrum::Bare(shape))
 }
 
 /// Builds the color model `name` with its defaults, for the illuminant `light`.

@@ -1,6 +1,6 @@
 //! Tests of the round trip from RGB to a spectrum, XYZ and sRGB: each model is measured over 8-bit colors in steps of 15 per channel.
 
-use spectra_color::{Adaptation, RgbSpace, fit, from_u8, lab};
+use spectra_color::{Adaptation, RgbSpace, fit_to_gamut, from_u8, lab};
 use spectra_core::params::{Faults, Key, Node, Params, SourceFile, Span, Value};
 use spectra_core::registry::{Context, build};
 use spectra_core::resources::{Resource, ResourceError, Resources};
@@ -129,8 +129,8 @@ fn colors_of_wide_spaces_keep_luminance_and_hue() {
             let rgb: [f64; 3] = if i < 3 { primary(i) } else { [draw(), draw(), draw()] };
             let wanted = srgb.from_xyz(spectra_color::matrix::apply(&adapted, space.to_xyz(rgb)));
             beyond += u32::from(wanted.iter().any(|v| *v < 0.0));
-            let fitted = fit(wanted, ColorGamut::Real);
-            moved += u32::from(fitted.moved > 1e-4);
+            let fitted = fit_to_gamut(wanted, ColorGamut::Real);
+            moved += u32::from(fitted.distance_xy > 1e-4);
             let xyz = srgb.to_xyz(fitted.rgb);
             let power = smooth.spectrum(wanted);
             assert!(power.continuum.iter().all(|v| *v >= 0.0));

@@ -2,11 +2,11 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-mod beyond;
+mod described_process;
 mod effects;
 mod frame;
 mod metering;
-mod seen;
+mod misexposure;
 mod settings;
 mod stock;
 mod stocks;

@@ -48,7 +48,7 @@ pub enum MeteredWord {
 
 /// Exposure settings of a scene, from `exposure` and `metering` together.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Exposed {
+pub(crate) struct ExposureSettings {
     /// Metering mode of the camera.
     pub metering: Metering,
     /// Whether a source picture that was exposed already keeps its exposure.
@@ -59,7 +59,7 @@ pub(crate) struct Exposed {
     pub is_overruled: bool,
 }
 
-impl Exposed {
+impl ExposureSettings {
     /// Combines `exposure` and `metering`, either of which may be left out. Fails if neither says how to expose, or if they contradict
     /// each other.
     pub(crate) fn new(
@@ -178,7 +178,7 @@ impl Meter {
     /// Describes how the film is exposed; `exposure_time_s` is the scene's time, s.
     pub(crate) fn words(&self, exposure_time_s: f64) -> String {
         match self.metering {
-            Metering::Manual => format!("exposed for {}", shutter::words(exposure_time_s)),
+            Metering::Manual => format!("exposed for {}", shutter::format_time(exposure_time_s)),
             metered => format!("metered ({})", metered.word()),
         }
     }

@@ -1,26 +1,26 @@
 //! The film kind `stock`: film from a data file, exposed, developed, and printed, scanned or projected.
 
-use crate::beyond::{beyond, ends};
+use crate::described_process::build_process;
 use crate::effects::{Assumed, Effects, mtf50, pixel_mm};
 use crate::frame::{FrameEffects, Laid};
-use crate::metering::{Exposed, METER, Meter, Metered, Metering, overruled};
-use crate::seen::seen;
+use crate::metering::{ExposureSettings, METER, Meter, Metered, Metering, overruled};
+use crate::misexposure::{ends, misexposure};
 use crate::settings::StockParams;
 use crate::stocks::load_stock;
 use crate::view::{Picture, ScanParams};
 use spectra_core::frame::{
-    Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, ImageState, Wanted,
+    DisplayPicture, ExposureChannel, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, FrameSize, ImageState,
 };
 use spectra_core::math::pow;
 use spectra_core::names;
 use spectra_core::params::{Faults, Params, Positive};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
-use spectra_core::stage::{Beyond, Film, Negative};
+use spectra_core::stage::{Film, Misexposure, Negative};
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
-use spectra_film::positive::{Reach, densities};
+use spectra_film::positive::{GamutLimit, densities};
 use spectra_film::print::{Print, metered_exposure_lx_s};
 use spectra_film::push::{PushError, pushed_or_assumed};
 use spectra_film::raster::Raster;
@@ -65,7 +65,7 @@ impl StockFilm {
             let fault = params.fault("stock", format!("{} is not a camera film", stock.name));
             return Err(fault.hint("name a print stock at `print`").into());
         };
-        let exposed = faults.take(Exposed::new(p.exposure, p.metering, params).map_err(Faults::from));
+        let exposed = faults.take(ExposureSettings::new(p.exposure, p.metering, params).map_err(Faults::from));
         let metering = exposed.map_or(Metering::Average, |exposed| exposed.metering);
         let developed = faults.take(develop_as(&p, params, &stock));
         let speed = p.iso.map_or(iso * pow(2.0, p.push.unwrap_or(0.0)), Positive::get);
@@ -83,13 +83,14 @@ impl StockFilm {
         let gray_lx_s = metered_exposure_lx_s(speed);
         // Curves that do not match the stated speed are the likeliest reason why a film cannot be printed, and otherwise make the picture
         // too light or too dark.
-        let doubts = stock.doubts();
-        let seen = seen(&p, params, context.resources, &stock, &emulsion, gray_lx_s).map_err(|mut faults| {
-            for fault in faults.0.iter_mut().filter(|fault| fault.hint.is_none()) {
-                fault.hint = doubts.first().cloned();
-            }
-            faults
-        })?;
+        let doubts = stock.warnings();
+        let seen =
+            build_process(&p, params, context.resources, &stock, &emulsion, gray_lx_s).map_err(|mut faults| {
+                for fault in faults.0.iter_mut().filter(|fault| fault.hint.is_none()) {
+                    fault.hint = doubts.first().cloned();
+                }
+                faults
+            })?;
         // Bundled stocks keep their makers' speeds, whatever the digitized curves give, so only the user's own files are checked.
         let is_own = p.stock.ends_with(".yaml") || p.stock.ends_with(".yml");
         for doubt in doubts.iter().filter(|_| is_own) {
@@ -169,7 +170,7 @@ impl StockFilm {
     }
 
     /// Returns the color, linear RGB, of a place where there is no film.
-    fn hole(&self, reach: Reach) -> [f32; 3] {
+    fn hole(&self, reach: GamutLimit) -> [f32; 3] {
         match &self.picture {
             Picture::Paper(print) => [print.metered.picture(0.0) as f32; 3],
             Picture::Positive(positive) => positive.hole(reach).map(|v| v as f32),
@@ -177,7 +178,7 @@ impl StockFilm {
     }
 
     /// Develops the film; if `kept`, also returns the exposure of its layers as layers of a file.
-    fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<Planes, String> {
+    fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<DevelopedPlanes, String> {
         let factor = self.meter.factor(exposure);
         let time_s = self.exposure_time_s * factor;
         let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
@@ -211,11 +212,15 @@ impl StockFilm {
                 frame.soil(plane, laid, range, clear, self.stock.process == Process::Reversal);
             }
         }
-        Ok(Planes { amounts, exposed, raster, laid })
+        Ok(DevelopedPlanes { amounts, exposed, raster, laid })
     }
 
     /// Develops the film, applies the blur of the lens that views it, and returns the other `wanted` planes as layers of a file.
-    fn seen_through(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<(Planes, Vec<ExposureChannel>), String> {
+    fn seen_through(
+        &self,
+        exposure: &ExposureFrame,
+        wanted: ExtraRequest,
+    ) -> Result<(DevelopedPlanes, Vec<ExposureChannel>), String> {
         let mut planes = self.planes(exposure, wanted.layers)?;
         let mut layers = std::mem::take(&mut planes.exposed);
         if wanted.layers {
@@ -231,8 +236,13 @@ impl StockFilm {
     }
 
     /// Prints, scans or projects a developed film and returns the finished picture.
-    fn printed(&self, negative: &Planes, mut layers: Vec<ExposureChannel>, wanted: Wanted) -> Result<Finished, String> {
-        let Planes { amounts, raster, laid, .. } = negative;
+    fn printed(
+        &self,
+        negative: &DevelopedPlanes,
+        mut layers: Vec<ExposureChannel>,
+        wanted: ExtraRequest,
+    ) -> Result<FinishedPicture, String> {
+        let DevelopedPlanes { amounts, raster, laid, .. } = negative;
         let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
         if wanted.layers {
             let print = match (&self.picture, &planes[..]) {
@@ -247,19 +257,22 @@ impl StockFilm {
             // A print on paper is a gray between the paper's black and white, which any screen can show.
             (Picture::Paper(print), [silver]) => (print.pictures(silver)?.into_iter().map(|v| [v; 3]).collect(), None),
             (Picture::Positive(positive), planes) => {
-                (positive.picture(planes), wanted.open.then(|| positive.open_picture(planes)))
+                (positive.picture(planes), wanted.unclamped.then(|| positive.unclamped_picture(planes)))
             }
             // `build` makes paper prints of one layer only.
             (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),
         };
         if let Some(laid) = laid {
-            laid.punch(&mut shown, self.hole(Reach::Screen));
+            laid.punch(&mut shown, self.hole(GamutLimit::Screen));
             if let Some(open) = &mut open {
-                laid.punch(open, self.hole(Reach::Open));
+                laid.punch(open, self.hole(GamutLimit::Open));
             }
         }
         let picture = |rgb| DisplayPicture { width_px: raster.width as u32, height_px: raster.height as u32, rgb };
-        Ok(Finished { shown: picture(shown), beside: Beside { open: open.map(picture), layers, white: None } })
+        Ok(FinishedPicture {
+            display: picture(shown),
+            extra: ExtraData { unclamped: open.map(picture), layers, white: None },
+        })
     }
 }
 
@@ -267,7 +280,7 @@ impl StockFilm {
 const EDGE_PRINT: f64 = 30.0;
 
 /// The planes of a developed film.
-struct Planes {
+struct DevelopedPlanes {
     /// One plane of amounts per layer.
     amounts: Vec<Vec<f32>>,
     /// Exposure of the layers, if it was kept.
@@ -367,7 +380,7 @@ impl Film for StockFilm {
         self.effects.check_frame(size)
     }
 
-    fn beyond(&self, exposure: &ExposureFrame) -> Option<Beyond> {
+    fn misexposure(&self, exposure: &ExposureFrame) -> Option<Misexposure> {
         let factor = self.meter.factor(exposure);
         let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(self.exposure_time_s * factor));
         let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
@@ -378,14 +391,14 @@ impl Film for StockFilm {
             };
             Some((plane, ends(curve)))
         });
-        beyond(&layers.collect::<Option<Vec<_>>>()?, factor * effect)
+        misexposure(&layers.collect::<Option<Vec<_>>>()?, factor * effect)
     }
 
     fn balanced_channels(&self) -> usize {
         if self.stock.layers.len() == 3 { 3 } else { 0 }
     }
 
-    fn long_exposure_doubt(&self, time_s: f64) -> Option<String> {
+    fn long_exposure_warning(&self, time_s: f64) -> Option<String> {
         unknown_reciprocity(self.stock.reciprocity.as_ref(), &self.stock.name, time_s)
     }
 
@@ -400,20 +413,20 @@ impl Film for StockFilm {
     }
 
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
-        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+        self.finish(exposure, ExtraRequest::default()).map(|finished| finished.display)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Finished, String> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<FinishedPicture, String> {
         let (negative, layers) = self.seen_through(exposure, wanted)?;
         self.printed(&negative, layers, wanted)
     }
 
-    fn negative(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Option<Negative>, String> {
+    fn negative(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<Option<Negative>, String> {
         Ok(Some(Box::new(self.seen_through(exposure, wanted)?)))
     }
 
-    fn print(&self, negative: &Negative, wanted: Wanted) -> Result<Finished, String> {
-        let made = negative.downcast_ref::<(Planes, Vec<ExposureChannel>)>();
+    fn print(&self, negative: &Negative, wanted: ExtraRequest) -> Result<FinishedPicture, String> {
+        let made = negative.downcast_ref::<(DevelopedPlanes, Vec<ExposureChannel>)>();
         let (negative, layers) = made.ok_or_else(|| format!("{} did not make this negative", self.stock.name))?;
         self.printed(negative, layers.clone(), wanted)
     }

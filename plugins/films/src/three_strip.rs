@@ -1,12 +1,14 @@
 //! The film kind `three-strip`: three separation negatives behind a beam splitter, printed by dye transfer.
 
 use crate::effects::{Assumed, Effects, HalationSetting, Off, OpticsSetting, Switches, mtf50, pixel_mm};
-use crate::metering::{Exposed, ExposureParams, METER, Meter, Metered, Metering, SpotParams, overruled};
+use crate::metering::{ExposureParams, ExposureSettings, METER, Meter, Metered, Metering, SpotParams, overruled};
 use crate::stocks::load_stock;
 use crate::view::{BlackParams, SurroundParams, WhiteParams};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{Beside, DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, Wanted};
+use spectra_core::frame::{
+    DisplayPicture, ExposureChannel, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, FrameSize,
+};
 use spectra_core::names;
 use spectra_core::params::{Faults, Params, Positive as AboveZero};
 use spectra_core::registry::Context;
@@ -14,11 +16,11 @@ use spectra_core::spectral::{BAND, Channel};
 use spectra_core::stage::Film;
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
-use spectra_film::look::Look;
 use spectra_film::optics::Optics;
 use spectra_film::positive::Positive;
 use spectra_film::print::metered_exposure_lx_s;
 use spectra_film::stock::{Reciprocity, Stock, unknown_reciprocity};
+use spectra_film::viewing_options::ViewingOptions;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::{Emission, Transmittance, find_emission_in, find_transmittance_in, v_lambda};
 
@@ -205,7 +207,7 @@ impl ThreeStrip {
         let p: ThreeStripParams = params.parse()?;
         let iso = p.iso.map_or(SPEED, AboveZero::get);
         let mut faults = Faults::new();
-        let exposed = faults.take(Exposed::new(p.exposure, p.metering, params).map_err(Faults::from));
+        let exposed = faults.take(ExposureSettings::new(p.exposure, p.metering, params).map_err(Faults::from));
         let metering = exposed.map_or(Metering::Average, |exposed| exposed.metering);
         let meter = Meter::new(params, metering, p.spot, iso, p.compensation);
         let meter = faults.take(meter.map_err(Faults::from));
@@ -247,7 +249,7 @@ impl ThreeStrip {
             channel.response.iter_mut().for_each(|r| *r *= scale);
         }
         let grays = [0, 1, 2].map(|i| metered_exposure_lx_s(records[i].iso));
-        let look = Look { white: p.white.into(), black: p.black.into(), surround: p.surround.into() };
+        let look = ViewingOptions { white: p.white.into(), black: p.black.into(), surround: p.surround.into() };
         let positive = Positive::from_separations(&film, &grays, &print, printed, &view, look);
         let positive = positive.map_err(|e| params.fault("print", e.to_string()))?;
         let stocks: Vec<&str> = records.iter().map(|r| r.name.as_str()).collect();
@@ -438,7 +440,7 @@ impl Film for ThreeStrip {
         RECORDS.len()
     }
 
-    fn long_exposure_doubt(&self, time_s: f64) -> Option<String> {
+    fn long_exposure_warning(&self, time_s: f64) -> Option<String> {
         unknown_reciprocity(None, &self.unknown, time_s).filter(|_| !self.unknown.is_empty())
     }
 
@@ -459,10 +461,10 @@ impl Film for ThreeStrip {
     }
 
     fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
-        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+        self.finish(exposure, ExtraRequest::default()).map(|finished| finished.display)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Result<Finished, String> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<FinishedPicture, String> {
         let mut layers = Vec::new();
         let mut negatives = self.records(exposure, |name, plane, factor| {
             if wanted.layers {
@@ -485,9 +487,9 @@ impl Film for ThreeStrip {
         let planes: Vec<&[f32]> = negatives.iter().map(Vec::as_slice).collect();
         let size = exposure.size;
         let picture = |rgb| DisplayPicture { width_px: size.width_px, height_px: size.height_px, rgb };
-        let open = wanted.open.then(|| picture(self.positive.open_picture(&planes)));
+        let open = wanted.unclamped.then(|| picture(self.positive.unclamped_picture(&planes)));
         let shown = picture(self.positive.picture(&planes));
-        Ok(Finished { shown, beside: Beside { open, layers, white: None } })
+        Ok(FinishedPicture { display: shown, extra: ExtraData { unclamped: open, layers, white: None } })
     }
 
     fn has_layers(&self) -> bool {

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::Positive as AboveZero;
-use spectra_film::look::{PictureBlack, PictureWhite, Surround};
 use spectra_film::positive::{Positive, ScanScale};
 use spectra_film::print::{Paper, Print};
+use spectra_film::viewing_options::{PictureBlack, PictureWhite, Surround};
 use std::borrow::Cow;
 
 /// The value of `view` as written in a scene.

@@ -5,8 +5,8 @@ use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::cover::CoverStack;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, ImageState, Wanted};
-use spectra_core::params::{Faults, Params, Part, Positive, Time};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, ExtraRequest, FinishedPicture, FrameSize, ImageState};
+use spectra_core::params::{Deferred, Faults, Params, Positive, Time};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::Channel;
 use spectra_core::stage::{Digitize, Imager, Launch, Receive, Response};
@@ -30,7 +30,7 @@ pub struct DetectorParams {
     #[serde(flatten)]
     frame: Frame,
     /// Spectral response of the detectors: their channels.
-    response: Part<StageOf<dyn Response>>,
+    response: Deferred<StageOf<dyn Response>>,
     /// Exposure time, s if bare. If it is given, the channels are multiplied by it.
     #[serde(default)]
     exposure: Option<Positive<Time>>,
@@ -89,7 +89,7 @@ impl<R: Response> Response for DetectorPlane<R> {
         self.response.display(exposure)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Option<FinishedPicture> {
         self.response.finish(exposure, wanted)
     }
 

@@ -1,16 +1,16 @@
 //! The parameters of the frame, which all plane imagers share.
 
 use crate::formats::{FORMATS, FormatName, format_named};
+use crate::placement::{FrameShape, Placement};
 use crate::plane::{MAX_PIXELS, MAX_SIDE_PX, Plane};
 use crate::plates::{Plate, Plates};
-use crate::standing::{Bend, Standing};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
 use spectra_core::names;
 use spectra_core::params::{Angle, Fault, Faults, Length, NonNegative, Params, Positive, Whole};
 use spectra_core::registry::Context;
-use spectra_glass::Catalogue;
+use spectra_glass::Catalog;
 use spectra_spectrum::find_transmittance_in;
 
 /// The frame as written in a scene, shared by all imagers: a named format or width and height, the number of pixels, and its
@@ -166,11 +166,11 @@ impl Frame {
         if let Some(size) = &size {
             self.warn_unless_square(size, params, context);
         }
-        let standing = faults.take(self.standing(params, size, context));
+        let standing = faults.take(self.placement(params, size, context));
         let plates = faults.take(self.plates(params, context));
         match (size, standing, plates) {
             (Some(size), Some(standing), Some(plates)) => {
-                faults.into_result(Plane::new(size).standing(standing).behind(plates))
+                faults.into_result(Plane::new(size).with_placement(standing).behind(plates))
             }
             _ => Err(faults),
         }
@@ -179,7 +179,7 @@ impl Frame {
     /// Builds the plates in front of the frame.
     fn plates(&self, params: &Params, context: &Context<'_>) -> Result<Plates, Faults> {
         let mut faults = Faults::new();
-        let catalogue = Catalogue::bundled();
+        let catalogue = Catalog::bundled();
         let grid = &context.grid;
         let mut plates = Vec::new();
         for (i, plate) in self.cover.iter().enumerate() {
@@ -296,7 +296,7 @@ impl Frame {
     }
 
     /// Determines the position and shape of the frame; `size` is `None` if it has faults.
-    fn standing(&self, params: &Params, size: Option<FrameSize>, context: &Context<'_>) -> Result<Standing, Faults> {
+    fn placement(&self, params: &Params, size: Option<FrameSize>, context: &Context<'_>) -> Result<Placement, Faults> {
         let mut faults = Faults::new();
         // The scene builds the imager a second time, once it knows where the light lands.
         let from_mm = match self.around {
@@ -306,8 +306,9 @@ impl Frame {
         let shift_mm = self.shift.map_or([0.0; 2], |shift| shift.map(Length::mm));
         let shift_mm = [from_mm[0] + shift_mm[0], from_mm[1] + shift_mm[1]];
         let tilt_rad = self.tilt.map_or([0.0; 2], |tilt| tilt.map(Angle::rad));
-        let bend = self.curvature.as_ref().and_then(|c| faults.take(bend(c, params, size))).unwrap_or(Bend::Flat);
-        faults.into_result(Standing::new(shift_mm, tilt_rad, bend))
+        let bend =
+            self.curvature.as_ref().and_then(|c| faults.take(frame_shape(c, params, size))).unwrap_or(FrameShape::Flat);
+        faults.into_result(Placement::new(shift_mm, tilt_rad, bend))
     }
 }
 
@@ -350,11 +351,11 @@ fn resolution_faults([width, height]: [u32; 2], params: &Params) -> Vec<Fault> {
 }
 
 /// Reads the curvature. The frame must stay well within one half of the cylinder or sphere.
-fn bend(curvature: &Curvature, params: &Params, size: Option<FrameSize>) -> Result<Bend, Fault> {
+fn frame_shape(curvature: &Curvature, params: &Params, size: Option<FrameSize>) -> Result<FrameShape, Fault> {
     let radius_mm = curvature.radius.mm();
     let bend = match curvature.shape {
-        CurvatureShape::Cylinder => Bend::Cylinder { radius_mm },
-        CurvatureShape::Sphere => Bend::Sphere { radius_mm },
+        CurvatureShape::Cylinder => FrameShape::Cylinder { radius_mm },
+        CurvatureShape::Sphere => FrameShape::Sphere { radius_mm },
     };
     let Some(size) = size else { return Ok(bend) };
     let least_mm = bend.least_radius_mm(size.width_mm, size.height_mm);

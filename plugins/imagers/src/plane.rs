@@ -1,14 +1,14 @@
 //! A frame of pixels, the base of every imager. It lies flat in the nominal image plane and centered on the axis unless it
 //! is given another position or shape.
 
+use crate::placement::Placement;
 use crate::plates::Plates;
-use crate::standing::Standing;
 use glam::{DVec2, DVec3};
 use spectra_core::cover::CoverStack;
 use spectra_core::frame::FrameSize;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
-use spectra_core::math::whole;
+use spectra_core::math::floor_index;
 use spectra_core::numbers::RayNumbers;
 use spectra_core::stage::{Launch, Receive};
 use spectra_core::{Loss, RayBatch};
@@ -23,12 +23,12 @@ pub const MAX_PIXELS: u64 = 200_000_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     size: FrameSize,
-    standing: Standing,
+    standing: Placement,
     plates: Option<Arc<Plates>>,
 }
 
 /// The point where a ray meets a frame.
-pub(crate) struct Met {
+pub(crate) struct FrameHit {
     /// Point in the coordinates of the nominal image plane, mm.
     pub(crate) point: DVec3,
     /// Position x on the frame, mm.
@@ -43,12 +43,12 @@ impl Plane {
     /// Creates a flat frame of this size, at z = 0, upright and centered.
     #[must_use]
     pub fn new(size: FrameSize) -> Self {
-        Self { size, standing: Standing::NOMINAL, plates: None }
+        Self { size, standing: Placement::NOMINAL, plates: None }
     }
 
     /// Returns this frame shifted, tilted or curved as `standing` says.
     #[must_use]
-    pub fn standing(self, standing: Standing) -> Self {
+    pub fn with_placement(self, standing: Placement) -> Self {
         Self { standing, ..self }
     }
 
@@ -69,13 +69,19 @@ impl Plane {
         self.plates.as_ref().map(|plates| plates.cover())
     }
 
-    /// Intersects the frame with a ray that travels along `way` (see [`Standing::meet`]), through the plates if there are any.
-    pub(crate) fn meet(&self, from: DVec3, way: DVec3, wavelength_nm: f64, numbers: Option<RayNumbers>) -> Option<Met> {
+    /// Intersects the frame with a ray that travels along `way` (see [`Placement::meet`]), through the plates if there are any.
+    pub(crate) fn meet(
+        &self,
+        from: DVec3,
+        way: DVec3,
+        wavelength_nm: f64,
+        numbers: Option<RayNumbers>,
+    ) -> Option<FrameHit> {
         let (point, x, y) = self.standing.meet(from, way)?;
-        let Some(plates) = &self.plates else { return Some(Met { point, x, y, passed: 1.0 }) };
+        let Some(plates) = &self.plates else { return Some(FrameHit { point, x, y, passed: 1.0 }) };
         let (beside, passed) = plates.pass(self.axes(x, y).transpose() * way, wavelength_nm, numbers);
         let (x, y) = (x + beside.x, y + beside.y);
-        Some(Met { point: self.standing.at(x, y).0, x, y, passed })
+        Some(FrameHit { point: self.standing.at(x, y).0, x, y, passed })
     }
 
     /// Returns whether plates in front of the frame split points.
@@ -83,14 +89,14 @@ impl Plane {
         self.plates.as_ref().is_some_and(|plates| plates.splits())
     }
 
-    /// Returns the axes of the frame's surface at a point of it, see [`Standing::axes`].
+    /// Returns the axes of the frame's surface at a point of it, see [`Placement::axes`].
     pub(crate) fn axes(&self, x_mm: f64, y_mm: f64) -> glam::DMat3 {
         self.standing.axes(x_mm, y_mm)
     }
 
     /// Returns whether the frame is as [`Plane::new`] makes it.
     fn is_plain(&self) -> bool {
-        self.standing == Standing::NOMINAL && self.plates.is_none()
+        self.standing == Placement::NOMINAL && self.plates.is_none()
     }
 }
 
@@ -196,7 +202,7 @@ impl Vectorized for ReceiveBatch<'_> {
             let row = (0.5 + py / height_mm) * rows;
             // Also false if a ray runs along the plane and the position is NaN.
             let inside = (column >= 0.0) & (row >= 0.0) & (column < columns) & (row < rows);
-            let pixel = whole(row, last_row).0 * width_px + whole(column, last_column).0;
+            let pixel = floor_index(row, last_row).0 * width_px + floor_index(column, last_column).0;
             let alive = state[i] == ALIVE;
             (x[i], y[i], z[i]) = (px, py, 0.0);
             tag[i] = if alive & inside { pixel } else { tag[i] };
@@ -228,7 +234,7 @@ impl Vectorized for PlaceBatch<'_> {
             // There are fewer than 2^28 pixels and fewer than 2^16 columns. A quotient just below a whole number is
             // therefore at least 2^-16 below it. The division of doubles cannot round up to it, and truncation gives the row.
             let pixel = f64::from(tag[i] as i32);
-            let (_, row) = whole(pixel / columns, rows - 1.0);
+            let (_, row) = floor_index(pixel / columns, rows - 1.0);
             let column = pixel - row * columns;
             // The same as FrameSize::point_of, to the bit.
             x[i] = (0.5 - (column + u[i]) / columns) * width_mm;
@@ -242,7 +248,7 @@ impl Vectorized for PlaceBatch<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::standing::Bend;
+    use crate::placement::FrameShape;
     use spectra_core::Isa;
     use spectra_core::numbers::Numbers;
 
@@ -304,17 +310,17 @@ mod tests {
     #[test]
     fn a_frame_stands_as_it_is_told() {
         let bends = [
-            Bend::Flat,
-            Bend::Cylinder { radius_mm: -60.0 },
-            Bend::Cylinder { radius_mm: 25.0 },
-            Bend::Sphere { radius_mm: -40.0 },
-            Bend::Sphere { radius_mm: 50.0 },
+            FrameShape::Flat,
+            FrameShape::Cylinder { radius_mm: -60.0 },
+            FrameShape::Cylinder { radius_mm: 25.0 },
+            FrameShape::Sphere { radius_mm: -40.0 },
+            FrameShape::Sphere { radius_mm: 50.0 },
         ];
         let n = 500;
         let (u, v) = (uniform(0, n), uniform(1, n));
         for bend in bends {
-            let standing = Standing::new([3.0, -2.0], [0.2, -0.15], bend);
-            let plane = Plane::new(size()).standing(standing);
+            let standing = Placement::new([3.0, -2.0], [0.2, -0.15], bend);
+            let plane = Plane::new(size()).with_placement(standing);
             let mut rays = RayBatch::new(n);
             rays.restart(n);
             for (i, tag) in rays.columns_mut().tag.iter_mut().enumerate() {
@@ -359,18 +365,18 @@ mod tests {
     fn shapes_are_where_geometry_says() {
         let shift = DVec3::new(3.0, -2.0, 0.0);
         for r in [-45.0_f64, 45.0] {
-            let cylinder = Standing::new([3.0, -2.0], [0.0; 2], Bend::Cylinder { radius_mm: r });
+            let cylinder = Placement::new([3.0, -2.0], [0.0; 2], FrameShape::Cylinder { radius_mm: r });
             let (p, _) = cylinder.at(15.0, 7.0);
             let d = p - shift - DVec3::new(0.0, 7.0, r);
             assert!((d.length() - 45.0).abs() < 1e-12 && d.y.abs() < 1e-12);
             // The arc of 15 mm is an angle of a third of a radian.
             assert!((p.x - 3.0 - 45.0 * libm::sin(1.0 / 3.0)).abs() < 1e-12);
-            let sphere = Standing::new([3.0, -2.0], [0.0; 2], Bend::Sphere { radius_mm: r });
+            let sphere = Placement::new([3.0, -2.0], [0.0; 2], FrameShape::Sphere { radius_mm: r });
             let (p, _) = sphere.at(15.0, 7.0);
             assert!(((p - shift - DVec3::new(0.0, 0.0, r)).length() - 45.0).abs() < 1e-12);
             assert!(p.z * r > 0.0);
         }
-        let tilted = Standing::new([0.0; 2], [std::f64::consts::FRAC_PI_6, 0.0], Bend::Flat);
+        let tilted = Placement::new([0.0; 2], [std::f64::consts::FRAC_PI_6, 0.0], FrameShape::Flat);
         let (p, n) = tilted.at(0.0, 12.0);
         assert!((p - DVec3::new(0.0, 12.0 * 0.75_f64.sqrt(), 6.0)).length() < 1e-12, "{p}");
         assert!((n - DVec3::new(0.0, 0.5, -(0.75_f64.sqrt()))).length() < 1e-12, "{n}");
@@ -384,11 +390,11 @@ mod tests {
     fn plates_are_the_same_from_both_sides() {
         use crate::plates::Plate;
         use spectra_core::spectral::BAND;
-        let medium = |name: &str| spectra_glass::Catalogue::bundled().medium(name).expect("bundled");
+        let medium = |name: &str| spectra_glass::Catalog::bundled().medium(name).expect("bundled");
         let quartz = Plate::crystal(&medium("SiO2/Ghosh-o"), &medium("SiO2/Ghosh-e"), 1.5, 0.4, &BAND);
         let glass = Plate::glass(&medium("SCHOTT/N-BK7"), 2.0, |_| 0.8, &BAND);
-        let standing = Standing::new([1.0, -2.0], [0.1, 0.05], Bend::Flat);
-        let plane = Plane::new(size()).standing(standing).behind(Plates::new(&BAND, vec![glass, quartz]));
+        let standing = Placement::new([1.0, -2.0], [0.1, 0.05], FrameShape::Flat);
+        let plane = Plane::new(size()).with_placement(standing).behind(Plates::new(&BAND, vec![glass, quartz]));
         let n = 500;
         let (u, v, p, q) = (uniform(0, n), uniform(1, n), uniform(2, n), uniform(3, n));
         let mut rays = RayBatch::new(n).with_numbers();

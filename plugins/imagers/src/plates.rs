@@ -145,10 +145,10 @@ mod tests {
     use spectra_core::RayBatch;
     use spectra_core::numbers::Numbers;
     use spectra_core::spectral::BAND;
-    use spectra_glass::Catalogue;
+    use spectra_glass::Catalog;
 
     fn medium(name: &str) -> Medium {
-        Catalogue::bundled().medium(name).expect("bundled")
+        Catalog::bundled().medium(name).expect("bundled")
     }
 
     /// 2 mm of N-BK7 shift the focus of a cone by t (1 - 1/n), 0.6815 mm at the d line (n = 1.51680, SCHOTT). A steep ray

@@ -7,7 +7,7 @@ use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_color::Gamut;
-use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, Finished, Wanted};
+use spectra_core::frame::{DisplayPicture, ExposureChannel, ExposureFrame, ExtraRequest, FinishedPicture};
 use spectra_core::params::{Faults, Params, Wavelength, Whole};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
@@ -115,10 +115,10 @@ impl Response for Bands {
 
     /// Shows the colors of the bands as an eye sees them, with automatic exposure.
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+        self.finish(exposure, ExtraRequest::default()).map(|finished| finished.display)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Option<FinishedPicture> {
         let planes = exposure.planes(&self.channels)?;
         let channels = ["X", "Y", "Z"].into_iter().enumerate().map(|(k, name)| ExposureChannel {
             name: name.into(),

@@ -7,7 +7,7 @@ use crate::plane::Plane;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_color::Gamut;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, Wanted};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, ExtraRequest, FinishedPicture};
 use spectra_core::params::{Exposure, Fault, Faults, Illuminance, Params, Positive, Quantity, Time};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
@@ -103,10 +103,10 @@ impl Response for XyzResponse {
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+        self.finish(exposure, ExtraRequest::default()).map(|finished| finished.display)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Option<FinishedPicture> {
         let adapted = self.balance.matrix(exposure);
         finish_xyz(exposure, self.white, self.gamut, adapted.as_ref(), wanted).ok()
     }

@@ -11,9 +11,9 @@
 #![cfg(feature = "oiio")]
 
 mod bridge;
+mod header_size;
 mod library;
 mod reading;
-mod stated;
 mod writing;
 
 pub use library::OpenImageIo;

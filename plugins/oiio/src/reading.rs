@@ -1,7 +1,7 @@
 //! Reads files with OpenImageIO and converts the pixels to a [`FilePicture`].
 
 use crate::bridge::ffi::{self, Header, Wanted};
-use crate::stated;
+use crate::header_size;
 use spectra_core::resources::{Found, ResourceError};
 use spectra_pictures::library::{FilePicture, PictureLimits};
 use std::io::Write;
@@ -45,7 +45,7 @@ pub(crate) fn read(ending: &str, file: &Found, limits: PictureLimits, pixels: bo
     let text = |cause: cxx::Exception| tidy(cause.what());
     let system = |cause: ResourceError| cause.to_string();
     let mut receiver = Receiver::new(&format, limits, file.size_bytes().map_err(system)?, pixels);
-    if let Some([width, height]) = stated::size(&format, &file.read(BEGINNING_BYTES).map_err(system)?) {
+    if let Some([width, height]) = header_size::size(&format, &file.read(BEGINNING_BYTES).map_err(system)?) {
         receiver.check([width, height])?;
     }
     // The library reads as little of a file on disk as it can.

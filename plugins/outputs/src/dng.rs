@@ -7,7 +7,7 @@ use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::{Digitize, Imager};
 use spectra_pictures::write::{RawLens, dng};
-use spectra_scene::{Holds, Output, Scene, Shot};
+use spectra_scene::{FileContent, Output, Scene, Shot};
 
 /// The raw numbers of a sensor, as converted from analog to digital, as a DNG file.
 ///
@@ -42,8 +42,8 @@ impl Output for Dng {
         ["", ".dng"]
     }
 
-    fn holds(&self) -> Holds {
-        Holds::Numbers
+    fn content(&self) -> FileContent {
+        FileContent::Numbers
     }
 
     fn check(&self, imager: &dyn Imager) -> Result<(), [String; 2]> {

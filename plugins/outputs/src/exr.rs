@@ -2,14 +2,14 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{ExposureFrame, ImageState, Wanted};
+use spectra_core::frame::{ExposureFrame, ExtraRequest, ImageState};
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::{Film, Imager};
 use spectra_pictures::library;
 use spectra_pictures::write::{LinearSpace, exr, picture_exr, tiled_exr};
-use spectra_scene::{GhostPaths, Holds, LightKind, LightLayer, Output, Shot};
+use spectra_scene::{FileContent, GhostPaths, LightKind, LightLayer, Output, Shot};
 
 /// The linear exposure as an OpenEXR file with its recorded channels, or the finished picture.
 ///
@@ -139,7 +139,7 @@ struct Exr {
 
 impl Exr {
     /// Selects the layers that this output writes from those that the picture has.
-    fn own<'a>(&self, layers: &'a [LightLayer]) -> Result<Vec<&'a LightLayer>, WriteFault> {
+    fn selected_layers<'a>(&self, layers: &'a [LightLayer]) -> Result<Vec<&'a LightLayer>, WriteFault> {
         let (kinds, paths): (Vec<_>, Vec<_>) = layers.iter().partition(|layer| layer.paths == GhostPaths::All);
         let of_kind = |kind: &LightKind| kinds.iter().copied().find(|layer| layer.kind == *kind);
         let mut own: Vec<&LightLayer> = self.lights.iter().filter_map(of_kind).collect();
@@ -213,8 +213,8 @@ impl Output for Exr {
         ["", ".exr"]
     }
 
-    fn holds(&self) -> Holds {
-        Holds::Light
+    fn content(&self) -> FileContent {
+        FileContent::Light
     }
 
     fn lights(&self) -> &[LightKind] {
@@ -231,7 +231,7 @@ impl Output for Exr {
         if self.lights.is_empty() && self.ghost_paths == 0 {
             return write(out, shot.exposure, &gains, squeeze, shot.attributes);
         }
-        let layers = self.own(shot.layers)?;
+        let layers = self.selected_layers(shot.layers)?;
         let channels = shot.exposure.channels.iter().chain(layers.iter().flat_map(|layer| &layer.channels));
         let frame = ExposureFrame { size: shot.exposure.size, channels: channels.cloned().collect() };
         let gains = gains.repeat(1 + layers.len());
@@ -268,8 +268,8 @@ impl Output for PictureExr {
         ["-picture", ".exr"]
     }
 
-    fn holds(&self) -> Holds {
-        Holds::Picture
+    fn content(&self) -> FileContent {
+        FileContent::Picture
     }
 
     fn check(&self, imager: &dyn Imager) -> Result<(), [String; 2]> {
@@ -291,17 +291,17 @@ impl Output for PictureExr {
         Ok(())
     }
 
-    fn wanted(&self) -> Wanted {
-        Wanted { open: true, layers: !self.layers.is_empty() }
+    fn extra_request(&self) -> ExtraRequest {
+        ExtraRequest { unclamped: true, layers: !self.layers.is_empty() }
     }
 
     fn write(&self, shot: &Shot<'_>, film: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
-        let beside = shot.beside(film)?;
+        let beside = shot.extra_data(film)?;
         let layers: Vec<_> = beside.layers.iter().filter(|layer| self.takes(&layer.name)).cloned().collect();
         let mut attributes = shot.attributes.to_vec();
         attributes.extend(beside.white.as_ref().map(|white| ("spectra:white".to_owned(), format!("1 is {white}"))));
         let colors = (self.space, shot.image_state(film));
-        picture_exr(out, shot.open(film)?, &layers, colors, self.half, shot.pixel_aspect(), &attributes)
+        picture_exr(out, shot.unclamped_picture(film)?, &layers, colors, self.half, shot.pixel_aspect(), &attributes)
     }
 }
 

@@ -10,7 +10,7 @@ use spectra_core::shutter;
 use spectra_core::sink::{Out, WriteFault};
 use spectra_pictures::write::{PictureSpace, png8, squared};
 use spectra_plot::{Cell, Page};
-use spectra_scene::{Holds, Output, OutputEntry, Shot, Told};
+use spectra_scene::{FileContent, Output, OutputEntry, SeriesSummary, Shot};
 use std::io::Cursor;
 
 /// A page about the picture for a browser, in one file that needs no network.
@@ -45,8 +45,8 @@ impl Output for Html {
     }
 
     /// Returns the kind of content: a figure, because all films share one page.
-    fn holds(&self) -> Holds {
-        Holds::Figure
+    fn content(&self) -> FileContent {
+        FileContent::Figure
     }
 
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
@@ -57,7 +57,7 @@ impl Output for Html {
         true
     }
 
-    fn write_series(&self, told: &Told<'_>, out: &mut dyn Out) -> Result<(), WriteFault> {
+    fn write_series(&self, told: &SeriesSummary<'_>, out: &mut dyn Out) -> Result<(), WriteFault> {
         Ok(out.write_all(of_series(told).to_html().as_bytes())?)
     }
 }
@@ -152,7 +152,7 @@ fn recorder(shot: &Shot<'_>) -> Facts {
     for (film, time) in shot.scene.films.iter().zip(shot.times) {
         let name = film.name.as_deref().unwrap_or("film");
         facts.push(fact(name, film.film.describe()));
-        facts.push(fact("exposed for", shutter::words(time.time_s)));
+        facts.push(fact("exposed for", shutter::format_time(time.time_s)));
     }
     facts
 }
@@ -247,7 +247,7 @@ fn time(report: &Value, seconds: &str) -> Facts {
 }
 
 /// Builds the page of a sweep or an animation.
-fn of_series(told: &Told<'_>) -> Page {
+fn of_series(told: &SeriesSummary<'_>) -> Page {
     let report = told.report;
     let mut page = Page::new(told.name);
     let pictures: Vec<&Value> = report["pictures"].as_array().into_iter().flatten().collect();

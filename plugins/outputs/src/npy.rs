@@ -7,7 +7,7 @@ use serde::Deserialize;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
-use spectra_scene::{Holds, Output, OutputEntry, Shot};
+use spectra_scene::{FileContent, Output, OutputEntry, Shot};
 
 /// The linear exposure as a NumPy array: height x width x channels of 32-bit floats.
 ///
@@ -42,8 +42,8 @@ impl Output for Npy {
         ["", ".npy"]
     }
 
-    fn holds(&self) -> Holds {
-        Holds::Numbers
+    fn content(&self) -> FileContent {
+        FileContent::Numbers
     }
 
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {

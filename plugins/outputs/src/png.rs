@@ -3,13 +3,13 @@
 use crate::screen::{Screen, Space};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::Wanted;
+use spectra_core::frame::ExtraRequest;
 use spectra_core::params::{Faults, Params, Whole};
 use spectra_core::registry::Context;
 use spectra_core::sink::{Out, WriteFault};
 use spectra_core::stage::Film;
 use spectra_pictures::write::{png8, png16};
-use spectra_scene::{Holds, Output, Shot};
+use spectra_scene::{FileContent, Output, Shot};
 
 /// The picture as a PNG file.
 ///
@@ -77,15 +77,15 @@ impl Output for Png {
         ["", ".png"]
     }
 
-    fn holds(&self) -> Holds {
-        Holds::Picture
+    fn content(&self) -> FileContent {
+        FileContent::Picture
     }
 
     fn check_film(&self, film: &dyn Film) -> Result<(), [String; 2]> {
         self.screen.check_film(film)
     }
 
-    fn wanted(&self) -> Wanted {
+    fn extra_request(&self) -> ExtraRequest {
         self.screen.wanted()
     }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_analysis::draw::{DrawnRay, Fans, Ground, Sheet, View};
+use spectra_analysis::draw::{DrawingBackground, DrawnRay, Fans, SectionView, Sheet};
 use spectra_analysis::fan::largest_field_rad;
 use spectra_color::RgbSpace;
 use spectra_core::RayBatch;
@@ -14,7 +14,7 @@ use spectra_core::stage::Emit;
 use spectra_glass::DispersionError;
 use spectra_lens::Section;
 use spectra_plot::{Canvas, Format};
-use spectra_scene::{Holds, Output, Scene, Shot};
+use spectra_scene::{FileContent, Output, Scene, Shot};
 use spectra_spectrum::Observer;
 use spectra_tracer::Indices;
 
@@ -111,8 +111,8 @@ impl Output for Rays {
         ["-rays", if self.0.format == As::Svg { ".svg" } else { ".png" }]
     }
 
-    fn holds(&self) -> Holds {
-        Holds::Figure
+    fn content(&self) -> FileContent {
+        FileContent::Figure
     }
 
     fn write(&self, shot: &Shot<'_>, _: usize, out: &mut dyn Out) -> Result<(), WriteFault> {
@@ -133,9 +133,9 @@ fn drawn(scene: &Scene, figure: &RaysParams) -> Result<Canvas, DispersionError> 
     let sheet = Sheet {
         width,
         height: Some(height),
-        ground: if figure.ground == On::Light { Ground::Light } else { Ground::Dark },
+        ground: if figure.ground == On::Light { DrawingBackground::Light } else { DrawingBackground::Dark },
         width_mm: figure.view.map(|view| view.mm()),
-        view: View { section: Section::Y },
+        view: SectionView { section: Section::Y },
         caption: String::new(),
         image: figure.screen,
     };

@@ -3,7 +3,7 @@
 use crate::exr::DENSITIES;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ImageState, Wanted};
+use spectra_core::frame::{DisplayPicture, ExtraRequest, ImageState};
 use spectra_core::sink::WriteFault;
 use spectra_core::stage::Film;
 use spectra_pictures::write::{PictureSpace, squared};
@@ -33,8 +33,8 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    pub(crate) fn wanted(self) -> Wanted {
-        Wanted { open: self.space != Space::Srgb, layers: false }
+    pub(crate) fn wanted(self) -> ExtraRequest {
+        ExtraRequest { unclamped: self.space != Space::Srgb, layers: false }
     }
 
     pub(crate) fn check_film(self, film: &dyn Film) -> Result<(), [String; 2]> {
@@ -53,9 +53,9 @@ impl Screen {
         let (picture, space) = match self.space {
             Space::Srgb if shot.image_state(film) == ImageState::Data => (shot.picture(film)?, PictureSpace::Values),
             Space::Srgb => (shot.picture(film)?, PictureSpace::Srgb),
-            Space::DisplayP3 => (shot.open(film)?, PictureSpace::DisplayP3),
-            Space::Rec2020 => (shot.open(film)?, PictureSpace::Rec2020),
-            Space::AcesCct => (shot.open(film)?, PictureSpace::AcesCct),
+            Space::DisplayP3 => (shot.unclamped_picture(film)?, PictureSpace::DisplayP3),
+            Space::Rec2020 => (shot.unclamped_picture(film)?, PictureSpace::Rec2020),
+            Space::AcesCct => (shot.unclamped_picture(film)?, PictureSpace::AcesCct),
         };
         let aspect = shot.pixel_aspect();
         if self.desqueeze && aspect != 1.0 {

@@ -4,8 +4,8 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod luminous;
+mod picture;
 mod sensitivities;
-mod shown;
 
 pub use luminous::{Luminous, PhotopicParams, ScotopicParams};
 pub use sensitivities::{Sensitivities, SensitivitiesParams};

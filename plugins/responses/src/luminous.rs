@@ -1,9 +1,9 @@
 //! The responses `photopic` and `scotopic`: light weighted by the sensitivity of the eye.
 
-use crate::shown::finish;
+use crate::picture::finish;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, Wanted};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, ExtraRequest, FinishedPicture};
 use spectra_core::params::{Faults, Params, Positive};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Channel, Grid};
@@ -71,10 +71,10 @@ impl Response for Luminous {
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+        self.finish(exposure, ExtraRequest::default()).map(|finished| finished.display)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Option<FinishedPicture> {
         let values = &exposure.channel(&self.channel.name)?.values;
         finish(exposure, self.white, wanted, |pixel| [f64::from(values[pixel]); 3])
     }

@@ -1,10 +1,10 @@
 //! The response `sensitivities`: channels given by their spectral sensitivities.
 
-use crate::shown::finish;
+use crate::picture::finish;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, Wanted};
-use spectra_core::params::{Faults, Params, Part, Positive, StageNode, Value};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, ExtraRequest, FinishedPicture};
+use spectra_core::params::{Deferred, Faults, Params, Positive, StageNode, Value};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Response;
@@ -28,7 +28,7 @@ use std::collections::BTreeMap;
 pub struct SensitivitiesParams {
     /// Map from the names of 1 to 64 channels to their sensitivities: each is a file beside the scene (`mine.csv`,
     /// `mine.csv#red`), a bundled name, or a spectrum written out (`gaussian:550,20`).
-    pub channels: Part<BTreeMap<String, String>>,
+    pub channels: Deferred<BTreeMap<String, String>>,
     /// Matrix from the channels to linear red, green and blue (sRGB primaries) of the picture: three rows, each with one factor per
     /// channel. It applies to channels scaled to 1 in the light of `balance`.
     pub matrix: Option<Vec<Vec<f64>>>,
@@ -57,10 +57,10 @@ impl Response for Sensitivities {
     }
 
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture> {
-        self.finish(exposure, Wanted::default()).map(|finished| finished.shown)
+        self.finish(exposure, ExtraRequest::default()).map(|finished| finished.display)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Option<FinishedPicture> {
         let planes = exposure.planes(&self.channels)?;
         let sum = |row: &[f64], pixel: usize| -> f64 {
             row.iter().zip(&planes).map(|(factor, plane)| factor * f64::from(plane[pixel])).sum()

@@ -2,7 +2,7 @@
 //! is sensitive.
 
 use crate::Cells;
-use crate::seen::Seen;
+use crate::recorded_spectrum::RecordedSpectrum;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use spectra_core::params::{NonNegative, Quantity, Ratio, schema_of};
@@ -34,7 +34,7 @@ impl Floor {
     }
 
     /// Returns the density from which the floor draws; `None` if the fraction is 0.
-    pub(crate) fn cells(self, grid: Grid, seen: &Seen) -> Option<Cells> {
+    pub(crate) fn cells(self, grid: Grid, seen: &RecordedSpectrum) -> Option<Cells> {
         if self.0 > 0.0 { Cells::of(grid, &seen.response) } else { None }
     }
 }

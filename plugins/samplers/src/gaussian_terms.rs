@@ -10,7 +10,7 @@
 //! followed, too.
 
 use crate::followed::Followed;
-use crate::seen::Seen;
+use crate::recorded_spectrum::RecordedSpectrum;
 use crate::truncated_gaussian::EDGE;
 use crate::{Cells, Continuum, Floor};
 use schemars::JsonSchema;
@@ -105,7 +105,7 @@ impl GaussianTerms {
 
 impl WavelengthSampler for GaussianTerms {
     fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
-        let seen = Seen::of(system)?;
+        let seen = RecordedSpectrum::of(system)?;
         if !seen.draws_continuum() {
             return Ok(Box::new(seen.mixture::<Signed>(system, None)?));
         }

@@ -13,7 +13,7 @@ use crate::SourceTimesResponse;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::Isa;
-use spectra_core::params::{Faults, Params, Part};
+use spectra_core::params::{Deferred, Faults, Params};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -44,7 +44,7 @@ pub struct HeroParams {
     pub group: u32,
     /// Strategy whose density is used, any except `hero` itself: a name, or a map with its `kind`; `source-times-response` if left
     /// out.
-    pub density: Option<Part<StageOf<dyn WavelengthSampler>>>,
+    pub density: Option<Deferred<StageOf<dyn WavelengthSampler>>>,
 }
 
 const MOST: u32 = 1024;

@@ -3,7 +3,7 @@
 //! A fraction of the samples (see [`Floor`]) follows the response of the channels, so that a spectrum that is zero where a channel
 //! is sensitive causes no bias. Without a floor, such a spectrum is refused.
 
-use crate::seen::Seen;
+use crate::recorded_spectrum::RecordedSpectrum;
 use crate::{Floor, Quantiles};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -11,7 +11,7 @@ use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Grid, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
-use spectra_spectrum::{Found, Observer, find_in};
+use spectra_spectrum::{AnySpectrum, Observer, find_in};
 
 /// Wavelengths are drawn in proportion to any named spectrum.
 ///
@@ -63,7 +63,7 @@ impl InverseTransform {
 
 impl WavelengthSampler for InverseTransform {
     fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
-        let seen = Seen::of(system)?;
+        let seen = RecordedSpectrum::of(system)?;
         let grid = system.grid;
         let resampled = (grid != self.grid)
             .then(|| grid.wavelengths_nm().map(|w| self.grid.interpolate(&self.spectrum, w)).collect::<Vec<_>>());
@@ -94,14 +94,14 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
     let spectrum = match ["x-bar", "y-bar", "z-bar"].iter().position(|n| *n == name.trim().to_ascii_lowercase()) {
         Some(i) => Observer::cie_1931_2deg().on_grid(&grid)[i].clone(),
         None => match find_in(&name, context.resources).map_err(|e| e.faults(fault))? {
-            Found::Emission(light) if light.continuum().is_none() => {
+            AnySpectrum::Emission(light) if light.continuum().is_none() => {
                 let text = format!("`{name}` has lines only, and so no density over wavelengths");
                 return Err(fault(text).hint("`kind: lines` draws the source's lines").into());
             }
-            Found::Emission(light) => light.on_grid(&grid),
-            Found::Transmittance(filter) => filter.on_grid(&grid),
-            Found::Reflectance(surface) => surface.on_grid(&grid),
-            Found::Sensitivity(detector) => detector.on_grid(&grid),
+            AnySpectrum::Emission(light) => light.on_grid(&grid),
+            AnySpectrum::Transmittance(filter) => filter.on_grid(&grid),
+            AnySpectrum::Reflectance(surface) => surface.on_grid(&grid),
+            AnySpectrum::Sensitivity(detector) => detector.on_grid(&grid),
         },
     };
     let sampler = InverseTransform::new(&name, grid, spectrum, floor)

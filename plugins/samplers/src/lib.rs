@@ -29,7 +29,7 @@ mod inverse_transform;
 mod lines;
 mod mixture;
 mod quantiles;
-mod seen;
+mod recorded_spectrum;
 mod source_times_response;
 mod stratified;
 mod truncated_gaussian;

@@ -1,6 +1,6 @@
 //! A continuous density of wavelengths, stored as its quantiles.
 
-use spectra_core::math::whole;
+use spectra_core::math::floor_index;
 use spectra_core::spectral::Grid;
 
 /// Number of quantile intervals of equal probability.
@@ -101,7 +101,7 @@ impl Quantiles {
         let (mut at, mut ends) = ([0_u32; CHUNK], [[0_i32; CHUNK]; 2]);
         for i in 0..len {
             let p = u[i] * INTERVALS as f64;
-            let (interval, below) = whole(p, (INTERVALS - 1) as f64);
+            let (interval, below) = floor_index(p, (INTERVALS - 1) as f64);
             at[i] = interval;
             part[i] = p - below;
         }
@@ -111,7 +111,7 @@ impl Quantiles {
         for i in 0..len {
             parts[i] = (at[i] >> 16) as i32;
             let q = part[i] * f64::from(parts[i]);
-            let (k, below) = whole(q, f64::from(parts[i] - 1));
+            let (k, below) = floor_index(q, f64::from(parts[i] - 1));
             at[i] = (at[i] & 0xffff) + k;
             part[i] = q - below;
         }

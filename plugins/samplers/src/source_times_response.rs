@@ -7,7 +7,7 @@
 //! A source of lines only comes out exact: with one channel in every sample, with several in 64 stratified ones; see
 //! [`crate::Shares`].
 
-use crate::seen::Seen;
+use crate::recorded_spectrum::RecordedSpectrum;
 use crate::{Mixture, Quantiles};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -26,7 +26,7 @@ pub struct SourceTimesResponse;
 
 impl SourceTimesResponse {
     pub(crate) fn density(system: &SystemResponse) -> Result<Mixture, String> {
-        let seen = Seen::of(system)?;
+        let seen = RecordedSpectrum::of(system)?;
         let continuum = seen
             .draws_continuum()
             .then(|| Quantiles::of(system.grid, &seen.with_floor(&seen.product, seen.of_continuum, FLOOR)))

@@ -5,7 +5,7 @@
 //! the response of the channels. All samples are weighted by the density of both together.
 
 use crate::mixture::CHUNK;
-use crate::seen::Seen;
+use crate::recorded_spectrum::RecordedSpectrum;
 use crate::{Cells, Continuum, Floor};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -60,7 +60,7 @@ impl TruncatedGaussianSampler {
 
     /// Fails if the Gaussian is practically zero from the shortest to the longest wavelength to which a channel is sensitive: then every
     /// ray except those of the floor would be lost. A center written in mm instead of nm ends here.
-    fn reaches(&self, gaussian: &TruncatedGaussian, seen: &Seen, grid: &Grid) -> Result<(), String> {
+    fn reaches(&self, gaussian: &TruncatedGaussian, seen: &RecordedSpectrum, grid: &Grid) -> Result<(), String> {
         let (low, high) =
             seen.wavelengths_nm(grid).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), w| (a.min(w), b.max(w)));
         if low > high || is_drawn(gaussian.density(self.center_nm.clamp(low, high))) {
@@ -75,7 +75,7 @@ impl TruncatedGaussianSampler {
 
 impl WavelengthSampler for TruncatedGaussianSampler {
     fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
-        let seen = Seen::of(system)?;
+        let seen = RecordedSpectrum::of(system)?;
         let (min_nm, max_nm) = (system.grid.start_nm, system.grid.end_nm());
         let gaussian = TruncatedGaussian::new(self.center_nm, self.sigma_nm, min_nm, max_nm)
             .map_err(|e| format!("truncated-gaussian: {e}"))?;

@@ -58,8 +58,8 @@ spectra_core::register!(source "beam": BeamParams, build);
 fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faults> {
     let p: BeamParams = params.parse()?;
     let shape = match (p.diameter, p.slit) {
-        (Some(diameter), None) => Shape::Disk { radius_mm: 0.5 * diameter.mm() },
-        (None, Some([width, height])) => Shape::Slit { half_mm: [0.5 * width.mm(), 0.5 * height.mm()] },
+        (Some(diameter), None) => BeamShape::Disk { radius_mm: 0.5 * diameter.mm() },
+        (None, Some([width, height])) => BeamShape::Slit { half_mm: [0.5 * width.mm(), 0.5 * height.mm()] },
         (Some(_), Some(_)) => {
             return Err(params.fault("slit", "`diameter` and `slit` exclude each other").into());
         }
@@ -90,7 +90,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Shape {
+enum BeamShape {
     Disk { radius_mm: f64 },
     Slit { half_mm: [f64; 2] },
 }
@@ -98,7 +98,7 @@ enum Shape {
 struct Beam {
     start_mm: [f64; 3],
     direction: [f64; 3],
-    shape: Shape,
+    shape: BeamShape,
     /// Radiant power, W/nm, and W in lines.
     spectrum: SpectralPower,
 }
@@ -130,11 +130,11 @@ impl Emit for Beam {
         let c = rays.columns_mut();
         for i in 0..c.x.len() {
             let (a, b) = match self.shape {
-                Shape::Disk { radius_mm } => {
+                BeamShape::Disk { radius_mm } => {
                     let (a, b) = concentric_disk(u[i], v[i]);
                     (radius_mm * a, radius_mm * b)
                 }
-                Shape::Slit { half_mm } => ((2.0 * u[i] - 1.0) * half_mm[0], (2.0 * v[i] - 1.0) * half_mm[1]),
+                BeamShape::Slit { half_mm } => ((2.0 * u[i] - 1.0) * half_mm[0], (2.0 * v[i] - 1.0) * half_mm[1]),
             };
             let at = |k: usize| self.start_mm[k] + a * right[k] + b * up[k];
             (c.x[i], c.y[i], c.z[i]) = (at(0), at(1), at(2));

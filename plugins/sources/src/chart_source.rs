@@ -1,15 +1,15 @@
 //! `kind: chart`: a test chart that the program draws.
 
 use crate::chart::{self, Chart, Ink};
-use crate::flat::{Flat, Places, Texture};
-use crate::frame::{Edge, Placed, Width};
+use crate::frame::{Edge, PlanePlacement, Width};
 use crate::palette::Palette;
+use crate::plane_source::{Places, PlaneSource, Texture};
 use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_color::{RgbSpace, Transfer};
 use spectra_core::Isa;
-use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity};
+use spectra_core::params::{Deferred, Faults, Length, Luminance, Params, Positive, Quantity};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::{Line, SpectralPower};
 use spectra_core::stage::{ColorModel, Source};
@@ -68,7 +68,7 @@ struct ChartParams {
     luminance: Positive<Luminance>,
     /// Color model that turns RGB into a spectrum. If left out, patches have their measured reflectances; if given, every ink
     /// has this model's spectrum for its sRGB color.
-    color: Option<Part<StageOf<dyn ColorModel>>>,
+    color: Option<Deferred<StageOf<dyn ColorModel>>>,
     /// Seed of charts with random parts (`star-field`), 0 or more.
     #[serde(default)]
     seed: u64,
@@ -147,7 +147,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     };
     if p.edge.is_none() && !p.width.is_fill() {
         let (width_mm, height_mm) = (chart.width_mm(), chart.height_mm());
-        let placed = Placed { width_mm, height_mm, distance_mm, center_mm: [0.0; 2] };
+        let placed = PlanePlacement { width_mm, height_mm, distance_mm, center_mm: [0.0; 2] };
         placed.warn_unless_filled("the chart", params, context);
     }
     let scale = p.luminance.cd_per_m2() / white::luminance_cd_m2(&white);
@@ -155,7 +155,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let palette = Palette::new(context.grid, &spectra);
     let texture =
         ChartTexture { edge: p.edge.unwrap_or_default(), ..ChartTexture::new(chart, palette, &spectra, white) };
-    Ok(Box::new(Flat { texture, distance_mm }))
+    Ok(Box::new(PlaneSource { texture, distance_mm }))
 }
 
 /// Reads the user's reflectances for `chart: patches`.
@@ -223,7 +223,7 @@ fn measured(
             Ink::Own(i) => own.get(usize::from(*i)).map_or_else(|| light.scaled(0.0), |r| lit(light, r)),
             Ink::Rgb(encoded) => {
                 if model.is_none() {
-                    model = Some(build_stage::<dyn ColorModel>(&params.nothing_said("color"), context)?);
+                    model = Some(build_stage::<dyn ColorModel>(&params.default_stage("color"), context)?);
                 }
                 let Some(model) = &model else { return Err(Faults::new()) };
                 // The model's white and the light have the same chromaticity; give them the same luminance.

@@ -2,9 +2,9 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::frame_view::{FrameView, SightLine};
 use spectra_core::params::{Fault, Length, Node, Params, Positive, Value};
 use spectra_core::registry::Context;
-use spectra_core::view::{Sight, View};
 
 /// Factor by which `width: fill` makes a source larger than the part that the frame sees. The frame is probed at some points
 /// only, and no border may show between them.
@@ -43,7 +43,7 @@ impl Width {
         aspect: f64,
         distance_mm: f64,
         center_mm: [f64; 2],
-        view: Option<&View>,
+        view: Option<&FrameView>,
         params: &Params,
     ) -> Result<f64, Fault> {
         match self {
@@ -65,7 +65,7 @@ impl Width {
 }
 
 /// Returns the width that fills the frame, mm; `None` if no plane does.
-pub(crate) fn needed_mm(view: &View, aspect: f64, distance_mm: f64, center_mm: [f64; 2]) -> Option<f64> {
+pub(crate) fn needed_mm(view: &FrameView, aspect: f64, distance_mm: f64, center_mm: [f64; 2]) -> Option<f64> {
     let [x, y] = view.half_size_mm(distance_mm, center_mm)?;
     Some(2.0 * MARGIN * x.max(y * aspect)).filter(|mm| *mm > 0.0)
 }
@@ -102,15 +102,15 @@ impl Edge {
 }
 
 /// Size and position of a flat source on its plane.
-pub(crate) struct Placed {
+pub(crate) struct PlanePlacement {
     pub width_mm: f64,
     pub height_mm: f64,
     pub distance_mm: f64,
     pub center_mm: [f64; 2],
 }
 
-impl Placed {
-    fn holds(&self, sight: &Sight) -> bool {
+impl PlanePlacement {
+    fn holds(&self, sight: &SightLine) -> bool {
         let [x, y] = sight.at_mm(self.distance_mm);
         (x - self.center_mm[0]).abs() <= 0.5 * self.width_mm && (y - self.center_mm[1]).abs() <= 0.5 * self.height_mm
     }

@@ -4,18 +4,18 @@
 //! coverage, times the transmission of the layers in front of it (T. Porter and T. Duff, "Compositing digital images",
 //! SIGGRAPH 1984). Hidden parts are not guessed: the layer behind has them.
 
-use crate::flat::Texture;
-use crate::frame::{Edge, Placed, Width};
-use crate::halves::{Half, Halves};
-use crate::lazy::Lazy;
-use crate::picture::map::PictureMap;
-use crate::picture::{Making, PictureFile, color_model, find};
+use crate::deferred_source::DeferredSource;
+use crate::frame::{Edge, PlanePlacement, Width};
+use crate::picture::picture_texture::PictureTexture;
+use crate::picture::{PictureFile, PictureSettings, color_model, find};
+use crate::plane_source::Texture;
+use crate::split_source::{LightPart, SplitSource};
 use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::RayBatch;
 use spectra_core::loss::{ALIVE, Loss};
-use spectra_core::params::{Faults, Length, Luminance, Params, Part, Positive, Quantity, Warning};
+use spectra_core::params::{Deferred, Faults, Length, Luminance, Params, Positive, Quantity, Warning};
 use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Emit, Radiance, Source};
@@ -48,7 +48,7 @@ use std::sync::Arc;
 struct LayersParams {
     /// List of layers, 1 to 64, from front to back.
     #[schemars(length(min = 1, max = 64))]
-    layers: Vec<Part<LayerParams>>,
+    layers: Vec<Deferred<LayerParams>>,
     /// Light whose chromaticity is white: the name of a spectrum, a file beside the scene, or an expression such as
     /// `blackbody:3200`.
     #[serde(default = "daylight")]
@@ -57,7 +57,7 @@ struct LayersParams {
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
     /// Color model that turns RGB into a spectrum; `smooth` if left out.
-    color: Option<Part<StageOf<dyn ColorModel>>>,
+    color: Option<Deferred<StageOf<dyn ColorModel>>>,
 }
 
 /// One layer, as written in a scene.
@@ -127,8 +127,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let width_mm = shown_mm * header.widened(header.overscan);
         let aspect = header.aspect_with(header.overscan);
         let luminance_cd_m2 = layer.luminance.unwrap_or(p.luminance).cd_per_m2();
-        let making = Making { model: std::sync::Arc::clone(model), width_mm, luminance_cd_m2, edge };
-        let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm };
+        let making = PictureSettings { model: std::sync::Arc::clone(model), width_mm, luminance_cd_m2, edge };
+        let placed = PlanePlacement { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm };
         // Only the last layer must fill the frame, since there is nothing behind it.
         let is_last = i + 1 == p.layers.len();
         if is_last && width.is_fill() {
@@ -142,7 +142,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     faults.into_result(())?;
     let stand_in = Layers::new(layers.iter().map(Pending::white).collect());
     let emits = layers.iter().all(|layer| layer.making.edge == Edge::Black);
-    Ok(Box::new(Lazy::new(Box::new(stand_in), emits, move || {
+    Ok(Box::new(DeferredSource::new(Box::new(stand_in), emits, move || {
         let mut faults = Faults::new();
         let read: Vec<(Layer, Vec<Warning>)> = layers.iter().filter_map(|layer| faults.take(layer.read())).collect();
         faults.into_result(())?;
@@ -153,8 +153,8 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
             return Ok((Box::new(Layers::new(read)), doubts));
         };
         let half = |half| Layers::new(read.iter().map(|layer| layer.half(half)).collect());
-        let (lights, rest) = (half(Half::Lights), half(Half::Rest));
-        Ok((Box::new(Halves { lights, rest, whole: Layers::new(read), pays }), doubts))
+        let (lights, rest) = (half(LightPart::Lights), half(LightPart::Rest));
+        Ok((Box::new(SplitSource { lights, rest, whole: Layers::new(read), pays }), doubts))
     })))
 }
 
@@ -162,7 +162,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
 struct Pending {
     file: PictureFile,
     header: Header,
-    making: Making,
+    making: PictureSettings,
     distance_mm: f64,
     center_mm: [f64; 2],
 }
@@ -176,7 +176,7 @@ impl Pending {
     /// Reads the layer. Also returns warnings about its file.
     fn read(&self) -> Result<(Layer, Vec<Warning>), Faults> {
         let mut linear = self.making.read(&self.file, self.header.overscan)?;
-        let doubts = self.file.doubts(&linear);
+        let doubts = self.file.warnings(&linear);
         let cover = linear.alpha.take().map(Arc::new);
         let map = self.making.map(linear, &self.file.name);
         Ok((Layer { map, cover, distance_mm: self.distance_mm, center_mm: self.center_mm }, doubts))
@@ -184,7 +184,7 @@ impl Pending {
 }
 
 struct Layer {
-    map: PictureMap,
+    map: PictureTexture,
     /// Coverage (alpha) of each pixel, 0 to 1; `None` if the layer covers everything.
     cover: Option<Arc<Vec<f32>>>,
     distance_mm: f64,
@@ -193,7 +193,7 @@ struct Layer {
 
 impl Layer {
     /// Returns this layer with one half of its light, and with the same coverage.
-    fn half(&self, half: Half) -> Self {
+    fn half(&self, half: LightPart) -> Self {
         Self { map: self.map.half(half), cover: self.cover.clone(), ..*self }
     }
 

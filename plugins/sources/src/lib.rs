@@ -5,13 +5,13 @@
 mod beam;
 pub mod chart;
 mod chart_source;
-mod flat;
+mod deferred_source;
 mod frame;
-mod halves;
 mod layers;
-mod lazy;
 mod palette;
 mod picture;
+mod plane_source;
 mod point;
+mod split_source;
 mod sun;
 mod white;

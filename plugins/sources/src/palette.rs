@@ -1,9 +1,9 @@
 //! Spectra of a few inks, tabulated for fast lookup by ink and wavelength.
 
-use crate::flat::Places;
+use crate::plane_source::Places;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::isa::Vectorized;
-use spectra_core::math::whole;
+use spectra_core::math::floor_index;
 use spectra_core::spectral::{Grid, Line, SpectralPower};
 
 /// Radiance spectra of numbered inks. Numbers beyond the last ink are dark.
@@ -122,7 +122,7 @@ impl Palette {
         for i in 0..len {
             let place = (wavelength_nm[i] - grid.start_nm) * inverse_step;
             let inside = (place >= 0.0) & (place <= top);
-            let (cell, below) = whole(if inside { place } else { 0.0 }, last);
+            let (cell, below) = floor_index(if inside { place } else { 0.0 }, last);
             part[i] = place - below;
             // The last row is dark.
             row[i] = if inside { u32::from(ink[i]).min(inks) } else { inks } * count + cell;

@@ -5,7 +5,7 @@ use crate::white;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_color::Transfer;
-use spectra_core::params::{Angle, Faults, Length, Params, Part, Positive, Quantity, RadiantIntensity};
+use spectra_core::params::{Angle, Deferred, Faults, Length, Params, Positive, Quantity, RadiantIntensity};
 use spectra_core::registry::{Context, StageOf};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Emit, Source};
@@ -47,7 +47,7 @@ struct PointParams {
     #[schemars(inner(range(min = 0, max = 255)))]
     rgb: Option<[f64; 3]>,
     /// Color model that turns `rgb` into a spectrum; `smooth` if left out.
-    color: Option<Part<StageOf<dyn ColorModel>>>,
+    color: Option<Deferred<StageOf<dyn ColorModel>>>,
     /// Radiant intensity of the point in the band, W/sr if bare.
     #[serde(default = "intensity")]
     intensity: Positive<RadiantIntensity>,

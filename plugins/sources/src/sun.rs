@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::{concentric_disk, cos, tan};
-use spectra_core::params::{Angle, Faults, Illuminance, Params, Part, Positive, Quantity, Warning};
+use spectra_core::params::{Angle, Deferred, Faults, Illuminance, Params, Positive, Quantity, Warning};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Emit, Radiance, Source, Split};
@@ -42,7 +42,7 @@ struct SunParams {
     #[serde(default = "illuminance")]
     illuminance: Positive<Illuminance>,
     /// Source to which the sun is added, such as a picture or a chart; black if left out.
-    over: Option<Part<StageOf<dyn Source>>>,
+    over: Option<Deferred<StageOf<dyn Source>>>,
 }
 
 fn diameter() -> Positive<Angle> {
@@ -208,8 +208,8 @@ impl Source for Over {
     fn prepare(&self) -> Result<(), Faults> {
         self.over.prepare()
     }
-    fn doubts(&self) -> &[Warning] {
-        self.over.doubts()
+    fn warnings(&self) -> &[Warning] {
+        self.over.warnings()
     }
     fn spectrum(&self) -> &SpectralPower {
         self.over.spectrum()

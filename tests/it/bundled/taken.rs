@@ -4,8 +4,8 @@ use super::plane::Plane;
 use crate::common::repository;
 use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_render::{Alone, Control, Effort, GhostRays, RenderOptions, Renderer, Rendering, Traced};
-use spectra_scene::{Developed, LightKind, Scene, Search, Shot, load_series};
+use spectra_render::{Control, Effort, GhostRays, RenderOptions, Renderer, Rendering, SingleThread, Traced};
+use spectra_scene::{Developed, LightKind, Scene, Shot, ViewSearch, load_series};
 use std::sync::{Arc, OnceLock};
 
 /// Selects a picture of a scene and the part of its light to render.
@@ -47,7 +47,7 @@ impl Taken {
         let path = repository(&format!("scenes/{name}.yaml"));
         let set: Vec<String> = take.set.iter().map(|text| (*text).to_owned()).collect();
         let series = load_series(&path, &set).unwrap_or_else(|faults| panic!("{name}: {faults}"));
-        let search = Search { effort: Effort::Draft, workers: &Alone };
+        let search = ViewSearch { effort: Effort::Draft, workers: &SingleThread };
         let scene = series.scene_between(take.index, None, None, search);
         let scene = Arc::new(scene.unwrap_or_else(|faults| panic!("{name}: {faults}")));
         let (isa, shared) = (Isa::detect(), Arc::clone(&scene));
@@ -58,12 +58,13 @@ impl Taken {
             None => Renderer::new(shared, &RenderOptions { isa, effort: Effort::Draft, ..RenderOptions::default() }),
         };
         let renderer = renderer.unwrap_or_else(|error| panic!("{name}: {error}"));
-        let rendering = renderer.run(&Alone, &Control::new()).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let warnings = series.warnings().iter().chain(&scene.warnings).chain(scene.source.doubts());
+        let rendering = renderer.run(&SingleThread, &Control::new()).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let warnings = series.warnings().iter().chain(&scene.warnings).chain(scene.source.warnings());
         let mut said: Vec<String> = warnings.map(|warning| warning.0.message.clone()).collect();
         if take.ghosts.is_none() {
             said.extend(rendering.warnings.iter().cloned());
-            let beyond = scene.films.iter().filter_map(|film| film.film.beyond(&film.exposure(&rendering.exposure)));
+            let beyond =
+                scene.films.iter().filter_map(|film| film.film.misexposure(&film.exposure(&rendering.exposure)));
             said.extend(beyond.map(|beyond| format!("nearly the whole film is {beyond:?}")));
         }
         Self { scene, rendering, films: OnceLock::new(), said }

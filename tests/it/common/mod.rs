@@ -3,7 +3,7 @@
 
 pub mod statistics;
 
-use spectra_command::Called;
+use spectra_command::CommandOutput;
 use spectra_plugins as _;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ pub fn answer_in(folder: &Path, arguments: &[&str]) -> Output {
     called(Some(folder), arguments).map_or_else(|_| run_in(folder, arguments), output)
 }
 
-fn called(folder: Option<&Path>, arguments: &[&str]) -> io::Result<Called> {
+fn called(folder: Option<&Path>, arguments: &[&str]) -> io::Result<CommandOutput> {
     let own = || {
         folder.map_or(Ok(()), work_in)?;
         Ok(spectra_command::call(arguments.iter().map(Into::into), spectra_workspace::unpack))
@@ -47,7 +47,7 @@ fn called(folder: Option<&Path>, arguments: &[&str]) -> io::Result<Called> {
     })
 }
 
-fn output(called: Called) -> Output {
+fn output(called: CommandOutput) -> Output {
     Output { status: exit_status(called.code), stdout: called.out, stderr: called.err }
 }
 

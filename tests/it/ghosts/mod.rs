@@ -376,12 +376,12 @@ fn threads_batches_and_steps_change_no_bit() {
     light.save(&mut file).expect("written");
     let mut light = Sums::load(&whole, &mut &file[..]).expect("of this scene");
     whole.advance(&mut light, 64, &threads, &control).expect("rendered");
-    assert_eq!(bits(&whole.look(whole.scene(), &light).expect("memory")), want);
+    assert_eq!(bits(&whole.rendering(whole.scene(), &light).expect("memory")), want);
     // The search before the first ray does not depend on the number of samples.
     let fewer = renderer(&["render.samples=3", "render.rays=37500"]);
     let mut light = whole.begin().expect("memory");
     whole.advance(&mut light, 3, &threads, &control).expect("rendered");
-    assert!(bits(&whole.look(whole.scene(), &light).expect("memory")) == run(&fewer, 2));
+    assert!(bits(&whole.rendering(whole.scene(), &light).expect("memory")) == run(&fewer, 2));
 }
 
 /// Polarization changes the light of ghosts by a few per cent and no more. Without reflections the bits are those without the key.

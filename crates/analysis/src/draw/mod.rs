@@ -6,7 +6,7 @@ mod sheet;
 
 pub use outline::{Outlines, Solid, outlines};
 pub use rays::Fans;
-pub use sheet::{Ground, Sheet};
+pub use sheet::{DrawingBackground, Sheet};
 
 use glam::DVec3;
 use spectra_core::Loss;
@@ -34,12 +34,12 @@ impl DrawnRay {
 
 /// The section plane of a drawing, in which z runs to the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct View {
+pub struct SectionView {
     /// The section shown: y (or x) points upward.
     pub section: Section,
 }
 
-impl View {
+impl SectionView {
     /// Returns the point at this height in the section, in the frame of a surface, mm.
     #[must_use]
     pub fn across(&self, height_mm: f64, z_mm: f64) -> DVec3 {

@@ -1,6 +1,6 @@
 //! Elements as areas: the section of a lens through its axis.
 
-use super::View;
+use super::SectionView;
 use glam::DVec3;
 use spectra_core::math::sin;
 use spectra_core::surface::Action;
@@ -35,7 +35,7 @@ pub struct Outlines {
 }
 
 /// Cuts a lens in a section. `reach_mm` is the height of the light at each element; it sizes elements without a stated size.
-pub fn outlines(lens: &Lens, view: &View, reach_mm: &[f64]) -> Outlines {
+pub fn outlines(lens: &Lens, view: &SectionView, reach_mm: &[f64]) -> Outlines {
     let mut all = Outlines::default();
     let sizes: Vec<f64> = (0..lens.elements.len()).map(|at| size_mm(lens, at, reach_mm)).collect();
     for (at, e) in lens.elements.iter().enumerate() {
@@ -100,13 +100,13 @@ fn size_mm(lens: &Lens, at: usize, reach_mm: &[f64]) -> f64 {
     before.or(after).unwrap_or_else(|| (1.08 * reach_mm.get(at).copied().unwrap_or(0.0)).max(1e-3))
 }
 
-fn sag(e: &Element, height_mm: f64, view: &View) -> f64 {
+fn sag(e: &Element, height_mm: f64, view: &SectionView) -> f64 {
     let local = view.across(height_mm, 0.0);
     e.surface.sag_mm(local.x, local.y).unwrap_or(0.0)
 }
 
 /// Returns the profile of a surface from its lower to its upper edge, as far as the surface is defined, mm.
-fn profile(e: &Element, size_mm: f64, view: &View) -> Vec<DVec3> {
+fn profile(e: &Element, size_mm: f64, view: &SectionView) -> Vec<DVec3> {
     let points = (0..POINTS).filter_map(|i| {
         // Points are closer together toward the edges, where steep surfaces bend away.
         let h = size_mm * sin(std::f64::consts::PI * (i as f64 / (POINTS - 1) as f64 - 0.5));
@@ -125,7 +125,7 @@ fn profile(e: &Element, size_mm: f64, view: &View) -> Vec<DVec3> {
 }
 
 /// Returns the outline between two surfaces: each within its clear size, flat annuli out to the common edge, and chamfers.
-fn cut(front: &Element, back: &Element, [a, b]: [f64; 2], outer: f64, view: &View) -> Vec<DVec3> {
+fn cut(front: &Element, back: &Element, [a, b]: [f64; 2], outer: f64, view: &SectionView) -> Vec<DVec3> {
     let side = |e: &Element, size: f64| {
         let mut points = profile(e, size, view);
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else { return points };
@@ -146,7 +146,7 @@ fn cut(front: &Element, back: &Element, [a, b]: [f64; 2], outer: f64, view: &Vie
 }
 
 /// Bevels both ends of a profile: by the chamfer leg along z, and by the same length inward.
-fn chamfer(points: &mut Vec<DVec3>, e: &Element, view: &View) {
+fn chamfer(points: &mut Vec<DVec3>, e: &Element, view: &SectionView) {
     let leg = e.chamfer_mm;
     if leg == 0.0 || points.len() < 2 {
         return;

@@ -1,6 +1,6 @@
 //! The sheet on which a lens is drawn.
 
-use super::{DrawnRay, Outlines, Solid, View, outlines, reach_mm};
+use super::{DrawnRay, Outlines, SectionView, Solid, outlines, reach_mm};
 use glam::DVec3;
 use spectra_color::spectral_color_srgb8;
 use spectra_core::math::{log10, pow};
@@ -9,7 +9,7 @@ use spectra_plot::{Anchor, Canvas, Color, Point, Rect, Stroke, TextStyle};
 
 /// The background of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ground {
+pub enum DrawingBackground {
     /// White paper: tinted glass, a scale, a caption.
     Light,
     /// Black: white glass, and rays that add their light where they cross.
@@ -26,9 +26,9 @@ pub struct Sheet {
     /// Width of the shown region, mm; `None` fits it to the lens.
     pub width_mm: Option<f64>,
     /// Background.
-    pub ground: Ground,
+    pub ground: DrawingBackground,
     /// Section plane.
-    pub view: View,
+    pub view: SectionView,
     /// A line of text below the lens; empty for none.
     pub caption: String,
     /// Whether the space behind the lens up to the image plane is shown.
@@ -73,7 +73,7 @@ impl Sheet {
         ];
         let scale = Scale { factor, origin };
         let mut canvas = Canvas::new(self.width, height, &lens.name);
-        if self.ground == Ground::Dark {
+        if self.ground == DrawingBackground::Dark {
             canvas = canvas.on(Color::BLACK);
         }
         self.axis(&mut canvas, &scale, [low[0], high[0]], lens);
@@ -97,7 +97,7 @@ impl Sheet {
     }
 
     fn ink(&self) -> Color {
-        if self.ground == Ground::Dark { Color::WHITE } else { Color::INK }
+        if self.ground == DrawingBackground::Dark { Color::WHITE } else { Color::INK }
     }
 
     fn places(&self, scale: &Scale, points: &[DVec3]) -> Vec<Point> {
@@ -151,7 +151,7 @@ impl Sheet {
 
     fn axis(&self, canvas: &mut Canvas, scale: &Scale, [left, right]: [f64; 2], lens: &Lens) {
         let folded = lens.elements.iter().any(|e| e.pose.rotation != glam::DMat3::IDENTITY && !e.reversed);
-        if self.ground == Ground::Dark || folded {
+        if self.ground == DrawingBackground::Dark || folded {
             return;
         }
         let stroke = Stroke::new(Color::GREY.with_opacity(0.7), 0.6).dashed(&[14.0, 3.0, 2.0, 3.0]);
@@ -160,7 +160,7 @@ impl Sheet {
 
     /// Tint of a glass: blue for crowns, amber for flints, deeper for a higher index.
     fn glass(&self, solid: &Solid) -> Color {
-        if self.ground == Ground::Dark {
+        if self.ground == DrawingBackground::Dark {
             return Color::WHITE.with_opacity(0.16);
         }
         let flint = ((60.0 - solid.vd) / 35.0).clamp(0.0, 1.0);
@@ -171,7 +171,7 @@ impl Sheet {
     }
 
     fn edges(&self, canvas: &mut Canvas, scale: &Scale, parts: &Outlines) {
-        let stroke = Stroke::new(self.ink(), if self.ground == Ground::Dark { 1.6 } else { 1.0 }).round();
+        let stroke = Stroke::new(self.ink(), if self.ground == DrawingBackground::Dark { 1.6 } else { 1.0 }).round();
         for solid in &parts.solids {
             canvas.outline(&self.places(scale, &solid.outline), &stroke);
         }
@@ -233,8 +233,8 @@ impl Sheet {
         }
         let color = Color::from(spectral_color_srgb8(ray.wavelength_nm));
         let stroke = match self.ground {
-            Ground::Light => Stroke::new(color.toward(Color::BLACK, 0.12), 0.75),
-            Ground::Dark => Stroke::new(color.with_opacity(ray.strength), 1.0).as_light(),
+            DrawingBackground::Light => Stroke::new(color.toward(Color::BLACK, 0.12), 0.75),
+            DrawingBackground::Dark => Stroke::new(color.with_opacity(ray.strength), 1.0).as_light(),
         };
         canvas.polyline(&points, &stroke);
     }

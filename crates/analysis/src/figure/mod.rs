@@ -77,13 +77,13 @@ fn sheet(canvas: &mut Canvas, rect: Rect) {
 mod tests {
     use super::*;
     use spectra_plot::Pixels;
-    use spectra_spectrum::{Found, find};
+    use spectra_spectrum::{AnySpectrum, find};
 
     fn pixel(pixels: &Pixels, at: Point) -> [i32; 3] {
         pixels.rgb[at[1] as usize * pixels.width_px as usize + at[0] as usize].map(i32::from)
     }
 
-    fn found(name: &str) -> (String, Found) {
+    fn found(name: &str) -> (String, AnySpectrum) {
         (name.to_owned(), find(name).expect("known"))
     }
 

@@ -3,7 +3,7 @@
 use super::{entry, order, palette, rows, shortened, stroke};
 use spectra_color::{RgbSpace, spectral_color_linear, to_u8};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Point, Rect, Stop, Stroke, TextStyle};
-use spectra_spectrum::{BAND, Found, Grid, Kind, Line, Tabulated};
+use spectra_spectrum::{AnySpectrum, BAND, Grid, Kind, Line, Tabulated};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 500.0;
@@ -16,14 +16,14 @@ const GRID: Grid = Grid { start_nm: 350.0, step_nm: 0.5, count: 961 };
 /// Transmittance, reflectance and sensitivity are shown as they are. Spectral lines are drawn as vertical lines; a figure of one light
 /// labels the wavelengths of its strongest ones.
 #[must_use]
-pub fn spectrum(spectra: &[(String, Found)]) -> Canvas {
+pub fn spectrum(spectra: &[(String, AnySpectrum)]) -> Canvas {
     spectrum_and_functions(spectra, &[])
 }
 
 /// Draws spectra as [`spectrum`] does, and other functions of wavelength that may be negative, such as color matching functions or the
 /// components that spectra are summed from. The functions are shown as they are.
 #[must_use]
-pub fn spectrum_and_functions(spectra: &[(String, Found)], functions: &[(String, Tabulated)]) -> Canvas {
+pub fn spectrum_and_functions(spectra: &[(String, AnySpectrum)], functions: &[(String, Tabulated)]) -> Canvas {
     let all_names = spectra.iter().map(|(name, _)| name).chain(functions.iter().map(|(name, _)| name));
     let names: Vec<String> = all_names.map(|name| shortened(name)).collect();
     let values = |f: &Tabulated| GRID.wavelengths_nm().map(|nm| f.at(nm)).collect();
@@ -94,10 +94,10 @@ struct Curve {
 }
 
 impl Curve {
-    fn of(found: &Found) -> Self {
+    fn of(found: &AnySpectrum) -> Self {
         let matter = |values: Vec<f64>| Self { continuum: Some(values), lines: Vec::new() };
         match found {
-            Found::Emission(light) => {
+            AnySpectrum::Emission(light) => {
                 let power = light.to_power(&GRID);
                 let peak = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
                 let unit = |value: f64, peak: f64| if peak > 0.0 { value / peak } else { 0.0 };
@@ -107,14 +107,14 @@ impl Curve {
                 let continuum = light.continuum().map(|_| power.continuum.iter().map(|v| unit(*v, highest)).collect());
                 Self { continuum, lines }
             }
-            Found::Transmittance(filter) => matter(filter.on_grid(&GRID)),
-            Found::Reflectance(surface) => matter(surface.on_grid(&GRID)),
-            Found::Sensitivity(detector) => matter(detector.on_grid(&GRID)),
+            AnySpectrum::Transmittance(filter) => matter(filter.on_grid(&GRID)),
+            AnySpectrum::Reflectance(surface) => matter(surface.on_grid(&GRID)),
+            AnySpectrum::Sensitivity(detector) => matter(detector.on_grid(&GRID)),
         }
     }
 }
 
-fn quantity(spectra: &[(String, Found)]) -> &'static str {
+fn quantity(spectra: &[(String, AnySpectrum)]) -> &'static str {
     let all = |kind: Kind| spectra.iter().all(|(_, found)| found.kind() == kind);
     match () {
         () if all(Kind::Emission) => "relative power",
@@ -126,7 +126,7 @@ fn quantity(spectra: &[(String, Found)]) -> &'static str {
 }
 
 /// Upper end of the scale: at least 1 if any spectrum is not a sensitivity, with room for labels above lines.
-fn top(spectra: &[(String, Found)], curves: &[Curve]) -> f64 {
+fn top(spectra: &[(String, AnySpectrum)], curves: &[Curve]) -> f64 {
     let values = curves.iter().flat_map(|c| c.continuum.iter().flatten()).copied();
     let highest = values.fold(0.0, f64::max);
     let shares = spectra.iter().any(|(_, found)| found.kind() != Kind::Sensitivity);

@@ -1,6 +1,6 @@
 //! Finds the object point in front of a lens that is in focus at a given image point.
 
-use crate::Light;
+use crate::AnalysisLight;
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
 use spectra_glass::DispersionError;
@@ -33,8 +33,8 @@ const PARALLEL: f64 = 1e-14;
 ///
 /// # Errors
 /// A medium has no usable index in this light.
-pub fn conjugate(lens: &Lens, light: Light, image_mm: DVec3) -> Result<Option<Conjugate>, DispersionError> {
-    let held = Optics::new(light.hold(lens));
+pub fn conjugate(lens: &Lens, light: AnalysisLight, image_mm: DVec3) -> Result<Option<Conjugate>, DispersionError> {
+    let held = Optics::new(light.with_fixed_indices(lens));
     if held.largest_semi_diameter_mm().is_none() {
         return Ok(None);
     }

@@ -1,8 +1,8 @@
 //! Comparison of several lenses side by side.
 
 use super::LensReport;
-use super::field::{FREQUENCY_PER_MM, NEAR_AXIS_RAD, distortion};
-use crate::Light;
+use super::lens_field::{FREQUENCY_PER_MM, NEAR_AXIS_RAD, distortion};
+use crate::AnalysisLight;
 use serde::Serialize;
 use spectra_optics::{Beam, ObjectPoint, Optics};
 use std::fmt;
@@ -43,13 +43,13 @@ const CELLS: usize = 96;
 impl Comparison {
     /// Computes the figures of several lenses, as they are focused and stopped, all in one light or each at its own reference line.
     #[must_use]
-    pub fn of(lenses: &[Optics], light: Option<Light>) -> Self {
-        let light = |lens: &Optics| light.unwrap_or(Light::Wavelength(lens.reference_nm));
+    pub fn of(lenses: &[Optics], light: Option<AnalysisLight>) -> Self {
+        let light = |lens: &Optics| light.unwrap_or(AnalysisLight::Wavelength(lens.reference_nm));
         let reports: Vec<LensReport> = lenses.iter().map(|lens| LensReport::of(lens, light(lens))).collect();
         let largest: Option<Vec<f64>> = reports.iter().map(|r| r.max_field_deg).collect();
         let field_deg = largest.and_then(|all| all.into_iter().reduce(f64::min)).map(|deg| PART * deg);
         let each = lenses.iter().zip(reports).map(|(lens, info)| {
-            let held = Optics::new(light(lens).hold(lens));
+            let held = Optics::new(light(lens).with_fixed_indices(lens));
             let beam = |field_rad: f64| {
                 let point = ObjectPoint::on_plane(&held, held.focused_mm, field_rad);
                 Beam::trace(&held, point, &[(held.reference_nm, 1.0)], CELLS).ok().flatten()
@@ -82,18 +82,18 @@ fn diffraction_limit(part: f64) -> f64 {
 }
 
 /// A row of the table: its label, and the function that formats the value of a lens.
-type Row = (String, Box<dyn Fn(&Compared) -> String>);
+type TableRow = (String, Box<dyn Fn(&Compared) -> String>);
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fn row(name: &str, answer: impl Fn(&Compared) -> Option<String> + 'static) -> Row {
+        fn row(name: &str, answer: impl Fn(&Compared) -> Option<String> + 'static) -> TableRow {
             (name.to_owned(), Box::new(move |lens| answer(lens).unwrap_or_else(|| "-".to_owned())))
         }
         fn mm(value: Option<f64>) -> Option<String> {
             value.filter(|v| v.is_finite()).map(|v| format!("{v:.2} mm"))
         }
         let per_mm = self.contrast_frequency_per_mm;
-        let mut rows: Vec<Row> = vec![
+        let mut rows: Vec<TableRow> = vec![
             row("year", |l| l.info.year.map(|y| y.to_string())),
             row("focal length", |l| mm(Some(l.info.efl_mm))),
             row("f-number", |l| l.info.f_number.map(|n| format!("f/{n:.3}"))),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
-use spectra_core::workers::Alone;
+use spectra_core::workers::SingleThread;
 use spectra_optics::Optics;
 use spectra_optics::{Effort, RearPupil};
 use spectra_tracer::{Indices, Travel};
@@ -29,7 +29,7 @@ pub(super) fn relative_illuminance(lens: &Optics, indices: Indices, points_mm: &
     };
     let tracer = lens.tracer(indices).ok()?;
     let points: Vec<DVec3> = points_mm.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect();
-    let pupil = RearPupil::search_by(lens, &tracer, &points, [wavelength_nm; 2], &Alone, Effort::Draft)?;
+    let pupil = RearPupil::search_by(lens, &tracer, &points, [wavelength_nm; 2], &SingleThread, Effort::Draft)?;
     let middle = |i: usize, of: usize| (i as f64 + 0.5) / of as f64;
     let cells: Vec<[f64; 2]> =
         (0..CELLS * CELLS).map(|i| [middle(i / CELLS, CELLS), middle(i % CELLS, CELLS)]).collect();

@@ -1,7 +1,7 @@
 //! Assumptions about the media of a lens: modeled dispersion, and absorption borrowed from similar glasses.
 
 use serde::Serialize;
-use spectra_glass::{Lender, Medium};
+use spectra_glass::{AbsorptionSubstitute, Medium};
 use spectra_lens::Lens;
 use std::fmt;
 
@@ -30,7 +30,8 @@ pub(super) fn assumed(lens: &Lens) -> Vec<AssumedMedium> {
             },
             _ => None,
         };
-        let lender: Option<Lender> = m.medium.absorption(lens.year).and_then(|a| a.lender).filter(|_| lens.absorption);
+        let lender: Option<AbsorptionSubstitute> =
+            m.medium.absorption(lens.year).and_then(|a| a.lender).filter(|_| lens.absorption);
         (modeled.is_some() || lender.is_some()).then(|| AssumedMedium {
             medium: m.label.clone(),
             modeled_from_lines: modeled,

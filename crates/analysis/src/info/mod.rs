@@ -1,15 +1,15 @@
 //! Figures of a lens: first-order data, pupils, field, prescription, mounts, and comparisons of lenses.
 
 mod compare;
-mod field;
 mod illuminance;
+mod lens_field;
 mod media;
 mod mounts;
 mod report;
 mod table;
 
 pub use compare::{Compared, Comparison};
-pub use field::{FieldReport, LimitReport, useful_field_rad};
+pub use lens_field::{FieldReport, LimitReport, useful_field_rad};
 pub use media::AssumedMedium;
 pub use mounts::{Glass, MOUNTS, Mount, MountReport, cleared};
 pub use report::{LensReport, SurfaceReport};

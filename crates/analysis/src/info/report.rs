@@ -1,10 +1,10 @@
 //! Report of a lens: first-order figures, pupils and prescription.
 
-use super::field::{
+use super::lens_field::{
     FREQUENCY_PER_MM, FieldReport, LimitReport, PARTS, field, field_points, fields_at_heights, focus_shift_mm,
 };
 use super::mounts::{Glass, MountReport, cleared};
-use crate::Light;
+use crate::AnalysisLight;
 use glam::DVec3;
 use serde::Serialize;
 use spectra_core::surface::Action;
@@ -151,8 +151,8 @@ pub struct SurfaceReport {
 impl LensReport {
     /// Computes the report of a lens, as it is focused and stopped, in one light.
     #[must_use]
-    pub fn of(lens: &Optics, light: Light) -> Self {
-        let held = Optics::new(light.hold(lens));
+    pub fn of(lens: &Optics, light: AnalysisLight) -> Self {
+        let held = Optics::new(light.with_fixed_indices(lens));
         let first_order = held.first_order(held.reference_nm);
         let marginal = held.marginal_ray().ok();
         let efl_x_mm = held.first_order_in(Section::X, held.reference_nm).efl_mm;
@@ -230,7 +230,7 @@ impl LensReport {
             notes: lens.notes.clone(),
             warnings: (lens.warnings.iter().cloned())
                 .chain(misplaced_image(lens, &first_order, paraxial))
-                .chain(lens.glass_doubts())
+                .chain(lens.glass_warnings())
                 .collect(),
         }
     }
@@ -241,8 +241,8 @@ impl LensReport {
     ///
     /// # Errors
     /// No chief ray lands at this height. The error is the largest height at which one lands, mm.
-    pub fn to_image_height(mut self, lens: &Optics, light: Light, height_mm: f64) -> Result<Self, f64> {
-        let held = Optics::new(light.hold(lens));
+    pub fn to_image_height(mut self, lens: &Optics, light: AnalysisLight, height_mm: f64) -> Result<Self, f64> {
+        let held = Optics::new(light.with_fixed_indices(lens));
         let fields = fields_at_heights(&held, &PARTS.map(|part| part * height_mm))?;
         self.chief_ray_exit_angle_deg = field_points(lens, &held, indices(light), &fields);
         self.is_cut = false;
@@ -251,7 +251,7 @@ impl LensReport {
 }
 
 /// Refractive indices that a tracer uses in this light.
-fn indices(light: Light) -> Indices {
+fn indices(light: AnalysisLight) -> Indices {
     light.wavelength_nm().map_or(Indices::Stated, Indices::At)
 }
 

@@ -14,7 +14,7 @@ pub fn color(picture: &Measured, white: Option<f64>, title: &str) -> Result<Canv
     if picture.colors.is_none() {
         return Err(picture.without_colors());
     }
-    let white = white.or_else(|| picture.white()).ok_or_else(super::field::dark)?;
+    let white = white.or_else(|| picture.white()).ok_or_else(super::quantity_map::dark)?;
     let srgb = RgbSpace::srgb();
     // Average linear light, which adds up: a reduced picture shows means.
     let [x, y, z] = [0, 1, 2].map(|i| {
@@ -26,7 +26,7 @@ pub fn color(picture: &Measured, white: Option<f64>, title: &str) -> Result<Canv
         srgb.encode(into_gamut(linear, srgb, Gamut::Perceptual)).map(to_u8)
     });
     let rgb: Vec<[u8; 3]> = rgb.collect();
-    let note = super::field::said(white, picture.unit);
+    let note = super::quantity_map::describe_white(white, picture.unit);
     let shown = Shown { frame: x.1, columns: x.2, rows: x.3, values: Vec::new() };
     Ok(sheet(picture, title, Some(&note), &shown, rgb))
 }

@@ -1,7 +1,7 @@
 //! Comparison of two pictures.
 
-use super::field::{Field, said};
 use super::measured::{Measured, NotMeasured, Unit};
+use super::quantity_map::{QuantityMap, describe_white};
 use serde::Serialize;
 use spectra_color::{RgbSpace, ciede2000, lab};
 
@@ -68,10 +68,10 @@ impl Difference {
 
     /// Returns CIEDE2000 of each pixel as a field to view; `None` without colors.
     #[must_use]
-    pub fn field(&self) -> Option<Field> {
+    pub fn field(&self) -> Option<QuantityMap> {
         let values = self.delta_e.clone()?;
         let name = "CIEDE2000".to_owned();
-        Some(Field { name, unit: String::new(), values, is_hue: false, white: self.white.clone() })
+        Some(QuantityMap { name, unit: String::new(), values, is_hue: false, white: self.white.clone() })
     }
 }
 
@@ -125,7 +125,7 @@ pub fn compare(first: &Measured, second: &Measured, white: Option<f64>) -> Resul
         let differs = |i: usize| ciede2000(of(first, i), of(second, i));
         (0..pixels).map(differs).map(|v| if v.is_finite() { v } else { f64::NAN }).collect()
     });
-    Ok(Difference { channels, delta_e, white: white.map(|y| said(y, first.unit)) })
+    Ok(Difference { channels, delta_e, white: white.map(|y| describe_white(y, first.unit)) })
 }
 
 fn differs(name: &str, unit: &str, picture: &Measured, values: &dyn Fn(usize) -> [f64; 2]) -> Differs {
@@ -182,7 +182,7 @@ fn differs(name: &str, unit: &str, picture: &Measured, values: &dyn Fn(usize) ->
 mod tests {
     use super::*;
     use spectra_color::matrix::apply;
-    use spectra_pictures::read::{Plane, Planes};
+    use spectra_pictures::read::{ChannelData, PictureChannels};
     use spectra_pictures::write::LinearSpace;
 
     /// Builds a picture with colors given in linear sRGB, written in another color space.
@@ -190,8 +190,9 @@ mod tests {
         let colors = [[1.0, 1.0, 1.0], [0.18, 0.18, 0.18], [0.8, 0.05, 0.1], [0.02, 0.3, 0.6]];
         let matrix = space.from_srgb();
         let of = |at: usize| colors.iter().map(|rgb| apply(&matrix, *rgb)[at] as f32).collect();
-        let plane = |(at, name): (usize, &str)| Plane { name: name.to_owned(), unit: String::new(), values: of(at) };
-        Measured::of(Planes {
+        let plane =
+            |(at, name): (usize, &str)| ChannelData { name: name.to_owned(), unit: String::new(), values: of(at) };
+        Measured::of(PictureChannels {
             format: "OpenEXR",
             width: 2,
             height: 2,
@@ -200,7 +201,7 @@ mod tests {
             chromaticities: Some(chromaticities),
             attributes: Vec::new(),
             clipped_at: None,
-            doubts: Vec::new(),
+            warnings: Vec::new(),
         })
         .expect("colors")
     }

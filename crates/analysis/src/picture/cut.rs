@@ -1,12 +1,12 @@
 //! Quantities along a line through a picture.
 
-use super::field::Field;
 use super::measured::{Measured, NotMeasured};
+use super::quantity_map::QuantityMap;
 use std::fmt::Write;
 
 /// The line of a cut through a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Way {
+pub enum CutLine {
     /// Along a row, counted from 0 at the top.
     Row(u32),
     /// Along a column, counted from 0 at the left.
@@ -41,18 +41,18 @@ impl Cut {
     ///
     /// # Errors
     /// The line leaves the picture, or has no length.
-    pub fn of(picture: &Measured, fields: &[Field], way: Way) -> Result<Self, NotMeasured> {
+    pub fn of(picture: &Measured, fields: &[QuantityMap], way: CutLine) -> Result<Self, NotMeasured> {
         let [width, height] = [picture.planes.width, picture.planes.height];
         let outside = |what: String| {
             let hint = format!("columns are 0 to {}, rows 0 to {}", width - 1, height - 1);
             NotMeasured::new(format!("{what} is not in the picture, which has {width} x {height} pixels"), hint)
         };
         let places_px: Vec<[f64; 2]> = match way {
-            Way::Row(row) if row >= height => return Err(outside(format!("row {row}"))),
-            Way::Row(row) => (0..width).map(|column| [f64::from(column) + 0.5, f64::from(row) + 0.5]).collect(),
-            Way::Column(column) if column >= width => return Err(outside(format!("column {column}"))),
-            Way::Column(column) => (0..height).map(|row| [f64::from(column) + 0.5, f64::from(row) + 0.5]).collect(),
-            Way::Line { from, to } => {
+            CutLine::Row(row) if row >= height => return Err(outside(format!("row {row}"))),
+            CutLine::Row(row) => (0..width).map(|column| [f64::from(column) + 0.5, f64::from(row) + 0.5]).collect(),
+            CutLine::Column(column) if column >= width => return Err(outside(format!("column {column}"))),
+            CutLine::Column(column) => (0..height).map(|row| [f64::from(column) + 0.5, f64::from(row) + 0.5]).collect(),
+            CutLine::Line { from, to } => {
                 let size = [f64::from(width), f64::from(height)];
                 for place in [from, to] {
                     if !(0..2).all(|i| (0.0..=size[i]).contains(&place[i])) {
@@ -76,7 +76,7 @@ impl Cut {
         };
         let pixel_mm = picture.size_mm.map(|mm| [mm[0] / f64::from(width), mm[1] / f64::from(height)]);
         Ok(Self {
-            labels: fields.iter().map(Field::label).collect(),
+            labels: fields.iter().map(QuantityMap::label).collect(),
             distance_px: distance([1.0, 1.0]),
             distance_mm: pixel_mm.map(distance),
             values: fields.iter().map(|f| places_px.iter().map(|p| at(picture, f, *p)).collect()).collect(),
@@ -118,7 +118,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// Interpolates a field between the centers of pixels; at a center it returns exactly the value of the pixel.
-fn at(picture: &Measured, field: &Field, [column, row]: [f64; 2]) -> f64 {
+fn at(picture: &Measured, field: &QuantityMap, [column, row]: [f64; 2]) -> f64 {
     let [width, height] = [picture.planes.width as usize, picture.planes.height as usize];
     let split = |at: f64, count: usize| {
         let at = (at - 0.5).clamp(0.0, count as f64 - 1.0);

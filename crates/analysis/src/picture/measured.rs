@@ -3,7 +3,7 @@
 use super::bands::{Band, edges_nm, middle_nm, xyz_of_band};
 use spectra_color::matrix::{Matrix, apply};
 use spectra_color::{Adaptation, RgbSpace, Transfer, xyz_of_xy};
-use spectra_pictures::read::{Planes, Trouble};
+use spectra_pictures::read::{FileProblem, PictureChannels};
 
 /// The unit of a picture's XYZ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ pub enum Colors {
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// Channels as the file stores them.
-    pub planes: Planes,
+    pub planes: PictureChannels,
     /// Source of the colors; `None` if the channels define none, such as those of a film's layers.
     pub colors: Option<Colors>,
     /// The unit of XYZ.
@@ -79,7 +79,7 @@ impl Measured {
     ///
     /// # Errors
     /// Two channels hold the same band of a spectrum.
-    pub fn of(planes: Planes) -> Result<Self, Trouble> {
+    pub fn of(planes: PictureChannels) -> Result<Self, FileProblem> {
         let number = |name: &str| planes.channels.iter().position(|c| c.name == name);
         let all = |names: [&str; 3]| Some([number(names[0])?, number(names[1])?, number(names[2])?]);
         let bands = bands(&planes)?;
@@ -237,13 +237,13 @@ fn size_mm(text: &str) -> Option<[f64; 2]> {
 }
 
 /// Finds the bands of a spectral picture, by rising wavelength; `None` if there are fewer than two.
-fn bands(planes: &Planes) -> Result<Option<Vec<Band>>, Trouble> {
+fn bands(planes: &PictureChannels) -> Result<Option<Vec<Band>>, FileProblem> {
     let named = planes.channels.iter().enumerate();
     let mut middles: Vec<(f64, usize)> = named.filter_map(|(i, c)| Some((middle_nm(&c.name)?, i))).collect();
     middles.sort_by(|a, b| a.0.total_cmp(&b.0));
     if let Some(pair) = middles.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         let text = format!("two channels hold the band around {} nm", pair[0].0);
-        return Err(Trouble { key: "file", text, hint: Some("keep one channel for each band".to_owned()) });
+        return Err(FileProblem { key: "file", text, hint: Some("keep one channel for each band".to_owned()) });
     }
     let nm: Vec<f64> = middles.iter().map(|(nm, _)| *nm).collect();
     let Some(edges) = edges_nm(&nm) else { return Ok(None) };

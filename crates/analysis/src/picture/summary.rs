@@ -34,7 +34,7 @@ pub struct Illuminance {
 
 /// Part of a picture that a color space cannot show.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Outside {
+pub struct OutOfGamut {
     /// Name of the color space.
     pub space: &'static str,
     /// Share of the lit pixels whose color has a negative component in this space, 0 to 1.
@@ -61,7 +61,7 @@ pub struct Summary {
     /// Share of the pixels that receive light, 0 to 1.
     pub lit_share: Option<f64>,
     /// Shares of colors outside sRGB, Display P3 and Rec. 2020.
-    pub out_of_gamut: Vec<Outside>,
+    pub out_of_gamut: Vec<OutOfGamut>,
     /// Share of the clipped pixels, 0 to 1: at the end of an integer scale, or above white. `None` if neither is known.
     pub clipped_share: Option<f64>,
 }
@@ -112,7 +112,7 @@ impl Summary {
             mean_xy: mean_xyz.and_then(spectra_color::chromaticity),
             mean_xyz,
             lit_share: mean_xyz.map(|_| share(lit, pixels)),
-            out_of_gamut: spaces.map(|(s, n)| Outside { space: s.name, share: share(n, lit) }).collect(),
+            out_of_gamut: spaces.map(|(s, n)| OutOfGamut { space: s.name, share: share(n, lit) }).collect(),
             clipped_share: picture
                 .clips_at()
                 .map(|_| share((0..pixels).filter(|pixel| picture.is_clipped(*pixel)).count(), pixels)),

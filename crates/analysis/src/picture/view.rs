@@ -1,7 +1,7 @@
 //! View of one quantity of a picture with a color scale.
 
-use super::field::Field;
 use super::measured::{Measured, NotMeasured};
+use super::quantity_map::QuantityMap;
 use super::summary::is_outside;
 use spectra_color::{Gamut, RgbSpace, into_gamut, to_u8, xyz_of_oklab};
 use spectra_plot::{Axes, Axis, Canvas, Color, Paint, Picture, Rect, Stop, Stroke, TextStyle, nice_ticks, text_width};
@@ -37,7 +37,7 @@ struct Ends {
 }
 
 impl Ends {
-    fn of(field: &Field, scale: Scale) -> Result<Self, NotMeasured> {
+    fn of(field: &QuantityMap, scale: Scale) -> Result<Self, NotMeasured> {
         let Some([least, most]) = field.range() else {
             return Err(NotMeasured::new(
                 format!("{} is undefined in the whole picture", field.name),
@@ -97,7 +97,7 @@ impl Ends {
         if inside.len() > 1 {
             return inside;
         }
-        [self.low, self.high].into_iter().map(|v| (v, super::field::short(v))).collect()
+        [self.low, self.high].into_iter().map(|v| (v, super::quantity_map::short(v))).collect()
     }
 }
 
@@ -113,7 +113,7 @@ fn label(value: f64, plain: String) -> String {
 
 fn power_label(step: f64, power: i32) -> String {
     match power {
-        -3..=4 => super::field::short(step * libm::pow(10.0, f64::from(power))),
+        -3..=4 => super::quantity_map::short(step * libm::pow(10.0, f64::from(power))),
         _ if step == 1.0 => format!("10^{{{}}}", signed(power)),
         _ => format!("{step} \u{d7} 10^{{{}}}", signed(power)),
     }
@@ -148,7 +148,7 @@ const UNDEFINED: [u8; 3] = [128, 128, 128];
 ///
 /// # Errors
 /// There is nothing to show: the quantity is defined nowhere, or is nowhere above 0 on a logarithmic scale.
-pub fn view(picture: &Measured, field: &Field, scale: Scale, title: &str) -> Result<Canvas, NotMeasured> {
+pub fn view(picture: &Measured, field: &QuantityMap, scale: Scale, title: &str) -> Result<Canvas, NotMeasured> {
     let ends = Ends::of(field, scale)?;
     let table: Vec<[u8; 3]> = (0..=1023).map(|i| shade(f64::from(i) / 1023.0)).collect();
     let color = |value: f64| match value {
@@ -176,7 +176,7 @@ pub fn clipping(picture: &Measured, white: Option<f64>, title: &str) -> Result<C
     if picture.colors.is_none() {
         return Err(picture.without_colors());
     }
-    let white = white.or_else(|| picture.white()).ok_or_else(super::field::dark)?;
+    let white = white.or_else(|| picture.white()).ok_or_else(super::quantity_map::dark)?;
     let srgb = RgbSpace::srgb();
     let kind = |pixel: usize| {
         let xyz = picture.xyz_under_d65(pixel).unwrap_or([f64::NAN; 3]);
@@ -200,7 +200,7 @@ pub fn clipping(picture: &Measured, white: Option<f64>, title: &str) -> Result<C
     // Show the highest kind in each block, so that a single marked pixel does not vanish.
     let shown = Shown::worst(picture, &|pixel| kinds[pixel]);
     let rgb = shown.values.iter().map(|v| if *v >= 0.0 { colors[*v as usize] } else { [to_u8(0.85 * (-1.0 - v)); 3] });
-    let note = super::field::said(white, picture.unit);
+    let note = super::quantity_map::describe_white(white, picture.unit);
     let mut canvas = sheet(picture, title, Some(&note), &shown, rgb.collect());
     let style = TextStyle::new(13.0);
     let words = ["beyond white", "outside sRGB", "both", "not a number"];
@@ -290,7 +290,7 @@ pub(super) fn sheet(picture: &Measured, title: &str, note: Option<&str>, shown: 
 }
 
 /// Draws the scale bar of a view, to the right of it.
-fn bar(canvas: &mut Canvas, frame: &Rect, field: &Field, ends: &Ends) {
+fn bar(canvas: &mut Canvas, frame: &Rect, field: &QuantityMap, ends: &Ends) {
     let left = frame.right + GAP;
     let place = Rect::new(left, frame.top, left + BAR, frame.bottom);
     let stop = |i: i32| {

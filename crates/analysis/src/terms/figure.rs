@@ -2,7 +2,7 @@
 
 use super::{Chain, Scatter};
 use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke, TextStyle, text_width};
-use spectra_spectrum::Shape;
+use spectra_spectrum::SpectralFunction;
 
 const WIDTH: f64 = 1080.0;
 const HEIGHT: f64 = 500.0;
@@ -36,7 +36,8 @@ fn product(canvas: &mut Canvas, chain: &Chain) {
     let [from, to] = chain.band_nm;
     let nm = |i: u32| from + (to - from) * f64::from(i) / f64::from(POINTS - 1);
     let curve = |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..POINTS).map(|i| f(nm(i))).collect() };
-    let shape = chain.factors[1..].iter().fold(chain.factors[0].shape.clone(), |all: Shape, f| all.times(&f.shape));
+    let shape =
+        chain.factors[1..].iter().fold(chain.factors[0].shape.clone(), |all: SpectralFunction, f| all.times(&f.shape));
     let spectra = curve(&|w| shape.at(w));
     // Evaluate factor by factor: that takes as many evaluations as the factors have terms, not as the product has.
     let terms = curve(&|w| chain.factors.iter().map(|f| f.mixture.at(w)).product());

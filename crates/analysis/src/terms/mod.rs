@@ -12,7 +12,7 @@ use serde::Serialize;
 use spectra_core::Isa;
 use spectra_core::numbers::Numbers;
 use spectra_core::spectral::Grid;
-use spectra_spectrum::{Found, GaussianMixture, OneTerm, Shape, fit_gaussians};
+use spectra_spectrum::{AnySpectrum, GaussianMixture, OneTerm, SpectralFunction, fit_gaussians};
 
 /// Largest number of terms of a product.
 pub const MOST_TERMS: f64 = 1_000_000.0;
@@ -45,7 +45,7 @@ pub struct Factor {
     pub mixture: GaussianMixture,
     /// The spectrum itself.
     #[serde(skip)]
-    pub shape: Shape,
+    pub shape: SpectralFunction,
 }
 
 /// Relative errors of estimates of the integral of the product of terms, for one number of samples.
@@ -138,17 +138,19 @@ impl Chain {
     ///
     /// # Errors
     /// [`ChainError`]. At most [`MOST_TERMS`] terms, one light and one detector are allowed.
-    pub fn new(factors: &[(String, Found)], terms: usize, grid: &Grid, isa: Isa) -> Result<Self, ChainError> {
+    pub fn new(factors: &[(String, AnySpectrum)], terms: usize, grid: &Grid, isa: Isa) -> Result<Self, ChainError> {
         for (i, (second, found)) in factors.iter().enumerate() {
-            let is_end = matches!(found, Found::Emission(_) | Found::Sensitivity(_));
-            let same = |(_, other): &&(String, Found)| other.kind() == found.kind();
+            let is_end = matches!(found, AnySpectrum::Emission(_) | AnySpectrum::Sensitivity(_));
+            let same = |(_, other): &&(String, AnySpectrum)| other.kind() == found.kind();
             if let Some((first, _)) = factors[..i].iter().find(same).filter(|_| is_end) {
                 let (first, second) = (first.clone(), second.clone());
                 return Err(ChainError::Twice { first, second, kind: found.kind().word() });
             }
         }
         // Check the number of terms before anything is fitted.
-        let terms_of = |found: &Found| shape_of(found).and_then(Shape::as_mixture).map_or(terms, |m| m.terms().len());
+        let terms_of = |found: &AnySpectrum| {
+            shape_of(found).and_then(SpectralFunction::as_mixture).map_or(terms, |m| m.terms().len())
+        };
         let count = factors.iter().map(|(_, found)| terms_of(found) as f64).product::<f64>();
         if count > MOST_TERMS {
             return Err(ChainError::TooMany { terms: count });
@@ -164,11 +166,11 @@ impl Chain {
         }
         let integral = product.band_integral(min_nm, max_nm);
         let sizes: f64 = product.terms().iter().map(|t| t.band_integral(min_nm, max_nm).abs()).sum();
-        let together = |shape: &dyn Fn(&Factor) -> Shape| {
+        let together = |shape: &dyn Fn(&Factor) -> SpectralFunction| {
             let all = factors[1..].iter().fold(shape(&factors[0]), |all, f| all.times(&shape(f)));
             (all.integral(min_nm, max_nm, PANEL_NM), all)
         };
-        let (quadrature, of_terms) = together(&|f| Shape::mixture(f.mixture.clone()));
+        let (quadrature, of_terms) = together(&|f| SpectralFunction::mixture(f.mixture.clone()));
         let (of_spectra, _) = together(&|f| f.shape.clone());
         if !(of_spectra > 0.0 && integral.is_finite() && integral != 0.0) {
             return Err(ChainError::Dark);
@@ -176,12 +178,12 @@ impl Chain {
         let (mean, deviation) = one_term.moments();
         let relative = deviation / integral.abs();
         // Use the product of terms, so that all methods estimate the same integral.
-        let wavelengths = |density: &Shape| {
+        let wavelengths = |density: &SpectralFunction| {
             let all = density.integral(min_nm, max_nm, PANEL_NM);
             let second = of_terms.times(&of_terms).over(density).integral(min_nm, max_nm, PANEL_NM) * all;
             (second / (integral * integral) - 1.0).max(0.0).sqrt()
         };
-        let even = Shape::rectangle(min_nm, max_nm).map_or(f64::NAN, |shape| wavelengths(&shape));
+        let even = SpectralFunction::rectangle(min_nm, max_nm).map_or(f64::NAN, |shape| wavelengths(&shape));
         let first = wavelengths(&factors[0].shape);
         let scatter = SAMPLES
             .into_iter()
@@ -227,8 +229,8 @@ impl Chain {
     }
 }
 
-fn factor(name: &str, found: &Found, terms: usize, grid: &Grid) -> Result<Factor, ChainError> {
-    if matches!(found, Found::Emission(light) if !light.lines().is_empty()) {
+fn factor(name: &str, found: &AnySpectrum, terms: usize, grid: &Grid) -> Result<Factor, ChainError> {
+    if matches!(found, AnySpectrum::Emission(light) if !light.lines().is_empty()) {
         return Err(ChainError::Lines(name.to_owned()));
     }
     let shape = shape_of(found).ok_or(ChainError::Dark)?;
@@ -255,12 +257,12 @@ fn factor(name: &str, found: &Found, terms: usize, grid: &Grid) -> Result<Factor
 }
 
 /// Returns the spectrum as a function of wavelength; `None` for light that consists of lines alone.
-fn shape_of(found: &Found) -> Option<&Shape> {
+fn shape_of(found: &AnySpectrum) -> Option<&SpectralFunction> {
     match found {
-        Found::Emission(light) => light.continuum(),
-        Found::Transmittance(filter) => Some(filter.shape()),
-        Found::Reflectance(surface) => Some(surface.shape()),
-        Found::Sensitivity(detector) => Some(detector.shape()),
+        AnySpectrum::Emission(light) => light.continuum(),
+        AnySpectrum::Transmittance(filter) => Some(filter.shape()),
+        AnySpectrum::Reflectance(surface) => Some(surface.shape()),
+        AnySpectrum::Sensitivity(detector) => Some(detector.shape()),
     }
 }
 
@@ -297,10 +299,10 @@ mod tests {
     #[test]
     fn a_chain_of_measured_spectra_is_exact_and_scatters_as_computed() {
         let factors = [
-            ("D65".to_owned(), Found::Emission(find_emission("D65").expect("bundled"))),
-            ("red".to_owned(), Found::Reflectance(find_reflectance("colorchecker#red").expect("bundled"))),
-            ("yellow".to_owned(), Found::Transmittance(find_transmittance("wratten-12").expect("bundled"))),
-            ("film".to_owned(), Found::Sensitivity(find_sensitivity("ilford-ortho-plus").expect("bundled"))),
+            ("D65".to_owned(), AnySpectrum::Emission(find_emission("D65").expect("bundled"))),
+            ("red".to_owned(), AnySpectrum::Reflectance(find_reflectance("colorchecker#red").expect("bundled"))),
+            ("yellow".to_owned(), AnySpectrum::Transmittance(find_transmittance("wratten-12").expect("bundled"))),
+            ("film".to_owned(), AnySpectrum::Sensitivity(find_sensitivity("ilford-ortho-plus").expect("bundled"))),
         ];
         let chain = Chain::new(&factors, 6, &BAND, Isa::Baseline).expect("a chain");
         assert_eq!(chain.terms, 6_usize.pow(4));
@@ -316,17 +318,18 @@ mod tests {
 
     #[test]
     fn what_is_no_chain_says_why() {
-        let light = |name: &str| (name.to_owned(), Found::Emission(find_emission(name).expect("a light")));
-        let new =
-            |factors: &[(String, Found)], terms| Chain::new(factors, terms, &BAND, Isa::Baseline).map(|c| c.terms);
+        let light = |name: &str| (name.to_owned(), AnySpectrum::Emission(find_emission(name).expect("a light")));
+        let new = |factors: &[(String, AnySpectrum)], terms| {
+            Chain::new(factors, terms, &BAND, Isa::Baseline).map(|c| c.terms)
+        };
         assert!(matches!(new(&[light("mercury")], 4), Err(ChainError::Lines(_))));
         assert!(matches!(new(&[light("D65"), light("A")], 4), Err(ChainError::Twice { .. })));
         let narrow = Transmittance::gaussian(550.0, 20.0, 1.0).expect("a filter");
-        let filter = ("narrow".to_owned(), Found::Transmittance(narrow));
+        let filter = ("narrow".to_owned(), AnySpectrum::Transmittance(narrow));
         assert_eq!(new(&[light("gaussian:500,30"), filter.clone()], 4), Ok(1));
         let yellow = find_transmittance("wratten-12").expect("bundled");
         let mut many = vec![light("D65")];
-        many.extend((0..4).map(|i| (i.to_string(), Found::Transmittance(yellow.clone()))));
+        many.extend((0..4).map(|i| (i.to_string(), AnySpectrum::Transmittance(yellow.clone()))));
         assert!(matches!(new(&many, 20), Err(ChainError::TooMany { .. })));
     }
 }

@@ -164,14 +164,14 @@ fn fields(row: &str) -> impl Iterator<Item = (usize, &str)> {
 fn number(field: &str) -> Result<f64, String> {
     match field.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("found {}, expected a finite number", shown(field))),
+        Ok(_) => Err(format!("found {}, expected a finite number", shortened(field))),
         Err(_) if field.is_empty() => Err("found nothing, expected a number".to_owned()),
-        Err(_) => Err(format!("found `{}`, expected a number", shown(field))),
+        Err(_) => Err(format!("found `{}`, expected a number", shortened(field))),
     }
 }
 
 /// Makes a user's text fit on one short line.
-fn shown(text: &str) -> String {
+fn shortened(text: &str) -> String {
     let safe: String = text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(41).collect();
     if safe.chars().count() > 40 { safe.chars().take(40).chain("...".chars()).collect() } else { safe }
 }

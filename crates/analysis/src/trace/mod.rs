@@ -13,13 +13,11 @@
 //! the ray.
 
 mod csv;
-mod row;
+mod trace_row;
 
-use crate::Light;
+use crate::AnalysisLight;
 use csv::NumberRows;
 use glam::DVec3;
-use row::Light as Left;
-use row::{Fate, Row};
 use spectra_core::quantity::light_nm;
 use spectra_core::spectral::BAND;
 use spectra_core::{Loss, LossCounts, RayBatch};
@@ -28,8 +26,10 @@ use spectra_optics::Optics;
 use spectra_tracer::{Indices, Path, Tracer, Travel, Work};
 use std::io::{BufRead, Write};
 use std::sync::Arc;
+use trace_row::RayState as Left;
+use trace_row::{Fate, TraceRow};
 
-pub use row::Format;
+pub use trace_row::Format;
 
 /// Why rays could not be traced.
 #[derive(Debug, thiserror::Error)]
@@ -85,7 +85,7 @@ const COLUMNS: [&str; 7] = ["x_mm", "y_mm", "z_mm", "l", "m", "n", "wavelength_n
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tracing<'a> {
     /// Light of all rays; if `None`, each ray has its own wavelength in the table.
-    pub light: Option<Light>,
+    pub light: Option<AnalysisLight>,
     /// Path that all rays follow; straight through the lens if `None`.
     pub path: Option<&'a Path>,
     /// Format of the result.
@@ -109,7 +109,7 @@ pub fn trace(
     let Tracing { light, path, format, every_surface } = tracing;
     let wanted = if light.is_some() { &COLUMNS[..6] } else { &COLUMNS[..] };
     let mut rows = NumberRows::new(input, file, wanted)?;
-    let mut bench = Bench::new(lens, light, path, every_surface)?;
+    let mut bench = BatchTracer::new(lens, light, path, every_surface)?;
     let mut text = format.header(every_surface);
     let mut more = true;
     while more {
@@ -131,9 +131,9 @@ fn room_for(rays: usize, tracer: &Tracer) -> RayBatch {
 }
 
 /// State of tracing a table batch by batch.
-struct Bench<'a> {
+struct BatchTracer<'a> {
     lens: &'a Optics,
-    light: Option<Light>,
+    light: Option<AnalysisLight>,
     path: Path,
     tracer: Arc<Tracer>,
     work: Work,
@@ -147,16 +147,16 @@ struct Bench<'a> {
     summary: TraceSummary,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> BatchTracer<'a> {
     fn new(
         lens: &'a Optics,
-        light: Option<Light>,
+        light: Option<AnalysisLight>,
         path: Option<&Path>,
         every_surface: bool,
     ) -> Result<Self, TraceError> {
         let indices = match light {
-            Some(Light::Stated) => Indices::Stated,
-            Some(Light::Wavelength(nm)) => Indices::At(nm),
+            Some(AnalysisLight::Stated) => Indices::Stated,
+            Some(AnalysisLight::Wavelength(nm)) => Indices::At(nm),
             None => Indices::Band { min_nm: BAND.start_nm, max_nm: BAND.end_nm() },
         };
         let tracer = lens.tracer(indices)?;
@@ -170,7 +170,7 @@ impl<'a> Bench<'a> {
             every_surface,
             outside: Vec::new(),
             start: Vec::with_capacity(BATCH),
-            seen_nm: light.and_then(Light::wavelength_nm).map(|nm| (nm, nm)),
+            seen_nm: light.and_then(AnalysisLight::wavelength_nm).map(|nm| (nm, nm)),
             summary: TraceSummary::default(),
         })
     }
@@ -249,7 +249,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Traces the batch and returns the rows to write.
-    fn trace(&mut self) -> Result<Vec<Row>, TraceError> {
+    fn trace(&mut self) -> Result<Vec<TraceRow>, TraceError> {
         let len = self.start.len();
         self.rays.restart(len);
         // Fixed indices belong to one wavelength; coatings and absorption use the same wavelength.
@@ -263,7 +263,7 @@ impl<'a> Bench<'a> {
             }
         }
         let wavelengths: Vec<f64> = self.start.iter().map(|ray| ray[6]).collect();
-        let is_stated = self.light == Some(Light::Stated);
+        let is_stated = self.light == Some(AnalysisLight::Stated);
         let followed = Followed { lens: self.lens, path: &self.path, wavelengths: &wavelengths, is_stated };
         let mut fates = followed.fates(&self.tracer, &mut self.rays, &mut self.work, self.every_surface);
         for at in std::mem::take(&mut self.outside) {
@@ -280,7 +280,7 @@ impl<'a> Bench<'a> {
                     Fate::Lost { cause, surface } => self.summary.losses.add(cause, surface, 1),
                     Fate::Passed { .. } => {}
                 }
-                rows.push(Row { ray, wavelength_nm, fate });
+                rows.push(TraceRow { ray, wavelength_nm, fate });
             }
         }
         Ok(rows)

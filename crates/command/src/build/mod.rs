@@ -51,7 +51,7 @@ pub(crate) fn build(arguments: &BuildArguments, unpack: Unpack, started: Instant
     for (plugin, stages) in plugins.iter().zip(&added) {
         console::out(&format!("{} {}: {}\n", plugin.package, plugin.version, stages.join(", ")))?;
     }
-    let took = crate::words::duration(started.elapsed().as_secs_f64());
+    let took = crate::formatting::duration(started.elapsed().as_secs_f64());
     let all: Vec<&str> = added.iter().flatten().map(String::as_str).collect();
     console::out(&format!("{} is ready ({took}): all of spectra, and {}\n", output.display(), all.join(", ")))?;
     Ok(DONE)

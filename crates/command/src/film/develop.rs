@@ -2,9 +2,9 @@
 
 use super::arguments::{FilmDevelop, MeterWhich, Switch};
 use super::keys::{self, set};
-use super::{called, plates};
+use super::{called, pictures};
 use crate::outcome::{Failure, Outcome};
-use crate::run::{Face, Speaks, told};
+use crate::run::{CliHost, OutputMode, with_json_error};
 use crate::{doc, version};
 use spectra_core::Isa;
 use spectra_session::{Develop, Setting, picture_ending};
@@ -12,14 +12,14 @@ use std::time::Instant;
 
 /// Develops pictures. With `--json`, a failure is also written as an event.
 pub(super) fn develop(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
-    told(developed(arguments, isa, started), arguments.json)
+    with_json_error(developed(arguments, isa, started), arguments.json)
 }
 
 fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
     let stock = called(&arguments.stock)?;
     let ending = || Ok(picture_ending(&arguments.set.overrides)?.unwrap_or_else(|| "png".to_owned()));
-    let plates::Found { target, plates, is_series, missing } =
-        plates::of(&arguments.pictures, arguments.output.as_deref(), &keys::stem(&stock), &ending)?;
+    let pictures::DevelopFiles { target, plates, is_series, missing } =
+        pictures::of(&arguments.pictures, arguments.output.as_deref(), &keys::stem(&stock), &ending)?;
     let job = Develop {
         plates,
         is_series,
@@ -35,8 +35,8 @@ fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
         versions: version::to_json(),
         unit_of: &doc::unit_of,
     };
-    let speaks = Speaks { json: arguments.json, quiet: arguments.quiet };
-    let face = Face::new(target, arguments.threads, isa, started, speaks, None);
+    let speaks = OutputMode { json: arguments.json, quiet: arguments.quiet };
+    let face = CliHost::new(target, arguments.threads, isa, started, speaks, None);
     let ended = spectra_session::develop(&job, &face)?;
     Ok(face.code(ended))
 }

@@ -44,7 +44,7 @@ pub(super) fn sensitivity(layer: &Layer, step_nm: usize) -> Vec<[f64; 2]> {
 
 /// Returns evenly spaced points (log10 exposure in lx s, density) of a curve, at most `step` apart in log10 exposure.
 pub(super) fn points(curve: &CharacteristicCurve, step: f64) -> Vec<[f64; 2]> {
-    let (low, high) = curve.span();
+    let (low, high) = curve.exposure_range();
     let steps = ((high - low) / step).ceil().max(1.0) as usize;
     let at = |i: usize| low + (high - low) * i as f64 / steps as f64;
     (0..=steps).map(|i| [at(i), curve.density(at(i))]).collect()
@@ -94,7 +94,7 @@ fn to_json(stock: &Stock) -> Value {
         "meter": stock.iso.map(|_| stock.meter.name()),
         "speed_of_curves": stock.curve_speed(),
         "relative_exposures_slid_by_log10": stock.slid,
-        "warnings": stock.doubts(),
+        "warnings": stock.warnings(),
         "iso_6": stock.iso_6().map(|at| json!({ "speed": at.speed, "minutes": at.minutes })),
         "reference_illuminant": stock.reference_illuminant,
         "mid_gray_lx_s": stock.iso.map(metered_exposure_lx_s),
@@ -313,7 +313,7 @@ fn text(stock: &Stock) -> String {
             let _ = writeln!(out, "{w:>8}{}", shown.collect::<String>());
         }
     }
-    for doubt in stock.doubts() {
+    for doubt in stock.warnings() {
         let _ = writeln!(out, "\nwarning: {doubt}");
     }
     out

@@ -9,12 +9,12 @@ use std::path::Path;
 
 /// Returns the setting of an option's value at a path of a scene.
 pub(super) fn set(path: &str, option: &str, value: &str) -> Setting {
-    Setting { path: path.to_owned(), value: value.to_owned(), said: format!("{option} {value}") }
+    Setting { path: path.to_owned(), value: value.to_owned(), as_typed: format!("{option} {value}") }
 }
 
 /// Returns a setting whose value follows from what the user wrote, `said`.
 fn following(path: &str, said: String, value: &str) -> Setting {
-    Setting { path: path.to_owned(), value: value.to_owned(), said }
+    Setting { path: path.to_owned(), value: value.to_owned(), as_typed: said }
 }
 
 /// Returns the name of the stock for use in file names.

@@ -25,7 +25,7 @@ use std::path::Path;
 const CHART: &str = "colorchecker";
 
 /// Colors of a surface in a light: to the eye, in the layers of the film, and in the picture. All are XYZ under D65 with Y = 1 for white.
-struct Seen {
+struct PatchColors {
     eye: [f64; 3],
     layers: [f64; 3],
     film: [f64; 3],
@@ -65,7 +65,7 @@ pub(crate) fn lamp(arguments: &FilmLamp) -> Outcome {
     let chart: Vec<&Reflectance> = patches.iter().map(|(_, surface)| surface).collect();
     let samples: Vec<&Reflectance> = color_evaluation_samples().iter().collect();
     let xyz_of_layers = layers_matrix(&stock, &reference, &chart)?;
-    let seen = |light: &Named<'_>| seen(light, &stock, &film, &xyz_of_layers, &chart);
+    let seen = |light: &Named<'_>| patch_colors(light, &stock, &film, &xyz_of_layers, &chart);
     let (in_test, in_reference) = (seen(&test)?, seen(&reference)?);
     let rows: Vec<LampPatch> = patches
         .iter()
@@ -150,13 +150,13 @@ fn film(arguments: &FilmLamp, stock: &Stock) -> Result<FilmInLight, Failure> {
 }
 
 /// Computes how surfaces look in a light to the eye, to the layers and in the picture.
-fn seen(
+fn patch_colors(
     light: &Named<'_>,
     stock: &Stock,
     film: &FilmInLight,
     xyz_of_layers: &[[f64; 3]; 3],
     surfaces: &[&Reflectance],
-) -> Result<Vec<Seen>, Failure> {
+) -> Result<Vec<PatchColors>, Failure> {
     let white = exposures(stock, &light.light, None);
     if white.iter().any(|e| !(*e > 0.0 && e.is_finite())) {
         return Err(light.dark());
@@ -165,7 +165,7 @@ fn seen(
     let one = |(surface, film): (&&Reflectance, [f64; 3])| {
         let exposed = exposures(stock, &light.light, Some(surface));
         let layers = matrix::apply(xyz_of_layers, [0, 1, 2].map(|i| exposed[i] / white[i]));
-        Ok(Seen { eye: to_eye(light, surface)?, layers, film })
+        Ok(PatchColors { eye: to_eye(light, surface)?, layers, film })
     };
     surfaces.iter().zip(pictures).map(one).collect()
 }

@@ -7,13 +7,13 @@ mod figure;
 mod info;
 mod keys;
 mod lamp;
-mod plates;
+mod pictures;
 
 pub(crate) use arguments::FilmArguments;
 
 use crate::console;
+use crate::formatting::figure_of;
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::words::figure_of;
 use arguments::{FilmCommand, FilmPlot};
 use spectra_core::names::nearest;
 use spectra_core::params::Fault;

@@ -15,12 +15,12 @@ struct Report {
     listed: usize,
     tolerance_nd: f64,
     tolerance_vd: f64,
-    deviating: Vec<Row>,
+    deviating: Vec<DeviationRow>,
 }
 
 /// A medium whose computed values differ from the listed ones.
 #[derive(Debug, Serialize)]
-struct Row {
+struct DeviationRow {
     name: String,
     listed_nd: f64,
     nd: f64,
@@ -40,7 +40,7 @@ pub(crate) fn check(arguments: &GlassCheck) -> Outcome {
 }
 
 fn report(check: ListedCheck) -> Report {
-    let row = |d: &spectra_glass::Deviation| Row {
+    let row = |d: &spectra_glass::Deviation| DeviationRow {
         name: d.glass.full_name(),
         listed_nd: d.listed_nd,
         nd: d.nd,

@@ -7,7 +7,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use serde::{Serialize, Serializer};
 use spectra_glass::air::{self, AirConditions, CATALOGUE_AIR};
 use spectra_glass::interface::{brewster_angle, critical_angle, fresnel};
-use spectra_glass::{Beside, Catalogue, Category, Formula, Glass, LineTriple, Medium, ModelGlass, lines};
+use spectra_glass::{Catalog, Category, Formula, Glass, GlassFacts, LineTriple, Medium, ModelGlass, lines};
 use std::fmt::Write;
 
 /// Thickness for which internal transmittances are stated, mm.
@@ -84,7 +84,7 @@ pub(crate) fn info(arguments: &GlassInfo) -> Outcome {
     Ok(DONE)
 }
 
-fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failure> {
+fn medium(arguments: &GlassInfo, catalogue: &Catalog) -> Result<Medium, Failure> {
     let melt = arguments.nd.zip(arguments.vd);
     let refuse = |(nd, vd): (f64, f64)| Failure::Input(format!("no glass has nd {nd} and Vd {vd}"));
     match (&arguments.name, melt) {
@@ -101,7 +101,8 @@ fn medium(arguments: &GlassInfo, catalogue: &Catalogue) -> Result<Medium, Failur
                 Some(glass) => glass,
                 None => {
                     let figures = Some((melt.0, Some(melt.1), LineTriple::FDC));
-                    let chosen = catalogue.choose(name, Beside { figures, ..Beside::default() }).map_err(unknown)?;
+                    let chosen =
+                        catalogue.choose(name, GlassFacts { figures, ..GlassFacts::default() }).map_err(unknown)?;
                     if let Some(note) = &chosen.note {
                         console::note(note);
                     }

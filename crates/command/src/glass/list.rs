@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 /// A medium of the list.
 #[derive(Debug, Serialize)]
-struct Row {
+struct GlassListRow {
     name: String,
     category: &'static str,
     /// Index at d; null if the data do not reach the line.
@@ -35,7 +35,7 @@ pub(crate) fn list(arguments: &GlassList) -> Outcome {
         arguments.category.is_none_or(|category| glass.category == category)
             && (makers.is_empty() || makers.iter().any(|maker| **maker == *glass.maker))
     };
-    let mut rows: Vec<Row> = found.iter().filter(|glass| wanted(glass)).map(row).collect();
+    let mut rows: Vec<GlassListRow> = found.iter().filter(|glass| wanted(glass)).map(row).collect();
     rows.sort_by(|a, b| a.name.cmp(&b.name));
     if arguments.json {
         console::pretty_json(&rows)?;
@@ -50,9 +50,9 @@ pub(crate) fn list(arguments: &GlassList) -> Outcome {
     Ok(DONE)
 }
 
-fn row(glass: &Glass) -> Row {
+fn row(glass: &Glass) -> GlassListRow {
     let covered = |from: f64, to: f64| glass.range_nm.0 <= from && to <= glass.range_nm.1;
-    Row {
+    GlassListRow {
         name: glass.full_name(),
         category: glass.category.name(),
         nd: Some(glass.nd()).filter(|n| n.is_finite() && covered(587.6, 587.5)),
@@ -64,7 +64,7 @@ fn row(glass: &Glass) -> Row {
     }
 }
 
-fn text(rows: &[Row]) -> String {
+fn text(rows: &[GlassListRow]) -> String {
     let width = rows.iter().map(|row| row.name.chars().count()).max().unwrap_or(0).max(4);
     let mut out = String::new();
     // Writing to a String cannot fail.

@@ -15,7 +15,7 @@ use crate::outcome::{Failure, Outcome};
 use arguments::GlassCommand;
 use spectra_core::names::nearest as near_words;
 use spectra_core::params::Fault;
-use spectra_glass::{Beside, Catalogue, FindError, Glass, Medium, agf, file};
+use spectra_glass::{Catalog, FindError, Glass, GlassFacts, Medium, agf, file};
 use spectra_scene::FileResources;
 use std::borrow::Cow;
 use std::io::Read;
@@ -37,8 +37,8 @@ pub(crate) fn glass(command: &GlassCommand) -> Outcome {
 const MAX_BYTES: u64 = 16 << 20;
 
 /// Returns the bundled catalogue together with the user's own glasses. Warns about lines in those files that are not understood.
-fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalogue>, Failure> {
-    let mut catalogue = Cow::Borrowed(Catalogue::bundled());
+fn catalogue(own: &OwnCatalogues) -> Result<Cow<'static, Catalog>, Failure> {
+    let mut catalogue = Cow::Borrowed(Catalog::bundled());
     for path in &own.files {
         catalogue.to_mut().add(own_glasses(path)?);
     }
@@ -61,14 +61,14 @@ pub(crate) fn own_glasses(path: &Path) -> Result<Vec<Glass>, Failure> {
 }
 
 /// Returns the medium of a name: a file in the working folder, or a medium of the catalogue.
-fn named(name: &str, catalogue: &Catalogue) -> Result<Medium, Failure> {
+fn named(name: &str, catalogue: &Catalog) -> Result<Medium, Failure> {
     match own_file(name)? {
         Some(glass) => Ok(glass.into()),
         None if ["air", "vacuum"].iter().any(|medium| name.trim().eq_ignore_ascii_case(medium)) => {
             catalogue.medium(name).map_err(unknown)
         }
         None => {
-            let chosen = catalogue.choose(name, Beside::default()).map_err(unknown)?;
+            let chosen = catalogue.choose(name, GlassFacts::default()).map_err(unknown)?;
             if let Some(note) = &chosen.note {
                 console::note(note);
             }
@@ -108,7 +108,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// Returns the makers' names as written in the catalogue. Fails if one is unknown.
-fn makers(asked: &[String], catalogue: &Catalogue) -> Result<Vec<String>, Failure> {
+fn makers(asked: &[String], catalogue: &Catalog) -> Result<Vec<String>, Failure> {
     let known = catalogue.makers();
     let find = |name: &String| {
         let name = name.trim();

@@ -5,7 +5,7 @@ use super::{catalogue, makers};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
-use spectra_glass::{Catalogue, Category, LineTriple, Match, Query};
+use spectra_glass::{Catalog, Category, LineTriple, Match, Query};
 use spectra_lens::Lens;
 use spectra_scene::FileResources;
 use std::fmt::Write;
@@ -26,12 +26,12 @@ struct Report {
     called: [String; 2],
     n: f64,
     v: Option<f64>,
-    matches: Vec<Row>,
+    matches: Vec<GlassMatchRow>,
 }
 
 /// A glass of the catalogue and its distance from the wanted values.
 #[derive(Debug, Serialize)]
-struct Row {
+struct GlassMatchRow {
     name: String,
     maker: String,
     n: f64,
@@ -46,7 +46,7 @@ struct Row {
 }
 
 /// Values to match: those of a medium of a lens with its label and surfaces, or those given on the command line.
-struct Wanted {
+struct MatchTarget {
     label: Option<String>,
     surfaces: Vec<usize>,
     n: f64,
@@ -71,7 +71,7 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
             if arguments.vd.is_some_and(|v| !(1.0..=1000.0).contains(&v)) {
                 return refuse("--vd: the Abbe number must be between 1 and 1000");
             }
-            (arguments.line, vec![Wanted { label: None, surfaces: Vec::new(), n, v: arguments.vd }])
+            (arguments.line, vec![MatchTarget { label: None, surfaces: Vec::new(), n, v: arguments.vd }])
         }
     };
     let makers = makers(&arguments.makers, &catalogue)?;
@@ -105,7 +105,7 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
 }
 
 /// Returns the media of a lens except air, each once, with the numbers of the surfaces in front of them.
-fn media(lens: &Lens, lines: LineTriple) -> Vec<Wanted> {
+fn media(lens: &Lens, lines: LineTriple) -> Vec<MatchTarget> {
     let surfaces = |medium: usize| -> Vec<usize> {
         let after = |(i, e): (usize, &spectra_lens::Element)| {
             (e.medium_after == medium && e.medium_before != medium).then_some(i + 1)
@@ -114,7 +114,7 @@ fn media(lens: &Lens, lines: LineTriple) -> Vec<Wanted> {
     };
     let of = |(at, medium): (usize, &spectra_lens::LensMedium)| {
         let v = medium.medium.abbe_number(lines);
-        Wanted {
+        MatchTarget {
             label: Some(medium.label.clone()),
             surfaces: surfaces(at),
             n: medium.stated_nd.unwrap_or_else(|| medium.medium.index(lines.mid.wavelength_nm)),
@@ -124,8 +124,8 @@ fn media(lens: &Lens, lines: LineTriple) -> Vec<Wanted> {
     lens.media.iter().enumerate().skip(1).map(of).collect()
 }
 
-fn report(catalogue: &Catalogue, wanted: Wanted, query: &Query) -> Report {
-    let row = |m: Match| Row {
+fn report(catalogue: &Catalog, wanted: MatchTarget, query: &Query) -> Report {
+    let row = |m: Match| GlassMatchRow {
         name: m.glass.full_name(),
         maker: m.glass.maker.to_string(),
         n: m.n,

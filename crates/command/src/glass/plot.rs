@@ -5,7 +5,7 @@ use super::{catalogue, makers, named};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use spectra_analysis::figure::{self, AbbeGroup, IndexCurve};
-use spectra_glass::{Catalogue, Category, LineTriple, Medium, Query, lines};
+use spectra_glass::{Catalog, Category, LineTriple, Medium, Query, lines};
 use spectra_plot::{Canvas, Format, PlotError};
 use std::path::PathBuf;
 
@@ -59,7 +59,7 @@ fn dispersion(media: &[(String, Medium)], band_nm: (f64, f64)) -> Result<Canvas,
     Ok(figure::dispersion(&curves, band_nm, &marks))
 }
 
-fn abbe(arguments: &GlassPlot, catalogue: &Catalogue, media: &[(String, Medium)]) -> Result<Canvas, Failure> {
+fn abbe(arguments: &GlassPlot, catalogue: &Catalog, media: &[(String, Medium)]) -> Result<Canvas, Failure> {
     let lines = arguments.lines;
     let makers = makers(&arguments.makers, catalogue)?;
     let glasses = |maker: Option<&String>| {

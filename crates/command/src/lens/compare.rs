@@ -1,7 +1,7 @@
 //! `spectra lens compare`: compares lenses side by side.
 
 use super::arguments::LensCompare;
-use super::{Setting, one_light, set};
+use super::{LensRequest, one_light, set};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use spectra_analysis::info::Comparison;
@@ -29,6 +29,6 @@ fn one(arguments: &LensCompare, name: &str) -> Result<Optics, Failure> {
             Err(error) => return Err(super::aperture_fault(name, &error)),
         }
     }
-    let rest = Setting { f_number: None, ..Setting::of(&arguments.options) };
+    let rest = LensRequest { f_number: None, ..LensRequest::of(&arguments.options) };
     set(lens, name, &rest).map(Optics::new)
 }

@@ -3,9 +3,9 @@
 use super::arguments::{CutArgument, LensDraw};
 use super::load;
 use crate::console;
+use crate::formatting::figure_of;
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::words::figure_of;
-use spectra_analysis::draw::{Fans, Ground, Sheet, View};
+use spectra_analysis::draw::{DrawingBackground, Fans, SectionView, Sheet};
 use spectra_analysis::fan::largest_field_rad;
 use spectra_analysis::info::useful_field_rad;
 use spectra_lens::Section;
@@ -38,13 +38,13 @@ pub(crate) fn draw(arguments: &LensDraw) -> Outcome {
     if rays.is_empty() && arguments.rays > 0 {
         console::warning("no ray passes this lens at these field angles: the drawing shows only the glass");
     }
-    let ground = if arguments.dark { Ground::Dark } else { Ground::Light };
+    let ground = if arguments.dark { DrawingBackground::Dark } else { DrawingBackground::Light };
     let sheet = Sheet {
         width: f64::from(arguments.width),
         height: None,
         ground,
         width_mm: None,
-        view: View { section },
+        view: SectionView { section },
         caption: caption(&lens),
         image: true,
     };

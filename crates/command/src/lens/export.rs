@@ -1,7 +1,7 @@
 //! `spectra lens export`: writes a lens for another program.
 
 use super::arguments::LensExport;
-use super::exchanged::{deliver, target};
+use super::conversion::{deliver, target};
 use crate::outcome::{Failure, Outcome};
 use spectra_core::resources::Resources;
 use spectra_exchange::{Format, SystemAperture, yaml, zmx};

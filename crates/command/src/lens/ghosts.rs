@@ -4,10 +4,10 @@ use super::arguments::LensGhosts;
 use super::load;
 use super::trace::path_of;
 use crate::console;
+use crate::formatting::counted;
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::words::counted;
 use serde_json::json;
-use spectra_analysis::draw::{Ground, Sheet, View};
+use spectra_analysis::draw::{DrawingBackground, SectionView, Sheet};
 use spectra_analysis::ghosts::{Ghost, GhostSearch, Ghosts, ghost_rays, ghosts as find};
 use spectra_lens::{Lens, Section};
 use spectra_optics::Optics;
@@ -143,9 +143,9 @@ fn draw(
     let sheet = Sheet {
         width: WIDTH,
         height: None,
-        ground: Ground::Light,
+        ground: DrawingBackground::Light,
         width_mm: None,
-        view: View { section },
+        view: SectionView { section },
         caption: format!("{}, reflected by surfaces {named}{energy}{at}", lens.name),
         image: true,
     };

@@ -1,12 +1,12 @@
 //! `spectra lens import`: converts a lens file from another program.
 
 use super::arguments::LensImport;
-use super::exchanged::{deliver, target};
+use super::conversion::{deliver, target};
 use crate::console;
 use crate::glass::own_glasses;
 use crate::outcome::{Failure, Outcome};
 use spectra_core::resources::Resources;
-use spectra_exchange::{Format, MAX_BYTES, OwnCatalogue, read_with, yaml};
+use spectra_exchange::{Format, MAX_BYTES, UserCatalog, read_with, yaml};
 use spectra_scene::FileResources;
 use std::path::{Component, Path, absolute};
 
@@ -23,7 +23,7 @@ pub(crate) fn import(arguments: &LensImport) -> Outcome {
         .map_err(|error| Failure::Input(format!("{name}: cannot be read: {error}")))?;
     let mut own = Vec::new();
     for path in &arguments.own.files {
-        own.push(OwnCatalogue { file: seen_from(output, path), glasses: own_glasses(path)? });
+        own.push(UserCatalog { file: seen_from(output, path), glasses: own_glasses(path)? });
     }
     let lens = read_with(format, &name, &file.bytes, &own)?;
     let short = arguments.file.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -37,7 +37,7 @@ pub(crate) fn import(arguments: &LensImport) -> Outcome {
             console::warning("the lens file must be completed before use:");
             console::faults(&faults);
         }
-        Ok(lens) => lens.glass_doubts().iter().for_each(|doubt| console::warning(doubt)),
+        Ok(lens) => lens.glass_warnings().iter().for_each(|doubt| console::warning(doubt)),
     }
     Ok(code)
 }

@@ -4,7 +4,7 @@ use super::arguments::LensInfo;
 use super::{load, one_light};
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, limits};
-use spectra_analysis::Light;
+use spectra_analysis::AnalysisLight;
 use spectra_analysis::glare::{GlareTask, glare};
 use spectra_analysis::info::LensReport;
 use spectra_glass::Medium;
@@ -15,7 +15,7 @@ use spectra_session::Threads;
 /// Writes the report on a lens to standard output, as text or JSON.
 pub(crate) fn info(arguments: &LensInfo) -> Outcome {
     let lens = load(&arguments.setting)?;
-    let light = one_light(&arguments.light).unwrap_or(Light::Wavelength(lens.reference_nm));
+    let light = one_light(&arguments.light).unwrap_or(AnalysisLight::Wavelength(lens.reference_nm));
     if let Some(nm) = light.wavelength_nm() {
         let none = |n: f64| !(n.is_finite() && n > 0.0);
         if let Some(medium) = lens.media.iter().find(|medium| none(medium.medium.index(nm))) {

@@ -2,8 +2,8 @@
 
 mod arguments;
 mod compare;
+mod conversion;
 mod draw;
-mod exchanged;
 mod export;
 mod ghosts;
 mod import;
@@ -15,7 +15,7 @@ pub(crate) use arguments::LensArguments;
 
 use crate::outcome::{Failure, Outcome};
 use arguments::{LensCommand, LensOptions, LensSetting, OneLight};
-use spectra_analysis::Light;
+use spectra_analysis::AnalysisLight;
 use spectra_core::params::{FNumber, Fault};
 use spectra_lens::{Coating, Lens};
 use spectra_optics::{ApertureError, FocusSearch, Optics, stop_down};
@@ -38,7 +38,7 @@ pub(crate) fn lens(command: &LensCommand) -> Outcome {
 
 /// Loads a lens and sets its coating, stop and focus as requested.
 fn load(setting: &LensSetting) -> Result<Optics, Failure> {
-    set(load_file(&setting.lens)?, &setting.lens, &Setting::of(&setting.options)).map(Optics::new)
+    set(load_file(&setting.lens)?, &setting.lens, &LensRequest::of(&setting.options)).map(Optics::new)
 }
 
 /// Loads a lens as it is in its file.
@@ -47,18 +47,18 @@ fn load_file(name: &str) -> Result<Lens, Failure> {
 }
 
 /// Requested settings of a lens; the f-number is separate, so that a command can leave it out.
-struct Setting<'a> {
+struct LensRequest<'a> {
     options: &'a LensOptions,
     f_number: Option<FNumber>,
 }
 
-impl<'a> Setting<'a> {
+impl<'a> LensRequest<'a> {
     fn of(options: &'a LensOptions) -> Self {
         Self { options, f_number: options.f_number }
     }
 }
 
-fn set(mut lens: Lens, name: &str, setting: &Setting<'_>) -> Result<Lens, Failure> {
+fn set(mut lens: Lens, name: &str, setting: &LensRequest<'_>) -> Result<Lens, Failure> {
     let refuse = |error: String| Failure::Input(format!("{name}: {error}"));
     let options = setting.options;
     if let Some(name) = &options.coating {
@@ -93,11 +93,11 @@ fn aperture_fault(name: &str, error: &ApertureError) -> Failure {
 }
 
 /// Returns the requested light; `None` if the options name none.
-fn one_light(light: &OneLight) -> Option<Light> {
+fn one_light(light: &OneLight) -> Option<AnalysisLight> {
     match (light.line, light.wavelength_nm) {
-        _ if light.nd => Some(Light::Stated),
-        (Some(nm), _) => Some(Light::Wavelength(nm)),
-        (None, Some(wavelength)) => Some(Light::Wavelength(wavelength.nm())),
+        _ if light.nd => Some(AnalysisLight::Stated),
+        (Some(nm), _) => Some(AnalysisLight::Wavelength(nm)),
+        (None, Some(wavelength)) => Some(AnalysisLight::Wavelength(wavelength.nm())),
         (None, None) => None,
     }
 }

@@ -1,11 +1,11 @@
 //! `spectra lens scale`: writes a lens at another size.
 
 use super::arguments::LensScale;
-use super::exchanged::{deliver, target};
+use super::conversion::{deliver, target};
 use crate::console;
 use crate::outcome::{Failure, Outcome};
 use spectra_core::resources::Resources;
-use spectra_exchange::{ApertureShape, Shape, yaml};
+use spectra_exchange::{ApertureShape, SurfaceShape, yaml};
 use spectra_scene::FileResources;
 use std::path::Path;
 
@@ -17,7 +17,7 @@ pub(crate) fn scale(arguments: &LensScale) -> Outcome {
     let real = spectra_lens::parse(&document, &resources)?;
     let lens = yaml::read(&document)?;
     let unknown = lens.surfaces().find_map(|surface| match &surface.shape {
-        Shape::Other { kind } => Some(kind.clone()),
+        SurfaceShape::Other { kind } => Some(kind.clone()),
         _ => surface.apertures.iter().find_map(|aperture| match &aperture.shape {
             ApertureShape::Other { name } => Some(name.clone()),
             _ => None,

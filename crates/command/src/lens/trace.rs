@@ -4,7 +4,7 @@ use super::arguments::LensTrace;
 use super::{load, one_light};
 use crate::folder::apart;
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::{console, words};
+use crate::{console, formatting};
 use spectra_analysis::trace::{Format, TraceError, TraceSummary, Tracing, trace as trace_rays};
 use spectra_core::Loss;
 use spectra_core::surface::Action;
@@ -118,11 +118,11 @@ fn failure(error: TraceError, output: Option<&Path>) -> Failure {
 
 /// Returns a summary such as `1 540 rays, 912 hit, 520 vignetted`.
 fn describe(summary: &TraceSummary) -> String {
-    let mut text = format!("{}, {} hit", words::counted(summary.rays, "ray"), words::count(summary.hits));
+    let mut text = format!("{}, {} hit", formatting::counted(summary.rays, "ray"), formatting::count(summary.hits));
     for cause in Loss::ALL {
         let many = summary.losses.of_cause(cause);
         if many > 0 {
-            text.push_str(&format!(", {} {}", words::count(many), cause.name()));
+            text.push_str(&format!(", {} {}", formatting::count(many), cause.name()));
         }
     }
     text

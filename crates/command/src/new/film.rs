@@ -51,7 +51,7 @@ fn text(name: &str, like: &str, stock: &Stock) -> String {
             let _ = writeln!(out, "        minutes: {minutes}");
         }
         out.push_str("        # log10 of the exposure in lux-seconds, and density\n        points:\n");
-        let (low, high) = first.curve.span();
+        let (low, high) = first.curve.exposure_range();
         const STEPS: usize = 16;
         for i in 0..=STEPS {
             let x = low + (high - low) * i as f64 / STEPS as f64;

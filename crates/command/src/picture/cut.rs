@@ -5,7 +5,7 @@ use super::{field, load, not_written, output, quantity, refuse, stem};
 use crate::console;
 use crate::folder::apart;
 use crate::outcome::{DONE, Failure, Outcome};
-use spectra_analysis::picture::{Cut, Quantity, Way, curve};
+use spectra_analysis::picture::{Cut, CutLine, Quantity, curve};
 use spectra_files::write_atomically;
 use spectra_plot::Format;
 use std::io::Write as _;
@@ -34,10 +34,10 @@ pub(super) fn cut(arguments: &PictureCut) -> Outcome {
     let fields = quantities.iter().map(|quantity| field(path, &picture, quantity, white));
     let fields = fields.collect::<Result<Vec<_>, Failure>>()?;
     let (way, said) = match (arguments.way.row, arguments.way.column, arguments.way.line) {
-        (Some(row), ..) => (Way::Row(row), format!("row {row}")),
-        (_, Some(column), _) => (Way::Column(column), format!("column {column}")),
+        (Some(row), ..) => (CutLine::Row(row), format!("row {row}")),
+        (_, Some(column), _) => (CutLine::Column(column), format!("column {column}")),
         (_, _, Some([x, y, to_x, to_y])) => {
-            (Way::Line { from: [x, y], to: [to_x, to_y] }, format!("from {x}, {y} to {to_x}, {to_y}"))
+            (CutLine::Line { from: [x, y], to: [to_x, to_y] }, format!("from {x}, {y} to {to_x}, {to_y}"))
         }
         // The parser requires one of the three.
         _ => return Err(Failure::Input("say where to cut with --row, --column or --line".to_owned())),

@@ -3,8 +3,8 @@
 use super::arguments::PictureInfo;
 use super::{load, percent, significant};
 use crate::console;
+use crate::formatting::counted;
 use crate::outcome::{DONE, Outcome};
-use crate::words::counted;
 use serde::Serialize;
 use spectra_analysis::picture::{Colors, Measured, Summary, Unit};
 use std::collections::BTreeMap;

@@ -12,11 +12,11 @@ pub(crate) use arguments::PictureArguments;
 use crate::console;
 use crate::outcome::{Failure, Outcome};
 use arguments::PictureCommand;
-use spectra_analysis::picture::{Field, Measured, NotMeasured, Quantity};
+use spectra_analysis::picture::{Measured, NotMeasured, Quantity, QuantityMap};
 use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Warning};
-use spectra_core::resources::Found;
-use spectra_pictures::read::{Choice, Trouble, planes};
+use spectra_core::resources::FoundFile;
+use spectra_pictures::read::{FileProblem, ReadOptions, planes};
 use spectra_plot::PlotError;
 use std::path::{Path, PathBuf};
 
@@ -39,15 +39,15 @@ fn load(path: &Path) -> Result<Measured, Failure> {
         let hint = "name a picture file: `spectra run SCENE` writes SCENE.exr into the folder `out`";
         return Err(Fault::new(format!("{shown}: {what}")).hint(hint).into());
     }
-    let found = Found::on_disk(shown.clone(), path.to_owned());
-    let choice = Choice { name: &shown, ..Choice::default() };
-    let refused = |trouble: Trouble| -> Failure {
+    let found = FoundFile::on_disk(shown.clone(), path.to_owned());
+    let choice = ReadOptions { name: &shown, ..ReadOptions::default() };
+    let refused = |trouble: FileProblem| -> Failure {
         Fault::new(format!("{shown}: {}", trouble.text)).hint(trouble.advice()).into()
     };
     let picture = planes(&found, choice).and_then(Measured::of).map_err(refused)?;
-    for doubt in &picture.planes.doubts {
+    for doubt in &picture.planes.warnings {
         let fault = Fault::new(format!("{shown}: {}", doubt.text)).hint(doubt.advice());
-        console::said(&Warning::from(fault), None);
+        console::scene_warning(&Warning::from(fault), None);
     }
     Ok(picture)
 }
@@ -73,8 +73,8 @@ fn quantity(name: &str, picture: &Measured, also: &[&str]) -> Result<Quantity, F
 }
 
 /// Computes a quantity at each pixel of a picture.
-fn field(path: &Path, picture: &Measured, quantity: &Quantity, white: Option<f64>) -> Result<Field, Failure> {
-    Field::of(picture, quantity, white).map_err(|error| refuse(path, error))
+fn field(path: &Path, picture: &Measured, quantity: &Quantity, white: Option<f64>) -> Result<QuantityMap, Failure> {
+    QuantityMap::of(picture, quantity, white).map_err(|error| refuse(path, error))
 }
 
 /// Returns the name of a file without its extension.

@@ -49,7 +49,7 @@ pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
     };
     let (canvas, name) = match eye {
         None => (canvas, name),
-        Some(eye) => (eye.sees(canvas), format!("{name}-{}", eye.word())),
+        Some(eye) => (eye.simulate(canvas), format!("{name}-{}", eye.word())),
     };
     let output = output(arguments.output.as_ref(), path, &format!("{name}.png"));
     apart(&output, &[path])?;

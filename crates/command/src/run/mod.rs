@@ -12,7 +12,7 @@ use progress::Progress;
 use serde_json::json;
 use spectra_core::Isa;
 use spectra_scene::diagnostics;
-use spectra_session::{Control, Ended, Event, Folder, Host, Job, LightFrom, Threads, Workers};
+use spectra_session::{Control, Event, Folder, Host, Job, JobEnd, LightFrom, Threads, Workers};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -23,11 +23,11 @@ const TICK: Duration = Duration::from_millis(50);
 
 /// Renders a scene. With `--json`, a failure is also written as an event.
 pub(crate) fn run(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
-    told(render_scene(arguments, isa, started), arguments.json)
+    with_json_error(render_scene(arguments, isa, started), arguments.json)
 }
 
 /// Writes a failure as a JSON event if `is_json`; returns the outcome unchanged.
-pub(crate) fn told(outcome: Outcome, is_json: bool) -> Outcome {
+pub(crate) fn with_json_error(outcome: Outcome, is_json: bool) -> Outcome {
     if let (true, Err(failure)) = (is_json, &outcome) {
         let event = match failure {
             Failure::Faults(faults) => {
@@ -62,8 +62,8 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
         versions: version::to_json(),
         unit_of: &doc::unit_of,
     };
-    let speaks = Speaks { json: arguments.json, quiet: arguments.quiet };
-    let face = Face { deadline, set_up, ..Face::new(target, arguments.threads, isa, started, speaks, deadline) };
+    let speaks = OutputMode { json: arguments.json, quiet: arguments.quiet };
+    let face = CliHost { deadline, set_up, ..CliHost::new(target, arguments.threads, isa, started, speaks, deadline) };
     let ended = spectra_session::run(&job, &face)?;
     Ok(face.code(ended))
 }
@@ -82,13 +82,13 @@ fn overrides(arguments: &Run) -> Vec<String> {
 
 /// How a command reports its progress: as JSON events, not at all, or else as text.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Speaks {
+pub(crate) struct OutputMode {
     pub json: bool,
     pub quiet: bool,
 }
 
 /// Host of a session for the command line: its threads, folders, signals and progress.
-pub(crate) struct Face {
+pub(crate) struct CliHost {
     target: Target,
     threads: usize,
     isa: Isa,
@@ -103,14 +103,14 @@ pub(crate) struct Face {
     interrupt: OnceLock<Interrupt>,
 }
 
-impl Face {
+impl CliHost {
     /// Creates a host that writes files to `target`. Uses all processors if `threads` is not given.
     pub(crate) fn new(
         target: Target,
         threads: Option<u16>,
         isa: Isa,
         started: Instant,
-        speaks: Speaks,
+        speaks: OutputMode,
         deadline: Option<Instant>,
     ) -> Self {
         Self {
@@ -128,8 +128,8 @@ impl Face {
     }
 
     /// Exit code of a job that ended in this way.
-    pub(crate) fn code(&self, ended: Ended) -> u8 {
-        self.interrupt.get().filter(|_| ended == Ended::Stopped).map_or(DONE, Interrupt::code)
+    pub(crate) fn code(&self, ended: JobEnd) -> u8 {
+        self.interrupt.get().filter(|_| ended == JobEnd::Stopped).map_or(DONE, Interrupt::code)
     }
 
     fn is_late(&self) -> bool {
@@ -148,14 +148,14 @@ impl Face {
 }
 
 /// Runs work on the render threads. Meanwhile the calling thread updates the progress.
-impl Workers for Face {
-    fn each(&self, work: &(dyn Fn() + Sync)) {
+impl Workers for CliHost {
+    fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
         std::thread::scope(|scope| {
             let (end, ended) = mpsc::channel::<()>();
             let worker = std::thread::Builder::new().name("render 0".to_owned()).spawn_scoped(scope, move || {
                 // Dropped at the end, even after a panic; this ends the wait below.
                 let _end = end;
-                Threads(self.threads).each(work);
+                Threads(self.threads).run_on_all(work);
             });
             let Ok(worker) = worker else {
                 // If no thread can be started, this thread does the work, and the progress is not updated.
@@ -170,7 +170,7 @@ impl Workers for Face {
     }
 }
 
-impl Host for Face {
+impl Host for CliHost {
     fn workers(&self) -> &dyn Workers {
         self
     }
@@ -190,7 +190,7 @@ impl Host for Face {
     }
 
     fn is_interrupted(&self) -> bool {
-        self.interrupt.get().is_some_and(Interrupt::happened)
+        self.interrupt.get().is_some_and(Interrupt::is_requested)
     }
 
     fn is_stopped(&self) -> bool {

@@ -1,12 +1,12 @@
 //! Progress messages while a scene renders.
 
-use crate::{console, words};
+use crate::{console, formatting};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::params::Warning;
 use spectra_scene::{Scene, diagnostics};
-use spectra_session::{Control, Event, Pace, Place, Report, films};
+use spectra_session::{Control, Event, Pace, Report, SeriesPosition, films};
 use std::time::{Duration, Instant};
 
 /// Form of the messages, by their reader.
@@ -29,7 +29,7 @@ pub(crate) struct Progress {
     said: Instant,
     stopping: bool,
     /// Number of the current picture in a series; `None` for a single picture.
-    place: Option<Place>,
+    place: Option<SeriesPosition>,
 }
 
 /// Time between JSON progress events.
@@ -107,7 +107,7 @@ impl Progress {
                 self.event(event);
             }
             Listener::Quiet => {}
-            Listener::Bar(_) | Listener::Lines => console::said(warning, None),
+            Listener::Bar(_) | Listener::Lines => console::scene_warning(warning, None),
         }
     }
 
@@ -204,8 +204,8 @@ impl Progress {
         match &self.listener {
             Listener::Bar(bar) => {
                 bar.set_position((pace.fraction().max(self.time_used()) * f64::from(BAR_STEPS)) as u64);
-                let left = pace.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
-                bar.set_message(format!("{}{}{left}", self.place(), words::rate(pace.rays_per_second)));
+                let left = pace.seconds_left.map_or(String::new(), |s| format!(", {} left", formatting::duration(s)));
+                bar.set_message(format!("{}{}{left}", self.place(), formatting::rate(pace.rays_per_second)));
             }
             Listener::Json if elapsed >= JSON_EVERY => {
                 self.said = Instant::now();
@@ -221,12 +221,12 @@ impl Progress {
             }
             Listener::Lines if elapsed >= LINE_EVERY => {
                 self.said = Instant::now();
-                let left = pace.seconds_left.map_or(String::new(), |s| format!(", {} left", words::duration(s)));
+                let left = pace.seconds_left.map_or(String::new(), |s| format!(", {} left", formatting::duration(s)));
                 console::note(&format!(
                     "{}{:.0} %, {}{left}",
                     self.place(),
                     100.0 * pace.fraction(),
-                    words::rate(pace.rays_per_second)
+                    formatting::rate(pace.rays_per_second)
                 ));
             }
             Listener::Json | Listener::Lines | Listener::Quiet => {}
@@ -275,7 +275,7 @@ impl Progress {
             Listener::Quiet => {}
             // If the reader has gone away, only the names are lost, not the files.
             Listener::Bar(_) | Listener::Lines if !paths.is_empty() => {
-                drop(console::out(&format!("wrote {}\n", words::files(paths))));
+                drop(console::out(&format!("wrote {}\n", formatting::files(paths))));
             }
             Listener::Bar(_) | Listener::Lines => {}
         }

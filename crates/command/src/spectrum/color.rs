@@ -3,8 +3,8 @@
 use super::arguments::{SpectrumColor, SpectrumModels};
 use super::{files, load_illuminant};
 use crate::console;
+use crate::formatting::counted;
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::words::counted;
 use serde::Serialize;
 use spectra_analysis::figure;
 use spectra_color::{RgbSpace, RoundTrip, from_u8, to_u8};
@@ -214,14 +214,14 @@ pub(crate) fn measure(arguments: &SpectrumModels) -> Outcome {
 }
 
 /// A row of the picture: its label and the colors of its patches.
-type Row = (String, Vec<[u8; 3]>);
+type PatchRow = (String, Vec<[u8; 3]>);
 
 /// Number of patches in a row of the picture.
 const PATCHES: usize = 60;
 
 /// Returns the rows of the picture. Each row has the hues at full value, then red from black to white; first the original colors, then
 /// the results of each model.
-fn rows(models: &[Model]) -> Result<Vec<Row>, Failure> {
+fn rows(models: &[Model]) -> Result<Vec<PatchRow>, Failure> {
     let colors: Vec<[u8; 3]> = (0..PATCHES).map(patch).collect();
     let mut rows = vec![("as given".to_owned(), colors.clone())];
     for model in models {

@@ -7,7 +7,7 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_files::write_atomically;
-use spectra_spectrum::{Found, GaussianFit, GaussianMixture, Grid, Line, fit_gaussians};
+use spectra_spectrum::{AnySpectrum, GaussianFit, GaussianMixture, Grid, Line, fit_gaussians};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -54,24 +54,24 @@ pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
             return Err(Failure::Input(text));
         }
         let shape = match &found {
-            Found::Emission(light) => light.continuum(),
-            Found::Transmittance(filter) => Some(filter.shape()),
-            Found::Reflectance(surface) => Some(surface.shape()),
-            Found::Sensitivity(detector) => Some(detector.shape()),
+            AnySpectrum::Emission(light) => light.continuum(),
+            AnySpectrum::Transmittance(filter) => Some(filter.shape()),
+            AnySpectrum::Reflectance(surface) => Some(surface.shape()),
+            AnySpectrum::Sensitivity(detector) => Some(detector.shape()),
         };
         let none = || Failure::Input(format!("`{name}` has only spectral lines, which have no local Gaussian"));
         return local(arguments, at_nm, shape.ok_or_else(none)?);
     }
     let grid = grid(&arguments.band, arguments.step.unwrap_or(1.0))?;
     let (values, lines) = match &found {
-        Found::Emission(light) if light.continuum().is_none() => {
+        AnySpectrum::Emission(light) if light.continuum().is_none() => {
             let text = format!("`{name}` has only spectral lines, which are not fitted by Gaussians");
             return Err(Failure::Input(text));
         }
-        Found::Emission(light) => (light.on_grid(&grid), light.lines().to_vec()),
-        Found::Transmittance(filter) => (filter.on_grid(&grid), Vec::new()),
-        Found::Reflectance(surface) => (surface.on_grid(&grid), Vec::new()),
-        Found::Sensitivity(detector) => (detector.on_grid(&grid), Vec::new()),
+        AnySpectrum::Emission(light) => (light.on_grid(&grid), light.lines().to_vec()),
+        AnySpectrum::Transmittance(filter) => (filter.on_grid(&grid), Vec::new()),
+        AnySpectrum::Reflectance(surface) => (surface.on_grid(&grid), Vec::new()),
+        AnySpectrum::Sensitivity(detector) => (detector.on_grid(&grid), Vec::new()),
     };
     let fit = fit_gaussians(&grid, &values, usize::from(arguments.terms))
         .map_err(|e| Failure::Input(format!("`{name}` cannot be fitted: {e}")))?;
@@ -124,7 +124,7 @@ pub(super) fn grid(band: &[f64], step: f64) -> Result<Grid, Failure> {
     Ok(Grid { start_nm: from, step_nm: step, count })
 }
 
-fn report(name: &str, found: &Found, grid: &Grid, fit: &GaussianFit, lines: usize) -> Report {
+fn report(name: &str, found: &AnySpectrum, grid: &Grid, fit: &GaussianFit, lines: usize) -> Report {
     let band_nm = [grid.start_nm, grid.end_nm()];
     let term = |t: &spectra_spectrum::GaussianTerm| Term {
         amplitude: t.peak(),

@@ -11,7 +11,8 @@ use spectra_color::{
 };
 use spectra_core::quantity::light_nm;
 use spectra_spectrum::{
-    BAND, Emission, Found, Kind, Observer, Shape, Strengths, Tabulated, find_in, function_in, meta_in, named_line,
+    AnySpectrum, BAND, Emission, Kind, Observer, SpectralFunction, Strengths, Tabulated, find_in, function_in, meta_in,
+    named_line,
 };
 use std::fmt::Write;
 
@@ -100,9 +101,9 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
     let color = Color::of(&found, &illuminant, white(standard)?);
     let dominant = color.as_ref().and_then(|c| c.dominant);
     let temperature =
-        color.as_ref().and_then(|c| c.xy).filter(|_| !matches!(found, Found::Reflectance(_))).and_then(cct);
+        color.as_ref().and_then(|c| c.xy).filter(|_| !matches!(found, AnySpectrum::Reflectance(_))).and_then(cct);
     let white = white(observer)?;
-    let light = if let Found::Emission(light) = &found { Some(light) } else { None };
+    let light = if let AnySpectrum::Emission(light) = &found { Some(light) } else { None };
     let half_height_nm = half_height_nm(&found);
     let rendering = light.and_then(color_rendering);
     let report = Report {
@@ -128,8 +129,8 @@ pub(crate) fn info(arguments: &SpectrumInfo) -> Outcome {
         luminance: light.map(Emission::luminance),
         peak_nm: peak_nm(&found),
         centroid_nm: match &found {
-            Found::Emission(light) => light.centroid_nm(),
-            matter => shape_of(matter).and_then(Shape::centroid_nm),
+            AnySpectrum::Emission(light) => light.centroid_nm(),
+            matter => shape_of(matter).and_then(SpectralFunction::centroid_nm),
         },
         half_height_nm,
         width_nm: half_height_nm.map(|[low, high]| high - low),
@@ -167,27 +168,27 @@ fn wavelengths(texts: &[String]) -> Result<Vec<f64>, Failure> {
 }
 
 /// Returns the curve of a filter, a surface or a detector, or the continuum of a light; `None` for a light with lines alone.
-fn shape_of(found: &Found) -> Option<&Shape> {
+fn shape_of(found: &AnySpectrum) -> Option<&SpectralFunction> {
     match found {
-        Found::Emission(light) => light.continuum(),
-        Found::Transmittance(filter) => Some(filter.shape()),
-        Found::Reflectance(surface) => Some(surface.shape()),
-        Found::Sensitivity(detector) => Some(detector.shape()),
+        AnySpectrum::Emission(light) => light.continuum(),
+        AnySpectrum::Transmittance(filter) => Some(filter.shape()),
+        AnySpectrum::Reflectance(surface) => Some(surface.shape()),
+        AnySpectrum::Sensitivity(detector) => Some(detector.shape()),
     }
 }
 
 /// Returns the wavelengths at half height. `None` for a light with lines, because lines have no height to compare with.
-fn half_height_nm(found: &Found) -> Option<[f64; 2]> {
+fn half_height_nm(found: &AnySpectrum) -> Option<[f64; 2]> {
     match found {
-        Found::Emission(light) if !light.lines().is_empty() => None,
-        found => shape_of(found).and_then(Shape::half_height_nm),
+        AnySpectrum::Emission(light) if !light.lines().is_empty() => None,
+        found => shape_of(found).and_then(SpectralFunction::half_height_nm),
     }
 }
 
-fn value_at(found: &Found, wavelength_nm: f64) -> At {
+fn value_at(found: &AnySpectrum, wavelength_nm: f64) -> At {
     let value = shape_of(found).map_or(0.0, |shape| shape.at(wavelength_nm));
     let lines = match found {
-        Found::Emission(light) if !light.lines().is_empty() => {
+        AnySpectrum::Emission(light) if !light.lines().is_empty() => {
             let near = light.lines().iter().filter(|line| (line.wavelength_nm - wavelength_nm).abs() <= 0.5);
             Some(near.map(|line| line.power).sum())
         }
@@ -245,12 +246,12 @@ pub(super) fn observer(name: ObserverName) -> &'static Observer {
     }
 }
 
-fn xyz(found: &Found, illuminant: &Emission, observer: &Observer) -> Option<[f64; 3]> {
+fn xyz(found: &AnySpectrum, illuminant: &Emission, observer: &Observer) -> Option<[f64; 3]> {
     match found {
-        Found::Emission(light) => xyz_of_light(light, observer),
-        Found::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),
-        Found::Reflectance(surface) => xyz_of_reflectance(surface, illuminant, observer),
-        Found::Sensitivity(_) => None,
+        AnySpectrum::Emission(light) => xyz_of_light(light, observer),
+        AnySpectrum::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),
+        AnySpectrum::Reflectance(surface) => xyz_of_reflectance(surface, illuminant, observer),
+        AnySpectrum::Sensitivity(_) => None,
     }
 }
 
@@ -264,12 +265,12 @@ struct Color {
 }
 
 impl Color {
-    fn of(found: &Found, illuminant: &Emission, white: [f64; 3]) -> Option<Self> {
+    fn of(found: &AnySpectrum, illuminant: &Emission, white: [f64; 3]) -> Option<Self> {
         let srgb = RgbSpace::srgb();
         let xyz = xyz(found, illuminant, Observer::cie_1931_2deg())?;
         let xy = chromaticity(xyz);
         let dominant = xy.zip(chromaticity(white)).and_then(|(xy, white)| dominant_wavelength(xy, white));
-        let linear = if let Found::Emission(_) = found {
+        let linear = if let AnySpectrum::Emission(_) = found {
             let rgb = srgb.from_xyz(xyz).map(|v| v.max(0.0));
             let brightest = rgb.into_iter().fold(0.0, f64::max);
             if brightest > 0.0 { rgb.map(|v| v / brightest) } else { rgb }
@@ -283,23 +284,23 @@ impl Color {
 }
 
 /// Returns the values on the band at whole nanometers; for a light those of the continuum.
-fn on_band(found: &Found) -> Vec<f64> {
+fn on_band(found: &AnySpectrum) -> Vec<f64> {
     match found {
-        Found::Emission(light) => light.on_grid(&BAND),
-        Found::Transmittance(filter) => filter.on_grid(&BAND),
-        Found::Reflectance(surface) => surface.on_grid(&BAND),
-        Found::Sensitivity(detector) => detector.on_grid(&BAND),
+        AnySpectrum::Emission(light) => light.on_grid(&BAND),
+        AnySpectrum::Transmittance(filter) => filter.on_grid(&BAND),
+        AnySpectrum::Reflectance(surface) => surface.on_grid(&BAND),
+        AnySpectrum::Sensitivity(detector) => detector.on_grid(&BAND),
     }
 }
 
 /// Returns the wavelength (nm) of the highest value on the band, the first of equal ones. Without a continuum, returns that of the
 /// strongest line.
-fn peak_nm(found: &Found) -> Option<f64> {
+fn peak_nm(found: &AnySpectrum) -> Option<f64> {
     let values = on_band(found);
     let best = BAND.wavelengths_nm().zip(values).fold((0.0, 0.0), |best, now| if now.1 > best.1 { now } else { best });
     match found {
         _ if best.1 > 0.0 => Some(best.0),
-        Found::Emission(light) => {
+        AnySpectrum::Emission(light) => {
             light.lines().iter().max_by(|a, b| a.power.total_cmp(&b.power)).map(|l| l.wavelength_nm)
         }
         _ => None,
@@ -313,8 +314,8 @@ const RENDERING_DUV: f64 = 5.4e-3;
 const ESTIMATED: &str = "estimated by eye: lines far apart are not comparable, so the colors below are a guess";
 
 /// Formats the report as text.
-fn text(report: &Report, found: &Found) -> String {
-    let matter = matches!(found, Found::Transmittance(_) | Found::Reflectance(_));
+fn text(report: &Report, found: &AnySpectrum) -> String {
+    let matter = matches!(found, AnySpectrum::Transmittance(_) | AnySpectrum::Reflectance(_));
     let title = report.title.as_deref().filter(|title| *title != report.name);
     let mut out = format!("{}{}: {}\n\n", report.name, title.map_or(String::new(), |t| format!(" ({t})")), report.kind);
     let mut row = |name: &str, value: Option<String>| {

@@ -5,7 +5,7 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde::Serialize;
 use spectra_core::quantity::light_nm;
-use spectra_spectrum::{GaussianTerm, Shape};
+use spectra_spectrum::{GaussianTerm, SpectralFunction};
 use std::fmt::Write as _;
 
 /// Relative error up to which the Gaussian counts as close to the spectrum.
@@ -32,7 +32,7 @@ struct Report {
 }
 
 /// Writes the local Gaussian of a spectrum to standard output, or the reason why there is none.
-pub(super) fn local(arguments: &SpectrumFit, at_nm: f64, shape: &Shape) -> Outcome {
+pub(super) fn local(arguments: &SpectrumFit, at_nm: f64, shape: &SpectralFunction) -> Outcome {
     // A table is linear between its points, so the step must be at least their spacing to see its curvature.
     let step_nm = arguments.step.unwrap_or_else(|| shape.spacing_nm().max(1.0));
     if !(step_nm.is_finite() && step_nm > 0.0 && step_nm <= 100.0) {
@@ -70,7 +70,7 @@ pub(super) fn local(arguments: &SpectrumFit, at_nm: f64, shape: &Shape) -> Outco
 }
 
 /// Returns the range of wavelengths around `at_nm` in which the term is close to the spectrum, nm.
-fn close(shape: &Shape, term: &GaussianTerm, at_nm: f64) -> [f64; 2] {
+fn close(shape: &SpectralFunction, term: &GaussianTerm, at_nm: f64) -> [f64; 2] {
     const STEP_NM: f64 = 0.1;
     const FARTHEST: u32 = 5000;
     let is_close = |nm: f64| (term.at(nm) - shape.at(nm)).abs() <= CLOSE * shape.at(nm).abs();

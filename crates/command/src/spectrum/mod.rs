@@ -19,7 +19,7 @@ use arguments::{KindName, SpectrumCommand};
 use spectra_core::params::Fault;
 use spectra_scene::FileResources;
 use spectra_scene::bundled::{Bundled, meanings, other_kind};
-use spectra_spectrum::{Emission, Found, Kind, SpectrumError, find_as_in, find_emission_in, find_in, notes_in};
+use spectra_spectrum::{AnySpectrum, Emission, Kind, SpectrumError, find_as_in, find_emission_in, find_in, notes_in};
 use std::path::Path;
 
 /// Runs one of the commands of `spectra spectrum`.
@@ -41,12 +41,12 @@ fn files() -> FileResources {
     FileResources::beside(Path::new(""))
 }
 
-fn load(name: &str) -> Result<Found, Failure> {
+fn load(name: &str) -> Result<AnySpectrum, Failure> {
     find_in(name, &files()).map_err(|error| refuse_name(name, error))
 }
 
 /// Loads a spectrum as the kind given by `--as`, or as its own kind if none is given.
-fn load_as(name: &str, kind: Option<KindName>) -> Result<Found, Failure> {
+fn load_as(name: &str, kind: Option<KindName>) -> Result<AnySpectrum, Failure> {
     let Some(kind) = kind else { return load(name) };
     let kind = match kind {
         KindName::Emission => Kind::Emission,

@@ -4,12 +4,12 @@ use super::arguments::{DiagramName, SpectrumPlot};
 use super::info::observer;
 use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
+use crate::formatting::figure_of;
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::words::figure_of;
 use spectra_analysis::figure;
 use spectra_color::{chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
 use spectra_plot::{Format, PlotError};
-use spectra_spectrum::{BAND, Emission, Found, Observer, SpectrumError, find_in, function_in};
+use spectra_spectrum::{AnySpectrum, BAND, Emission, Observer, SpectrumError, find_in, function_in};
 
 /// Plots spectra or their chromaticities, and writes the figure to a file.
 pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
@@ -33,7 +33,7 @@ pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
     let canvas = if arguments.chromaticity {
         let illuminant = load_illuminant(&arguments.illuminant)?;
         let observer = observer(arguments.observer);
-        let point = |(name, found): &(String, Found)| Ok((name.clone(), xy(name, found, &illuminant, observer)?));
+        let point = |(name, found): &(String, AnySpectrum)| Ok((name.clone(), xy(name, found, &illuminant, observer)?));
         let mut points = spectra.iter().map(point).collect::<Result<Vec<_>, Failure>>()?;
         points.extend(own);
         let diagram = match arguments.diagram {
@@ -49,7 +49,7 @@ pub(crate) fn plot(arguments: &SpectrumPlot) -> Outcome {
     };
     let canvas = match arguments.seen_by {
         None => canvas,
-        Some(eye) => eye.sees(canvas),
+        Some(eye) => eye.simulate(canvas),
     };
     canvas.write(output).map_err(failure)?;
     console::note(&format!("wrote {}", output.display()));
@@ -107,12 +107,12 @@ fn columns(names: &[String], chromaticity: bool) -> Result<Vec<String>, Failure>
 /// Largest number of curves that differ in color or dashes.
 const MOST_CURVES: usize = 28;
 
-fn xy(name: &str, found: &Found, illuminant: &Emission, observer: &Observer) -> Result<[f64; 2], Failure> {
+fn xy(name: &str, found: &AnySpectrum, illuminant: &Emission, observer: &Observer) -> Result<[f64; 2], Failure> {
     let xyz = match found {
-        Found::Emission(light) => xyz_of_light(light, observer),
-        Found::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),
-        Found::Reflectance(surface) => xyz_of_reflectance(surface, illuminant, observer),
-        Found::Sensitivity(_) => {
+        AnySpectrum::Emission(light) => xyz_of_light(light, observer),
+        AnySpectrum::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),
+        AnySpectrum::Reflectance(surface) => xyz_of_reflectance(surface, illuminant, observer),
+        AnySpectrum::Sensitivity(_) => {
             return Err(Failure::Input(format!("`{name}` is a sensitivity and has no chromaticity")));
         }
     };
@@ -120,12 +120,12 @@ fn xy(name: &str, found: &Found, illuminant: &Emission, observer: &Observer) -> 
     xy.ok_or_else(|| Failure::Input(format!("`{name}` has no chromaticity, because it has no visible light")))
 }
 
-fn is_dark(found: &Found) -> bool {
+fn is_dark(found: &AnySpectrum) -> bool {
     let dark = |values: Vec<f64>| values.iter().all(|v| *v <= 0.0);
     match found {
-        Found::Emission(light) => light.to_power(&BAND).is_dark(),
-        Found::Transmittance(filter) => dark(filter.on_grid(&BAND)),
-        Found::Reflectance(surface) => dark(surface.on_grid(&BAND)),
-        Found::Sensitivity(detector) => dark(detector.on_grid(&BAND)),
+        AnySpectrum::Emission(light) => light.to_power(&BAND).is_dark(),
+        AnySpectrum::Transmittance(filter) => dark(filter.on_grid(&BAND)),
+        AnySpectrum::Reflectance(surface) => dark(surface.on_grid(&BAND)),
+        AnySpectrum::Sensitivity(detector) => dark(detector.on_grid(&BAND)),
     }
 }

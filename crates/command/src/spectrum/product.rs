@@ -8,7 +8,7 @@ use spectra_analysis::terms::{Chain, ChainError, Scatter, figure};
 use spectra_core::Isa;
 use spectra_files::write_atomically;
 use spectra_plot::Format;
-use spectra_spectrum::{Found, Kind, find_as_in, find_in};
+use spectra_spectrum::{AnySpectrum, Kind, find_as_in, find_in};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -49,7 +49,7 @@ fn is_csv(path: &Path) -> bool {
 }
 
 /// Loads a factor. One that can be of any kind is a light if it comes first, and a filter otherwise.
-fn factor(name: &str, is_first: bool) -> Result<Found, Failure> {
+fn factor(name: &str, is_first: bool) -> Result<AnySpectrum, Failure> {
     if is_first {
         return find_in(name, &files()).map_err(|error| refuse_name(name, error));
     }

@@ -12,7 +12,7 @@ use super::schema::PART;
 use super::text::found;
 use super::whole::{Exact, limits_of};
 use crate::names::{self, nearest, shown};
-use crate::quantity::{Form, Limits, Reading};
+use crate::quantity::{Limits, QuantityFormat, Reading};
 use serde_json::Value as Schema;
 use std::sync::Arc;
 
@@ -125,7 +125,7 @@ impl<'s> Check<'s> {
         } else if ways(schema).next().is_some() {
             let ways = ways(schema).filter(|way| !has_only_null(way)).collect();
             self.one_of(at, ways);
-        } else if let Some(form) = Form::of(schema) {
+        } else if let Some(form) = QuantityFormat::of(schema) {
             self.quantity(at, &form);
         } else if has_type(schema, "object") {
             self.map(at, schema);
@@ -271,7 +271,7 @@ impl<'s> Check<'s> {
         if let Some(words) = words(schema) {
             return words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(" or ");
         }
-        if let Some(form) = Form::of(schema) {
+        if let Some(form) = QuantityFormat::of(schema) {
             return form.expected();
         }
         let forms = [
@@ -284,7 +284,7 @@ impl<'s> Check<'s> {
         forms.iter().find(|(name, _)| has_type(schema, name)).map_or("a text", |(_, form)| form).to_owned()
     }
 
-    fn quantity(&mut self, at: &At<'_, '_>, form: &Form<'_>) {
+    fn quantity(&mut self, at: &At<'_, '_>, form: &QuantityFormat<'_>) {
         let result = match &at.node.value {
             Value::Number(number) if number.value.is_finite() => form.allowed(number.value, &number.text),
             Value::Number(super::Number { text, .. }) | Value::String(text) => form.read(text).map(|_| ()),

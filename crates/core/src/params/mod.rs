@@ -70,7 +70,7 @@
 //!    `film.compensation` and the hint `a number from -10 to 10`.
 //! 4. If nothing is wrong, serde reads the tree by a small deserializer of nodes (`reader`): `1/60 s` becomes a [`Time`].
 //!
-//! A part that is read later (a nested stage, a section by itself) is a field [`Part<T>`](Part). Its schema is that of `T`, marked
+//! A part that is read later (a nested stage, a section by itself) is a field [`Deferred<T>`](Deferred). Its schema is that of `T`, marked
 //! `x-part`; the check stops there, and the field keeps its node. Keys that all kinds of a stage share are a separate struct. It is
 //! flattened (imagers), or split off by [`keys_of`] (surfaces, apertures).
 //!
@@ -79,11 +79,11 @@
 
 mod at;
 mod check;
+mod deferred;
 mod fault;
 mod node;
 #[allow(clippy::module_inception)] // The type `Params` is the idea of the module `params`.
 mod params;
-mod part;
 mod parts;
 mod path;
 mod place;
@@ -100,10 +100,10 @@ pub use crate::quantity::{
     OrInfinity, Positive, Power, Quantity, RadiantIntensity, Ratio, Reading, SpatialFrequency, Temperature, Time, Unit,
     Wavelength, schema_of,
 };
+pub use deferred::{Deferred, StageNode};
 pub use fault::{Fault, Faults};
 pub use node::{Key, MAX_DEPTH, Node, Number, Value};
 pub use params::Params;
-pub use part::{Part, StageNode};
 pub use path::{Step, steps};
 pub use place::{SourceFile, Span};
 pub use reader::{Readable, keys_of};

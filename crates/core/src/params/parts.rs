@@ -17,7 +17,7 @@ impl Params {
     /// Returns the parameters of a stage that the scene does not mention: the registry's default kind with its default
     /// parameters. Its faults are placed at this map.
     #[must_use]
-    pub fn nothing_said(&self, key: &str) -> Self {
+    pub fn default_stage(&self, key: &str) -> Self {
         let map = Node::new(Value::Map(Vec::new()), self.node().span, Arc::clone(&self.node().file));
         self.with_node(map, &self.path_of(key)).without_kind()
     }

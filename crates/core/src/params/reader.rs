@@ -5,8 +5,8 @@ use super::at::At;
 use super::check::check;
 use super::fault::{Fault, Faults};
 use super::node::{Node, Value};
-// A circle with `part.rs`: a part keeps the node that the reader hands it, and reads it later.
-use super::part::StageNode;
+// A circle with `deferred.rs`: a part keeps the node that the reader hands it, and reads it later.
+use super::deferred::StageNode;
 use super::path::Step;
 use super::whole::Exact;
 use schemars::JsonSchema;

@@ -1,6 +1,6 @@
 //! The quantities used in scene, lens and stock files.
 
-use super::form::{Bound, Quantity};
+use super::quantity_format::{Bound, Quantity};
 use super::units::{Dimension, Unit};
 
 impl Quantity for f64 {

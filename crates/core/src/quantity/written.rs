@@ -2,11 +2,11 @@
 //!
 //! The keywords beyond JSON Schema are `x-quantity` (what is measured), `x-unit` (unit of a bare number) and `x-infinity`.
 
-use super::form::{Bound, Quantity, deserialize};
 use super::kinds::{
     Angle, Exposure, FNumber, Illuminance, Length, Luminance, NonNegative, OrInfinity, Positive, Power,
     RadiantIntensity, Ratio, SpatialFrequency, Temperature, Time, Wavelength,
 };
+use super::quantity_format::{Bound, Quantity, deserialize};
 use super::units::{Dimension, UNITS};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

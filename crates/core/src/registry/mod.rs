@@ -78,12 +78,12 @@ mod schema;
 pub use documentation::{Documentation, Parameter};
 pub use schema::{NameOf, StageOf, definitions, kinds};
 
+use crate::frame_view::FrameView;
 use crate::params::{Fault, Faults, Params, Warning, Warnings};
 use crate::resources::Resources;
 use crate::spectral::{Grid, SpectralPower};
 use crate::stage::{ColorModel, Film, Imager, Response, Source, WavelengthSampler};
 use crate::surface::Surface;
-use crate::view::View;
 use schemars::{Schema, SchemaGenerator};
 
 #[doc(hidden)] // for `register!` and `declare!`
@@ -99,7 +99,7 @@ pub struct Context<'a> {
     /// Light under which the colors of the source are seen, for a color model.
     pub illuminant: Option<&'a SpectralPower>,
     /// View of the frame in front of the lens, for a source; `None` if the scene has no valid lens.
-    pub view: Option<&'a View>,
+    pub view: Option<&'a FrameView>,
     /// Point of the image plane where the light of the source lands, mm, for an imager; `None` if that is not known yet.
     pub landing_mm: Option<[f64; 2]>,
     /// Collector of warnings, if there is one; see [`Context::warn`].

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// The schema of any registered stage of a kind: a name, or a map with `kind` and that stage's own parameters. For nested
-/// stages, kept as a [`Part`](crate::params::Part):
+/// stages, kept as a [`Part`](crate::params::Deferred):
 ///
 /// ```
 /// # use {schemars::JsonSchema, spectra_core::{params::Part, registry::StageOf, stage::ColorModel}};

@@ -23,7 +23,7 @@ const LEFT_MM: f64 = 1e-13;
 type Column = [f64; CHUNK];
 
 /// Intersections of the rays of a chunk with the surface.
-struct Meeting {
+struct Intersections {
     /// Distance from the vertex plane, mm; NaN where a ray misses.
     t: Column,
     slope: [Column; 2],
@@ -34,7 +34,7 @@ struct Meeting {
 }
 
 /// Columns of some rays in the frame of the surface.
-struct Part<'a> {
+struct ChunkColumns<'a> {
     x: &'a mut [f64],
     y: &'a mut [f64],
     z: &'a mut [f64],
@@ -44,7 +44,7 @@ struct Part<'a> {
     state: &'a mut [u64],
 }
 
-impl Part<'_> {
+impl ChunkColumns<'_> {
     fn ray(&self, i: usize) -> [DVec3; 2] {
         [DVec3::new(self.x[i], self.y[i], self.z[i]), DVec3::new(self.l[i], self.m[i], self.n[i])]
     }
@@ -64,7 +64,7 @@ pub(super) fn interact<S: SagShape>(
     let mut lost = 0;
     for first in (0..c.x.len()).step_by(CHUNK) {
         let span = first..(first + CHUNK).min(c.x.len());
-        let part = &mut Part {
+        let part = &mut ChunkColumns {
             x: &mut c.x[span.clone()],
             y: &mut c.y[span.clone()],
             z: &mut c.z[span.clone()],
@@ -84,7 +84,7 @@ pub(super) fn interact<S: SagShape>(
             }
         }
         const ZERO: Column = [0.0; CHUNK];
-        let met = &mut Meeting { t: ZERO, slope: [ZERO; 2], found: ZERO, margin: [ZERO; 2] };
+        let met = &mut Intersections { t: ZERO, slope: [ZERO; 2], found: ZERO, margin: [ZERO; 2] };
         isa.run(Meet { shape, part, met });
         for i in 0..part.x.len() {
             if part.state[i] == ALIVE && !(met.found[i] > 0.0) {
@@ -111,8 +111,8 @@ pub(super) fn interact<S: SagShape>(
 /// Moves rays to the vertex plane, so that a far source costs no precision, and steps from there to the surface.
 struct Meet<'a, 'b, S> {
     shape: &'a S,
-    part: &'a mut Part<'b>,
-    met: &'a mut Meeting,
+    part: &'a mut ChunkColumns<'b>,
+    met: &'a mut Intersections,
 }
 
 impl<S: SagShape> Vectorized for Meet<'_, '_, S> {
@@ -182,8 +182,8 @@ const PASS: u8 = 2;
 
 /// Moves rays to their points on the surface, and bends them there.
 struct Turn<'a, 'b> {
-    part: &'a mut Part<'b>,
-    met: &'a mut Meeting,
+    part: &'a mut ChunkColumns<'b>,
+    met: &'a mut Intersections,
     /// Index before the surface, and one over the index after it.
     mu: [&'a [f64]; 2],
 }
@@ -230,7 +230,7 @@ impl<const ACTION: u8> Vectorized for TurnBy<'_, '_, ACTION> {
 }
 
 /// Records the rays that ended, in the order in which light meets the causes; returns how many.
-fn book(state: &mut [u64], met: &Meeting, number: u32) -> usize {
+fn book(state: &mut [u64], met: &Intersections, number: u32) -> usize {
     let mut lost = 0;
     for (i, state) in state.iter_mut().enumerate().filter(|(_, state)| **state == ALIVE) {
         let cause = if met.margin[0][i].is_nan() {

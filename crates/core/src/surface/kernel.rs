@@ -6,7 +6,7 @@
 //! reciprocal of the index is evaluated with the index (one division for both), so refraction divides by nothing.
 //!
 //! Kernels store in the batch how far each ray came and the versine of the angle by which it was bent
-//! ([`Weighing`](crate::batch::Weighing)). That is all that a glass needs to absorb and a coating to reflect. For other surfaces the tracer
+//! ([`Weighing`](crate::batch::WeightColumns)). That is all that a glass needs to absorb and a coating to reflect. For other surfaces the tracer
 //! computes both from copies of the positions and directions before.
 //!
 //! A ray stays where it has arrived, so its bits do not depend on its neighbors. A ray whose steps do not clearly shrink is passed to a
@@ -195,7 +195,7 @@ impl<S: KernelShape> Surface for Kernel<S> {
     fn is_stop(&self) -> bool {
         self.0.is_stop()
     }
-    fn notes_meeting(&self) -> bool {
+    fn records_intersection(&self) -> bool {
         true
     }
     fn scaled(&self, factor: f64) -> Option<Arc<dyn Surface>> {

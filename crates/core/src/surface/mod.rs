@@ -111,9 +111,9 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
     }
 
     /// Returns whether [`Surface::interact`] records in the batch how far each living ray traveled and by which angle it was
-    /// deflected ([`way_mm`](crate::batch::Weighing::way_mm), [`versine`](crate::batch::Weighing::versine)). If it does not,
+    /// deflected ([`way_mm`](crate::batch::WeightColumns::way_mm), [`versine`](crate::batch::WeightColumns::versine)). If it does not,
     /// code that needs these values computes them from positions and directions before and after.
-    fn notes_meeting(&self) -> bool {
+    fn records_intersection(&self) -> bool {
         false
     }
 

@@ -82,7 +82,7 @@ fn newton(height: &impl Fn(f64) -> Option<(f64, f64)>, start: f64, sense: f64) -
 }
 
 /// A place along the ray, the height there, and its derivative.
-type Place = (f64, f64, f64);
+type HeightSample = (f64, f64, f64);
 
 /// Finds two points, (below, above), between which the ray crosses the surface once from below to above. Searches outward from
 /// the middle, to both sides in turn.
@@ -117,7 +117,7 @@ fn march(height: &impl Fn(f64) -> Option<(f64, f64)>, middle: f64, first: f64) -
 
 /// Brackets the crossing from below to above between two places. If both have the same sign, the crossing may lie beside a
 /// summit or a valley between them.
-fn between(place: &impl Fn(f64) -> Option<Place>, low: Place, high: Place) -> Option<(f64, f64)> {
+fn between(place: &impl Fn(f64) -> Option<HeightSample>, low: HeightSample, high: HeightSample) -> Option<(f64, f64)> {
     if low.1 < 0.0 && high.1 >= 0.0 {
         return Some((low.0, high.0));
     }
@@ -141,7 +141,7 @@ fn between(place: &impl Fn(f64) -> Option<Place>, low: Place, high: Place) -> Op
 }
 
 /// Finds the last place with surface between `on`, which has surface, and `off`, which has none.
-fn rim(place: &impl Fn(f64) -> Option<Place>, on: Place, off: f64) -> Place {
+fn rim(place: &impl Fn(f64) -> Option<HeightSample>, on: HeightSample, off: f64) -> HeightSample {
     let (mut on, mut off) = (on, off);
     for _ in 0..RIM_HALVINGS {
         let middle = 0.5 * (on.0 + off);

@@ -157,7 +157,7 @@ fn a_round_opening_makes_airys_pattern() {
     let wings = Wings::new(&opening);
     // The fraction beyond r is 2 / (pi^2 r), with r in wavelengths times f-number.
     let r = 100.0 * GREEN_MM * 16.0;
-    assert!((wings.beyond(r, GREEN_MM) / (2.0 / (PI * PI * 100.0)) - 1.0).abs() < 1e-3);
+    assert!((wings.fraction_beyond(r, GREEN_MM) / (2.0 / (PI * PI * 100.0)) - 1.0).abs() < 1e-3);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Light spread over pixels: contrast, energy, and the picture of a point against the pattern itself.
 
 use spectra_core::frame::FrameSize;
-use spectra_diffraction::{Light, PixelSpread, Polygon, Spread, Wings};
+use spectra_diffraction::{ChannelLight, PixelSpread, Polygon, Spread, Wings};
 use std::f64::consts::{PI, TAU};
 
 const GREEN_NM: f64 = 550.0;
@@ -32,8 +32,8 @@ fn a_perfect_lens_has_the_contrast_of_the_closed_form() {
     for (f_number, pitch_mm) in [(8.0, 0.002), (16.0, 0.004), (16.0, 0.002)] {
         let opening = Polygon::regular(360, 0.5 / f_number, 0.0);
         // The fade toward the edge of the kernel does not blur anything this fine.
-        let elsewhere = Wings::new(&opening).beyond(0.78 * 128.0 * pitch_mm, GREEN_MM);
-        let kernel = PixelSpread::new(&opening, &Light::line(GREEN_NM), [pitch_mm; 2], 128, elsewhere);
+        let elsewhere = Wings::new(&opening).fraction_beyond(0.78 * 128.0 * pitch_mm, GREEN_MM);
+        let kernel = PixelSpread::new(&opening, &ChannelLight::line(GREEN_NM), [pitch_mm; 2], 128, elsewhere);
         let mut worst = 0.0_f64;
         for k in 1..20 {
             let per_mm = f64::from(k) / 20.0 * (0.45 / pitch_mm).min(1.0 / (GREEN_MM * f_number));
@@ -55,7 +55,7 @@ fn pixels_of_a_square_of_20_mm_hold_all_light() {
     for (blades, f_number) in [(7, 16.0), (8, 5.6)] {
         let opening = stop(blades, f_number);
         let pitch = 0.04;
-        let kernel = PixelSpread::new(&opening, &Light::line(GREEN_NM), [pitch; 2], 250, 0.0);
+        let kernel = PixelSpread::new(&opening, &ChannelLight::line(GREEN_NM), [pitch; 2], 250, 0.0);
         let n = 400;
         let mut sum = 0.0;
         for k in 0..n * n {
@@ -82,7 +82,7 @@ fn the_star_of_a_point_is_the_pattern() {
     for blades in [7, 8] {
         let opening = stop(blades, 16.0);
         let seen = |_: [f64; 2]| Some(opening.clone());
-        let spread = Spread::new(SIZE, Light::line(GREEN_NM), &seen).unwrap();
+        let spread = Spread::new(SIZE, ChannelLight::line(GREEN_NM), &seen).unwrap();
         let mut plane = point(450, 300);
         let account = spread.apply(&mut plane);
         assert_eq!(account.stars, 1);
@@ -90,7 +90,7 @@ fn the_star_of_a_point_is_the_pattern() {
         assert!((all + account.left - 1.0).abs() < 1e-6, "{all} {}", account.left);
         let wings = Wings::new(&opening);
         // Outside the frame lies what is beyond a circle between its sides.
-        let [far, near] = [3.6, 6.5].map(|r| wings.beyond(r, GREEN_MM));
+        let [far, near] = [3.6, 6.5].map(|r| wings.fraction_beyond(r, GREEN_MM));
         assert!((near..far).contains(&account.left), "{near} {} {far}", account.left);
         // Light of a ring along a spike, compared with what the edge sends there.
         let pitch = 0.012;
@@ -119,7 +119,8 @@ fn the_star_of_a_point_is_the_pattern() {
 fn a_gray_frame_stays_gray() {
     let opening = stop(7, 16.0);
     let seen = |_: [f64; 2]| Some(opening.clone());
-    let spread = Spread::new(SIZE, Light::of(&[[450.0, 1.0], [550.0, 2.0], [650.0, 1.0]]).unwrap(), &seen).unwrap();
+    let spread =
+        Spread::new(SIZE, ChannelLight::of(&[[450.0, 1.0], [550.0, 2.0], [650.0, 1.0]]).unwrap(), &seen).unwrap();
     let mut plane = vec![0.18_f32; SIZE.pixels()];
     spread.apply(&mut plane);
     let (low, high) = plane.iter().fold((f32::INFINITY, 0.0_f32), |(low, high), v| (low.min(*v), high.max(*v)));
@@ -136,7 +137,7 @@ fn same_bits_on_any_threads() {
         pool.install(|| {
             let mut plane = point(40, 30);
             plane.iter_mut().enumerate().for_each(|(k, v)| *v += ((k * 7919) % 1013) as f32);
-            Spread::new(SIZE, Light::line(GREEN_NM), &seen).unwrap().apply(&mut plane);
+            Spread::new(SIZE, ChannelLight::line(GREEN_NM), &seen).unwrap().apply(&mut plane);
             plane
         })
     };
@@ -145,11 +146,11 @@ fn same_bits_on_any_threads() {
 
 #[test]
 fn light_is_cut_into_equal_parts() {
-    let light = Light::of(&[[400.0, 1.0], [500.0, 3.0], [600.0, 0.0], [700.0, 4.0]]).unwrap();
+    let light = ChannelLight::of(&[[400.0, 1.0], [500.0, 3.0], [600.0, 0.0], [700.0, 4.0]]).unwrap();
     let sum: f64 = light.shares().iter().map(|[_, share]| share).sum();
     assert!((sum - 1.0).abs() < 1e-12 && light.shares().len() == 8, "{light:?}");
     assert!((light.mean_mm() / (1e-6 * (400.0 + 1500.0 + 2800.0) / 8.0) - 1.0).abs() < 1e-12);
-    assert_eq!(Light::of(&[[500.0, 0.0]]), None);
+    assert_eq!(ChannelLight::of(&[[500.0, 0.0]]), None);
 }
 
 /// A frame whose pixels see one opening makes one kernel. The result matches, within a hundredth of the brightest pixel, that of separate
@@ -157,10 +158,10 @@ fn light_is_cut_into_equal_parts() {
 #[test]
 fn one_opening_makes_the_picture_of_many() {
     let size = FrameSize { width_px: 64, height_px: 48, width_mm: 0.128, height_mm: 0.096 };
-    let points = |view: &dyn spectra_diffraction::View| {
+    let points = |view: &dyn spectra_diffraction::LensView| {
         let mut plane = vec![0.0_f32; 64 * 48];
         (plane[20 * 64 + 24], plane[44 * 64 + 60]) = (1000.0, 300.0);
-        Spread::new(size, Light::line(GREEN_NM), view).expect("an opening").apply(&mut plane);
+        Spread::new(size, ChannelLight::line(GREEN_NM), view).expect("an opening").apply(&mut plane);
         plane
     };
     let corner =

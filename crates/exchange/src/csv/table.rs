@@ -3,9 +3,9 @@
 use super::cells::cells;
 use super::columns::{self, Column, HINT, by_name};
 use super::{patent, units};
-use crate::glass::{Catalogues, OwnCatalogue};
-use crate::place::{Source, shown};
-use crate::prescription::{Item, Medium, Prescription, Shape, Surface};
+use crate::glass::{Catalogs, UserCatalog};
+use crate::prescription::{AxisItem, Medium, Prescription, Surface, SurfaceShape};
+use crate::source::{Source, shortened};
 use crate::{MAX_ITEMS, glass, number};
 use spectra_core::params::{Fault, Faults};
 
@@ -13,7 +13,7 @@ use spectra_core::params::{Fault, Faults};
 ///
 /// # Errors
 /// The table has no usable columns, no rows or several lenses. Each cell that cannot be read is reported, with its position.
-pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
+pub fn read(name: &str, text: &str, own: &[UserCatalog]) -> Result<Prescription, Faults> {
     let printed = patent::plain(text);
     let retyped = patent::retype(&printed);
     let source = Source::new(name, retyped.as_ref().map_or(printed.as_str(), |retyped| retyped.text.as_str()));
@@ -36,10 +36,10 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
         let column = by_name(cell);
         let doubled = column.is_some_and(|column| columns.contains(&Some(column)));
         if doubled {
-            faults.push(source.fault(cell, format!("column `{}` appears twice", shown(cell))));
+            faults.push(source.fault(cell, format!("column `{}` appears twice", shortened(cell))));
         }
         if column.is_none() && !cell.is_empty() {
-            faults.push(source.fault(cell, format!("unknown column `{}`", shown(cell))).hint(HINT));
+            faults.push(source.fault(cell, format!("unknown column `{}`", shortened(cell))).hint(HINT));
         }
         columns.push(column);
     }
@@ -54,13 +54,13 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
     if head_line_is_e(&cells(head, separator)) {
         lens.reference_line = Some("e".to_owned());
     }
-    let mut seen = Seen { no_thickness: !columns.contains(&Some(Column::Thickness)), ..Seen::default() };
+    let mut seen = TableState { no_thickness: !columns.contains(&Some(Column::Thickness)), ..TableState::default() };
     for (at, line) in rows {
         if lens.items.len() >= MAX_ITEMS {
             faults.push(source.fault(line, format!("more than {MAX_ITEMS} surfaces")));
             break;
         }
-        let mut row = Row {
+        let mut row = RowReader {
             line: at + 1,
             separator,
             source: &source,
@@ -101,7 +101,7 @@ fn head_line_is_e(heads: &[&str]) -> bool {
 
 /// State carried from row to row.
 #[derive(Default)]
-struct Seen {
+struct TableState {
     /// Whether the table has no column of thicknesses, which is reported once.
     no_thickness: bool,
     /// Latest number of a surface.
@@ -121,7 +121,7 @@ fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults:
             Some(unit) => match columns::unit_mm(unit, column) {
                 Some(mm) => found.push((column, mm)),
                 None => {
-                    let text = format!("`{}` is not a unit for this column", shown(unit));
+                    let text = format!("`{}` is not a unit for this column", shortened(unit));
                     let hint = match columns::power(column) {
                         Some(1) => units::HINT.to_owned(),
                         _ if column == Column::Coefficients => {
@@ -136,12 +136,12 @@ fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults:
     }
     if found.iter().any(|(_, mm)| *mm != 1.0) {
         for (head, column) in silent {
-            let text = format!("`{}` states no unit, but other columns do", shown(head));
+            let text = format!("`{}` states no unit, but other columns do", shortened(head));
             let power = match columns::power(column) {
                 Some(power) if power != 1 && column != Column::Coefficients => format!("^{power}"),
                 _ => String::new(),
             };
-            let hint = format!("write it after the name, such as `{} [mm{power}]`", shown(head));
+            let hint = format!("write it after the name, such as `{} [mm{power}]`", shortened(head));
             faults.push(source.fault(head, text).hint(hint));
         }
     }
@@ -178,7 +178,10 @@ fn hint_of(cell: &str) -> Option<String> {
     }
     let point = cell.replacen(',', ".", 1);
     if number::parse(&point).is_some() {
-        return Some(format!("write it with a point, `{}`, or separate cells with semicolons or tabs", shown(&point)));
+        return Some(format!(
+            "write it with a point, `{}`, or separate cells with semicolons or tabs",
+            shortened(&point)
+        ));
     }
     let at = cell.find(|c: char| !(c.is_ascii_digit() || "+-.,".contains(c)))?;
     let (figure, unit) = cell.split_at(at);
@@ -188,19 +191,19 @@ fn hint_of(cell: &str) -> Option<String> {
     Some(format!("write the unit in the column header, such as `radius [{unit}]`, and here `{figure}`"))
 }
 
-struct Row<'a, 'f> {
+struct RowReader<'a, 'f> {
     line: usize,
     separator: char,
     source: &'a Source,
     faults: &'f mut Faults,
     cells: Vec<(Column, &'a str)>,
     units_mm: &'f [(Column, f64)],
-    seen: &'f mut Seen,
+    seen: &'f mut TableState,
     /// Catalogs that are searched for glasses first.
-    own: &'a [OwnCatalogue],
+    own: &'a [UserCatalog],
 }
 
-impl<'a> Row<'a, '_> {
+impl<'a> RowReader<'a, '_> {
     /// Text of the cell in a column; `None` if it is empty or missing.
     fn text(&self, column: Column) -> Option<&'a str> {
         self.cells.iter().find(|(c, cell)| *c == column && !cell.is_empty()).map(|(_, cell)| *cell)
@@ -238,7 +241,7 @@ impl<'a> Row<'a, '_> {
             _ => number::parse(&patent::figure(&cell.replacen(',', ".", 1))),
         };
         if value.is_none() {
-            let fault = self.source.fault(cell, format!("`{}` is not a number", shown(cell)));
+            let fault = self.source.fault(cell, format!("`{}` is not a number", shortened(cell)));
             self.faults.push(match hint_of(cell) {
                 Some(hint) => fault.hint(hint),
                 None => fault,
@@ -259,9 +262,10 @@ impl<'a> Row<'a, '_> {
     fn surface(&mut self, lens: &mut Prescription) {
         if let Some(name) = self.text(Column::Lens) {
             if lens.items.is_empty() && lens.name.is_empty() {
-                lens.name = shown(name);
-            } else if lens.name != shown(name) {
-                let fault = self.source.fault(name, format!("a second lens, `{}`, after `{}`", shown(name), lens.name));
+                lens.name = shortened(name);
+            } else if lens.name != shortened(name) {
+                let fault =
+                    self.source.fault(name, format!("a second lens, `{}`, after `{}`", shortened(name), lens.name));
                 self.faults.push(fault.hint("a table holds one lens: keep the rows of one"));
                 return;
             }
@@ -303,15 +307,19 @@ impl<'a> Row<'a, '_> {
         };
         let shape = self.shape(&kind, radius, lens);
         let air_before = lens.surfaces().last().is_none_or(|last| last.medium == Medium::Air);
-        let bends_nothing = shape == Shape::Plane && medium == Medium::Air && air_before && !mirror;
-        lens.items.push(Item::Surface(Box::new(Surface {
-            shape: if stop && (bends_nothing || kind == "stop" && shape == Shape::Plane) { Shape::Stop } else { shape },
+        let bends_nothing = shape == SurfaceShape::Plane && medium == Medium::Air && air_before && !mirror;
+        lens.items.push(AxisItem::Surface(Box::new(Surface {
+            shape: if stop && (bends_nothing || kind == "stop" && shape == SurfaceShape::Plane) {
+                SurfaceShape::Stop
+            } else {
+                shape
+            },
             thickness_mm: thickness,
             medium,
             mirror,
             stop,
             semi_diameter_mm: semi_diameter_mm.filter(|size| *size > 0.0),
-            comment: self.text(Column::Comment).map(shown).unwrap_or_default(),
+            comment: self.text(Column::Comment).map(shortened).unwrap_or_default(),
             ..Surface::default()
         })));
     }
@@ -331,7 +339,7 @@ impl<'a> Row<'a, '_> {
     }
 
     fn medium(&mut self, lens: &mut Prescription) -> Medium {
-        let catalogues = Catalogues { own: self.own, ..Catalogues::default() };
+        let catalogues = Catalogs { own: self.own, ..Catalogs::default() };
         let (nd, vd) = (self.finite(Column::Index), self.finite(Column::Abbe));
         if let (Some(index), Some(cell)) = (nd, self.text(Column::Index))
             && !(1.0..=4.0).contains(&index)
@@ -351,24 +359,28 @@ impl<'a> Row<'a, '_> {
         found.medium
     }
 
-    fn shape(&mut self, kind: &str, radius: f64, lens: &mut Prescription) -> Shape {
+    fn shape(&mut self, kind: &str, radius: f64, lens: &mut Prescription) -> SurfaceShape {
         let conic = self.finite(Column::Conic).unwrap_or(0.0);
         let coefficients = self.coefficients();
         match kind {
-            "cyl-x" | "cylinder-x" | "cylx" if radius.is_finite() => return Shape::Cylinder { radius, along_x: true },
-            "cyl-y" | "cylinder-y" | "cyly" if radius.is_finite() => return Shape::Cylinder { radius, along_x: false },
+            "cyl-x" | "cylinder-x" | "cylx" if radius.is_finite() => {
+                return SurfaceShape::Cylinder { radius, along_x: true };
+            }
+            "cyl-y" | "cylinder-y" | "cyly" if radius.is_finite() => {
+                return SurfaceShape::Cylinder { radius, along_x: false };
+            }
             "" | "spherical" | "sphere" | "standard" | "plane" | "plano" | "flat" | "stop" | "aperture" | "conic"
             | "aspherical" | "asphere" | "aspheric" | "even-asphere" | "evenasph" | "mirror" | "cyl-x" | "cyl-y"
             | "cylinder-x" | "cylinder-y" | "cylx" | "cyly" => {}
             other => {
-                let text = format!("the type {} is unknown, carried as its sphere, conic or asphere", shown(other));
+                let text = format!("the type {} is unknown, carried as its sphere, conic or asphere", shortened(other));
                 lens.leave_out(self.line, true, text);
             }
         }
         if coefficients.is_empty() {
-            Shape::conic(radius, conic)
+            SurfaceShape::conic(radius, conic)
         } else {
-            Shape::EvenAsphere { radius, conic, coefficients }
+            SurfaceShape::EvenAsphere { radius, conic, coefficients }
         }
     }
 

@@ -1,4 +1,4 @@
-use crate::prescription::{Item, Medium, Prescription, Shape};
+use crate::prescription::{AxisItem, Medium, Prescription, SurfaceShape};
 use spectra_core::params::Faults;
 
 fn read(name: &str, text: &str) -> Result<Prescription, Faults> {
@@ -16,14 +16,17 @@ fn a_table_of_a_patent() {
     let surfaces: Vec<_> = lens.surfaces().collect();
     assert_eq!(lens.name, "a-lens");
     let glass = Medium::Glass { name: "SCHOTT/N-BK7".to_owned(), nd: Some(1.5168), vd: Some(64.17) };
-    assert_eq!((&surfaces[0].shape, &surfaces[0].medium), (&Shape::Sphere { radius: 164.13 }, &glass));
-    assert_eq!((&surfaces[1].shape, surfaces[1].semi_diameter_mm), (&Shape::Stop, Some(25.5)));
-    assert_eq!(surfaces[2].shape, Shape::EvenAsphere { radius: -40.42, conic: 0.0, coefficients: vec![0.0, 1e-6] });
+    assert_eq!((&surfaces[0].shape, &surfaces[0].medium), (&SurfaceShape::Sphere { radius: 164.13 }, &glass));
+    assert_eq!((&surfaces[1].shape, surfaces[1].semi_diameter_mm), (&SurfaceShape::Stop, Some(25.5)));
+    assert_eq!(
+        surfaces[2].shape,
+        SurfaceShape::EvenAsphere { radius: -40.42, conic: 0.0, coefficients: vec![0.0, 1e-6] }
+    );
     assert_eq!(
         (&surfaces[2].medium, surfaces[2].semi_diameter_mm),
         (&Medium::Model { nd: 1.6992, vd: Some(30.2), ng: None }, None)
     );
-    assert_eq!(surfaces[3].shape, Shape::Cylinder { radius: 55.0, along_x: false });
+    assert_eq!(surfaces[3].shape, SurfaceShape::Cylinder { radius: 55.0, along_x: false });
     assert_eq!(surfaces[3].thickness_mm, 50.0);
 }
 
@@ -32,8 +35,8 @@ fn other_habits() {
     let text = "#;R [mm];d;Glass;Diameter;A4\nobject;;inf;;;\n1;50,5;5;N-BK7;20;1,5e-6\n2;0;47;;18;\nimage;0;0;;;\n";
     let text = text.replacen("#;", "type;", 1);
     let lens = read("t.csv", &text).unwrap_or_else(|faults| panic!("{faults}"));
-    let Item::Surface(first) = &lens.items[0] else { panic!("a surface") };
-    assert_eq!(first.shape, Shape::EvenAsphere { radius: 50.5, conic: 0.0, coefficients: vec![0.0, 1.5e-6] });
+    let AxisItem::Surface(first) = &lens.items[0] else { panic!("a surface") };
+    assert_eq!(first.shape, SurfaceShape::EvenAsphere { radius: 50.5, conic: 0.0, coefficients: vec![0.0, 1.5e-6] });
     assert_eq!((first.semi_diameter_mm, lens.items.len(), lens.object_distance_mm), (Some(10.0), 2, None));
     // Notes: `1` and `2` are not types, and a radius of 0 is a plane.
     assert_eq!(lens.left_out.len(), 3);
@@ -82,7 +85,7 @@ fn units_of_the_head_count() {
     }
     // The sag in inches is a4 (r / in)^4: 0.001 in at r = 1 in.
     let form = |text: &str| match read("t.csv", text).expect("a lens").surfaces().next().map(|s| s.shape.clone()) {
-        Some(Shape::EvenAsphere { radius, coefficients, .. }) => (radius, coefficients),
+        Some(SurfaceShape::EvenAsphere { radius, coefficients, .. }) => (radius, coefficients),
         other => panic!("{other:?}"),
     };
     for text in [
@@ -121,7 +124,7 @@ fn what_a_lens_file_refuses_is_refused() {
     assert_eq!(faults.0.len(), 1, "{faults}");
     assert_eq!(found.left_out.len(), 1);
     assert_eq!(found.left_out[0].to_string(), "line 2: a radius of 0 is taken as a plane (2 rows)");
-    assert_eq!(found.surfaces().next().map(|s| s.shape.clone()), Some(Shape::Plane));
+    assert_eq!(found.surfaces().next().map(|s| s.shape.clone()), Some(SurfaceShape::Plane));
 }
 
 #[test]
@@ -129,7 +132,7 @@ fn a_stop_in_the_column_of_radii() {
     let found =
         read("t.csv", "radius,thickness,glass\n50,2,N-BK7\n-50,2,\nSTOP,3,\n40,2,N-BK7\nplane,30,\n").expect("a lens");
     let stop = found.surfaces().nth(2).expect("a surface");
-    assert_eq!((&stop.shape, stop.stop, stop.thickness_mm), (&Shape::Stop, true, 3.0));
+    assert_eq!((&stop.shape, stop.stop, stop.thickness_mm), (&SurfaceShape::Stop, true, 3.0));
 }
 
 #[test]
@@ -154,16 +157,18 @@ fn the_table_of_the_guide() {
     let lens = read("doublet.csv", table).unwrap_or_else(|faults| panic!("{faults}"));
     let surfaces: Vec<_> = lens.surfaces().collect();
     assert!(lens.left_out.is_empty(), "{:?}", lens.left_out);
-    assert!(matches!(surfaces[0].shape, Shape::Sphere { radius } if (radius - 60.96).abs() < 1e-12));
-    assert_eq!((&surfaces[3].shape, surfaces.len()), (&Shape::Stop, 4));
+    assert!(matches!(surfaces[0].shape, SurfaceShape::Sphere { radius } if (radius - 60.96).abs() < 1e-12));
+    assert_eq!((&surfaces[3].shape, surfaces.len()), (&SurfaceShape::Stop, 4));
 }
 
 /// Returns radii, thicknesses and indices of a table, the number of the stop from 1, and the notes.
 fn printed(text: &str) -> (Vec<[f64; 3]>, Option<usize>, String) {
     let lens = read("t.csv", text).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
     let surfaces: Vec<_> = lens.surfaces().collect();
-    let radius = |shape: &Shape| match shape {
-        Shape::Sphere { radius } | Shape::Conic { radius, .. } | Shape::EvenAsphere { radius, .. } => *radius,
+    let radius = |shape: &SurfaceShape| match shape {
+        SurfaceShape::Sphere { radius }
+        | SurfaceShape::Conic { radius, .. }
+        | SurfaceShape::EvenAsphere { radius, .. } => *radius,
         _ => f64::INFINITY,
     };
     let index = |medium: &Medium| match medium {
@@ -172,7 +177,7 @@ fn printed(text: &str) -> (Vec<[f64; 3]>, Option<usize>, String) {
         _ => 1.0,
     };
     let rows = surfaces.iter().map(|s| [radius(&s.shape), s.thickness_mm, index(&s.medium)]).collect();
-    let stop = surfaces.iter().position(|s| s.stop || s.shape == Shape::Stop).map(|at| at + 1);
+    let stop = surfaces.iter().position(|s| s.stop || s.shape == SurfaceShape::Stop).map(|at| at + 1);
     let notes: Vec<String> = lens.left_out.iter().map(ToString::to_string).collect();
     (rows, stop, notes.join("\n"))
 }
@@ -226,11 +231,11 @@ fn coefficients_and_gaps_below_a_table() {
         Zoom data\n   Wide  Tele\nd2  1.50  12.25\n";
     let lens = read("t.txt", text).unwrap_or_else(|faults| panic!("{faults}"));
     let surfaces: Vec<_> = lens.surfaces().collect();
-    let asphere = Shape::EvenAsphere { radius: 50.0, conic: -1.25, coefficients: vec![0.0, -1.2e-6, 3.5e-9] };
+    let asphere = SurfaceShape::EvenAsphere { radius: 50.0, conic: -1.25, coefficients: vec![0.0, -1.2e-6, 3.5e-9] };
     assert_eq!(surfaces[0].shape, asphere);
     assert_eq!(
         surfaces[3].shape,
-        Shape::EvenAsphere { radius: f64::INFINITY, conic: 0.0, coefficients: vec![0.0, 2e-5] }
+        SurfaceShape::EvenAsphere { radius: f64::INFINITY, conic: 0.0, coefficients: vec![0.0, 2e-5] }
     );
     assert_eq!(surfaces[1].thickness_mm, 1.5);
     let notes: Vec<String> = lens.left_out.iter().map(|note| format!("{note} {}", note.alters)).collect();
@@ -276,6 +281,6 @@ fn plain_tables_stay_what_they_are() {
     // A focal length below a block of aspheres is not a coefficient, and a second example is another lens.
     let two = "No. r d nd vd\n1* 50 5 1.5168 64.2\n2 -40 47\n3 inf 1\nAspherical surface data\n1st surface\nK = -1 A4 = 1e-6\n\
                Various data\nf = 50.00\nF = 2.8\nExample 2\nNo. r d nd vd\n1* 99 5 1.6 60\nAspherical surface data\n1st surface\nK = -9 A4 = 9e-6\n";
-    let Shape::EvenAsphere { conic, coefficients, .. } = shape(two) else { panic!("an asphere") };
+    let SurfaceShape::EvenAsphere { conic, coefficients, .. } = shape(two) else { panic!("an asphere") };
     assert_eq!((conic, coefficients), (-1.0, vec![0.0, 1e-6]));
 }

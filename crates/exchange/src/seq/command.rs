@@ -1,11 +1,11 @@
 //! Reads the commands of a file one by one.
 
 use super::glass::Private;
-use super::lens::{Aperture, Decenter, DecenterKind, Form, Raw, Role, build};
+use super::lens::{Aperture, Decenter, DecenterKind, Raw, Role, SurfaceType, build};
 use super::statement::{Statement, split};
-use crate::glass::OwnCatalogue;
-use crate::place::{Source, shown};
+use crate::glass::UserCatalog;
 use crate::prescription::{ApertureShape, FieldKind, Fields, Prescription, SystemAperture, Wavelength};
+use crate::source::{Source, shortened};
 use crate::{MAX_ITEMS, number};
 use spectra_core::params::Faults;
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ const HARMLESS: [&str; 52] = [
 ///
 /// # Errors
 /// The file has no surfaces or more than [`MAX_ITEMS`], or a value without which there is no lens is not a number.
-pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
+pub fn read(name: &str, text: &str, own: &[UserCatalog]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let mut reader = Reader { source: &source, ..Reader::new(&source) };
     for statement in &split(source.text()) {
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
     fn needed(&mut self, word: &str) -> Option<f64> {
         let value = number::parse(word);
         if value.is_none() {
-            self.faults.push(self.source.fault(word, format!("`{}` is not a number", shown(word))));
+            self.faults.push(self.source.fault(word, format!("`{}` is not a number", shortened(word))));
         }
         value
     }
@@ -88,7 +88,7 @@ impl<'a> Reader<'a> {
     fn number(&mut self, word: &str) -> Option<f64> {
         let value = number::parse(word);
         if value.is_none() {
-            self.lens.leave_out(self.line, true, format!("`{}` is not a number", shown(word)));
+            self.lens.leave_out(self.line, true, format!("`{}` is not a number", shortened(word)));
         }
         value
     }
@@ -108,7 +108,7 @@ impl<'a> Reader<'a> {
         if is_needed && self.surfaces[at].states(command) && word.starts_with(|c: char| c.is_ascii_alphabetic()) {
             let is_solve = word.bytes().all(|b| b.is_ascii_alphabetic());
             let text = format!("{command} {}: the value on the surface's own line is carried", words.join(" "));
-            self.lens.leave_out(self.line, !is_solve, shown(&text));
+            self.lens.leave_out(self.line, !is_solve, shortened(&text));
             return None;
         }
         let value = if is_needed { self.needed(word) } else { self.number(word) }?;
@@ -119,7 +119,7 @@ impl<'a> Reader<'a> {
     /// Notes words after the values that a command has.
     fn note_more(&mut self, command: &str, more: &[&str]) {
         if !more.is_empty() {
-            self.lens.leave_out(self.line, true, shown(&format!("unexpected {} after {command}", more.join(" "))));
+            self.lens.leave_out(self.line, true, shortened(&format!("unexpected {} after {command}", more.join(" "))));
         }
     }
 
@@ -136,7 +136,7 @@ impl<'a> Reader<'a> {
         match named {
             Some(at) if at <= last => Some((at, &words[1..])),
             Some(_) => {
-                self.lens.leave_out(self.line, true, format!("there is no surface {} yet", shown(first)));
+                self.lens.leave_out(self.line, true, format!("there is no surface {} yet", shortened(first)));
                 None
             }
             None => Some((last, words)),
@@ -157,8 +157,8 @@ impl<'a> Reader<'a> {
                     let indices = if let Some(formula) = formula {
                         let text = format!(
                             "the file's own glass {} has a formula, {}, which is not read",
-                            shown(&name),
-                            shown(formula)
+                            shortened(&name),
+                            shortened(formula)
                         );
                         self.lens.leave_out(statement.line, false, text);
                         Vec::new()
@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
             if upper.len() > 3 && upper.bytes().all(|b| b.is_ascii_alphabetic()) { &upper[..3] } else { &upper };
         match known {
             "RDM" => self.radius_mode = Some(!words.first().is_some_and(|w| w.to_ascii_uppercase().starts_with('N'))),
-            "TIT" => self.lens.name = shown(words.join(" ").trim_matches(['\'', '"'])),
+            "TIT" => self.lens.name = shortened(words.join(" ").trim_matches(['\'', '"'])),
             "DIM" => self.dimension(words),
             "PRV" => self.in_private = true,
             "WL" => {
@@ -213,7 +213,7 @@ impl<'a> Reader<'a> {
                 let value = words.first().and_then(|word| self.number(word));
                 let usual = if known == "TEM" { 20.0 } else { 760.0 };
                 if value.is_some_and(|value| value != usual && !(known == "PRE" && value == 1.0)) {
-                    self.lens.leave_out(statement.line, true, shown(&statement.words.join(" ")));
+                    self.lens.leave_out(statement.line, true, shortened(&statement.words.join(" ")));
                 }
             }
             "SO" => self.begin(Role::Object, statement.line, words),
@@ -222,11 +222,11 @@ impl<'a> Reader<'a> {
             _ if self.surface_command(known, words, statement.line) => {}
             _ if HARMLESS.contains(&known) => {}
             "PIK" | "ZOO" | "SOL" => {
-                let text = format!("{}: values are carried as saved", shown(&statement.words.join(" ")));
+                let text = format!("{}: values are carried as saved", shortened(&statement.words.join(" ")));
                 self.lens.leave_out(statement.line, false, text);
             }
             _ => {
-                let entry = self.unknown.entry(shown(&statement.words.join(" "))).or_insert((statement.line, 0));
+                let entry = self.unknown.entry(shortened(&statement.words.join(" "))).or_insert((statement.line, 0));
                 entry.1 += 1;
             }
         }
@@ -266,7 +266,7 @@ impl<'a> Reader<'a> {
                 raw.set_glass(word);
             }
             if let Some(more) = words.get(1) {
-                self.lens.leave_out(line, true, format!("unexpected {} after the glass of a surface", shown(more)));
+                self.lens.leave_out(line, true, format!("unexpected {} after the glass of a surface", shortened(more)));
             }
         }
         self.surfaces.push(raw);
@@ -294,11 +294,11 @@ impl<'a> Reader<'a> {
             }
             "ASP" | "CYL" | "YTO" | "XTO" | "AAS" => {
                 let form = match command {
-                    "ASP" => Form::Asphere,
-                    "CYL" => Form::Cylinder,
-                    "YTO" => Form::ToroidY,
-                    "XTO" => Form::ToroidX,
-                    _ => Form::Anamorphic,
+                    "ASP" => SurfaceType::Asphere,
+                    "CYL" => SurfaceType::Cylinder,
+                    "YTO" => SurfaceType::ToroidY,
+                    "XTO" => SurfaceType::ToroidX,
+                    _ => SurfaceType::Anamorphic,
                 };
                 if let Some((at, _)) = self.target(words) {
                     self.surfaces[at].form = form;
@@ -319,13 +319,13 @@ impl<'a> Reader<'a> {
                     let mode = mode.to_ascii_uppercase();
                     self.surfaces[at].mirror = mode.starts_with("REFL");
                     if !mode.starts_with("REFL") && !mode.starts_with("REFR") {
-                        self.lens.leave_out(line, true, shown(&format!("RMD {mode}: light is refracted here")));
+                        self.lens.leave_out(line, true, shortened(&format!("RMD {mode}: light is refracted here")));
                     }
                 }
             }
             "SLB" => {
                 if let Some((at, words)) = self.target(words) {
-                    self.surfaces[at].comment = shown(words.join(" ").trim_matches(['\'', '"']));
+                    self.surfaces[at].comment = shortened(words.join(" ").trim_matches(['\'', '"']));
                 }
             }
             "CUF" => {
@@ -353,7 +353,7 @@ impl<'a> Reader<'a> {
             "DIF" | "HOE" => {
                 let text =
                     format!("{command} {}: a diffractive surface, carried without its diffraction", words.join(" "));
-                self.lens.leave_out(line, true, shown(&text));
+                self.lens.leave_out(line, true, shortened(&text));
             }
             _ => return false,
         }
@@ -381,7 +381,7 @@ impl<'a> Reader<'a> {
         if !value.is_finite() {
             return;
         }
-        let label = shown(label);
+        let label = shortened(label);
         if command == "ARO" && value != 0.0 {
             self.lens.leave_out(line, true, format!("ARO {value}: the rotation of an aperture"));
             return;
@@ -411,7 +411,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn finish(mut self, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
+    fn finish(mut self, own: &[UserCatalog]) -> Result<Prescription, Faults> {
         if !self.surfaces.iter().any(|raw| raw.role == Role::Surface) {
             self.faults.push(
                 self.source.fault_here("no surfaces: no line begins with S").hint("is this a CODE V sequence file?"),

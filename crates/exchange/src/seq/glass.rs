@@ -1,6 +1,6 @@
 //! Glass names of CODE V files.
 
-use crate::glass::{Catalogues, Found, OwnCatalogue, look_up, maker_of_catalogue, model};
+use crate::glass::{Catalogs, FoundMedium, UserCatalog, look_up, maker_of_catalogue, model};
 use crate::number;
 use crate::prescription::Medium;
 use spectra_glass::lines::{C, D, F};
@@ -37,17 +37,17 @@ impl Private {
 }
 
 /// Returns the medium of a name: `NBK7_SCHOTT`, `516800.641700`, `1.5168:64.17`, `'E48'`, `1.5`.
-pub(super) fn medium(name: &str, private: &[Private], own: &[OwnCatalogue]) -> Found {
+pub(super) fn medium(name: &str, private: &[Private], own: &[UserCatalog]) -> FoundMedium {
     let bare = name.trim_matches(['\'', '"']);
     if let Some(table) = private.iter().find(|table| table.name.eq_ignore_ascii_case(bare)) {
         return match table.figures() {
             Some((nd, vd)) => {
                 let (nd, vd) = (round(nd), round(vd));
                 let text = format!("glass {bare} has a table in the file, carried by its nd {nd} and Vd {vd}");
-                let Found { medium, note } = model(nd, vd);
-                Found { medium, note: note.or(Some((false, text))) }
+                let FoundMedium { medium, note } = model(nd, vd);
+                FoundMedium { medium, note: note.or(Some((false, text))) }
             }
-            None => Found {
+            None => FoundMedium {
                 medium: Medium::Unknown { name: bare.to_owned() },
                 note: Some((
                     true,
@@ -66,21 +66,21 @@ pub(super) fn medium(name: &str, private: &[Private], own: &[OwnCatalogue]) -> F
     if let Some((name, catalogue)) = bare.rsplit_once('_')
         && let Some(maker) = maker_of_catalogue(catalogue)
     {
-        return look_up(name, None, Catalogues { own, makers: &[maker] });
+        return look_up(name, None, Catalogs { own, makers: &[maker] });
     }
     // Names written by other programs: substance and measurement.
     if let Some((substance, author)) = bare.split_once('_') {
-        let found = look_up(&format!("{substance}/{author}"), None, Catalogues::default());
+        let found = look_up(&format!("{substance}/{author}"), None, Catalogs::default());
         if !matches!(found.medium, Medium::Unknown { .. }) {
             return found;
         }
-        let found = look_up(substance, None, Catalogues::default());
+        let found = look_up(substance, None, Catalogs::default());
         if let Medium::Glass { name, .. } = &found.medium {
             let text = format!("{bare} is read as {name}");
-            return Found { note: Some((false, text)), ..found };
+            return FoundMedium { note: Some((false, text)), ..found };
         }
     }
-    look_up(bare, None, Catalogues { own, makers: &["SCHOTT"] })
+    look_up(bare, None, Catalogs { own, makers: &["SCHOTT"] })
 }
 
 /// Returns the nd and Vd that a name spells: the digits of nd - 1, a point and the digits of Vd, the first two of them whole; or nd:Vd; or

@@ -1,9 +1,11 @@
 //! Builds a prescription from the data that the commands have defined.
 
 use super::glass::{self, Private};
-use crate::glass::OwnCatalogue;
+use crate::glass::UserCatalog;
 use crate::number;
-use crate::prescription::{ApertureShape, CoordinateBreak, Displacement, Item, Medium, Prescription, Shape, Surface};
+use crate::prescription::{
+    ApertureShape, AxisItem, CoordinateBreak, Displacement, Medium, Prescription, Surface, SurfaceShape,
+};
 use std::collections::BTreeMap;
 
 /// Object distances, mm, from which an object counts as at infinity.
@@ -19,7 +21,7 @@ pub(super) enum Role {
 
 /// Shapes that a command names; without one the surface is a conic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
+pub(super) enum SurfaceType {
     Conic,
     Asphere,
     Cylinder,
@@ -86,7 +88,7 @@ pub(super) struct Raw {
     glass: Option<String>,
     pub(super) mirror: bool,
     pub(super) stop: bool,
-    pub(super) form: Form,
+    pub(super) form: SurfaceType,
     pub(super) conic: f64,
     pub(super) conic_x: f64,
     /// Coefficients by power.
@@ -109,7 +111,7 @@ impl Raw {
             glass: None,
             mirror: false,
             stop: false,
-            form: Form::Conic,
+            form: SurfaceType::Conic,
             conic: 0.0,
             conic_x: 0.0,
             coefficients: BTreeMap::new(),
@@ -132,7 +134,7 @@ impl Raw {
         if name.to_ascii_uppercase().starts_with("REFL") {
             self.mirror = true;
         } else {
-            self.glass = Some(crate::place::shown(name));
+            self.glass = Some(crate::source::shortened(name));
         }
     }
 
@@ -149,7 +151,7 @@ impl Raw {
     /// Whether the surface has a shape beyond its radius in y-z.
     fn has_form(&self) -> bool {
         let is_set = |value: f64| value != 0.0;
-        self.form != Form::Conic
+        self.form != SurfaceType::Conic
             || is_set(self.conic)
             || is_set(self.conic_x)
             || self.bend_x.is_some_and(|(value, _)| is_set(value))
@@ -176,7 +178,7 @@ pub(super) fn build(
     raws: &[Raw],
     mode: Option<bool>,
     unit_mm: f64,
-    glasses: (&[Private], &[OwnCatalogue]),
+    glasses: (&[Private], &[UserCatalog]),
 ) {
     let (private, own) = glasses;
     let radius_mode = mode.unwrap_or_else(|| guess_mode(lens, raws));
@@ -228,9 +230,9 @@ pub(super) fn build(
         };
         apertures(lens, raw, &mut surface, number, unit_mm);
         let bends_nothing =
-            surface.shape == Shape::Plane && !raw.mirror && before == Medium::Air && medium == Medium::Air;
+            surface.shape == SurfaceShape::Plane && !raw.mirror && before == Medium::Air && medium == Medium::Air;
         if raw.stop && bends_nothing && surface.apertures.is_empty() {
-            surface.shape = Shape::Stop;
+            surface.shape = SurfaceShape::Stop;
         }
         place(lens, raw, surface, number, unit_mm);
     }
@@ -291,11 +293,11 @@ fn image(lens: &mut Prescription, raw: &Raw, defocus_mm: f64, radius_mode: bool,
         *last.thickness_mm_mut() += along_mm;
     }
     if !by.is_none() {
-        lens.items.push(Item::Break(CoordinateBreak { by, ..CoordinateBreak::default() }));
+        lens.items.push(AxisItem::Break(CoordinateBreak { by, ..CoordinateBreak::default() }));
     }
 }
 
-fn shape(lens: &mut Prescription, raw: &Raw, number: usize, radius_mode: bool, unit_mm: f64) -> Shape {
+fn shape(lens: &mut Prescription, raw: &Raw, number: usize, radius_mode: bool, unit_mm: f64) -> SurfaceShape {
     let radius_y = raw.radius_mm(radius_mode, unit_mm);
     let radius_x = raw.bend_x.map_or(f64::INFINITY, |(value, is_radius)| radius(value, is_radius, unit_mm));
     // Start at the 4th power; the first coefficient is that of the square.
@@ -310,27 +312,35 @@ fn shape(lens: &mut Prescription, raw: &Raw, number: usize, radius_mode: bool, u
         coefficients.pop();
     }
     let conic = raw.conic;
-    let simple = Shape::conic(radius_y, conic);
-    let has_x_radius = matches!(raw.form, Form::ToroidX | Form::ToroidY | Form::Anamorphic);
-    let has_x_conic = matches!(raw.form, Form::ToroidX | Form::Anamorphic);
+    let simple = SurfaceShape::conic(radius_y, conic);
+    let has_x_radius = matches!(raw.form, SurfaceType::ToroidX | SurfaceType::ToroidY | SurfaceType::Anamorphic);
+    let has_x_conic = matches!(raw.form, SurfaceType::ToroidX | SurfaceType::Anamorphic);
     if radius_x.is_finite() && !has_x_radius || raw.conic_x != 0.0 && !has_x_conic {
         let text = format!("surface {number}: a radius or a conic constant in x-z, which its type does not have");
         lens.leave_out(raw.line, true, text);
     }
     let has_terms = !coefficients.is_empty();
     match raw.form {
-        Form::Conic | Form::Asphere if has_terms => Shape::EvenAsphere { radius: radius_y, conic, coefficients },
-        Form::Conic | Form::Asphere => simple,
-        Form::Cylinder if !has_terms && conic == 0.0 && radius_y.is_finite() => {
-            Shape::Cylinder { radius: radius_y, along_x: true }
+        SurfaceType::Conic | SurfaceType::Asphere if has_terms => {
+            SurfaceShape::EvenAsphere { radius: radius_y, conic, coefficients }
         }
-        Form::Cylinder => Shape::Toroid { radius: radius_y, conic, coefficients, rotation_radius: f64::INFINITY },
-        Form::ToroidY => Shape::Toroid { radius: radius_y, conic, coefficients, rotation_radius: radius_x },
-        Form::ToroidX if radius_y.is_infinite() && !has_terms && raw.conic_x == 0.0 && conic == 0.0 => {
-            Shape::Cylinder { radius: radius_x, along_x: false }
+        SurfaceType::Conic | SurfaceType::Asphere => simple,
+        SurfaceType::Cylinder if !has_terms && conic == 0.0 && radius_y.is_finite() => {
+            SurfaceShape::Cylinder { radius: radius_y, along_x: true }
         }
-        Form::Anamorphic if !has_terms => Shape::Biconic { radius_x, radius_y, conic_x: raw.conic_x, conic_y: conic },
-        Form::ToroidX | Form::Anamorphic => {
+        SurfaceType::Cylinder => {
+            SurfaceShape::Toroid { radius: radius_y, conic, coefficients, rotation_radius: f64::INFINITY }
+        }
+        SurfaceType::ToroidY => {
+            SurfaceShape::Toroid { radius: radius_y, conic, coefficients, rotation_radius: radius_x }
+        }
+        SurfaceType::ToroidX if radius_y.is_infinite() && !has_terms && raw.conic_x == 0.0 && conic == 0.0 => {
+            SurfaceShape::Cylinder { radius: radius_x, along_x: false }
+        }
+        SurfaceType::Anamorphic if !has_terms => {
+            SurfaceShape::Biconic { radius_x, radius_y, conic_x: raw.conic_x, conic_y: conic }
+        }
+        SurfaceType::ToroidX | SurfaceType::Anamorphic => {
             let text =
                 format!("surface {number}: a toroid about x or an anamorphic asphere, carried by its radius in y-z");
             lens.leave_out(raw.line, true, text);
@@ -408,31 +418,31 @@ fn place(lens: &mut Prescription, raw: &Raw, mut surface: Surface, number: usize
     let along_mm = raw.decenter.shift[2] * unit_mm;
     let thickness_mm = surface.thickness_mm;
     if along_mm != 0.0 && along_mm.is_finite() {
-        lens.items.push(Item::Break(CoordinateBreak { thickness_mm: along_mm, ..CoordinateBreak::default() }));
+        lens.items.push(AxisItem::Break(CoordinateBreak { thickness_mm: along_mm, ..CoordinateBreak::default() }));
     }
-    let axis = |by, tilt_first, thickness_mm| Item::Break(CoordinateBreak { by, tilt_first, thickness_mm });
+    let axis = |by, tilt_first, thickness_mm| AxisItem::Break(CoordinateBreak { by, tilt_first, thickness_mm });
     match raw.decenter.kind {
         _ if by.is_none() => {
             if matches!(raw.decenter.kind, DecenterKind::AndReturn | DecenterKind::Reverse) {
                 surface.thickness_mm -= along_mm;
             }
-            lens.items.push(Item::Surface(Box::new(surface)));
+            lens.items.push(AxisItem::Surface(Box::new(surface)));
         }
         DecenterKind::Basic => {
             lens.items.push(axis(by, false, 0.0));
-            lens.items.push(Item::Surface(Box::new(surface)));
+            lens.items.push(AxisItem::Surface(Box::new(surface)));
         }
         DecenterKind::AndReturn => {
             surface.displacement = by;
             surface.thickness_mm -= along_mm;
-            lens.items.push(Item::Surface(Box::new(surface)));
+            lens.items.push(AxisItem::Surface(Box::new(surface)));
         }
         DecenterKind::Reverse => {
             // The transformation comes after the surface, and is the inverse of the stated one.
             let back =
                 Displacement { decenter_mm: by.decenter_mm.map(|v| 0.0 - v), tilt_deg: by.tilt_deg.map(|v| 0.0 - v) };
             surface.thickness_mm = 0.0;
-            lens.items.push(Item::Surface(Box::new(surface)));
+            lens.items.push(AxisItem::Surface(Box::new(surface)));
             lens.items.push(axis(back, true, thickness_mm - along_mm));
         }
         DecenterKind::Bend => {
@@ -444,7 +454,7 @@ fn place(lens: &mut Prescription, raw: &Raw, mut surface: Surface, number: usize
             }
             lens.items.push(axis(by, false, 0.0));
             surface.thickness_mm = 0.0;
-            lens.items.push(Item::Surface(Box::new(surface)));
+            lens.items.push(AxisItem::Surface(Box::new(surface)));
             let turn = Displacement { decenter_mm: [0.0; 2], tilt_deg: by.tilt_deg };
             lens.items.push(axis(turn, false, thickness_mm));
         }

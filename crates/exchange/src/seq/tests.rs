@@ -1,5 +1,5 @@
 use crate::prescription::{
-    ApertureShape, CoordinateBreak, Displacement, Item, Medium, Prescription, Shape, Surface, SystemAperture,
+    ApertureShape, AxisItem, CoordinateBreak, Displacement, Medium, Prescription, Surface, SurfaceShape, SystemAperture,
 };
 use spectra_core::params::Faults;
 
@@ -18,7 +18,7 @@ fn first(text: &str) -> Surface {
 #[test]
 fn radii_curvatures_and_units() {
     let radius = |text: &str| match lens(text).surfaces().next().expect("a surface").shape {
-        Shape::Sphere { radius } => radius,
+        SurfaceShape::Sphere { radius } => radius,
         ref other => panic!("{other:?}"),
     };
     assert_eq!(radius("RDM;LEN\nS 50 5 NBK7_SCHOTT\nSI 0 0"), 50.0);
@@ -33,22 +33,25 @@ fn radii_curvatures_and_units() {
 
 #[test]
 fn forms() {
-    let asphere =
-        |radius, conic, coefficients: &[f64]| Shape::EvenAsphere { radius, conic, coefficients: coefficients.to_vec() };
+    let asphere = |radius, conic, coefficients: &[f64]| SurfaceShape::EvenAsphere {
+        radius,
+        conic,
+        coefficients: coefficients.to_vec(),
+    };
     for (text, shape) in [
-        ("S 50 1 NBK7_SCHOTT\n CON\n K -1", Shape::Conic { radius: 50.0, conic: -1.0 }),
+        ("S 50 1 NBK7_SCHOTT\n CON\n K -1", SurfaceShape::Conic { radius: 50.0, conic: -1.0 }),
         (
             "S 50 1 NBK7_SCHOTT\n ASP\n K -1; A 1e-6; B 2e-9; C 0.0; D &\n 3e-15",
             asphere(50.0, -1.0, &[0.0, 1e-6, 2e-9, 0.0, 3e-15]),
         ),
-        ("S 50 1 NBK7_SCHOTT\n CYL", Shape::Cylinder { radius: 50.0, along_x: true }),
+        ("S 50 1 NBK7_SCHOTT\n CYL", SurfaceShape::Cylinder { radius: 50.0, along_x: true }),
         (
             "S 50 1 NBK7_SCHOTT\n YTO\n RDX 80",
-            Shape::Toroid { radius: 50.0, conic: 0.0, coefficients: vec![], rotation_radius: 80.0 },
+            SurfaceShape::Toroid { radius: 50.0, conic: 0.0, coefficients: vec![], rotation_radius: 80.0 },
         ),
         (
             "S 50 1 NBK7_SCHOTT\n AAS\n RDX 80\n KX -1",
-            Shape::Biconic { radius_x: 80.0, radius_y: 50.0, conic_x: -1.0, conic_y: 0.0 },
+            SurfaceShape::Biconic { radius_x: 80.0, radius_y: 50.0, conic_x: -1.0, conic_y: 0.0 },
         ),
     ] {
         assert_eq!(first(text).shape, shape, "{text}");
@@ -68,7 +71,7 @@ fn glasses_mirrors_and_apertures() {
     assert!(found.mirror);
     assert_eq!(found.apertures[0].shape, ApertureShape::Rectangle { half_width: 7.0, half_height: 8.0 });
     assert_eq!(found.apertures[0].center_mm, [0.0, 9.0]);
-    assert_eq!(first("S 0 3\n STO").shape, Shape::Stop);
+    assert_eq!(first("S 0 3\n STO").shape, SurfaceShape::Stop);
 }
 
 /// A thin lens of 100 mm in the stop, with glass of no thickness: the quantity that sets the size of the beam sets that of the stop.
@@ -107,15 +110,15 @@ fn the_beam_sizes_the_stop() {
 fn decenters_of_four_sorts() {
     let items = |text: &str| lens(&format!("RDM\n{text}\nSI 0 0\n")).items;
     let by = |decenter_mm, tilt_deg| Displacement { decenter_mm, tilt_deg };
-    let axis = |by, tilt_first, thickness_mm| Item::Break(CoordinateBreak { by, tilt_first, thickness_mm });
-    let thickness = |item: &Item| item.thickness_mm();
+    let axis = |by, tilt_first, thickness_mm| AxisItem::Break(CoordinateBreak { by, tilt_first, thickness_mm });
+    let thickness = |item: &AxisItem| item.thickness_mm();
 
     let basic = items("S 0 7\n XDE 1; YDE 2; ADE 10; BDE 20; CDE 30");
     assert_eq!(basic[0], axis(by([1.0, 2.0], [-10.0, -20.0, 30.0]), false, 0.0));
     assert_eq!(thickness(&basic[1]), 7.0);
 
     let back = items("S 0 7\n DAR; YDE 2; ADE 10; ZDE 3");
-    let Item::Surface(surface) = &back[1] else { panic!("{back:?}") };
+    let AxisItem::Surface(surface) = &back[1] else { panic!("{back:?}") };
     assert_eq!((surface.displacement, surface.thickness_mm), (by([0.0, 2.0], [-10.0, 0.0, 0.0]), 4.0));
     assert_eq!(thickness(&back[0]), 3.0);
 

@@ -1,7 +1,8 @@
 //! Reads a lens file as a prescription, to write it in another format.
 
 use crate::prescription::{
-    Aperture, ApertureShape, CoordinateBreak, Displacement, Item, Medium, Ordering, Prescription, Shape, Surface,
+    Aperture, ApertureShape, AxisItem, CoordinateBreak, Displacement, Medium, Prescription, Surface, SurfaceShape,
+    ZernikeOrdering,
 };
 use spectra_core::params::{
     Angle, Fault, Faults, Length, LengthOrInfinity, Node, Params, Readable, SpatialFrequency, StageNode, Value,
@@ -165,7 +166,7 @@ fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescripti
     let whose = format!("surface {number}: ");
     if kind == "coordinate-break" {
         note_others(params, &["decenter", "tilt", "order", "thickness"], &whose, lens);
-        lens.items.push(Item::Break(CoordinateBreak {
+        lens.items.push(AxisItem::Break(CoordinateBreak {
             by: displacement(params)?,
             tilt_first: value::<String>(params, "order")?.as_deref() == Some("tilt-first"),
             thickness_mm: mm(params, "thickness")?.unwrap_or(0.0),
@@ -174,12 +175,12 @@ fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescripti
     }
     let (shape, known) = shape(&kind, params)?;
     let (_, own) = params.split(&PLACE);
-    if let Shape::Other { kind } = &shape {
+    if let SurfaceShape::Other { kind } = &shape {
         lens.leave_out(line, true, format!("{whose}the kind `{kind}`, written as a plane"));
     } else {
         note_others(&own, known, &whose, lens);
     }
-    let is_stop = shape == Shape::Stop;
+    let is_stop = shape == SurfaceShape::Stop;
     let mirror = value(params, "mirror")?.unwrap_or(false);
     let stands_in = || lens.surfaces().filter(|s| !s.mirror).last().map(|s| s.medium.clone()).unwrap_or_default();
     let stated = ["glass", "nd", "ne"].iter().any(|key| params.get(key).is_some());
@@ -202,33 +203,33 @@ fn item(params: &Params, number: usize, lines: LineTriple, lens: &mut Prescripti
     if params.get("chamfer").is_some() {
         lens.leave_out(line, false, format!("{whose}the chamfer"));
     }
-    lens.items.push(Item::Surface(Box::new(surface)));
+    lens.items.push(AxisItem::Surface(Box::new(surface)));
     Ok(())
 }
 
 /// Returns the shape, and the keys that define it completely.
-fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str]), Faults> {
+fn shape(kind: &str, params: &Params) -> Result<(SurfaceShape, &'static [&'static str]), Faults> {
     let r = || radius(params, "radius");
     let conic = || number(params, "conic");
     Ok(match kind {
-        "plane" => (Shape::Plane, &[]),
-        "stop" => (Shape::Stop, &[]),
-        "sphere" => (Shape::conic(r()?, 0.0), &["radius"]),
-        "conic" => (Shape::conic(r()?, conic()?), &["radius", "conic"]),
+        "plane" => (SurfaceShape::Plane, &[]),
+        "stop" => (SurfaceShape::Stop, &[]),
+        "sphere" => (SurfaceShape::conic(r()?, 0.0), &["radius"]),
+        "conic" => (SurfaceShape::conic(r()?, conic()?), &["radius", "conic"]),
         "even-asphere" => (
-            Shape::EvenAsphere { radius: r()?, conic: conic()?, coefficients: coefficients(params)? },
+            SurfaceShape::EvenAsphere { radius: r()?, conic: conic()?, coefficients: coefficients(params)? },
             &["radius", "conic", "coefficients"],
         ),
         "odd-asphere" => (
-            Shape::OddAsphere { radius: r()?, conic: conic()?, coefficients: coefficients(params)? },
+            SurfaceShape::OddAsphere { radius: r()?, conic: conic()?, coefficients: coefficients(params)? },
             &["radius", "conic", "coefficients"],
         ),
         "cylinder" => {
             let along_x = value::<String>(params, "axis")?.as_deref() == Some("x");
-            (Shape::Cylinder { radius: r()?, along_x }, &["radius", "axis"])
+            (SurfaceShape::Cylinder { radius: r()?, along_x }, &["radius", "axis"])
         }
         "toroid" => (
-            Shape::Toroid {
+            SurfaceShape::Toroid {
                 radius: r()?,
                 conic: conic()?,
                 coefficients: coefficients(params)?,
@@ -237,7 +238,7 @@ fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str])
             &["radius", "conic", "coefficients", "rotation-radius"],
         ),
         "biconic" => (
-            Shape::Biconic {
+            SurfaceShape::Biconic {
                 radius_x: radius(params, "radius-x")?,
                 radius_y: radius(params, "radius-y")?,
                 conic_x: number(params, "conic-x")?,
@@ -248,14 +249,14 @@ fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str])
         "tilted-plane" => {
             let (about_x, about_y) = (angle(params, "tilt-x")?.to_radians(), angle(params, "tilt-y")?.to_radians());
             let (tan_x, tan_y) = (0.0 - libm::tan(about_y) / libm::cos(about_x), libm::tan(about_x));
-            (Shape::TiltedPlane { tan_x, tan_y }, &["tilt-x", "tilt-y"])
+            (SurfaceShape::TiltedPlane { tan_x, tan_y }, &["tilt-x", "tilt-y"])
         }
         "thin-lens" => {
             let focal_length = mm(params, "focal-length")?.unwrap_or(f64::INFINITY);
-            (Shape::ThinLens { focal_length }, &["focal-length"])
+            (SurfaceShape::ThinLens { focal_length }, &["focal-length"])
         }
         "grating" => (
-            Shape::Grating {
+            SurfaceShape::Grating {
                 lines_per_mm: value::<SpatialFrequency>(params, "lines-per-mm")?.map_or(0.0, |f| f.per_mm()),
                 order: number(params, "order")?,
                 radius: r()?,
@@ -266,16 +267,16 @@ fn shape(kind: &str, params: &Params) -> Result<(Shape, &'static [&'static str])
         ),
         "zernike" => {
             let fringe = value::<String>(params, "ordering")?.as_deref() == Some("fringe");
-            let shape = Shape::Zernike {
+            let shape = SurfaceShape::Zernike {
                 radius: r()?,
                 conic: conic()?,
                 normalization_radius: mm(params, "normalization-radius")?.unwrap_or(1.0),
                 coefficients: coefficients(params)?,
-                ordering: if fringe { Ordering::Fringe } else { Ordering::Noll },
+                ordering: if fringe { ZernikeOrdering::Fringe } else { ZernikeOrdering::Noll },
             };
             (shape, &["radius", "conic", "normalization-radius", "coefficients", "ordering"])
         }
-        other => (Shape::Other { kind: other.to_owned() }, &[]),
+        other => (SurfaceShape::Other { kind: other.to_owned() }, &[]),
     })
 }
 

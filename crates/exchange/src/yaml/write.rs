@@ -3,8 +3,8 @@
 use super::quote::{comment, quoted, scalar};
 use crate::number::shortest;
 use crate::prescription::{
-    Aperture, ApertureShape, CoordinateBreak, Displacement, FieldKind, Item, Medium, Ordering, Prescription, Shape,
-    Surface, SystemAperture,
+    Aperture, ApertureShape, AxisItem, CoordinateBreak, Displacement, FieldKind, Medium, Prescription, Surface,
+    SurfaceShape, SystemAperture, ZernikeOrdering,
 };
 
 /// Largest number of notes that are written.
@@ -59,10 +59,10 @@ pub fn write(lens: &Prescription, source: Option<&str>) -> String {
     line("surfaces:");
     for item in &lens.items {
         match item {
-            Item::Surface(surface) => {
+            AxisItem::Surface(surface) => {
                 line(&format!("  - {{{}}}", surface_keys(surface).join(", ")));
             }
-            Item::Break(axis) => line(&format!("  - {{{}}}", break_keys(axis).join(", "))),
+            AxisItem::Break(axis) => line(&format!("  - {{{}}}", break_keys(axis).join(", "))),
         }
     }
     out
@@ -181,7 +181,7 @@ fn surface_keys(surface: &Surface) -> Vec<String> {
             Medium::Unknown { name } => keys.push(format!("glass: {}", scalar(name))),
         }
     }
-    if surface.stop && surface.shape != Shape::Stop {
+    if surface.stop && surface.shape != SurfaceShape::Stop {
         keys.push("stop: true".to_owned());
     }
     keys.extend(surface.semi_diameter_mm.map(|s| format!("semi-diameter: {}", shortest(s))));
@@ -230,7 +230,7 @@ fn aperture(aperture: &Aperture) -> String {
     format!("{{{}}}", keys.join(", "))
 }
 
-fn shape_keys(shape: &Shape) -> Vec<String> {
+fn shape_keys(shape: &SurfaceShape) -> Vec<String> {
     let kind = |name: &str| vec![format!("kind: {name}")];
     let with = |name: &str, figures: &[(&str, f64)]| {
         let mut keys = kind(name);
@@ -244,49 +244,49 @@ fn shape_keys(shape: &Shape) -> Vec<String> {
         keys
     };
     match shape {
-        Shape::Plane => kind("plane"),
-        Shape::Stop => kind("stop"),
-        Shape::Sphere { radius } => with("sphere", &[("radius", *radius)]),
-        Shape::Conic { radius, conic } => with("conic", &[("radius", *radius), ("conic", *conic)]),
-        Shape::EvenAsphere { radius, conic, coefficients } => {
+        SurfaceShape::Plane => kind("plane"),
+        SurfaceShape::Stop => kind("stop"),
+        SurfaceShape::Sphere { radius } => with("sphere", &[("radius", *radius)]),
+        SurfaceShape::Conic { radius, conic } => with("conic", &[("radius", *radius), ("conic", *conic)]),
+        SurfaceShape::EvenAsphere { radius, conic, coefficients } => {
             with_list(with("even-asphere", &[("radius", *radius), ("conic", *conic)]), coefficients)
         }
-        Shape::OddAsphere { radius, conic, coefficients } => {
+        SurfaceShape::OddAsphere { radius, conic, coefficients } => {
             with_list(with("odd-asphere", &[("radius", *radius), ("conic", *conic)]), coefficients)
         }
-        Shape::Cylinder { radius, along_x } => {
+        SurfaceShape::Cylinder { radius, along_x } => {
             let mut keys = with("cylinder", &[("radius", *radius)]);
             keys.push(format!("axis: {}", if *along_x { "x" } else { "y" }));
             keys
         }
-        Shape::Toroid { radius, conic, coefficients, rotation_radius } => {
+        SurfaceShape::Toroid { radius, conic, coefficients, rotation_radius } => {
             let keys = with("toroid", &[("radius", *radius), ("conic", *conic), ("rotation-radius", *rotation_radius)]);
             with_list(keys, coefficients)
         }
-        Shape::Biconic { radius_x, radius_y, conic_x, conic_y } => with(
+        SurfaceShape::Biconic { radius_x, radius_y, conic_x, conic_y } => with(
             "biconic",
             &[("radius-x", *radius_x), ("radius-y", *radius_y), ("conic-x", *conic_x), ("conic-y", *conic_y)],
         ),
-        Shape::TiltedPlane { tan_x, tan_y } => {
+        SurfaceShape::TiltedPlane { tan_x, tan_y } => {
             // Rotations: z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x), about x first and then about the new y.
             let about_x = libm::atan(*tan_y);
             let about_y = 0.0 - libm::atan(tan_x * libm::cos(about_x));
             with("tilted-plane", &[("tilt-x", about_x.to_degrees()), ("tilt-y", about_y.to_degrees())])
         }
-        Shape::ThinLens { focal_length } => with("thin-lens", &[("focal-length", *focal_length)]),
-        Shape::Grating { lines_per_mm, order, radius, conic: _, direction_deg } => {
+        SurfaceShape::ThinLens { focal_length } => with("thin-lens", &[("focal-length", *focal_length)]),
+        SurfaceShape::Grating { lines_per_mm, order, radius, conic: _, direction_deg } => {
             let mut keys = with("grating", &[("lines-per-mm", *lines_per_mm), ("order", *order), ("radius", *radius)]);
             if *direction_deg != 0.0 {
                 keys.push(format!("direction: {}", shortest(*direction_deg)));
             }
             keys
         }
-        Shape::Zernike { radius, conic, normalization_radius, coefficients, ordering } => {
+        SurfaceShape::Zernike { radius, conic, normalization_radius, coefficients, ordering } => {
             let figures = [("radius", *radius), ("conic", *conic), ("normalization-radius", *normalization_radius)];
             let mut keys = with_list(with("zernike", &figures), coefficients);
-            keys.push(format!("ordering: {}", if *ordering == Ordering::Noll { "noll" } else { "fringe" }));
+            keys.push(format!("ordering: {}", if *ordering == ZernikeOrdering::Noll { "noll" } else { "fringe" }));
             keys
         }
-        Shape::Other { kind: name } => kind(name),
+        SurfaceShape::Other { kind: name } => kind(name),
     }
 }

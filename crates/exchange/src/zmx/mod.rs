@@ -4,8 +4,8 @@
 //! n`), then merit function, tolerances and configurations. Records and surface types have the meaning given in the OpticStudio user manual
 //! (chapters Sequential Surfaces, Apertures, Coordinate Break).
 
-mod known;
-mod numbers;
+mod keywords;
+mod numbered_values;
 mod read;
 mod record;
 mod shape;

@@ -2,10 +2,12 @@
 
 use super::record::{Record, Records, sort};
 use super::surface::{Block, GlassRecord};
-use super::{known, system};
-use crate::glass::{Catalogues, OwnCatalogue};
-use crate::place::{Source, shown};
-use crate::prescription::{CoordinateBreak, Item, Medium, Note, Prescription, Shape, Surface, SystemAperture};
+use super::{keywords, system};
+use crate::glass::{Catalogs, UserCatalog};
+use crate::prescription::{
+    AxisItem, CoordinateBreak, Medium, Note, Prescription, Surface, SurfaceShape, SystemAperture,
+};
+use crate::source::{Source, shortened};
 use crate::{MAX_ITEMS, glass};
 use spectra_core::params::Faults;
 use std::collections::BTreeMap;
@@ -18,7 +20,7 @@ const INFINITY_MM: f64 = 1e10;
 ///
 /// # Errors
 /// The file is not sequential, has no surfaces or more than [`MAX_ITEMS`], or a value without which there is no lens is not a number.
-pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription, Faults> {
+pub fn read(name: &str, text: &str, own: &[UserCatalog]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let records = sort(source.text());
     let mut lens = Prescription::default();
@@ -40,7 +42,7 @@ pub fn read(name: &str, text: &str, own: &[OwnCatalogue]) -> Result<Prescription
     if !faults.is_empty() {
         return Err(faults);
     }
-    let catalogues = Catalogues { own, makers: &system.makers };
+    let catalogues = Catalogs { own, makers: &system.makers };
     Reader { lens: &mut lens, media: Vec::new(), catalogues, is_turned: false, ran_back: false }.surfaces(&blocks);
     note_solves(&records, &mut lens);
     for (keyword, (line, count)) in unknown {
@@ -68,7 +70,7 @@ struct Reader<'a> {
     lens: &'a mut Prescription,
     /// Medium behind each surface of the file, mirrors included.
     media: Vec<Medium>,
-    catalogues: Catalogues<'a>,
+    catalogues: Catalogs<'a>,
     /// Whether light runs toward smaller z, behind an odd number of mirrors.
     is_turned: bool,
     /// Whether the last gap ran against the light.
@@ -103,7 +105,7 @@ impl Reader<'_> {
             );
         }
         if image.conic != 0.0 && image.curvature_radius_mm.is_finite() || image.kind != "STANDARD" {
-            let kind = shown(&image.kind);
+            let kind = shortened(&image.kind);
             self.lens.leave_out(
                 image.line,
                 true,
@@ -117,15 +119,15 @@ impl Reader<'_> {
             self.lens.leave_out(image.line, false, "the aperture of the image surface");
         }
         for tilt in &image.before {
-            self.lens.items.push(Item::Break(*tilt));
+            self.lens.items.push(AxisItem::Break(*tilt));
         }
         if !image.after.is_empty() {
             self.lens.leave_out(image.line, false, "a tilt behind the image surface");
         }
         // Keep a break in front of the image; the gap before it was that of the last surface.
-        if self.lens.items.iter().all(|item| matches!(item, Item::Break(_))) {
+        if self.lens.items.iter().all(|item| matches!(item, AxisItem::Break(_))) {
             // Add a plane without effect, since a lens needs a surface.
-            self.lens.items.push(Item::Surface(Box::default()));
+            self.lens.items.push(AxisItem::Surface(Box::default()));
         }
     }
 
@@ -136,7 +138,7 @@ impl Reader<'_> {
             thickness_mm = 0.0;
         }
         for tilt in &block.before {
-            self.lens.items.push(Item::Break(*tilt));
+            self.lens.items.push(AxisItem::Break(*tilt));
         }
         let before = self.media.last().cloned().unwrap_or_default();
         // The thickness behind a tilt is measured along the new axis.
@@ -144,7 +146,7 @@ impl Reader<'_> {
         if block.is_break() {
             self.media.push(before);
             let axis = CoordinateBreak { thickness_mm: own_mm, ..block.coordinate_break() };
-            self.lens.items.push(Item::Break(axis));
+            self.lens.items.push(AxisItem::Break(axis));
         } else {
             let mirror = block.glass.as_ref().is_some_and(GlassRecord::is_mirror);
             let medium = if mirror { before.clone() } else { self.medium(number, block) };
@@ -157,15 +159,16 @@ impl Reader<'_> {
                 comment: block.comment.clone(),
                 ..Surface::default()
             };
-            let bends =
-                mirror || before != medium || matches!(surface.shape, Shape::ThinLens { .. } | Shape::Grating { .. });
+            let bends = mirror
+                || before != medium
+                || matches!(surface.shape, SurfaceShape::ThinLens { .. } | SurfaceShape::Grating { .. });
             block.aperture.place(&mut surface, bends);
             let bends_nothing =
-                surface.shape == Shape::Plane && !mirror && before == Medium::Air && medium == Medium::Air;
+                surface.shape == SurfaceShape::Plane && !mirror && before == Medium::Air && medium == Medium::Air;
             if block.stop && bends_nothing && surface.apertures.is_empty() {
-                surface.shape = Shape::Stop;
+                surface.shape = SurfaceShape::Stop;
             }
-            let is_dummy = surface.shape == Shape::Plane && !bends && !surface.stop && block.aperture.is_none();
+            let is_dummy = surface.shape == SurfaceShape::Plane && !bends && !surface.stop && block.aperture.is_none();
             self.media.push(medium);
             self.is_turned ^= mirror;
             let runs_back = if self.is_turned { own_mm > 0.0 } else { own_mm < 0.0 };
@@ -173,17 +176,17 @@ impl Reader<'_> {
                 self.move_along(own_mm);
             } else if runs_back && bends && !mirror {
                 surface.thickness_mm = 0.0;
-                self.lens.items.push(Item::Surface(Box::new(surface)));
+                self.lens.items.push(AxisItem::Surface(Box::new(surface)));
                 self.move_along(own_mm);
             } else {
-                self.lens.items.push(Item::Surface(Box::new(surface)));
+                self.lens.items.push(AxisItem::Surface(Box::new(surface)));
             }
             self.ran_back = runs_back;
         }
         block.note_unused(number, self.lens);
         for (at, tilt) in block.after.iter().enumerate() {
             let thickness_mm = if at + 1 == block.after.len() { thickness_mm } else { 0.0 };
-            self.lens.items.push(Item::Break(CoordinateBreak { thickness_mm, ..*tilt }));
+            self.lens.items.push(AxisItem::Break(CoordinateBreak { thickness_mm, ..*tilt }));
         }
     }
 
@@ -191,8 +194,8 @@ impl Reader<'_> {
     /// tilted.
     fn move_along(&mut self, thickness_mm: f64) {
         match self.lens.items.last_mut() {
-            Some(Item::Break(axis)) if axis.by.is_none() => axis.thickness_mm += thickness_mm,
-            _ => self.lens.items.push(Item::Break(CoordinateBreak { thickness_mm, ..CoordinateBreak::default() })),
+            Some(AxisItem::Break(axis)) if axis.by.is_none() => axis.thickness_mm += thickness_mm,
+            _ => self.lens.items.push(AxisItem::Break(CoordinateBreak { thickness_mm, ..CoordinateBreak::default() })),
         }
     }
 
@@ -200,8 +203,8 @@ impl Reader<'_> {
     fn medium(&mut self, number: usize, block: &Block) -> Medium {
         let Some(stated) = &block.glass else { return Medium::Air };
         let found = match (stated.is_model, stated.pickup.and_then(|from| self.media.get(from))) {
-            (true, Some(medium)) => glass::Found { medium: medium.clone(), note: None },
-            (true, None) if !(1.0..=4.0).contains(&stated.nd) => glass::Found {
+            (true, Some(medium)) => glass::FoundMedium { medium: medium.clone(), note: None },
+            (true, None) if !(1.0..=4.0).contains(&stated.nd) => glass::FoundMedium {
                 medium: Medium::Unknown { name: format!("nd {}", stated.nd) },
                 note: Some((true, format!("a glass with an index of {}", stated.nd))),
             },
@@ -224,7 +227,7 @@ impl Reader<'_> {
 fn float_by_stop(lens: &mut Prescription, blocks: &[Block], line: usize) {
     let size = blocks.iter().find(|block| block.stop).and_then(|block| block.aperture.semi_diameter_mm);
     let stop = lens.items.iter_mut().find_map(|item| match item {
-        Item::Surface(surface) if surface.stop => Some(surface),
+        AxisItem::Surface(surface) if surface.stop => Some(surface),
         _ => None,
     });
     let Some(stop) = stop else { return };
@@ -266,7 +269,7 @@ fn note_solves(records: &Records<'_>, lens: &mut Prescription) {
 fn note_coatings(records: &Records<'_>, lens: &mut Prescription) {
     let coats = || records.surfaces.iter().flatten().filter(|record| record.keyword.eq_ignore_ascii_case("COAT"));
     let Some(first) = coats().next() else { return };
-    let mut names: Vec<String> = coats().map(|record| shown(record.rest)).collect();
+    let mut names: Vec<String> = coats().map(|record| shortened(record.rest)).collect();
     let count = names.len();
     names.sort_unstable();
     names.dedup();
@@ -276,7 +279,7 @@ fn note_coatings(records: &Records<'_>, lens: &mut Prescription) {
 
 /// Notes merit function, tolerances and configurations.
 fn note_rest(rest: &[Record<'_>], lens: &mut Prescription) {
-    let silent = |keyword: &str| ["BLNK", "MOFF"].contains(&keyword) || known::is_harmless_in_system(keyword);
+    let silent = |keyword: &str| ["BLNK", "MOFF"].contains(&keyword) || keywords::is_harmless_in_system(keyword);
     let mut operands: Vec<(usize, String)> = Vec::new();
     let mut count = 0;
     let mut configurations: Option<(usize, usize, usize)> = None;
@@ -290,13 +293,13 @@ fn note_rest(rest: &[Record<'_>], lens: &mut Prescription) {
         } else if is_tolerance && record.word(0).is_some_and(|word| word == "TOFF") || silent(&keyword) {
             // Skip an empty line of the editor.
         } else if configurations.is_some_and(|(_, count, _)| count > 1) && !is_tolerance {
-            let text = shown(&format!("{keyword} {}", record.words().take(3).collect::<Vec<_>>().join(" ")));
+            let text = shortened(&format!("{keyword} {}", record.words().take(3).collect::<Vec<_>>().join(" ")));
             if varied.len() < 12 {
                 varied.push(text);
             }
         } else {
             count += 1;
-            let text = shown(&keyword);
+            let text = shortened(&keyword);
             if operands.len() < 12 && !operands.iter().any(|(_, known)| *known == text) {
                 operands.push((record.line, text));
             }

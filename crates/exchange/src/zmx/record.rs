@@ -1,6 +1,6 @@
 //! Sorts the lines of a file into system, surfaces and the rest.
 
-use super::known;
+use super::keywords;
 
 /// A line of a file that is not empty.
 #[derive(Clone, Debug)]
@@ -69,7 +69,7 @@ pub(super) fn sort(text: &str) -> Records<'_> {
             continue;
         }
         let indented = line.starts_with([' ', '\t']);
-        in_surface = in_surface && (indented || known::is_of_surface(keyword));
+        in_surface = in_surface && (indented || keywords::is_of_surface(keyword));
         match records.surfaces.last_mut() {
             Some(surface) if in_surface => surface.push(record),
             None => records.system.push(record),

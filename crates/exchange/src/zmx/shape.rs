@@ -1,7 +1,7 @@
 //! Converts surface types to shapes.
 
 use super::surface::Block;
-use crate::prescription::{Ordering, Prescription, Shape};
+use crate::prescription::{Prescription, SurfaceShape, ZernikeOrdering};
 
 /// Largest number of coefficients of an asphere in a lens file.
 const MOST_COEFFICIENTS: usize = 20;
@@ -10,16 +10,16 @@ const MOST_SHOWN: usize = 6;
 
 impl Block {
     /// Returns the shape of a surface, and notes what cannot be carried over. `number` is the number of the surface in the file.
-    pub(super) fn shape(&self, number: usize, lens: &mut Prescription) -> Shape {
+    pub(super) fn shape(&self, number: usize, lens: &mut Prescription) -> SurfaceShape {
         let (radius, conic) = (self.curvature_radius_mm, self.conic);
-        let simple = Shape::conic(radius, conic);
+        let simple = SurfaceShape::conic(radius, conic);
         let value = |at: u32| self.parameters.get(at);
         match self.kind.as_str() {
             "STANDARD" => simple,
             "EVENASPH" => even(radius, conic, self.polynomial(1..=8, 2, 2)),
             "ODDASPHE" => {
                 let coefficients = self.polynomial(1..=8, 1, 1);
-                if coefficients.is_empty() { simple } else { Shape::OddAsphere { radius, conic, coefficients } }
+                if coefficients.is_empty() { simple } else { SurfaceShape::OddAsphere { radius, conic, coefficients } }
             }
             "XASPHERE" => {
                 // Add both kinds of terms, since they have the same powers.
@@ -28,19 +28,19 @@ impl Block {
             }
             "XOSPHERE" => {
                 let coefficients = self.extended(number, 1, Vec::new(), lens);
-                if coefficients.is_empty() { simple } else { Shape::OddAsphere { radius, conic, coefficients } }
+                if coefficients.is_empty() { simple } else { SurfaceShape::OddAsphere { radius, conic, coefficients } }
             }
             "TOROIDAL" => self.toroid(number, lens),
             "BICONICX" => {
                 let radius_x = if value(1) == 0.0 { f64::INFINITY } else { value(1) * self.unit_mm };
-                Shape::Biconic { radius_x, radius_y: radius, conic_x: value(2), conic_y: conic }
+                SurfaceShape::Biconic { radius_x, radius_y: radius, conic_x: value(2), conic_y: conic }
             }
-            "TILTSURF" => Shape::TiltedPlane { tan_x: value(1), tan_y: value(2) },
+            "TILTSURF" => SurfaceShape::TiltedPlane { tan_x: value(1), tan_y: value(2) },
             "PARAXIAL" => {
                 // Ignore how optical paths are counted.
                 self.parameters.set_aside([2]);
                 let focal_length = value(1) * self.unit_mm;
-                if focal_length == 0.0 { Shape::Plane } else { Shape::ThinLens { focal_length } }
+                if focal_length == 0.0 { SurfaceShape::Plane } else { SurfaceShape::ThinLens { focal_length } }
             }
             "DGRATING" => {
                 if conic != 0.0 {
@@ -55,15 +55,15 @@ impl Block {
                 // The number of lines is not negative: the order has the sign.
                 let sign = if value(1) < 0.0 { -1.0 } else { 1.0 };
                 let (lines_per_mm, order) = (sign * value(1) * 1000.0, sign * value(2));
-                Shape::Grating { lines_per_mm, order, radius, conic: 0.0, direction_deg: 0.0 }
+                SurfaceShape::Grating { lines_per_mm, order, radius, conic: 0.0, direction_deg: 0.0 }
             }
-            "SZERNSAG" => self.zernike(number, Ordering::Noll, lens).unwrap_or(simple),
-            "FZERNSAG" => self.zernike(number, Ordering::Fringe, lens).unwrap_or(simple),
+            "SZERNSAG" => self.zernike(number, ZernikeOrdering::Noll, lens).unwrap_or(simple),
+            "FZERNSAG" => self.zernike(number, ZernikeOrdering::Fringe, lens).unwrap_or(simple),
             other => {
                 self.parameters.set_all_aside();
                 self.extra.set_all_aside();
-                let what = if matches!(simple, Shape::Plane) { "a plane" } else { "its sphere or conic" };
-                let other = crate::place::shown(other);
+                let what = if matches!(simple, SurfaceShape::Plane) { "a plane" } else { "its sphere or conic" };
+                let other = crate::source::shortened(other);
                 lens.leave_out(
                     self.line,
                     true,
@@ -109,7 +109,7 @@ impl Block {
 
     /// Returns a toroid. Parameter 1 is the radius of rotation (0 for none), followed by the coefficients of y^2, y^4, ...; extra data are
     /// Zernike terms.
-    fn toroid(&self, number: usize, lens: &mut Prescription) -> Shape {
+    fn toroid(&self, number: usize, lens: &mut Prescription) -> SurfaceShape {
         let terms = self.extra.get(1);
         self.extra.set_aside([2]);
         if terms > 0.0 && !self.extra.unused().is_empty() {
@@ -121,16 +121,20 @@ impl Block {
         let coefficients = self.polynomial(2..=8, 2, 2);
         let (radius, conic) = (self.curvature_radius_mm, self.conic);
         match (radius.is_infinite(), rotation_radius.is_infinite()) {
-            (true, true) if coefficients.is_empty() => Shape::Plane,
-            (false, true) if coefficients.is_empty() && conic == 0.0 => Shape::Cylinder { radius, along_x: true },
-            (true, false) if coefficients.is_empty() => Shape::Cylinder { radius: rotation_radius, along_x: false },
-            _ => Shape::Toroid { radius, conic, coefficients, rotation_radius },
+            (true, true) if coefficients.is_empty() => SurfaceShape::Plane,
+            (false, true) if coefficients.is_empty() && conic == 0.0 => {
+                SurfaceShape::Cylinder { radius, along_x: true }
+            }
+            (true, false) if coefficients.is_empty() => {
+                SurfaceShape::Cylinder { radius: rotation_radius, along_x: false }
+            }
+            _ => SurfaceShape::Toroid { radius, conic, coefficients, rotation_radius },
         }
     }
 
     /// Returns a Zernike surface. Extra data are the number of terms, the normalization radius and the coefficients. The parameters are an
     /// even asphere and a decenter, which a lens file does not have: unless all of them are 0, returns `None`.
-    fn zernike(&self, number: usize, ordering: Ordering, lens: &mut Prescription) -> Option<Shape> {
+    fn zernike(&self, number: usize, ordering: ZernikeOrdering, lens: &mut Prescription) -> Option<SurfaceShape> {
         let value = |at: u32| self.extra.get(at);
         // Ignore how far the surface extends beyond its radius.
         self.parameters.set_aside([0]);
@@ -149,7 +153,7 @@ impl Block {
             return None;
         }
         let (radius, conic) = (self.curvature_radius_mm, self.conic);
-        Some(Shape::Zernike { radius, conic, normalization_radius, coefficients, ordering })
+        Some(SurfaceShape::Zernike { radius, conic, normalization_radius, coefficients, ordering })
     }
 
     /// Notes values that the type of the surface does not use.
@@ -161,7 +165,7 @@ impl Block {
             if !shown.is_empty() {
                 let more = unused.len() - shown.len();
                 let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-                let kind = crate::place::shown(&self.kind);
+                let kind = crate::source::shortened(&self.kind);
                 let text = format!("surface {number}: {what} {}{more} of {kind}", shown.join(", "));
                 lens.leave_out(self.line, true, text);
             }
@@ -169,11 +173,11 @@ impl Block {
     }
 }
 
-fn even(radius: f64, conic: f64, coefficients: Vec<f64>) -> Shape {
+fn even(radius: f64, conic: f64, coefficients: Vec<f64>) -> SurfaceShape {
     if coefficients.is_empty() {
-        Shape::conic(radius, conic)
+        SurfaceShape::conic(radius, conic)
     } else {
-        Shape::EvenAsphere { radius, conic, coefficients }
+        SurfaceShape::EvenAsphere { radius, conic, coefficients }
     }
 }
 

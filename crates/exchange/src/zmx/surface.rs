@@ -1,11 +1,11 @@
 //! Reads one block of records: the data of a surface.
 
-use super::known;
-use super::numbers::Numbers;
+use super::keywords;
+use super::numbered_values::NumberedValues;
 use super::record::Record;
 use crate::number;
-use crate::place::{Source, shown};
 use crate::prescription::{Aperture, ApertureShape, CoordinateBreak, Displacement, Prescription, Surface};
+use crate::source::{Source, shortened};
 use spectra_core::params::Faults;
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ impl GlassRecord {
         // Figures next to a name are those of a catalog at the time of writing.
         let needed = is_model && kind != Some(2.0);
         Some(Self {
-            name: shown(name),
+            name: shortened(name),
             is_model,
             pickup: number(2, kind == Some(2.0)).filter(|_| kind == Some(2.0)).map(|n| n as usize),
             nd: number(3, needed).unwrap_or(1.5),
@@ -102,9 +102,9 @@ pub(super) struct Block {
     pub(super) glass: Option<GlassRecord>,
     pub(super) conic: f64,
     /// Parameters by number.
-    pub(super) parameters: Numbers,
+    pub(super) parameters: NumberedValues,
     /// Extra data by number.
-    pub(super) extra: Numbers,
+    pub(super) extra: NumberedValues,
     pub(super) stop: bool,
     pub(super) aperture: Apertures,
     pub(super) comment: String,
@@ -133,8 +133,8 @@ impl Block {
             thickness_mm: None,
             glass: None,
             conic: 0.0,
-            parameters: Numbers::default(),
-            extra: Numbers::default(),
+            parameters: NumberedValues::default(),
+            extra: NumberedValues::default(),
             stop: false,
             aperture: Apertures::default(),
             comment: String::new(),
@@ -150,7 +150,7 @@ impl Block {
                 let word = record.word(at)?;
                 let value = number::parse(word);
                 if value.is_none() {
-                    let text = format!("{keyword}: `{}` is not a number", shown(word));
+                    let text = format!("{keyword}: `{}` is not a number", shortened(word));
                     if is_needed {
                         faults.push(source.fault(word, text));
                     } else {
@@ -205,12 +205,12 @@ impl Block {
                     block.aperture.foreign = true;
                     let text =
                         format!("{keyword} {}: an aperture from a file or a spider does not clip here", record.rest);
-                    lens.leave_out(record.line, true, shown(&text));
+                    lens.leave_out(record.line, true, shortened(&text));
                 }
                 "OBDC" => {
                     block.aperture.center_mm = [0, 1].map(|at| number(at).unwrap_or(0.0) * unit_mm);
                 }
-                "COMM" => block.comment = shown(record.rest),
+                "COMM" => block.comment = shortened(record.rest),
                 // Coatings are noted once for the whole lens.
                 "COAT" => {}
                 "SCBD" => block.own_tilt(record, unit_mm, lens),
@@ -221,9 +221,9 @@ impl Block {
                 }
                 // Skip solves: their values are in the records that they solve.
                 "PPAR" | "PZUP" | "MAZH" | "CHZH" => {}
-                _ if known::is_harmless_on_surface(&keyword) => {}
+                _ if keywords::is_harmless_on_surface(&keyword) => {}
                 _ => {
-                    let entry = unknown.entry(shown(&keyword)).or_insert((record.line, 0));
+                    let entry = unknown.entry(shortened(&keyword)).or_insert((record.line, 0));
                     entry.1 += 1;
                 }
             }
@@ -274,7 +274,7 @@ impl Block {
         match (value(0), value(2)) {
             (1.0, 0.0) if finite => self.before.push(tilt),
             (2.0, 0.0) if finite => self.after.push(tilt),
-            _ => lens.leave_out(record.line, true, shown(&format!("SCBD {}: a tilt of the surface", record.rest))),
+            _ => lens.leave_out(record.line, true, shortened(&format!("SCBD {}: a tilt of the surface", record.rest))),
         }
     }
 

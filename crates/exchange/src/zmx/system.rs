@@ -1,11 +1,11 @@
 //! Reads the data of the whole system: unit, glass catalogs, beam, fields, wavelengths.
 
 use super::record::Record;
-use super::{OPEN_STOP, known};
+use super::{OPEN_STOP, keywords};
 use crate::glass::maker_of_catalogue;
 use crate::number;
-use crate::place::{Source, shown};
 use crate::prescription::{FieldKind, Fields, Prescription, SystemAperture, Wavelength};
+use crate::source::{Source, shortened};
 use spectra_core::params::Faults;
 
 /// System data that reading the surfaces needs.
@@ -43,7 +43,7 @@ pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescript
         && let Some(word) = record.word(0)
         && !word.eq_ignore_ascii_case("SEQ")
     {
-        let fault = source.fault(word, format!("the mode {} is not sequential", shown(word)));
+        let fault = source.fault(word, format!("the mode {} is not sequential", shortened(word)));
         faults.push(fault.hint("only sequential lenses can be read: surfaces in the order of the light"));
     }
     let counts = find("FTYP");
@@ -60,7 +60,7 @@ pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescript
             system.aperture_line = record.line;
         }
         match keyword.as_str() {
-            "NAME" => lens.name = shown(record.rest),
+            "NAME" => lens.name = shortened(record.rest),
             "GCAT" => system.makers.extend(record.words().filter_map(maker_of_catalogue)),
             "ENPD" => {
                 lens.system_aperture = positive.map(|d| SystemAperture::EntrancePupilDiameter(d * system.unit_mm));
@@ -77,13 +77,13 @@ pub(super) fn read(records: &[Record<'_>], source: &Source, lens: &mut Prescript
             "FLOA" => lens.system_aperture = Some(SystemAperture::StopSize),
             "NOTE" => notes.extend(record.rest.split_once(' ').map(|(_, text)| text.trim().to_owned())),
             "ENVD" | "TEMP" | "PRES" => environment(record, &keyword, lens),
-            _ if known::is_vignetting(&keyword) => {
+            _ if keywords::is_vignetting(&keyword) => {
                 if record.words().filter_map(number::parse).any(|factor| factor != 0.0) {
                     vignetting.get_or_insert(record.line);
                 }
             }
-            _ if known::is_harmless_in_system(&keyword) => {}
-            _ => lens.leave_out(record.line, false, shown(&format!("{keyword} {}", record.rest))),
+            _ if keywords::is_harmless_in_system(&keyword) => {}
+            _ => lens.leave_out(record.line, false, shortened(&format!("{keyword} {}", record.rest))),
         }
     }
     if let Some(line) = vignetting {

@@ -1,6 +1,6 @@
 use crate::prescription::{
-    Aperture, ApertureShape, CoordinateBreak, Displacement, FieldKind, Item, Medium, Ordering, Prescription, Shape,
-    Surface, SystemAperture,
+    Aperture, ApertureShape, AxisItem, CoordinateBreak, Displacement, FieldKind, Medium, Prescription, Surface,
+    SurfaceShape, SystemAperture, ZernikeOrdering,
 };
 use spectra_core::params::Faults;
 
@@ -25,14 +25,15 @@ fn altering(lens: &Prescription) -> Vec<&str> {
 #[test]
 fn every_type_has_its_form() {
     let radius = 50.0;
-    let even = |coefficients: &[f64]| Shape::EvenAsphere { radius, conic: -1.0, coefficients: coefficients.to_vec() };
+    let even =
+        |coefficients: &[f64]| SurfaceShape::EvenAsphere { radius, conic: -1.0, coefficients: coefficients.to_vec() };
     for (records, shape) in [
-        ("  CURV 0.02", Shape::Sphere { radius }),
-        ("  TYPE STANDARD\n  CURV 0.02\n  CONI -1", Shape::Conic { radius, conic: -1.0 }),
+        ("  CURV 0.02", SurfaceShape::Sphere { radius }),
+        ("  TYPE STANDARD\n  CURV 0.02\n  CONI -1", SurfaceShape::Conic { radius, conic: -1.0 }),
         ("  TYPE EVENASPH\n  CURV 0.02\n  CONI -1\n  PARM 1 1e-3\n  PARM 2 2e-5\n  PARM 3 0", even(&[1e-3, 2e-5])),
         (
             "  TYPE ODDASPHE\n  CURV 0.02\n  PARM 3 1e-4",
-            Shape::OddAsphere { radius, conic: 0.0, coefficients: vec![0.0, 0.0, 1e-4] },
+            SurfaceShape::OddAsphere { radius, conic: 0.0, coefficients: vec![0.0, 0.0, 1e-4] },
         ),
         // a_2 (r/10)^2 + a_4 (r/10)^4.
         (
@@ -48,42 +49,42 @@ fn every_type_has_its_form() {
         // a_1 (r/10) + a_3 (r/10)^3.
         (
             "  TYPE XOSPHERE\n  CURV 0.02\n  XDAT 1 3\n  XDAT 2 10\n  XDAT 3 0.5\n  XDAT 5 2",
-            Shape::OddAsphere { radius, conic: 0.0, coefficients: vec![0.05, 0.0, 2e-3] },
+            SurfaceShape::OddAsphere { radius, conic: 0.0, coefficients: vec![0.05, 0.0, 2e-3] },
         ),
-        ("  TYPE TOROIDAL\n  CURV 0.02\n  PARM 1 0", Shape::Cylinder { radius, along_x: true }),
-        ("  TYPE TOROIDAL\n  CURV 0\n  PARM 1 30", Shape::Cylinder { radius: 30.0, along_x: false }),
+        ("  TYPE TOROIDAL\n  CURV 0.02\n  PARM 1 0", SurfaceShape::Cylinder { radius, along_x: true }),
+        ("  TYPE TOROIDAL\n  CURV 0\n  PARM 1 30", SurfaceShape::Cylinder { radius: 30.0, along_x: false }),
         (
             "  TYPE TOROIDAL\n  CURV 0.02\n  PARM 1 30\n  PARM 3 1e-6",
-            Shape::Toroid { radius, conic: 0.0, coefficients: vec![0.0, 1e-6], rotation_radius: 30.0 },
+            SurfaceShape::Toroid { radius, conic: 0.0, coefficients: vec![0.0, 1e-6], rotation_radius: 30.0 },
         ),
         (
             "  TYPE BICONICX\n  CURV 0.02\n  CONI 0.5\n  PARM 1 0\n  PARM 2 -1",
-            Shape::Biconic { radius_x: f64::INFINITY, radius_y: radius, conic_x: -1.0, conic_y: 0.5 },
+            SurfaceShape::Biconic { radius_x: f64::INFINITY, radius_y: radius, conic_x: -1.0, conic_y: 0.5 },
         ),
-        ("  TYPE TILTSURF\n  PARM 1 0.25\n  PARM 2 -0.5", Shape::TiltedPlane { tan_x: 0.25, tan_y: -0.5 }),
-        ("  TYPE PARAXIAL\n  PARM 1 80\n  PARM 2 1", Shape::ThinLens { focal_length: 80.0 }),
+        ("  TYPE TILTSURF\n  PARM 1 0.25\n  PARM 2 -0.5", SurfaceShape::TiltedPlane { tan_x: 0.25, tan_y: -0.5 }),
+        ("  TYPE PARAXIAL\n  PARM 1 80\n  PARM 2 1", SurfaceShape::ThinLens { focal_length: 80.0 }),
         (
             "  TYPE DGRATING\n  CURV 0.02\n  PARM 1 0.6\n  PARM 2 -1",
-            Shape::Grating { lines_per_mm: 600.0, order: -1.0, radius, conic: 0.0, direction_deg: 0.0 },
+            SurfaceShape::Grating { lines_per_mm: 600.0, order: -1.0, radius, conic: 0.0, direction_deg: 0.0 },
         ),
         (
             "  TYPE FZERNSAG\n  CURV 0.02\n  XDAT 1 3\n  XDAT 2 12\n  XDAT 5 1e-4",
-            Shape::Zernike {
+            SurfaceShape::Zernike {
                 radius,
                 conic: 0.0,
                 normalization_radius: 12.0,
                 coefficients: vec![0.0, 0.0, 1e-4],
-                ordering: Ordering::Fringe,
+                ordering: ZernikeOrdering::Fringe,
             },
         ),
     ] {
         let lens = with("", &format!("{records}\n  GLAS N-BK7 0 0 1.5 40"));
         assert_eq!(lens.surfaces().next().expect("a surface").shape, shape, "{records}");
-        let grating = matches!(shape, Shape::Grating { .. });
+        let grating = matches!(shape, SurfaceShape::Grating { .. });
         assert!(grating || lens.left_out.is_empty(), "{:?}", lens.left_out);
     }
     let lens = with("", "  TYPE BINARY_2\n  CURV 0.02");
-    assert_eq!(lens.surfaces().next().expect("a surface").shape, Shape::Sphere { radius });
+    assert_eq!(lens.surfaces().next().expect("a surface").shape, SurfaceShape::Sphere { radius });
     assert!(altering(&lens)[0].contains("BINARY_2"));
 }
 
@@ -200,7 +201,7 @@ fn gaps_against_the_light_are_moves() {
          SURF 4\n  DISZ -8\nSURF 5\n  TYPE COORDBRK\n  PARM 3 -5\n  DISZ 108\nSURF 6\n"
     );
     let lens = read("x", &text).expect("a lens");
-    let steps: Vec<f64> = lens.items.iter().map(Item::thickness_mm).collect();
+    let steps: Vec<f64> = lens.items.iter().map(AxisItem::thickness_mm).collect();
     assert_eq!((steps, lens.surfaces().count()), (vec![8.0, 4.0, 0.0, -12.0, 108.0], 2));
     // Behind a mirror light runs the other way.
     let mirror = "SURF 0\nSURF 1\n  GLAS MIRROR\n  DISZ -5\nSURF 2\n  DISZ -40\nSURF 3\n";
@@ -237,7 +238,7 @@ fn a_model_glass_keeps_its_partial_dispersion() {
 fn units_scale_every_term() {
     let records = "  TYPE EVENASPH\n  CURV 0.02\n  PARM 1 1e-3\n  PARM 2 2e-5\n  DISZ 2\n  DIAM 3\n  CLAP 0 2.5 0";
     let found = surface("UNIT IN X W X CM MR CPMM", records);
-    let Shape::EvenAsphere { radius, coefficients, .. } = &found.shape else { panic!("{:?}", found.shape) };
+    let SurfaceShape::EvenAsphere { radius, coefficients, .. } = &found.shape else { panic!("{:?}", found.shape) };
     assert_eq!((*radius, found.thickness_mm), (1270.0, 50.8));
     let (r_in, inch) = (1.5_f64, 25.4_f64);
     for (at, in_inches) in [(0, 1e-3 * r_in.powi(2)), (1, 2e-5 * r_in.powi(4))] {
@@ -357,8 +358,12 @@ fn the_beam_sizes_the_stop() {
 #[test]
 fn an_open_stop_stays_open() {
     let mut lens = with("", "  CURV 0.02\n  GLAS N-BK7\n  DISZ 5\n  STOP\n  CLAP 0 9 0");
-    lens.items.push(Item::Surface(Box::new(Surface { shape: Shape::Stop, stop: true, ..Surface::default() })));
-    let Item::Surface(first) = &mut lens.items[0] else { panic!("a surface") };
+    lens.items.push(AxisItem::Surface(Box::new(Surface {
+        shape: SurfaceShape::Stop,
+        stop: true,
+        ..Surface::default()
+    })));
+    let AxisItem::Surface(first) = &mut lens.items[0] else { panic!("a surface") };
     first.stop = false;
     lens.system_aperture = Some(SystemAperture::EntrancePupilDiameter(10.0));
     let again = read("x", &super::write(&lens).text).expect("a lens");
@@ -391,11 +396,11 @@ fn mirrors_and_breaks() {
                 SURF 3\n  GLAS MIRROR 0 0 1.5 40\n  DISZ -5\nSURF 4\n  STOP\n  DISZ -40\nSURF 5\n  CURV 0.001\n";
     let lens = read("x", text).expect("a lens");
     let by = Displacement { decenter_mm: [1.0, 0.0], tilt_deg: [45.0, 0.0, -2.0] };
-    assert_eq!(lens.items[1], Item::Break(CoordinateBreak { by, tilt_first: true, thickness_mm: 3.0 }));
+    assert_eq!(lens.items[1], AxisItem::Break(CoordinateBreak { by, tilt_first: true, thickness_mm: 3.0 }));
     let surfaces: Vec<&Surface> = lens.surfaces().collect();
     assert!(surfaces[1].mirror && surfaces[1].medium == surfaces[0].medium);
     // From glass into air: a plane that refracts, and therefore not a mere stop.
-    assert!(surfaces[2].stop && surfaces[2].shape == Shape::Plane);
+    assert!(surfaces[2].stop && surfaces[2].shape == SurfaceShape::Plane);
     assert!(altering(&lens)[0].contains("image surface is curved"));
 }
 

@@ -3,12 +3,12 @@
 use super::OPEN_STOP;
 use crate::glass::{deviation, everyday_name, maker_of_catalogue};
 use crate::number::shortest;
-use crate::place::shown;
 use crate::prescription::{
-    ApertureShape, CoordinateBreak, Displacement, FieldKind, Item, Medium, Note, Ordering, Prescription, Shape,
-    Surface, SystemAperture,
+    ApertureShape, AxisItem, CoordinateBreak, Displacement, FieldKind, Medium, Note, Prescription, Surface,
+    SurfaceShape, SystemAperture, ZernikeOrdering,
 };
-use spectra_glass::{Catalogue, Line, lines};
+use crate::source::shortened;
+use spectra_glass::{Catalog, Line, lines};
 use std::fmt::Write;
 
 /// The text of a written file, and what it could not hold.
@@ -83,7 +83,7 @@ impl Writer {
         };
         line("VERS 120928 0 0".to_owned());
         line("MODE SEQ".to_owned());
-        line(format!("NAME {}", shown(&lens.name)));
+        line(format!("NAME {}", shortened(&lens.name)));
         line("UNIT MM X W X CM MR CPMM".to_owned());
         let stop_size = lens.surfaces().find(|surface| surface.stop).and_then(|stop| stop.semi_diameter_mm);
         let front = lens.surfaces().find_map(|surface| surface.semi_diameter_mm);
@@ -158,8 +158,8 @@ impl Writer {
         let mut before = Medium::Air;
         for (at, item) in lens.items.iter().enumerate() {
             match item {
-                Item::Break(axis) => self.coordinate_break(axis),
-                Item::Surface(surface) => {
+                AxisItem::Break(axis) => self.coordinate_break(axis),
+                AxisItem::Surface(surface) => {
                     let after = if surface.mirror { before.clone() } else { surface.medium.clone() };
                     self.surface(surface, &after, at + 1);
                     before = after;
@@ -200,7 +200,7 @@ impl Writer {
             self.stop_written = true;
         }
         if !surface.comment.is_empty() {
-            record!(self, "COMM {}", shown(&surface.comment));
+            record!(self, "COMM {}", shortened(&surface.comment));
         }
         record!(self, "DISZ {}", shortest(if displaced { 0.0 } else { surface.thickness_mm }));
         if surface.mirror {
@@ -238,27 +238,27 @@ impl Writer {
         }
     }
 
-    fn shape(&mut self, shape: &Shape, number: usize) {
+    fn shape(&mut self, shape: &SurfaceShape, number: usize) {
         match shape {
-            Shape::Plane | Shape::Stop | Shape::Other { .. } => self.start("STANDARD", 0.0),
-            Shape::Sphere { radius } => self.start("STANDARD", 1.0 / radius),
-            Shape::Conic { radius, conic } => {
+            SurfaceShape::Plane | SurfaceShape::Stop | SurfaceShape::Other { .. } => self.start("STANDARD", 0.0),
+            SurfaceShape::Sphere { radius } => self.start("STANDARD", 1.0 / radius),
+            SurfaceShape::Conic { radius, conic } => {
                 self.start("STANDARD", 1.0 / radius);
                 self.conic(*conic);
             }
-            Shape::EvenAsphere { radius, conic, coefficients } if coefficients.len() <= 8 => {
+            SurfaceShape::EvenAsphere { radius, conic, coefficients } if coefficients.len() <= 8 => {
                 self.start("EVENASPH", 1.0 / radius);
                 self.conic(*conic);
                 self.parameters(1, coefficients);
             }
-            Shape::EvenAsphere { radius, conic, coefficients } => {
+            SurfaceShape::EvenAsphere { radius, conic, coefficients } => {
                 self.start("XASPHERE", 1.0 / radius);
                 self.conic(*conic);
                 let values: Vec<f64> =
                     [coefficients.len() as f64, 1.0].into_iter().chain(coefficients.iter().copied()).collect();
                 self.extra(&values);
             }
-            Shape::OddAsphere { radius, conic, coefficients } => {
+            SurfaceShape::OddAsphere { radius, conic, coefficients } => {
                 self.start("ODDASPHE", 1.0 / radius);
                 self.conic(*conic);
                 self.parameters(1, &coefficients[..coefficients.len().min(8)]);
@@ -266,15 +266,15 @@ impl Writer {
                     self.note(true, format!("surface {number}: coefficients of an odd asphere beyond r^8"));
                 }
             }
-            Shape::Cylinder { radius, along_x: true } => {
+            SurfaceShape::Cylinder { radius, along_x: true } => {
                 self.start("TOROIDAL", 1.0 / radius);
                 self.parameters(1, &[0.0]);
             }
-            Shape::Cylinder { radius, along_x: false } => {
+            SurfaceShape::Cylinder { radius, along_x: false } => {
                 self.start("TOROIDAL", 0.0);
                 self.parameters(1, &[*radius]);
             }
-            Shape::Toroid { radius, conic, coefficients, rotation_radius } => {
+            SurfaceShape::Toroid { radius, conic, coefficients, rotation_radius } => {
                 self.start("TOROIDAL", 1.0 / radius);
                 self.conic(*conic);
                 let turn = if rotation_radius.is_finite() { *rotation_radius } else { 0.0 };
@@ -284,20 +284,20 @@ impl Writer {
                     self.note(true, format!("surface {number}: coefficients of a toroid beyond y^14"));
                 }
             }
-            Shape::Biconic { radius_x, radius_y, conic_x, conic_y } => {
+            SurfaceShape::Biconic { radius_x, radius_y, conic_x, conic_y } => {
                 self.start("BICONICX", 1.0 / radius_y);
                 self.conic(*conic_y);
                 self.parameters(1, &[if radius_x.is_finite() { *radius_x } else { 0.0 }, *conic_x]);
             }
-            Shape::TiltedPlane { tan_x, tan_y } => {
+            SurfaceShape::TiltedPlane { tan_x, tan_y } => {
                 self.start("TILTSURF", 0.0);
                 self.parameters(1, &[*tan_x, *tan_y]);
             }
-            Shape::ThinLens { focal_length } => {
+            SurfaceShape::ThinLens { focal_length } => {
                 self.start("PARAXIAL", 0.0);
                 self.parameters(1, &[*focal_length, 1.0]);
             }
-            Shape::Grating { lines_per_mm, order, radius, conic, direction_deg } => {
+            SurfaceShape::Grating { lines_per_mm, order, radius, conic, direction_deg } => {
                 self.start("DGRATING", 1.0 / radius);
                 self.conic(*conic);
                 self.parameters(1, &[lines_per_mm / 1000.0, *order]);
@@ -305,8 +305,8 @@ impl Writer {
                     self.note(true, format!("surface {number}: the direction {direction_deg} degrees of a grating"));
                 }
             }
-            Shape::Zernike { radius, conic, normalization_radius, coefficients, ordering } => {
-                self.start(if *ordering == Ordering::Noll { "SZERNSAG" } else { "FZERNSAG" }, 1.0 / radius);
+            SurfaceShape::Zernike { radius, conic, normalization_radius, coefficients, ordering } => {
+                self.start(if *ordering == ZernikeOrdering::Noll { "SZERNSAG" } else { "FZERNSAG" }, 1.0 / radius);
                 self.conic(*conic);
                 let head = [coefficients.len() as f64, *normalization_radius];
                 self.extra(&head.into_iter().chain(coefficients.iter().copied()).collect::<Vec<_>>());
@@ -321,7 +321,7 @@ impl Writer {
                 let off = shortest(deviation(*nd, *vd, *ng));
                 record!(self, "GLAS ___BLANK 1 0 {} {} {off} 0 0 0 0 0", shortest(*nd), shortest(vd.unwrap_or(0.0)));
             }
-            Medium::Glass { name, nd, vd } => match Catalogue::bundled().find(name) {
+            Medium::Glass { name, nd, vd } => match Catalog::bundled().find(name) {
                 Ok(glass) => {
                     let vd = vd.unwrap_or_else(|| glass.vd());
                     let vd = if vd.is_finite() { vd } else { 0.0 };

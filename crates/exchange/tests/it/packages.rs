@@ -1,7 +1,7 @@
 //! Compares files that come with two other open-source programs with what those programs compute from them: `tests/data/README.md`.
 
-use spectra_exchange::{Format, Item, Medium, Prescription, Shape, read};
-use spectra_glass::Catalogue;
+use spectra_exchange::{AxisItem, Format, Medium, Prescription, SurfaceShape, read};
+use spectra_glass::Catalog;
 use std::path::{Path, PathBuf};
 
 fn data(file: &str) -> PathBuf {
@@ -17,7 +17,7 @@ fn load(file: &str) -> Prescription {
 fn index(medium: &Medium, nm: f64) -> f64 {
     match medium {
         Medium::Air => 1.0,
-        Medium::Glass { name, .. } => Catalogue::bundled().medium(name).expect("a full name").index(nm),
+        Medium::Glass { name, .. } => Catalog::bundled().medium(name).expect("a full name").index(nm),
         Medium::Model { nd, vd, .. } => {
             spectra_glass::Medium::from_nd_vd(*nd, vd.unwrap_or(0.0)).expect("a glass").index(nm)
         }
@@ -26,16 +26,18 @@ fn index(medium: &Medium, nm: f64) -> f64 {
 }
 
 /// Returns the curvature at the vertex in y-z, 1/mm, and the power of an ideal lens, 1/mm.
-fn bend(shape: &Shape) -> (f64, f64) {
+fn bend(shape: &SurfaceShape) -> (f64, f64) {
     match shape {
-        Shape::Plane | Shape::Stop | Shape::TiltedPlane { .. } => (0.0, 0.0),
-        Shape::Sphere { radius } | Shape::Conic { radius, .. } | Shape::Grating { radius, .. } => (1.0 / radius, 0.0),
-        Shape::EvenAsphere { radius, coefficients, .. } | Shape::Toroid { radius, coefficients, .. } => {
+        SurfaceShape::Plane | SurfaceShape::Stop | SurfaceShape::TiltedPlane { .. } => (0.0, 0.0),
+        SurfaceShape::Sphere { radius } | SurfaceShape::Conic { radius, .. } | SurfaceShape::Grating { radius, .. } => {
+            (1.0 / radius, 0.0)
+        }
+        SurfaceShape::EvenAsphere { radius, coefficients, .. } | SurfaceShape::Toroid { radius, coefficients, .. } => {
             (1.0 / radius + 2.0 * coefficients.first().unwrap_or(&0.0), 0.0)
         }
-        Shape::Cylinder { radius, along_x } => (if *along_x { 1.0 / radius } else { 0.0 }, 0.0),
-        Shape::Biconic { radius_y, .. } => (1.0 / radius_y, 0.0),
-        Shape::ThinLens { focal_length } => (0.0, 1.0 / focal_length),
+        SurfaceShape::Cylinder { radius, along_x } => (if *along_x { 1.0 / radius } else { 0.0 }, 0.0),
+        SurfaceShape::Biconic { radius_y, .. } => (1.0 / radius_y, 0.0),
+        SurfaceShape::ThinLens { focal_length } => (0.0, 1.0 / focal_length),
         other => panic!("{other:?}"),
     }
 }
@@ -45,7 +47,7 @@ fn bend(shape: &Shape) -> (f64, f64) {
 fn focal_length_mm(lens: &Prescription, nm: f64) -> f64 {
     let (mut y, mut slope, mut n) = (1.0, 0.0, 1.0);
     for item in &lens.items {
-        if let Item::Surface(surface) = item {
+        if let AxisItem::Surface(surface) = item {
             let after = if surface.mirror { -n } else { index(&surface.medium, nm).copysign(n) };
             let (curvature, power) = bend(&surface.shape);
             slope = (n * slope - y * ((after - n) * curvature + power)) / after;
@@ -105,7 +107,7 @@ fn every_file_of_the_folders_is_read_and_written() {
 fn details_of_some_files() {
     let lens = load("optiland/lens_floa.zmx");
     let stop = lens.surfaces().find(|surface| surface.stop).expect("a stop");
-    assert_eq!((stop.semi_diameter_mm, &stop.shape), (Some(8.5), &Shape::Stop), "floats by its size: it clips");
+    assert_eq!((stop.semi_diameter_mm, &stop.shape), (Some(8.5), &SurfaceShape::Stop), "floats by its size: it clips");
 
     let lens = load("optiland/inactive_wavelengths.zmx");
     assert_eq!(lens.wavelengths.len(), 1, "five are listed, one counts");
@@ -126,8 +128,8 @@ fn details_of_some_files() {
         .items
         .iter()
         .filter_map(|item| match item {
-            Item::Break(axis) => Some(axis.by.tilt_deg[0]),
-            Item::Surface(_) => None,
+            AxisItem::Break(axis) => Some(axis.by.tilt_deg[0]),
+            AxisItem::Surface(_) => None,
         })
         .collect();
     assert_eq!(tilts, [45.0, 45.0, 0.0, -45.0, -45.0, 0.0]);

@@ -1,7 +1,7 @@
 //! Tables as printed in patents, each compared with its figures typed by hand.
 
 use serde_json::Value;
-use spectra_exchange::{Format, Medium, Shape, read};
+use spectra_exchange::{Format, Medium, SurfaceShape, read};
 use std::path::Path;
 
 /// Reads tables in the style of American, Japanese and German patents and of a forum, typed by somebody who had not seen the reader.
@@ -27,10 +27,10 @@ fn tables_in_the_manner_of_patents_are_read() {
             }
         };
         let surfaces: Vec<_> = lens.surfaces().collect();
-        let radius = |shape: &Shape| match shape {
-            Shape::Sphere { radius } | Shape::Conic { radius, .. } | Shape::EvenAsphere { radius, .. } => {
-                Some(*radius).filter(|r| r.is_finite())
-            }
+        let radius = |shape: &SurfaceShape| match shape {
+            SurfaceShape::Sphere { radius }
+            | SurfaceShape::Conic { radius, .. }
+            | SurfaceShape::EvenAsphere { radius, .. } => Some(*radius).filter(|r| r.is_finite()),
             _ => None,
         };
         let index = |medium: &Medium| match medium {
@@ -54,7 +54,7 @@ fn tables_in_the_manner_of_patents_are_read() {
         same("radii", surfaces.iter().map(|s| radius(&s.shape)).collect());
         same("thicknesses", surfaces.iter().map(|s| Some(s.thickness_mm)).collect());
         same("nd", surfaces.iter().map(|s| Some(index(&s.medium))).collect());
-        let stop = surfaces.iter().position(|s| s.stop || s.shape == Shape::Stop).map(|at| at as u64 + 1);
+        let stop = surfaces.iter().position(|s| s.stop || s.shape == SurfaceShape::Stop).map(|at| at as u64 + 1);
         if stop != right["stop"].as_u64() {
             wrong.push(format!("{name}: the stop is {stop:?}"));
         }
@@ -65,7 +65,7 @@ fn tables_in_the_manner_of_patents_are_read() {
         }
         for (number, terms) in right["aspheres"].as_object().expect("a map") {
             let at: usize = number.parse().expect("a number");
-            let Shape::EvenAsphere { conic, coefficients, .. } = &surfaces[at - 1].shape else {
+            let SurfaceShape::EvenAsphere { conic, coefficients, .. } = &surfaces[at - 1].shape else {
                 wrong.push(format!("{name}: surface {at} is no asphere"));
                 continue;
             };

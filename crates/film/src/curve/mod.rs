@@ -97,9 +97,9 @@ impl CharacteristicCurve {
 
     /// Returns the range of log10 exposures over which all but a thousandth of the density changes.
     #[must_use]
-    pub fn span(&self) -> (f64, f64) {
+    pub fn exposure_range(&self) -> (f64, f64) {
         match self {
-            Self::Tabulated(c) => c.span(),
+            Self::Tabulated(c) => c.exposure_range(),
             Self::ToeShoulder(c) => {
                 let (_, high) = self.density_range();
                 let at = |share: f64| c.log10_exposure_at(share * high);

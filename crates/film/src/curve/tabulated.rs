@@ -56,7 +56,7 @@ impl TabulatedCurve {
 
     /// Log10 exposures of the first and the last point.
     #[must_use]
-    pub fn span(&self) -> (f64, f64) {
+    pub fn exposure_range(&self) -> (f64, f64) {
         (self.log10_exposure[0], self.log10_exposure[self.log10_exposure.len() - 1])
     }
 

@@ -1,6 +1,6 @@
 //! Derives the size of grains and their clumps from RMS granularity.
 
-use crate::known::Known;
+use crate::cache::Cache;
 use spectra_core::math::{acos, sin};
 use std::f64::consts::PI;
 
@@ -53,8 +53,8 @@ const READ_MM: f64 = 0.005;
 
 /// Variance times area (mm^2) of large areas, divided by the square of the deviation through the 48 um aperture.
 pub(super) fn selwyn_mm2(clump_mm: f64) -> f64 {
-    static KNOWN: Known<u64, f64> = Known::new();
-    *KNOWN.of(clump_mm.to_bits(), || found_selwyn_mm2(clump_mm))
+    static KNOWN: Cache<u64, f64> = Cache::new();
+    *KNOWN.get_or_compute(clump_mm.to_bits(), || found_selwyn_mm2(clump_mm))
 }
 
 fn found_selwyn_mm2(clump_mm: f64) -> f64 {

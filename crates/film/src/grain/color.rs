@@ -36,8 +36,9 @@ impl ColorGrain {
         let names: Vec<&str> = stock.layers.iter().map(|l| l.name.as_str()).collect();
         let products = stock.densitometry.products(&names)?;
         let deposit = emulsion.deposit();
-        let seen =
-            |amounts: &[f64]| -> Vec<f64> { deposit.seen(amounts, &products).into_iter().map(|v| -log10(v)).collect() };
+        let seen = |amounts: &[f64]| -> Vec<f64> {
+            deposit.receiver_sums(amounts, &products).into_iter().map(|v| -log10(v)).collect()
+        };
         let least: Vec<f64> = (0..3).map(|l| emulsion.range(l).0).collect();
         let clear = seen(&least);
         let mut layers = vec![Vec::new(); 3];

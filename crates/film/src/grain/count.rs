@@ -100,8 +100,8 @@ fn row(mean: f64) -> (Vec<f32>, f32) {
     let place = |i: f64| i / FINENESS as f64 - LIMIT as f64;
     let values: Vec<f64> = (0..NODES)
         .map(|i| {
-            let low = if i == 0 { 0.0 } else { normal::below(place(i as f64 - 0.5)) };
-            let high = if i + 1 == NODES { 1.0 } else { normal::below(place(i as f64 + 0.5)) };
+            let low = if i == 0 { 0.0 } else { normal::cdf(place(i as f64 - 0.5)) };
+            let high = if i + 1 == NODES { 1.0 } else { normal::cdf(place(i as f64 + 0.5)) };
             let over: f64 = below.iter().map(|b| (high - b.max(low)).max(0.0)).sum();
             over / (high - low)
         })

@@ -41,7 +41,7 @@ mod spline;
 pub use calibrate::{APERTURE_MM, GrainError};
 pub use color::{ColorGrain, FOG};
 
-use crate::known::Known;
+use crate::cache::Cache;
 use crate::raster::Raster;
 use count::Counts;
 use field::{Cells, Field};
@@ -90,13 +90,13 @@ pub struct Grain {
     /// Variance times area of large areas, mm^2, divided by the amount, at each of [`STEPS`] steps up to the largest amount.
     per_amount: Vec<f32>,
     steps_a_unit: f32,
-    parts: [Part; 2],
+    parts: [GrainComponent; 2],
     counts: &'static Counts,
     isa: Isa,
 }
 
 /// One of the two parts of the noise: clumps, or crystals.
-struct Part {
+struct GrainComponent {
     /// Fraction of the variance of large areas.
     share: f64,
     /// Side of a cell of the finest level, mm.
@@ -141,8 +141,11 @@ impl Grain {
             }
             per_amount.push(((rms / 1e3) * (rms / 1e3) * selwyn_mm2 / amount) as f32);
         }
-        let part =
-            |share: f64, cell_mm: f64, which: u32| Part { share, cell_mm, field: Field::new(seed, layer + which) };
+        let part = |share: f64, cell_mm: f64, which: u32| GrainComponent {
+            share,
+            cell_mm,
+            field: Field::new(seed, layer + which),
+        };
         let parts = [
             part(1.0 - calibrate::CRYSTALS, clump_mm, 0),
             part(calibrate::CRYSTALS, clump_mm / calibrate::CLUMP, 1 << 16),
@@ -197,7 +200,7 @@ impl Grain {
         let alone = (variance * (raster.pitch_mm * raster.pitch_mm) as f32).min(1.0);
         let made = || Pixels::new(self.counts, alone, |density| self.per_amount(density) * variance);
         let key = (self.per_amount.clone(), [self.steps_a_unit.to_bits(), variance.to_bits(), alone.to_bits()]);
-        let pixels = &*PIXELS.of(key, made);
+        let pixels = &*PIXELS.get_or_compute(key, made);
         density.par_chunks_mut(raster.width * TILE).enumerate().for_each_init(
             || [Lines::new(), Lines::new()],
             |lines, (strip, plane)| {
@@ -213,7 +216,7 @@ impl Grain {
 
     /// Chooses the level of a part whose cells suit a pixel, and computes the cells that each column of pixels takes.
     fn layout(&self, part: usize, raster: &Raster) -> Layout {
-        let Part { share, cell_mm, .. } = &self.parts[part];
+        let GrainComponent { share, cell_mm, .. } = &self.parts[part];
         let mut level = 0;
         let mut cells_a_pixel = raster.pitch_mm / cell_mm;
         while cells_a_pixel >= 2.0 * CELLS_A_PIXEL[part] && level < field::TOP {
@@ -236,7 +239,7 @@ struct Layout {
 }
 
 /// Cache of tables for pixels of one size, by the grain's variances and the pixel's.
-static PIXELS: Known<(Vec<f32>, [u32; 3]), Pixels> = Known::new();
+static PIXELS: Cache<(Vec<f32>, [u32; 3]), Pixels> = Cache::new();
 
 /// Largest number of cells that a pixel takes along an axis: eight from its start to its end, and those that reach in.
 const MOST_TAPS: usize = 11;
@@ -287,7 +290,7 @@ impl Lines {
 
     /// Loads the cells and weights of a part for the columns `from` up to but not including `to`.
     #[inline(always)]
-    fn fill(&mut self, part: &Part, layout: &Layout, rows: &Taps, [from, to]: [usize; 2]) {
+    fn fill(&mut self, part: &GrainComponent, layout: &Layout, rows: &Taps, [from, to]: [usize; 2]) {
         let (x, across) = layout.columns.cells(from, to);
         let (y, down) = rows.cells(0, rows.len());
         part.field.fill(layout.level, [x, y], [across, down], &mut self.cells);
@@ -332,7 +335,7 @@ impl Lines {
 
 /// Computes the density that [`Pixels::at`] cannot look up.
 #[inline(never)]
-fn beyond(grain: &Grain, [variance, alone]: [f32; 2], density: f32, number: f32) -> f32 {
+fn grainy_density(grain: &Grain, [variance, alone]: [f32; 2], density: f32, number: f32) -> f32 {
     // The density of one grain in this pixel.
     let one = grain.per_amount(density) * variance;
     if !(density > 0.0 && density.is_finite() && one > 0.0) {
@@ -367,7 +370,11 @@ impl Vectorized for Strip<'_> {
                 }
                 for (column, to) in plane.iter_mut().enumerate() {
                     let here = grainy[column];
-                    *to = if here.is_nan() { beyond(grain, [variance, alone], *to, numbers[column]) } else { here };
+                    *to = if here.is_nan() {
+                        grainy_density(grain, [variance, alone], *to, numbers[column])
+                    } else {
+                        here
+                    };
                 }
             }
         }

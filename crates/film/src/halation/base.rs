@@ -60,7 +60,7 @@ impl HalationBase {
     }
 
     /// Returns the light that comes back after one trip at the distance `r_mm` from a point, per mm^2, relative to the light that exposes
-    /// the point. For all trips see [`super::Trips`].
+    /// the point. For all trips see [`super::ReturnedLight`].
     #[must_use]
     pub fn density_per_mm2(&self, r_mm: f64) -> f64 {
         let t2 = 4.0 * self.thickness_mm * self.thickness_mm;

@@ -4,8 +4,8 @@
 //! on the pixels, and each further part on cells of four times the size, up to the frame's diagonal.
 
 use super::base::HalationBase;
+use super::returned_light::ReturnedLight;
 use super::table::Table;
-use super::trips::Trips;
 use crate::cells::{BOTH_WAYS, MARGIN};
 use crate::raster::Raster;
 use spectra_numerics::convolve::Kernel;
@@ -39,7 +39,7 @@ fn fading(r: f64, end: f64) -> f64 {
 impl Level {
     /// Builds all parts, finest first. Together with the light that stays they sum to 1, except for light that falls farther away than the
     /// frame is long.
-    pub(super) fn all(base: &HalationBase, trips: &Trips, raster: &Raster) -> Vec<Self> {
+    pub(super) fn all(base: &HalationBase, trips: &ReturnedLight, raster: &Raster) -> Vec<Self> {
         let ring = base.ring_radius_mm();
         let even = 1.0 / (1.0 + trips.returned());
         // If pixels are far finer than the ring, it is computed on cells that are still fine enough.

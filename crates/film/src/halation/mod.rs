@@ -11,7 +11,7 @@
 //!
 //! f(r) = R(theta) T^(2/cos(theta)) 4 t^2 / (pi (r^2 + 4 t^2)^2),
 //!
-//! whose integral is the fraction that returns. The emulsion reflects a share of it down again, evenly as before, and so on: [`Trips`] sums
+//! whose integral is the fraction that returns. The emulsion reflects a share of it down again, evenly as before, and so on: [`ReturnedLight`] sums
 //! all trips. The second trip adds a faint ring at twice the distance.
 //!
 //! **Layers.** A layer gets a smaller share of the returning light the farther it lies from the base (`halation.layers` of a stock).
@@ -22,22 +22,22 @@
 
 mod base;
 mod kernel;
+mod returned_light;
 mod spread;
 mod table;
-mod trips;
 
 pub use base::{HalationBase, HalationError};
-pub use trips::Trips;
+pub use returned_light::ReturnedLight;
 
-use crate::known::Known;
+use crate::cache::Cache;
 use crate::raster::Raster;
 use kernel::Level;
 use spread::Spread;
 use std::sync::Arc;
 
 /// Caches of the returned light of a point, by the base, and of its kernels on a plane.
-static TRIPS: Known<HalationBase, Trips> = Known::new();
-static SPREADS: Known<(HalationBase, Raster), Spread> = Known::new();
+static TRIPS: Cache<HalationBase, ReturnedLight> = Cache::new();
+static SPREADS: Cache<(HalationBase, Raster), Spread> = Cache::new();
 
 /// The halation of one layer on planes of one size.
 ///
@@ -68,10 +68,10 @@ impl Halation {
         if !(raster.pitch_mm > 0.0 && raster.pitch_mm.is_finite()) {
             return Err(HalationError::OutOfRange { what: "pitch", value: raster.pitch_mm, range: "more than 0 mm" });
         }
-        let trips = TRIPS.of(*base, || Trips::new(base));
+        let trips = TRIPS.get_or_compute(*base, || ReturnedLight::new(base));
         let none = trips.returned() == 0.0 || raster.pixels() == 0;
         let made = || Spread::new(Level::all(base, &trips, raster), 1.0 / (1.0 + trips.returned()), raster);
-        let spread = (!none).then(|| SPREADS.of((*base, *raster), made));
+        let spread = (!none).then(|| SPREADS.get_or_compute((*base, *raster), made));
         Ok(Self { raster: *raster, spread })
     }
 

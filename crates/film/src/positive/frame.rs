@@ -1,9 +1,9 @@
 //! Tables that process whole frames as a single place is processed.
 
-use super::{Reach, Way};
+use super::{GamutLimit, PositiveKind};
+use crate::cache::Cache;
 use crate::cube::Cube;
 use crate::deposit::Deposit;
-use crate::known::Known;
 use crate::lookup::PIXELS_A_TASK;
 use rayon::prelude::*;
 use spectra_core::isa::{Isa, Vectorized};
@@ -58,15 +58,15 @@ pub(super) struct Dyes {
 }
 
 impl Tables {
-    pub(super) fn new(film: &Deposit, ranges: &[(f64, f64)], way: &Way) -> Self {
+    pub(super) fn new(film: &Deposit, ranges: &[(f64, f64)], way: &PositiveKind) -> Self {
         if film.layers() == 1 {
-            return Self::silver(film, way, Reach::Screen);
+            return Self::silver(film, way, GamutLimit::Screen);
         }
         let ranges = [0, 1, 2].map(|i| (ranges[i].0 - MARGIN, ranges[i].1 + MARGIN));
         let (weights, printing) = match way {
-            Way::Look(viewing) => (viewing.weights(), None),
-            Way::Scan(scan) => (&scan.weights[..], None),
-            Way::Print(printing) => (&printing.weights[..], Some(printing)),
+            PositiveKind::Look(viewing) => (viewing.weights(), None),
+            PositiveKind::Scan(scan) => (&scan.weights[..], None),
+            PositiveKind::Print(printing) => (&printing.weights[..], Some(printing)),
         };
         let mut curves = Vec::new();
         let mut last = None;
@@ -90,12 +90,12 @@ impl Tables {
     }
 
     /// Builds the table of one silver layer.
-    pub(super) fn silver(film: &Deposit, way: &Way, reach: Reach) -> Self {
+    pub(super) fn silver(film: &Deposit, way: &PositiveKind, reach: GamutLimit) -> Self {
         Self::Silver(silver(film, way, reach))
     }
 
     /// Computes the picture; for silver, the range of values was fixed when the table was built.
-    pub(super) fn picture(&self, planes: &[&[f32]], way: &Way, reach: Reach) -> Vec<[f32; 3]> {
+    pub(super) fn picture(&self, planes: &[&[f32]], way: &PositiveKind, reach: GamutLimit) -> Vec<[f32; 3]> {
         match (self, planes) {
             (Self::Silver(table), [plane]) => {
                 let scale = (SILVER_STEPS as f64 / HIGHEST_DENSITY) as f32;
@@ -173,8 +173,8 @@ fn along_curve(curve: &[f32], density: f32) -> f32 {
 struct Shown<'a> {
     dyes: &'a Dyes,
     planes: [&'a [f32]; 3],
-    way: &'a Way,
-    reach: Reach,
+    way: &'a PositiveKind,
+    reach: GamutLimit,
     to: &'a mut [[f32; 3]],
 }
 
@@ -192,14 +192,14 @@ impl Vectorized for Shown<'_> {
             }
             turned(&found, &mut row);
             match way {
-                Way::Look(viewing) => viewing.shown_row(&mut row, reach, to),
-                Way::Scan(scan) => {
+                PositiveKind::Look(viewing) => viewing.shown_row(&mut row, reach, to),
+                PositiveKind::Scan(scan) => {
                     for (i, to) in to.iter_mut().enumerate() {
                         let densities = [0, 1, 2].map(|k| f64::from(row[k][i]));
                         *to = scan.shown_in(&densities, reach).map(|v| v as f32);
                     }
                 }
-                Way::Print(printing) => {
+                PositiveKind::Print(printing) => {
                     dyes.print(&mut row, &mut found, to.len());
                     printing.viewing.shown_row(&mut row, reach, to);
                 }
@@ -238,13 +238,13 @@ impl Dyes {
     }
 }
 
-fn silver(film: &Deposit, way: &Way, reach: Reach) -> Vec<[f32; 3]> {
+fn silver(film: &Deposit, way: &PositiveKind, reach: GamutLimit) -> Vec<[f32; 3]> {
     let one = |i: usize| {
         let amounts = [i as f64 / SILVER_STEPS as f64 * HIGHEST_DENSITY];
         let shown = match way {
-            Way::Look(viewing) => viewing.shown_in(viewing.xyz(film, &amounts), reach),
-            Way::Print(printing) => printing.viewing.shown_in(printing.xyz(film, &amounts), reach),
-            Way::Scan(scan) => scan.shown_in(&scan.densities(film, &amounts), reach),
+            PositiveKind::Look(viewing) => viewing.shown_in(viewing.xyz(film, &amounts), reach),
+            PositiveKind::Print(printing) => printing.viewing.shown_in(printing.xyz(film, &amounts), reach),
+            PositiveKind::Scan(scan) => scan.shown_in(&scan.densities(film, &amounts), reach),
         };
         shown.map(|v| v as f32)
     };
@@ -261,15 +261,15 @@ pub(super) fn seen(film: &Deposit, ranges: &[(f64, f64)], weights: &[Vec<f64>], 
 }
 
 /// Cache key: the dyes, the ranges of the amounts, the receivers' weights, and the number of steps.
-type Seen = (Deposit, [(f64, f64); 3], Vec<Vec<f64>>, usize);
+type DensityCacheKey = (Deposit, [(f64, f64); 3], Vec<Vec<f64>>, usize);
 
 /// Cache for two prints: from a negative to the print's layers, and from the print to the eye.
-static KNOWN: Known<Seen, Cube> = Known::keeping(4);
+static KNOWN: Cache<DensityCacheKey, Cube> = Cache::keeping(4);
 
 /// Returns the densities that up to three receivers measure, over the amounts of three dyes.
 fn densities(deposit: &Deposit, ranges: [(f64, f64); 3], weights: &[Vec<f64>], steps: usize) -> Arc<Cube> {
     let key = (deposit.clone(), ranges, weights.to_vec(), steps);
-    KNOWN.of(key, || summed(deposit, ranges, weights, steps))
+    KNOWN.get_or_compute(key, || summed(deposit, ranges, weights, steps))
 }
 
 /// Computes [`densities`] without the cache.

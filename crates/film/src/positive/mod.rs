@@ -4,7 +4,7 @@
 //! scanner's filters, or the eye. For whole frames, the spectral sums are tabulated once over the amounts, so a frame costs table look-ups.
 //!
 //! A color print is timed to the aim densities of its stock. A projection is seen in the dark, and shown in a lit room by an exponent of
-//! luminance ([`Surround::exponent`](crate::look::Surround::exponent)).
+//! luminance ([`Surround::exponent`](crate::viewing_options::Surround::exponent)).
 
 mod frame;
 mod printing;
@@ -16,8 +16,8 @@ pub use viewing::{Viewing, on_band};
 
 use crate::deposit::Deposit;
 use crate::emulsion::Emulsion;
-use crate::look::{Look, PictureBlack, PictureWhite};
 use crate::stock::{Medium, Process, Stock};
+use crate::viewing_options::{PictureBlack, PictureWhite, ViewingOptions};
 use frame::Tables;
 use printing::Printing;
 use scan::Scan;
@@ -53,7 +53,7 @@ pub enum PositiveError {
 #[derive(Clone, Debug)]
 pub struct Positive {
     film: Deposit,
-    way: Way,
+    way: PositiveKind,
     /// Smallest and largest amount in each layer.
     ranges: Vec<(f64, f64)>,
     /// Tables for whole frames, built on first use: they take longer than all other preparation.
@@ -61,7 +61,7 @@ pub struct Positive {
 }
 
 #[derive(Clone, Debug)]
-enum Way {
+enum PositiveKind {
     Look(Viewing),
     Print(Box<Printing>),
     Scan(Scan),
@@ -72,7 +72,12 @@ impl Positive {
     ///
     /// # Errors
     /// [`PositiveError::DarkLight`] if the light is invisible.
-    pub fn transmitted(stock: &Stock, film: &Emulsion, light: &Emission, look: Look) -> Result<Self, PositiveError> {
+    pub fn transmitted(
+        stock: &Stock,
+        film: &Emulsion,
+        light: &Emission,
+        look: ViewingOptions,
+    ) -> Result<Self, PositiveError> {
         let mut viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
         if stock.process == Process::Reversal {
             let of = |end: fn((f64, f64)) -> f64| {
@@ -83,7 +88,7 @@ impl Positive {
             let black = if look.black == PictureBlack::Stretched { of(|range| range.1)[1] } else { 0.0 };
             viewing = viewing.between(black, white).surrounded(look.surround);
         }
-        Ok(Self::of(film, Way::Look(viewing)))
+        Ok(Self::of(film, PositiveKind::Look(viewing)))
     }
 
     /// Prepares a print on `print` (developed as `printed`), made with a lamp of the spectrum `lamp` and viewed in `light`.
@@ -100,14 +105,14 @@ impl Positive {
         printed: Emulsion,
         lamp: &Emission,
         light: &Emission,
-        look: Look,
+        look: ViewingOptions,
     ) -> Result<Self, PositiveError> {
-        let viewing = seen(print, light, look)?;
+        let viewing = print_viewing(print, light, look)?;
         let gray = film.neutral(spectra_core::math::log10(gray_lx_s));
         let unexposed = film.neutral(f64::NEG_INFINITY);
         let printing =
             Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, Some(lamp), viewing, look)?;
-        Ok(Self::of(film, Way::Print(Box::new(printing))))
+        Ok(Self::of(film, PositiveKind::Print(Box::new(printing))))
     }
 
     /// Prepares a dye transfer print: three separation negatives ([`Emulsion::separations`]), each printed onto the matrix of one dye of
@@ -124,17 +129,17 @@ impl Positive {
         print: &Stock,
         printed: Emulsion,
         light: &Emission,
-        look: Look,
+        look: ViewingOptions,
     ) -> Result<Self, PositiveError> {
         if film.layers() != 3 || printed.layers() != 3 {
             return Err(PositiveError::NoPrintStock { stock: print.name.clone() });
         }
-        let viewing = seen(print, light, look)?;
+        let viewing = print_viewing(print, light, look)?;
         let gray: Vec<f64> =
             gray_lx_s.iter().enumerate().map(|(i, h)| film.amount(i, spectra_core::math::log10(*h))).collect();
         let unexposed = film.neutral(f64::NEG_INFINITY);
         let printing = Printing::balanced(film.deposit(), &unexposed, &gray, print, printed, None, viewing, look)?;
-        Ok(Self::of(film, Way::Print(Box::new(printing))))
+        Ok(Self::of(film, PositiveKind::Print(Box::new(printing))))
     }
 
     /// Prepares a scan: density through the filters of the stock's densitometry.
@@ -149,10 +154,10 @@ impl Positive {
     /// [`PositiveError::NoGray`] if mid gray is not denser than unexposed film.
     pub fn scanned(stock: &Stock, film: &Emulsion, gray_lx_s: f64, scale: ScanScale) -> Result<Self, PositiveError> {
         let scan = Scan::new(stock, film, gray_lx_s, scale)?;
-        Ok(Self::of(film, Way::Scan(scan)))
+        Ok(Self::of(film, PositiveKind::Scan(scan)))
     }
 
-    fn of(film: &Emulsion, way: Way) -> Self {
+    fn of(film: &Emulsion, way: PositiveKind) -> Self {
         let ranges: Vec<(f64, f64)> = (0..film.layers()).map(|i| film.range(i)).collect();
         let deposit = film.deposit().clone();
         Self { film: deposit, way, ranges, tables: OnceLock::new() }
@@ -162,9 +167,9 @@ impl Positive {
     #[must_use]
     pub fn shown(&self, amounts: &[f64]) -> [f64; 3] {
         match &self.way {
-            Way::Look(viewing) => viewing.shown(viewing.xyz(&self.film, amounts)),
-            Way::Print(printing) => printing.viewing.shown(printing.xyz(&self.film, amounts)),
-            Way::Scan(scan) => scan.shown(&scan.densities(&self.film, amounts)),
+            PositiveKind::Look(viewing) => viewing.to_screen(viewing.xyz(&self.film, amounts)),
+            PositiveKind::Print(printing) => printing.viewing.to_screen(printing.xyz(&self.film, amounts)),
+            PositiveKind::Scan(scan) => scan.shown(&scan.densities(&self.film, amounts)),
         }
     }
 
@@ -172,9 +177,9 @@ impl Positive {
     #[must_use]
     pub fn xyz(&self, amounts: &[f64]) -> Option<[f64; 3]> {
         match &self.way {
-            Way::Look(viewing) => Some(viewing.xyz(&self.film, amounts)),
-            Way::Print(printing) => Some(printing.xyz(&self.film, amounts)),
-            Way::Scan(_) => None,
+            PositiveKind::Look(viewing) => Some(viewing.xyz(&self.film, amounts)),
+            PositiveKind::Print(printing) => Some(printing.xyz(&self.film, amounts)),
+            PositiveKind::Scan(_) => None,
         }
     }
 
@@ -182,9 +187,9 @@ impl Positive {
     #[must_use]
     pub fn viewing(&self) -> Option<&Viewing> {
         match &self.way {
-            Way::Look(viewing) => Some(viewing),
-            Way::Print(printing) => Some(&printing.viewing),
-            Way::Scan(_) => None,
+            PositiveKind::Look(viewing) => Some(viewing),
+            PositiveKind::Print(printing) => Some(&printing.viewing),
+            PositiveKind::Scan(_) => None,
         }
     }
 
@@ -192,8 +197,8 @@ impl Positive {
     #[must_use]
     pub fn print_amounts(&self, amounts: &[f64]) -> Option<Vec<f64>> {
         match &self.way {
-            Way::Print(printing) => Some(printing.printed(&self.film, amounts)),
-            Way::Look(_) | Way::Scan(_) => None,
+            PositiveKind::Print(printing) => Some(printing.printed(&self.film, amounts)),
+            PositiveKind::Look(_) | PositiveKind::Scan(_) => None,
         }
     }
 
@@ -206,7 +211,7 @@ impl Positive {
     /// ([`densities`]), including paper or film base. `None` if nothing is printed.
     #[must_use]
     pub fn print_densities(&self, planes: &[&[f32]]) -> Option<Vec<(String, Vec<f32>)>> {
-        let Way::Print(printing) = &self.way else { return None };
+        let PositiveKind::Print(printing) = &self.way else { return None };
         let of_silver = |density: f64| printing.printed(&self.film, &[density]);
         let printed = frame::printed(self.tables(), printing.emulsion.layers(), &of_silver, planes);
         let printed: Vec<&[f32]> = printed.iter().map(Vec::as_slice).collect();
@@ -218,27 +223,27 @@ impl Positive {
     /// length.
     #[must_use]
     pub fn picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
-        self.tables().picture(planes, &self.way, Reach::Screen)
+        self.tables().picture(planes, &self.way, GamutLimit::Screen)
     }
 
     /// Computes the picture of a whole film without gamut limits: below 0 for colors outside sRGB, above 1 where it is brighter than the
     /// film's white. For a scan on a file scale, returns the values of that scale.
     #[must_use]
-    pub fn open_picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
+    pub fn unclamped_picture(&self, planes: &[&[f32]]) -> Vec<[f32; 3]> {
         match self.film.layers() {
             // Silver is tabulated as shown, dyes as densities.
-            1 => Tables::silver(&self.film, &self.way, Reach::Open).picture(planes, &self.way, Reach::Open),
-            _ => self.tables().picture(planes, &self.way, Reach::Open),
+            1 => Tables::silver(&self.film, &self.way, GamutLimit::Open).picture(planes, &self.way, GamutLimit::Open),
+            _ => self.tables().picture(planes, &self.way, GamutLimit::Open),
         }
     }
 
     /// Returns the color of a place without any film, for example a perforation.
     #[must_use]
-    pub fn hole(&self, reach: Reach) -> [f64; 3] {
+    pub fn hole(&self, reach: GamutLimit) -> [f64; 3] {
         match &self.way {
-            Way::Look(viewing) => viewing.shown_in(bare(viewing.weights()), reach),
-            Way::Print(printing) => printing.viewing.shown_in(printing.hole(), reach),
-            Way::Scan(scan) => scan.shown_in(&vec![0.0; scan.weights.len()], reach),
+            PositiveKind::Look(viewing) => viewing.shown_in(bare(viewing.weights()), reach),
+            PositiveKind::Print(printing) => printing.viewing.shown_in(printing.hole(), reach),
+            PositiveKind::Scan(scan) => scan.shown_in(&vec![0.0; scan.weights.len()], reach),
         }
     }
 }
@@ -269,7 +274,7 @@ fn read_through(filters: Option<&[Vec<f64>]>, film: &Emulsion, planes: &[&[f32]]
 
 /// Range of the values of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
+pub enum GamutLimit {
     /// Values within sRGB, as a screen shows them.
     Screen,
     /// Values without limits.
@@ -277,7 +282,7 @@ pub enum Reach {
 }
 
 /// Viewing conditions of a print. Paper also reflects light of the room, unless its black is stretched.
-fn seen(print: &Stock, light: &Emission, look: Look) -> Result<Viewing, PositiveError> {
+fn print_viewing(print: &Stock, light: &Emission, look: ViewingOptions) -> Result<Viewing, PositiveError> {
     let viewing = Viewing::by(light).ok_or(PositiveError::DarkLight)?;
     Ok(match print.medium {
         Medium::Film => viewing.surrounded(look.surround),

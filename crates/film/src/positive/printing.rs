@@ -4,9 +4,9 @@ use super::PositiveError;
 use super::viewing::{Viewing, on_band};
 use crate::deposit::{Deposit, third};
 use crate::emulsion::Emulsion;
-use crate::look::{Look, PictureBlack, PictureWhite, Surround};
 use crate::print::MID_GRAY;
 use crate::stock::{AimDensity, Process, Stock};
+use crate::viewing_options::{PictureBlack, PictureWhite, Surround, ViewingOptions};
 use spectra_core::math::{log10, pow};
 use spectra_core::spectral::BAND;
 use spectra_numerics::linear;
@@ -43,7 +43,7 @@ impl Printing {
         emulsion: Emulsion,
         lamp: Option<&Emission>,
         viewing: Viewing,
-        look: Look,
+        look: ViewingOptions,
     ) -> Result<Self, PositiveError> {
         if stock.process != Process::Print {
             return Err(PositiveError::NoPrintStock { stock: stock.name.clone() });
@@ -92,7 +92,7 @@ impl Printing {
             let needed = amounts.iter().enumerate().map(|(i, a)| Some(pow(10.0, emulsion.log10_exposure_at(i, *a)?)));
             let needed: Vec<f64> =
                 needed.collect::<Option<_>>().ok_or_else(|| unbalanced("its curves do not reach a mid gray"))?;
-            let system: Vec<f64> = parts.iter().flat_map(|of_layer| negative.seen(gray, of_layer)).collect();
+            let system: Vec<f64> = parts.iter().flat_map(|of_layer| negative.receiver_sums(gray, of_layer)).collect();
             let lights = linear::solve(&system, &needed).filter(|l| l.iter().all(|v| *v > 0.0 && v.is_finite()));
             let lights =
                 lights.ok_or_else(|| unbalanced("no light of its printer prints this negative's gray as gray"))?;
@@ -129,7 +129,7 @@ impl Printing {
 
     /// Amounts in the print of a negative.
     pub(super) fn printed(&self, negative: &Deposit, amounts: &[f64]) -> Vec<f64> {
-        let exposures = negative.seen(amounts, &self.weights);
+        let exposures = negative.receiver_sums(amounts, &self.weights);
         exposures.iter().enumerate().map(|(i, h)| self.emulsion.amount(i, log10(*h))).collect()
     }
 

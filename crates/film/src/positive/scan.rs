@@ -1,6 +1,6 @@
 //! Scans of negatives: densities on a linear or a logarithmic scale, or inverted into a picture.
 
-use super::{PositiveError, Reach};
+use super::{GamutLimit, PositiveError};
 use crate::deposit::Deposit;
 use crate::emulsion::Emulsion;
 use crate::lookup::Lookup;
@@ -95,12 +95,12 @@ impl Scan {
 
     /// Converts densities to linear light for the screen. A file scale is encoded so that the file's values are those of the scale.
     pub(super) fn shown(&self, densities: &[f64]) -> [f64; 3] {
-        self.shown_in(densities, Reach::Screen)
+        self.shown_in(densities, GamutLimit::Screen)
     }
 
     /// Converts densities to linear light for the screen, or to the values of the scale themselves.
-    pub(super) fn shown_in(&self, densities: &[f64], reach: Reach) -> [f64; 3] {
-        let written = |value: f64| if reach == Reach::Open { value } else { written(value) };
+    pub(super) fn shown_in(&self, densities: &[f64], reach: GamutLimit) -> [f64; 3] {
+        let written = |value: f64| if reach == GamutLimit::Open { value } else { written(value) };
         let of = |i: usize| i.min(densities.len() - 1);
         match self.scale {
             ScanScale::Picture => {
@@ -111,7 +111,7 @@ impl Scan {
                     // Mid gray keeps its value, black becomes 0.
                     self.shoulder.at((light - black) * MID_GRAY / (MID_GRAY - black))
                 });
-                if reach == Reach::Open { rgb } else { into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate) }
+                if reach == GamutLimit::Open { rgb } else { into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate) }
             }
             ScanScale::Log => {
                 let (foot, step, most) = CINEON;
@@ -211,5 +211,5 @@ impl Shoulder {
 }
 
 fn read(film: &Deposit, amounts: &[f64], weights: &[Vec<f64>]) -> Vec<f64> {
-    film.seen(amounts, weights).into_iter().map(|v| -log10(v)).collect()
+    film.receiver_sums(amounts, weights).into_iter().map(|v| -log10(v)).collect()
 }

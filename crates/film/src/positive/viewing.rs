@@ -1,9 +1,9 @@
 //! Viewing: light through a film to an eye, as XYZ and as a screen shows it.
 
-use super::Reach;
+use super::GamutLimit;
 use super::frame::ROW;
 use crate::deposit::Deposit;
-use crate::look::{FLARE, Surround};
+use crate::viewing_options::{FLARE, Surround};
 use spectra_color::matrix::{Matrix, apply, product};
 use spectra_color::{Adaptation, Gamut, RgbSpace, into_gamut};
 use spectra_core::math::{exp2_single, log2_single, pow};
@@ -107,7 +107,7 @@ impl Viewing {
     /// Computes XYZ of a film with these amounts, relative to the bare light.
     #[must_use]
     pub fn xyz(&self, deposit: &Deposit, amounts: &[f64]) -> [f64; 3] {
-        let seen = deposit.seen(amounts, &self.weights);
+        let seen = deposit.receiver_sums(amounts, &self.weights);
         [seen[0], seen[1], seen[2]]
     }
 
@@ -119,17 +119,17 @@ impl Viewing {
 
     /// Converts XYZ to what the screen shows: linear light, sRGB primaries, within its gamut.
     #[must_use]
-    pub fn shown(&self, xyz: [f64; 3]) -> [f64; 3] {
-        self.shown_in(xyz, Reach::Screen)
+    pub fn to_screen(&self, xyz: [f64; 3]) -> [f64; 3] {
+        self.shown_in(xyz, GamutLimit::Screen)
     }
 
     /// Converts XYZ to linear light in sRGB primaries, within the gamut of the screen or without limits.
     #[must_use]
-    pub fn shown_in(&self, xyz: [f64; 3], reach: Reach) -> [f64; 3] {
-        let rgb = apply(&self.to_rgb, self.seen(xyz));
+    pub fn shown_in(&self, xyz: [f64; 3], reach: GamutLimit) -> [f64; 3] {
+        let rgb = apply(&self.to_rgb, self.corrected_for_surround(xyz));
         match reach {
-            Reach::Screen => into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate),
-            Reach::Open => rgb,
+            GamutLimit::Screen => into_gamut(rgb, RgbSpace::srgb(), Gamut::Desaturate),
+            GamutLimit::Open => rgb,
         }
     }
 
@@ -137,7 +137,7 @@ impl Viewing {
     /// surround. White stays [`Viewing::white`].
     #[must_use]
     #[inline]
-    pub fn seen(&self, xyz: [f64; 3]) -> [f64; 3] {
+    pub fn corrected_for_surround(&self, xyz: [f64; 3]) -> [f64; 3] {
         let (times, added) = self.scale();
         let mut seen = xyz;
         for (v, white) in seen.iter_mut().zip(&self.white) {
@@ -156,7 +156,7 @@ impl Viewing {
 impl Viewing {
     /// Computes [`Viewing::shown_in`] for a row of places whose XYZ densities are `row`, which is overwritten.
     #[inline(always)]
-    pub(super) fn shown_row(&self, row: &mut [[f32; ROW]; 3], reach: Reach, to: &mut [[f32; 3]]) {
+    pub(super) fn shown_row(&self, row: &mut [[f32; ROW]; 3], reach: GamutLimit, to: &mut [[f32; 3]]) {
         let (times, added) = self.scale();
         let (times, added) = (times as f32, self.white.map(|white| (added * white) as f32));
         let exponent = (self.surround.exponent() - 1.0) as f32;
@@ -178,7 +178,7 @@ impl Viewing {
             }
             let rgb = |m: [f32; 3]| m[0] * seen[0] + m[1] * seen[1] + m[2] * seen[2];
             (*x, *y, *z) = (rgb(matrix[0]), rgb(matrix[1]), rgb(matrix[2]));
-            if reach == Reach::Screen {
+            if reach == GamutLimit::Screen {
                 // Desaturates as `spectra_color::into_gamut` does: toward the gray of its luminance, by the largest share of color that
                 // fits.
                 let gray = luminance[0] * *x + luminance[1] * *y + luminance[2] * *z;

@@ -10,20 +10,20 @@
 
 mod modulation;
 mod mtf;
+mod prepared_spread;
 mod spread;
-mod spreading;
 
 pub use modulation::Modulation;
 pub use mtf::{Mtf, MtfError};
+pub(crate) use prepared_spread::PreparedSpread;
 pub use spread::PointSpread;
-pub(crate) use spreading::Spreading;
 
-use crate::known::Known;
+use crate::cache::Cache;
 use crate::raster::Raster;
 use std::sync::Arc;
 
 /// Cache of kernels on a plane.
-static KERNELS: Known<(Mtf, Raster), Spreading> = Known::new();
+static KERNELS: Cache<(Mtf, Raster), PreparedSpread> = Cache::new();
 
 /// Fraction of the light that may lie outside the kernel.
 const BEYOND: f64 = 1e-9;
@@ -47,7 +47,7 @@ const LONGEST: usize = 2000;
 /// ```
 pub struct Scatter {
     raster: Raster,
-    spreading: Arc<Spreading>,
+    spreading: Arc<PreparedSpread>,
 }
 
 impl Scatter {
@@ -67,8 +67,8 @@ impl Scatter {
         if mtf.spread().reach_mm(BEYOND) / pitch_mm > LONGEST as f64 {
             return Err(out_of_range("at least a 2000th of the spread"));
         }
-        let made = || Spreading::new(mtf.spread(), raster, BEYOND, LONGEST);
-        Ok(Self { raster: *raster, spreading: KERNELS.of((mtf.clone(), *raster), made) })
+        let made = || PreparedSpread::new(mtf.spread(), raster, BEYOND, LONGEST);
+        Ok(Self { raster: *raster, spreading: KERNELS.get_or_compute((mtf.clone(), *raster), made) })
     }
 
     /// Scatters the light of a plane of exposure (linear; any unit), in place.

@@ -59,7 +59,7 @@ impl Modulation {
 }
 
 /// A point of the search: logarithms of two deviations and of the length (mm), and the gain.
-type Place = [f64; 4];
+type SearchPoint = [f64; 4];
 
 struct Search<'a> {
     points: &'a [[f64; 2]],
@@ -67,7 +67,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Cost to minimize: the root mean square error plus the cost of the gain.
-    fn cost(&self, place: Place) -> f64 {
+    fn cost(&self, place: SearchPoint) -> f64 {
         let within = |v: f64, (low, high): (f64, f64)| (log(low)..=log(high)).contains(&v);
         let [first, second, length, gain] = place;
         let good = within(first, DEVIATIONS) && within(second, DEVIATIONS) && within(length, LENGTHS);
@@ -75,7 +75,7 @@ impl Search<'_> {
     }
 
     /// Returns the best share of the first Gaussian, and the root mean square error with it.
-    fn fitted(&self, [first, second, length, gain]: Place) -> (f64, f64) {
+    fn fitted(&self, [first, second, length, gain]: SearchPoint) -> (f64, f64) {
         let adjacency = Adjacency { gain, length_mm: exp(length) };
         let [first, second] = [exp(first), exp(second)];
         // Only the share is free: a linear least-squares fit.
@@ -100,7 +100,7 @@ impl Search<'_> {
 
     /// Searches a coarse grid, then improves its best point by steps along the axes, which are halved when none helps (R. Hooke and T. A.
     /// Jeeves, "Direct search solution of numerical and statistical problems", J. ACM 8, 1961, 212).
-    fn run(&self) -> Place {
+    fn run(&self) -> SearchPoint {
         const RUNGS: usize = 8;
         let rung = |(low, high): (f64, f64), i: usize, n: usize| {
             log(low) + (log(high) - log(low)) * (i as f64 + 0.5) / n as f64

@@ -86,7 +86,7 @@ impl PointSpread {
         let radius = ((self.reach_mm(share) / pitch_mm).ceil() as usize).max(1).min(most);
         // Integrals are computed on the falling side, without cancellation.
         let along = |sigma: f64| -> Vec<f64> {
-            let beyond = |i: usize| normal::below(-(i as f64 + 0.5) * pitch_mm / sigma);
+            let beyond = |i: usize| normal::cdf(-(i as f64 + 0.5) * pitch_mm / sigma);
             (0..=radius).map(|i| if i == 0 { 1.0 - 2.0 * beyond(0) } else { beyond(i - 1) - beyond(i) }).collect()
         };
         let all = |a: &Vec<f64>| a[0] + 2.0 * a[1..].iter().sum::<f64>();

@@ -1,12 +1,14 @@
 //! A stock's YAML file: its keys, and the checks that go beyond types.
 
+use super::base_stock::inherited;
 use super::color::{AimDensityFile, InterlayerFile, Medium};
-use super::like::inherited;
 use super::material::{DensityFile, DyeFile, MinimumDensityFile, densitometry};
 use super::reciprocity::ReciprocityFile;
 use super::speed::{ExposureFile, MeterResponse, SpeedKind};
 use super::structure::{Assumptions, AssumptionsFile, BaseFile, GranularityFile, HalationFile, granularity, mtf};
-use super::{Development, FilterFactor, Layer, Process, Reading, SensitivityError, SpectralSensitivity, Stock};
+use super::{
+    Development, FilterFactor, Layer, Process, SensitivityError, SensitivityScale, SpectralSensitivity, Stock,
+};
 use crate::curve::{
     AVERAGE_GRADIENT_SPAN, CharacteristicCurve, CurveError, SPEED_POINT_DENSITY, TabulatedCurve, ToeShoulder,
 };
@@ -456,11 +458,11 @@ fn sensitivity(
     };
     let light = faults.take(light.map_err(|error| error.faults(|text| params.fault(&key, text))));
     let reading = match (file.reading, file.floor) {
-        (ReadingFile::Log10, floor) => Reading::Log10 { floor },
-        (ReadingFile::Linear, None) => Reading::Linear,
+        (ReadingFile::Log10, floor) => SensitivityScale::Log10 { floor },
+        (ReadingFile::Linear, None) => SensitivityScale::Linear,
         (ReadingFile::Linear, Some(_)) => {
             faults.push(params.fault(&format!("{at}.floor"), "only logarithms have a floor"));
-            Reading::Linear
+            SensitivityScale::Linear
         }
     };
     let (Some(points), Some(light)) = (points, light) else {

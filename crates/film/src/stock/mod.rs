@@ -1,8 +1,8 @@
 //! Film stocks: the data of a maker's sheet, each value with its source. Unknown values are absent.
 
+mod base_stock;
 mod color;
 mod file;
-mod like;
 mod material;
 mod reciprocity;
 mod sensitivity;
@@ -12,7 +12,7 @@ mod structure;
 pub use color::{AimDensity, Interlayer, Medium};
 pub use material::{Densitometry, Dye, MinimumDensity, SpectralDensity};
 pub use reciprocity::{Reciprocity, unknown as unknown_reciprocity};
-pub use sensitivity::{Reading, SensitivityError, SpectralSensitivity};
+pub use sensitivity::{SensitivityError, SensitivityScale, SpectralSensitivity};
 pub use speed::{ISO_6_SPAN, Iso6, MeterResponse, SpeedKind};
 pub use structure::{Assumptions, Backing, Base, Granularity, Halation};
 

@@ -67,7 +67,7 @@ pub fn unknown(reciprocity: Option<&Reciprocity>, name: &str, time_s: f64) -> Op
     (reciprocity.is_none() && time_s > UNDOUBTED_S).then(|| {
         format!(
             "reciprocity of {name} is not known: {} counts in full, though most films lose speed beyond 1 s",
-            spectra_core::shutter::words(time_s)
+            spectra_core::shutter::format_time(time_s)
         )
     })
 }

@@ -7,7 +7,7 @@ use spectra_spectrum::{Emission, v_lambda};
 
 /// Scale of the values in a sensitivity table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reading {
+pub enum SensitivityScale {
     /// Values are linear.
     Linear,
     /// Values are logarithms to base 10. A value at or below the floor (where the sheet's plot ends) means no sensitivity at all.
@@ -62,7 +62,11 @@ impl SpectralSensitivity {
     ///
     /// # Errors
     /// [`SensitivityError`]: too few or unsorted points, invalid values, or a `light` without power where the table has a sensitivity.
-    pub fn new(points: &[[f64; 2]], reading: Reading, light: Option<Emission>) -> Result<Self, SensitivityError> {
+    pub fn new(
+        points: &[[f64; 2]],
+        reading: SensitivityScale,
+        light: Option<Emission>,
+    ) -> Result<Self, SensitivityError> {
         let increasing = points.windows(2).all(|w| w[0][0] < w[1][0]);
         if points.len() < 2 || !increasing || points.iter().any(|p| !(p[0] > 0.0 && p[0].is_finite())) {
             return Err(SensitivityError::Points);
@@ -70,9 +74,9 @@ impl SpectralSensitivity {
         let mut linear = Vec::with_capacity(points.len());
         for &[wavelength_nm, value] in points {
             let v = match reading {
-                Reading::Linear => value,
-                Reading::Log10 { floor: Some(floor) } if value <= floor => 0.0,
-                Reading::Log10 { .. } => pow(10.0, value),
+                SensitivityScale::Linear => value,
+                SensitivityScale::Log10 { floor: Some(floor) } if value <= floor => 0.0,
+                SensitivityScale::Log10 { .. } => pow(10.0, value),
             };
             if !(value.is_finite() && v >= 0.0 && v.is_finite()) {
                 return Err(SensitivityError::Value { wavelength_nm, value });
@@ -83,7 +87,7 @@ impl SpectralSensitivity {
             linear.push(v);
         }
         let wavelengths_nm = points.iter().map(|p| p[0]).collect();
-        Ok(Self { wavelengths_nm, linear, logarithmic: matches!(reading, Reading::Log10 { .. }), light })
+        Ok(Self { wavelengths_nm, linear, logarithmic: matches!(reading, SensitivityScale::Log10 { .. }), light })
     }
 
     /// Returns the relative sensitivity to energy at a wavelength.
@@ -150,7 +154,7 @@ mod tests {
     #[test]
     fn logarithms_are_read_above_the_floor_only() {
         let points = [[400.0, 0.0], [410.0, 1.0], [420.0, 0.5], [430.0, 0.0]];
-        let s = SpectralSensitivity::new(&points, Reading::Log10 { floor: Some(0.0) }, None).expect("a table");
+        let s = SpectralSensitivity::new(&points, SensitivityScale::Log10 { floor: Some(0.0) }, None).expect("a table");
         let root = pow(10.0, 0.5);
         for (w, want) in [
             (399.9, 0.0),
@@ -165,7 +169,7 @@ mod tests {
         ] {
             assert!((s.at(w) - want).abs() < 1e-12, "{w}: {} {want}", s.at(w));
         }
-        let s = SpectralSensitivity::new(&points, Reading::Log10 { floor: None }, None).expect("a table");
+        let s = SpectralSensitivity::new(&points, SensitivityScale::Log10 { floor: None }, None).expect("a table");
         assert!((s.at(400.0) - 1.0).abs() < 1e-15 && s.at(399.0) == 0.0);
         assert_eq!(s.at(f64::NAN), 0.0);
     }
@@ -174,10 +178,10 @@ mod tests {
     fn the_light_of_the_measurement_is_divided_out() {
         let lamp = Emission::blackbody(2850.0).expect("a lamp");
         let points: Vec<[f64; 2]> = (0..21).map(|i| f64::from(400 + 10 * i)).map(|w| [w, lamp.at(w) * 1e-9]).collect();
-        let s = SpectralSensitivity::new(&points, Reading::Linear, Some(lamp)).expect("a table");
+        let s = SpectralSensitivity::new(&points, SensitivityScale::Linear, Some(lamp)).expect("a table");
         assert!((400..=600).step_by(10).all(|w| (s.at(f64::from(w)) / 1e-9 - 1.0).abs() < 1e-12));
         let blue = Emission::rectangle(380.0, 500.0).expect("a light");
-        let fault = SpectralSensitivity::new(&[[450.0, 1.0], [550.0, 1.0]], Reading::Linear, Some(blue));
+        let fault = SpectralSensitivity::new(&[[450.0, 1.0], [550.0, 1.0]], SensitivityScale::Linear, Some(blue));
         assert_eq!(fault, Err(SensitivityError::DarkLight { wavelength_nm: 550.0 }));
     }
 
@@ -186,7 +190,7 @@ mod tests {
     fn a_layer_like_the_eye_is_a_light_meter() {
         let v = v_lambda();
         let points: Vec<[f64; 2]> = (360..=830).map(|w| [f64::from(w), v.at(f64::from(w)) * 37.0]).collect();
-        let eye = SpectralSensitivity::new(&points, Reading::Linear, None).expect("a table");
+        let eye = SpectralSensitivity::new(&points, SensitivityScale::Linear, None).expect("a table");
         let daylight = illuminant("iso-7589-sensitometric-daylight").expect("bundled");
         let channel = eye.channel("eye", &daylight, &BAND).expect("seen");
         for name in ["A", "D65", "FL11"] {
@@ -202,12 +206,12 @@ mod tests {
     #[test]
     fn faulty_tables_are_refused() {
         let new = |points: &[[f64; 2]], reading| SpectralSensitivity::new(points, reading, None);
-        assert_eq!(new(&[[400.0, 1.0]], Reading::Linear), Err(SensitivityError::Points));
-        assert_eq!(new(&[[400.0, 1.0], [400.0, 1.0]], Reading::Linear), Err(SensitivityError::Points));
-        assert!(new(&[[400.0, 1.0], [410.0, -1.0]], Reading::Linear).is_err());
-        assert!(new(&[[400.0, 1.0], [410.0, 400.0]], Reading::Log10 { floor: None }).is_err());
-        assert!(new(&[[400.0, 1.0], [410.0, f64::NAN]], Reading::Log10 { floor: Some(0.0) }).is_err());
-        let infrared = new(&[[900.0, 1.0], [910.0, 1.0]], Reading::Linear).expect("a table");
+        assert_eq!(new(&[[400.0, 1.0]], SensitivityScale::Linear), Err(SensitivityError::Points));
+        assert_eq!(new(&[[400.0, 1.0], [400.0, 1.0]], SensitivityScale::Linear), Err(SensitivityError::Points));
+        assert!(new(&[[400.0, 1.0], [410.0, -1.0]], SensitivityScale::Linear).is_err());
+        assert!(new(&[[400.0, 1.0], [410.0, 400.0]], SensitivityScale::Log10 { floor: None }).is_err());
+        assert!(new(&[[400.0, 1.0], [410.0, f64::NAN]], SensitivityScale::Log10 { floor: Some(0.0) }).is_err());
+        let infrared = new(&[[900.0, 1.0], [910.0, 1.0]], SensitivityScale::Linear).expect("a table");
         let light = illuminant("D65").expect("bundled");
         assert_eq!(infrared.channel("ir", &light, &BAND), Err(SensitivityError::Blind));
     }

@@ -149,7 +149,7 @@ impl Stock {
 
     /// Returns warnings about a likely mistake in the stock's file: curves more than a stop faster or slower than the stated speed.
     #[must_use]
-    pub fn doubts(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<String> {
         let Some((stated, found)) = self.iso.zip(self.curve_speed()) else { return Vec::new() };
         let stops = log10(found / stated) / log10(2.0);
         if stops.abs() <= DOUBTED_STOPS {

@@ -9,9 +9,9 @@ use spectra_color::lab;
 use spectra_core::math::log10;
 use spectra_core::spectral::Channel;
 use spectra_film::emulsion::Emulsion;
-use spectra_film::look::{Look, PictureWhite, Surround};
 use spectra_film::positive::Positive;
 use spectra_film::stock::{Process, Stock};
+use spectra_film::viewing_options::{PictureWhite, Surround, ViewingOptions};
 use spectra_scene::FileResources;
 use spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W;
 use spectra_spectrum::table::Table;
@@ -45,7 +45,7 @@ struct Chain {
 }
 
 impl Chain {
-    fn negative(look: Look) -> Self {
+    fn negative(look: ViewingOptions) -> Self {
         let (s, film) = usual("kodak-vision3-250d-5207");
         let (print, printed) = usual("kodak-vision-2383");
         let (gray, lamp) = (10.0 / 250.0, print.reference.clone());
@@ -61,9 +61,9 @@ impl Chain {
             Some(onto) => {
                 let (print, printed) = usual(onto);
                 let lamp = print.reference.clone();
-                Positive::printed(&film, 10.0 / iso, &print, printed, &lamp, &d55(), Look::default())
+                Positive::printed(&film, 10.0 / iso, &print, printed, &lamp, &d55(), ViewingOptions::default())
             }
-            None => Positive::transmitted(&s, &film, &d55(), Look::default()),
+            None => Positive::transmitted(&s, &film, &d55(), ViewingOptions::default()),
         };
         let positive = positive.unwrap_or_else(|e| panic!("{name}: {e}"));
         Self { iso, light: s.reference.clone(), film, channels: s.channels(&BAND).expect("seen"), positive }
@@ -71,14 +71,14 @@ impl Chain {
 
     fn slide() -> Self {
         let (s, film) = usual("kodak-ektachrome-100d");
-        let positive = Positive::transmitted(&s, &film, &d55(), Look::default()).expect("shows");
+        let positive = Positive::transmitted(&s, &film, &d55(), ViewingOptions::default()).expect("shows");
         Self { iso: 100.0, light: d55(), film, channels: s.channels(&BAND).expect("seen"), positive }
     }
 
     /// CIELAB of amounts as viewed, relative to white.
     fn lab(&self, amounts: &[f64]) -> [f64; 3] {
         let viewing = self.positive.viewing().expect("looked at");
-        lab(viewing.seen(self.positive.xyz(amounts).expect("looked at")), viewing.white())
+        lab(viewing.corrected_for_surround(self.positive.xyz(amounts).expect("looked at")), viewing.white())
     }
 
     fn gray(&self, stops: f64) -> [f64; 3] {
@@ -239,7 +239,8 @@ fn what_the_fit_has_not_seen_keeps_its_hue() {
         ("leaf-88", 14.0),
         ("leaf-89", 11.0),
     ];
-    let chains = [("print", Chain::negative(Look::default()), &print[..]), ("slide", Chain::slide(), &slide[..])];
+    let chains =
+        [("print", Chain::negative(ViewingOptions::default()), &print[..]), ("slide", Chain::slide(), &slide[..])];
     for (name, chain, but_for) in chains {
         for (what, turn) in turns(&chain) {
             let most = but_for.iter().find(|(other, _)| *other == what).map_or(8.0, |(_, most)| *most);
@@ -291,7 +292,7 @@ fn dark_things_are_not_black() {
 
 #[test]
 fn a_gray_scale_is_gray_on_print_and_slide() {
-    for (name, chain) in [("print", Chain::negative(Look::default())), ("slide", Chain::slide())] {
+    for (name, chain) in [("print", Chain::negative(ViewingOptions::default())), ("slide", Chain::slide())] {
         let mut before = -1.0;
         for half in -8..=12 {
             let stops = f64::from(half) / 2.0;
@@ -315,10 +316,10 @@ fn a_mid_gray_is_timed_to_the_aim_densities_of_the_print_stock() {
     let products = print.densitometry.products(&["red", "green", "blue"]).expect("a status");
     let aim = print.aim_density.expect("stated");
     for (white, most) in [(PictureWhite::Lamp, 0.04), (PictureWhite::Film, 0.09)] {
-        let chain = Chain::negative(Look { white, surround: Surround::Dark, ..Look::default() });
+        let chain = Chain::negative(ViewingOptions { white, surround: Surround::Dark, ..ViewingOptions::default() });
         let amounts = chain.film.neutral(log10(10.0 / 250.0));
         let amounts = chain.positive.print_amounts(&amounts).expect("printed");
-        let seen = printed.deposit().seen(&amounts, &products).into_iter().map(|v| -log10(v));
+        let seen = printed.deposit().receiver_sums(&amounts, &products).into_iter().map(|v| -log10(v));
         let read: Vec<f64> = seen.collect();
         println!("{white:?}: {read:.3?}");
         for (got, want) in read.iter().zip([aim.red, aim.green, aim.blue]) {
@@ -375,7 +376,7 @@ fn every_color_film_keeps_grays_gray_and_colors_colorful() {
 fn a_gray_card_has_the_red_density_that_its_sheet_says() {
     let (s, film) = usual("kodak-ultramax-400");
     let products = s.densitometry.products(&["red"]).expect("a status");
-    let red = -log10(film.deposit().seen(&film.neutral(log10(10.0 / 400.0)), &products)[0]);
+    let red = -log10(film.deposit().receiver_sums(&film.neutral(log10(10.0 / 400.0)), &products)[0]);
     assert!((0.80..=1.00).contains(&red), "{red}");
 }
 
@@ -387,7 +388,8 @@ fn a_color_negative_prints_on_color_paper() {
     let (s, film) = usual("kodak-vision3-250d-5207");
     let (paper, printed) = usual("kodak-endura-premier");
     let (gray, lamp) = (10.0 / 250.0, paper.reference.clone());
-    let positive = Positive::printed(&film, gray, &paper, printed, &lamp, &d55(), Look::default()).expect("prints");
+    let positive =
+        Positive::printed(&film, gray, &paper, printed, &lamp, &d55(), ViewingOptions::default()).expect("prints");
     let chain = Chain { iso: 250.0, light: d55(), film, channels: s.channels(&BAND).expect("seen"), positive };
     for half in -8..=8 {
         let stops = f64::from(half) / 2.0;
@@ -439,7 +441,7 @@ fn layers_that_inhibit_each_other_leave_a_gray_scale_alone() {
 /// The shown color is what the eye sees, in linear sRGB, if the screen can show it.
 #[test]
 fn a_print_is_shown_as_it_is_seen() {
-    let chain = Chain::negative(Look::default());
+    let chain = Chain::negative(ViewingOptions::default());
     let gray = chain.film.neutral(log10(10.0 / 250.0));
     let shown = chain.positive.shown(&gray);
     let l = chain.gray(0.0)[0];

@@ -4,7 +4,7 @@ use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::math::{log10, pow};
 use spectra_core::spectral::{BAND, Grid};
 use spectra_film::develop::develop;
-use spectra_film::stock::{Reading, SpectralSensitivity, Stock};
+use spectra_film::stock::{SensitivityScale, SpectralSensitivity, Stock};
 use spectra_scene::FileResources;
 use spectra_spectrum::{Emission, illuminant, v_lambda};
 
@@ -47,7 +47,8 @@ fn speed_ratio_where_the_lamp_is_divided_out() {
     let points: Vec<[f64; 2]> =
         table.wavelengths_nm.iter().zip(table.values[0].iter()).map(|(w, s)| [*w, *s]).collect();
     let lamp = Emission::blackbody(2850.0).expect("a lamp");
-    let divided = SpectralSensitivity::new(&points, Reading::Log10 { floor: Some(0.0) }, Some(lamp)).expect("sound");
+    let divided =
+        SpectralSensitivity::new(&points, SensitivityScale::Log10 { floor: Some(0.0) }, Some(lamp)).expect("sound");
     let ratio = divided.per_lux(&daylight) / divided.per_lux(&tungsten);
     assert!((ratio - 2.15).abs() <= 0.01, "{ratio}");
 }

@@ -2,9 +2,9 @@
 
 use spectra_core::math::{log10, pow};
 use spectra_film::emulsion::Emulsion;
-use spectra_film::look::{Look, PictureBlack, PictureWhite, Surround};
 use spectra_film::positive::{Positive, PositiveError, ScanScale};
 use spectra_film::stock::Stock;
+use spectra_film::viewing_options::{PictureBlack, PictureWhite, Surround, ViewingOptions};
 use spectra_scene::FileResources;
 use spectra_spectrum::{BAND, Emission, find_reflectance, illuminant};
 
@@ -25,13 +25,14 @@ fn d55() -> Emission {
 
 const GRAY_LX_S: f64 = 10.0 / 250.0;
 /// The bare light is white.
-const LAMP: Look = Look { white: PictureWhite::Lamp, black: PictureBlack::Kept, surround: Surround::Average };
+const LAMP: ViewingOptions =
+    ViewingOptions { white: PictureWhite::Lamp, black: PictureBlack::Kept, surround: Surround::Average };
 
 fn printed() -> (Emulsion, Positive) {
-    looked_at(Look::default())
+    looked_at(ViewingOptions::default())
 }
 
-fn looked_at(look: Look) -> (Emulsion, Positive) {
+fn looked_at(look: ViewingOptions) -> (Emulsion, Positive) {
     let (_, negative) = usual("kodak-vision3-250d-5207");
     let (print, developed) = usual("kodak-vision-2383");
     let lamp = print.reference.clone();
@@ -47,7 +48,7 @@ fn a_step_wedge_recovers_the_curves_of_the_sheet() {
         let names: Vec<&str> = s.layers.iter().map(|l| l.name.as_str()).collect();
         let products = s.densitometry.products(&names).expect("a status");
         let read = |amounts: &[f64]| -> Vec<f64> {
-            emulsion.deposit().seen(amounts, &products).into_iter().map(|v| -log10(v)).collect()
+            emulsion.deposit().receiver_sums(amounts, &products).into_iter().map(|v| -log10(v)).collect()
         };
         let clear = read(&[0.0; 3]);
         let mut worst = 0.0_f64;
@@ -75,7 +76,7 @@ fn a_step_wedge_recovers_the_curves_of_the_sheet() {
 /// stock, which look like 18.7 % of white there. Unexposed film prints black, and the clear print is white.
 #[test]
 fn a_mid_gray_prints_neutral() {
-    let dark = looked_at(Look { surround: Surround::Dark, ..Look::default() });
+    let dark = looked_at(ViewingOptions { surround: Surround::Dark, ..ViewingOptions::default() });
     for ((negative, positive), want) in [(printed(), 0.18), (dark, 0.1873)] {
         let gray = positive.shown(&negative.neutral(log10(GRAY_LX_S)));
         assert!(gray.iter().all(|v| (v - want).abs() < 2e-4), "{want}: {gray:?}");
@@ -115,7 +116,7 @@ fn colors_keep_their_names() {
     let light = illuminant("iso-7589-photographic-daylight").expect("bundled");
     let (negative_stock, negative) = usual("kodak-vision3-250d-5207");
     let (slide_stock, slide) = usual("kodak-ektachrome-100d");
-    let projected = Positive::transmitted(&slide_stock, &slide, &d55(), Look::default()).expect("shows");
+    let projected = Positive::transmitted(&slide_stock, &slide, &d55(), ViewingOptions::default()).expect("shows");
     let scan = Positive::scanned(&negative_stock, &negative, GRAY_LX_S, ScanScale::Picture).expect("scans");
     let (_, print) = printed();
     let gray = find_reflectance("colorchecker#neutral-5").expect("bundled");
@@ -202,8 +203,8 @@ fn black_and_white_prints_on_either_print_stock() {
     for (name, mid) in [("kodak-2302", 0.18), ("kodak-vision-2383", 0.18)] {
         let (print, developed) = usual(name);
         let lamp = print.reference.clone();
-        let positive =
-            Positive::printed(&negative, 0.04, &print, developed, &lamp, &d55(), Look::default()).expect("prints");
+        let positive = Positive::printed(&negative, 0.04, &print, developed, &lamp, &d55(), ViewingOptions::default())
+            .expect("prints");
         let gray = positive.shown(&negative.neutral(log10(0.04)));
         assert!(gray.iter().all(|v| (v - mid).abs() < 1e-4), "{name}: {gray:?}");
         let plane: Vec<f32> = (0..400).map(|i| 0.25 + i as f32 * 0.003).collect();
@@ -213,7 +214,7 @@ fn black_and_white_prints_on_either_print_stock() {
         }
     }
     let (camera, developed) = usual("kodak-tri-x-400");
-    let fault = Positive::printed(&negative, 0.04, &camera, developed, &d55(), &d55(), Look::default())
+    let fault = Positive::printed(&negative, 0.04, &camera, developed, &d55(), &d55(), ViewingOptions::default())
         .expect_err("no print stock");
     assert!(matches!(fault, PositiveError::NoPrintStock { .. }));
 }
@@ -255,7 +256,9 @@ fn scales_of_a_scan_give_back_density() {
         let scales = [scan(ScanScale::Log), scan(ScanScale::Density)];
         let products = stock.densitometry.products(&["red", "green", "blue"]);
         let read = |amounts: &[f64]| match &products {
-            Some(products) => negative.deposit().seen(amounts, products).into_iter().map(|v| -log10(v)).collect(),
+            Some(products) => {
+                negative.deposit().receiver_sums(amounts, products).into_iter().map(|v| -log10(v)).collect()
+            }
             None => vec![amounts[0]; 3],
         };
         let clear = read(&negative.neutral(f64::NEG_INFINITY));

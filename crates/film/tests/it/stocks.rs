@@ -342,7 +342,7 @@ fn curves_have_the_speed_that_is_stated() {
     for name in Stock::bundled() {
         let film = stock(name);
         println!("{name}: stated {:?}, by its curves {:?}", film.iso, film.curve_speed());
-        let doubts = film.doubts();
+        let doubts = film.warnings();
         assert_eq!(doubts.iter().any(|d| d.contains("stops faster")), FASTER.contains(&name), "{name}: {doubts:?}");
         assert!(doubts.is_empty() || FASTER.contains(&name), "{name}: {doubts:?}");
     }
@@ -367,11 +367,11 @@ fn curves_have_the_speed_that_is_stated() {
             .unwrap_or_else(|faults| panic!("{faults}"))
     };
     let right = read(of("", 0.0));
-    assert!(right.doubts().is_empty(), "{:?}", right.doubts());
-    let doubts = read(of("", 3.0)).doubts();
+    assert!(right.warnings().is_empty(), "{:?}", right.warnings());
+    let doubts = read(of("", 3.0)).warnings();
     assert!(doubts.len() == 1 && doubts[0].contains("stops slower than the stated 100"), "{doubts:?}");
     let slid = read(of("exposure: relative\n", 3.0));
-    assert!((slid.curve_speed().expect("a speed") - 100.0).abs() < 1e-9 && slid.doubts().is_empty());
+    assert!((slid.curve_speed().expect("a speed") - 100.0).abs() < 1e-9 && slid.warnings().is_empty());
     let logarithms = folder.path().join("logs.csv");
     std::fs::write(&logarithms, "nm;log S\n400;1,2\n500;0,4\n600;-0,3\n650;-2,5\n").expect("written");
     let table = "table: [[400, 1], [600, 1], [650, 0]]";

@@ -49,7 +49,7 @@ pub enum DispersionError {
 }
 
 #[derive(Clone, Debug)]
-enum Form {
+enum FittedForm {
     Rational(Rational),
     Sampled(Sampled),
     /// The medium itself, if its data are too rough for either.
@@ -59,7 +59,7 @@ enum Form {
 /// A fast and nearly exact n(lambda) over a band, and 1/n with it.
 #[derive(Clone, Debug)]
 pub struct Dispersion {
-    form: Form,
+    form: FittedForm,
     band_nm: (f64, f64),
     max_error: f64,
 }
@@ -98,7 +98,7 @@ impl Dispersion {
                     (rational, max_error) = rational.level(&checks);
                 }
                 if max_error <= RATIONAL_TOLERANCE {
-                    return Ok(Dispersion { form: Form::Rational(rational), band_nm, max_error });
+                    return Ok(Dispersion { form: FittedForm::Rational(rational), band_nm, max_error });
                 }
                 if max_error <= LAST_TOLERANCE && best.as_ref().is_none_or(|(_, error)| max_error < *error) {
                     best = Some((rational, max_error));
@@ -106,12 +106,12 @@ impl Dispersion {
             }
         }
         if let Some((rational, max_error)) = best {
-            return Ok(Dispersion { form: Form::Rational(rational), band_nm, max_error });
+            return Ok(Dispersion { form: FittedForm::Rational(rational), band_nm, max_error });
         }
         if let Some((sampled, max_error)) = Sampled::fit(medium, min_nm, max_nm, LAST_TOLERANCE, &checks) {
-            return Ok(Dispersion { form: Form::Sampled(sampled), band_nm, max_error });
+            return Ok(Dispersion { form: FittedForm::Sampled(sampled), band_nm, max_error });
         }
-        Ok(Dispersion { form: Form::Exact(medium.clone()), band_nm, max_error: 0.0 })
+        Ok(Dispersion { form: FittedForm::Exact(medium.clone()), band_nm, max_error: 0.0 })
     }
 
     /// Largest difference from the medium's formula found on 4 000 wavelengths of the band.
@@ -130,8 +130,8 @@ impl Dispersion {
     #[must_use]
     pub fn rational(&self) -> Option<&Rational> {
         match &self.form {
-            Form::Rational(rational) => Some(rational),
-            Form::Sampled(_) | Form::Exact(_) => None,
+            FittedForm::Rational(rational) => Some(rational),
+            FittedForm::Sampled(_) | FittedForm::Exact(_) => None,
         }
     }
 
@@ -146,9 +146,9 @@ impl Dispersion {
     #[must_use]
     pub fn evaluate(&self, wavelength_nm: f64) -> f64 {
         match &self.form {
-            Form::Rational(rational) => rational.evaluate(wavelength_nm),
-            Form::Sampled(sampled) => sampled.evaluate(wavelength_nm),
-            Form::Exact(medium) => medium.index(wavelength_nm),
+            FittedForm::Rational(rational) => rational.evaluate(wavelength_nm),
+            FittedForm::Sampled(sampled) => sampled.evaluate(wavelength_nm),
+            FittedForm::Exact(medium) => medium.index(wavelength_nm),
         }
     }
 
@@ -161,14 +161,14 @@ impl Dispersion {
     pub fn index_and_inverse(&self, wavelength_nm: &[f64], n: &mut [f64], inverse_n: &mut [f64]) {
         assert!(wavelength_nm.len() == n.len() && n.len() == inverse_n.len(), "columns of a batch have one length");
         match &self.form {
-            Form::Rational(rational) => rational.index_and_inverse(wavelength_nm, n, inverse_n),
-            Form::Sampled(sampled) => {
+            FittedForm::Rational(rational) => rational.index_and_inverse(wavelength_nm, n, inverse_n),
+            FittedForm::Sampled(sampled) => {
                 for ((w, n), inverse) in wavelength_nm.iter().zip(n).zip(inverse_n) {
                     *n = sampled.evaluate(*w);
                     *inverse = 1.0 / *n;
                 }
             }
-            Form::Exact(medium) => {
+            FittedForm::Exact(medium) => {
                 for ((w, n), inverse) in wavelength_nm.iter().zip(n).zip(inverse_n) {
                     *n = medium.index(*w);
                     *inverse = 1.0 / *n;

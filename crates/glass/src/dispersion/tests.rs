@@ -1,11 +1,11 @@
 use super::*;
-use crate::catalogue::Catalogue;
+use crate::catalog::Catalog;
 use crate::formula::SELLMEIER_1;
 use crate::glass::{Category, Glass};
 use crate::{LineTriple, ModelGlass};
 
 fn medium(name: &str) -> Medium {
-    Catalogue::bundled().find(name).expect(name).into()
+    Catalog::bundled().find(name).expect(name).into()
 }
 
 /// Every optical glass of every maker over the whole band: a rational function within 2e-10, or 1e-9 for a few whose
@@ -15,7 +15,7 @@ fn medium(name: &str) -> Medium {
 fn all_optical_glasses_within_tolerance() {
     let mut degrees = [0usize; Rational::MAX_DEGREE + 1];
     let (mut tables, mut coarse) = (0, 0);
-    for glass in Catalogue::bundled().glasses().filter(|g| g.category == Category::OpticalGlass) {
+    for glass in Catalog::bundled().glasses().filter(|g| g.category == Category::OpticalGlass) {
         let name = glass.full_name();
         let tabulated = glass.table().is_some();
         let medium = Medium::from(glass);

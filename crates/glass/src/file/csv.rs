@@ -1,7 +1,7 @@
 //! Tables of n, and of k where it is known, as CSV; of one material or of several.
 
 use super::{OWN_MAKER, sensible};
-use crate::fit::samples::{Material, Place, Row, read_rows};
+use crate::fit::samples::{CellPosition, IndexRow, Material, read_rows};
 use crate::{Category, Extinction, Formula, Glass, Table};
 use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Faults, SourceFile, Span};
@@ -17,8 +17,8 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
         return Err(Fault::new(format!("{name}: more than {MAX_ROWS} rows")).into());
     }
     let file = Arc::new(SourceFile::new(name, text));
-    let at = |place: Place, text: String| {
-        let Place { line, offset, column, len } = place;
+    let at = |place: CellPosition, text: String| {
+        let CellPosition { line, offset, column, len } = place;
         Fault::new(text).at(Arc::clone(&file), Span { line, column, offset, len })
     };
     let found = read_rows(text).map_err(|e| match e.hint {
@@ -45,7 +45,7 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
 }
 
 /// Returns the rows of the requested material, or of the only one.
-fn rows_of<'a>(found: &'a [Material], material: Option<&str>, shown: &str) -> Result<&'a [Row], Fault> {
+fn rows_of<'a>(found: &'a [Material], material: Option<&str>, shown: &str) -> Result<&'a [IndexRow], Fault> {
     let names = || found.iter().filter_map(|(name, _)| name.as_deref());
     match (material, found) {
         (None, [(_, rows)]) => Ok(rows),

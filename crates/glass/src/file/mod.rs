@@ -16,7 +16,7 @@ pub use figures::{AbbeCurve, AbbeNumber, Figures};
 pub use stated_lines::{StatedLine, StatedLines, ThreeLines};
 pub use yaml::{GlassFile, InternalTransmittance, from_params};
 
-use crate::{Catalogue, Glass, Medium, agf};
+use crate::{Catalog, Glass, Medium, agf};
 use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::resources::{ResourceError, Resources, beside};
@@ -55,7 +55,7 @@ pub fn medium(name: &str, params: &Params, key: &str, resources: &dyn Resources)
         let read = read(&path, file, glass, resources);
         return read.map(Medium::from).map_err(|faults| params.place_at(key, faults));
     }
-    Catalogue::bundled().medium(name).map_err(|e| params.fault(key, e.message()).hint(e.hint()).into())
+    Catalog::bundled().medium(name).map_err(|e| params.fault(key, e.message()).hint(e.hint()).into())
 }
 
 /// Reads the glass of a file; see [`is_file`].

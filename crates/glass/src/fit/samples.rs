@@ -48,17 +48,17 @@ struct Columns {
 
 /// A row of a table of indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct IndexRow {
     pub(crate) wavelength_nm: f64,
     pub(crate) n: f64,
     pub(crate) k: Option<f64>,
     /// Place of the wavelength in the text.
-    pub(crate) place: Place,
+    pub(crate) place: CellPosition,
 }
 
 /// The place of a value in the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct CellPosition {
     /// Line, from 1.
     pub(crate) line: usize,
     /// Bytes from the start of the text.
@@ -72,13 +72,13 @@ pub(crate) struct Place {
 /// An error in a table, with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RowError {
-    pub(crate) place: Place,
+    pub(crate) place: CellPosition,
     pub(crate) message: String,
     pub(crate) hint: Option<&'static str>,
 }
 
 /// The rows of one material: its name if the file has a column for it, and the rows in the order of the file.
-pub(crate) type Material = (Option<String>, Vec<Row>);
+pub(crate) type Material = (Option<String>, Vec<IndexRow>);
 
 /// The contents of a header, for messages.
 const HEAD: &str = "columns `wavelength_nm` (or `wavelength_um`), `n` and, where they are known, `k` and `material`";
@@ -101,7 +101,7 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
             let (from, len) = values
                 .get(at)
                 .map_or((line.len(), 0), |value| (value.as_ptr() as usize - line.as_ptr() as usize, value.len()));
-            Place { line: i + 1, offset: start + from, column: line[..from].chars().count() + 1, len }
+            CellPosition { line: i + 1, offset: start + from, column: line[..from].chars().count() + 1, len }
         };
         let number = |at: usize| values.get(at).and_then(|v| v.parse::<f64>().ok());
         let fail =
@@ -116,7 +116,7 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
         }
         let Some(columns) = &columns else { continue };
         let (wavelength_nm, n, k) = row(columns, &values).map_err(fail)?;
-        let row = Row { wavelength_nm, n, k, place: place(columns.wavelength) };
+        let row = IndexRow { wavelength_nm, n, k, place: place(columns.wavelength) };
         let name = columns.material.map(|at| values.get(at).copied().unwrap_or_default().to_owned());
         match found.iter_mut().find(|(other, _)| *other == name) {
             Some((_, rows)) => rows.push(row),
@@ -125,7 +125,7 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
     }
     if found.is_empty() {
         let message = "no samples: a table has columns `wavelength_nm` and `n`".to_owned();
-        let place = Place { line: text.lines().count().max(1), offset: text.len(), column: 1, len: 0 };
+        let place = CellPosition { line: text.lines().count().max(1), offset: text.len(), column: 1, len: 0 };
         return Err(RowError { place, message, hint: Some(HEAD) });
     }
     Ok(found)
@@ -139,7 +139,7 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
 /// The first line that cannot be read; a file without samples.
 pub fn read_csv(text: &str) -> Result<Vec<NamedSamples>, SamplesError> {
     let found = read_rows(text).map_err(|e| SamplesError { line: e.place.line, message: e.message })?;
-    let sample = |row: Row| Sample { wavelength_nm: row.wavelength_nm, n: row.n };
+    let sample = |row: IndexRow| Sample { wavelength_nm: row.wavelength_nm, n: row.n };
     let material = |(name, rows): Material| NamedSamples { name, samples: rows.into_iter().map(sample).collect() };
     Ok(found.into_iter().map(material).collect())
 }

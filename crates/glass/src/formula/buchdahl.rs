@@ -1,6 +1,6 @@
 //! Buchdahl's chromatic coordinate, in which the index of a glass is nearly a parabola.
 
-use super::form::form;
+use super::closed_form::form;
 
 form! {
     /// Buchdahl: n = N0 + v1 w + v2 w^2 with w = (L - L0) / (1 + 2.5 (L - L0)).

@@ -1,6 +1,6 @@
 //! The two forms of the Handbook of Optics.
 
-use super::form::form;
+use super::closed_form::form;
 
 form! {
     /// Handbook of Optics 1: n^2 = A + B / (L^2 - C) - D L^2.

@@ -1,6 +1,6 @@
 //! Hartmann's form, with which spectroscopists interpolate.
 
-use super::form::form;
+use super::closed_form::form;
 
 form! {
     /// Hartmann: n = c0 + c1 / (L - c2)^c3, where c3 is 1 if it is left out.

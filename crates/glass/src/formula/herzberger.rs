@@ -1,6 +1,6 @@
 //! Herzberger's form, which holds from the ultraviolet to the infrared.
 
-use super::form::form;
+use super::closed_form::form;
 
 form! {
     /// Herzberger: n = A + B l + C l^2 + D L^2 + E L^4 + F L^6 with l = 1 / (L^2 - 0.028).

@@ -30,8 +30,8 @@
 //! ```
 
 mod buchdahl;
+mod closed_form;
 mod constant;
-mod form;
 mod function;
 mod handbook;
 mod hartmann;
@@ -46,7 +46,7 @@ mod table;
 mod unit;
 
 pub(crate) use buchdahl::BUCHDAHL;
-pub use form::{Closed, Form};
+pub use closed_form::{ClosedForm, ClosedFormula};
 pub(crate) use handbook::{HANDBOOK_1, HANDBOOK_2};
 pub(crate) use herzberger::HERZBERGER;
 pub use melt::Melt;
@@ -68,7 +68,7 @@ pub enum Formula {
     /// n = c0, whatever the wavelength.
     Constant(f64),
     /// One of the registered closed forms: Sellmeier, Schott, Cauchy and the others.
-    Closed(Closed),
+    Closed(ClosedFormula),
     /// One of the nine forms of the refractiveindex.info database.
     Numbered(NumberedFormula),
     /// A model glass on the normal lines of partial dispersion, from an index and an Abbe number.

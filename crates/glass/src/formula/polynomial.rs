@@ -1,6 +1,6 @@
 //! Power series in the wavelength: Cauchy, Conrady, Schott and the extended forms.
 
-use super::form::form;
+use super::closed_form::form;
 
 form! {
     /// Cauchy: n = c0 + c1 L^-2 + c2 L^-4 + ...

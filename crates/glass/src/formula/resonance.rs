@@ -1,7 +1,7 @@
 //! One resonance in the ultraviolet, as simple renderers write dispersion.
 
 use super::Formula;
-use super::form::form;
+use super::closed_form::form;
 use crate::lines::LineTriple;
 
 /// Square of the wavelength of the resonance, um^2, that goes with an index and an Abbe number alone.

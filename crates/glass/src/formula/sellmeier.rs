@@ -1,6 +1,6 @@
 //! Sellmeier's forms: n^2 as a sum of resonances.
 
-use super::form::form;
+use super::closed_form::form;
 
 form! {
     /// Sellmeier 1: n^2 = 1 + the sum of three K L^2 / (L^2 - M).

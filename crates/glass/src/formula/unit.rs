@@ -1,6 +1,6 @@
 //! Conversion of the coefficients of formulas whose wavelengths are in nanometers.
 
-use super::{CAUCHY, CONRADY, Closed, Form, Formula, SCHOTT, SELLMEIER_1};
+use super::{CAUCHY, CONRADY, ClosedForm, ClosedFormula, Formula, SCHOTT, SELLMEIER_1};
 
 /// Powers of the wavelength in Schott's terms.
 const SCHOTT_POWERS: [f64; 6] = [0.0, 2.0, -2.0, -4.0, -6.0, -8.0];
@@ -16,7 +16,7 @@ impl Formula {
             // A formula without a wavelength has no unit to convert.
             return matches!(self, Self::Constant(_)).then_some(self);
         };
-        let is = |form: &Form| closed.name() == form.name;
+        let is = |form: &ClosedForm| closed.name() == form.name;
         // Power of the wavelength that each coefficient multiplies. Sellmeier's poles are subtracted from L^2, so they count as
         // its negative.
         let power: fn(usize) -> Option<f64> = match () {
@@ -28,7 +28,7 @@ impl Formula {
         };
         let given = closed.coefficients().iter().enumerate();
         let converted: Option<Vec<f64>> = given.map(|(k, c)| Some(c * libm::pow(1000.0, power(k)?))).collect();
-        Some(Self::Closed(Closed::again(closed, &converted?)))
+        Some(Self::Closed(ClosedFormula::again(closed, &converted?)))
     }
 }
 
@@ -39,7 +39,7 @@ mod tests {
     /// Coefficients for nanometers give the indices of those for micrometers.
     #[test]
     fn units_of_the_wavelength_make_no_difference() {
-        let pairs: [(Form, &[f64], &[f64]); 4] = [
+        let pairs: [(ClosedForm, &[f64], &[f64]); 4] = [
             (CAUCHY, &[1.5046, 0.0042, 1.1e-4], &[1.5046, 4200.0, 1.1e8]),
             (CONRADY, &[1.45217, 0.01258, 6.659e-5], &[1.45217, 12.58, 6.659e-5 * 3.162_277_660_168_379_3e10]),
             (SCHOTT, &[2.27, -0.0101, 0.0106, 2.08e-4], &[2.27, -1.01e-8, 10_600.0, 2.08e8]),

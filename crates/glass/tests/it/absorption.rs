@@ -1,9 +1,9 @@
 //! Absorption of glasses without published data: it is borrowed, and the lender is named.
 
-use spectra_glass::{Catalogue, Category, Medium};
+use spectra_glass::{Catalog, Category, Medium};
 
 fn medium(name: &str) -> Medium {
-    Catalogue::bundled().medium(name).unwrap_or_else(|e| panic!("{e}"))
+    Catalog::bundled().medium(name).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn time_counts_for_figures_alone() {
     let lender = |year| figures.absorption(year).and_then(|a| a.lender).expect("borrowed").full_name;
     let (old, new) = (lender(Some(1960)), lender(Some(2015)));
     println!("1960: {old}, 2015: {new}");
-    let first = |name: &str| Catalogue::bundled().find(name).ok().and_then(|g| g.years).expect("listed").0;
+    let first = |name: &str| Catalog::bundled().find(name).ok().and_then(|g| g.years).expect("listed").0;
     assert!(first(&old) <= 1983 && first(&new) > 1983, "{old} {new}");
 }
 
@@ -58,7 +58,7 @@ fn what_is_no_glass_borrows_nothing() {
 /// A plate of 3 mm of each plastic: either its own data, or a lender's absorption by which it passes over 80 % from 420 to 700 nm.
 #[test]
 fn plastics_are_clear_where_nobody_measured_otherwise() {
-    let catalogue = Catalogue::bundled();
+    let catalogue = Catalog::bundled();
     let mut counted = 0;
     for glass in catalogue.glasses().filter(|glass| glass.category == Category::Plastic) {
         let name = glass.full_name();

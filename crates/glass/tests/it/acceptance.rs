@@ -2,10 +2,10 @@
 
 use spectra_glass::fit::{Sample, cauchy_by_rows};
 use spectra_glass::interface::{brewster_angle, fresnel, refraction_angle, single_layer_reflectance};
-use spectra_glass::{Catalogue, LineTriple, lines};
+use spectra_glass::{Catalog, LineTriple, lines};
 
 fn index(name: &str, wavelength_nm: f64) -> f64 {
-    Catalogue::bundled().find(name).expect(name).index(wavelength_nm)
+    Catalog::bundled().find(name).expect(name).index(wavelength_nm)
 }
 
 /// One unit in the last digit printed.
@@ -15,7 +15,7 @@ fn near(got: f64, printed: f64, digits: i32) -> bool {
 
 /// Makers' coefficients: nd, nF, nC, ng to 1e-6 and Vd to 0.01.
 fn glass(name: &str, [nd, nf, nc, ng, vd]: [f64; 5]) {
-    let glass = Catalogue::bundled().find(name).expect(name);
+    let glass = Catalog::bundled().find(name).expect(name);
     for (line, printed) in [(lines::D, nd), (lines::F, nf), (lines::C, nc), (lines::G, ng)] {
         let got = glass.index(line.wavelength_nm);
         assert!(near(got, printed, 6), "{name} {}: {got}, printed {printed}", line.name);
@@ -70,7 +70,7 @@ fn hoya_fcd1() {
 
 #[test]
 fn n_bk7_at_the_e_line() {
-    let glass = Catalogue::bundled().find("N-BK7").expect("N-BK7");
+    let glass = Catalog::bundled().find("N-BK7").expect("N-BK7");
     assert!(near(glass.index(lines::E.wavelength_nm), 1.518722, 6));
     assert!(near(glass.abbe_number(LineTriple::F_PRIME_E_C_PRIME), 63.96, 2));
 }
@@ -193,7 +193,7 @@ fn temperature_coefficients_of_schott() {
         ("SCHOTT/N-FK51A", [-6.0, -5.7, -5.3], [-7.3, -7.0, -6.7]),
         ("SCHOTT/SF6", [6.8, 11.1, 16.2], [5.3, 9.5, 14.6]),
     ] {
-        let glass = Catalogue::bundled().find(name).expect(name);
+        let glass = Catalog::bundled().find(name).expect(name);
         for (i, wavelength_nm) in [1060.0, lines::E.wavelength_nm, lines::G.wavelength_nm].into_iter().enumerate() {
             let slope = |n: &dyn Fn(f64) -> f64| (n(40.0) - n(20.0)) / 20.0 * 1e6;
             let got = slope(&|t| glass.absolute_index(wavelength_nm, t));
@@ -212,7 +212,7 @@ fn internal_transmittance_of_schott() {
         ("SCHOTT/F2", &[(350.0, 0.905), (365.0, 0.968), (400.0, 0.994), (546.0, 0.999)]),
         ("SCHOTT/SF6", &[(365.0, 0.246), (380.0, 0.720), (400.0, 0.915), (460.0, 0.991), (660.0, 0.998)]),
     ] {
-        let glass = Catalogue::bundled().find(name).expect(name);
+        let glass = Catalog::bundled().find(name).expect(name);
         for &(wavelength_nm, printed) in rows {
             let got = glass.internal_transmittance(wavelength_nm, 10.0).expect("known");
             assert!(near(got, printed, 3), "{name} {wavelength_nm}: {got}");

@@ -1,6 +1,6 @@
 //! Users' glass catalogue files.
 
-use spectra_glass::{Catalogue, agf};
+use spectra_glass::{Catalog, agf};
 
 /// One medium for each formula number that makers and handbooks use: nd and Vd as `xtask/agf_forms.py` computes them.
 #[test]
@@ -37,7 +37,7 @@ fn formulas_by_their_numbers() {
             glass.vd()
         );
     }
-    let mut catalogue = Catalogue::bundled().clone();
+    let mut catalogue = Catalog::bundled().clone();
     catalogue.add(agf.glasses);
     assert!(catalogue.find("forms/zno-o").is_ok() && catalogue.find("SCHOTT/N-BK7").is_ok());
 }

@@ -4,21 +4,21 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use spectra_glass::{
-    Beside, Catalogue, Category, Deviation, Era, FindError, Formula, Glass, LineTriple, Medium, Query, Status,
+    Catalog, Category, Deviation, Era, FindError, Formula, Glass, GlassFacts, LineTriple, Medium, Query, Status,
 };
 
 fn find(name: &str) -> Glass {
-    Catalogue::bundled().find(name).unwrap_or_else(|e| panic!("{e}"))
+    Catalog::bundled().find(name).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
 fn every_record_is_well_formed() {
-    Catalogue::bundled().verify().unwrap_or_else(|e| panic!("{e}"));
+    Catalog::bundled().verify().unwrap_or_else(|e| panic!("{e}"));
 }
 
 #[test]
 fn more_than_3_000_media_of_the_makers_and_of_all_kinds() {
-    let catalogue = Catalogue::bundled();
+    let catalogue = Catalog::bundled();
     let mut by_maker: BTreeMap<String, usize> = BTreeMap::new();
     let mut by_category: BTreeMap<&str, usize> = BTreeMap::new();
     for glass in catalogue.glasses() {
@@ -63,7 +63,7 @@ fn more_than_3_000_media_of_the_makers_and_of_all_kinds() {
 /// `data/listed-deviations.csv`, neither more nor fewer.
 #[test]
 fn computed_nd_and_vd_are_the_listed_ones() {
-    let check = Catalogue::bundled().check_listed();
+    let check = Catalog::bundled().check_listed();
     let listed = check.listed;
     let row =
         |d: &Deviation| format!("{},{},{:.6},{},{:.3}", d.glass.full_name(), d.listed_nd, d.nd, d.listed_vd, d.vd);
@@ -97,13 +97,13 @@ fn glasses_of_the_biotar() {
     }
     // The bare names are those of several makers; the prescription's index tells them apart.
     for name in ["BAF9", "SK10", "SF5", "LF5"] {
-        match Catalogue::bundled().find(name) {
+        match Catalog::bundled().find(name) {
             Ok(glass) => assert!(glass.full_name().ends_with(name)),
             Err(FindError::Ambiguous { candidates, .. }) => assert!(candidates.len() >= 2),
             Err(error) => panic!("{error}"),
         }
     }
-    let by_values = |name, nd, vd| Catalogue::bundled().find_with(name, nd, Some(vd)).map(|g| g.full_name());
+    let by_values = |name, nd, vd| Catalog::bundled().find_with(name, nd, Some(vd)).map(|g| g.full_name());
     assert_eq!(by_values("LF5", 1.57501, 41.19).as_deref(), Ok("LZOS/LF5"));
     assert_eq!(by_values("SF5", 1.6727, 32.21).as_deref(), Ok("SCHOTT/SF5"));
     assert!(matches!(by_values("SF5", 1.7, 32.15), Err(FindError::Ambiguous { .. })));
@@ -137,8 +137,8 @@ fn a_crystal_is_its_formula_and_no_rounded_table() {
 #[test]
 fn stated_figures_choose_among_data_sets() {
     let choose = |nd: f64, vd: f64| {
-        let beside = Beside { figures: Some((nd, Some(vd), LineTriple::FDC)), ..Beside::default() };
-        let chosen = Catalogue::bundled().choose("CaF2", beside).expect("a crystal");
+        let beside = GlassFacts { figures: Some((nd, Some(vd), LineTriple::FDC)), ..GlassFacts::default() };
+        let chosen = Catalog::bundled().choose("CaF2", beside).expect("a crystal");
         (chosen.glass.full_name(), chosen.note)
     };
     assert_eq!(choose(1.43384, 95.0), ("CaF2/Malitson".to_owned(), None));
@@ -156,7 +156,7 @@ fn stated_figures_choose_among_data_sets() {
 /// the glass.
 #[test]
 fn formulas_are_not_taken_for_glasses() {
-    let candidates = |name: &str| match Catalogue::bundled().choose(name, Beside::default()) {
+    let candidates = |name: &str| match Catalog::bundled().choose(name, GlassFacts::default()) {
         Err(FindError::Ambiguous { candidates, .. }) => candidates.into_iter().map(|c| c.full_name).collect::<Vec<_>>(),
         other => panic!("{name}: {other:?}"),
     };
@@ -166,24 +166,24 @@ fn formulas_are_not_taken_for_glasses() {
     assert!(nitride.iter().all(|name| name.starts_with("GaN/")), "{nitride:?}");
     // Stated figures tell which one is meant.
     let with = |nd: f64, vd: f64| {
-        let beside = Beside { figures: Some((nd, Some(vd), LineTriple::FDC)), ..Beside::default() };
-        Catalogue::bundled().choose("LaF3", beside).expect("one of them").glass.full_name()
+        let beside = GlassFacts { figures: Some((nd, Some(vd), LineTriple::FDC)), ..GlassFacts::default() };
+        Catalog::bundled().choose("LaF3", beside).expect("one of them").glass.full_name()
     };
     assert!(with(1.717, 47.98).ends_with("/LAF3"));
     for name in ["LAF3", "laf3"] {
-        let chosen = Catalogue::bundled().choose(name, Beside::default()).expect("a flint").glass;
+        let chosen = Catalog::bundled().choose(name, GlassFacts::default()).expect("a flint").glass;
         assert!(chosen.full_name().ends_with("/LAF3") && chosen.category.is_glass(), "{name}");
     }
     // Glasses that many write like formulas, where no substance is written so.
     for (typed, name) in [("BaK4", "BAK4"), ("BaF4", "BAF4"), ("LaK9", "LAK9")] {
-        let chosen = Catalogue::bundled().choose(typed, Beside::default()).expect("a glass").glass;
+        let chosen = Catalog::bundled().choose(typed, GlassFacts::default()).expect("a glass").glass;
         assert!(chosen.full_name().ends_with(name), "{typed}");
     }
 }
 
 #[test]
 fn air_and_vacuum_are_media_of_a_lens() {
-    let medium = |name| Catalogue::bundled().medium(name);
+    let medium = |name| Catalog::bundled().medium(name);
     assert_eq!(medium("air"), Ok(Medium::Air));
     assert_eq!(medium(" Vacuum"), Ok(Medium::Vacuum));
     assert_eq!(medium("N-BK7").map(|m| m.name()).as_deref(), Ok("SCHOTT/N-BK7"));
@@ -192,7 +192,7 @@ fn air_and_vacuum_are_media_of_a_lens() {
 
 #[test]
 fn ambiguous_names_list_all_candidates() {
-    let Err(error) = Catalogue::bundled().find("F2") else { panic!("F2 is the name of several glasses") };
+    let Err(error) = Catalog::bundled().find("F2") else { panic!("F2 is the name of several glasses") };
     let FindError::Ambiguous { name, candidates } = &error else { panic!("{error}") };
     assert_eq!(name, "F2");
     for full_name in ["SCHOTT/F2", "CDGM/F2", "HIKARI/F2", "HOYA/F2"] {
@@ -200,26 +200,26 @@ fn ambiguous_names_list_all_candidates() {
     }
     assert!(error.to_string().contains("SCHOTT/F2 (nd 1.62004, Vd 36.37)"), "{error}");
     // A substance with several measurements.
-    assert!(matches!(Catalogue::bundled().find("h2o"), Err(FindError::Ambiguous { .. })));
+    assert!(matches!(Catalog::bundled().find("h2o"), Err(FindError::Ambiguous { .. })));
 }
 
 #[test]
 fn unknown_names_list_the_nearest() {
     for (wrong, right) in [("N-BK8", "SCHOTT/N-BK7"), ("SCHOTT/N-SF12", "SCHOTT/N-SF11"), ("S-FPL54", "OHARA/S-FPL53")]
     {
-        let Err(FindError::Unknown { nearest, .. }) = Catalogue::bundled().find(wrong) else {
+        let Err(FindError::Unknown { nearest, .. }) = Catalog::bundled().find(wrong) else {
             panic!("{wrong} is no glass")
         };
         assert!(nearest.iter().any(|c| c.full_name == right), "{wrong}: {nearest:?}");
     }
     for name in ["", "/", "SCHOTT/", "\u{1f52d}", &"x".repeat(10_000)] {
-        assert!(matches!(Catalogue::bundled().find(name), Err(FindError::Unknown { .. })), "{name}");
+        assert!(matches!(Catalog::bundled().find(name), Err(FindError::Unknown { .. })), "{name}");
     }
 }
 
 #[test]
 fn nearest_glass_to_a_patent() {
-    let catalogue = Catalogue::bundled();
+    let catalogue = Catalog::bundled();
     let best = |query: &Query| catalogue.nearest(query).into_iter().map(|m| m.glass.full_name()).collect::<Vec<_>>();
     let mut query = Query::new(1.5168, Some(64.17), LineTriple::FDC);
     query.makers = vec!["schott".into()];
@@ -255,7 +255,7 @@ fn nearest_glass_to_a_patent() {
 
 #[test]
 fn a_users_glass_joins_and_replaces() {
-    let mut catalogue = Catalogue::bundled().clone();
+    let mut catalogue = Catalog::bundled().clone();
     let mine = Glass::new("SCHOTT", "n-bk7", Category::User, Formula::Constant(1.5), (400.0, 700.0));
     let other = Glass::new("MINE", "MELT 7", Category::User, Formula::Constant(1.6), (400.0, 700.0));
     let before = catalogue.len();
@@ -263,7 +263,7 @@ fn a_users_glass_joins_and_replaces() {
     assert_eq!(catalogue.len(), before + 1);
     assert_eq!(catalogue.find("SCHOTT/N-BK7").map(|g| g.nd()), Ok(1.5));
     assert_eq!(catalogue.find("melt7").map(|g| g.full_name()).as_deref(), Ok("MINE/MELT 7"));
-    assert!(Catalogue::empty().find("N-BK7").is_err());
+    assert!(Catalog::empty().find("N-BK7").is_err());
 }
 
 /// Usual abbreviations, and one default for each substance with several measurements.
@@ -292,7 +292,7 @@ fn everyday_names() {
     ] {
         assert_eq!(find(name).full_name(), full_name, "{name}");
     }
-    assert!(matches!(Catalogue::bundled().find("BAF2"), Err(FindError::Ambiguous { .. })));
+    assert!(matches!(Catalog::bundled().find("BAF2"), Err(FindError::Ambiguous { .. })));
     // The handbook's table at its own rows.
     assert_eq!(find("dispersion-study/heavy-flint").index(589.0), 1.65);
 }
@@ -316,12 +316,12 @@ fn cyclic_olefin_copolymer_and_cr_39() {
 /// A hint does not send a plastic to a phosphate crown, nor a glass to a liquid.
 #[test]
 fn hints_stay_in_their_category() {
-    let near = |name: &str| match Catalogue::bundled().find(name) {
+    let near = |name: &str| match Catalog::bundled().find(name) {
         Err(FindError::Unknown { nearest, .. }) => nearest,
         other => panic!("{name}: {other:?}"),
     };
     for name in ["PTFE", "ABS", "abs", "PES"] {
-        let error = Catalogue::bundled().find(name).expect_err("not held");
+        let error = Catalog::bundled().find(name).expect_err("not held");
         let names: Vec<_> = near(name).into_iter().map(|c| c.full_name).collect();
         assert!(names.iter().any(|n| n == "PMMA") && names.iter().all(|n| !n.contains('/')), "{name}: {names:?}");
         assert!(error.hint().contains("no data of this plastic"), "{}", error.hint());
@@ -344,7 +344,7 @@ fn hints_stay_in_their_category() {
 #[test]
 fn fragments_find_names() {
     let names =
-        |fragment: &str| Catalogue::bundled().search(fragment).into_iter().map(|g| g.full_name()).collect::<Vec<_>>();
+        |fragment: &str| Catalog::bundled().search(fragment).into_iter().map(|g| g.full_name()).collect::<Vec<_>>();
     let bk7 = names("bk7");
     for name in ["SCHOTT/N-BK7", "SCHOTT/BK7", "HIKARI/J-BK7A"] {
         assert!(bk7.iter().any(|n| n == name), "{bk7:?}");
@@ -357,7 +357,7 @@ fn fragments_find_names() {
 /// Unknown names cost little: a file of 400 of them is read at once.
 #[test]
 fn unknown_names_are_cheap() {
-    let catalogue = Catalogue::bundled();
+    let catalogue = Catalog::bundled();
     assert!(!catalogue.knows("first of all"));
     let start = Instant::now();
     for i in 0..400 {
@@ -380,8 +380,8 @@ fn start_up_is_short() {
         };
         (0..20).map(|_| run()).min().unwrap_or(Duration::MAX)
     };
-    let build = best(&|| drop(std::hint::black_box(Catalogue::from_text(text))));
-    let find = best(&|| drop(std::hint::black_box(Catalogue::bundled().find("SCHOTT/N-BK7"))));
+    let build = best(&|| drop(std::hint::black_box(Catalog::from_text(text))));
+    let find = best(&|| drop(std::hint::black_box(Catalog::bundled().find("SCHOTT/N-BK7"))));
     println!("index {build:?}, find {find:?}");
     assert!(build < Duration::from_millis(5), "{build:?}");
     assert!(find < Duration::from_millis(1), "{find:?}");
@@ -391,7 +391,7 @@ fn start_up_is_short() {
 /// Eras narrow a search: no lanthanum glass for a lens of 1927, and none of 1983's dropped ones for one of today.
 #[test]
 fn eras_of_glass() {
-    let catalogue = Catalogue::bundled();
+    let catalogue = Catalog::bundled();
     let best = |n: f64, v: f64, era: Era| {
         let mut query = Query::new(n, Some(v), LineTriple::FDC);
         query.makers = vec!["SCHOTT".into()];

@@ -1,7 +1,7 @@
 //! Glasses known by nd and Vd alone, against the makers' own formulas.
 
 use spectra_glass::lines::{F, G, H, R};
-use spectra_glass::{Catalogue, Category, LineTriple, ModelGlass};
+use spectra_glass::{Catalog, Category, LineTriple, ModelGlass};
 
 /// The model from nd and Vd of the real glass, compared with that glass at g and h.
 #[test]
@@ -13,7 +13,7 @@ fn old_glasses_by_their_figures() {
         ("SCHOTT/SF5", 1e-4, 2.5e-4),
         ("SCHOTT/SF6", 4e-4, 1e-3),
     ] {
-        let glass = Catalogue::bundled().find(name).unwrap_or_else(|e| panic!("{e}"));
+        let glass = Catalog::bundled().find(name).unwrap_or_else(|e| panic!("{e}"));
         let model = ModelGlass::new(glass.nd(), glass.vd(), LineTriple::FDC).expect("a glass");
         let error = |nm: f64| model.index(nm) - glass.index(nm);
         println!("{name}: g {:+.6}, h {:+.6}", error(G.wavelength_nm), error(H.wavelength_nm));
@@ -25,7 +25,7 @@ fn old_glasses_by_their_figures() {
 #[test]
 fn nine_of_ten_glasses_are_near() {
     let mut errors: [Vec<f64>; 3] = Default::default();
-    for glass in Catalogue::bundled().glasses() {
+    for glass in Catalog::bundled().glasses() {
         let (nd, vd) = (glass.nd(), glass.vd());
         let measured = glass.range_nm.0 <= H.wavelength_nm && R.wavelength_nm <= glass.range_nm.1;
         let figures_alone = glass.formula.name() == "from index and Abbe number";

@@ -20,7 +20,7 @@ use spectra_masks::Drawing;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aperture {
     /// Shape of the aperture.
-    pub shape: Shape,
+    pub shape: ApertureShape,
     /// Center of the aperture in the frame of the surface, mm.
     pub center_mm: [f64; 2],
     /// Whether the aperture stops light that falls inside it. If false, it stops light that falls outside.
@@ -29,7 +29,7 @@ pub struct Aperture {
 
 /// The shape of an aperture, about its center.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum ApertureShape {
     /// The area between two circles; `inner_mm` may be 0, `outer_mm` infinite.
     Ring {
         /// Inner radius, mm.
@@ -68,21 +68,23 @@ impl Aperture {
     pub fn transmittance(&self, x_mm: f64, y_mm: f64, semi_diameter_mm: Option<f64>) -> f64 {
         let (x, y) = (x_mm - self.center_mm[0], y_mm - self.center_mm[1]);
         let inside = match &self.shape {
-            Shape::Ring { inner_mm, outer_mm } => {
+            ApertureShape::Ring { inner_mm, outer_mm } => {
                 let r2 = x * x + y * y;
                 f64::from(r2 >= inner_mm * inner_mm && r2 <= outer_mm * outer_mm)
             }
-            Shape::Rectangle { half_width_mm, half_height_mm } => {
+            ApertureShape::Rectangle { half_width_mm, half_height_mm } => {
                 f64::from(x.abs() <= *half_width_mm && y.abs() <= *half_height_mm)
             }
-            Shape::Ellipse { half_width_mm, half_height_mm } => {
+            ApertureShape::Ellipse { half_width_mm, half_height_mm } => {
                 let (a, b) = (x / half_width_mm, y / half_height_mm);
                 f64::from(a * a + b * b <= 1.0)
             }
-            Shape::Polygon(corners) => f64::from(is_inside(corners, x, y)),
-            Shape::Iris(iris) => f64::from(semi_diameter_mm.is_none_or(|size| iris.opening(size).contains(x, y))),
-            Shape::Mask(mask) => mask.transmittance(x, y),
-            Shape::Drawing(drawing) => drawing.transmittance(x, y),
+            ApertureShape::Polygon(corners) => f64::from(is_inside(corners, x, y)),
+            ApertureShape::Iris(iris) => {
+                f64::from(semi_diameter_mm.is_none_or(|size| iris.opening(size).contains(x, y)))
+            }
+            ApertureShape::Mask(mask) => mask.transmittance(x, y),
+            ApertureShape::Drawing(drawing) => drawing.transmittance(x, y),
         };
         if self.obscures { 1.0 - inside } else { inside }
     }
@@ -90,7 +92,7 @@ impl Aperture {
     /// Whether the aperture is symmetric about the axis.
     #[must_use]
     pub fn is_round(&self) -> bool {
-        self.center_mm == [0.0; 2] && matches!(self.shape, Shape::Ring { .. })
+        self.center_mm == [0.0; 2] && matches!(self.shape, ApertureShape::Ring { .. })
     }
 
     /// Returns the edge of the aperture in the frame of the surface, mm, as closed rings: outer ones counterclockwise, holes clockwise.
@@ -116,18 +118,18 @@ impl Aperture {
                 .collect()
         };
         let mut rings = match &self.shape {
-            Shape::Ring { inner_mm, outer_mm } => {
+            ApertureShape::Ring { inner_mm, outer_mm } => {
                 let mut rings = vec![around(*outer_mm, *outer_mm)];
                 if *inner_mm > 0.0 {
                     rings.push(around(*inner_mm, *inner_mm).into_iter().rev().collect());
                 }
                 rings
             }
-            Shape::Rectangle { half_width_mm: a, half_height_mm: b } => {
+            ApertureShape::Rectangle { half_width_mm: a, half_height_mm: b } => {
                 vec![cut(&[[-a, -b], [*a, -b], [*a, *b], [-a, *b]])]
             }
-            Shape::Ellipse { half_width_mm, half_height_mm } => vec![around(*half_width_mm, *half_height_mm)],
-            Shape::Polygon(corners) => {
+            ApertureShape::Ellipse { half_width_mm, half_height_mm } => vec![around(*half_width_mm, *half_height_mm)],
+            ApertureShape::Polygon(corners) => {
                 let twice: f64 =
                     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
                 let mut ring = cut(corners);
@@ -136,9 +138,9 @@ impl Aperture {
                 }
                 vec![ring]
             }
-            Shape::Iris(iris) => vec![iris.opening(semi_diameter_mm?).outline(2 * pieces)],
-            Shape::Drawing(drawing) => drawing.rings()?,
-            Shape::Mask(_) => return None,
+            ApertureShape::Iris(iris) => vec![iris.opening(semi_diameter_mm?).outline(2 * pieces)],
+            ApertureShape::Drawing(drawing) => drawing.rings()?,
+            ApertureShape::Mask(_) => return None,
         };
         if rings.iter().flatten().flatten().any(|v| !v.is_finite()) {
             return None;
@@ -160,13 +162,13 @@ impl Aperture {
         }
         let [x, y] = self.center_mm;
         let reach = match &self.shape {
-            Shape::Ring { outer_mm, .. } => *outer_mm,
-            Shape::Rectangle { half_width_mm: a, half_height_mm: b } => (a * a + b * b).sqrt(),
-            Shape::Ellipse { half_width_mm, half_height_mm } => half_width_mm.max(*half_height_mm),
-            Shape::Polygon(corners) => corners.iter().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max),
-            Shape::Iris(_) => f64::INFINITY,
-            Shape::Mask(mask) => mask.reach_mm(),
-            Shape::Drawing(drawing) => drawing.reach_mm(),
+            ApertureShape::Ring { outer_mm, .. } => *outer_mm,
+            ApertureShape::Rectangle { half_width_mm: a, half_height_mm: b } => (a * a + b * b).sqrt(),
+            ApertureShape::Ellipse { half_width_mm, half_height_mm } => half_width_mm.max(*half_height_mm),
+            ApertureShape::Polygon(corners) => corners.iter().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max),
+            ApertureShape::Iris(_) => f64::INFINITY,
+            ApertureShape::Mask(mask) => mask.reach_mm(),
+            ApertureShape::Drawing(drawing) => drawing.reach_mm(),
         };
         reach + (x * x + y * y).sqrt()
     }
@@ -174,7 +176,7 @@ impl Aperture {
     /// Returns the opening between the blades if the aperture is an iris and the surface has a semi-diameter, mm.
     pub fn opening(&self, semi_diameter_mm: Option<f64>) -> Option<Opening> {
         match &self.shape {
-            Shape::Iris(iris) => semi_diameter_mm.map(|size| iris.opening(size)),
+            ApertureShape::Iris(iris) => semi_diameter_mm.map(|size| iris.opening(size)),
             _ => None,
         }
     }
@@ -241,10 +243,10 @@ mod tests {
     fn areas_are_those_of_geometry() {
         let pi = std::f64::consts::PI;
         let cases = [
-            (Shape::Ring { inner_mm: 2.0, outer_mm: 5.0 }, pi * 21.0),
-            (Shape::Rectangle { half_width_mm: 3.0, half_height_mm: 1.5 }, 18.0),
-            (Shape::Ellipse { half_width_mm: 3.0, half_height_mm: 1.5 }, pi * 4.5),
-            (Shape::Polygon(vec![[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]]), 6.0),
+            (ApertureShape::Ring { inner_mm: 2.0, outer_mm: 5.0 }, pi * 21.0),
+            (ApertureShape::Rectangle { half_width_mm: 3.0, half_height_mm: 1.5 }, 18.0),
+            (ApertureShape::Ellipse { half_width_mm: 3.0, half_height_mm: 1.5 }, pi * 4.5),
+            (ApertureShape::Polygon(vec![[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]]), 6.0),
         ];
         for (shape, area) in cases {
             let mut aperture = Aperture { shape, center_mm: [0.5, -0.25], obscures: false };

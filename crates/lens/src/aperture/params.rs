@@ -1,6 +1,6 @@
 //! Reads apertures as a lens file writes them.
 
-use super::{Aperture, Iris, Mask, Shape};
+use super::{Aperture, ApertureShape, Iris, Mask};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use spectra_core::params::{
@@ -12,7 +12,7 @@ use spectra_core::spectral::BAND;
 use spectra_masks::Open;
 use std::sync::Arc;
 
-spectra_core::declare!(ApertureEntry, Shape, "aperture", "A registered shape of apertures.", "shape");
+spectra_core::declare!(ApertureEntry, ApertureShape, "aperture", "A registered shape of apertures.", "shape");
 
 /// The keys that every aperture has; all other keys belong to its shape.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -179,10 +179,10 @@ pub fn read(node: &StageNode, resources: &dyn Resources) -> Result<Vec<Aperture>
 }
 
 fn one(node: &Node, path: &str, resources: &dyn Resources) -> Result<Aperture, Faults> {
-    let params = Params::kinded(Params::section(node.clone(), path)?.node().clone(), path, Shape::KEY)?;
+    let params = Params::kinded(Params::section(node.clone(), path)?.node().clone(), path, ApertureShape::KEY)?;
     let (keys, own) = params.split(&keys_of::<ApertureKeys>());
     let keys: ApertureKeys = keys.parse()?;
-    let shape = registry::build::<Shape>(&own, &Context::new(resources, BAND))?;
+    let shape = registry::build::<ApertureShape>(&own, &Context::new(resources, BAND))?;
     let center_mm = keys.center.map_or([0.0; 2], |c| c.map(Length::mm));
     Ok(Aperture { shape: *shape, center_mm, obscures: keys.obscures })
 }
@@ -194,41 +194,41 @@ spectra_core::register!(ApertureEntry, "polygon": Polygon, polygon);
 spectra_core::register!(ApertureEntry, "iris": IrisBlades, iris);
 spectra_core::register!(ApertureEntry, "mask": MaskParams, mask);
 
-fn ring(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+fn ring(params: &Params, _: &Context<'_>) -> Result<Box<ApertureShape>, Faults> {
     let p: Ring = params.parse()?;
     let (inner_mm, outer_mm) = (p.inner.map_or(0.0, Length::mm), p.outer.map_or(f64::INFINITY, |o| o.mm()));
     if !(inner_mm >= 0.0 && outer_mm > inner_mm) {
         let fault = params.fault("outer", format!("no ring lies between the radii {inner_mm} and {outer_mm} mm"));
         return Err(fault.hint("0 <= inner < outer").into());
     }
-    Ok(Box::new(Shape::Ring { inner_mm, outer_mm }))
+    Ok(Box::new(ApertureShape::Ring { inner_mm, outer_mm }))
 }
 
-fn rectangle(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+fn rectangle(params: &Params, _: &Context<'_>) -> Result<Box<ApertureShape>, Faults> {
     let p: Rectangle = params.parse()?;
-    Ok(Box::new(Shape::Rectangle { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }))
+    Ok(Box::new(ApertureShape::Rectangle { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }))
 }
 
-fn ellipse(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+fn ellipse(params: &Params, _: &Context<'_>) -> Result<Box<ApertureShape>, Faults> {
     let p: Ellipse = params.parse()?;
-    Ok(Box::new(Shape::Ellipse { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }))
+    Ok(Box::new(ApertureShape::Ellipse { half_width_mm: p.half_width.mm(), half_height_mm: p.half_height.mm() }))
 }
 
-fn polygon(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+fn polygon(params: &Params, _: &Context<'_>) -> Result<Box<ApertureShape>, Faults> {
     let p: Polygon = params.parse()?;
-    Ok(Box::new(Shape::Polygon(p.points.into_iter().map(|point| point.map(Length::mm)).collect())))
+    Ok(Box::new(ApertureShape::Polygon(p.points.into_iter().map(|point| point.map(Length::mm)).collect())))
 }
 
-fn iris(params: &Params, _: &Context<'_>) -> Result<Box<Shape>, Faults> {
+fn iris(params: &Params, _: &Context<'_>) -> Result<Box<ApertureShape>, Faults> {
     let p: IrisBlades = params.parse()?;
-    Ok(Box::new(Shape::Iris(Iris {
+    Ok(Box::new(ApertureShape::Iris(Iris {
         blades: p.blades.get_u32(),
         blade_radius_mm: p.blade_radius.map_or(f64::INFINITY, |r| r.mm()),
         rotation_rad: p.rotation.map_or(0.0, Angle::rad),
     })))
 }
 
-fn mask(params: &Params, context: &Context<'_>) -> Result<Box<Shape>, Faults> {
+fn mask(params: &Params, context: &Context<'_>) -> Result<Box<ApertureShape>, Faults> {
     let p: MaskParams = params.parse()?;
     let fail =
         |text: String| Faults::from(params.fault("file", text).hint("a PNG, JPEG, TIFF or SVG beside the lens file"));
@@ -240,7 +240,9 @@ fn mask(params: &Params, context: &Context<'_>) -> Result<Box<Shape>, Faults> {
         .map_err(|e| fail(format!("`{}`: {e}", p.file)))?;
     if p.file.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("svg")) {
         let drawn = spectra_masks::read(&found.name, &found.bytes, p.width.map(|w| w.mm()), open);
-        return drawn.map(|drawn| Box::new(Shape::Drawing(drawn))).map_err(|faults| params.place_at("file", faults));
+        return drawn
+            .map(|drawn| Box::new(ApertureShape::Drawing(drawn)))
+            .map_err(|faults| params.place_at("file", faults));
     }
     if open == Some(Open::Filled) {
         let fault = params.fault("open", "`filled` is only for a drawing: in a picture white passes");
@@ -259,5 +261,5 @@ fn mask(params: &Params, context: &Context<'_>) -> Result<Box<Shape>, Faults> {
     let picture = reader.decode().map_err(|e| fail(format!("`{}`: {e}", p.file)))?.into_luma16();
     let (width_px, height_px) = picture.dimensions();
     let values: Arc<[f32]> = picture.as_raw().iter().map(|v| f32::from(*v) / 65535.0).collect();
-    Ok(Box::new(Shape::Mask(Mask::new(width_px as usize, height_px as usize, width.mm(), values))))
+    Ok(Box::new(ApertureShape::Mask(Mask::new(width_px as usize, height_px as usize, width.mm(), values))))
 }

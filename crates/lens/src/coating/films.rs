@@ -59,7 +59,7 @@ impl Sides {
         (self.u * self.u / (step * step + 2.0 * self.n * self.n_after * self.h)).sqrt().min(1.0)
     }
 
-    /// Fraction of unpolarized light that bare glass transmits: the formula of [`super::bare`], whose two numerators are equal.
+    /// Fraction of unpolarized light that bare glass transmits: the formula of `bare`, whose two numerators are equal.
     #[inline(always)]
     pub fn bare(&self) -> f64 {
         let Self { n, n_after, u, v, .. } = *self;

@@ -3,7 +3,7 @@
 use super::{Coating, CoatingEntry, Stack, StackLayer};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, NonNegative, Params, Part, Wavelength};
+use spectra_core::params::{Deferred, Fault, Faults, NonNegative, Params, Wavelength};
 use spectra_core::registry::Context;
 use spectra_core::resources::Resources;
 use spectra_glass::{Medium, file};
@@ -49,7 +49,7 @@ struct OneLayer {
 pub(super) struct StackParams {
     /// Layers of the stack, the one next to the air first, 1 to 500; for glass without layers write `bare`.
     #[schemars(length(min = 1, max = 500))]
-    layers: Vec<Part<LayerOfStack>>,
+    layers: Vec<Deferred<LayerOfStack>>,
 }
 
 /// One layer of a stack.
@@ -92,7 +92,7 @@ pub(super) fn stack(params: &Params, context: &Context<'_>) -> Result<Box<Coatin
 fn layer_of_stack(
     params: &Params,
     i: usize,
-    node: &Part<LayerOfStack>,
+    node: &Deferred<LayerOfStack>,
     resources: &dyn Resources,
 ) -> Result<StackLayer, Faults> {
     let p: LayerOfStack = node.read()?;

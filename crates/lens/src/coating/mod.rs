@@ -9,23 +9,23 @@ mod amplitude;
 mod angles;
 mod entry;
 mod films;
+mod films_f32;
 mod layers;
 mod measured;
 mod params;
 mod stack;
 mod standard;
-mod swift;
 mod v_coat;
 
 pub use amplitude::{Amplitudes, Polarizing};
 pub use angles::{SAME_INDEX, cosine_of_mirrored, cross, dot, versine};
 pub use entry::CoatingEntry;
 pub use films::{Films, Sides};
+pub use films_f32::{CHUNK, FilmsF32, Singles};
 pub use measured::MeasuredCoating;
 pub(crate) use params::CoatingKeys;
 pub use params::{CoatingForm, StatedCoating, read_coating, read_stated_coating};
 pub use stack::{Stack, StackLayer};
-pub use swift::{CHUNK, Singles, Swift};
 
 use spectra_core::math;
 use std::sync::Arc;

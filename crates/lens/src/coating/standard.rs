@@ -117,7 +117,7 @@ impl Coating {
 
     /// Describes the coating in a few words: `bare`, `a single layer of MgF2`, `three layers`.
     #[must_use]
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         match self {
             Self::Ideal => "no reflections".to_owned(),
             Self::Bare => "bare".to_owned(),

@@ -5,7 +5,7 @@ use crate::Aperture;
 
 /// The kind of a layer on a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Soil {
+pub enum LayerKind {
     /// A film of fine droplets or grains.
     Haze,
     /// Grains that stop and diffract light.
@@ -14,7 +14,7 @@ pub enum Soil {
     Scratches,
 }
 
-impl Soil {
+impl LayerKind {
     /// Returns the key of this kind of layer in a lens file.
     #[must_use]
     pub fn key(self) -> &'static str {
@@ -30,7 +30,7 @@ impl Soil {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     /// Kind of the layer.
-    pub soil: Soil,
+    pub soil: LayerKind,
     /// Fraction of the light that the layer stops where it lies.
     pub stopped: f64,
     /// Fraction of the light that the layer scatters where it lies.

@@ -13,7 +13,7 @@ mod layer;
 mod lobe;
 mod params;
 
-pub use layer::{Layer, Shares, Soil, which};
+pub use layer::{Layer, LayerKind, Shares, which};
 
 pub use lobe::{Lobe, Pattern, Run};
 pub use params::{DustForm, HazeForm, ScratchesForm, read_layers};

@@ -1,11 +1,13 @@
 //! Reads haze, dust and scratches as lens files and scenes write them.
 
-use super::{Layer, Lobe, Run, Soil};
+use super::{Layer, LayerKind, Lobe, Run};
 use crate::aperture::{ApertureForm, read as read_apertures};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::math::{sin, sin_cos_turns};
-use spectra_core::params::{Angle, Faults, Length, NonNegative, Params, Part, Positive, Ratio, Readable, StageNode};
+use spectra_core::params::{
+    Angle, Deferred, Faults, Length, NonNegative, Params, Positive, Ratio, Readable, StageNode,
+};
 use spectra_core::resources::Resources;
 use std::f64::consts::TAU;
 
@@ -28,7 +30,7 @@ pub struct HazeForm {
     /// Where the haze lies: one aperture or a list, written as in `aperture`. It covers what these let pass. All over the surface if
     /// absent.
     #[serde(rename = "where")]
-    place: Option<Part<ApertureForm>>,
+    place: Option<Deferred<ApertureForm>>,
 }
 
 /// Dust on a surface: grains that stop as much light as they cover and diffract the same amount (Babinet's principle).
@@ -47,7 +49,7 @@ pub struct DustForm {
     spread: Option<f64>,
     /// Where the dust lies, written as for `haze`. All over the surface if absent.
     #[serde(rename = "where")]
-    place: Option<Part<ApertureForm>>,
+    place: Option<Deferred<ApertureForm>>,
 }
 
 /// Scratches on a surface: lines that stop as much light as they cover and diffract the same amount to both sides (Babinet's principle).
@@ -69,7 +71,7 @@ pub struct ScratchesForm {
     around: bool,
     /// Where the scratches are, written as for `haze`: a drawing (SVG) or a picture of them. All over the surface if absent.
     #[serde(rename = "where")]
-    place: Option<Part<ApertureForm>>,
+    place: Option<Deferred<ApertureForm>>,
 }
 
 const SHOULDER_DEG: f64 = 1.0;
@@ -85,7 +87,7 @@ fn parsed<T: Readable>(node: &StageNode) -> Result<(Params, T), Faults> {
     Ok((params, own))
 }
 
-fn places(place: Option<&Part<ApertureForm>>, resources: &dyn Resources) -> Result<Vec<crate::Aperture>, Faults> {
+fn places(place: Option<&Deferred<ApertureForm>>, resources: &dyn Resources) -> Result<Vec<crate::Aperture>, Faults> {
     place.map_or(Ok(Vec::new()), |node| read_apertures(node, resources))
 }
 
@@ -94,7 +96,7 @@ fn haze(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Faults> {
     let (_, p) = parsed::<HazeForm>(node)?;
     let shoulder = sin(p.shoulder.map_or(SHOULDER_DEG.to_radians(), |angle| angle.rad()));
     Ok(Layer {
-        soil: Soil::Haze,
+        soil: LayerKind::Haze,
         stopped: 0.0,
         scattered: p.share.number(),
         places: places(p.place.as_ref(), resources)?,
@@ -106,7 +108,7 @@ fn haze(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Faults> {
 fn dust(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Faults> {
     let (_, p) = parsed::<DustForm>(node)?;
     Ok(Layer {
-        soil: Soil::Dust,
+        soil: LayerKind::Dust,
         stopped: p.coverage.number(),
         scattered: p.coverage.number(),
         places: places(p.place.as_ref(), resources)?,
@@ -139,7 +141,7 @@ fn scratches(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Fault
         (None, false) => Run::Any,
     };
     Ok(Layer {
-        soil: Soil::Scratches,
+        soil: LayerKind::Scratches,
         stopped: coverage,
         scattered: coverage,
         places: places(p.place.as_ref(), resources)?,

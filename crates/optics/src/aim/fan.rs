@@ -3,7 +3,7 @@
 use super::measure::{azimuth_measure, whole};
 use super::outline::{Outlines, RING, STRIDE, TURN_STEPS};
 use super::part::{AimPart, RIM_EVERY};
-use super::reach::CORNERS;
+use super::star_region::CORNERS;
 use super::table::{SLOTS, Table};
 use spectra_core::isa::Vectorized;
 use spectra_core::{Loss, RayBatch};

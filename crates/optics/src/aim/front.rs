@@ -9,7 +9,7 @@ use super::table::{Depth, Table, Zone};
 use super::task::Task;
 use glam::DVec3;
 use spectra_core::RayBatch;
-use spectra_core::workers::{Alone, Workers};
+use spectra_core::workers::{SingleThread, Workers};
 use spectra_lens::Lens;
 use spectra_tracer::{Tracer, Travel};
 
@@ -35,7 +35,7 @@ impl FrontPupil {
     /// `min_nm` to `max_nm`. Returns `None` if no surface states a size.
     #[must_use]
     pub fn search(lens: &Lens, tracer: &Tracer, points: &[DVec3], min_nm: f64, max_nm: f64) -> Option<Self> {
-        Self::search_on(lens, tracer, points, [min_nm, max_nm], &Alone)
+        Self::search_on(lens, tracer, points, [min_nm, max_nm], &SingleThread)
     }
 
     /// Searches like [`FrontPupil::search`], distributed over workers, for light of a band, nm. The result is bit-identical on any workers.

@@ -4,12 +4,12 @@ use super::measure::turns;
 use super::nodes::Node;
 use super::outline::Colors;
 use super::probe::Stages;
-use super::stopped::{Seen, Stopped};
-use super::task::{NotWanted, Task};
-use spectra_core::workers::each_of;
+use super::shaped_opening::{OpeningMap, ShapedOpening};
+use super::task::{Cancelled, Task};
+use spectra_core::workers::map_pieces;
 
 /// The maps by which an opening is seen from the ends of a zone, by wavelength.
-pub(super) type Views = Vec<Vec<Option<Seen>>>;
+pub(super) type Views = Vec<Vec<Option<OpeningMap>>>;
 
 /// The indices of a zone among all zones.
 pub(super) struct ZonePlace {
@@ -36,11 +36,11 @@ impl Lattice {
         steps: usize,
         most: f64,
         colors_nm: &[f64],
-    ) -> Result<Self, NotWanted> {
+    ) -> Result<Self, Cancelled> {
         let grid = task.effort.fineness().grid[usize::from(azimuths > 1)];
         let a_row = steps + 1;
         let pieces = task.depth_nodes.len() * azimuths * a_row;
-        let nodes = each_of(
+        let nodes = map_pieces(
             task.workers,
             pieces,
             || stages.prober(),
@@ -51,7 +51,7 @@ impl Lattice {
                 // Outlines need the edges only at the ends of zones.
                 let colors_nm = if k.is_multiple_of(2) { colors_nm } else { &[] };
                 let depth = task.depth_nodes[row / azimuths];
-                task.wanted()?;
+                task.check_cancelled()?;
                 Ok(task.geometry.node(prober, measure, depth, turns, grid, colors_nm))
             },
         );
@@ -100,12 +100,12 @@ impl Lattice {
     }
 
     /// Fits the maps by which an opening is seen from the ends of a zone; `None` if there is no opening or an end sees nothing.
-    pub fn views(&self, at: &ZonePlace, opening: Option<&Stopped>, colors: &Colors) -> Option<Views> {
+    pub fn views(&self, at: &ZonePlace, opening: Option<&ShapedOpening>, colors: &Colors) -> Option<Views> {
         let opening = opening?;
         let nodes_nm = colors.nodes_nm();
         let of_end = |node: &Node| {
             let lines = node.edges.iter().zip(&nodes_nm);
-            lines.map(|(line, nm)| (!line.is_empty()).then(|| opening.seen(node, line, *nm)).flatten()).collect()
+            lines.map(|(line, nm)| (!line.is_empty()).then(|| opening.opening_map(node, line, *nm)).flatten()).collect()
         };
         Some(self.ends(at)?.iter().map(|(_, node)| of_end(node)).collect())
     }

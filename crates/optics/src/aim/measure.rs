@@ -11,10 +11,10 @@ pub(super) fn measure(radius: f64, ahead: f64) -> f64 {
     if ahead < 0.0 { 2.0 - share } else { share }
 }
 
-/// Returns [`math::whole`] of a number as an index.
+/// Returns [`math::floor_index`] of a number as an index.
 #[inline(always)]
 pub(super) fn whole(at: f64, last: f64) -> usize {
-    math::whole(at, last).0 as usize
+    math::floor_index(at, last).0 as usize
 }
 
 /// Returns a measure like [`measure`] for the azimuth of (x, y): in [0, 4), one unit per quarter turn.

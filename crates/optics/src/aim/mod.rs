@@ -39,13 +39,13 @@ mod nodes;
 mod outline;
 mod part;
 mod probe;
-mod reach;
 mod rear;
 mod region;
+mod region_shape;
 mod search;
-mod shape;
+mod shaped_opening;
 mod sphere;
-mod stopped;
+mod star_region;
 mod table;
 mod task;
 

@@ -1,7 +1,7 @@
 //! Nodes: the points that represent zones, and the light that passes from each of them.
 
-use super::probe::{Bounds, Found, Plane, Prober};
-use super::shape::hull;
+use super::probe::{Bounds, PassingPoints, Plane, Prober};
+use super::region_shape::hull;
 use super::sphere::Sphere;
 use glam::DVec3;
 use spectra_tracer::Travel;
@@ -94,7 +94,7 @@ impl Geometry {
         let point = self.point(measure, depth, turns)?;
         let plane = self.plane(point, turns);
         let start = self.whole(point, &plane);
-        let Found { places, cell } = prober.search(point, &plane, start, grid)?;
+        let PassingPoints { places, cell } = prober.search(point, &plane, start, grid)?;
         let bounds = Bounds::around(&places)?;
         let (sin, cos) = spectra_core::math::sin_cos_turns(turns);
         let local = |p: DVec3| DVec3::new(p.x * cos + p.y * sin, -p.x * sin + p.y * cos, p.z);

@@ -9,7 +9,7 @@
 //! weight, so the estimate has no bias.
 
 use super::measure::whole;
-use super::reach::CORNERS;
+use super::star_region::CORNERS;
 
 /// Fraction of the rays that go to the outline itself, for rays aimed at all that passes ([`AimPart::Whole`](super::AimPart::Whole)).
 pub(super) const INSIDE: f64 = 0.9969;

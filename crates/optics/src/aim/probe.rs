@@ -89,7 +89,7 @@ struct Stage<T> {
 
 impl<T: Borrow<Tracer>> Stage<T> {
     fn new(tracer: T, travel: Travel) -> Self {
-        Self { route: tracer.borrow().certain_route(travel), tracer }
+        Self { route: tracer.borrow().route_without_chance(travel), tracer }
     }
 
     fn work(&self) -> Work {
@@ -170,7 +170,7 @@ impl<'a> Stages<'a> {
 impl Prober<'_> {
     /// Searches the light that passes from `point` through `start` on `plane`, at the ends and the middle of the band. Returns its
     /// points on the plane and the cell size of the grid that found them.
-    pub fn search(&mut self, point: DVec3, plane: &Plane, start: Bounds, grid: usize) -> Option<Found> {
+    pub fn search(&mut self, point: DVec3, plane: &Plane, start: Bounds, grid: usize) -> Option<PassingPoints> {
         let mut bounds = start;
         let stages = self.stages;
         let all = &stages.wavelengths_nm[..];
@@ -199,7 +199,7 @@ impl Prober<'_> {
                     self.grid(level, point, plane, &bounds, grid, *wavelength_nm, &mut places);
                 }
                 places.extend(found);
-                return Some(Found { places, cell: bounds.half().map(|h| 2.0 * h / grid as f64) });
+                return Some(PassingPoints { places, cell: bounds.half().map(|h| 2.0 * h / grid as f64) });
             }
         }
         None
@@ -217,7 +217,7 @@ impl Prober<'_> {
         found: &mut Vec<[f64; 2]>,
     ) {
         let at: Vec<f64> = (0..n).map(|k| ((k as f64 + 0.5) / n as f64) * 2.0 - 1.0).collect();
-        let lines = Lines { point, plane, center: bounds.center(), half: bounds.half(), at: &at };
+        let lines = GridLines { point, plane, center: bounds.center(), half: bounds.half(), at: &at };
         let isa = self.rays.isa();
         let most = (BATCH / n).max(1);
         for first in (0..n).step_by(most) {
@@ -335,7 +335,7 @@ impl Prober<'_> {
 
 /// A square grid of points over a rectangle of a plane, line by line, seen from a point.
 #[derive(Clone, Copy)]
-struct Lines<'a> {
+struct GridLines<'a> {
     point: DVec3,
     plane: &'a Plane,
     center: [f64; 2],
@@ -344,7 +344,7 @@ struct Lines<'a> {
     at: &'a [f64],
 }
 
-impl Lines<'_> {
+impl GridLines<'_> {
     #[inline(always)]
     fn along(&self, line: usize) -> f64 {
         self.center[0] + self.half[0] * self.at[line]
@@ -361,7 +361,7 @@ impl Lines<'_> {
 
 /// Kernel that puts rays through the points of some lines, from the `first` on.
 struct Probes<'a> {
-    lines: Lines<'a>,
+    lines: GridLines<'a>,
     first: usize,
     columns: Columns<'a>,
 }
@@ -389,7 +389,7 @@ impl Vectorized for Probes<'_> {
 
 /// The light found to pass from one point.
 #[derive(Clone, Debug)]
-pub(super) struct Found {
+pub(super) struct PassingPoints {
     /// Points on the plane.
     pub places: Vec<[f64; 2]>,
     /// Cell size of the grid, mm: the largest distance beyond each point at which light may pass undetected.

@@ -11,7 +11,7 @@ use super::table::{Depth, Table};
 use super::task::Task;
 use glam::DVec3;
 use spectra_core::RayBatch;
-use spectra_core::workers::{Alone, Workers};
+use spectra_core::workers::{SingleThread, Workers};
 use spectra_lens::Lens;
 use spectra_tracer::{Tracer, Travel};
 
@@ -37,7 +37,7 @@ impl RearPupil {
     /// no point is given.
     #[must_use]
     pub fn search(lens: &Lens, tracer: &Tracer, points: &[DVec3], min_nm: f64, max_nm: f64) -> Option<Self> {
-        Self::search_on(lens, tracer, points, [min_nm, max_nm], &Alone)
+        Self::search_on(lens, tracer, points, [min_nm, max_nm], &SingleThread)
     }
 
     /// Searches like [`RearPupil::search`], distributed over workers, for light of a band, nm. The result is bit-identical on any workers.

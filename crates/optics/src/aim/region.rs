@@ -3,9 +3,9 @@
 use super::lattice::{Lattice, ZonePlace};
 use super::measure::turns;
 use super::probe::{Bounds, Plane};
-use super::reach::{DIRECTIONS, Reach};
-use super::shape::Shape;
-use super::stopped::{Seen, Stopped};
+use super::region_shape::RegionShape;
+use super::shaped_opening::{OpeningMap, ShapedOpening};
+use super::star_region::{DIRECTIONS, StarRegion};
 use super::table::{Drift, Zone};
 use glam::DVec3;
 use spectra_core::math::sin_cos_turns;
@@ -63,14 +63,14 @@ impl Sector {
 }
 
 /// An opening and its views. Both are `None` if the lens is round; the views alone are `None` if they are not known.
-pub(super) type PerhapsOpened<'a> = (Option<&'a Stopped>, Option<&'a [Vec<Option<Seen>>]>);
+pub(super) type OptionalOpening<'a> = (Option<&'a ShapedOpening>, Option<&'a [Vec<Option<OpeningMap>>]>);
 /// An opening together with its views.
-pub(super) type Opened<'a> = (&'a Stopped, &'a [Vec<Option<Seen>>]);
+pub(super) type OpeningWithViews<'a> = (&'a ShapedOpening, &'a [Vec<Option<OpeningMap>>]);
 
 /// The ellipse or rectangle of a zone, on the plane of the zone.
 pub(super) struct Region {
     pub plane: Plane,
-    pub shape: Shape,
+    pub shape: RegionShape,
     /// Whether light fades out within the zone.
     pub fades: bool,
     /// Change of the passing light over the angle of the zone.
@@ -127,7 +127,7 @@ impl Region {
         lattice: &Lattice,
         at: &ZonePlace,
         bands: usize,
-        opening: Option<Opened<'_>>,
+        opening: Option<OpeningWithViews<'_>>,
     ) -> (Drift, Vec<BandDrift>) {
         let known = || {
             let ends = lattice.ends(at)?;
@@ -197,9 +197,9 @@ impl Region {
         lattice: &Lattice,
         at: &ZonePlace,
         sectors: &[Sector],
-        seen: PerhapsOpened<'_>,
+        seen: OptionalOpening<'_>,
         bands: usize,
-    ) -> Vec<Vec<Reach>> {
+    ) -> Vec<Vec<StarRegion>> {
         let known = if self.fades {
             None
         } else if let (Some(opening), Some(views)) = seen {
@@ -215,8 +215,8 @@ impl Region {
     }
 
     /// Returns the ellipse or rectangle itself as a reach.
-    fn whole(&self, sector: &Sector, band: usize) -> Reach {
-        let mut reach = Reach::EMPTY;
+    fn whole(&self, sector: &Sector, band: usize) -> StarRegion {
+        let mut reach = StarRegion::EMPTY;
         // The reach must contain the shape wherever the drift moves it.
         let Drift { shift, growth } = self.drift;
         let BandDrift { shift: [by_color, by_depth], growth: [of_color, of_depth] } = self.by_band[band];
@@ -226,7 +226,7 @@ impl Region {
                 / ((1.0 - 0.5 * growth[i].abs()) * smallest)
         });
         let line: Vec<[f64; 2]> = if self.shape.ellipse {
-            let around = (0..DIRECTIONS).map(Reach::way);
+            let around = (0..DIRECTIONS).map(StarRegion::way);
             around.map(|[x, y]| [x * a * 1.001, y * b * 1.001]).collect()
         } else {
             vec![[a, b], [-a, b], [-a, -b], [a, -b]]
@@ -246,11 +246,11 @@ impl Region {
         at: &ZonePlace,
         sectors: &[Sector],
         bands: usize,
-    ) -> Option<Vec<Option<Vec<Reach>>>> {
+    ) -> Option<Vec<Option<Vec<StarRegion>>>> {
         let ends = self.ends(lattice, at, bands)?;
         let of_sector = |sector: &Sector| {
             let of_band = |lines: &Vec<End>| {
-                let mut reach = Reach::EMPTY;
+                let mut reach = StarRegion::EMPTY;
                 for end in lines {
                     reach.include(&end.rims.iter().map(|p| sector.place(*p, end.turns)).collect::<Vec<_>>());
                 }
@@ -267,20 +267,20 @@ impl Region {
         lattice: &Lattice,
         at: &ZonePlace,
         sectors: &[Sector],
-        (opening, views): Opened<'_>,
+        (opening, views): OpeningWithViews<'_>,
         bands: usize,
-    ) -> Option<Vec<Option<Vec<Reach>>>> {
+    ) -> Option<Vec<Option<Vec<StarRegion>>>> {
         let ends = self.ends(lattice, at, bands)?;
         // Each sector shares its ends with its neighbors.
         let turns = sectors.iter().map(|sector| sector.at(0.0)).chain(sectors.last().map(|sector| sector.at(1.0)));
-        let of_turn = |turns: f64| -> Option<Vec<Reach>> {
+        let of_turn = |turns: f64| -> Option<Vec<StarRegion>> {
             let of_band = |(band, lines): (usize, &Vec<End>)| {
-                let mut reach = Reach::EMPTY;
+                let mut reach = StarRegion::EMPTY;
                 for end in lines {
                     let seen = views[end.node][end.color].as_ref()?;
                     let line = opening.line(seen, turns);
                     let line: Option<Vec<_>> = line.iter().map(|p| self.stilled(end, *p, band)).collect();
-                    let [mut own, mut rims] = [Reach::EMPTY; 2];
+                    let [mut own, mut rims] = [StarRegion::EMPTY; 2];
                     for (reach, line) in [(&mut own, &line?), (&mut rims, &end.rims)] {
                         reach.include(&line.iter().map(|p| turned(*p, turns)).collect::<Vec<_>>());
                     }
@@ -291,8 +291,8 @@ impl Region {
             };
             ends.iter().enumerate().map(of_band).collect()
         };
-        let by_turn: Vec<Option<Vec<Reach>>> = turns.map(of_turn).collect();
-        let of_sector = |ends: &[Option<Vec<Reach>>]| {
+        let by_turn: Vec<Option<Vec<StarRegion>>> = turns.map(of_turn).collect();
+        let of_sector = |ends: &[Option<Vec<StarRegion>>]| {
             let [from, to] = ends else { return None };
             let mut both = from.clone()?;
             both.iter_mut().zip(to.as_ref()?).for_each(|(reach, other)| reach.join(other));
@@ -351,8 +351,8 @@ struct End {
 }
 
 /// Adds a small margin to the reaches; `None` if one of them is empty.
-fn held(mut reaches: Vec<Reach>) -> Option<Vec<Reach>> {
-    if reaches.iter().any(Reach::is_empty) {
+fn held(mut reaches: Vec<StarRegion>) -> Option<Vec<StarRegion>> {
+    if reaches.iter().any(StarRegion::is_empty) {
         return None;
     }
     reaches.iter_mut().for_each(|reach| reach.scale(1.0 + MARGIN));

@@ -4,23 +4,23 @@ use super::lattice::{Lattice, ZonePlace};
 use super::measure::turns;
 use super::outline::{Colors, Outlines, RING, STRIDE, TURN_STEPS, thin};
 use super::probe::{Plane, Prober, Stages};
-use super::reach::{DIRECTIONS, Reach};
 use super::region::{Region, Sector, turns_of};
-use super::shape::Shape;
-use super::stopped::{self, Stopped};
-use super::table::{Drift, Row, SLOTS, Table, Zone};
-use super::task::{NotWanted, Task};
+use super::region_shape::RegionShape;
+use super::shaped_opening::{self, ShapedOpening};
+use super::star_region::{DIRECTIONS, StarRegion};
+use super::table::{Drift, SLOTS, Table, Zone, ZoneRow};
+use super::task::{Cancelled, Task};
 use glam::DVec3;
 use spectra_core::Isa;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::sin_cos_turns;
 use spectra_core::numbers::Numbers;
-use spectra_core::workers::each_of;
+use spectra_core::workers::map_pieces;
 use spectra_tracer::{Indices, Tracer, Travel};
 
 /// The data that the search of all zones shares.
 struct Searched<'a> {
-    stopped: Option<&'a (Stopped, Stages<'a>)>,
+    stopped: Option<&'a (ShapedOpening, Stages<'a>)>,
     lattice: &'a Lattice,
     colors: Colors,
     /// Number of azimuth zones of the outlines.
@@ -57,12 +57,12 @@ impl Task<'_> {
     pub fn run(self) -> Option<Table> {
         let [min_nm, max_nm] = self.band_nm;
         let travel = self.geometry.travel;
-        if let Some((round, at)) = stopped::split(self.lens) {
+        if let Some((round, at)) = shaped_opening::split(self.lens) {
             let tracer = Tracer::new(&round, Indices::Band { min_nm, max_nm }).ok()?.scattering_like(self.tracer);
             // If light scatters before it reaches the opening, only the round lens can be aimed at.
             // A draft aims at the round lens, too.
             let is_seen = self.effort.fineness().outlines;
-            let opening = || Stopped::new(self.lens, &round, at, travel, self.band_nm, self.tracer);
+            let opening = || ShapedOpening::new(self.lens, &round, at, travel, self.band_nm, self.tracer);
             let opening = is_seen.then(opening).flatten();
             let itself = Stages::of(self.tracer, travel);
             return Task { lens: &round, tracer: &tracer, ..self }.search(opening.map(|opening| (opening, itself)));
@@ -72,7 +72,7 @@ impl Task<'_> {
 
     /// Searches all zones of the task's lens. If that is the round lens around an opening, `stopped` holds the opening and the stages of
     /// the lens itself.
-    fn search(&self, stopped: Option<(Stopped, Stages<'_>)>) -> Option<Table> {
+    fn search(&self, stopped: Option<(ShapedOpening, Stages<'_>)>) -> Option<Table> {
         let travel = self.geometry.travel;
         let [from_nm, to_nm] = self.band_nm;
         let stages = &Stages::new(self.lens, self.tracer, travel, from_nm, to_nm)?;
@@ -98,7 +98,7 @@ impl Task<'_> {
             angle_scale: scale,
             depth: self.depth,
             azimuths,
-            rows: vec![Row::new(&[]); self.depth.zones * azimuths],
+            rows: vec![ZoneRow::new(&[]); self.depth.zones * azimuths],
             bound: self.geometry.bound,
             surface,
             outlines: None,
@@ -118,18 +118,18 @@ impl Task<'_> {
         let all = Searched { stopped: stopped.as_ref(), lattice: &lattice, colors, looks, bands };
         let rows = self.depth.zones * azimuths;
         let fresh = || (stages.prober(), stopped.as_ref().map(|(_, itself)| itself.prober()));
-        let found = each_of(self.workers, rows * zones, fresh, |(prober, itself), piece| {
+        let found = map_pieces(self.workers, rows * zones, fresh, |(prober, itself), piece| {
             let (row, zone) = (piece / zones, piece % zones);
             let at = ZonePlace { depth: row / azimuths, azimuth: row % azimuths, zone, azimuths, scale };
-            self.wanted()?;
-            Ok::<_, NotWanted>(self.outlined(&all, prober, itself.as_mut(), &at))
+            self.check_cancelled()?;
+            Ok::<_, Cancelled>(self.outlined(&all, prober, itself.as_mut(), &at))
         });
         let found = found.ok()?;
         let mut corners = vec![[0.0_f32; 2]; rows / azimuths * looks * zones * bands * STRIDE];
         for (row, found) in found.chunks(zones).enumerate() {
             let zone = |(zone, _): &(Zone, Vec<Outline>)| *zone;
             table.rows[row] =
-                Row::new(&found.iter().map(|f| f.as_ref().map_or(Zone::default(), zone)).collect::<Vec<_>>());
+                ZoneRow::new(&found.iter().map(|f| f.as_ref().map_or(Zone::default(), zone)).collect::<Vec<_>>());
             for (zone, (_, outlines)) in
                 found.iter().enumerate().filter_map(|(zone, found)| Some((zone, found.as_ref()?)))
             {
@@ -174,7 +174,7 @@ impl Task<'_> {
         if let (Some(opening), Some(views)) = seen {
             let area = |region: &Region| {
                 let one = region.reaches(lattice, at, &sectors[..1], seen, bands);
-                one.iter().flatten().map(Reach::area).sum::<f64>()
+                one.iter().flatten().map(StarRegion::area).sum::<f64>()
             };
             let (drift, by_band) = region.drifts(lattice, at, bands, Some((opening, views)));
             let with_opening = Region { drift, by_band, ..region };
@@ -215,7 +215,7 @@ impl Task<'_> {
         at: &ZonePlace,
         (look, sector): (usize, &Sector),
         colors: &Colors,
-        reaches: &mut [Reach],
+        reaches: &mut [StarRegion],
     ) {
         let numbers = Numbers::random(0xa2);
         let stream = ((at.depth * at.azimuths + at.azimuth) * SLOTS + at.zone) * 64 + look;
@@ -234,7 +234,7 @@ impl Task<'_> {
                 let direction = (a * DIRECTIONS as f64) as usize % DIRECTIONS;
                 // Most of the rays go close to the edge.
                 let r = reaches[zone].at(direction) * (1.0 + HOLD_REACH * b * b);
-                let place = Reach::way(direction).map(|w| w * r);
+                let place = StarRegion::way(direction).map(|w| w * r);
                 let turns = sector.at(azimuth);
                 let depth = self.depth.from
                     + (at.depth as f64 + part) * (self.depth.to - self.depth.from) / self.depth.zones as f64;
@@ -302,7 +302,7 @@ impl Task<'_> {
                 }
             }
         }
-        let mut shape = Shape::around(&places, margin)?;
+        let mut shape = RegionShape::around(&places, margin)?;
         if fades {
             shape.half = shape.half.map(|h| h * 1.25);
         }
@@ -317,7 +317,7 @@ impl Task<'_> {
             places.extend(beside);
             // The missed part may extend by one more cell.
             margin = margin.map(|m| m * 1.5);
-            shape = match Shape::around(&places, margin) {
+            shape = match RegionShape::around(&places, margin) {
                 Some(wider) => wider,
                 None => break,
             };
@@ -360,7 +360,7 @@ impl Task<'_> {
     fn beside(
         &self,
         prober: &mut Prober<'_>,
-        shape: &Shape,
+        shape: &RegionShape,
         plane: &Plane,
         at: &ZonePlace,
         (round, checks, reach): (u64, usize, f64),

@@ -59,9 +59,9 @@ impl Zone {
 
 /// The zones of one depth and azimuth. The data that a ray needs of its zone lie together.
 #[derive(Clone, Debug)]
-pub(super) struct Row(pub(super) [[f64; FIELDS]; SLOTS]);
+pub(super) struct ZoneRow(pub(super) [[f64; FIELDS]; SLOTS]);
 
-impl Row {
+impl ZoneRow {
     pub fn new(zones: &[Zone]) -> Self {
         let mut row = [[0.0; FIELDS]; SLOTS];
         for (own, zone) in row.iter_mut().zip(zones).take(SLOTS - 1) {
@@ -129,7 +129,7 @@ pub(super) struct Table {
     /// Number of zones of the azimuth; 1 if the lens has an axis of revolution.
     pub azimuths: usize,
     /// Rows of zones, by depth, then azimuth.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ZoneRow>,
     /// Sphere around the whole surface that is met first.
     pub bound: Sphere,
     /// Number of that surface, from 1: light that no zone passes is booked there.
@@ -139,7 +139,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Returns the table with all regions and outlines enlarged by `margin_mm`; see [`Row::widened`].
+    /// Returns the table with all regions and outlines enlarged by `margin_mm`; see [`ZoneRow::widened`].
     pub fn widened(self, margin_mm: f64) -> Self {
         Self {
             rows: self.rows.iter().map(|row| row.widened(margin_mm)).collect(),

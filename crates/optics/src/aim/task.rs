@@ -24,11 +24,11 @@ pub(super) struct Task<'a> {
 }
 
 /// The error of a search whose result is no longer wanted.
-pub(super) struct NotWanted;
+pub(super) struct Cancelled;
 
 impl Task<'_> {
     /// Fails if the workers are to stop and the result is no longer wanted.
-    pub fn wanted(&self) -> Result<(), NotWanted> {
-        if self.workers.should_stop() { Err(NotWanted) } else { Ok(()) }
+    pub fn check_cancelled(&self) -> Result<(), Cancelled> {
+        if self.workers.should_stop() { Err(Cancelled) } else { Ok(()) }
     }
 }

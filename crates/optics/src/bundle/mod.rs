@@ -43,7 +43,7 @@ const NEAR_PLACE_MM: f64 = 1e-6;
 
 /// A straight line across a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct WindowLine {
     /// Start of the line in the window, mm.
     pub from: [f64; 2],
     /// Unit vector along the line.
@@ -52,7 +52,7 @@ pub struct Line {
     pub length_mm: f64,
 }
 
-impl Line {
+impl WindowLine {
     /// Returns the point of the window at a distance along the line, mm.
     #[must_use]
     pub fn at(&self, along_mm: f64) -> [f64; 2] {
@@ -60,7 +60,7 @@ impl Line {
     }
 }
 
-/// The light of one point at one wavelength, before it enters a lens. See the [module](self).
+/// The light of one point at one wavelength, before it enters a lens. Its methods find which of its rays pass, and how far they reach.
 #[derive(Debug)]
 pub struct Bundle<'o> {
     optics: &'o Optics,
@@ -124,8 +124,8 @@ impl<'o> Bundle<'o> {
     /// Returns the line from the middle of the window along its second axis, to its side. For a point on the axis or in the y-z section the
     /// line lies in that section.
     #[must_use]
-    pub fn upward(&self) -> Line {
-        Line { from: [0.0; 2], way: [0.0, 1.0], length_mm: self.window.reach_mm }
+    pub fn upward(&self) -> WindowLine {
+        WindowLine { from: [0.0; 2], way: [0.0, 1.0], length_mm: self.window.reach_mm }
     }
 
     /// Returns the ray through a point of the window in front of the lens: its start, mm, and its unit direction.
@@ -172,7 +172,7 @@ impl<'o> Bundle<'o> {
     }
 
     /// Traces the rays through `places` without weights and calls `seen` with the number and the state of each.
-    fn look(&self, places: &[[f64; 2]], mut seen: impl FnMut(usize, u64)) {
+    fn trace_each(&self, places: &[[f64; 2]], mut seen: impl FnMut(usize, u64)) {
         let capacity = places.len().min(BATCH);
         let (mut rays, mut work) = (RayBatch::new(capacity), self.tracer.work_unweighed(capacity));
         for (part, places) in places.chunks(BATCH).enumerate() {
@@ -186,7 +186,7 @@ impl<'o> Bundle<'o> {
     #[must_use]
     pub fn passes(&self, places: &[[f64; 2]]) -> Vec<bool> {
         let mut passes = vec![false; places.len()];
-        self.look(places, |i, state| passes[i] = state == ALIVE);
+        self.trace_each(places, |i, state| passes[i] = state == ALIVE);
         passes
     }
 
@@ -213,7 +213,7 @@ impl<'o> Bundle<'o> {
     pub fn extent_within(&self, part: Extent, cells: usize) -> Result<Extent, Option<(Loss, u32)>> {
         let places: Vec<[f64; 2]> = RayPattern::Grid(cells).places(part).collect();
         let (mut found, mut end): (Option<Extent>, Option<(Loss, u32)>) = (None, None);
-        self.look(&places, |i, state| {
+        self.trace_each(&places, |i, state| {
             let place = places[i];
             if state == ALIVE {
                 let old = found.unwrap_or(Extent { min: place, max: place });
@@ -234,7 +234,7 @@ impl<'o> Bundle<'o> {
     /// first scan uses `probes` + 1 rays; the ends are then found to `accuracy` times the length of the line. A zone that continues to the
     /// end of the line ends there.
     #[must_use]
-    pub fn zones(&self, line: &Line, probes: usize, accuracy: f64) -> Vec<[f64; 2]> {
+    pub fn zones(&self, line: &WindowLine, probes: usize, accuracy: f64) -> Vec<[f64; 2]> {
         let step = line.length_mm / probes as f64;
         let along: Vec<f64> = (0..=probes).map(|i| step * i as f64).collect();
         let passes = self.passes(&along.iter().map(|t| line.at(*t)).collect::<Vec<_>>());
@@ -253,7 +253,7 @@ impl<'o> Bundle<'o> {
     }
 
     /// Returns the last passing distance along a line, between a distance that passes and one that does not, mm.
-    fn edge(&self, line: &Line, [mut passing, mut blocked]: [f64; 2], accuracy_mm: f64) -> f64 {
+    fn edge(&self, line: &WindowLine, [mut passing, mut blocked]: [f64; 2], accuracy_mm: f64) -> f64 {
         while (blocked - passing).abs() > accuracy_mm {
             let step = (blocked - passing) / PARTS as f64;
             let along: Vec<f64> = (1..PARTS).map(|i| passing + step * i as f64).collect();

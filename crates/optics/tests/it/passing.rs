@@ -4,7 +4,7 @@
 use glam::DVec3;
 use spectra_core::numbers::Numbers;
 use spectra_core::{Isa, RayBatch, loss::ALIVE};
-use spectra_lens::{Aperture, Iris, Lens, Shape};
+use spectra_lens::{Aperture, ApertureShape, Iris, Lens};
 use spectra_optics::{AimPart, AimPattern, Effort, FrontPupil, RIM_EVERY, RearPupil, stop_down};
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
@@ -64,13 +64,13 @@ fn with(mut lens: Lens, opening: Opening) -> Lens {
     let semi_mm = lens.elements[at].semi_diameter_mm.expect("of a known size");
     let shape = match opening {
         Opening::Round | Opening::Blades => {
-            Shape::Iris(Iris { blades: 7, blade_radius_mm: f64::INFINITY, rotation_rad: 0.2 })
+            ApertureShape::Iris(Iris { blades: 7, blade_radius_mm: f64::INFINITY, rotation_rad: 0.2 })
         }
         // The page of the file is 24 mm wide, its tips lie on a circle of 20 mm.
         Opening::Star => {
             let star = include_bytes!("../../../../scenes/star.svg");
             let drawing = spectra_masks::read("star.svg", star, Some(2.4 * semi_mm), None);
-            Shape::Drawing(drawing.unwrap_or_else(|faults| panic!("{faults}")))
+            ApertureShape::Drawing(drawing.unwrap_or_else(|faults| panic!("{faults}")))
         }
     };
     lens.elements[at].apertures.push(Aperture { shape, center_mm: [0.0; 2], obscures: false });
@@ -450,7 +450,8 @@ fn drafts_estimate_what_the_whole_search_does() {
         let (points, seen): (Vec<_>, Vec<_>) =
             (film(frame, n).into_iter().map(tilted).collect(), corners(frame).into_iter().map(tilted).collect());
         let by = |effort| {
-            let rear = RearPupil::search_by(&lens, &tracer, &seen, BAND_NM, &spectra_core::workers::Alone, effort);
+            let rear =
+                RearPupil::search_by(&lens, &tracer, &seen, BAND_NM, &spectra_core::workers::SingleThread, effort);
             Pupil::Rear(rear.expect("the lens has an aperture"))
         };
         let start = Instant::now();

@@ -111,7 +111,8 @@ fn light_of_all_two_bounce_paths_adds_up() {
                 "{reflections:?}"
             );
             // What was lost before the last reflection belongs to the shorter path.
-            let own = path.steps().iter().rposition(|s| s.act == spectra_tracer::Act::Reflect).map_or(0, |at| at + 1);
+            let own =
+                path.steps().iter().rposition(|s| s.act == spectra_tracer::Interaction::Reflect).map_or(0, |at| at + 1);
             (ledger.arrived, ledger.lost_from(own))
         };
         let (straight, lost) = account(&[]);
@@ -154,7 +155,8 @@ fn the_axial_ray_has_the_product_of_its_reflectances() {
         let path = Path::reflected(lens.elements.len(), Travel::Forward, &reflections).expect("a path");
         let mut want = 1.0;
         for step in path.steps() {
-            want *= if step.act == spectra_tracer::Act::Reflect { r(step.element) } else { 1.0 - r(step.element) };
+            want *=
+                if step.act == spectra_tracer::Interaction::Reflect { r(step.element) } else { 1.0 - r(step.element) };
         }
         let mut rays = RayBatch::new(1);
         rays.restart(1);

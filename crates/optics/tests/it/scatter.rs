@@ -4,11 +4,11 @@
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::numbers::Numbers;
-use spectra_lens::{Aperture, Layer, Lens, Lobe, Run, Shape, Soil};
+use spectra_lens::{Aperture, ApertureShape, Layer, LayerKind, Lens, Lobe, Run};
 use spectra_optics::stop_down;
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
-use spectra_tracer::{Chance, Indices, Interior, Particle, StrayMatter, Tracer, Travel, Walker};
+use spectra_tracer::{Indices, Interior, Particle, StrayReflectances, Tracer, Travel, WalkNumbers, Walker};
 
 const NM: f64 = 546.074;
 
@@ -22,14 +22,14 @@ fn soiled() -> Lens {
         .collect();
     let layer = |soil, stopped, scattered, lobe| Layer { soil, stopped, scattered, places: Vec::new(), lobe };
     let (front, inner, rear) = (outer[0], outer[2], outer[outer.len() - 1]);
-    lens.elements[front].layers = vec![layer(Soil::Haze, 0.0, 0.1, Lobe::Harvey { shoulder: 0.03, slope: -2.5 })];
-    lens.elements[inner].layers = vec![layer(Soil::Dust, 0.1, 0.1, Lobe::disks(20_000.0, 0.4))];
+    lens.elements[front].layers = vec![layer(LayerKind::Haze, 0.0, 0.1, Lobe::Harvey { shoulder: 0.03, slope: -2.5 })];
+    lens.elements[inner].layers = vec![layer(LayerKind::Dust, 0.1, 0.1, Lobe::disks(20_000.0, 0.4))];
     let place = Aperture {
-        shape: Shape::Ellipse { half_width_mm: 5.0, half_height_mm: 9.0 },
+        shape: ApertureShape::Ellipse { half_width_mm: 5.0, half_height_mm: 9.0 },
         center_mm: [2.0, 0.0],
         obscures: false,
     };
-    let scratches = layer(Soil::Scratches, 0.2, 0.2, Lobe::lines(4_000.0, Run::Along([1.0, 0.0])));
+    let scratches = layer(LayerKind::Scratches, 0.2, 0.2, Lobe::lines(4_000.0, Run::Along([1.0, 0.0])));
     lens.elements[rear].layers = vec![Layer { places: vec![place], ..scratches }];
     lens
 }
@@ -66,7 +66,7 @@ impl Sum {
 fn paths_and_walks_agree() {
     let lens = soiled();
     let interior =
-        Interior::new(&lens, [4000.0; 2], [NM; 2], StrayMatter { paint: 0.0, imager: 0.0, imager_mirror: 0.0 });
+        Interior::new(&lens, [4000.0; 2], [NM; 2], StrayReflectances { paint: 0.0, imager: 0.0, imager_mirror: 0.0 });
     let interior = interior.expect("straight");
     let radius = interior.front_rim_mm().1;
     let n = 1 << 17;
@@ -74,7 +74,7 @@ fn paths_and_walks_agree() {
     walker.set_wavelength(NM);
     let (mut walked, mut walked_straight) = ([Sum::default(); REGIONS], Sum::default());
     for walk in 0..n {
-        let mut chance = Chance::new(5, walk as u64);
+        let mut chance = WalkNumbers::new(5, walk as u64);
         let (x, y) = spectra_core::math::concentric_disk(chance.number(), chance.number());
         let position = DVec3::new(radius * x, radius * y, -5.0);
         let start = Particle { position, direction: DVec3::Z, weight: 1.0, mirrored: 0, scattered: 0, diffused: 0 };
@@ -95,7 +95,7 @@ fn paths_and_walks_agree() {
     for (tracer, is_scattered) in [(made().scattering(), true), (made(), false)] {
         let batch = 256;
         let (mut rays, mut work) = (RayBatch::new(batch).with_numbers(), tracer.work_in_place(batch));
-        let mut chance = Chance::new(11, 0);
+        let mut chance = WalkNumbers::new(11, 0);
         for first in (0..n).step_by(batch) {
             rays.restart(batch);
             rays.number(0, &numbers, "test", 0, first as u64);

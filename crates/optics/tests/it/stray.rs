@@ -7,7 +7,9 @@ use spectra_lens::{Coating, Lens};
 use spectra_optics::stop_down;
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
-use spectra_tracer::{Chance, Indices, Interior, Particle, Path, StrayError, StrayMatter, Tracer, Travel, Walker};
+use spectra_tracer::{
+    Indices, Interior, Particle, Path, StrayError, StrayReflectances, Tracer, Travel, WalkNumbers, Walker,
+};
 
 const NM: f64 = 546.074;
 
@@ -35,7 +37,7 @@ fn walks_by_glass_alone_are_the_paths_of_the_tracer() {
     let tracer = Tracer::new(&lens, Indices::At(NM)).expect("media");
     // The imager is so wide that everything that leaves the rear reaches it.
     let interior =
-        Interior::new(&lens, [4000.0; 2], [NM; 2], StrayMatter { paint: 0.0, imager: 0.0, imager_mirror: 0.0 });
+        Interior::new(&lens, [4000.0; 2], [NM; 2], StrayReflectances { paint: 0.0, imager: 0.0, imager_mirror: 0.0 });
     let interior = interior.expect("straight");
     for slope in [0.0_f64, 0.15] {
         let direction = DVec3::new(0.0, slope, 1.0).normalize();
@@ -45,7 +47,7 @@ fn walks_by_glass_alone_are_the_paths_of_the_tracer() {
         walker.set_wavelength(NM);
         let mut came = [[0.0_f64; 2]; 3];
         for walk in 0..n {
-            let mut chance = Chance::new(5, walk as u64);
+            let mut chance = WalkNumbers::new(5, walk as u64);
             let (x, y) = spectra_core::math::concentric_disk(chance.number(), chance.number());
             let from = DVec3::new(radius * x, radius * y, -5.0);
             let mut own = [0.0; 3];
@@ -99,8 +101,8 @@ fn walks_by_glass_alone_are_the_paths_of_the_tracer() {
 #[test]
 fn both_directions_agree_and_the_books_close() {
     for (f_number, matter) in [
-        (1.5, StrayMatter { paint: 0.3, imager: 0.0, imager_mirror: 0.0 }),
-        (4.0, StrayMatter { paint: 0.2, imager: 0.3, imager_mirror: 0.2 }),
+        (1.5, StrayReflectances { paint: 0.3, imager: 0.0, imager_mirror: 0.0 }),
+        (4.0, StrayReflectances { paint: 0.2, imager: 0.3, imager_mirror: 0.2 }),
     ] {
         let lens = biotar(f_number).with_coating(Coating::Bare);
         let interior = Interior::new(&lens, [36.0, 24.0], [NM; 2], matter).expect("straight");
@@ -111,7 +113,7 @@ fn both_directions_agree_and_the_books_close() {
         let mut back = [[0.0_f64; 2]; 2];
         let n = 150_000;
         for walk in 0..n {
-            let mut chance = Chance::new(1, walk as u64);
+            let mut chance = WalkNumbers::new(1, walk as u64);
             let (x, y) = spectra_core::math::concentric_disk(chance.number(), chance.number());
             if let Some(out) = walker.from_imager([radius * x, radius * y], &mut chance) {
                 let sum = &mut back[usize::from(!out.is_straight())];
@@ -130,7 +132,7 @@ fn both_directions_agree_and_the_books_close() {
         let mut there = [[0.0_f64; 2]; 2];
         let m = 600_000;
         for walk in 0..m {
-            let mut chance = Chance::new(2, walk as u64);
+            let mut chance = WalkNumbers::new(2, walk as u64);
             let z = height * chance.number();
             let (s, c) = spectra_core::math::sin_cos_turns(chance.number());
             let across = (2.0 * r * z - z * z).sqrt();
@@ -166,13 +168,13 @@ fn both_directions_agree_and_the_books_close() {
 fn white_walls_lose_nothing() {
     let mut lens = biotar(2.0).with_coating(Coating::Bare);
     lens.absorption = false;
-    let matter = StrayMatter { paint: 1.0, imager: 0.5, imager_mirror: 0.5 };
+    let matter = StrayReflectances { paint: 1.0, imager: 0.5, imager_mirror: 0.5 };
     let interior = Interior::new(&lens, [36.0, 24.0], [NM; 2], matter).expect("straight");
     let mut walker = Walker::new(&interior);
     walker.set_wavelength(NM);
     for walk in 0..2000 {
         let from = start(DVec3::new(0.0, 3.0, -5.0), DVec3::new(0.05, 0.1, 1.0).normalize());
-        walker.from_front(from, &mut Chance::new(3, walk), |_| {});
+        walker.from_front(from, &mut WalkNumbers::new(3, walk), |_| {});
     }
     let ledger = walker.ledger;
     assert!((ledger.front / ledger.launched - 1.0).abs() < 1e-9 && ledger.not_traced == 0.0, "{ledger:?}");
@@ -181,7 +183,7 @@ fn white_walls_lose_nothing() {
 /// Lenses whose inside is not a row of rooms are refused, each with its reason.
 #[test]
 fn some_lenses_have_no_straight_barrel() {
-    let matter = StrayMatter::default();
+    let matter = StrayReflectances::default();
     let refused = |lens: &Lens| Interior::new(lens, [36.0, 24.0], [NM; 2], matter).map(|_| ()).expect_err("refused");
     assert_eq!(refused(&Lens::empty("none")), StrayError::NoSurfaces);
     let mut lens = biotar(2.0);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use spectra_core::workers::Workers;
-use spectra_lens::{Aperture, Iris, Lens, Shape};
+use spectra_lens::{Aperture, ApertureShape, Iris, Lens};
 use spectra_optics::{FrontPupil, RearPupil};
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
@@ -12,7 +12,7 @@ use std::path::Path;
 struct Threads(usize);
 
 impl Workers for Threads {
-    fn each(&self, work: &(dyn Fn() + Sync)) {
+    fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
         std::thread::scope(|scope| {
             for _ in 0..self.0 {
                 scope.spawn(work);
@@ -30,7 +30,7 @@ fn lens(name: &str) -> Lens {
 struct Impatient(std::sync::atomic::AtomicUsize);
 
 impl Workers for Impatient {
-    fn each(&self, work: &(dyn Fn() + Sync)) {
+    fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
         work();
     }
 
@@ -60,7 +60,7 @@ fn pupils_have_the_same_bits_on_any_number_of_threads() {
     let mut bladed = lens("zeiss-biotar-50-f1.4");
     let stop = bladed.elements.iter_mut().find(|e| e.surface.is_stop()).expect("a stop");
     stop.semi_diameter_mm = Some(4.0);
-    let shape = Shape::Iris(Iris { blades: 7, blade_radius_mm: f64::INFINITY, rotation_rad: 0.2 });
+    let shape = ApertureShape::Iris(Iris { blades: 7, blade_radius_mm: f64::INFINITY, rotation_rad: 0.2 });
     stop.apertures.push(Aperture { shape, center_mm: [0.0; 2], obscures: false });
     let (min_nm, max_nm) = (450.0, 650.0);
     let tracer = |lens: &Lens| Tracer::new(lens, Indices::Band { min_nm, max_nm }).expect("media");

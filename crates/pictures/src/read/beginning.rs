@@ -2,9 +2,9 @@
 
 use super::decode::{self, Kind};
 use super::header::Header;
-use super::linear::{Choice, Trouble};
+use super::linear_picture::{FileProblem, ReadOptions};
 use super::{exr, jpeg, tiff};
-use spectra_core::resources::{Found, ResourceError};
+use spectra_core::resources::{FoundFile, ResourceError};
 
 /// Number of bytes at the start of a JPEG that its decoder receives: it reads all that it is given, and the size comes before the pixels.
 const BEGINNING_BYTES: u64 = 4 << 20;
@@ -14,8 +14,8 @@ const BEGINNING_BYTES: u64 = 4 << 20;
 ///
 /// # Errors
 /// What is wrong with the file.
-pub fn header(found: &Found, choice: Choice<'_>) -> Result<Header, Trouble> {
-    let io = |error: ResourceError| Trouble::file(error.to_string());
+pub fn header(found: &FoundFile, choice: ReadOptions<'_>) -> Result<Header, FileProblem> {
+    let io = |error: ResourceError| FileProblem::file(error.to_string());
     let bytes = found.size_bytes().map_err(io)?;
     let beginning = found.read(64).map_err(io)?;
     let kind = decode::kind(&beginning, choice)?;

@@ -2,16 +2,16 @@
 
 use super::decode::{self, Kind};
 use super::exr;
-use super::linear::{Choice, Trouble};
-use super::planes::{Plane, Planes};
-use spectra_core::resources::{Found, ResourceError};
+use super::linear_picture::{FileProblem, ReadOptions};
+use super::picture_channels::{ChannelData, PictureChannels};
+use spectra_core::resources::{FoundFile, ResourceError};
 
 /// Reads all channels of an OpenEXR file. From any other format that [`decode()`](super::decode()) supports, reads the linear light.
 ///
 /// # Errors
 /// What is wrong with the file.
-pub fn planes(found: &Found, choice: Choice<'_>) -> Result<Planes, Trouble> {
-    let io = |error: ResourceError| Trouble::file(error.to_string());
+pub fn planes(found: &FoundFile, choice: ReadOptions<'_>) -> Result<PictureChannels, FileProblem> {
+    let io = |error: ResourceError| FileProblem::file(error.to_string());
     let kind = decode::kind(&found.read(64).map_err(io)?, choice)?;
     if kind == Kind::Exr {
         return exr::planes(found.open().map_err(io)?, found.size_bytes().map_err(io)?);
@@ -23,15 +23,15 @@ pub fn planes(found: &Found, choice: Choice<'_>) -> Result<Planes, Trouble> {
         Kind::Native(image::ImageFormat::Hdr) => "Radiance HDR",
         _ => "by OpenImageIO",
     };
-    let mut doubts = super::header(found, choice)?.doubts;
+    let mut doubts = super::header(found, choice)?.warnings;
     let linear = decode::decode(found, choice)?;
-    doubts.extend(linear.doubts.iter().cloned());
-    let channel = |(at, name): (usize, &str)| Plane {
+    doubts.extend(linear.warnings.iter().cloned());
+    let channel = |(at, name): (usize, &str)| ChannelData {
         name: name.to_owned(),
         unit: String::new(),
         values: linear.rgb.iter().map(|rgb| rgb[at]).collect(),
     };
-    Ok(Planes {
+    Ok(PictureChannels {
         format,
         width: linear.width,
         height: linear.height,
@@ -40,6 +40,6 @@ pub fn planes(found: &Found, choice: Choice<'_>) -> Result<Planes, Trouble> {
         chromaticities: None,
         attributes: Vec::new(),
         clipped_at: linear.clipped_at,
-        doubts,
+        warnings: doubts,
     })
 }

@@ -1,15 +1,15 @@
 //! Reads JPEG and TIFF files of printing inks (CMYK) that have a color profile. Passes them on as 16-bit integers in [`space`], whose
 //! primaries enclose what inks print, with the curve of sRGB.
 
-use super::inks::Inks;
-use super::linear::Trouble;
+use super::ink_profile::InkProfile;
+use super::linear_picture::FileProblem;
 use super::{jpeg, tiff};
 use image::error::{DecodingError, UnsupportedError, UnsupportedErrorKind};
 use image::metadata::Orientation;
 use image::{ColorType, ExtendedColorType, ImageDecoder, ImageError, ImageFormat, ImageResult};
 use rayon::prelude::*;
 use spectra_color::{RgbSpace, Transfer};
-use spectra_core::resources::Found;
+use spectra_core::resources::FoundFile;
 use std::io::{BufRead, Seek};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
@@ -32,7 +32,7 @@ pub(super) fn space() -> &'static RgbSpace {
 /// A decoder of a CMYK file with a color profile.
 pub(super) struct Cmyk<R: BufRead + Seek> {
     codes: Codes<R>,
-    inks: Inks,
+    inks: InkProfile,
     size: (u32, u32),
     orientation: Orientation,
 }
@@ -45,7 +45,7 @@ enum Codes<R: BufRead + Seek> {
 }
 
 /// Returns whether a file holds four inks.
-pub(super) fn is_one(found: &Found, format: ImageFormat) -> bool {
+pub(super) fn is_one(found: &FoundFile, format: ImageFormat) -> bool {
     match format {
         ImageFormat::Jpeg => found.open().ok().and_then(jpeg::components) == Some(INKS as u8),
         ImageFormat::Tiff => found.open().ok().is_some_and(tiff::has_inks),
@@ -54,16 +54,16 @@ pub(super) fn is_one(found: &Found, format: ImageFormat) -> bool {
 }
 
 /// Returns the warning about a CMYK file without a profile.
-pub(super) fn without_profile() -> Trouble {
+pub(super) fn without_profile() -> FileProblem {
     let text = "it holds printing inks (CMYK) without a color profile that says what they look like: its colors are computed by plain \
                 arithmetic, and are purer and brighter than in print";
-    Trouble::file(text).hint("save it with its profile, or as sRGB")
+    FileProblem::file(text).hint("save it with its profile, or as sRGB")
 }
 
 impl<R: BufRead + Seek> Cmyk<R> {
     /// Opens a CMYK decoder; `None` if the file is of another kind, has no profile of inks, or is not sound. In the last case its usual
     /// decoder reports what is wrong.
-    pub(super) fn new(mut reader: R, found: &Found, format: ImageFormat) -> Option<Self> {
+    pub(super) fn new(mut reader: R, found: &FoundFile, format: ImageFormat) -> Option<Self> {
         if !is_one(found, format) {
             return None;
         }
@@ -75,14 +75,14 @@ impl<R: BufRead + Seek> Cmyk<R> {
                 decoder.decode_headers().ok()?;
                 let (width, height) = decoder.dimensions()?;
                 let space = decoder.input_colorspace().filter(|s| matches!(s, ColorSpace::CMYK | ColorSpace::YCCK))?;
-                let inks = Inks::read(&decoder.icc_profile()?, self::space())?;
+                let inks = InkProfile::read(&decoder.icc_profile()?, self::space())?;
                 let orientation = decoder.exif().and_then(|exif| Orientation::from_exif_chunk(exif));
                 let size = (u32::try_from(width).ok()?, u32::try_from(height).ok()?);
                 let orientation = orientation.unwrap_or(Orientation::NoTransforms);
                 Some(Self { codes: Codes::Jpeg(bytes, space), inks, size, orientation })
             }
             _ => {
-                let inks = Inks::read(&tiff::profile(found.open().ok()?)?, self::space())?;
+                let inks = InkProfile::read(&tiff::profile(found.open().ok()?)?, self::space())?;
                 let mut decoder = ::tiff::decoder::Decoder::new(reader).ok()?;
                 let stated = decoder.find_tag_unsigned::<u8>(::tiff::tags::Tag::Orientation).ok()?;
                 let orientation = stated.and_then(Orientation::from_exif).unwrap_or(Orientation::NoTransforms);
@@ -94,7 +94,7 @@ impl<R: BufRead + Seek> Cmyk<R> {
 }
 
 /// Writes pixels from amounts of ink, each from 0 to 1.
-fn print(inks: &Inks, to: &mut [u8], amounts: impl Fn(usize) -> [f64; INKS] + Sync) {
+fn print(inks: &InkProfile, to: &mut [u8], amounts: impl Fn(usize) -> [f64; INKS] + Sync) {
     const PIXEL: usize = 6;
     to.par_chunks_mut(PIXELS_A_TASK * PIXEL).enumerate().for_each(|(task, to)| {
         let mut known = None;
@@ -206,9 +206,9 @@ impl<R: BufRead + Seek> ImageDecoder for Cmyk<R> {
 #[cfg(test)]
 mod tests {
     use crate::read::decode::decode_bytes;
-    use crate::read::linear::Choice;
+    use crate::read::linear_picture::ReadOptions;
     use spectra_color::Transfer;
-    use spectra_core::resources::Found;
+    use spectra_core::resources::FoundFile;
 
     /// Compares twelve patches of ink, with a profile of each kind of table, and as JPEG in CMYK and YCCK, with LittleCMS 2 on the same
     /// files (`xtask/picture_samples.py`).
@@ -229,8 +229,8 @@ mod tests {
         assert_eq!(files.len(), 5);
         for (name, patches) in files {
             let bytes = std::fs::read(format!("{folder}{name}")).expect("a sample");
-            let read = decode_bytes(&bytes, Choice::default()).expect("a picture");
-            assert!(read.doubts.is_empty() && (read.width, read.height) == (32, 24), "{name}: {:?}", read.doubts);
+            let read = decode_bytes(&bytes, ReadOptions::default()).expect("a picture");
+            assert!(read.warnings.is_empty() && (read.width, read.height) == (32, 24), "{name}: {:?}", read.warnings);
             let most = if name == "ycck.jpg" { 2.01 } else { 1.01 };
             for (i, want) in patches.iter().enumerate() {
                 let light = read.rgb[(8 * (i / 4) + 4) * 32 + 8 * (i % 4) + 4];
@@ -250,14 +250,14 @@ mod tests {
         let at = bytes.windows(12).position(|w| w == b"ICC_PROFILE\0").expect("a profile");
         let mut without = bytes.clone();
         without[at - 3] = 0xec;
-        let found = Found::bytes("print.jpg".to_owned(), without.into());
-        let read = crate::read::header(&found, Choice::default()).expect("a picture");
-        assert!(read.doubts.iter().any(|doubt| doubt.text.contains("CMYK")), "{:?}", read.doubts);
+        let found = FoundFile::bytes("print.jpg".to_owned(), without.into());
+        let read = crate::read::header(&found, ReadOptions::default()).expect("a picture");
+        assert!(read.warnings.iter().any(|doubt| doubt.text.contains("CMYK")), "{:?}", read.warnings);
         // A profile with a broken byte anywhere does not crash the reader.
         for at in (at..at + 4000).step_by(7) {
             let mut bad = bytes.clone();
             bad[at] ^= 0xff;
-            let _ = decode_bytes(&bad, Choice::default());
+            let _ = decode_bytes(&bad, ReadOptions::default());
         }
     }
 }

@@ -3,15 +3,17 @@
 use super::cmyk::Cmyk;
 use super::encoding::Encoding;
 use super::header::Header;
-use super::linear::{Choice, Linear, MAX_SIDE, OPAQUE, Trouble, check_size, finite, mend, over_black, positive};
+use super::linear_picture::{
+    FileProblem, LinearPicture, MAX_SIDE, OPAQUE, ReadOptions, check_size, finite, mend, over_black, positive,
+};
 use super::tags::Tags;
-use super::{exr, foreign, jpeg, tiff, turn};
+use super::{exr, jpeg, library_formats, orientation, tiff};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
 use spectra_color::Transfer;
 use spectra_color::matrix::apply;
-use spectra_core::resources::{Found, ResourceError};
+use spectra_core::resources::{FoundFile, ResourceError};
 use std::io::{BufRead, Seek};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -27,7 +29,7 @@ const MAX_PIXELS_PER_BYTE: u64 = 1_100 * 8;
 ///
 /// # Errors
 /// What is wrong with the file.
-pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
+pub fn decode(found: &FoundFile, choice: ReadOptions<'_>) -> Result<LinearPicture, FileProblem> {
     let said = choice.transfer.map(Encoding::named).transpose()?;
     let bytes = found.size_bytes().map_err(io)?;
     let kind = kind(&found.read(64).map_err(io)?, choice)?;
@@ -39,10 +41,10 @@ pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
             Ok(linear) => Ok(linear),
             Err(NotRead::Trouble(trouble)) => Err(trouble),
             Err(NotRead::Unsupported(why)) => {
-                foreign::decode(found, choice, said).map_err(|trouble| foreign::also(&why, trouble))
+                library_formats::decode(found, choice, said).map_err(|trouble| library_formats::also(&why, trouble))
             }
         },
-        Kind::Foreign => foreign::decode(found, choice, said),
+        Kind::Foreign => library_formats::decode(found, choice, said),
     }
 }
 
@@ -50,14 +52,18 @@ pub fn decode(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
 ///
 /// # Errors
 /// What is wrong with the file.
-pub(super) fn foreign_header(found: &Found, choice: Choice<'_>, why: Option<&str>) -> Result<Header, Trouble> {
+pub(super) fn foreign_header(
+    found: &FoundFile,
+    choice: ReadOptions<'_>,
+    why: Option<&str>,
+) -> Result<Header, FileProblem> {
     let said = choice.transfer.map(Encoding::named).transpose()?;
-    let header = foreign::header(found, choice, said);
-    header.map_err(|trouble| why.map_or(trouble.clone(), |why| foreign::also(why, trouble)))
+    let header = library_formats::header(found, choice, said);
+    header.map_err(|trouble| why.map_or(trouble.clone(), |why| library_formats::also(why, trouble)))
 }
 
-fn io(error: ResourceError) -> Trouble {
-    Trouble::file(error.to_string())
+fn io(error: ResourceError) -> FileProblem {
+    FileProblem::file(error.to_string())
 }
 
 /// The reader of a file.
@@ -75,23 +81,23 @@ pub(super) const TIFF: Kind = Kind::Native(ImageFormat::Tiff);
 ///
 /// # Errors
 /// An empty file; a layer, a depth or a transfer that this kind of file cannot have.
-pub(super) fn kind(beginning: &[u8], choice: Choice<'_>) -> Result<Kind, Trouble> {
+pub(super) fn kind(beginning: &[u8], choice: ReadOptions<'_>) -> Result<Kind, FileProblem> {
     if beginning.is_empty() {
-        return Err(Trouble::file("the file is empty")
+        return Err(FileProblem::file("the file is empty")
             .hint("is the file complete? Save it again as OpenEXR, PNG, JPEG, TIFF or HDR"));
     }
     let said = choice.transfer.map(Encoding::named).transpose()?;
     if beginning.starts_with(&exr::MAGIC) {
         if said.is_some() {
-            return Err(Trouble::at("transfer", "an OpenEXR file holds linear light").hint("leave `transfer` out"));
+            return Err(FileProblem::at("transfer", "an OpenEXR file holds linear light").hint("leave `transfer` out"));
         }
         return Ok(Kind::Exr);
     }
     if choice.layer.is_some() {
-        return Err(Trouble::at("layer", "only an OpenEXR file has layers").hint("leave `layer` out"));
+        return Err(FileProblem::at("layer", "only an OpenEXR file has layers").hint("leave `layer` out"));
     }
     if choice.depth.is_some() {
-        return Err(Trouble::at("depth", "only an OpenEXR file has a depth channel")
+        return Err(FileProblem::at("depth", "only an OpenEXR file has a depth channel")
             .hint("name a file that has it: `depth: {file: ..., channel: Z}`"));
     }
     // BigTIFF, for files of more than 4 GB, has 43 instead of 42 after the byte order.
@@ -103,13 +109,13 @@ pub(super) fn kind(beginning: &[u8], choice: Choice<'_>) -> Result<Kind, Trouble
 
 /// Reasons why a file of a known kind is not read.
 enum NotRead {
-    Trouble(Trouble),
+    Trouble(FileProblem),
     /// A sound variant of the kind that this crate does not support.
     Unsupported(String),
 }
 
-impl From<Trouble> for NotRead {
-    fn from(trouble: Trouble) -> Self {
+impl From<FileProblem> for NotRead {
+    fn from(trouble: FileProblem) -> Self {
         Self::Trouble(trouble)
     }
 }
@@ -118,7 +124,7 @@ impl From<ImageError> for NotRead {
     fn from(error: ImageError) -> Self {
         match error {
             ImageError::Unsupported(why) => Self::Unsupported(why.to_string()),
-            other => Self::Trouble(Trouble::file(other.to_string())),
+            other => Self::Trouble(FileProblem::file(other.to_string())),
         }
     }
 }
@@ -127,7 +133,7 @@ impl From<ImageError> for NotRead {
 fn decoder<'a>(
     reader: impl BufRead + Seek + 'a,
     format: ImageFormat,
-    found: &'a Found,
+    found: &'a FoundFile,
 ) -> Result<impl ImageDecoder + 'a, NotRead> {
     let is_tiff = format == ImageFormat::Tiff;
     let widened = if is_tiff { tiff::Widened::new(found.open().map_err(io)?) } else { None };
@@ -144,7 +150,7 @@ fn decoder<'a>(
     let is_packed = format == ImageFormat::WebP;
     if !is_packed && u64::from(width) * u64::from(height) > bytes * MAX_PIXELS_PER_BYTE {
         let text = format!("the header states {width} x {height} pixels, but a file of {bytes} bytes cannot hold them");
-        return Err(Trouble::file(text).into());
+        return Err(FileProblem::file(text).into());
     }
     Ok(decoder)
 }
@@ -153,16 +159,16 @@ fn decoder<'a>(
 pub(super) fn native_header<'a>(
     reader: impl BufRead + Seek + 'a,
     format: ImageFormat,
-    found: &'a Found,
-    choice: Choice<'_>,
-) -> Result<Result<Header, String>, Trouble> {
+    found: &'a FoundFile,
+    choice: ReadOptions<'_>,
+) -> Result<Result<Header, String>, FileProblem> {
     let mut decoder = match decoder(reader, format, found) {
         Ok(decoder) => decoder,
         Err(NotRead::Trouble(trouble)) => return Err(trouble),
         Err(NotRead::Unsupported(why)) => return Ok(Err(why)),
     };
     let (width, height) = decoder.dimensions();
-    let turned = turn::is_on_its_side(orientation(&mut decoder));
+    let turned = orientation::is_on_its_side(orientation(&mut decoder));
     let [width, height] = if turned { [height, width] } else { [width, height] };
     let tags = Tags::of(found, format, &mut decoder);
     let clips = tags.is_long || !matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
@@ -170,7 +176,7 @@ pub(super) fn native_header<'a>(
     let said = choice.transfer.map(Encoding::named).transpose()?;
     let encoding = said.or_else(|| tags.encoding.clone()).unwrap_or(Encoding::Curve(Transfer::Srgb));
     // A user who states the curve has already dealt with the warning.
-    let doubts = tags.doubt.filter(|_| choice.transfer.is_none()).into_iter().collect();
+    let doubts = tags.warning.filter(|_| choice.transfer.is_none()).into_iter().collect();
     Ok(Ok(Header {
         width,
         height,
@@ -179,7 +185,7 @@ pub(super) fn native_header<'a>(
         clips,
         is_for_display: clips && encoding.is_for_display(),
         is_jpeg: format == ImageFormat::Jpeg,
-        doubts,
+        warnings: doubts,
     }))
 }
 
@@ -193,7 +199,12 @@ fn orientation(decoder: &mut impl ImageDecoder) -> u8 {
     decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif()
 }
 
-fn native(found: &Found, format: ImageFormat, choice: Choice<'_>, said: Option<Encoding>) -> Result<Linear, NotRead> {
+fn native(
+    found: &FoundFile,
+    format: ImageFormat,
+    choice: ReadOptions<'_>,
+    said: Option<Encoding>,
+) -> Result<LinearPicture, NotRead> {
     if format == ImageFormat::Jpeg {
         jpeg::refuse_unless_whole(found)?;
     }
@@ -216,7 +227,7 @@ fn native(found: &Found, format: ImageFormat, choice: Choice<'_>, said: Option<E
 ///
 /// # Errors
 /// The file cannot be read.
-pub fn is_exr(found: &Found) -> Result<bool, Trouble> {
+pub fn is_exr(found: &FoundFile) -> Result<bool, FileProblem> {
     Ok(found.read(64).map_err(io)?.starts_with(&exr::MAGIC))
 }
 
@@ -224,17 +235,17 @@ pub fn is_exr(found: &Found) -> Result<bool, Trouble> {
 ///
 /// # Errors
 /// What is wrong with the file.
-pub fn depth(found: &Found, choice: Choice<'_>) -> Result<Linear, Trouble> {
+pub fn depth(found: &FoundFile, choice: ReadOptions<'_>) -> Result<LinearPicture, FileProblem> {
     if !is_exr(found)? {
-        return Err(Trouble::file("only an OpenEXR file has a depth channel"));
+        return Err(FileProblem::file("only an OpenEXR file has a depth channel"));
     }
     exr::decode(found.open().map_err(io)?, found.size_bytes().map_err(io)?, choice, false)
 }
 
 /// Returns how many pixels the chosen depth channel has beyond the picture on each side, horizontally and vertically; 0 if the file cannot
 /// be read.
-pub fn depth_overscan(found: &Found, choice: Choice<'_>) -> [u32; 2] {
-    let read = || -> Result<[u32; 2], Trouble> {
+pub fn depth_overscan(found: &FoundFile, choice: ReadOptions<'_>) -> [u32; 2] {
+    let read = || -> Result<[u32; 2], FileProblem> {
         if !is_exr(found)? {
             return Ok([0; 2]);
         }
@@ -265,10 +276,10 @@ fn linear<R: BufRead + Seek>(
     decoder: impl ImageDecoder,
     plain: Option<tiff::Plain<R>>,
     orientation: u8,
-    choice: Choice<'_>,
+    choice: ReadOptions<'_>,
     tags: &Tags,
-) -> Result<Linear, NotRead> {
-    let Choice { cover, is_plain, .. } = choice;
+) -> Result<LinearPicture, NotRead> {
+    let ReadOptions { alpha: cover, is_plain, .. } = choice;
     const LIGHT: usize = size_of::<[f32; 3]>();
     let color = decoder.color_type();
     let samples = match color {
@@ -357,7 +368,7 @@ fn linear<R: BufRead + Seek>(
             let (before, codes) = memory.split_at_mut(start);
             let room = start - codes.len();
             for (i, pixel) in before[room..].chunks_exact_mut(size).enumerate() {
-                pixel.copy_from_slice(&codes[turn::stored(i, stored_size, orientation) * size..][..size]);
+                pixel.copy_from_slice(&codes[orientation::stored(i, stored_size, orientation) * size..][..size]);
             }
             memory.copy_within(room..start, start);
             is_upright = true;
@@ -423,11 +434,11 @@ fn linear<R: BufRead + Seek>(
         doubts.extend(over_black(thin.load(Relaxed), pixels));
     }
     if !is_upright {
-        turn::upright(&mut rgb, stored_size, orientation);
-        turn::upright(alpha.as_chunks_mut::<1>().0, stored_size, orientation);
+        orientation::upright(&mut rgb, stored_size, orientation);
+        orientation::upright(alpha.as_chunks_mut::<1>().0, stored_size, orientation);
     }
-    let turned = turn::is_on_its_side(orientation);
-    Ok(Linear {
+    let turned = orientation::is_on_its_side(orientation);
+    Ok(LinearPicture {
         width: if turned { height } else { width },
         height: if turned { width } else { height },
         pixel_aspect: seen(tags.pixel_aspect, turned),
@@ -437,14 +448,14 @@ fn linear<R: BufRead + Seek>(
         // Primaries of another space map white to white except for the last digits.
         clipped_at: (!matches!(samples, Samples::Floats))
             .then(|| of_integers.clipped_at() * if to_srgb.is_some() { 1.0 - 1e-5 } else { 1.0 }),
-        doubts,
+        warnings: doubts,
     })
 }
 
 /// Runs [`decode`] on bytes in memory.
 #[cfg(test)]
-pub(super) fn decode_bytes(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
-    decode(&Found::bytes("a file".to_owned(), bytes.to_vec().into()), choice)
+pub(super) fn decode_bytes(bytes: &[u8], choice: ReadOptions<'_>) -> Result<LinearPicture, FileProblem> {
+    decode(&FoundFile::bytes("a file".to_owned(), bytes.to_vec().into()), choice)
 }
 
 #[cfg(test)]
@@ -465,7 +476,7 @@ mod tests {
         let mut picture = RgbImage::new(3, 2);
         picture.put_pixel(2, 0, Rgb([255, 255, 255]));
         picture.put_pixel(0, 1, Rgb([188, 0, 0]));
-        let linear = decode(&png(&picture), Choice::default()).unwrap();
+        let linear = decode(&png(&picture), ReadOptions::default()).unwrap();
         assert_eq!((linear.width, linear.height), (3, 2));
         assert_eq!(linear.rgb[2], [1.0, 1.0, 1.0]);
         // IEC 61966-2-1: ((188/255 + 0.055) / 1.055)^2.4 = 0.50289.
@@ -484,8 +495,8 @@ mod tests {
             let written =
                 if alpha { picture.write_to(&mut bytes, format) } else { opaque.write_to(&mut bytes, format) };
             written.expect("written");
-            let found = Found::bytes("picture".to_owned(), bytes.into_inner().into());
-            super::decode(&found, Choice { cover: true, ..Choice::default() }).expect("a picture")
+            let found = FoundFile::bytes("picture".to_owned(), bytes.into_inner().into());
+            super::decode(&found, ReadOptions { alpha: true, ..ReadOptions::default() }).expect("a picture")
         };
         for alpha in [false, true] {
             let png = of(ImageFormat::Png, alpha);
@@ -502,7 +513,7 @@ mod tests {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/");
         let [lossy, plain] = ["lossy.webp", "lossy.png"].map(|name| {
             let bytes = std::fs::read(format!("{folder}{name}")).expect("a sample");
-            decode(&bytes, Choice::default()).expect("a picture")
+            decode(&bytes, ReadOptions::default()).expect("a picture")
         });
         assert_eq!((lossy.width, lossy.height), (plain.width, plain.height));
         let lab = |light: &[f32; 3]| {
@@ -575,7 +586,7 @@ mod tests {
         for (channels, is_tiled) in [(3, false), (4, false), (3, true), (4, true)] {
             let [planes, pixels] = [true, false].map(|is_planar| {
                 let cover = |c, x, y| if c == 3 { x as f32 / 20.0 } else { of(c, x, y) };
-                let choice = Choice { cover: true, ..Choice::default() };
+                let choice = ReadOptions { alpha: true, ..ReadOptions::default() };
                 decode(&tiff_of(channels, is_planar, is_tiled, cover), choice).unwrap()
             });
             assert_eq!((planes.width, planes.height), (20, 19));
@@ -593,44 +604,47 @@ mod tests {
             let picture = image::RgbaImage::from_fn(side, side, |x, y| image::Rgba(of(x, y)));
             let mut bytes = Cursor::new(Vec::new());
             picture.write_to(&mut bytes, ImageFormat::Png).unwrap();
-            let read = decode(bytes.get_ref(), Choice::default()).unwrap();
-            let [doubt] = &read.doubts[..] else { panic!("{:?}", read.doubts) };
+            let read = decode(bytes.get_ref(), ReadOptions::default()).unwrap();
+            let [doubt] = &read.warnings[..] else { panic!("{:?}", read.warnings) };
             assert!(doubt.text.contains(&format!("{side} of its {} pixels", side * side)), "{}", doubt.text);
-            let covered = decode(bytes.get_ref(), Choice { cover: true, ..Choice::default() }).unwrap();
-            assert!(covered.doubts.is_empty() && covered.alpha.is_some());
+            let covered = decode(bytes.get_ref(), ReadOptions { alpha: true, ..ReadOptions::default() }).unwrap();
+            assert!(covered.warnings.is_empty() && covered.alpha.is_some());
         }
         let mut bytes = Cursor::new(Vec::new());
         image::RgbaImage::from_pixel(3, 2, image::Rgba([9, 9, 9, 255])).write_to(&mut bytes, ImageFormat::Png).unwrap();
-        assert!(decode(bytes.get_ref(), Choice::default()).unwrap().doubts.is_empty());
+        assert!(decode(bytes.get_ref(), ReadOptions::default()).unwrap().warnings.is_empty());
     }
 
     #[test]
     fn broken_and_hostile_files_are_refused() {
         let good = png(&RgbImage::new(64, 64));
         for cut in [0, 1, 7, 8, 20, 33, 50, good.len() - 13] {
-            assert!(decode(&good[..cut], Choice::default()).is_err(), "cut at {cut}");
+            assert!(decode(&good[..cut], ReadOptions::default()).is_err(), "cut at {cut}");
         }
         // A header that claims 60 000 x 60 000 pixels, and one that claims 2^31 per side.
         for side in [60_000_u32, 0x7fff_ffff] {
             let mut bad = good.clone();
             bad[16..20].copy_from_slice(&side.to_be_bytes());
             bad[20..24].copy_from_slice(&side.to_be_bytes());
-            assert!(decode(&bad, Choice::default()).is_err());
+            assert!(decode(&bad, ReadOptions::default()).is_err());
         }
-        assert!(decode(b"GIF89a not read", Choice::default()).is_err());
+        assert!(decode(b"GIF89a not read", ReadOptions::default()).is_err());
     }
 
     #[test]
     fn the_encoding_that_is_said_is_taken() {
         let bytes = png(&RgbImage::from_pixel(2, 1, Rgb([0, 51, 255])));
-        let said = |transfer| decode(&bytes, Choice { transfer: Some(transfer), ..Choice::default() });
+        let said = |transfer| decode(&bytes, ReadOptions { transfer: Some(transfer), ..ReadOptions::default() });
         assert_eq!(said("linear").unwrap().rgb[0], [0.0, 0.2, 1.0]);
         // ITU-R BT.709: ((0.2 + 0.099) / 1.099)^(1/0.45) = 0.05543.
         assert!((said("rec709").unwrap().rgb[0][1] - 0.055_43).abs() < 1e-4);
         let trouble = said("srbg").expect_err("not known");
         assert_eq!((trouble.key, trouble.hint.is_some()), ("transfer", true));
         let exr = exr::MAGIC.to_vec();
-        assert_eq!(decode(&exr, Choice { transfer: Some("srgb"), ..Choice::default() }).err().unwrap().key, "transfer");
+        assert_eq!(
+            decode(&exr, ReadOptions { transfer: Some("srgb"), ..ReadOptions::default() }).err().unwrap().key,
+            "transfer"
+        );
     }
 
     /// TIFF 6.0, `Orientation`: 6 means that the first stored row is the right side of the picture.
@@ -646,7 +660,7 @@ mod tests {
         image::ImageEncoder::set_exif_metadata(&mut encoder, exif).unwrap();
         let stored = image::imageops::resize(&stored, 48, 32, image::imageops::FilterType::Nearest);
         encoder.encode_image(&stored).unwrap();
-        let upright = decode(&bytes.into_inner(), Choice::default()).unwrap();
+        let upright = decode(&bytes.into_inner(), ReadOptions::default()).unwrap();
         assert_eq!((upright.width, upright.height), (32, 48));
         let at = |column: usize, row: usize| upright.rgb[row * 32 + column];
         assert!(at(28, 4)[0] > 0.9 && at(28, 4)[1] < 0.05, "the first pixel is at the top right");
@@ -659,12 +673,12 @@ mod tests {
             return;
         }
         for (bytes, name) in [(&b"SDPX"[..], "scan.DPX"), (b"GIF89a\0\0\0\0", "dance.gif")] {
-            let trouble = decode(bytes, Choice { name, ..Choice::default() }).expect_err("not read");
+            let trouble = decode(bytes, ReadOptions { name, ..ReadOptions::default() }).expect_err("not read");
             assert!(trouble.hint.is_some_and(|hint| hint.contains("--features oiio")), "{name}: {}", trouble.text);
         }
         // The message does not suggest a library for unknown or broken files.
         for name in ["notes.txt", "broken.png", "nothing"] {
-            let trouble = decode(b"some text", Choice { name, ..Choice::default() }).expect_err("not read");
+            let trouble = decode(b"some text", ReadOptions { name, ..ReadOptions::default() }).expect_err("not read");
             assert!(trouble.hint.is_none_or(|hint| !hint.contains("oiio")), "{name}");
         }
     }

@@ -1,6 +1,6 @@
 //! Converts code values to linear light.
 
-use super::linear::Trouble;
+use super::linear_picture::FileProblem;
 use spectra_color::{Transfer, from_aces_cct};
 use std::sync::Arc;
 
@@ -40,9 +40,9 @@ const WORDS: [(&str, &[&str]); 4] = [
 
 impl Encoding {
     /// Returns the encoding with this name in a scene.
-    pub(super) fn named(name: &str) -> Result<Self, Trouble> {
+    pub(super) fn named(name: &str) -> Result<Self, FileProblem> {
         NAMES.iter().find(|(own, _)| *own == name).map(|(_, encoding)| encoding.clone()).ok_or_else(|| {
-            let trouble = Trouble::at("transfer", format!("unknown transfer `{name}`"));
+            let trouble = FileProblem::at("transfer", format!("unknown transfer `{name}`"));
             trouble.hint("choose linear, srgb, rec709 or cineon")
         })
     }

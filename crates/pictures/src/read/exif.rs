@@ -66,7 +66,7 @@ fn long(exif: &[u8], at: usize) -> Option<u32> {
 mod tests {
     use super::*;
     use crate::read::decode::decode_bytes;
-    use crate::read::linear::Choice;
+    use crate::read::linear_picture::ReadOptions;
 
     /// Builds Exif data as cameras write them, in either byte order.
     fn exif(is_big: bool, color_space: u16, index: &[u8; 4]) -> Vec<u8> {
@@ -116,7 +116,7 @@ mod tests {
         let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 100);
         image::ImageEncoder::set_exif_metadata(&mut encoder, exif(true, 0xffff, b"R03\0")).expect("kept");
         encoder.encode_image(&image::RgbImage::from_pixel(16, 16, image::Rgb(code))).expect("written");
-        let got = decode_bytes(&bytes.into_inner(), Choice::default()).expect("a picture").rgb[0];
+        let got = decode_bytes(&bytes.into_inner(), ReadOptions::default()).expect("a picture").rgb[0];
         // Adobe RGB (1998), 4.3.5.3, to XYZ, and IEC 61966-2-1 back: red 1.3983, -0.3983; blue -0.0429, 1.0429.
         let want = [1.3983 * light[0] - 0.3983 * light[1], light[1], -0.0429 * light[1] + 1.0429 * light[2]];
         for (got, want) in got.into_iter().zip(want) {

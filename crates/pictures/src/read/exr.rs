@@ -7,9 +7,9 @@
 //! Without a `chromaticities` attribute or the name of a linear space, the primaries are those of Rec. 709, as the format's documentation
 //! says. sRGB shares them.
 
-use super::linear::{Choice, Linear, OPAQUE, Trouble, check_size, finite, mend, over_black};
-use super::packed;
-use super::planes::{Plane, Planes, are_of_xyz};
+use super::block_check;
+use super::linear_picture::{FileProblem, LinearPicture, OPAQUE, ReadOptions, check_size, finite, mend, over_black};
+use super::picture_channels::{ChannelData, PictureChannels, are_of_xyz};
 use super::space;
 use exr::block::UncompressedBlock;
 use exr::block::lines::LineRef;
@@ -63,7 +63,7 @@ struct Chosen {
 }
 
 /// Chooses channels from a file of `bytes` bytes. Without `lit`, chooses only the depth.
-fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Result<Chosen, Trouble> {
+fn chosen(headers: &[Header], bytes: u64, choice: ReadOptions<'_>, lit: bool) -> Result<Chosen, FileProblem> {
     check(headers, bytes)?;
     let groups = groups(headers);
     let (chosen, light) = if lit {
@@ -71,7 +71,7 @@ fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Resu
         let Some(light) = chosen.light() else { return Err(no_light(chosen, &groups)) };
         (chosen, light)
     } else {
-        (groups.first().ok_or_else(|| Trouble::file("the picture has no channels"))?, Vec::new())
+        (groups.first().ok_or_else(|| FileProblem::file("the picture has no channels"))?, Vec::new())
     };
     let depth = choice.depth.map(|name| depth_channel(&groups, chosen, name)).transpose()?;
     let is_whole = |(part, at): &(usize, usize)| {
@@ -79,12 +79,12 @@ fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Resu
         (sampling.0, sampling.1) == (1, 1)
     };
     // Alpha is read even if it is not wanted, to warn about what is lost.
-    let alpha = chosen.channel("A").filter(|at| lit && (choice.cover || is_whole(at)));
+    let alpha = chosen.channel("A").filter(|at| lit && (choice.alpha || is_whole(at)));
     for &(part, at) in light.iter().chain(&alpha).chain(&depth) {
         let channel = &headers[part].channels.list[at];
         if channel.sampling.0 != 1 || channel.sampling.1 != 1 {
             let text = format!("channel `{}` has fewer samples than the picture has pixels", channel.name);
-            return Err(Trouble::file(text).hint("write it without subsampling"));
+            return Err(FileProblem::file(text).hint("write it without subsampling"));
         }
     }
     if let Some((part, _)) = depth.filter(|(part, _)| lit && *part != chosen.part) {
@@ -97,7 +97,7 @@ fn chosen(headers: &[Header], bytes: u64, choice: Choice<'_>, lit: bool) -> Resu
                 size(b),
                 size(a)
             );
-            return Err(Trouble::at("depth", text).hint("both must cover the same window"));
+            return Err(FileProblem::at("depth", text).hint("both must cover the same window"));
         }
     }
     Ok(Chosen { light, alpha, depth })
@@ -113,7 +113,7 @@ fn shape(headers: &[Header]) -> ([u32; 2], f64) {
 
 /// Returns the overscan of the chosen part: the number of pixels on each side beyond the display window, horizontally and vertically. Warns
 /// if opposite sides differ, because the excess is not used.
-fn overscan(headers: &[Header], part: usize) -> ([u32; 2], Option<Trouble>) {
+fn overscan(headers: &[Header], part: usize) -> ([u32; 2], Option<FileProblem>) {
     let display = headers[0].shared_attributes.display_window;
     let data = headers[part].data_window();
     let sides = [
@@ -132,21 +132,21 @@ fn overscan(headers: &[Header], part: usize) -> ([u32; 2], Option<Trouble>) {
              below: {} are used on the left and the right, {} above and below",
             even[0], even[1]
         );
-        Trouble::file(text).hint("render equal overscan on opposite sides to use all of it")
+        FileProblem::file(text).hint("render equal overscan on opposite sides to use all of it")
     });
     (even, uneven)
 }
 
-fn said(e: exr::error::Error) -> Trouble {
-    Trouble::file(e.to_string())
+fn said(e: exr::error::Error) -> FileProblem {
+    FileProblem::file(e.to_string())
 }
 
 /// Reads the header of a file of `bytes` bytes.
 pub(super) fn header(
     reader: impl BufRead + Seek,
     bytes: u64,
-    choice: Choice<'_>,
-) -> Result<super::header::Header, Trouble> {
+    choice: ReadOptions<'_>,
+) -> Result<super::header::Header, FileProblem> {
     let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
     let light = chosen(&headers, bytes, choice, true)?.light;
     let (_, doubt) = space::of(headers[0].shared_attributes.chromaticities, &texts(&headers));
@@ -158,7 +158,7 @@ pub(super) fn header(
         let text = format!(
             "with its overscan of {x} x {y} pixels on each side the picture exceeds the limit: the overscan is not used"
         );
-        Trouble::file(text).hint("crop the data window")
+        FileProblem::file(text).hint("crop the data window")
     });
     let overscan = if fits { overscan } else { [0; 2] };
     let doubts = doubt.filter(|_| light.len() == 3).into_iter().chain(uneven).chain(left).collect();
@@ -170,12 +170,16 @@ pub(super) fn header(
         clips: false,
         is_for_display: false,
         is_jpeg: false,
-        doubts,
+        warnings: doubts,
     })
 }
 
 /// Returns how many pixels the chosen depth of a file of `bytes` bytes reaches beyond the display window on each side.
-pub(super) fn depth_overscan(reader: impl BufRead + Seek, bytes: u64, choice: Choice<'_>) -> Result<[u32; 2], Trouble> {
+pub(super) fn depth_overscan(
+    reader: impl BufRead + Seek,
+    bytes: u64,
+    choice: ReadOptions<'_>,
+) -> Result<[u32; 2], FileProblem> {
     let headers = exr::block::read(reader, false).map_err(said)?.headers().to_vec();
     let part = chosen(&headers, bytes, choice, false)?.depth.map_or(0, |(part, _)| part);
     Ok(overscan(&headers, part).0)
@@ -186,10 +190,10 @@ pub(super) fn depth_overscan(reader: impl BufRead + Seek, bytes: u64, choice: Ch
 pub(super) fn decode(
     mut reader: impl BufRead + Seek + Send,
     bytes: u64,
-    choice: Choice<'_>,
+    choice: ReadOptions<'_>,
     lit: bool,
-) -> Result<Linear, Trouble> {
-    packed::check(&mut reader)?;
+) -> Result<LinearPicture, FileProblem> {
+    block_check::check(&mut reader)?;
     let reader = exr::block::read(reader, false).map_err(said)?;
     let headers = reader.headers().to_vec();
     let Chosen { light, alpha: alpha_at, depth: depth_at } = chosen(&headers, bytes, choice, lit)?;
@@ -200,7 +204,7 @@ pub(super) fn decode(
     let pixels = width as usize * height as usize;
     // Pixels that the file does not store have no light and infinite depth.
     let mut rgb = vec![[0.0_f32; 3]; if lit { pixels } else { 0 }];
-    let mut alpha = alpha_at.filter(|_| choice.cover).map(|_| vec![0.0_f32; pixels]);
+    let mut alpha = alpha_at.filter(|_| choice.alpha).map(|_| vec![0.0_f32; pixels]);
     let mut opaque = 0_usize;
     let mut depth = depth_at.map(|_| vec![f32::INFINITY; pixels]);
     let wanted: Vec<(usize, usize)> = light.iter().chain(&alpha_at).chain(&depth_at).copied().collect();
@@ -248,7 +252,7 @@ pub(super) fn decode(
     };
     chunks.and_then(|chunks| chunks.decompress_parallel(false, take)).map_err(said)?;
     let (chromaticities, _) = space::of(headers[0].shared_attributes.chromaticities, &texts(&headers));
-    let thin = if alpha_at.is_some() && !choice.cover { pixels.saturating_sub(opaque) } else { 0 };
+    let thin = if alpha_at.is_some() && !choice.alpha { pixels.saturating_sub(opaque) } else { 0 };
     let doubts = mend(&mut rgb).into_iter().chain(over_black(thin, pixels)).collect();
     let neutral = headers[0].own_attributes.adopted_neutral.map(|v| [f64::from(v.0), f64::from(v.1)]);
     let to_srgb = chromaticities.filter(|_| light.len() == 3).map(|c| matrix(c, neutral)).transpose()?.flatten();
@@ -257,12 +261,12 @@ pub(super) fn decode(
             .map_or(*pixel, |m| m.map(|row| row.iter().zip(*pixel).map(|(a, b)| a * f64::from(b)).sum::<f64>() as f32));
         *pixel = converted.map(finite);
     }
-    Ok(Linear { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None, doubts })
+    Ok(LinearPicture { width, height, pixel_aspect, rgb, alpha, depth, clipped_at: None, warnings: doubts })
 }
 
 /// Reads every channel of a file of `bytes` bytes unchanged, and the texts of its header. Pixels that the file does not store are 0.
-pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Result<Planes, Trouble> {
-    packed::check(&mut reader)?;
+pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Result<PictureChannels, FileProblem> {
+    block_check::check(&mut reader)?;
     let reader = exr::block::read(reader, false).map_err(said)?;
     let headers = reader.headers().to_vec();
     check(&headers, bytes)?;
@@ -277,7 +281,7 @@ pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Resu
     let (mut channels, mut first) = (Vec::new(), Vec::new());
     let count: usize = headers.iter().map(|header| header.channels.list.len()).sum();
     if (count as u64).saturating_mul(pixels as u64).saturating_mul(size_of::<f32>() as u64) > MAX_BYTES {
-        return Err(Trouble::file(format!(
+        return Err(FileProblem::file(format!(
             "{count} channels of {width} x {height} pixels are too large: at most {MAX_BYTES} bytes can be read"
         )));
     }
@@ -288,11 +292,11 @@ pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Resu
             let own = channel.name.to_string();
             if channel.sampling.0 != 1 || channel.sampling.1 != 1 {
                 let text = format!("channel `{own}` has fewer samples than the picture has pixels");
-                return Err(Trouble::file(text).hint("write it without subsampling"));
+                return Err(FileProblem::file(text).hint("write it without subsampling"));
             }
             let repeats = part.is_empty() || own.starts_with(&format!("{part}."));
             let name = if repeats { own } else { format!("{part}.{own}") };
-            channels.push(Plane { unit: unit(&name), name, values: vec![0.0; pixels] });
+            channels.push(ChannelData { unit: unit(&name), name, values: vec![0.0; pixels] });
         }
     }
     let window = headers[0].shared_attributes.display_window.position;
@@ -327,7 +331,7 @@ pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Resu
     // Chromaticities that span no colors are refused here too.
     stated.map(|c| matrix(c, None)).transpose()?;
     let chromaticities = stated.map(|c| [c.red, c.green, c.blue, c.white].map(place));
-    Ok(Planes {
+    Ok(PictureChannels {
         format: "OpenEXR",
         width,
         height,
@@ -336,7 +340,7 @@ pub(super) fn planes(mut reader: impl BufRead + Seek + Send, bytes: u64) -> Resu
         chromaticities,
         attributes,
         clipped_at: None,
-        doubts,
+        warnings: doubts,
     })
 }
 
@@ -365,12 +369,12 @@ fn samples(line: &LineRef<'_>, kind: SampleType) -> exr::error::Result<Vec<f32>>
 }
 
 /// Checks the sizes before anything is allocated.
-fn check(headers: &[Header], file_bytes: u64) -> Result<(), Trouble> {
+fn check(headers: &[Header], file_bytes: u64) -> Result<(), FileProblem> {
     let mut total = 0_u64;
     for header in headers {
         if header.deep {
             return Err(
-                Trouble::file("deep data (several samples per pixel) are not supported").hint("flatten it first")
+                FileProblem::file("deep data (several samples per pixel) are not supported").hint("flatten it first")
             );
         }
         for size in [header.layer_size, header.shared_attributes.display_window.size] {
@@ -380,13 +384,15 @@ fn check(headers: &[Header], file_bytes: u64) -> Result<(), Trouble> {
         total = total.saturating_add(samples.saturating_mul(header.layer_size.area() as u64));
     }
     if headers.is_empty() {
-        return Err(Trouble::file("the picture has no layers"));
+        return Err(FileProblem::file("the picture has no layers"));
     }
     if total > MAX_BYTES {
-        return Err(Trouble::file(format!("all layers together take {total} bytes; at most {MAX_BYTES} can be read")));
+        return Err(FileProblem::file(format!(
+            "all layers together take {total} bytes; at most {MAX_BYTES} can be read"
+        )));
     }
     if total > file_bytes.saturating_mul(MAX_RATIO) {
-        return Err(Trouble::file(format!(
+        return Err(FileProblem::file(format!(
             "the header states {total} bytes of pixels, but a file of {file_bytes} bytes cannot hold them"
         )));
     }
@@ -423,11 +429,11 @@ fn names(groups: &[Group]) -> String {
     shown.join(", ")
 }
 
-fn choose<'a>(groups: &'a [Group], layer: Option<&str>) -> Result<&'a Group, Trouble> {
+fn choose<'a>(groups: &'a [Group], layer: Option<&str>) -> Result<&'a Group, FileProblem> {
     if let Some(layer) = layer {
         return groups.iter().find(|g| g.name == layer).ok_or_else(|| {
             let known = names(groups);
-            let trouble = Trouble::at("layer", format!("the file has no layer `{layer}`"));
+            let trouble = FileProblem::at("layer", format!("the file has no layer `{layer}`"));
             trouble.hint(if known.is_empty() { "it has no named layers".to_owned() } else { format!("it has {known}") })
         });
     }
@@ -436,18 +442,18 @@ fn choose<'a>(groups: &'a [Group], layer: Option<&str>) -> Result<&'a Group, Tro
     match (with_light.iter().find(|g| g.name.is_empty()), with_light.as_slice()) {
         (Some(plain), _) => Ok(plain),
         (None, [only]) => Ok(only),
-        (None, []) => groups.first().ok_or_else(|| Trouble::file("the picture has no channels")),
+        (None, []) => groups.first().ok_or_else(|| FileProblem::file("the picture has no channels")),
         (None, _) => {
-            let trouble = Trouble::at("layer", "the file has several layers, none of them plain R, G, B");
+            let trouble = FileProblem::at("layer", "the file has several layers, none of them plain R, G, B");
             Err(trouble.hint(format!("choose one: {}", names(groups))))
         }
     }
 }
 
-fn no_light(group: &Group, groups: &[Group]) -> Trouble {
+fn no_light(group: &Group, groups: &[Group]) -> FileProblem {
     let own: Vec<_> = group.channels.iter().take(12).map(|(name, _)| format!("`{name}`")).collect();
     let of = if group.name.is_empty() { String::new() } else { format!(" in layer `{}`", group.name) };
-    let trouble = Trouble::file(format!("the file has no channels R, G, B or Y{of}; it has {}", own.join(", ")));
+    let trouble = FileProblem::file(format!("the file has no channels R, G, B or Y{of}; it has {}", own.join(", ")));
     match names(groups) {
         known if known.is_empty() => trouble.hint("write it with R, G and B"),
         known => trouble.hint(format!("choose a layer with light: {known}")),
@@ -455,7 +461,7 @@ fn no_light(group: &Group, groups: &[Group]) -> Trouble {
 }
 
 /// Finds the depth channel: one of this name in the chosen layer, or of this full name anywhere, or the only one of this name in the file.
-fn depth_channel(groups: &[Group], chosen: &Group, name: &str) -> Result<(usize, usize), Trouble> {
+fn depth_channel(groups: &[Group], chosen: &Group, name: &str) -> Result<(usize, usize), FileProblem> {
     let full = |g: &Group, own: &str| if g.name.is_empty() { own.to_owned() } else { format!("{}.{own}", g.name) };
     let anywhere = || {
         groups.iter().find_map(|g| {
@@ -469,14 +475,14 @@ fn depth_channel(groups: &[Group], chosen: &Group, name: &str) -> Result<(usize,
     chosen.channel(name).or_else(anywhere).or_else(alone).ok_or_else(|| {
         let all = groups.iter().flat_map(|g| g.channels.iter().map(move |(own, _)| format!("`{}`", full(g, own))));
         let all: Vec<_> = all.take(24).collect();
-        let trouble = Trouble::at("depth", format!("the file has no depth channel `{name}`"));
+        let trouble = FileProblem::at("depth", format!("the file has no depth channel `{name}`"));
         trouble.hint(format!("its channels are {}; name one with `depth: {{channel: ...}}`", all.join(", ")))
     })
 }
 
 /// Returns the matrix from the file's primaries to those of sRGB, white to white (Bradford); `None` if they are the same. The
 /// chromaticities of CIE XYZ do not define the picture's white: `neutral` does, or D65 if the file states none.
-fn matrix(c: Chromaticities, neutral: Option<[f64; 2]>) -> Result<Option<Matrix>, Trouble> {
+fn matrix(c: Chromaticities, neutral: Option<[f64; 2]>) -> Result<Option<Matrix>, FileProblem> {
     let xy = [c.red, c.green, c.blue, c.white].map(|v| [f64::from(v.0), f64::from(v.1)]);
     let [r, g, b, white] = xy;
     if are_of_xyz(&xy) {
@@ -490,7 +496,7 @@ fn matrix(c: Chromaticities, neutral: Option<[f64; 2]>) -> Result<Option<Matrix>
     let sound = xy.iter().all(|[x, y]| x.abs() < 2.0 && y.abs() < 2.0 && y.abs() > 1e-4) && area.abs() > 1e-4;
     let white_is_sound = (0.1..0.7).contains(&white[0]) && (0.1..0.7).contains(&white[1]);
     if !(sound && white_is_sound) {
-        return Err(Trouble::file("its `chromaticities` do not span a range of colors")
+        return Err(FileProblem::file("its `chromaticities` do not span a range of colors")
             .hint("remove the attribute if Rec. 709 is right"));
     }
     let srgb = RgbSpace::srgb();

@@ -1,6 +1,6 @@
 //! Size, shape and kind of a picture.
 
-use super::linear::Trouble;
+use super::linear_picture::FileProblem;
 
 /// Size, shape and kind of a picture file.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Header {
     /// Whether the file is a JPEG.
     pub is_jpeg: bool,
     /// Warnings about the picture that a user should know.
-    pub doubts: Vec<Trouble>,
+    pub warnings: Vec<FileProblem>,
 }
 
 impl Header {

@@ -1,20 +1,20 @@
 //! Checks whether a JPEG file is complete. Decoders fill missing parts with gray without an error.
 
-use super::linear::Trouble;
-use spectra_core::resources::Found;
+use super::linear_picture::FileProblem;
+use spectra_core::resources::FoundFile;
 use std::io::{self, BufRead, Read};
 
 /// Refuses a file that ends before its picture does. Reads the file once and keeps none of it.
 ///
 /// # Errors
 /// The file is truncated, or cannot be read.
-pub(super) fn refuse_unless_whole(found: &Found) -> Result<(), Trouble> {
-    let file = found.open().map_err(|error| Trouble::file(error.to_string()))?;
+pub(super) fn refuse_unless_whole(found: &FoundFile) -> Result<(), FileProblem> {
+    let file = found.open().map_err(|error| FileProblem::file(error.to_string()))?;
     match is_whole(file) {
         Ok(true) => Ok(()),
-        Ok(false) => Err(Trouble::file("the file is truncated")
+        Ok(false) => Err(FileProblem::file("the file is truncated")
             .hint("copy, download or save it again: the missing part would be gray")),
-        Err(error) => Err(Trouble::file(error.to_string())),
+        Err(error) => Err(FileProblem::file(error.to_string())),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Reads picture files as linear light.
 
 mod beginning;
+mod block_check;
 mod channels;
 mod cmyk;
 mod decode;
@@ -9,25 +10,24 @@ mod exif;
 mod exr;
 #[cfg(test)]
 mod exr_tests;
-mod foreign;
 mod header;
-mod inks;
+mod ink_profile;
 mod jpeg;
-mod linear;
-mod packed;
-mod planes;
+mod library_formats;
+mod linear_picture;
+mod orientation;
+mod picture_channels;
 mod primaries;
 mod profile;
 mod radiance;
 mod space;
 mod tags;
 mod tiff;
-mod turn;
 
 pub use beginning::header;
 pub use channels::planes;
 pub use decode::{decode, depth, depth_overscan, is_exr};
-pub use foreign::ENDINGS;
 pub use header::Header;
-pub use linear::{Choice, Linear, Trouble};
-pub use planes::{Plane, Planes};
+pub use library_formats::ENDINGS;
+pub use linear_picture::{FileProblem, LinearPicture, ReadOptions};
+pub use picture_channels::{ChannelData, PictureChannels};

@@ -47,13 +47,13 @@ pub(super) fn to_light(file: impl BufRead) -> Option<Matrix> {
 #[cfg(test)]
 mod tests {
     use crate::read::decode::decode_bytes;
-    use crate::read::linear::Choice;
+    use crate::read::linear_picture::ReadOptions;
 
     /// Reads a picture of one pixel, (0.5, 0.25, 0.125), with these header lines.
     fn read(header: &str) -> [f32; 3] {
         let bytes = [b"#?RADIANCE\n", header.as_bytes(), b"FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n", &[128, 64, 32, 128]]
             .concat();
-        decode_bytes(&bytes, Choice::default()).expect("a picture").rgb[0]
+        decode_bytes(&bytes, ReadOptions::default()).expect("a picture").rgb[0]
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! The numbers in `chromaticities` have priority over any name. Without them, the names of linear spaces count.
 
-use super::linear::Trouble;
+use super::linear_picture::FileProblem;
 use exr::meta::attribute::Chromaticities;
 use exr::prelude::Vec2;
 use spectra_color::RgbSpace;
@@ -77,7 +77,7 @@ impl Primaries {
 pub(super) fn of(
     stated: Option<Chromaticities>,
     texts: &[(String, String)],
-) -> (Option<Chromaticities>, Option<Trouble>) {
+) -> (Option<Chromaticities>, Option<FileProblem>) {
     let text = |key: &str| texts.iter().find(|(own, _)| own == key).map(|(_, text)| text.trim());
     let Some(name) = text("colorInteropID").or_else(|| text("oiio:ColorSpace")) else { return (stated, None) };
     let lower = name.to_ascii_lowercase();
@@ -90,7 +90,7 @@ pub(super) fn of(
             Some(own) if !are_near(own, named) => {
                 let text =
                     format!("it names its color space `{name}`, but its `chromaticities` differ; these are used");
-                (stated, Some(Trouble::file(text).hint("remove whichever of the two is wrong from the file")))
+                (stated, Some(FileProblem::file(text).hint("remove whichever of the two is wrong from the file")))
             }
             Some(_) => (stated, None),
             None => (Some(named), None),
@@ -103,7 +103,7 @@ pub(super) fn of(
     let of = if stated.is_some() { "with its `chromaticities`" } else { "with the primaries of Rec. 709" };
     let text =
         format!("it names its color space `{name}`, which is not supported: its values are taken as linear light {of}");
-    (stated, Some(Trouble::file(text).hint("convert it to linear light first: ACEScg, or linear Rec. 709")))
+    (stated, Some(FileProblem::file(text).hint("convert it to linear light first: ACEScg, or linear Rec. 709")))
 }
 
 fn are_near(a: Chromaticities, b: Chromaticities) -> bool {

@@ -3,14 +3,14 @@
 //! In a PNG the first of cICP, iCCP, sRGB, and gAMA with cHRM counts (PNG, third edition, 4.3).
 
 use super::encoding::Encoding;
-use super::linear::Trouble;
+use super::linear_picture::FileProblem;
 use super::primaries::to_srgb;
 use super::profile::{self, Stated};
 use super::{cmyk, exif, radiance, tiff};
 use image::{ImageDecoder, ImageFormat};
 use spectra_color::matrix::Matrix;
 use spectra_color::{RgbSpace, Transfer};
-use spectra_core::resources::Found;
+use spectra_core::resources::FoundFile;
 use std::io::{self, BufRead, Read, Seek, SeekFrom};
 
 /// Color encoding and pixel format that a file states.
@@ -21,7 +21,7 @@ pub(super) struct Tags {
     /// Matrix from the file's primaries to those of sRGB, linear, white to white; `None` if they are the same.
     pub to_srgb: Option<Matrix>,
     /// Warning about a stated encoding that cannot be used.
-    pub doubt: Option<Trouble>,
+    pub warning: Option<FileProblem>,
     /// Width over height of a stored pixel, if the file states it.
     pub pixel_aspect: Option<f64>,
     /// Whether samples of 32 bits are integers.
@@ -32,7 +32,7 @@ pub(super) struct Tags {
 
 impl Tags {
     /// Reads the tags of a file whose decoder has read its header.
-    pub(super) fn of(found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
+    pub(super) fn of(found: &FoundFile, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
         let chunks = if format == ImageFormat::Png { found.open().ok().map(Chunks::of) } else { None };
         let chunks = chunks.unwrap_or_default();
         let is_long = format == ImageFormat::Tiff && found.open().is_ok_and(tiff::has_long_integers);
@@ -46,7 +46,7 @@ impl Tags {
         }
     }
 
-    fn colors(chunks: Chunks, found: &Found, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
+    fn colors(chunks: Chunks, found: &FoundFile, format: ImageFormat, decoder: &mut impl ImageDecoder) -> Self {
         if let Some(points) = chunks.cicp {
             return Self::stated(of_code_points(points), || {
                 let [primaries, transfer, matrix, range] = points;
@@ -64,7 +64,7 @@ impl Tags {
             return Self::stated(profile::read(&bytes), || "a color profile of an unsupported kind".to_owned());
         }
         if cmyk::is_one(found, format) {
-            return Self { doubt: Some(cmyk::without_profile()), ..Self::default() };
+            return Self { warning: Some(cmyk::without_profile()), ..Self::default() };
         }
         if format == ImageFormat::Jpeg
             && let Some(space) = decoder.exif_metadata().ok().flatten().and_then(|bytes| exif::stated(&bytes))
@@ -94,7 +94,7 @@ impl Tags {
             None => {
                 let text = format!("it states its colors by {}, which cannot be used: they are taken as sRGB", what());
                 let hint = "save it as sRGB, Display P3 or Rec. 2020; `transfer: srgb` if sRGB is right";
-                Self { doubt: Some(Trouble::file(text).hint(hint)), ..Self::default() }
+                Self { warning: Some(FileProblem::file(text).hint(hint)), ..Self::default() }
             }
         }
     }
@@ -209,13 +209,13 @@ impl Chunks {
 #[cfg(test)]
 mod tests {
     use crate::read::decode::decode_bytes;
-    use crate::read::linear::{Choice, Linear};
+    use crate::read::linear_picture::{LinearPicture, ReadOptions};
     use crate::write::{PictureSpace, chunk, png16, tiff16};
     use spectra_color::{RgbSpace, Transfer, to_u8};
     use spectra_core::frame::DisplayPicture;
 
-    fn read(bytes: &[u8]) -> Linear {
-        decode_bytes(bytes, Choice::default()).unwrap()
+    fn read(bytes: &[u8]) -> LinearPicture {
+        decode_bytes(bytes, ReadOptions::default()).unwrap()
     }
 
     /// Builds a PNG of one pixel with these chunks.
@@ -245,7 +245,7 @@ mod tests {
             let files = if space == PictureSpace::AcesCct { vec![png] } else { vec![png, tiff] };
             for bytes in files {
                 let linear = read(bytes.get_ref());
-                assert!(linear.doubts.is_empty(), "{space:?} {:?}", linear.doubts);
+                assert!(linear.warnings.is_empty(), "{space:?} {:?}", linear.warnings);
                 for (got, want) in linear.rgb.iter().zip(&colors) {
                     close(*got, want.map(f64::from), 5e-4);
                 }
@@ -280,8 +280,9 @@ mod tests {
             let mut bytes = std::io::Cursor::new(Vec::new());
             png16(&mut bytes, &picture, PictureSpace::Srgb, aspect).unwrap();
             let bytes = bytes.into_inner();
-            let found = spectra_core::resources::Found::bytes("a file".to_owned(), bytes.clone().into());
-            for got in [crate::read::header(&found, Choice::default()).unwrap().pixel_aspect, read(&bytes).pixel_aspect]
+            let found = spectra_core::resources::FoundFile::bytes("a file".to_owned(), bytes.clone().into());
+            for got in
+                [crate::read::header(&found, ReadOptions::default()).unwrap().pixel_aspect, read(&bytes).pixel_aspect]
             {
                 assert!((got / aspect - 1.0).abs() < 1e-3, "{got} {aspect}");
             }
@@ -297,7 +298,7 @@ mod tests {
     #[test]
     fn what_the_scene_says_of_the_curve_wins() {
         let bytes = png([51, 51, 51], &[chunk(b"gAMA", &100_000_u32.to_be_bytes())]);
-        let said = decode_bytes(&bytes, Choice { transfer: Some("srgb"), ..Choice::default() }).unwrap();
+        let said = decode_bytes(&bytes, ReadOptions { transfer: Some("srgb"), ..ReadOptions::default() }).unwrap();
         close(said.rgb[0], [Transfer::Srgb.decode(0.2); 3], 1e-6);
     }
 
@@ -306,12 +307,12 @@ mod tests {
     fn what_cannot_be_followed_is_said() {
         for points in [[9, 18, 0, 1], [1, 13, 0, 0], [22, 13, 0, 1]] {
             let bytes = png([51, 51, 51], &[chunk(b"cICP", &points)]);
-            let found = spectra_core::resources::Found::bytes("a file".to_owned(), bytes.clone().into());
-            let header = crate::read::header(&found, Choice::default()).unwrap();
-            let [doubt] = &header.doubts[..] else { panic!("{:?}", header.doubts) };
+            let found = spectra_core::resources::FoundFile::bytes("a file".to_owned(), bytes.clone().into());
+            let header = crate::read::header(&found, ReadOptions::default()).unwrap();
+            let [doubt] = &header.warnings[..] else { panic!("{:?}", header.warnings) };
             assert!(doubt.text.contains("taken as sRGB") && doubt.hint.is_some(), "{doubt:?}");
-            let said = Choice { transfer: Some("srgb"), ..Choice::default() };
-            assert!(crate::read::header(&found, said).unwrap().doubts.is_empty());
+            let said = ReadOptions { transfer: Some("srgb"), ..ReadOptions::default() };
+            assert!(crate::read::header(&found, said).unwrap().warnings.is_empty());
             close(read(&bytes).rgb[0], [Transfer::Srgb.decode(0.2); 3], 1e-6);
         }
     }

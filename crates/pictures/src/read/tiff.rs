@@ -1,12 +1,12 @@
 //! Reads TIFF without a second copy of the picture: unpacks strips and tiles one by one, or directly to where they belong.
 
-mod sides;
+mod size_check;
 mod widened;
 
-use super::linear::Trouble;
+use super::linear_picture::FileProblem;
 use image::error::{DecodingError, LimitError, LimitErrorKind, UnsupportedError, UnsupportedErrorKind};
 use image::{ExtendedColorType, ImageDecoder, ImageError, ImageFormat};
-use spectra_core::resources::Found;
+use spectra_core::resources::FoundFile;
 use std::io::{BufRead, Seek};
 use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder, Limits};
@@ -134,16 +134,17 @@ pub(super) fn is_multiplied(reader: impl BufRead + Seek) -> Option<bool> {
 /// # Errors
 /// The file holds only a preview, as camera raw files do, whose picture is stored elsewhere; or one of its pictures exceeds the size
 /// limits.
-pub(super) fn without_preview(found: &Found) -> Result<Option<Found>, Trouble> {
+pub(super) fn without_preview(found: &FoundFile) -> Result<Option<FoundFile>, FileProblem> {
     const REDUCED: u32 = 1;
-    let open = || found.open().map_err(|error| Trouble::file(error.to_string()));
+    let open = || found.open().map_err(|error| FileProblem::file(error.to_string()));
     let text = "it holds a preview only: the pictures in raw files of cameras cannot be read";
-    let raw = || Trouble::file(text).hint("develop it in a raw converter and save it as 16-bit TIFF or linear OpenEXR");
+    let raw =
+        || FileProblem::file(text).hint("develop it in a raw converter and save it as 16-bit TIFF or linear OpenEXR");
     // Canon's raw files begin with a preview that is not marked as one.
     if found.read(12).is_ok_and(|begin| begin.get(8..10) == Some(b"CR")) {
         return Err(raw());
     }
-    sides::check(open()?)?;
+    size_check::check(open()?)?;
     // Other faults of the file are reported when it is read.
     let Ok(mut decoder) = Decoder::new(open()?) else { return Ok(None) };
     let is_preview = |decoder: &mut Decoder<_>| {
@@ -158,9 +159,9 @@ pub(super) fn without_preview(found: &Found) -> Result<Option<Found>, Trouble> {
             && let Some(at) = decoder.ifd_pointer()
         {
             let order = decoder.byte_order();
-            let mut bytes = found.read(u64::MAX).map_err(|error| Trouble::file(error.to_string()))?;
+            let mut bytes = found.read(u64::MAX).map_err(|error| FileProblem::file(error.to_string()))?;
             set_first(&mut bytes, at.0, order);
-            return Ok(Some(Found::bytes(found.name.clone(), bytes.into())));
+            return Ok(Some(FoundFile::bytes(found.name.clone(), bytes.into())));
         }
     }
     Err(raw())
@@ -213,13 +214,13 @@ mod tests {
     use super::*;
     use crate::read::decode::decode_bytes;
     use crate::read::header;
-    use crate::read::linear::{Choice, Linear};
+    use crate::read::linear_picture::{LinearPicture, ReadOptions};
     use spectra_color::{Transfer, to_u8};
     use std::io::Cursor;
     use tiff::encoder::{TiffEncoder, TiffKind, colortype};
 
-    fn read(bytes: &[u8]) -> Linear {
-        decode_bytes(bytes, Choice::default()).expect("a picture")
+    fn read(bytes: &[u8]) -> LinearPicture {
+        decode_bytes(bytes, ReadOptions::default()).expect("a picture")
     }
 
     /// Writes a picture of this side and these samples, marked as a preview or not.
@@ -254,7 +255,7 @@ mod tests {
             assert!((f64::from(*light) - wanted).abs() < 1e-6, "{light} {code}");
         }
         assert_eq!(read(&said), linear);
-        assert!(linear.clipped_at.is_some() && linear.doubts.is_empty());
+        assert!(linear.clipped_at.is_some() && linear.warnings.is_empty());
     }
 
     #[test]
@@ -280,15 +281,15 @@ mod tests {
         add::<_, colortype::RGB8>(&mut encoder, 1, true, &preview);
         add::<_, colortype::RGB8>(&mut encoder, 2, false, &CODES);
         for bytes in [small, large] {
-            let found = Found::bytes("scan.tif".to_owned(), bytes.get_ref().clone().into());
-            let header = header(&found, Choice::default()).expect("a picture");
+            let found = FoundFile::bytes("scan.tif".to_owned(), bytes.get_ref().clone().into());
+            let header = header(&found, ReadOptions::default()).expect("a picture");
             let linear = read(bytes.get_ref());
             assert_eq!((header.width, linear.width, linear.height), (2, 2, 2));
             assert!((f64::from(linear.rgb[0][0]) - Transfer::Srgb.decode(200.0 / 255.0)).abs() < 1e-6);
         }
         let mut only = Cursor::new(Vec::new());
         add::<_, colortype::RGB8>(&mut TiffEncoder::new(&mut only).expect("begun"), 1, true, &preview);
-        let trouble = decode_bytes(only.get_ref(), Choice::default()).expect_err("a preview");
+        let trouble = decode_bytes(only.get_ref(), ReadOptions::default()).expect_err("a preview");
         assert!(trouble.text.contains("preview only") && trouble.hint.is_some());
     }
 

@@ -1,13 +1,13 @@
 //! Writes picture files. Each is written completely or not at all, and the bytes do not change from run to run.
 
 mod dng;
-mod eight;
 mod exposure;
 mod icc;
 mod linear;
 mod picture;
 mod resample;
 mod space;
+mod srgb8_table;
 mod tiff;
 mod tiled;
 

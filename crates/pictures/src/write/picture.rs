@@ -1,7 +1,7 @@
 //! Writes pictures for a screen as PNG, TIFF and JPEG.
 
-use super::eight::Eight;
 use super::space::{PictureSpace, chunk};
+use super::srgb8_table::Srgb8Table;
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::tiff::TiffEncoder;
@@ -166,7 +166,7 @@ fn encoded<const N: usize>(
 
 /// Encodes the picture in 8-bit sRGB.
 fn eight(picture: &DisplayPicture) -> Vec<u8> {
-    let codes = Eight::srgb();
+    let codes = Srgb8Table::srgb();
     let mut bytes = vec![0; picture.rgb.len() * 3];
     bytes.par_chunks_mut(PIXELS_A_TASK * 3).zip(picture.rgb.par_chunks(PIXELS_A_TASK)).for_each(|(bytes, rgb)| {
         for (to, linear) in bytes.iter_mut().zip(rgb.as_flattened()) {
@@ -223,8 +223,8 @@ mod tests {
             let path = folder.path().join("a.jpg");
             write_atomically(&path, |file| jpeg(file, &picture, space, 95)).expect("written");
             let bytes = std::fs::read(&path).expect("bytes");
-            let found = spectra_core::resources::Found::bytes("a.jpg".to_owned(), bytes.into());
-            let linear = crate::read::decode(&found, crate::read::Choice::default()).expect("a picture");
+            let found = spectra_core::resources::FoundFile::bytes("a.jpg".to_owned(), bytes.into());
+            let linear = crate::read::decode(&found, crate::read::ReadOptions::default()).expect("a picture");
             let codes = |v: f64| 255.0 * spectra_color::Transfer::Srgb.encode(v.clamp(0.0, 1.0));
             let pairs = linear.rgb.iter().flatten().zip(picture.rgb.iter().flatten());
             let off = pairs.map(|(a, b)| (codes(f64::from(*a)) - codes(f64::from(*b))).abs());

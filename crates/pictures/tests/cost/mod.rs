@@ -1,7 +1,7 @@
 //! Measures the memory that reading a picture takes: the peak of a separate process that reads it, as the system counts it.
 
-use spectra_core::resources::Found;
-use spectra_pictures::read::{Choice, decode, header};
+use spectra_core::resources::FoundFile;
+use spectra_pictures::read::{ReadOptions, decode, header};
 use std::path::Path;
 use std::process::Command;
 
@@ -23,9 +23,10 @@ fn peak_bytes() -> f64 {
 #[ignore = "started by a test, in a process of its own"]
 fn reader() {
     let Some(path) = std::env::var_os("SPECTRA_TEST_PICTURE") else { return };
-    let found = Found::on_disk("a file".to_owned(), path.clone().into());
+    let found = FoundFile::on_disk("a file".to_owned(), path.clone().into());
     let name = path.to_string_lossy();
-    let choice = Choice { name: &name, transfer: name.ends_with(".dpx").then_some("srgb"), ..Choice::default() };
+    let choice =
+        ReadOptions { name: &name, transfer: name.ends_with(".dpx").then_some("srgb"), ..ReadOptions::default() };
     let before = peak_bytes();
     let header = header(&found, choice).unwrap_or_else(|trouble| panic!("{name}: {}", trouble.text));
     let of_header = peak_bytes() - before;

@@ -1,6 +1,6 @@
 //! The points on the front of the lens where the rays of a batch are aimed.
 
-use super::Landed;
+use super::Entrance;
 use super::density::ABREAST;
 use super::guide::{Aim, Guide};
 use glam::DVec3;
@@ -36,9 +36,9 @@ impl Aims {
     }
 
     /// Returns where a ray enters the lens: its zone, its position, and the direction of its source around the axis, if that was noted.
-    pub fn landed(&self, ray: usize) -> Landed {
+    pub fn landed(&self, ray: usize) -> Entrance {
         let azimuth = self.azimuths.get(ray).copied().unwrap_or([0.0, 1.0]);
-        Landed { zone: self.zones[ray], place: [self.places[0][ray], self.places[1][ray]], azimuth }
+        Entrance { zone: self.zones[ray], place: [self.places[0][ray], self.places[1][ray]], azimuth }
     }
 
     /// Notes the directions around the axis from which rays start.

@@ -18,7 +18,7 @@ const EVEN: f64 = 0.1;
 /// A density over the square [-1, 1]^2 around the front disk: uniform over all of it, plus a part given by cells.
 #[derive(Clone, Debug)]
 pub(super) struct Guide {
-    part: Part,
+    part: FrontRect,
     /// Fraction of the rays that goes all over the square.
     even: f64,
     cells: Density,
@@ -33,12 +33,12 @@ pub(super) struct Aim {
 
 /// A rectangular part of the square, given by two corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Part {
+pub(super) struct FrontRect {
     pub low: [f64; 2],
     pub high: [f64; 2],
 }
 
-impl Part {
+impl FrontRect {
     pub const ALL: Self = Self { low: [-1.0; 2], high: [1.0; 2] };
 
     #[inline(always)]
@@ -76,7 +76,7 @@ impl Part {
 impl Guide {
     /// Creates a guide that is uniform over the square.
     pub fn everywhere() -> Self {
-        Self::of(Part::ALL, Density::even())
+        Self::of(FrontRect::ALL, Density::even())
     }
 
     /// Creates a guide that sends all rays uniformly over the square.
@@ -85,11 +85,11 @@ impl Guide {
     }
 
     /// Creates a guide from the cells of a part.
-    pub fn of(part: Part, cells: Density) -> Self {
+    pub fn of(part: FrontRect, cells: Density) -> Self {
         Self { part, even: EVEN, cells }
     }
 
-    pub fn part(&self) -> Part {
+    pub fn part(&self) -> FrontRect {
         self.part
     }
 
@@ -138,7 +138,7 @@ impl Guide {
 /// The cells of a guide's part through which light came, and how far along the path the other rays got.
 #[derive(Clone, Debug)]
 pub(super) struct Lit {
-    part: Part,
+    part: FrontRect,
     cells: [bool; SIDE * SIDE],
     /// Number of surfaces that each ray passed, and the cell of the ray.
     went: Vec<(u16, u16)>,
@@ -192,15 +192,15 @@ impl Lit {
         };
         let (columns, rows) = (ends(|at| at % SIDE), ends(|at| at / SIDE));
         let corner = |k: usize| self.part.place([columns[k], rows[k]]);
-        Guide::of(Part { low: corner(0), high: corner(1) }, Density::even())
+        Guide::of(FrontRect { low: corner(0), high: corner(1) }, Density::even())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ghosts::seen::{Brought, Seen};
-    use crate::ghosts::sight::Sight;
+    use crate::ghosts::pilot_hit::{Contribution, PilotHit};
+    use crate::ghosts::pilot_rays::PilotRays;
     use spectra_core::math::sin_cos_turns;
     use spectra_core::numbers::Numbers;
 
@@ -210,7 +210,7 @@ mod tests {
     fn a_guide_has_no_bias() {
         let disk = |[x, y]: [f64; 2]| f64::from((x - 0.3) * (x - 0.3) + (y + 0.2) * (y + 0.2) < 0.01);
         let mut guide = Guide::everywhere();
-        let mut sight = Sight::default();
+        let mut sight = PilotRays::default();
         let numbers = Numbers::sobol(5);
         let n = 1 << 14;
         for round in 0..5 {
@@ -225,7 +225,7 @@ mod tests {
                 square += value / aim.density / aim.density / n as f64;
                 if value > 0.0 {
                     lit.add(aim.place);
-                    came.push(Seen { zone: 0, aim, block: 0, brought: Brought { all: value, judged: value } });
+                    came.push(PilotHit { zone: 0, aim, block: 0, brought: Contribution { all: value, judged: value } });
                 }
             }
             let sigma = (square / n as f64).sqrt();
@@ -240,7 +240,7 @@ mod tests {
                 guide = lit.closer();
             } else {
                 sight.add(vec![guide], n as f64, came);
-                let light: f64 = sight.light(Brought::judged).map(|(_, part)| part).sum();
+                let light: f64 = sight.light(Contribution::judged).map(|(_, part)| part).sum();
                 assert!((light - want).abs() < 0.01 * want, "{round}: {light} {want}");
                 guide = sight.sorted(&[1.0]).guides(&[1.0]).0.remove(0);
             }
@@ -276,12 +276,12 @@ mod tests {
         // No ray passed anything, so it is unknown where to look.
         let blocked = Lit::of(&guide);
         assert!(!blocked.is_on_the_way());
-        assert_eq!(blocked.closer().part(), Part::ALL);
+        assert_eq!(blocked.closer().part(), FrontRect::ALL);
     }
 
     #[test]
     fn what_was_not_found_is_looked_for_everywhere() {
-        let mut sight = Sight::default();
+        let mut sight = PilotRays::default();
         sight.add(vec![Guide::everywhere()], 100.0, Vec::new());
         let guide = sight.sorted(&[]).guides(&[]).0.remove(0);
         let (sin, _) = sin_cos_turns(0.1);
@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn side_by_side_they_are_as_one_by_one() {
-        let part = Part { low: [-0.3, 0.1], high: [0.2, 0.7] };
+        let part = FrontRect { low: [-0.3, 0.1], high: [0.2, 0.7] };
         let all = [Guide::of(part, Density::of(&[(1, 0.0), (0, 1.0), (0, 0.0), (0, 3.0), (0, 0.5)])), Guide::blind()];
         let numbers = Numbers::sobol(2);
         for i in 0..256 {

@@ -1,12 +1,12 @@
 //! Measures ghosts as a camera's meter sees them: traces some blocks with separate random numbers.
 
-use super::{Ghosts, Plan, Way};
+use super::{Ghosts, PathPlan, Plan};
 use crate::Workers;
 use crate::error::RenderError;
 use crate::meter;
 use crate::pipeline::ThreadState;
 use crate::sums::ExactSums;
-use spectra_core::workers::each_of;
+use spectra_core::workers::map_pieces;
 use std::sync::Arc;
 
 impl Ghosts {
@@ -20,7 +20,7 @@ impl Ghosts {
     }
 
     /// Measures the light, W/m2 at each pixel, channel by channel.
-    pub(super) fn seen(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+    pub(super) fn meter(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
         let pipeline = &self.pipeline;
         let scene = &pipeline.scene;
         let (pixels, channels) = (scene.imager.size().pixels(), pipeline.responses.channels());
@@ -36,7 +36,7 @@ impl Ghosts {
             }
             self.block(state, block as u64, &sums).error.map_or(Ok(()), Err)
         };
-        each_of(workers, blocks as usize, || self.state(scene.render.batch), work)?;
+        map_pieces(workers, blocks as usize, || self.state(scene.render.batch), work)?;
         let weight = self.worth(blocks * self.plan.rays, 1.0);
         Ok(meter::planes(&sums, channels, |_| weight, pixels))
     }
@@ -45,7 +45,7 @@ impl Ghosts {
 impl Plan {
     /// Returns the plan without separate sums for some paths.
     fn together(&self) -> Self {
-        let way = |way: &Way| Way { own_cells: None, ..way.clone() };
+        let way = |way: &PathPlan| PathPlan { own_cells: None, ..way.clone() };
         Self { ways: self.ways.iter().map(way).collect(), apart: Vec::new(), ..self.clone() }
     }
 }

@@ -9,7 +9,7 @@
 //!
 //! **Guides.** A pilot finds, for each path and zone of the source, where on the front of the lens its light enters ([`guide`], `pilot`),
 //! and how many rays each path needs. Rays are shared out to minimize the noise of blocks of 32 x 32 pixels, relative to the ghosts' light
-//! there. No block is left much noisier than the mean ([`shares`]). The noise is that of luminance if the picture has it, else of the sum
+//! there. No block is left much noisier than the mean ([`path_cells`]). The noise is that of luminance if the picture has it, else of the sum
 //! of the channels. Paths get rays in proportion to their noise over the root of their cost (Neyman's allocation). A tenth of each path's
 //! rays goes all over the front, so that no path is biased, whatever the pilot overlooked.
 //!
@@ -30,35 +30,36 @@
 //! **Limits.** Prisms take no part: ghosts that their faces reflect are missing, and the scene is warned. Paths of four reflections are not
 //! spread if lights lie in several zones; nor are rays that the source directs itself, nor what meters see.
 
-mod account;
 mod aims;
 mod density;
+mod ghost_footprints;
 mod guide;
+mod ledger;
 mod metered;
-mod net;
+mod neighbors;
+mod path_cells;
 mod pilot;
+mod pilot_hit;
+mod pilot_rays;
+mod probe_grid;
 mod probes;
-mod seen;
-mod shares;
-mod sight;
-mod spread;
-mod spreading;
 mod tree;
 mod width;
 mod zones;
 
-pub use account::{GhostPath, LightLedger};
+pub use ledger::{GhostPath, LightLedger};
 
-use crate::blame::Blame;
 use crate::error::RenderError;
-use crate::estimator::{Estimator, Scratch, Unit};
+use crate::estimator::{Estimator, Scratch, UnitResult};
+use crate::finite_check::FiniteCheck;
 use crate::forward::source_points;
-use crate::no_number::Step;
+use crate::non_finite::Step;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{ExactSums, OwnSums, scale_for};
 use crate::{Done, Workers};
 use aims::Aims;
+use ghost_footprints::GhostFootprints;
 use glam::DVec3;
 use guide::Guide;
 use spectra_core::RayBatch;
@@ -66,11 +67,10 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::loss::ALIVE;
 use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Receive};
-use spectra_core::workers::each_of;
+use spectra_core::workers::map_pieces;
 use spectra_optics::FrontOpening;
 use spectra_scene::{GhostSpread, LightKind};
 use spectra_tracer::{Indices, Path, Route, Tracer, Travel};
-use spreading::Spreading;
 use std::ops::Range;
 use std::sync::Arc;
 use zones::Zones;
@@ -115,7 +115,7 @@ const SCALE_RAYS: u64 = 4096;
 
 /// A ghost path and the plan of its rays.
 #[derive(Clone)]
-struct Way {
+struct PathPlan {
     route: Route,
     /// Surfaces that reflect, counted from 1.
     surfaces: Vec<usize>,
@@ -129,7 +129,7 @@ struct Way {
     own_cells: Option<usize>,
 }
 
-impl Way {
+impl PathPlan {
     /// Whether no more than two surfaces reflect.
     fn is_of_pair(&self) -> bool {
         self.surfaces.len() <= 2
@@ -147,7 +147,7 @@ struct Plan {
     /// Front opening where light enters; `None` if the source sets directions itself.
     opening: Option<FrontOpening>,
     zones: Zones,
-    ways: Vec<Way>,
+    ways: Vec<PathPlan>,
     /// Number of rays in a block, over all paths.
     rays: u64,
     blocks_a_sample: u64,
@@ -158,7 +158,7 @@ struct Plan {
 
 /// The place where a ray that landed entered the lens: its zone, and its position on the front.
 #[derive(Clone, Copy, Debug)]
-struct Landed {
+struct Entrance {
     zone: usize,
     place: [f64; 2],
     /// Direction of the ray's source point around the axis, a unit vector.
@@ -170,7 +170,7 @@ pub(crate) struct Ghosts {
     pipeline: Arc<Pipeline>,
     plan: Arc<Plan>,
     /// Footprints over which light is spread; `None` if all light of a ray stays in the pixel that it meets.
-    spreading: Option<Arc<Spreading>>,
+    spreading: Option<Arc<GhostFootprints>>,
     numbers: Numbers,
     scale: f64,
 }
@@ -213,9 +213,9 @@ impl Ghosts {
             let surfaces: Vec<usize> = path.reflections().map(|at| at + 1).collect();
             let route = pipeline.tracer.route(&path.before(imager));
             let zones = if surfaces.len() > 2 { 1 } else { zones.count() };
-            Way { route, surfaces, guides: vec![everywhere.clone(); zones], rays: 1, boost: 1.0, own_cells: None }
+            PathPlan { route, surfaces, guides: vec![everywhere.clone(); zones], rays: 1, boost: 1.0, own_cells: None }
         };
-        let ways: Vec<Way> = Path::ghosts(count, &surfaces, 2).into_iter().map(&way).collect();
+        let ways: Vec<PathPlan> = Path::ghosts(count, &surfaces, 2).into_iter().map(&way).collect();
         let zones = zones.clone();
         let plan = Plan::new(opening, zones, ways);
         let (pipeline, plan) = (Arc::clone(&pipeline), Arc::new(plan));
@@ -224,7 +224,7 @@ impl Ghosts {
         let mut ledger = None;
         if order > 2 {
             // The ledger tells which paths of more reflections have enough light.
-            let books = account::of(&own, &lens, &surfaces, order, workers)?;
+            let books = ledger::of(&own, &lens, &surfaces, order, workers)?;
             let mut more: Vec<&[usize]> = books.paths.iter().map(|path| &path.surfaces[..]).collect();
             more.retain(|surfaces| surfaces.len() > 2);
             more.sort_unstable();
@@ -243,13 +243,13 @@ impl Ghosts {
         let Some(found) = found else { return Ok(None) };
         let ledger = match ledger {
             Some(ledger) => ledger,
-            None => account::of(&own, &lens, &surfaces, order, workers)?,
+            None => ledger::of(&own, &lens, &surfaces, order, workers)?,
         };
         let a_sample = own.rays_a_sample(matters, found.brightest);
         own.plan = Arc::new(own.shared_out(found.ways, a_sample, ledger));
         own.scale = own.pilot_scale(workers)?;
         if reflections.spread == GhostSpread::Footprint {
-            own.spreading = Spreading::of(&own, workers)?.map(Arc::new);
+            own.spreading = GhostFootprints::of(&own, workers)?.map(Arc::new);
         }
         own.numbers = own.of_seed(own.pipeline.seed);
         Ok(Some(own))
@@ -357,19 +357,19 @@ impl Ghosts {
         at: usize,
         (first, len): (u64, usize),
         mut look: impl FnMut(Step, &RayBatch),
-    ) -> Vec<Landed> {
+    ) -> Vec<Entrance> {
         let way = &self.plan.ways[at];
         let aims = self.start(state, &way.guides, (at as u64 + 1, first, len), &mut look);
         let numbers = self.finish(state, &way.route, &mut look);
         let alive = numbers.iter().zip(state.rays.states()).filter(|(_, state)| **state == ALIVE);
         let landed = alive.map(|(number, _)| aims.landed(*number as usize)).collect();
         state.rays.compact();
-        state.rays.weighing().weight.iter_mut().for_each(|weight| *weight *= way.boost);
+        state.rays.weight_columns().weight.iter_mut().for_each(|weight| *weight *= way.boost);
         landed
     }
 
     /// Returns what each ray of a batch brings to each channel, ray by ray.
-    fn brought(&self, state: &mut ThreadState) -> Vec<f64> {
+    fn contributions(&self, state: &mut ThreadState) -> Vec<f64> {
         let (len, channels) = (state.rays.len(), self.pipeline.responses.channels());
         let mut brought = vec![0.0; len * channels];
         for channel in 0..channels {
@@ -417,7 +417,7 @@ impl Ghosts {
         let counts: Vec<u64> = needs.iter().map(|need| floor + share(*need)).collect();
         let rays: u64 = counts.iter().sum();
         let apart = ledger.strongest(self.pipeline.scene.ghost_paths());
-        let way = |(((guides, _), way), count): (((Vec<Guide>, f64), &Way), &u64)| Way {
+        let way = |(((guides, _), way), count): (((Vec<Guide>, f64), &PathPlan), &u64)| PathPlan {
             route: way.route.clone(),
             surfaces: way.surfaces.clone(),
             guides,
@@ -440,11 +440,11 @@ impl Ghosts {
         let look = |state: &mut ThreadState, at: usize| {
             let mut largest = 0.0_f64;
             for (first, len) in spans(0..self.plan.ways[at].rays.min(SCALE_RAYS), capacity) {
-                let mut blame = Blame::default();
+                let mut blame = FiniteCheck::default();
                 self.batch(state, at, (first, len), |step, rays| blame.look(step, rays));
                 if blame.no_number(&self.pipeline).is_some() {
                     // Trace in a fresh state: positions left over from rays that ended in another batch must not be blamed.
-                    let (mut blame, mut again) = (Blame::default(), self.state(capacity));
+                    let (mut blame, mut again) = (FiniteCheck::default(), self.state(capacity));
                     self.batch(&mut again, at, (first, len), |step, rays| blame.look(step, rays));
                     if let Some(error) = blame.no_number(&self.pipeline) {
                         return Err(error);
@@ -454,22 +454,22 @@ impl Ghosts {
             }
             Ok(largest)
         };
-        let each = each_of(workers, self.plan.ways.len(), || self.state(capacity), look)?;
+        let each = map_pieces(workers, self.plan.ways.len(), || self.state(capacity), look)?;
         let largest = each.into_iter().fold(0.0, f64::max);
         Ok(scale_for(largest * HEADROOM * self.pipeline.source().peak_over_mean().max(1.0)))
     }
 
     /// Traces a block of rays of all paths and adds it to the sums.
-    fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> Unit {
+    fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> UnitResult {
         let mut rays = 0;
         for (at, way) in self.plan.ways.iter().enumerate() {
             let all = block * way.rays..(block + 1) * way.rays;
             for (first, len) in spans(all, state.rays.capacity()) {
                 let landed = self.batch(state, at, (first, len), |_, _| {});
                 if !state.contributions(&self.pipeline, self.scale) {
-                    let (mut blame, mut again) = (Blame::default(), self.state(state.rays.capacity()));
+                    let (mut blame, mut again) = (FiniteCheck::default(), self.state(state.rays.capacity()));
                     self.batch(&mut again, at, (first, len), |step, rays| blame.look(step, rays));
-                    return Unit { rays, error: Some(blame.error(&self.pipeline, &mut again, self.scale)) };
+                    return UnitResult { rays, error: Some(blame.error(&self.pipeline, &mut again, self.scale)) };
                 }
                 rays += len as u64;
                 if let Some(spreading) = &self.spreading {
@@ -486,19 +486,19 @@ impl Ghosts {
                 }
             }
         }
-        Unit { rays, error: None }
+        UnitResult { rays, error: None }
     }
 }
 
 impl Plan {
     /// Creates a plan whose rays are not yet shared out.
-    fn new(opening: Option<FrontOpening>, zones: Zones, ways: Vec<Way>) -> Self {
+    fn new(opening: Option<FrontOpening>, zones: Zones, ways: Vec<PathPlan>) -> Self {
         let (ledger, apart) = (LightLedger::default(), Vec::new());
         Self { opening, zones, ways, rays: 1, blocks_a_sample: 1, ledger, apart }
     }
 
     /// Returns the plan with more paths, whose rays are not yet shared out.
-    fn with(&self, more: Vec<Way>) -> Self {
+    fn with(&self, more: Vec<PathPlan>) -> Self {
         let ways = self.ways.iter().cloned().chain(more).collect();
         Self::new(self.opening, self.zones.clone(), ways)
     }
@@ -554,7 +554,14 @@ impl Estimator for Ghosts {
         Scratch(state)
     }
 
-    fn run(&self, samples: &Range<u64>, _tiles: &[u32], unit: u64, scratch: &mut Scratch, sums: &ExactSums) -> Unit {
+    fn run(
+        &self,
+        samples: &Range<u64>,
+        _tiles: &[u32],
+        unit: u64,
+        scratch: &mut Scratch,
+        sums: &ExactSums,
+    ) -> UnitResult {
         self.block(&mut scratch.0, samples.start * self.plan.blocks_a_sample + unit, sums)
     }
 
@@ -568,6 +575,6 @@ impl Estimator for Ghosts {
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
-        self.of_meters(workers).map_or(Ok(Vec::new()), |meters| meters?.seen(workers))
+        self.of_meters(workers).map_or(Ok(Vec::new()), |meters| meters?.meter(workers))
     }
 }

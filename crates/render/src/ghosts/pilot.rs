@@ -9,17 +9,17 @@
 //! light in its block of 32 x 32 pixels. The rays of all rounds form one set, as dense as they are together.
 
 use super::guide::{Aim, Guide, Lit};
-use super::seen::{self, Brought, Seen};
-use super::shares::{self, Piece, Share};
-use super::sight::{Sight, Sorted};
-use super::{Ghosts, Way};
+use super::path_cells::{self, PathCells, Piece};
+use super::pilot_hit::{self, Contribution, PilotHit};
+use super::pilot_rays::{PilotRays, Sorted};
+use super::{Ghosts, PathPlan};
 use crate::Workers;
 use crate::error::RenderError;
 use crate::pipeline::ThreadState;
 use spectra_core::batch::pixel_and_channel;
 use spectra_core::loss::ALIVE;
 use spectra_core::numbers::{Dimension, StageKey};
-use spectra_core::workers::each_of;
+use spectra_core::workers::map_pieces;
 use spectra_core::{Loss, RayBatch};
 
 /// Number of rays for each path and round with one zone, in the rounds that look where the light of each path enters.
@@ -65,7 +65,7 @@ pub(super) struct Plan {
 impl Plan {
     /// Creates a plan without a search: rays go all over the front, with variances that give all paths equally many rays.
     pub fn even(ghosts: &Ghosts) -> Self {
-        let way = |way: &Way| (way.guides.clone(), way.cost());
+        let way = |way: &PathPlan| (way.guides.clone(), way.cost());
         Self { ways: ghosts.plan.ways.iter().map(way).collect(), brightest: 0.0 }
     }
 }
@@ -140,9 +140,9 @@ pub(super) fn search(
     let pilot = &Pilot::new(ghosts);
     let (ways, fresh) = (&ghosts.plan.ways, || ghosts.state(BATCH));
     // Number of batches of a path, given the number for a pair of reflections.
-    let of = |way: &Way, batches: usize| if way.is_of_pair() { batches } else { batches.div_ceil(OF_MORE) };
+    let of = |way: &PathPlan, batches: usize| if way.is_of_pair() { batches } else { batches.div_ceil(OF_MORE) };
     let first = |batches: usize| {
-        each_of(workers, ways.len(), fresh, move |state, at| {
+        map_pieces(workers, ways.len(), fresh, move |state, at| {
             wanted(workers)?;
             Ok::<_, RenderError>(pilot.round(state, &ways[at], &ways[at].guides, None, of(&ways[at], batches)))
         })
@@ -153,7 +153,7 @@ pub(super) fn search(
         let parts = scouts
             .iter()
             .zip(ways)
-            .flat_map(|((_, came), way)| seen::light(came, (of(way, SCOUTS) * BATCH) as f64, Brought::all));
+            .flat_map(|((_, came), way)| pilot_hit::light(came, (of(way, SCOUTS) * BATCH) as f64, Contribution::all));
         let light = pilot.blocks.light(parts);
         if is_dim(pilot.blocks.brightest(&light), DOUBT) {
             return Ok(None);
@@ -162,7 +162,7 @@ pub(super) fn search(
     let all = pilot.placed.len();
     let first = first(all)?;
     let closer = |lit: &[Lit]| -> Vec<Guide> { lit.iter().map(Lit::closer).collect() };
-    let mut sights = each_of(workers, ways.len(), fresh, |state, at| {
+    let mut sights = map_pieces(workers, ways.len(), fresh, |state, at| {
         wanted(workers)?;
         let mut guides = closer(&first[at].0);
         let batches = of(&ways[at], all);
@@ -170,13 +170,13 @@ pub(super) fn search(
             let (lit, came) = pilot.round(state, &ways[at], &guides, Some(stream(at, round)), batches);
             let done = round + 1;
             if done == ROUNDS || done >= LEAST_ROUNDS && !lit.iter().any(Lit::is_on_the_way) {
-                let mut sight = Sight::default();
+                let mut sight = PilotRays::default();
                 sight.add(guides, (batches * BATCH) as f64, came);
                 return Ok::<_, RenderError>(sight);
             }
             guides = closer(&lit);
         }
-        Ok(Sight::default())
+        Ok(PilotRays::default())
     })?;
     let divisor = ghosts.pipeline.search_divisor() as f64;
     for round in 0..SHARED {
@@ -188,7 +188,7 @@ pub(super) fn search(
         let sum: f64 = needs.clone().sum();
         let rays = (ghosts.rays_a_sample(matters, plan.brightest) as f64 * SHARED_RAYS).min(SHARED_MOST) / divisor;
         let batches: Vec<usize> = needs.map(|need| (rays * need / sum / BATCH as f64).round() as usize).collect();
-        let came = each_of(workers, ways.len(), fresh, |state, at| {
+        let came = map_pieces(workers, ways.len(), fresh, |state, at| {
             wanted(workers)?;
             let stream = Some(stream(at, ROUNDS + round));
             Ok::<_, RenderError>(pilot.round(state, &ways[at], &plan.ways[at].0, stream, batches[at]).1)
@@ -225,25 +225,25 @@ impl<'a> Pilot<'a> {
     }
 
     /// Computes the guides with the least noise, as far as the pilot has seen.
-    fn best(&self, sights: &[Sight], workers: &dyn Workers) -> Result<Plan, RenderError> {
+    fn best(&self, sights: &[PilotRays], workers: &dyn Workers) -> Result<Plan, RenderError> {
         let ways = &self.ghosts.plan.ways;
-        let parts = |of: fn(&Brought) -> f64| sights.iter().flat_map(move |sight| sight.light(of));
-        let light = self.blocks.light(parts(Brought::judged));
+        let parts = |of: fn(&Contribution) -> f64| sights.iter().flat_map(move |sight| sight.light(of));
+        let light = self.blocks.light(parts(Contribution::judged));
         // Noise is relative to a block's light, or to a light so dim that nobody looks at it.
         let least = 0.5 * DIM * light.iter().fold(0.0_f64, |most, light| most.max(*light));
         let over: Vec<f64> = light.iter().map(|light| light.max(least).powi(2).recip()).collect();
         // One over the effective number of rays: as many as if all were equally bright.
         let mut few = vec![0.0; self.blocks.count()];
-        for (block, part) in parts(Brought::judged) {
+        for (block, part) in parts(Contribution::judged) {
             few[block] += over[block] * part * part;
         }
         let known = |(few, light): (&f64, &f64)| (*light > least).then(|| few.recip());
         let rays: Vec<Option<f64>> = few.iter().zip(&light).map(known).collect();
         let sort = |(): &mut (), at: usize| wanted(workers).map(|()| sights[at].sorted(&over));
-        let sorted: Vec<Sorted> = each_of(workers, sights.len(), || (), sort)?;
+        let sorted: Vec<Sorted> = map_pieces(workers, sights.len(), || (), sort)?;
         let (mut paths, mut pieces, mut first) = (Vec::new(), Vec::new(), 0);
         for (sorted, way) in sorted.iter().zip(ways) {
-            paths.push(Share { zones: &sorted.trees, first, cost: way.cost() });
+            paths.push(PathCells { zones: &sorted.trees, first, cost: way.cost() });
             let piece = |(cell, block, square): &(u32, u32, f64)| Piece {
                 cell: first + *cell as usize,
                 block: *block as usize,
@@ -252,9 +252,9 @@ impl<'a> Pilot<'a> {
             pieces.extend(sorted.pieces.iter().map(piece));
             first += sorted.leaves();
         }
-        let weights = shares::weights(&pieces, &paths, &rays);
+        let weights = path_cells::weights(&pieces, &paths, &rays);
         let ways = sorted.iter().map(|sorted| sorted.guides(&weights)).collect();
-        Ok(Plan { ways, brightest: self.blocks.brightest(&self.blocks.light(parts(Brought::all))) })
+        Ok(Plan { ways, brightest: self.blocks.brightest(&self.blocks.light(parts(Contribution::all))) })
     }
 
     /// Traces one round of a path with this many batches. Returns where light came through, and each ray that came through. `stream` is the
@@ -262,11 +262,11 @@ impl<'a> Pilot<'a> {
     fn round(
         &self,
         state: &mut ThreadState,
-        way: &Way,
+        way: &PathPlan,
         guides: &[Guide],
         stream: Option<u64>,
         batches: usize,
-    ) -> (Vec<Lit>, Vec<Seen>) {
+    ) -> (Vec<Lit>, Vec<PilotHit>) {
         let mut lit: Vec<Lit> = guides.iter().map(Lit::of).collect();
         let mut came = Vec::new();
         let mut own;
@@ -287,7 +287,7 @@ impl<'a> Pilot<'a> {
                 let (zone, aim) = aimed(ray);
                 lit[zone].add(aim.place);
                 let block = self.blocks.of(pixel_and_channel(tag).0);
-                came.push(Seen { zone, aim, block, brought: brought.times(aim.density) });
+                came.push(PilotHit { zone, aim, block, brought: brought.times(aim.density) });
             });
             for (ray, surfaces) in passed.into_iter().enumerate() {
                 let (zone, aim) = aimed(ray);
@@ -312,9 +312,9 @@ impl<'a> Pilot<'a> {
     fn through(
         &self,
         state: &mut ThreadState,
-        way: &Way,
+        way: &PathPlan,
         from: &RayBatch,
-        mut came: impl FnMut(usize, u32, Brought),
+        mut came: impl FnMut(usize, u32, Contribution),
     ) -> Vec<u16> {
         let ghosts = self.ghosts;
         state.rays = from.clone();
@@ -354,11 +354,17 @@ impl<'a> Pilot<'a> {
             let at = number as usize;
             if lit.states()[at] == ALIVE { lit.weights()[at] } else { 0.0 }
         };
-        state.rays.weighing().weight.iter_mut().zip(&numbers).for_each(|(weight, number)| *weight *= carries(*number));
-        let brought = ghosts.brought(state);
+        state
+            .rays
+            .weight_columns()
+            .weight
+            .iter_mut()
+            .zip(&numbers)
+            .for_each(|(weight, number)| *weight *= carries(*number));
+        let brought = ghosts.contributions(state);
         let channels = ghosts.pipeline.responses.channels();
         for ((number, tag), brought) in numbers.iter().zip(state.rays.tags()).zip(brought.chunks_exact(channels)) {
-            let brought = Brought {
+            let brought = Contribution {
                 all: brought.iter().map(|value| value.abs()).sum(),
                 judged: self.judged.iter().map(|channel| brought[*channel].abs()).sum(),
             };

@@ -1,15 +1,15 @@
 //! Probes: rays from one point of each zone of the source, with which the nets of all paths are found.
 
 use super::aims::{Aims, azimuth};
-use super::net::Net;
-use super::{ESTIMATOR, Ghosts, Guide, Landed, Way};
+use super::probe_grid::ProbeGrid;
+use super::{ESTIMATOR, Entrance, Ghosts, Guide, PathPlan};
 use crate::Workers;
 use crate::error::RenderError;
 use crate::footprint::Footprint;
 use crate::pipeline::ThreadState;
 use glam::DVec3;
 use spectra_core::loss::ALIVE;
-use spectra_core::workers::each_of;
+use spectra_core::workers::map_pieces;
 use spectra_optics::FrontOpening;
 
 /// Number of rays with which the source is sampled.
@@ -27,16 +27,16 @@ struct Start {
 
 /// A net, and the data to rotate it for the rays of a source point elsewhere around the axis.
 #[derive(Clone, Debug)]
-pub(super) struct Found {
-    net: Net,
+pub(super) struct OrientedGrid {
+    net: ProbeGrid,
     /// Direction around the axis of the point for which the net was found, a unit vector. `None` for a lens without rotational symmetry,
     /// whose net cannot be rotated.
     azimuth: Option<[f64; 2]>,
 }
 
-impl Found {
+impl OrientedGrid {
     /// Returns the footprint of a ray, with half side `half` where that is allowed.
-    pub fn footprint(&self, landed: &Landed, half: f64) -> Footprint {
+    pub fn footprint(&self, landed: &Entrance, half: f64) -> Footprint {
         let turn = self.azimuth.map_or([1.0, 0.0], |[x, y]| {
             let [u, v] = landed.azimuth;
             [u * x + v * y, v * x - u * y]
@@ -47,12 +47,12 @@ impl Found {
 
 /// Finds the nets of each path for the zones of the source. There are none for light that sets its directions itself, or for a path whose
 /// zones share a guide.
-pub(super) fn nets(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Vec<Vec<Found>>, RenderError> {
+pub(super) fn nets(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Vec<Vec<OrientedGrid>>, RenderError> {
     let ways = &ghosts.plan.ways;
     let Some(opening) = ghosts.plan.opening else { return Ok(vec![Vec::new(); ways.len()]) };
     let starts = starts(ghosts, opening);
     let is_round = ghosts.pipeline.scene.lens.has_axis_of_revolution();
-    each_of(
+    map_pieces(
         workers,
         ways.len(),
         || ghosts.state(BATCH),
@@ -65,12 +65,12 @@ pub(super) fn nets(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Vec<Vec<Fou
                 return Ok(Vec::new());
             }
             let net = |(guide, start): (&Guide, &Option<Start>)| {
-                let net = Net::new(guide.part(), |places| match start {
+                let net = ProbeGrid::new(guide.part(), |places| match start {
                     Some(start) => landed(ghosts, state, way, *start, places),
                     None => vec![None; places.len()],
                 });
                 let azimuth = start.filter(|_| is_round).map(|start| azimuth(start.point.x, start.point.y));
-                Found { net, azimuth }
+                OrientedGrid { net, azimuth }
             };
             Ok(way.guides.iter().zip(&starts).map(net).collect())
         },
@@ -97,7 +97,7 @@ fn starts(ghosts: &Ghosts, opening: FrontOpening) -> Vec<Option<Start>> {
 fn landed(
     ghosts: &Ghosts,
     state: &mut ThreadState,
-    way: &Way,
+    way: &PathPlan,
     start: Start,
     places: &[[f64; 2]],
 ) -> Vec<Option<[f64; 2]>> {

@@ -10,7 +10,7 @@ use crate::error::RenderError;
 use crate::footprint::MOST_HALF;
 use crate::pipeline::ThreadState;
 use spectra_core::batch::pixel_and_channel;
-use spectra_core::workers::each_of;
+use spectra_core::workers::map_pieces;
 
 /// Noise of a pixel that footprints are to leave after [`SAMPLES`] samples, as a fraction of the light. Neighboring pixels share most of
 /// it: about the plane fitted to 16 x 16 pixels, roughly six tenths remain.
@@ -60,7 +60,7 @@ impl Width {
 }
 
 /// The contribution of a ray: the cell of a part of the frame and a channel, the value, and the number of rays that it stands for.
-type Part = (u32, f64, f64);
+type CellContribution = (u32, f64, f64);
 
 /// Finds the width for ghosts whose rays are already shared out.
 pub(super) fn found(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Width, RenderError> {
@@ -70,7 +70,7 @@ pub(super) fn found(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Width, Ren
     let across = width.div_ceil(side);
     let channels = ghosts.pipeline.responses.channels();
     let part_of = |pixel: usize| pixel / width / side * across + pixel % width / side;
-    let each = each_of(
+    let each = map_pieces(
         workers,
         ghosts.plan.ways.len(),
         || ghosts.state(ghosts.pipeline.scene.render.batch),
@@ -103,7 +103,7 @@ pub(super) fn found(ghosts: &Ghosts, workers: &dyn Workers) -> Result<Width, Ren
 }
 
 /// Returns the contributions of a block's rays of one path.
-fn parts(ghosts: &Ghosts, state: &mut ThreadState, at: usize, first: impl Fn(usize) -> usize) -> Vec<Part> {
+fn parts(ghosts: &Ghosts, state: &mut ThreadState, at: usize, first: impl Fn(usize) -> usize) -> Vec<CellContribution> {
     let all = ghosts.plan.ways[at].rays;
     let some = all.min(SCALE_RAYS);
     let stands_for = all as f64 / some as f64;
@@ -111,7 +111,7 @@ fn parts(ghosts: &Ghosts, state: &mut ThreadState, at: usize, first: impl Fn(usi
     let mut parts = Vec::new();
     for span in spans(0..some, state.rays.capacity()) {
         ghosts.batch(state, at, span, |_, _| {});
-        let brought = ghosts.brought(state);
+        let brought = ghosts.contributions(state);
         for (tag, brought) in state.rays.tags().iter().zip(brought.chunks_exact(channels)) {
             let first = first(pixel_and_channel(*tag).0 as usize);
             let lit = brought.iter().enumerate().filter(|(_, value)| **value != 0.0);

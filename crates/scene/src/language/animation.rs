@@ -1,11 +1,11 @@
 //! The `animation` section: one scene, and a sequence of frames over which values change.
 
 use super::law::{Law, Track};
-use super::setting::{ANIMATION, Setting, check_path};
+use super::picture_values::{ANIMATION, PictureValues, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Key, Node, Part, StageNode, Value, Warning, Whole};
+use spectra_core::params::{Deferred, Fault, Faults, Key, Node, StageNode, Value, Warning, Whole};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ pub(crate) struct Section {
     seed: FrameSeed,
     /// Paths as for `--set`, each with its keyframes: frame numbers with values, and optionally `interpolation`: `linear`,
     /// `smooth`, `hold`, `logarithmic` or `reciprocal`.
-    animate: Option<Part<BTreeMap<String, BTreeMap<String, StageNode>>>>,
+    animate: Option<Deferred<BTreeMap<String, BTreeMap<String, StageNode>>>>,
 }
 
 /// Whether every frame has noise and grain of its own.
@@ -99,7 +99,7 @@ impl Animation {
     }
 
     /// Returns the paths and values that are set for a frame.
-    pub(super) fn setting(&self, frame: u32) -> Setting {
+    pub(super) fn setting(&self, frame: u32) -> PictureValues {
         self.tracks.iter().map(|(path, track)| (path.clone(), track.value_at(f64::from(frame)))).collect()
     }
 }
@@ -146,7 +146,7 @@ fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::flat::one_line;
+    use crate::language::yaml_writer::one_line;
     use crate::yaml::parse;
     use spectra_core::params::SourceFile;
 

@@ -128,7 +128,7 @@ impl Reader {
         if !self.files.contains(&found.name()) {
             self.files.push(found.name());
         }
-        if let Found::Disk(path) = &found {
+        if let FoundInclude::Disk(path) = &found {
             let folder = path.parent().map(Path::to_owned).unwrap_or_default();
             if !self.folders.contains(&folder) {
                 self.folders.push(folder);
@@ -142,13 +142,13 @@ impl Reader {
 }
 
 /// A file that was found.
-enum Found {
+enum FoundInclude {
     Disk(PathBuf),
     /// Name of a bundled file.
     Bundled(String),
 }
 
-impl Found {
+impl FoundInclude {
     fn name(&self) -> String {
         match self {
             Self::Disk(path) => path.display().to_string(),
@@ -165,13 +165,13 @@ impl Found {
 }
 
 /// Finds the file that `item` names: beside the file that contains `item`, otherwise a bundled scene.
-fn find(name: &str, item: &Node) -> Result<Found, Fault> {
+fn find(name: &str, item: &Node) -> Result<FoundInclude, Fault> {
     const ENDINGS: [&str; 3] = ["", ".yaml", ".yml"];
     if let Some(folder) = item.file.folder() {
         let found =
             ENDINGS.iter().map(|ending| plain(&folder.join(of_user(format!("{name}{ending}"))))).find(|p| p.is_file());
         if let Some(path) = found {
-            return Ok(Found::Disk(path));
+            return Ok(FoundInclude::Disk(path));
         }
     }
     let beside =
@@ -179,12 +179,12 @@ fn find(name: &str, item: &Node) -> Result<Found, Fault> {
     let folders = beside.into_iter().chain(["scenes"]);
     let bundled = folders.flat_map(|folder| ENDINGS.map(|ending| format!("{folder}/{name}{ending}")));
     if let Some(name) = bundled.into_iter().find(|name| spectra_data::get(name).is_some()) {
-        return Ok(Found::Bundled(name));
+        return Ok(FoundInclude::Bundled(name));
     }
     if let Ok(name) = crate::bundled::scene_file(name) {
-        return Ok(Found::Bundled(name));
+        return Ok(FoundInclude::Bundled(name));
     }
-    let missing = if crate::advice::is_file_name(name) { "no such file" } else { "no scene or file of this name" };
+    let missing = if crate::hints::is_file_name(name) { "no such file" } else { "no scene or file of this name" };
     let fault = item.fault(format!("`{name}`: {missing}")).path(INCLUDE);
     Err(fault.hint(match near(name, item) {
         Some(near) => format!("did you mean `{near}`?"),
@@ -229,7 +229,7 @@ fn plain(path: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::flat::one_line;
+    use crate::language::yaml_writer::one_line;
 
     /// Writes files and resolves the first one.
     fn resolved(files: &[(&str, &str)]) -> Result<(tempfile::TempDir, Included), String> {

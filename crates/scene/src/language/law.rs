@@ -207,7 +207,7 @@ fn written(value: f64, unit: Option<&'static Unit>) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::flat::one_line;
+    use crate::language::yaml_writer::one_line;
     use crate::yaml::parse;
     use spectra_core::params::SourceFile;
 

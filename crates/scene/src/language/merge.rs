@@ -84,13 +84,13 @@ fn default_kind(path: &[String]) -> Option<Option<&'static str>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::flat;
+    use crate::language::yaml_writer;
     use crate::yaml::parse;
     use spectra_core::params::SourceFile;
 
     fn merged(base: &str, over: &str) -> String {
         let tree = |name: &str, text: &str| parse(SourceFile::new(name, text)).expect(text);
-        flat::one_line(&merge(tree("base.yaml", base), tree("over.yaml", over)))
+        yaml_writer::one_line(&merge(tree("base.yaml", base), tree("over.yaml", over)))
     }
 
     #[test]

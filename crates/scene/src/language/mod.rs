@@ -38,21 +38,21 @@
 //! way.
 
 mod animation;
-mod flat;
 mod include;
 mod law;
 mod merge;
+mod picture_values;
 mod series;
-mod setting;
 mod sweep;
 mod variables;
+mod yaml_writer;
 
 pub(crate) use animation::Section as AnimationForm;
 pub(crate) use include::Form as IncludeForm;
 pub(crate) use sweep::Form as SweepForm;
 
-pub use flat::document;
 pub use series::{Member, Series, SeriesKind, SweptAxis, load, load_series, series_of_text, series_of_tree};
+pub use yaml_writer::document;
 
 use spectra_core::params::{Node, Value};
 

@@ -1,17 +1,17 @@
 //! A scene file as a series of pictures: one picture, the members of a sweep, or the frames of an animation.
 
 use super::animation::Animation;
-use super::flat;
 use super::include::{self, INCLUDE};
-use super::setting::{ANIMATION, SWEEP, Setting};
+use super::picture_values::{ANIMATION, PictureValues, SWEEP};
 use super::sweep::{Axis, Sweep};
 use super::variables::{self, VARIABLES, Variables};
+use super::yaml_writer;
 use crate::assemble::{assemble, read, record};
-use crate::earlier::Earlier;
+use crate::cached_resources::{BUNDLED, CachedResources};
+use crate::frame_view::ViewSearch;
 use crate::lens_section::is_too_fast;
 use crate::metering;
-use crate::remembered::{BUNDLED, Remembered};
-use crate::sight::Search;
+use crate::reuse::ReusableStages;
 use crate::{FileResources, NO_LENS, Scene, yaml};
 use spectra_core::params::{Fault, Faults, Key, Node, Number, Params, SourceFile, Step, Value, Warning, steps};
 use spectra_core::resources::Resources;
@@ -80,21 +80,21 @@ impl Member {
 /// A scene file that was read with all of its includes; no stage is built yet.
 #[derive(Clone)]
 pub struct Series {
-    written: Written,
+    written: ParsedScene,
     /// Texts `path=value` that are set on top of the file.
     overrides: Vec<String>,
     /// The tree, with its variables.
     root: Node,
     /// Complete record of a scene that uses none of the scene language.
     plain: Option<String>,
-    going: Going,
+    going: SeriesSpec,
     warnings: Vec<Warning>,
 }
 
 #[derive(Clone, Debug)]
-enum Going {
+enum SeriesSpec {
     Single,
-    Sweep { axes: Vec<Axis>, settings: Vec<Setting> },
+    Sweep { axes: Vec<Axis>, settings: Vec<PictureValues> },
     Animation(Animation),
 }
 
@@ -127,7 +127,7 @@ pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> 
     let name = called.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
     let beside =
         |folders: &[PathBuf]| -> Arc<dyn Resources> { Arc::new(FileResources::beside(folder).and_beside(folders)) };
-    Written::read(name, root, overrides, beside)?.set(overrides)
+    ParsedScene::read(name, root, overrides, beside)?.set(overrides)
 }
 
 /// Reads a series from the text of a scene file. Its stages get their files from `resources`.
@@ -155,17 +155,17 @@ pub fn series_of_tree(
     resources: Arc<dyn Resources>,
 ) -> Result<Series, Faults> {
     let stem = Path::new(name).file_stem().map_or_else(|| name.to_owned(), |s| s.to_string_lossy().into_owned());
-    Written::read(stem, root, overrides, |_| resources)?.set(overrides)
+    ParsedScene::read(stem, root, overrides, |_| resources)?.set(overrides)
 }
 
 /// A scene as written, with all of its includes, before any value is set.
 #[derive(Clone)]
-struct Written {
+struct ParsedScene {
     name: String,
     root: Node,
     /// The scene file, for the record.
     text: Arc<SourceFile>,
-    resources: Arc<Remembered>,
+    resources: Arc<CachedResources>,
     /// Names of the files that the scene is made of.
     files: Vec<String>,
     /// Variables that any of the files refers to.
@@ -179,7 +179,7 @@ fn is_include(text: &str) -> bool {
     text.split_once('=').is_some_and(|(path, _)| path.trim() == INCLUDE)
 }
 
-impl Written {
+impl ParsedScene {
     fn read(
         name: String,
         mut root: Node,
@@ -195,7 +195,7 @@ impl Written {
         let is_plain = [INCLUDE, VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
         let files = vec![root.file.name.clone()];
         let include::Included { root, files: included, folders, references } = include::resolve(root)?;
-        let resources = Arc::new(Remembered::new(resources(&folders)));
+        let resources = Arc::new(CachedResources::new(resources(&folders)));
         Ok(Self { name, root, text, resources, files: [files, included].concat(), references, is_plain })
     }
 
@@ -220,7 +220,7 @@ impl Written {
         let is_plain = self.is_plain && [VARIABLES, SWEEP, ANIMATION].iter().all(|key| root.get(key).is_none());
         let plain = is_plain.then(|| record(&self.text.text, overrides));
         let overrides = overrides.to_vec();
-        let series = Series { written: self, overrides, root, plain, going: Going::Single, warnings: Vec::new() };
+        let series = Series { written: self, overrides, root, plain, going: SeriesSpec::Single, warnings: Vec::new() };
         if is_plain { Ok(series) } else { series.unfolded(&set, &references) }
     }
 }
@@ -282,14 +282,14 @@ impl Series {
             let settings = sweep.settings();
             own = settings.iter().flatten().map(|(path, _)| path.clone()).collect();
             let axes = if let Sweep::Product(axes) = sweep { axes } else { Vec::new() };
-            self.going = Going::Sweep { axes, settings };
+            self.going = SeriesSpec::Sweep { axes, settings };
         }
         if let Some((_, node)) = animation
             && let Some(animation) = faults.take(Animation::read(&node, &variables))
         {
             self.warnings.extend(animation.warnings.iter().cloned());
             own = animation.setting(animation.first).into_iter().map(|(path, _)| path).collect();
-            self.going = Going::Animation(animation);
+            self.going = SeriesSpec::Animation(animation);
         }
         let below = |set: &str, own: &str| {
             set.strip_prefix(own).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
@@ -305,9 +305,9 @@ impl Series {
     /// Returns the key of the section that makes several pictures.
     fn key(&self) -> Option<&'static str> {
         match self.going {
-            Going::Single => None,
-            Going::Sweep { .. } => Some(SWEEP),
-            Going::Animation(_) => Some(ANIMATION),
+            SeriesSpec::Single => None,
+            SeriesSpec::Sweep { .. } => Some(SWEEP),
+            SeriesSpec::Animation(_) => Some(ANIMATION),
         }
     }
 
@@ -386,15 +386,15 @@ impl Series {
     #[must_use]
     pub fn kind(&self) -> SeriesKind {
         match &self.going {
-            Going::Single => SeriesKind::Single,
-            Going::Sweep { axes, .. } => {
+            SeriesSpec::Single => SeriesKind::Single,
+            SeriesSpec::Sweep { axes, .. } => {
                 let shown = |a: &Axis| SweptAxis {
                     path: a.path.clone(),
-                    values: a.values.iter().map(flat::one_line).collect(),
+                    values: a.values.iter().map(yaml_writer::one_line).collect(),
                 };
                 SeriesKind::Sweep { axes: axes.iter().map(shown).collect() }
             }
-            Going::Animation(animation) => SeriesKind::Animation { first: animation.first, rate: animation.rate },
+            SeriesSpec::Animation(animation) => SeriesKind::Animation { first: animation.first, rate: animation.rate },
         }
     }
 
@@ -409,9 +409,9 @@ impl Series {
     #[must_use]
     pub fn count(&self) -> usize {
         match &self.going {
-            Going::Single => 1,
-            Going::Sweep { settings, .. } => settings.len(),
-            Going::Animation(animation) => animation.frames as usize,
+            SeriesSpec::Single => 1,
+            SeriesSpec::Sweep { settings, .. } => settings.len(),
+            SeriesSpec::Animation(animation) => animation.frames as usize,
         }
     }
 
@@ -457,31 +457,32 @@ impl Series {
         found
     }
 
-    fn setting(&self, index: usize) -> Setting {
+    fn setting(&self, index: usize) -> PictureValues {
         match &self.going {
-            Going::Single => Setting::new(),
-            Going::Sweep { settings, .. } => settings.get(index).cloned().unwrap_or_default(),
-            Going::Animation(animation) => animation.setting(animation.first + index as u32),
+            SeriesSpec::Single => PictureValues::new(),
+            SeriesSpec::Sweep { settings, .. } => settings.get(index).cloned().unwrap_or_default(),
+            SeriesSpec::Animation(animation) => animation.setting(animation.first + index as u32),
         }
     }
 
     /// Returns a picture by its index in the series, from 0.
     #[must_use]
     pub fn member(&self, index: usize) -> Member {
-        let values = self.setting(index).iter().map(|(path, node)| (path.clone(), flat::one_line(node))).collect();
+        let values =
+            self.setting(index).iter().map(|(path, node)| (path.clone(), yaml_writer::one_line(node))).collect();
         let (number, mark) = match &self.going {
-            Going::Single => (1, String::new()),
-            Going::Sweep { settings, .. } => {
+            SeriesSpec::Single => (1, String::new()),
+            SeriesSpec::Sweep { settings, .. } => {
                 let digits = settings.len().to_string().len().max(3);
                 (index as u32 + 1, format!("-{:0digits$}", index + 1))
             }
-            Going::Animation(animation) => {
+            SeriesSpec::Animation(animation) => {
                 let frame = animation.first + index as u32;
                 let digits = (animation.first + animation.frames - 1).to_string().len().max(4);
                 (frame, format!(".{frame:0digits$}"))
             }
         };
-        let is_frame = matches!(self.going, Going::Animation(_));
+        let is_frame = matches!(self.going, SeriesSpec::Animation(_));
         Member { number, values, base: self.written.name.clone(), mark, is_frame }
     }
 
@@ -490,7 +491,7 @@ impl Series {
     /// # Errors
     /// Every fault of the picture, each with its place. Faults of a value that came through a variable name both places.
     pub fn scene(&self, index: usize) -> Result<Scene, Faults> {
-        self.assembled(index, Earlier::default())
+        self.assembled(index, ReusableStages::default())
     }
 
     /// Assembles a picture, and takes over what it can from scenes that were assembled before. `other` gives the stages whose
@@ -504,9 +505,9 @@ impl Series {
         index: usize,
         other: Option<Arc<Scene>>,
         lens_of: Option<&Scene>,
-        search: Search<'_>,
+        search: ViewSearch<'_>,
     ) -> Result<Scene, Faults> {
-        self.assembled(index, Earlier::of(other, false).and_lens_of(lens_of).by(search))
+        self.assembled(index, ReusableStages::of(other, false).and_lens_of(lens_of).by(search))
     }
 
     /// Assembles a picture only to check it: noise and grain need not be those of its frame. All stages of `other`, another such
@@ -515,10 +516,10 @@ impl Series {
     /// # Errors
     /// The errors of [`Series::scene`].
     pub fn looked_at(&self, index: usize, other: Option<Arc<Scene>>) -> Result<Scene, Faults> {
-        self.assembled(index, Earlier::of(other, true))
+        self.assembled(index, ReusableStages::of(other, true))
     }
 
-    fn assembled(&self, index: usize, earlier: Earlier<'_>) -> Result<Scene, Faults> {
+    fn assembled(&self, index: usize, earlier: ReusableStages<'_>) -> Result<Scene, Faults> {
         let member = self.member(index);
         let name = member.stem("");
         if let Some(text) = &self.plain {
@@ -536,7 +537,7 @@ impl Series {
             variables::open(&mut root, &path);
             faults.take(root.set_path(&path, node));
         }
-        if let Going::Animation(animation) = &self.going
+        if let SeriesSpec::Animation(animation) = &self.going
             && animation.is_alive
         {
             let number = Value::Number(Number { value: f64::from(member.number), text: member.number.to_string() });
@@ -550,14 +551,14 @@ impl Series {
         let root = variables.unwrap_or_default().put_into(&root, &mut uses)?;
         let text = self.record(&member, &root);
         let (is_check, search) = (earlier.is_check, earlier.search);
-        let built = |root: &Node, text: &str, earlier: Earlier<'_>| {
+        let built = |root: &Node, text: &str, earlier: ReusableStages<'_>| {
             Params::section(root.clone(), "")
                 .and_then(|params| assemble(&name, text.to_owned(), &params, &*self.written.resources, earlier))
         };
         let scene =
             built(&root, &text, earlier).or_else(|faults| match self.wide_open_instead(index, &root, &faults) {
                 Some((open, warning)) => {
-                    built(&open, &self.record(&member, &open), Earlier::of(None, is_check).by(search)).map(
+                    built(&open, &self.record(&member, &open), ReusableStages::of(None, is_check).by(search)).map(
                         |mut scene| {
                             scene.warnings.push(warning.into());
                             scene
@@ -566,13 +567,13 @@ impl Series {
                 }
                 None => Err(faults),
             });
-        scene.map_err(|faults| variables::told(faults, &uses))
+        scene.map_err(|faults| variables::with_variable_places(faults, &uses))
     }
 
     /// Handles a sweep over lenses in which the only fault is that a lens cannot reach the f-number. Returns the scene without
     /// the f-number, and a warning.
     fn wide_open_instead(&self, index: usize, root: &Node, faults: &Faults) -> Option<(Node, String)> {
-        let is_sweep = matches!(self.going, Going::Sweep { .. });
+        let is_sweep = matches!(self.going, SeriesSpec::Sweep { .. });
         let lens = self.setting(index).iter().any(|(path, _)| path == "lens.file" || path == "lens");
         let [fault] = &faults.0[..] else { return None };
         if !(is_sweep && lens && fault.path == "lens.f-number") {
@@ -602,14 +603,14 @@ impl Series {
             |name: &String| Path::new(name).file_name().map_or(name.clone(), |n| n.to_string_lossy().into_owned());
         let files: Vec<String> = self.written.files.iter().map(file).collect();
         let what = match &self.going {
-            Going::Single => String::new(),
-            Going::Sweep { settings, .. } => {
+            SeriesSpec::Single => String::new(),
+            SeriesSpec::Sweep { settings, .. } => {
                 format!("# picture {} of {}: {}\n", member.number, settings.len(), member.words())
             }
-            Going::Animation(_) => format!("# frame {}: {}\n", member.number, member.words()),
+            SeriesSpec::Animation(_) => format!("# frame {}: {}\n", member.number, member.words()),
         };
         let what: String = what.chars().map(|c| if c.is_control() && c != '\n' { ' ' } else { c }).collect();
-        format!("# made of {}\n{what}{}", files.join(", "), flat::document(&root))
+        format!("# made of {}\n{what}{}", files.join(", "), yaml_writer::document(&root))
     }
 }
 

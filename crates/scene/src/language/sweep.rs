@@ -1,7 +1,7 @@
 //! The `sweep` section: one scene, and several pictures that differ in named values.
 
 use super::law::{Law, Track};
-use super::setting::{SWEEP, Setting, check_path};
+use super::picture_values::{PictureValues, SWEEP, check_path};
 use super::variables::Variables;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -23,7 +23,7 @@ pub(super) enum Sweep {
     /// All combinations of the values of each path; the last path changes fastest.
     Product(Vec<Axis>),
     /// Lists of values that are set together.
-    Together(Vec<Setting>),
+    Together(Vec<PictureValues>),
 }
 
 /// The `sweep` section as written, for the schema.
@@ -93,11 +93,11 @@ impl Sweep {
     }
 
     /// Returns the settings of all pictures, in order.
-    pub(super) fn settings(&self) -> Vec<Setting> {
+    pub(super) fn settings(&self) -> Vec<PictureValues> {
         match self {
             Self::Together(settings) => settings.clone(),
-            Self::Product(axes) => axes.iter().fold(vec![Setting::new()], |settings, axis| {
-                let with = |setting: &Setting, value: &Node| {
+            Self::Product(axes) => axes.iter().fold(vec![PictureValues::new()], |settings, axis| {
+                let with = |setting: &PictureValues, value: &Node| {
                     setting.iter().cloned().chain([(axis.path.clone(), value.clone())]).collect()
                 };
                 settings.iter().flat_map(|setting| axis.values.iter().map(move |value| with(setting, value))).collect()
@@ -198,7 +198,7 @@ fn together(section: &Node, items: &[Node]) -> Result<Sweep, Faults> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::flat::one_line;
+    use crate::language::yaml_writer::one_line;
     use crate::yaml::parse;
     use spectra_core::params::SourceFile;
 
@@ -207,7 +207,7 @@ mod tests {
         let variables = Variables::of(root.get("variables")).expect("variables");
         let sweep =
             Sweep::read(root.get("sweep").expect("a sweep"), &variables).map_err(|faults| faults.to_string())?;
-        let words = |s: &Setting| {
+        let words = |s: &PictureValues| {
             s.iter().map(|(path, node)| format!("{path}={}", one_line(node))).collect::<Vec<_>>().join(" ")
         };
         Ok(sweep.settings().iter().map(words).collect())

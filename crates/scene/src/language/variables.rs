@@ -415,7 +415,7 @@ fn nothing(node: &Node) -> Node {
 }
 
 /// Adds to each fault in a value that came through a variable the place of its use or definition.
-pub(super) fn told(faults: Faults, uses: &[Use]) -> Faults {
+pub(super) fn with_variable_places(faults: Faults, uses: &[Use]) -> Faults {
     faults.into_iter().map(|fault| with_use(fault, uses)).collect::<Vec<_>>().into()
 }
 
@@ -443,7 +443,7 @@ fn with_use(fault: Fault, uses: &[Use]) -> Fault {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::flat::one_line;
+    use crate::language::yaml_writer::one_line;
     use crate::yaml::parse;
     use spectra_core::params::{Length, StageNode};
     use std::fmt::Write as _;
@@ -563,7 +563,7 @@ mod tests {
         for key in ["focus", "near"] {
             faults.take(StageNode::new(body.get(key).expect(key).clone(), key).parse::<Length>());
         }
-        let text = told(faults, &uses).to_string();
+        let text = with_variable_places(faults, &uses).to_string();
         let [focus, near]: [&str; 2] = text.lines().collect::<Vec<_>>().try_into().expect("two faults");
         assert!(
             focus.starts_with("t.yaml:1:18: found a time")

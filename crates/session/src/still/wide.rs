@@ -2,7 +2,7 @@
 
 use super::{Colors, JUDGES};
 use rayon::prelude::*;
-use spectra_color::RealColors;
+use spectra_color::RealGamut;
 use spectra_core::stage::ColorGamut;
 
 /// Number of directions from white.
@@ -12,7 +12,7 @@ const ROWS: usize = 65;
 
 /// A table over the direction from white, and the depth between sRGB and the boundary of real colors.
 pub(super) struct Wide {
-    real: RealColors,
+    real: RealGamut,
     /// Exposures of the channels by the color whose largest value is 1, for each direction and row.
     points: Vec<f32>,
     channels: usize,
@@ -30,9 +30,9 @@ impl Wide {
         if colors.model.gamut() == ColorGamut::Srgb {
             return None;
         }
-        let real = RealColors::even(DIRECTIONS);
+        let real = RealGamut::even(DIRECTIONS);
         let column = |turn: &f64| -> Vec<f32> {
-            let of = |row| colors.integrals(RealColors::color(*turn, depth(row)));
+            let of = |row| colors.integrals(RealGamut::color(*turn, depth(row)));
             (0..ROWS).flat_map(of).map(|v| v as f32).collect()
         };
         let points = real.turns().par_iter().flat_map_iter(column).collect();
@@ -44,7 +44,7 @@ impl Wide {
         let off = |i: usize| {
             // Additive recurrences with irrational steps fill a square evenly (the plastic number).
             let at = |step: f64| (0.5 + i as f64 * step).fract();
-            let color = RealColors::color(4.0 * at(0.754_877_666_246_692_7), at(0.569_840_290_998_053_3));
+            let color = RealGamut::color(4.0 * at(0.754_877_666_246_692_7), at(0.569_840_290_998_053_3));
             let color = color.map(|v| v as f32);
             let mut found = vec![0.0; self.channels];
             if self.at(color, &mut found) { colors.off(color, &found) } else { 0.0 }
@@ -66,7 +66,7 @@ impl Wide {
                 a + (b - a) * down
             };
             let (a, b) = (between(left), between(right));
-            *to = (place.largest * (a + (b - a) * place.along)) as f32;
+            *to = (place.peak * (a + (b - a) * place.fraction)) as f32;
         }
         true
     }

@@ -3,7 +3,7 @@
 use spectra_core::numbers::{SplitMix64, mix64};
 use spectra_core::spectral::Grid;
 
-use super::projection::{Place, Problem, Projected};
+use super::projection::{CenterAndWidth, Problem, Projected};
 use super::{GaussianMixture, GaussianTerm};
 use crate::error::{SpectrumError, check};
 
@@ -106,7 +106,7 @@ const RESTARTS_PER_TERM: u64 = 14;
 struct Search<'a> {
     problem: Problem<'a>,
     /// Centers and widths at which a term may be added.
-    candidates: Vec<Place>,
+    candidates: Vec<CenterAndWidth>,
 }
 
 impl<'a> Search<'a> {
@@ -152,13 +152,13 @@ impl<'a> Search<'a> {
 
     /// Extends the sum by one more term, at each of the places that help most.
     fn with_one_more(&self, way: &Projected) -> Vec<Projected> {
-        let mut gains: Vec<(f64, Place)> =
+        let mut gains: Vec<(f64, CenterAndWidth)> =
             self.candidates.iter().map(|place| (self.problem.gain(way, *place), *place)).collect();
         gains.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut taken: Vec<Place> = Vec::new();
+        let mut taken: Vec<CenterAndWidth> = Vec::new();
         for (_, place) in gains {
             let sigma = libm::exp(place[1]);
-            let near = |t: &Place| (t[0] - place[0]).abs() < 0.8 * sigma && (t[1] - place[1]).abs() < 0.7;
+            let near = |t: &CenterAndWidth| (t[0] - place[0]).abs() < 0.8 * sigma && (t[1] - place[1]).abs() < 0.7;
             if !taken.iter().any(near) {
                 taken.push(place);
             }
@@ -197,7 +197,7 @@ impl<'a> Search<'a> {
                 places[which] = [center - half, log_sigma - 0.3];
                 places.push([center + half, log_sigma - 0.3]);
             } else {
-                let mut gains: Vec<(f64, Place)> =
+                let mut gains: Vec<(f64, CenterAndWidth)> =
                     self.candidates.iter().map(|place| (self.problem.gain(&rest, *place), *place)).collect();
                 gains.sort_by(|a, b| b.0.total_cmp(&a.0));
                 let skip = (random() * random() * 0.5 * gains.len() as f64) as usize;

@@ -1,7 +1,7 @@
 //! The Gaussian that touches a function at one point.
 
 use super::GaussianTerm;
-use crate::shape::Shape;
+use crate::spectral_function::SpectralFunction;
 
 /// Why no Gaussian touches a function at a point.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -55,7 +55,7 @@ impl GaussianTerm {
     ///
     /// # Errors
     /// [`NoGaussian`] if there is none, also for a step that is not positive.
-    pub fn local_of(shape: &Shape, wavelength_nm: f64, step_nm: f64) -> Result<Self, NoGaussian> {
+    pub fn local_of(shape: &SpectralFunction, wavelength_nm: f64, step_nm: f64) -> Result<Self, NoGaussian> {
         let [below, here, above] = [-step_nm, 0.0, step_nm].map(|d| shape.at(wavelength_nm + d));
         let slope = (above - below) / (2.0 * step_nm);
         let curvature = (above - 2.0 * here + below) / (step_nm * step_nm);
@@ -84,7 +84,7 @@ mod tests {
     /// Planck's law in wavelength: ln B = const - 5 ln x - ln(exp(c2 / (x T)) - 1), with derivatives in closed form.
     #[test]
     fn local_fit_of_a_black_body() {
-        let shape = Shape::blackbody(5000.0).expect("valid");
+        let shape = SpectralFunction::blackbody(5000.0).expect("valid");
         let (x, c2_over_t) = (550.0, crate::constants::SECOND_RADIATION_M_K * 1e9 / 5000.0);
         let y = c2_over_t / x;
         // d/dx ln B = -5/x + y/x * e^y/(e^y - 1).

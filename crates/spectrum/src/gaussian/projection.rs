@@ -5,7 +5,7 @@
 //! Levenberg-Marquardt method. Its Jacobian is analytic, in L. Kaufman's form (BIT 15, 49, 1975).
 
 /// Center, nm, and natural logarithm of the standard deviation in nm.
-pub(super) type Place = [f64; 2];
+pub(super) type CenterAndWidth = [f64; 2];
 
 /// A function counts as linearly dependent on those before it if less than this share of its length is left after orthogonalization.
 const DEPENDENT: f64 = 1e-11;
@@ -22,7 +22,7 @@ pub(super) struct Problem<'a> {
 /// Result of a projection: the best heights for given centers and widths.
 #[derive(Clone)]
 pub(super) struct Projected {
-    pub places: Vec<Place>,
+    pub places: Vec<CenterAndWidth>,
     pub heights: Vec<f64>,
     /// Residual: y minus the fitted sum.
     pub residual: Vec<f64>,
@@ -66,7 +66,7 @@ fn orthogonalize(v: &mut [f64], basis: &[Vec<f64>], along: &mut [f64]) {
 }
 
 impl Problem<'_> {
-    fn bell(&self, [center, log_sigma]: Place) -> Vec<f64> {
+    fn bell(&self, [center, log_sigma]: CenterAndWidth) -> Vec<f64> {
         let inverse = libm::exp(-log_sigma);
         let value = |x: &f64| {
             let t = (x - center) * inverse;
@@ -76,7 +76,7 @@ impl Problem<'_> {
     }
 
     /// Finds the best heights for terms at `places`.
-    pub fn project(&self, places: &[Place]) -> Projected {
+    pub fn project(&self, places: &[CenterAndWidth]) -> Projected {
         let empty = Projected {
             places: Vec::new(),
             heights: Vec::new(),
@@ -89,7 +89,7 @@ impl Problem<'_> {
     }
 
     /// Adds terms at further `places` to `start` and finds the best heights of all terms.
-    pub fn extend(&self, start: &Projected, places: &[Place]) -> Projected {
+    pub fn extend(&self, start: &Projected, places: &[CenterAndWidth]) -> Projected {
         let mut p = start.clone();
         let mut triangle: Vec<Vec<f64>> = Vec::new();
         let new: Vec<Vec<f64>> = places.iter().map(|place| self.bell(*place)).collect();
@@ -125,7 +125,7 @@ impl Problem<'_> {
     }
 
     /// Returns the amount by which one more term at `place` would lower the sum of squares.
-    pub fn gain(&self, p: &Projected, place: Place) -> f64 {
+    pub fn gain(&self, p: &Projected, place: CenterAndWidth) -> f64 {
         let mut bell = self.bell(place);
         let length = dot(&bell, &bell);
         let along = dot(&bell, &p.residual);
@@ -164,8 +164,8 @@ impl Problem<'_> {
         now
     }
 
-    fn moved(&self, places: &[Place], step: &[f64]) -> Vec<Place> {
-        let moved = |(place, d): (&Place, &[f64])| {
+    fn moved(&self, places: &[CenterAndWidth], step: &[f64]) -> Vec<CenterAndWidth> {
+        let moved = |(place, d): (&CenterAndWidth, &[f64])| {
             let sigma = libm::exp(place[1]);
             let center = place[0] + sigma * d[0].clamp(-1.5, 1.5);
             let log_sigma = place[1] + d[1].clamp(-0.7, 0.7);

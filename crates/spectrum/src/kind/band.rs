@@ -1,10 +1,10 @@
 //! The spectrum of `kind: rectangle`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind, times};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, build_kind, times};
 use crate::error::SpectrumError;
 use crate::inline::wavelengths;
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, NonNegative, Wavelength};
@@ -32,16 +32,16 @@ struct Rectangle {
 spectra_core::register!(SpectrumEntry, "rectangle": Rectangle, build_kind::<Rectangle>);
 crate::expression!("rectangle:500,600", "write two wavelengths in nm, such as rectangle:500,600", |text| {
     let [from, to] = wavelengths(text)?.try_into().ok()?;
-    Some(rectangle(from, to).map(Piece::Bare))
+    Some(rectangle(from, to).map(PendingSpectrum::Bare))
 });
 
 impl SpectrumKind for Rectangle {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         let shape = rectangle(self.from.nm(), self.to.nm());
         shape.and_then(|shape| times(shape, self.value)).map_err(making.at("to"))
     }
 }
 
-fn rectangle(from_nm: f64, to_nm: f64) -> Result<Shape, SpectrumError> {
-    Shape::rectangle(from_nm, light_nm(to_nm)?)
+fn rectangle(from_nm: f64, to_nm: f64) -> Result<SpectralFunction, SpectrumError> {
+    SpectralFunction::rectangle(from_nm, light_nm(to_nm)?)
 }

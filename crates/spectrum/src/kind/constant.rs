@@ -1,9 +1,9 @@
 //! The spectrum of `kind: constant`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, build_kind};
 use crate::inline::numbers;
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, NonNegative};
@@ -27,11 +27,13 @@ struct Constant {
 spectra_core::register!(SpectrumEntry, "constant": Constant, build_kind::<Constant>);
 crate::expression!("constant:1", "write a value, such as constant:0.18", |text| {
     let [value] = numbers(text)?.try_into().ok()?;
-    Some(Shape::constant(value).map(Piece::Bare))
+    Some(SpectralFunction::constant(value).map(PendingSpectrum::Bare))
 });
 
 impl SpectrumKind for Constant {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        Shape::constant(self.value.map_or(1.0, NonNegative::get)).map(Piece::Bare).map_err(making.at("value"))
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
+        SpectralFunction::constant(self.value.map_or(1.0, NonNegative::get))
+            .map(PendingSpectrum::Bare)
+            .map_err(making.at("value"))
     }
 }

@@ -1,9 +1,9 @@
 //! The spectrum of `kind: function`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, build_kind};
 use crate::error::SpectrumError;
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::Faults;
@@ -29,22 +29,22 @@ spectra_core::register!(SpectrumEntry, "function": Function, build_kind::<Functi
 crate::expression!(
     "function:exp(-((w-550)/20)^4)",
     "write a formula of the wavelength w in nm, such as function:exp(-((w-550)/20)^4)",
-    |text| Some(function(text).map(Piece::Bare))
+    |text| Some(function(text).map(PendingSpectrum::Bare))
 );
 
 impl SpectrumKind for Function {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         let wrong = |e: SpectrumError| e.faults(|text| making.params().fault("formula", text));
-        function(&self.formula).map(Piece::Bare).map_err(wrong)
+        function(&self.formula).map(PendingSpectrum::Bare).map_err(wrong)
     }
 }
 
-fn function(text: &str) -> Result<Shape, SpectrumError> {
+fn function(text: &str) -> Result<SpectralFunction, SpectrumError> {
     let formula = Formula::parse(text, "w").map_err(|fault| SpectrumError::Expression {
         text: text.to_owned(),
         at: fault.at,
         message: fault.message,
         hint: fault.hint,
     })?;
-    Ok(Shape::function(formula))
+    Ok(SpectralFunction::function(formula))
 }

@@ -1,10 +1,10 @@
 //! The spectrum of `kind: gaussian`, and the center of a Gaussian.
 
-use super::{Making, SpectrumEntry, SpectrumKind, bell_nm, build_kind, times};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, bell_nm, build_kind, times};
 use crate::error::SpectrumError;
 use crate::inline::wavelengths;
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use spectra_core::params::{Dimension, Faults, NonNegative, Positive, Quantity, Wavelength, schema_of};
@@ -71,17 +71,17 @@ struct Gaussian {
 spectra_core::register!(SpectrumEntry, "gaussian": Gaussian, build_kind::<Gaussian>);
 crate::expression!("gaussian:550,20", "write center and standard deviation in nm, such as gaussian:550,20", |text| {
     let [center, sigma] = wavelengths(text)?.try_into().ok()?;
-    Some(gaussian(center, sigma).map(Piece::Bare))
+    Some(gaussian(center, sigma).map(PendingSpectrum::Bare))
 });
 
 impl SpectrumKind for Gaussian {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         bell_nm(self.center.0, self.sigma.nm()).map_err(making.at("center"))?;
         let shape = gaussian(self.center.0, self.sigma.nm());
         shape.and_then(|shape| times(shape, self.peak)).map_err(making.at("sigma"))
     }
 }
 
-fn gaussian(center_nm: f64, sigma_nm: f64) -> Result<Shape, SpectrumError> {
-    Shape::gaussian(bell_nm(center_nm, sigma_nm)?, sigma_nm)
+fn gaussian(center_nm: f64, sigma_nm: f64) -> Result<SpectralFunction, SpectrumError> {
+    SpectralFunction::gaussian(bell_nm(center_nm, sigma_nm)?, sigma_nm)
 }

@@ -1,8 +1,8 @@
 //! The spectrum of `kind: histogram`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising, some_light};
-use crate::piece::Piece;
-use crate::shape::Shape;
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, build_kind, lengths, rising, some_light};
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Wavelength};
@@ -28,7 +28,7 @@ struct Histogram {
 spectra_core::register!(SpectrumEntry, "histogram": Histogram, build_kind::<Histogram>);
 
 impl SpectrumKind for Histogram {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         let params = making.params();
         let wanted = [self.counts.len(), self.edges.len().saturating_sub(1)];
         lengths(params, ["edges", "counts"], wanted, "the list of edges")?;
@@ -41,6 +41,6 @@ impl SpectrumKind for Histogram {
         }
         faults.into_result(())?;
         let edges: Vec<f64> = self.edges.iter().map(|w| w.nm()).collect();
-        Shape::histogram(&edges, &self.counts).map(Piece::Bare).map_err(making.at("counts"))
+        SpectralFunction::histogram(&edges, &self.counts).map(PendingSpectrum::Bare).map_err(making.at("counts"))
     }
 }

@@ -4,12 +4,12 @@
 //! g = exp(-((w - w0) / d)^2) the light is (g + 2 g^5) / 3. The second term is a Gaussian too, so the whole is a mixture of two.
 
 use super::gaussian::Center;
-use super::{Making, SpectrumEntry, SpectrumKind, bell_nm, build_kind};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, bell_nm, build_kind};
 use crate::error::SpectrumError;
 use crate::gaussian::{GaussianMixture, GaussianTerm};
 use crate::inline::wavelengths;
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Positive, Wavelength};
@@ -42,7 +42,7 @@ crate::expression!("led:450,20", "write peak and width at half maximum in nm, su
 });
 
 impl SpectrumKind for Led {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         bell_nm(self.peak.0, self.width.nm()).map_err(making.at("peak"))?;
         led(self.peak.0, self.width.nm()).map_err(making.at("width"))
     }
@@ -51,12 +51,13 @@ impl SpectrumKind for Led {
 /// Width at half maximum over d: twice the root of -ln y where y + 2 y^5 = 3 / 2.
 const WIDTH_OVER_D: f64 = 0.921_823_119_649_820_5;
 
-fn led(peak_nm: f64, width_nm: f64) -> Result<Piece, SpectrumError> {
+fn led(peak_nm: f64, width_nm: f64) -> Result<PendingSpectrum, SpectrumError> {
     bell_nm(peak_nm, width_nm)?;
     let sigma_nm = width_nm / WIDTH_OVER_D * std::f64::consts::FRAC_1_SQRT_2;
     let wide = GaussianTerm::new(1.0 / 3.0, peak_nm, sigma_nm)?;
     let narrow = GaussianTerm::new(2.0 / 3.0, peak_nm, sigma_nm / 5.0_f64.sqrt())?;
-    Shape::positive_mixture(GaussianMixture::new(vec![wide, narrow])).map(|(shape, _)| Piece::Bare(shape))
+    SpectralFunction::positive_mixture(GaussianMixture::new(vec![wide, narrow]))
+        .map(|(shape, _)| PendingSpectrum::Bare(shape))
 }
 
 #[cfg(test)]

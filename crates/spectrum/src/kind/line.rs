@@ -1,11 +1,11 @@
 //! The spectra of `kind: line` and `kind: lines`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, build_kind};
 use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::inline::{line_nm, number};
 use crate::lines::LineOrWavelength;
-use crate::piece::Piece;
+use crate::pending_spectrum::PendingSpectrum;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, NonNegative};
@@ -61,13 +61,13 @@ crate::expression!(
 );
 
 impl SpectrumKind for LineParams {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         of_lines(vec![self.line()]).map_err(making.at("wavelength"))
     }
 }
 
 impl SpectrumKind for LinesParams {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         let lines: Vec<Line> = self.lines.iter().map(LineParams::line).collect();
         let mut faults = Faults::new();
         for (i, line) in lines.iter().enumerate() {
@@ -87,12 +87,12 @@ impl LineParams {
     }
 }
 
-fn of_lines(lines: Vec<Line>) -> Result<Piece, SpectrumError> {
+fn of_lines(lines: Vec<Line>) -> Result<PendingSpectrum, SpectrumError> {
     // Wavelengths that are not positive are refused below.
     for line in lines.iter().filter(|line| line.wavelength_nm > 0.0) {
         light_nm(line.wavelength_nm)?;
     }
-    Emission::new(None, lines).map(Piece::from)
+    Emission::new(None, lines).map(PendingSpectrum::from)
 }
 
 /// Reads a line of an expression: `435.84=2`.

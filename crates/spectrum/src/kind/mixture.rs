@@ -1,10 +1,10 @@
 //! The spectrum of `kind: mixture`.
 
 use super::gaussian::Center;
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, build_kind};
 use crate::gaussian::{GaussianMixture, GaussianTerm};
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Positive, Wavelength};
@@ -44,7 +44,7 @@ struct Term {
 spectra_core::register!(SpectrumEntry, "mixture": Mixture, build_kind::<Mixture>);
 
 impl SpectrumKind for Mixture {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         let params = making.params();
         let mut faults = Faults::new();
         let term = |(i, t): (usize, &Term)| {
@@ -55,9 +55,9 @@ impl SpectrumKind for Mixture {
         faults.into_result(())?;
         let mixture = GaussianMixture::new(terms);
         if making.is_part() {
-            return Ok(Piece::Bare(Shape::mixture(mixture)));
+            return Ok(PendingSpectrum::Bare(SpectralFunction::mixture(mixture)));
         }
-        let shape = Shape::positive_mixture(mixture).map_err(making.at("terms"))?;
-        Ok(Piece::Bare(shape.0))
+        let shape = SpectralFunction::positive_mixture(mixture).map_err(making.at("terms"))?;
+        Ok(PendingSpectrum::Bare(shape.0))
     }
 }

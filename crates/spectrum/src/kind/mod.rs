@@ -51,8 +51,8 @@ mod temperature;
 use crate::by_name::Loader;
 use crate::error::SpectrumError;
 use crate::meta::Kind;
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use crate::table::MAX_ROWS;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use spectra_core::params::{Fault, Faults, NonNegative, Params, Readable, StageNode, Wavelength};
@@ -69,7 +69,7 @@ pub trait SpectrumKind {
     ///
     /// # Errors
     /// The faults of the parameters, placed.
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults>;
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults>;
 }
 
 /// Reads a kind from its parameters, for [`register!`](spectra_core::register).
@@ -84,7 +84,7 @@ pub fn build_kind<K: SpectrumKind + Readable + 'static>(
 }
 
 /// The context in which a spectrum is made: the kind that is wanted, and other spectra.
-pub struct Making<'a> {
+pub struct SpectrumContext<'a> {
     params: &'a Params,
     wanted: Kind,
     /// Whether the spectrum is a part of a sum, which is checked as a whole.
@@ -93,7 +93,7 @@ pub struct Making<'a> {
     files: &'a dyn Resources,
 }
 
-impl Making<'_> {
+impl SpectrumContext<'_> {
     /// Returns the parameters as they were written, to place faults.
     #[must_use]
     pub fn params(&self) -> &Params {
@@ -124,13 +124,18 @@ impl Making<'_> {
     ///
     /// # Errors
     /// The faults of that spectrum, placed.
-    pub fn part(&self, node: &StageNode, wanted: Kind) -> Result<Piece, Faults> {
-        let piece = self.addend(node, wanted, false)?;
+    pub fn nested(&self, node: &StageNode, wanted: Kind) -> Result<PendingSpectrum, Faults> {
+        let piece = self.nested_addend(node, wanted, false)?;
         piece.settled().map_err(|e| e.faults(|text| node.fault(text)))
     }
 
-    /// Makes another spectrum like [`Making::part`]; it may be negative if it `is_part` of a sum.
-    pub(crate) fn addend(&self, node: &StageNode, wanted: Kind, is_part: bool) -> Result<Piece, Faults> {
+    /// Makes another spectrum like [`SpectrumContext::nested`]; it may be negative if it `is_part` of a sum.
+    pub(crate) fn nested_addend(
+        &self,
+        node: &StageNode,
+        wanted: Kind,
+        is_part: bool,
+    ) -> Result<PendingSpectrum, Faults> {
         match node.node().as_str() {
             Some(name) => self.loader.part(name, wanted).map_err(|e| match e {
                 SpectrumError::Document(faults) => faults,
@@ -150,7 +155,7 @@ pub(crate) fn of_params(
     wanted: Kind,
     loader: &Loader<'_>,
     files: &dyn Resources,
-) -> Result<Piece, Faults> {
+) -> Result<PendingSpectrum, Faults> {
     let piece = made(params, wanted, false, loader, files)?;
     // An error of the whole spectrum has no key of its own.
     piece.settled().map_err(|e| e.faults(|text| params.fault("kind", text)))
@@ -162,9 +167,9 @@ fn made(
     is_part: bool,
     loader: &Loader<'_>,
     files: &dyn Resources,
-) -> Result<Piece, Faults> {
+) -> Result<PendingSpectrum, Faults> {
     let kind = registry::build::<dyn SpectrumKind>(params, &Context::new(files, BAND))?;
-    kind.make(&Making { params, wanted, is_part, loader, files })
+    kind.make(&SpectrumContext { params, wanted, is_part, loader, files })
 }
 
 /// The form of a spectrum within a spectrum: a name or an expression, or a map with its kind.
@@ -190,10 +195,10 @@ impl JsonSchema for SpectrumForm {
 }
 
 /// Multiplies a shape by a value, if one is stated.
-fn times(shape: Shape, value: Option<NonNegative<f64>>) -> Result<Piece, SpectrumError> {
+fn times(shape: SpectralFunction, value: Option<NonNegative<f64>>) -> Result<PendingSpectrum, SpectrumError> {
     match value {
-        Some(value) => shape.scaled(value.get()).map(Piece::Bare),
-        None => Ok(Piece::Bare(shape)),
+        Some(value) => shape.scaled(value.get()).map(PendingSpectrum::Bare),
+        None => Ok(PendingSpectrum::Bare(shape)),
     }
 }
 

@@ -1,12 +1,12 @@
 //! The spectra of `kind: product` and `kind: sum`.
 
-use super::{Making, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
+use super::{SpectrumContext, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
 use crate::error::SpectrumError;
 use crate::meta::Kind;
-use crate::piece::{Piece, of_shape};
+use crate::pending_spectrum::{PendingSpectrum, spectrum_of_function};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Part};
+use spectra_core::params::{Deferred, Faults};
 
 /// A product of spectra, such as a light behind filters.
 ///
@@ -25,7 +25,7 @@ use spectra_core::params::{Faults, Part};
 struct Product {
     /// Factors, one or more, by name or as maps with their `kind`. The first is of the kind that is wanted, such as a light;
     /// the others are filters.
-    factors: Vec<Part<SpectrumForm>>,
+    factors: Vec<Deferred<SpectrumForm>>,
 }
 
 /// A sum of spectra.
@@ -41,33 +41,38 @@ struct Product {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Sum {
     /// Parts to add, one or more, by name or as maps with their `kind`.
-    parts: Vec<Part<SpectrumForm>>,
+    parts: Vec<Deferred<SpectrumForm>>,
 }
 
 spectra_core::register!(SpectrumEntry, "product": Product, build_kind::<Product>);
 spectra_core::register!(SpectrumEntry, "sum": Sum, build_kind::<Sum>);
 
 impl SpectrumKind for Product {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         // The first factor may be of the wanted kind; the others are filters.
         let wanted = |i| if i == 0 { making.wanted() } else { Kind::Transmittance };
-        together(&self.factors, "factors", making, |node, i| making.part(node, wanted(i)), Piece::times)
+        together(&self.factors, "factors", making, |node, i| making.nested(node, wanted(i)), PendingSpectrum::times)
     }
 }
 
 impl SpectrumKind for Sum {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        let whole =
-            together(&self.parts, "parts", making, |node, _| making.addend(node, making.wanted(), true), Piece::plus)?;
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
+        let whole = together(
+            &self.parts,
+            "parts",
+            making,
+            |node, _| making.nested_addend(node, making.wanted(), true),
+            PendingSpectrum::plus,
+        )?;
         if making.is_part() {
             return Ok(whole);
         }
         let wrong = |e: SpectrumError| e.faults(|text| making.params().fault("parts", text));
         match whole.settled().map_err(wrong)? {
             // A bare function is checked as the wanted kind, so that the fault is reported here.
-            Piece::Bare(shape) => {
-                of_shape(shape.clone(), making.wanted()).map_err(wrong)?;
-                Ok(Piece::Bare(shape))
+            PendingSpectrum::Bare(shape) => {
+                spectrum_of_function(shape.clone(), making.wanted()).map_err(wrong)?;
+                Ok(PendingSpectrum::Bare(shape))
             }
             whole => Ok(whole),
         }
@@ -75,14 +80,14 @@ impl SpectrumKind for Sum {
 }
 
 fn together(
-    nodes: &[Part<SpectrumForm>],
+    nodes: &[Deferred<SpectrumForm>],
     key: &str,
-    making: &Making<'_>,
-    part: impl Fn(&Part<SpectrumForm>, usize) -> Result<Piece, Faults>,
-    join: impl Fn(Piece, Piece) -> Result<Piece, SpectrumError>,
-) -> Result<Piece, Faults> {
+    making: &SpectrumContext<'_>,
+    part: impl Fn(&Deferred<SpectrumForm>, usize) -> Result<PendingSpectrum, Faults>,
+    join: impl Fn(PendingSpectrum, PendingSpectrum) -> Result<PendingSpectrum, SpectrumError>,
+) -> Result<PendingSpectrum, Faults> {
     let mut faults = Faults::new();
-    let mut joined: Option<Piece> = None;
+    let mut joined: Option<PendingSpectrum> = None;
     for (i, node) in nodes.iter().enumerate() {
         // A fault in one part hides no fault in the next.
         let Some(next) = faults.take(part(node, i)) else { continue };

@@ -1,13 +1,13 @@
 //! The spectrum of `kind: scale`.
 
-use super::{Making, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
+use super::{SpectrumContext, SpectrumEntry, SpectrumForm, SpectrumKind, build_kind};
+use crate::any_spectrum::AnySpectrum;
 use crate::error::SpectrumError;
-use crate::found::Found;
 use crate::meta::Kind;
-use crate::piece::{Piece, of_shape, shape_of};
+use crate::pending_spectrum::{PendingSpectrum, function_of, spectrum_of_function};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Luminance, NonNegative, Part, Power};
+use spectra_core::params::{Deferred, Faults, Luminance, NonNegative, Power};
 
 /// A spectrum that is made brighter or darker.
 ///
@@ -22,7 +22,7 @@ use spectra_core::params::{Faults, Luminance, NonNegative, Part, Power};
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Scaled {
     /// Spectrum to scale, by name or as a map with its `kind`.
-    spectrum: Part<SpectrumForm>,
+    spectrum: Deferred<SpectrumForm>,
     /// Factor to multiply by. Exactly one of `factor`, `peak`, `power` and `luminance` is given.
     factor: Option<NonNegative<f64>>,
     /// Largest value afterwards.
@@ -36,9 +36,9 @@ struct Scaled {
 spectra_core::register!(SpectrumEntry, "scale": Scaled, build_kind::<Scaled>);
 
 impl SpectrumKind for Scaled {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         let params = making.params();
-        let piece = making.part(&self.spectrum, making.wanted())?;
+        let piece = making.nested(&self.spectrum, making.wanted())?;
         let said = [self.factor.is_some(), self.peak.is_some(), self.power.is_some(), self.luminance.is_some()];
         if said.iter().filter(|s| **s).count() != 1 {
             let fault = params.fault_here("a scale takes one of `factor`, `peak`, `power` and `luminance`");
@@ -47,24 +47,24 @@ impl SpectrumKind for Scaled {
         if let Some(factor) = self.factor {
             return piece.scaled(factor.get()).map_err(making.at("factor"));
         }
-        if let (Some(peak), Piece::Bare(shape)) = (self.peak, &piece) {
+        if let (Some(peak), PendingSpectrum::Bare(shape)) = (self.peak, &piece) {
             let highest = shape.extremes().1;
             if !(highest > 0.0 && highest.is_finite()) {
                 return Err(params.fault("peak", "the spectrum has no peak to scale").into());
             }
             let scaled = shape.scaled(peak.get() / highest).map_err(making.at("peak"))?;
-            return Ok(Piece::Bare(scaled));
+            return Ok(PendingSpectrum::Bare(scaled));
         }
-        let found = piece.into_found(Kind::Emission).map_err(making.at("spectrum"))?;
+        let found = piece.into_any(Kind::Emission).map_err(making.at("spectrum"))?;
         let (key, scaled) = match (found, self.peak, self.power, self.luminance) {
-            (Found::Emission(light), Some(peak), ..) => {
-                ("peak", light.scaled_to_peak().and_then(|l| l.scaled(peak.get())).map(Found::Emission))
+            (AnySpectrum::Emission(light), Some(peak), ..) => {
+                ("peak", light.scaled_to_peak().and_then(|l| l.scaled(peak.get())).map(AnySpectrum::Emission))
             }
-            (Found::Emission(light), _, Some(power), _) => {
-                ("power", light.scaled_to_power(power.w()).map(Found::Emission))
+            (AnySpectrum::Emission(light), _, Some(power), _) => {
+                ("power", light.scaled_to_power(power.w()).map(AnySpectrum::Emission))
             }
-            (Found::Emission(light), _, _, Some(luminance)) => {
-                ("luminance", light.scaled_to_luminance(luminance.cd_per_m2()).map(Found::Emission))
+            (AnySpectrum::Emission(light), _, _, Some(luminance)) => {
+                ("luminance", light.scaled_to_luminance(luminance.cd_per_m2()).map(AnySpectrum::Emission))
             }
             (matter, Some(peak), ..) => ("peak", to_peak(matter, peak.get())),
             (matter, ..) => {
@@ -73,15 +73,15 @@ impl SpectrumKind for Scaled {
                 return Err(params.fault("spectrum", text).into());
             }
         };
-        scaled.map(Piece::Typed).map_err(making.at(key))
+        scaled.map(PendingSpectrum::Typed).map_err(making.at(key))
     }
 }
 
-fn to_peak(matter: Found, peak: f64) -> Result<Found, SpectrumError> {
-    let Some(shape) = shape_of(&matter) else { return Ok(matter) };
+fn to_peak(matter: AnySpectrum, peak: f64) -> Result<AnySpectrum, SpectrumError> {
+    let Some(shape) = function_of(&matter) else { return Ok(matter) };
     let highest = shape.extremes().1;
     if !(highest > 0.0 && highest.is_finite()) {
         return Err(SpectrumError::NothingToScale("peak"));
     }
-    of_shape(shape.scaled(peak / highest)?, matter.kind())
+    spectrum_of_function(shape.scaled(peak / highest)?, matter.kind())
 }

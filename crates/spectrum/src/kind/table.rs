@@ -1,9 +1,9 @@
 //! The spectrum of `kind: table`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind, lengths, rising, some_light};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, build_kind, lengths, rising, some_light};
 use crate::meta::{Outside, Scale};
-use crate::piece::Piece;
-use crate::shape::Shape;
+use crate::pending_spectrum::PendingSpectrum;
+use crate::spectral_function::SpectralFunction;
 use crate::tabulated::Tabulated;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -35,7 +35,7 @@ struct Table {
 spectra_core::register!(SpectrumEntry, "table": Table, build_kind::<Table>);
 
 impl SpectrumKind for Table {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
         let (params, wanted) = (making.params(), making.wanted());
         let counts = [self.values.len(), self.wavelengths.len()];
         lengths(params, ["wavelengths", "values"], counts, "the list of wavelengths")?;
@@ -58,6 +58,6 @@ impl SpectrumKind for Table {
         let nm: Vec<f64> = self.wavelengths.iter().map(|w| w.nm()).collect();
         let table = Tabulated::new(&nm, &self.values, self.outside.unwrap_or(wanted.outside()), scale)
             .map_err(making.at("values"))?;
-        Ok(Piece::Bare(Shape::tabulated(table)))
+        Ok(PendingSpectrum::Bare(SpectralFunction::tabulated(table)))
     }
 }

@@ -1,10 +1,10 @@
 //! The spectra of `kind: blackbody` and `kind: daylight`.
 
-use super::{Making, SpectrumEntry, SpectrumKind, build_kind};
+use super::{SpectrumContext, SpectrumEntry, SpectrumKind, build_kind};
 use crate::emission::Emission;
 use crate::illuminants::daylight;
 use crate::inline::measure;
-use crate::piece::Piece;
+use crate::pending_spectrum::PendingSpectrum;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Temperature};
@@ -45,20 +45,20 @@ struct Daylight {
 spectra_core::register!(SpectrumEntry, "blackbody": Blackbody, build_kind::<Blackbody>);
 spectra_core::register!(SpectrumEntry, "daylight": Daylight, build_kind::<Daylight>);
 crate::expression!("blackbody:5800", "write a temperature in kelvin, such as blackbody:5800", |text| {
-    measure(text, "K").map(|kelvin| Emission::blackbody(kelvin).map(Piece::from))
+    measure(text, "K").map(|kelvin| Emission::blackbody(kelvin).map(PendingSpectrum::from))
 });
 crate::expression!("daylight:5500", "write a temperature in kelvin, such as daylight:5500", |text| {
-    measure(text, "K").map(|kelvin| daylight(kelvin).map(Piece::from))
+    measure(text, "K").map(|kelvin| daylight(kelvin).map(PendingSpectrum::from))
 });
 
 impl SpectrumKind for Blackbody {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        Emission::blackbody(self.temperature.kelvin()).map(Piece::from).map_err(making.at("temperature"))
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
+        Emission::blackbody(self.temperature.kelvin()).map(PendingSpectrum::from).map_err(making.at("temperature"))
     }
 }
 
 impl SpectrumKind for Daylight {
-    fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
-        daylight(self.temperature.kelvin()).map(Piece::from).map_err(making.at("temperature"))
+    fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
+        daylight(self.temperature.kelvin()).map(PendingSpectrum::from).map_err(making.at("temperature"))
     }
 }

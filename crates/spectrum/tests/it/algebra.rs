@@ -2,19 +2,21 @@
 
 use spectra_core::params::Fault;
 use spectra_scene::FileResources;
-use spectra_spectrum::{Found, Kind, SpectrumError, find_as_in, find_emission, find_emission_in, find_transmittance};
+use spectra_spectrum::{
+    AnySpectrum, Kind, SpectrumError, find_as_in, find_emission, find_emission_in, find_transmittance,
+};
 use std::path::Path;
 
 fn nowhere() -> FileResources {
     FileResources::beside(Path::new(""))
 }
 
-fn at(found: &Found, nm: f64) -> f64 {
+fn at(found: &AnySpectrum, nm: f64) -> f64 {
     match found {
-        Found::Emission(light) => light.at(nm),
-        Found::Transmittance(filter) => filter.at(nm),
-        Found::Reflectance(surface) => surface.at(nm),
-        Found::Sensitivity(detector) => detector.at(nm),
+        AnySpectrum::Emission(light) => light.at(nm),
+        AnySpectrum::Transmittance(filter) => filter.at(nm),
+        AnySpectrum::Reflectance(surface) => surface.at(nm),
+        AnySpectrum::Sensitivity(detector) => detector.at(nm),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use spectra_core::Isa;
 use spectra_core::numbers::Numbers;
-use spectra_spectrum::{GaussianMixture, GaussianTerm, OneTerm, Shape};
+use spectra_spectrum::{GaussianMixture, GaussianTerm, OneTerm, SpectralFunction};
 
 const BAND_NM: (f64, f64) = (380.0, 780.0);
 
@@ -46,9 +46,9 @@ fn products_of_four_mixtures_have_the_integral_of_quadrature() {
     for _ in 0..1000 {
         let factors: Vec<GaussianMixture> = (0..4).map(|_| random.mixture()).collect();
         let product = factors[1..].iter().fold(factors[0].clone(), |all, next| all.times(next));
-        let shape = factors[1..]
-            .iter()
-            .fold(Shape::mixture(factors[0].clone()), |all, next| all.times(&Shape::mixture(next.clone())));
+        let shape = factors[1..].iter().fold(SpectralFunction::mixture(factors[0].clone()), |all, next| {
+            all.times(&SpectralFunction::mixture(next.clone()))
+        });
         let (min_nm, max_nm) = BAND_NM;
         let exact = product.band_integral(min_nm, max_nm);
         let sizes: f64 = product.terms().iter().map(|t| t.band_integral(min_nm, max_nm).abs()).sum();

@@ -3,7 +3,7 @@
 use spectra_core::params::Fault;
 use spectra_scene::FileResources;
 use spectra_spectrum::{
-    BAND, Emission, Found, Kind, SpectrumError, find, find_emission_in, find_in, find_reflectance_in,
+    AnySpectrum, BAND, Emission, Kind, SpectrumError, find, find_emission_in, find_in, find_reflectance_in,
     find_sensitivity_in, find_transmittance_in, planck_radiance,
 };
 use std::path::Path;
@@ -86,7 +86,7 @@ fn spectra_are_made_of_others() {
     assert!(find_transmittance_in("a.yaml", &files).is_ok() && find_sensitivity_in("a.yaml", &files).is_ok());
     // Unless the file says so.
     let (_folder, files) = folder("{kind: gaussian, center: 550, sigma: 20, of: reflectance}");
-    assert!(matches!(find_in("a.yaml", &files), Ok(Found::Reflectance(_))));
+    assert!(matches!(find_in("a.yaml", &files), Ok(AnySpectrum::Reflectance(_))));
     assert!(matches!(find_transmittance_in("a.yaml", &files), Err(SpectrumError::WrongKind { .. })));
     let dim = find_reflectance_in("0.5 * a.yaml", &files).expect("a surface");
     near(dim.at(550.0), 0.5);

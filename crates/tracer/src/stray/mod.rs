@@ -15,17 +15,17 @@
 //! **Limits.** Lenses with mirrors, prisms, gratings, surfaces that scatter, or bent axes do not form such rooms and are refused. Plates in
 //! front of the imager are ignored.
 
-mod chance;
 mod room;
 mod walk;
+mod walk_numbers;
 
-pub use chance::Chance;
 pub use room::{Interior, StrayError};
 pub use walk::{Particle, StrayLedger, Walker};
+pub use walk_numbers::WalkNumbers;
 
 /// The reflectances inside a lens and camera, other than those of glass: fractions from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StrayMatter {
+pub struct StrayReflectances {
     /// Diffuse reflectance of the paint on barrel, rims, edges of glass and blades, and in the camera around the imager.
     pub paint: f64,
     /// Diffuse reflectance of the imager.
@@ -39,7 +39,7 @@ pub struct StrayMatter {
 /// 9147, 91474F, 2014).
 pub const BLACK_PAINT: f64 = 0.04;
 
-impl Default for StrayMatter {
+impl Default for StrayReflectances {
     /// Returns matte black paint, and an imager that reflects nothing.
     fn default() -> Self {
         Self { paint: BLACK_PAINT, imager: 0.0, imager_mirror: 0.0 }

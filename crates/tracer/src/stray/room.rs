@@ -1,6 +1,6 @@
 //! The rooms between surfaces: their walls, and where light meets them.
 
-use super::StrayMatter;
+use super::StrayReflectances;
 use crate::absorption::{Absorption, Grid};
 use glam::{DVec2, DVec3};
 use spectra_core::surface::{Action, Surface};
@@ -8,7 +8,7 @@ use spectra_lens::Coating;
 use spectra_lens::Layer;
 use spectra_lens::Pose;
 use spectra_lens::Separation;
-use spectra_lens::{Aperture, Shape};
+use spectra_lens::{Aperture, ApertureShape};
 use spectra_lens::{Element, Lens};
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ pub enum StrayError {
 
 /// The shape of a surface.
 #[derive(Clone, Debug)]
-enum Form {
+enum WallShape {
     /// A sphere of this curvature, 1/mm; 0 is a plane.
     Sphere(f64),
     Sag(Arc<dyn Surface>),
@@ -56,9 +56,9 @@ enum Form {
 
 /// One surface as a wall between two rooms.
 #[derive(Clone, Debug)]
-pub(super) struct Skin {
+pub(super) struct Wall {
     pose: Pose,
-    form: Form,
+    form: WallShape,
     clear2_mm2: f64,
     /// Radius to which the surface reaches, mm; outside the clear radius it is painted.
     outer_mm: f64,
@@ -75,7 +75,7 @@ pub(super) struct Skin {
     pub media: [usize; 2],
 }
 
-impl Skin {
+impl Wall {
     /// Converts a point of the lens, mm, to x and y in the surface's own frame.
     pub fn place(&self, at: DVec3) -> [f64; 2] {
         let local = self.pose.local_point(at);
@@ -90,8 +90,10 @@ impl Skin {
     /// Height of the rim above the vertex plane, mm.
     fn rim_sag_mm(&self) -> f64 {
         match &self.form {
-            Form::Sphere(c) => c * self.outer_mm * self.outer_mm / (1.0 + (1.0 - (c * self.outer_mm).powi(2)).sqrt()),
-            Form::Sag(surface) => surface.sag_mm(self.outer_mm, 0.0).unwrap_or(0.0),
+            WallShape::Sphere(c) => {
+                c * self.outer_mm * self.outer_mm / (1.0 + (1.0 - (c * self.outer_mm).powi(2)).sqrt())
+            }
+            WallShape::Sag(surface) => surface.sag_mm(self.outer_mm, 0.0).unwrap_or(0.0),
         }
     }
 
@@ -117,7 +119,7 @@ impl Skin {
                 .then_some((t, at))
         };
         match &self.form {
-            Form::Sphere(c) => {
+            WallShape::Sphere(c) => {
                 if *c == 0.0 {
                     return within(-p.z / d.z);
                 }
@@ -135,7 +137,7 @@ impl Skin {
                 let half = |(t, at): (f64, DVec3)| (c * at.z < 1.0).then_some((t, at));
                 within(near).and_then(half).or_else(|| within(far).and_then(half))
             }
-            Form::Sag(surface) => {
+            WallShape::Sag(surface) => {
                 let height = |t: f64| {
                     let at = p + d * t;
                     surface.sag_mm(at.x, at.y).map(|sag| at.z - sag)
@@ -171,8 +173,8 @@ impl Skin {
     /// Unit normal at a local point, in the frame of the lens.
     fn normal(&self, at: DVec3) -> DVec3 {
         let local = match &self.form {
-            Form::Sphere(c) => DVec3::new(-c * at.x, -c * at.y, 1.0 - c * at.z),
-            Form::Sag(surface) => {
+            WallShape::Sphere(c) => DVec3::new(-c * at.x, -c * at.y, 1.0 - c * at.z),
+            WallShape::Sag(surface) => {
                 let slope = |x: f64, y: f64| {
                     let ends = [1.0, -1.0].map(|s| surface.sag_mm(at.x + s * x, at.y + s * y).unwrap_or(at.z));
                     (ends[0] - ends[1]) / (2.0 * SLOPE_MM)
@@ -227,7 +229,7 @@ impl Barrel {
 
 /// The wall that light meets next.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Met {
+pub(super) enum NextHit {
     /// A surface: its index, and the fraction of the light that its openings pass at that point.
     Skin(usize, f64),
     /// Painted metal or a painted edge.
@@ -246,14 +248,14 @@ pub(super) struct Disk {
 /// The inside of a lens and of the camera behind it, as a row of closed rooms.
 #[derive(Clone, Debug)]
 pub struct Interior {
-    pub(super) skins: Vec<Skin>,
+    pub(super) skins: Vec<Wall>,
     /// Barrels between each surface and the one before; the last one lies between the last surface and the imager.
     barrels: Vec<Barrel>,
     imager_z_mm: f64,
     /// Half the width and height of the imager, mm, and its center.
     half_mm: [f64; 2],
     center_mm: [f64; 2],
-    pub(super) matter: StrayMatter,
+    pub(super) matter: StrayReflectances,
     /// Targets of light from the imager that should leave the lens: the pupil and the last rim.
     pub(super) guides: [Disk; 2],
     /// The first rim.
@@ -268,7 +270,12 @@ impl Interior {
     ///
     /// # Errors
     /// [`StrayError`] if the lens has no surfaces or sizes, or its rooms do not lie on a straight axis.
-    pub fn new(lens: &Lens, frame_mm: [f64; 2], band_nm: [f64; 2], matter: StrayMatter) -> Result<Self, StrayError> {
+    pub fn new(
+        lens: &Lens,
+        frame_mm: [f64; 2],
+        band_nm: [f64; 2],
+        matter: StrayReflectances,
+    ) -> Result<Self, StrayError> {
         let largest = lens.largest_semi_diameter_mm().filter(|_| !lens.elements.is_empty());
         if lens.elements.is_empty() {
             return Err(StrayError::NoSurfaces);
@@ -290,11 +297,11 @@ impl Interior {
                 return Err(StrayError::NotStraight(at + 1, fault));
             }
         }
-        let skins: Vec<Skin> = (0..lens.elements.len()).map(|at| skin(lens, at)).collect();
+        let skins: Vec<Wall> = (0..lens.elements.len()).map(|at| skin(lens, at)).collect();
         let half_mm = frame_mm.map(|side| 0.5 * side);
         let imager_z_mm = lens.image_z_mm();
         let diagonal = DVec2::from(half_mm).length();
-        let rim = |skin: &Skin| (skin.rim_z_mm(), skin.outer_mm);
+        let rim = |skin: &Wall| (skin.rim_z_mm(), skin.outer_mm);
         let film = (imager_z_mm, diagonal * CHAMBER);
         let rims: Vec<(f64, f64)> = skins.iter().map(rim).chain([film]).collect();
         let barrel = |pair: &[(f64, f64)]| Barrel { z_mm: [pair[0].0, pair[1].0], radius_mm: [pair[0].1, pair[1].1] };
@@ -363,39 +370,40 @@ impl Interior {
 
     /// Finds what light in a room meets next: the wall, the distance, mm, and the wall's unit normal against the light. Returns `None` if
     /// the light leaves in front of the lens, or passes a gap between rounded rims.
-    pub(super) fn next(&self, room: usize, p: DVec3, d: DVec3) -> Option<(Met, f64, DVec3)> {
-        let mut best: Option<(Met, f64, DVec3)> = None;
+    pub(super) fn next(&self, room: usize, p: DVec3, d: DVec3) -> Option<(NextHit, f64, DVec3)> {
+        let mut best: Option<(NextHit, f64, DVec3)> = None;
         let mut most = f64::INFINITY;
         if room > 0
             && let Some((t, normal)) = self.barrels[room - 1].meet(p, d)
         {
-            (best, most) = (Some((Met::Paint, t, normal)), t);
+            (best, most) = (Some((NextHit::Paint, t, normal)), t);
         }
         if room == self.skins.len() {
             let t = (self.imager_z_mm - p.z) / d.z;
             if t > ON_THE_WALL_MM && t < most {
                 let at = p + d * t;
                 let ([x, y], [cx, cy]) = (self.half_mm, self.center_mm);
-                let met = if (at.x - cx).abs() <= x && (at.y - cy).abs() <= y { Met::Imager } else { Met::Paint };
+                let met =
+                    if (at.x - cx).abs() <= x && (at.y - cy).abs() <= y { NextHit::Imager } else { NextHit::Paint };
                 (best, most) = (Some((met, t, DVec3::Z)), t);
             }
         }
         let walls = [room.checked_sub(1), Some(room).filter(|k| *k < self.skins.len())];
         for k in walls.into_iter().flatten() {
             if let Some((t, at)) = self.skins[k].meet(p, d, most) {
-                (best, most) = (Some((Met::Skin(k, self.skins[k].clear_at(at)), t, self.skins[k].normal(at))), t);
+                (best, most) = (Some((NextHit::Skin(k, self.skins[k].clear_at(at)), t, self.skins[k].normal(at))), t);
             }
         }
         best.map(|(met, t, normal)| (met, t, if normal.dot(d) > 0.0 { -normal } else { normal }))
     }
 }
 
-fn skin(lens: &Lens, at: usize) -> Skin {
+fn skin(lens: &Lens, at: usize) -> Wall {
     let e = &lens.elements[at];
     let reach = |e: &Element| {
         let size_mm = e.semi_diameter_mm?;
         let iris = e.apertures.iter().find_map(|a| match &a.shape {
-            Shape::Iris(iris) => Some(iris.opening(size_mm).corner_radius_mm()),
+            ApertureShape::Iris(iris) => Some(iris.opening(size_mm).corner_radius_mm()),
             _ => None,
         });
         Some(iris.unwrap_or(size_mm))
@@ -419,9 +427,9 @@ fn skin(lens: &Lens, at: usize) -> Skin {
             let sag = e.surface.sag_mm(x, y);
             sag.is_some_and(|sag| (sag - sphere((x * x + y * y).sqrt())).abs() < SAME_SHAPE * outer_mm.max(1.0))
         });
-    Skin {
+    Wall {
         pose: e.pose,
-        form: if is_sphere { Form::Sphere(c.0) } else { Form::Sag(Arc::clone(&e.surface)) },
+        form: if is_sphere { WallShape::Sphere(c.0) } else { WallShape::Sag(Arc::clone(&e.surface)) },
         clear2_mm2: own.map_or(f64::INFINITY, |own| own * own),
         outer_mm,
         apertures: e.apertures.clone(),
@@ -435,7 +443,7 @@ fn skin(lens: &Lens, at: usize) -> Skin {
 }
 
 /// Returns the disk of the exit pupil, if the pupil lies in front of the imager.
-fn pupil(lens: &Lens, skins: &[Skin], imager_z_mm: f64) -> Option<Disk> {
+fn pupil(lens: &Lens, skins: &[Wall], imager_z_mm: f64) -> Option<Disk> {
     let first_order = lens.first_order(lens.reference_nm);
     let (z_mm, scale) = (first_order.exit_pupil_z_mm?, first_order.exit_pupil_magnification?);
     let stop = &skins[lens.stop()?];

@@ -1,7 +1,7 @@
 //! The walk of one particle of light.
 
-use super::Chance;
-use super::room::{Disk, Interior, Met};
+use super::WalkNumbers;
+use super::room::{Disk, Interior, NextHit};
 use glam::DVec3;
 use spectra_core::math;
 use spectra_lens::Coating;
@@ -109,7 +109,7 @@ impl<'a> Walker<'a> {
     /// Starts at a point of the imager, mm in its plane, and walks against the light to the front. Returns the particle that leaves there;
     /// `None` if it does not leave. The weight is 1 on average at the start. It represents the part of the irradiance at the point that
     /// arrives along this walk from a field of uniform radiance, divided by pi times that radiance.
-    pub fn from_imager(&mut self, [x, y]: [f64; 2], chance: &mut Chance) -> Option<Particle> {
+    pub fn from_imager(&mut self, [x, y]: [f64; 2], chance: &mut WalkNumbers) -> Option<Particle> {
         let position = DVec3::new(x, y, self.interior.imager_z_mm());
         let (direction, weight) = self.off_imager(position, chance);
         let start = Particle { position, direction, weight, mirrored: 0, scattered: 0, diffused: 0 };
@@ -122,7 +122,7 @@ impl<'a> Walker<'a> {
     pub fn from_front(
         &mut self,
         particle: Particle,
-        chance: &mut Chance,
+        chance: &mut WalkNumbers,
         mut arrives: impl FnMut(&Particle),
     ) -> Option<Particle> {
         self.ledger.launched += particle.weight;
@@ -130,7 +130,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Draws a direction off the imager, and its weight: by Lambert's law, toward the pupil or toward the last rim, a third each.
-    fn off_imager(&self, from: DVec3, chance: &mut Chance) -> (DVec3, f64) {
+    fn off_imager(&self, from: DVec3, chance: &mut WalkNumbers) -> (DVec3, f64) {
         let which = 3.0 * chance.number();
         let [u, v] = [chance.number(), chance.number()];
         let direction = match which as usize {
@@ -158,7 +158,7 @@ impl<'a> Walker<'a> {
         mut particle: Particle,
         mut room: usize,
         guided: bool,
-        chance: &mut Chance,
+        chance: &mut WalkNumbers,
         arrives: &mut dyn FnMut(&Particle),
     ) -> Option<Particle> {
         let matter = self.interior.matter;
@@ -180,8 +180,8 @@ impl<'a> Walker<'a> {
                 particle.weight -= taken;
             }
             let painted = match met {
-                Met::Paint => true,
-                Met::Imager => {
+                NextHit::Paint => true,
+                NextHit::Imager => {
                     arrives(&particle);
                     let u = chance.number();
                     if u >= matter.imager + matter.imager_mirror {
@@ -204,7 +204,7 @@ impl<'a> Walker<'a> {
                     }
                     false
                 }
-                Met::Skin(at, clear) => {
+                NextHit::Skin(at, clear) => {
                     if clear <= 0.0 || (clear < 1.0 && chance.number() >= clear) {
                         true
                     } else {
@@ -252,7 +252,7 @@ impl<'a> Walker<'a> {
         at: usize,
         n: f64,
         normal: DVec3,
-        chance: &mut Chance,
+        chance: &mut WalkNumbers,
     ) -> Option<()> {
         let skin = &self.interior.skins[at];
         let place = skin.place(particle.position);
@@ -293,7 +293,7 @@ impl<'a> Walker<'a> {
         n: f64,
         n_beyond: f64,
         normal: DVec3,
-        chance: &mut Chance,
+        chance: &mut WalkNumbers,
     ) -> Option<bool> {
         let skin = &self.interior.skins[at];
         let d = particle.direction;

@@ -1,7 +1,7 @@
 //! Makes the list of operations of a route.
 
 use super::Tracer;
-use super::program::{Account, Mode, Operation, Program};
+use super::program::{LossAccount, Mode, Operation, Program};
 use super::route::{Leg, Move, Route};
 use crate::transmission::Passage;
 
@@ -39,7 +39,7 @@ impl Tracer {
         }
         operations.extend((0..element.apertures.len()).map(Operation::Clip));
         if mode.books {
-            operations.push(Operation::Book(Account::Absorbed));
+            operations.push(Operation::Book(LossAccount::Absorbed));
         }
         // What a surface reflects although it should pass it, it reflects beneath what lies on it.
         if !self.layers[leg.at].is_empty() && !leg.turns {
@@ -58,7 +58,7 @@ impl Tracer {
         let element = &self.elements[leg.at];
         let needs_way = self.absorption_before(leg).is_some() || mode.carries_path || leg.turned;
         let reflects = self.passages[leg.at].reflects();
-        let measures = mode.notes && !element.surface.notes_meeting() && (needs_way || reflects);
+        let measures = mode.notes && !element.surface.records_intersection() && (needs_way || reflects);
         let is_phased = mode.carries_path && element.surface.has_phase();
         let has_rings = element.onion_rings.is_some();
         if measures {
@@ -79,7 +79,7 @@ impl Tracer {
             operations.push(Operation::EndBehind);
         }
         if mode.books {
-            operations.push(Operation::Book(Account::Absorbed));
+            operations.push(Operation::Book(LossAccount::Absorbed));
         }
     }
 
@@ -89,7 +89,7 @@ impl Tracer {
         if let Some(table) = self.absorption_before(leg) {
             operations.push(Operation::Absorb(table));
             if mode.books {
-                operations.extend([Operation::WeighAbsorbed, Operation::Book(Account::Absorbed)]);
+                operations.extend([Operation::WeighAbsorbed, Operation::Book(LossAccount::Absorbed)]);
             }
         }
         if leg.turns && *passage == Passage::All {
@@ -103,7 +103,7 @@ impl Tracer {
         }
         if mode.books {
             let is_mirror = matches!(passage, Passage::Mirror(_));
-            operations.push(Operation::Book(if is_mirror { Account::Absorbed } else { Account::Elsewhere }));
+            operations.push(Operation::Book(if is_mirror { LossAccount::Absorbed } else { LossAccount::Elsewhere }));
         }
     }
 }

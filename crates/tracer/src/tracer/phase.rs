@@ -36,7 +36,7 @@ impl Tracer {
                 })
             })
             .collect();
-        rays.weighing().optical_path_mm.iter_mut().zip(phases).for_each(|(path, phase)| *path += phase);
+        rays.weight_columns().optical_path_mm.iter_mut().zip(phases).for_each(|(path, phase)| *path += phase);
     }
 
     /// Distance, mm, against the light from the vertex of a leg to where the light of a route comes from, in media of these indices.

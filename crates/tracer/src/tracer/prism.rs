@@ -1,7 +1,7 @@
 //! Prisms: solids of glass that a batch passes ray by ray.
 
 use super::Tracer;
-use super::program::Account;
+use super::program::LossAccount;
 use super::route::Leg;
 use super::run::book;
 use super::work::{Work, columns};
@@ -11,7 +11,7 @@ use spectra_core::RayBatch;
 use spectra_core::batch::Polarization;
 use spectra_core::loss::ALIVE;
 use spectra_lens::coating::Amplitudes;
-use spectra_lens::solid::Bend;
+use spectra_lens::solid::FaceEvent;
 
 impl Tracer {
     /// Takes a batch through a prism, ray by ray.
@@ -49,7 +49,7 @@ impl Tracer {
                     let does = face.polarizes([n[i], inside[i]], nm, coating);
                     let across = face.direction.cross(face.normal).to_array();
                     let left = weigh_polarized(polarization, i, face.direction.to_array(), across, does);
-                    *(if face.bend == Bend::Mirror { &mut mirrors[i] } else { &mut clear[i] }) *= left;
+                    *(if face.bend == FaceEvent::Mirror { &mut mirrors[i] } else { &mut clear[i] }) *= left;
                 }
             });
             match passed {
@@ -69,7 +69,7 @@ impl Tracer {
                 }
             }
         }
-        let weighing = rays.weighing();
+        let weighing = rays.weight_columns();
         if !weighing.optical_path_mm.is_empty() {
             paths.iter().for_each(|(i, path)| weighing.optical_path_mm[*i] += path);
         }
@@ -78,8 +78,8 @@ impl Tracer {
             weighing.weight.fill(0.0);
         }
         // What mirrors and glass absorb, then what faces reflect.
-        for (own, account) in [(&mirrors, Account::Absorbed), (&clear, Account::Elsewhere)] {
-            rays.weighing().weight.iter_mut().zip(own).for_each(|(weight, left)| *weight *= left);
+        for (own, account) in [(&mirrors, LossAccount::Absorbed), (&clear, LossAccount::Elsewhere)] {
+            rays.weight_columns().weight.iter_mut().zip(own).for_each(|(weight, left)| *weight *= left);
             book(rays, work, step, account);
         }
         ended

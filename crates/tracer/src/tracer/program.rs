@@ -76,12 +76,12 @@ pub(super) enum Operation {
     /// Dims rays by what the layers on the surface stop or scatter.
     Dim,
     /// Books what rays lost since the last booking.
-    Book(Account),
+    Book(LossAccount),
 }
 
 /// Where a loss is booked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Account {
+pub(super) enum LossAccount {
     /// Light that became heat: at rims, in glass, in mirrors.
     Absorbed,
     /// Light that goes on elsewhere: what a refracting surface reflects, or what it passes if the route reflects there.

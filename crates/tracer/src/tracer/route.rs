@@ -1,7 +1,7 @@
 //! A path made ready: frames, actions and media, step by step.
 
 use super::program::{Mode, Program};
-use crate::path::{Act, Path, PathStep};
+use crate::path::{Interaction, Path, PathStep};
 use crate::scatter;
 use glam::DMat3;
 use spectra_core::numbers::StageKey;
@@ -96,7 +96,7 @@ pub(super) struct Leg {
     /// Key by which the surface draws random numbers, if it does.
     pub(super) stage: Option<StageKey>,
     /// Place of the surface among those whose layers scatter; `None` if no scattered light is traced or the surface is clean.
-    pub(super) soiled: Option<scatter::Place>,
+    pub(super) soiled: Option<scatter::ScatterSurface>,
 }
 
 impl Leg {
@@ -129,7 +129,7 @@ pub(super) fn route(elements: &[Element], image: &ImagePlane, path: &Path, layer
             Travel::Forward => (element.medium_before, element.medium_after),
             Travel::Backward => (element.medium_after, element.medium_before),
         };
-        let turns = *act == Act::Reflect && element.action == Action::Refract;
+        let turns = *act == Interaction::Reflect && element.action == Action::Refract;
         let after = if turns { before } else { beyond };
         legs.push(Leg {
             at: *at,
@@ -163,8 +163,10 @@ pub(super) fn route(elements: &[Element], image: &ImagePlane, path: &Path, layer
             let own = most(leg);
             if own > 0.0 {
                 let upto = from + own / all;
-                leg.soiled =
-                    Some(scatter::Place { stage: StageKey::new("scatter", leg.at as u64), first: [from, upto] });
+                leg.soiled = Some(scatter::ScatterSurface {
+                    stage: StageKey::new("scatter", leg.at as u64),
+                    first: [from, upto],
+                });
                 from = upto;
             }
         }

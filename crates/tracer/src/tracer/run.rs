@@ -1,13 +1,13 @@
 //! Runs the operations of a route over a batch.
 
 use super::kernels::{Count, Leave, Reframe};
-use super::program::{Account, Mode, Operation};
+use super::program::{LossAccount, Mode, Operation};
 use super::route::{Leg, Move, Route};
 use super::work::columns;
 use super::{Tracer, Work};
 use crate::ledger::{StepLedger, living};
-use crate::scatter::{self, Meeting};
-use crate::transmission::Before;
+use crate::scatter::{self, ScatterEvent};
+use crate::transmission::RaysBefore;
 use spectra_core::surface::{Action, Interface, Travel};
 use spectra_core::{Loss, LossCounts, RayBatch};
 use spectra_lens::onion::Bent;
@@ -111,17 +111,17 @@ impl Tracer {
             Operation::Meet => return self.meet(rays, work, leg),
             Operation::Clip(aperture) => return self.clip(rays, leg, aperture),
             Operation::BendByRings => return self.bend_by_rings(rays, work, leg),
-            Operation::EndBehind => return Before::end_behind(rays, leg.number()),
+            Operation::EndBehind => return RaysBefore::end_behind(rays, leg.number()),
             Operation::Scatter => return self.scatter(rays, work, leg, step),
             Operation::PassPrism => return self.pass_prism(rays, work, leg, step),
             Operation::Reframe(pose) => isa.run(Reframe { rays, pose }),
             Operation::Draw(stage) => rays.set_stage(stage),
             Operation::LengthenPath => {
                 let n = work.media[leg.before].n.slice(rays.len());
-                Before::lengthen(rays, n);
+                RaysBefore::lengthen(rays, n);
             }
             Operation::AddPhase => self.add_phase(rays, work, route, step),
-            Operation::ReflectNothing => rays.weighing().weight.fill(0.0),
+            Operation::ReflectNothing => rays.weight_columns().weight.fill(0.0),
             Operation::Dim => self.dim(rays, work, leg, step),
             Operation::WeighAbsorbed => work.weigh_absorbed(rays),
             Operation::Book(account) => book(rays, work, step, account),
@@ -148,7 +148,7 @@ impl Tracer {
             Operation::Measure => notes.measure(rays, leg.shift_mm()),
             Operation::Absorb(table) => notes.absorb(rays, table),
             Operation::Polarize => notes.polarize(rays, passage, leg.action == Action::Reflect, [before, beyond]),
-            Operation::Reflect => Before::reflect(rays, passage, before, beyond),
+            Operation::Reflect => RaysBefore::reflect(rays, passage, before, beyond),
             _ => notes.pass(rays, passage, [leg.before, leg.after], [before, after]),
         }
     }
@@ -192,7 +192,7 @@ impl Tracer {
     fn scatter(&self, rays: &mut RayBatch, work: &mut Work, leg: &Leg, step: usize) -> usize {
         let (Some(place), Some(notes)) = (&leg.soiled, &work.before) else { return 0 };
         let len = rays.len();
-        let meeting = Meeting {
+        let meeting = ScatterEvent {
             layers: &self.layers[leg.at],
             semi_diameter_mm: self.elements[leg.at].semi_diameter_mm,
             before: notes.directions(len),
@@ -202,7 +202,7 @@ impl Tracer {
             number: leg.number(),
         };
         let ended = scatter::scatter(rays, place, &meeting);
-        book(rays, work, step, Account::Absorbed);
+        book(rays, work, step, LossAccount::Absorbed);
         ended
     }
 
@@ -213,7 +213,7 @@ impl Tracer {
             return scatter::dim(rays, layers, semi_diameter_mm, |shares| shares.straight);
         }
         scatter::dim(rays, layers, semi_diameter_mm, |shares| shares.open);
-        book(rays, work, step, Account::Absorbed);
+        book(rays, work, step, LossAccount::Absorbed);
         let straight = |Shares { open, straight }| if open > 0.0 { straight / open } else { 0.0 };
         scatter::dim(rays, layers, semi_diameter_mm, straight);
         if let Some((ledger, booked)) = &mut work.ledger {
@@ -231,11 +231,11 @@ impl Tracer {
 }
 
 /// Books what rays lost since the last booking, if a ledger is kept.
-pub(super) fn book(rays: &mut RayBatch, work: &mut Work, step: usize, account: Account) {
+pub(super) fn book(rays: &mut RayBatch, work: &mut Work, step: usize, account: LossAccount) {
     if let Some((ledger, booked)) = &mut work.ledger {
         booked.settle(rays, &mut ledger.steps[step], |s| match account {
-            Account::Absorbed => &mut s.absorbed,
-            Account::Elsewhere => &mut s.elsewhere,
+            LossAccount::Absorbed => &mut s.absorbed,
+            LossAccount::Elsewhere => &mut s.elsewhere,
         });
     }
 }

@@ -3,7 +3,7 @@
 use super::Tracer;
 use super::kernels::Evaluate;
 use crate::ledger::{Booked, Ledger};
-use crate::transmission::Before;
+use crate::transmission::RaysBefore;
 use spectra_core::batch::Column;
 use spectra_core::surface::IndexColumns;
 use spectra_core::{LossCounts, RayBatch};
@@ -18,7 +18,7 @@ pub struct Work {
     pub(super) compact: bool,
     pub(super) capacity: usize,
     /// Notes of how rays met surfaces: for a lens that does not pass all light, and for batches that carry their optical path.
-    pub(super) before: Option<Before>,
+    pub(super) before: Option<RaysBefore>,
     /// The ledger of where light goes, if one is kept.
     pub(super) ledger: Option<(Ledger, Booked)>,
 }
@@ -63,7 +63,7 @@ impl Tracer {
     #[must_use]
     pub fn work_for_light(&self, capacity: usize) -> Work {
         let work = self.work(capacity);
-        Work { before: work.before.map(|before| before.swift(capacity, self.media.len())), ..work }
+        Work { before: work.before.map(|before| before.in_single_precision(capacity, self.media.len())), ..work }
     }
 
     /// Returns scratch space for tracing that only asks which rays pass, and where. Rays stay in place and keep their weights.

@@ -1,11 +1,11 @@
 //! The loops over a batch that compute transmission.
 
-use spectra_core::batch::Weighing;
+use spectra_core::batch::WeightColumns;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::loss::ALIVE;
 use spectra_core::math;
 use spectra_lens::Coating;
-use spectra_lens::coating::{CHUNK, Films, Sides, Singles, Swift, bare_reflectance};
+use spectra_lens::coating::{CHUNK, Films, FilmsF32, Sides, Singles, bare_reflectance};
 use spectra_lens::coating::{SAME_INDEX, cosine_of_mirrored, versine};
 
 /// Path length below which a ray runs backward, mm. Cemented surfaces and rounding stay above it.
@@ -16,14 +16,14 @@ pub(super) struct Measure<'a> {
     pub(super) from: [&'a [f64]; 3],
     pub(super) direction: [&'a [f64]; 3],
     pub(super) shift_mm: f64,
-    pub(super) rays: Weighing<'a>,
+    pub(super) rays: WeightColumns<'a>,
 }
 
 impl Vectorized for Measure<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let Self { from, direction, shift_mm, rays: Weighing { position, way_mm, .. } } = self;
+        let Self { from, direction, shift_mm, rays: WeightColumns { position, way_mm, .. } } = self;
         let len = way_mm.len();
         let [from, direction, to] = [from, direction, position].map(|columns| columns.map(|column| &column[..len]));
         for i in 0..len {
@@ -36,14 +36,14 @@ impl Vectorized for Measure<'_> {
 /// Kernel that measures the angles between the directions before and after.
 pub(super) struct MeasureAngles<'a> {
     pub(super) direction: [&'a [f64]; 3],
-    pub(super) rays: Weighing<'a>,
+    pub(super) rays: WeightColumns<'a>,
 }
 
 impl Vectorized for MeasureAngles<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let (before, Weighing { direction: after, versine: versines, .. }) = (self.direction, self.rays);
+        let (before, WeightColumns { direction: after, versine: versines, .. }) = (self.direction, self.rays);
         let len = versines.len();
         let [[bl, bm, bn], [l, m, n]] = [before, after].map(|columns| columns.map(|column| &column[..len]));
         for i in 0..len {
@@ -92,7 +92,7 @@ impl Vectorized for CountBehind<'_> {
 }
 
 pub(super) struct WeighAbsorbed<'a> {
-    pub(super) rays: Weighing<'a>,
+    pub(super) rays: WeightColumns<'a>,
     pub(super) depth: &'a [f64],
 }
 
@@ -143,7 +143,7 @@ impl<const N: usize, const H: usize> Passes for Layers<N, H> {
 
 /// The rays at a surface that they met, with the indices on both sides.
 pub(super) struct Pass<'a> {
-    pub(super) rays: Weighing<'a>,
+    pub(super) rays: WeightColumns<'a>,
     pub(super) n: &'a [f64],
     pub(super) n_after: &'a [f64],
 }
@@ -270,8 +270,8 @@ impl Vectorized for ToSingle<'_> {
 /// Kernel that multiplies the weights by the transmittance of layers in single precision. The columns are the indices on both sides and one
 /// over the wavelengths, 1/nm.
 pub(super) struct PassSwift<'a, const N: usize>(
-    pub(super) Weighing<'a>,
-    pub(super) &'a Swift<N>,
+    pub(super) WeightColumns<'a>,
+    pub(super) &'a FilmsF32<N>,
     pub(super) [&'a [f32]; 3],
 );
 
@@ -297,7 +297,7 @@ impl<const N: usize> Vectorized for PassSwift<'_, N> {
 /// Weighs one chunk in three loops, so that the middle one contains only single precision.
 #[inline(always)]
 fn swift_chunk<const N: usize>(
-    swift: &Swift<N>,
+    swift: &FilmsF32<N>,
     singles: [&[f32]; 3],
     versine: &[f64],
     state: &[u64],

@@ -3,7 +3,7 @@
 use spectra_core::loss::ALIVE;
 use spectra_core::surface::Action;
 use spectra_lens::Separation;
-use spectra_lens::coating::{Coating, Films, Swift};
+use spectra_lens::coating::{Coating, Films, FilmsF32};
 use spectra_lens::{Element, Lens};
 
 /// The way in which a coating is computed for a batch.
@@ -12,9 +12,9 @@ pub(crate) enum Kernel {
     /// Fresnel's equations.
     Bare,
     /// Clear layers, with the number of times that [`Films`] halves the angle; and their single-precision form, if that is accurate enough.
-    One(Films<1>, u32, Option<Swift<1>>),
-    Two(Films<2>, u32, Option<Swift<2>>),
-    Three(Films<3>, u32, Option<Swift<3>>),
+    One(Films<1>, u32, Option<FilmsF32<1>>),
+    Two(Films<2>, u32, Option<FilmsF32<2>>),
+    Three(Films<3>, u32, Option<FilmsF32<3>>),
     /// Any coating, ray by ray: [`Coating::transmittance`].
     RayByRay,
 }
@@ -28,20 +28,20 @@ impl Kernel {
                 let films = Films::new(&[[*index, *thickness_nm]]);
                 return films
                     .halvings(shortest_nm, low)
-                    .map_or(Self::RayByRay, |h| Self::One(films, h, Swift::of(&films, shortest_nm, low)));
+                    .map_or(Self::RayByRay, |h| Self::One(films, h, FilmsF32::of(&films, shortest_nm, low)));
             }
             Coating::Stack(stack) => {
                 let one = || {
                     let films = Films::new(&stack.clear_layers::<1>()?);
-                    Some(Self::One(films, films.halvings(shortest_nm, low)?, Swift::of(&films, shortest_nm, low)))
+                    Some(Self::One(films, films.halvings(shortest_nm, low)?, FilmsF32::of(&films, shortest_nm, low)))
                 };
                 let two = || {
                     let films = Films::new(&stack.clear_layers::<2>()?);
-                    Some(Self::Two(films, films.halvings(shortest_nm, low)?, Swift::of(&films, shortest_nm, low)))
+                    Some(Self::Two(films, films.halvings(shortest_nm, low)?, FilmsF32::of(&films, shortest_nm, low)))
                 };
                 let three = || {
                     let films = Films::new(&stack.clear_layers::<3>()?);
-                    Some(Self::Three(films, films.halvings(shortest_nm, low)?, Swift::of(&films, shortest_nm, low)))
+                    Some(Self::Three(films, films.halvings(shortest_nm, low)?, FilmsF32::of(&films, shortest_nm, low)))
                 };
                 one().or_else(two).or_else(three)
             }

@@ -1,6 +1,6 @@
 //! Link between a scene and the dispersion study: the prism with which the study starts, and saving it back into the scene.
 
-use super::order::Order;
+use super::render_job::RenderJob;
 use super::save::save;
 use super::study::Prism;
 use glam::DVec3;
@@ -33,7 +33,7 @@ fn normals(lens: &Lens) -> Option<[DVec3; 2]> {
 
 /// Returns the prism, beam and light of the scene of an order as JSON for the page, as far as the study can show them. `None` if the scene
 /// has no prism.
-pub(super) fn start(order: &Order) -> Option<Value> {
+pub(super) fn start(order: &RenderJob) -> Option<Value> {
     let session = order.session().ok()?;
     let scene = session.scene();
     if !is_prism(&scene.lens) {
@@ -81,7 +81,7 @@ fn print_of(text: &str) -> String {
 ///
 /// # Errors
 /// The reason why nothing is written.
-pub(super) fn keep(order: &Order, prism: &Prism, print: &str) -> Result<Value, String> {
+pub(super) fn keep(order: &RenderJob, prism: &Prism, print: &str) -> Result<Value, String> {
     let file = &order.scene;
     let before = std::fs::read_to_string(file)
         .map_err(|_| "a bundled scene cannot be changed: make one of your own with `spectra new scene`".to_owned())?;
@@ -155,8 +155,8 @@ mod tests {
     use spectra_core::Isa;
     use spectra_plugins as _;
 
-    fn order(scene: PathBuf) -> Order {
-        Order { scene, photograph: None, overrides: Vec::new(), isa: Isa::detect(), threads: 1 }
+    fn order(scene: PathBuf) -> RenderJob {
+        RenderJob { scene, photograph: None, overrides: Vec::new(), isa: Isa::detect(), threads: 1 }
     }
 
     #[test]

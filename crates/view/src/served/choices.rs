@@ -1,7 +1,7 @@
 //! The list of what a page can open: bundled scenes, and scenes and photographs beside the one with which the viewer was started. A page
 //! sends a name from this list and never a path.
 
-use super::order::Order;
+use super::render_job::RenderJob;
 use serde_json::{Value, json};
 use spectra_scene::bundled::Bundled;
 use spectra_session::{SessionError, is_picture};
@@ -14,7 +14,7 @@ const MANY: usize = 500;
 const HEAD_BYTES: u64 = 4096;
 
 /// Returns the folder of the viewer's scene, or the one in which the viewer was started.
-fn folder(order: &Order) -> PathBuf {
+fn folder(order: &RenderJob) -> PathBuf {
     let parent = order.scene.parent().filter(|p| !p.as_os_str().is_empty() && order.scene.exists());
     parent.unwrap_or(Path::new(".")).to_owned()
 }
@@ -44,7 +44,7 @@ fn is_scene(path: &Path) -> bool {
 }
 
 /// Returns the list of files and bundled scenes as JSON for the page.
-pub(super) fn listed(order: &Order) -> Value {
+pub(super) fn listed(order: &RenderJob) -> Value {
     let bundled: Vec<String> = Bundled::Scene.names().into_iter().filter(|name| !name.contains('/')).collect();
     json!({"files": files(&folder(order)), "bundled": bundled})
 }
@@ -53,7 +53,7 @@ pub(super) fn listed(order: &Order) -> Value {
 ///
 /// # Errors
 /// The reason why it cannot be opened.
-pub(super) fn opened(order: &Order, name: &str, is_bundled: bool) -> Result<Order, String> {
+pub(super) fn opened(order: &RenderJob, name: &str, is_bundled: bool) -> Result<RenderJob, String> {
     let own = listed(order);
     let is_known = own[if is_bundled { "bundled" } else { "files" }]
         .as_array()
@@ -62,7 +62,7 @@ pub(super) fn opened(order: &Order, name: &str, is_bundled: bool) -> Result<Orde
         return Err(format!("`{name}` is not among the scenes and photographs that can be opened"));
     }
     let scene = if is_bundled { PathBuf::from(name) } else { folder(order).join(name) };
-    let made = Order::of(scene, None, Vec::new(), order.isa, order.threads);
+    let made = RenderJob::of(scene, None, Vec::new(), order.isa, order.threads);
     // Faults are reported before the page leaves its current scene.
     made.and_then(|made| made.session().map(|_| made)).map_err(|error: SessionError| error.to_string())
 }
@@ -81,7 +81,7 @@ mod tests {
         write("lens.yaml", "surfaces: []\n");
         write("b.JPG", "no picture");
         write("secret.txt", "spectra: 1\n");
-        let order = Order {
+        let order = RenderJob {
             scene: folder.path().join("a.yaml"),
             photograph: None,
             overrides: Vec::new(),

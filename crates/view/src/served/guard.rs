@@ -63,7 +63,7 @@ impl Guard {
             return Ok(());
         }
         let is_door = !request.is_post && request.path == "/";
-        if is_door && request.asked("token").is_some_and(|token| same(token, &self.token)) {
+        if is_door && request.query_value("token").is_some_and(|token| same(token, &self.token)) {
             if self.is_spent.swap(true, SeqCst) {
                 return forbidden(
                     "this address was already used; open it in the same browser, or start `spectra view` again",

@@ -39,7 +39,7 @@ impl Request {
     }
 
     /// Returns a value of the query. The page sends nothing that needs escaping, so no escapes are decoded.
-    pub(crate) fn asked(&self, name: &str) -> Option<&str> {
+    pub(crate) fn query_value(&self, name: &str) -> Option<&str> {
         self.query.split('&').filter_map(|part| part.split_once('=')).find(|(n, _)| *n == name).map(|(_, v)| v)
     }
 }

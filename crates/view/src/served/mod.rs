@@ -2,20 +2,20 @@
 
 mod bench;
 mod choices;
-mod desk;
+mod export;
 mod guard;
 mod http;
 mod memory;
-mod order;
+mod page_session;
 mod photograph;
+mod render_job;
 mod save;
 mod server;
 mod study;
 mod tester;
-mod told;
 
 use crate::controls;
-use order::Order;
+use render_job::RenderJob;
 use server::Server;
 use spectra_core::Isa;
 use spectra_session::SessionError;
@@ -23,7 +23,7 @@ use std::path::PathBuf;
 
 /// Settings of the viewer: what is viewed, and how.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct ViewerSettings {
     /// Scene file, name of a bundled scene, or photograph: a picture file that is developed on a film.
     pub scene: PathBuf,
     /// Film of a photograph, by its whole name or its file; the usual one if `None`.
@@ -42,10 +42,10 @@ pub struct View {
 ///
 /// # Errors
 /// Every fault of the scene; a port that cannot be opened; an error that ends the server.
-pub fn view(view: View, ready: impl FnOnce(&str)) -> Result<std::convert::Infallible, SessionError> {
-    let View { scene, stock, overrides, port, isa, threads } = view;
+pub fn view(view: ViewerSettings, ready: impl FnOnce(&str)) -> Result<std::convert::Infallible, SessionError> {
+    let ViewerSettings { scene, stock, overrides, port, isa, threads } = view;
     memory::keep_little();
-    let order = Order::of(scene, stock.as_deref(), overrides, isa, threads)?;
+    let order = RenderJob::of(scene, stock.as_deref(), overrides, isa, threads)?;
     // Faults are reported at the start, not first by a page.
     order.session()?;
     let server = bound(port, Some(order))?;
@@ -66,7 +66,7 @@ pub fn color_tester(port: u16, ready: impl FnOnce(&str)) -> Result<std::convert:
     Err(SessionError::Failed(format!("the server ended: {}", server.serve())))
 }
 
-fn bound(port: u16, order: Option<Order>) -> Result<Server, SessionError> {
+fn bound(port: u16, order: Option<RenderJob>) -> Result<Server, SessionError> {
     Server::bind(port, order)
         .map_err(|error| SessionError::Request(format!("port {port} of this machine cannot be opened: {error}")))
 }

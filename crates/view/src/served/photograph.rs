@@ -3,7 +3,7 @@
 use spectra_core::stage::{Source, Still};
 use spectra_film::stock::Stock;
 use spectra_scene::FileResources;
-use spectra_session::{Photograph, Plate, Rendering, Session, SessionError, Setting, last_number};
+use spectra_session::{Photograph, PictureJob, Rendering, Session, SessionError, Setting, last_number};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -18,10 +18,10 @@ pub(super) fn of(file: &Path, stock: Option<&str>) -> Result<Photograph, Session
     let setting = |path: &str, value: &str| Setting {
         path: path.to_owned(),
         value: value.to_owned(),
-        said: format!("--stock {stock}"),
+        as_typed: format!("--stock {stock}"),
     };
     Ok(Photograph {
-        plate: Plate {
+        plate: PictureJob {
             file: file.to_string_lossy().into_owned(),
             output: format!("{name}.png"),
             number: last_number(&name),

@@ -1,9 +1,9 @@
 //! The server: it listens on the loopback address, serves the page, and passes the page's requests to its desk.
 
-use super::desk::Desk;
 use super::guard::Guard;
 use super::http::{self, Answer, Request};
-use super::order::Order;
+use super::page_session::PageSession;
+use super::render_job::RenderJob;
 use super::{bench, choices, study, tester};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -36,8 +36,8 @@ pub(crate) struct Server {
     listener: TcpListener,
     guard: Guard,
     /// Scene to show; `None` if only the color tester is served.
-    order: Option<Order>,
-    desks: Mutex<(u64, BTreeMap<u64, Arc<Desk>>)>,
+    order: Option<RenderJob>,
+    desks: Mutex<(u64, BTreeMap<u64, Arc<PageSession>>)>,
     connections: AtomicUsize,
     /// Connections whose request has not arrived yet, by number, the oldest first. A page sends its request at once, so a connection that
     /// stays here for long takes a place that others need.
@@ -55,7 +55,7 @@ impl Drop for Counted<'_> {
 
 impl Server {
     /// Opens a port on this machine's loopback address; 0 takes a free one.
-    pub(crate) fn bind(port: u16, order: Option<Order>) -> io::Result<Self> {
+    pub(crate) fn bind(port: u16, order: Option<RenderJob>) -> io::Result<Self> {
         let listener = TcpListener::bind(("127.0.0.1", port))?;
         let guard = Guard::new(listener.local_addr()?.to_string())?;
         Ok(Self {
@@ -159,13 +159,13 @@ impl Server {
             (true, "/keep") => {
                 let order = self.order.as_ref().ok_or_else(|| Answer::refused(404, "no scene is viewed"))?;
                 let refused = |why: String| Answer::refused(400, &why);
-                let prism = study::Prism::of(|name| request.asked(name).map(str::to_owned)).map_err(refused)?;
-                let kept = bench::keep(order, &prism, request.asked("text").unwrap_or_default());
+                let prism = study::Prism::of(|name| request.query_value(name).map(str::to_owned)).map_err(refused)?;
+                let kept = bench::keep(order, &prism, request.query_value("text").unwrap_or_default());
                 kept.map(|kept| Answer::json(&kept)).map_err(|why| Answer::refused(409, &why))
             }
             (false, "/prism" | "/rays") => {
                 let refused = |why: String| Answer::refused(400, &why);
-                let prism = study::Prism::of(|name| request.asked(name).map(str::to_owned)).map_err(refused)?;
+                let prism = study::Prism::of(|name| request.query_value(name).map(str::to_owned)).map_err(refused)?;
                 let answer = if request.path == "/prism" {
                     prism.shown()
                 } else {
@@ -176,7 +176,7 @@ impl Server {
             }
             (false, "/diagram") => Ok(Answer::json(&tester::diagram())),
             (false, "/color") => {
-                let asked = tester::Asked::of(|name| request.asked(name).map(str::to_owned));
+                let asked = tester::LightRequest::of(|name| request.query_value(name).map(str::to_owned));
                 Ok(Answer::json(&tester::color(&asked.map_err(|why| Answer::refused(400, &why))?)))
             }
             (false, "/page.js") => Ok(Answer::new("text/javascript; charset=utf-8", SCRIPT)),
@@ -233,7 +233,7 @@ impl Server {
                 pixel.map(|pixel| Answer::json(&pixel)).ok_or_else(|| Answer::refused(404, "no such pixel"))
             }
             (false, "/section") => {
-                let drawn = self.desk(request)?.section(request.asked("ground") == Some("dark"));
+                let drawn = self.desk(request)?.section(request.query_value("ground") == Some("dark"));
                 let drawn = drawn.filter(|svg| !svg.is_empty()).ok_or_else(|| Answer::refused(404, "no drawing"))?;
                 Ok(Answer::new("image/svg+xml", drawn.as_bytes()))
             }
@@ -242,7 +242,7 @@ impl Server {
     }
 
     /// Returns the desk that a request names, and records the request there.
-    fn desk(&self, request: &Request) -> Result<Arc<Desk>, Answer> {
+    fn desk(&self, request: &Request) -> Result<Arc<PageSession>, Answer> {
         let desks = self.desks.lock().unwrap_or_else(PoisonError::into_inner);
         let desk = desks.1.get(&number(request, "desk")?).filter(|desk| !desk.is_closed());
         let desk = desk.ok_or_else(|| Answer::refused(404, "this page is closed: reload it"))?;
@@ -251,7 +251,7 @@ impl Server {
     }
 
     /// Returns the order with which the viewer was started.
-    fn order(&self) -> Result<&Order, Answer> {
+    fn order(&self) -> Result<&RenderJob, Answer> {
         self.order.as_ref().ok_or_else(|| Answer::refused(404, "no scene is viewed"))
     }
 
@@ -269,7 +269,7 @@ impl Server {
             let Some((_, oldest)) = desks.1.pop_first() else { break };
             oldest.close();
         }
-        let desk = Desk::open(order);
+        let desk = PageSession::open(order);
         let desk = desk.map_err(|error| Answer::refused(503, &format!("another page cannot be opened: {error}")))?;
         desks.0 += 1;
         let number = desks.0;
@@ -279,6 +279,6 @@ impl Server {
 }
 
 fn number(request: &Request, name: &str) -> Result<u64, Answer> {
-    let text = request.asked(name).filter(|text| text.len() <= 19 && text.bytes().all(|b| b.is_ascii_digit()));
+    let text = request.query_value(name).filter(|text| text.len() <= 19 && text.bytes().all(|b| b.is_ascii_digit()));
     text.and_then(|text| text.parse().ok()).ok_or_else(|| Answer::refused(400, &format!("`{name}` is not a number")))
 }

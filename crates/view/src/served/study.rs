@@ -8,7 +8,7 @@ use spectra_color::{RgbSpace, spectral_color_linear, to_u8};
 use spectra_core::math::{asin, sin};
 use spectra_core::params::{Params, SourceFile};
 use spectra_glass::fit::{Sample, cauchy_by_rows, cauchy_least_squares};
-use spectra_glass::{Catalogue, Category, Glass, lines};
+use spectra_glass::{Catalog, Category, Glass, lines};
 use spectra_optics::Optics;
 use spectra_scene::FileResources;
 use spectra_spectrum::{BAND, Emission, Observer, bundled_spectra, find_emission};
@@ -37,7 +37,7 @@ static GLASSES: LazyLock<Vec<String>> = LazyLock::new(|| {
         );
         kind && glass.range_nm.0 <= VISIBLE_NM[0] && VISIBLE_NM[1] <= glass.range_nm.1
     };
-    Catalogue::bundled().glasses().filter(is_glass).map(|glass| format!("{}/{}", glass.maker, glass.name)).collect()
+    Catalog::bundled().glasses().filter(is_glass).map(|glass| format!("{}/{}", glass.maker, glass.name)).collect()
 });
 
 /// Names of the lights, with the study's own first.
@@ -169,7 +169,7 @@ impl Prism {
             let p = lens.elements[at].pose.point(DVec3::new(0.0, y, 0.0));
             [p.z, p.y]
         };
-        let glass = Catalogue::bundled().find(&self.glass).map_err(|error| error.message())?;
+        let glass = Catalog::bundled().find(&self.glass).map_err(|error| error.message())?;
         let n = |nm: f64| glass.index(nm);
         let nd = n(lines::D.wavelength_nm);
         let half_apex = (self.apex_deg / 2.0).to_radians();
@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn deviation_is_that_of_two_refractions() {
         let snell = |prism: &Prism, nm: f64| {
-            let n = Catalogue::bundled().find(&prism.glass).expect("a glass").index(nm);
+            let n = Catalog::bundled().find(&prism.glass).expect("a glass").index(nm);
             let apex = prism.apex_deg.to_radians();
             let first = prism.incidence_deg.to_radians();
             let inside = apex - asin(sin(first) / n);

@@ -14,7 +14,7 @@ const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// A light, and the way to show it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked {
+pub(crate) struct LightRequest {
     /// Middle of the band, nm.
     pub wavelength_nm: f64,
     /// Full width of the band, nm; the power is constant over the band. 0 is a line.
@@ -27,7 +27,7 @@ pub(crate) struct Asked {
     pub mixed: [f64; 3],
 }
 
-impl Asked {
+impl LightRequest {
     /// Parses the words of a page; the error names the wrong one.
     pub(crate) fn of(word: impl Fn(&str) -> Option<String>) -> Result<Self, String> {
         let number = |name: &str, least: f64, most: f64| {
@@ -60,7 +60,7 @@ fn spaces() -> [(&'static str, &'static RgbSpace); 3] {
 }
 
 /// Returns XYZ of the light for a power of 1: the mean of the observer's functions over the band.
-fn xyz(asked: &Asked) -> [f64; 3] {
+fn xyz(asked: &LightRequest) -> [f64; 3] {
     let observer = Observer::cie_1931_2deg();
     let steps = (asked.width_nm / STEP_NM).ceil().max(1.0);
     let mut sum = [0.0; 3];
@@ -79,7 +79,7 @@ fn uv_1976(xyz: [f64; 3]) -> Option<[f64; 2]> {
 }
 
 /// Returns the figures of a light as JSON.
-pub(crate) fn color(asked: &Asked) -> Value {
+pub(crate) fn color(asked: &LightRequest) -> Value {
     let space = asked.space;
     let xyz = xyz(asked);
     let signed = space.from_xyz(xyz);
@@ -141,9 +141,9 @@ pub(crate) fn diagram() -> Value {
 mod tests {
     use super::*;
 
-    fn asked(wavelength_nm: f64) -> Asked {
+    fn asked(wavelength_nm: f64) -> LightRequest {
         let (space, gamut) = (RgbSpace::srgb(), Gamut::Clip);
-        Asked { wavelength_nm, width_nm: 0.0, intensity: 100.0, space, gamut, mixed: [0.5; 3] }
+        LightRequest { wavelength_nm, width_nm: 0.0, intensity: 100.0, space, gamut, mixed: [0.5; 3] }
     }
 
     fn three(value: &Value) -> [f64; 3] {
@@ -168,14 +168,14 @@ mod tests {
                 assert!((coded[i] - f64::from(shown[i])).abs() <= 1.0, "{nm}: {coded:?}");
             }
             assert!(!got["outside"].as_array().expect("a list").is_empty(), "no screen has a line of the spectrum");
-            let half = three(&color(&Asked { intensity: 50.0, ..asked(nm) })["linear"]);
+            let half = three(&color(&LightRequest { intensity: 50.0, ..asked(nm) })["linear"]);
             assert!((0..3).all(|i| (half[i] - linear[i] / 2.0).abs() < 1e-12));
         }
     }
 
     #[test]
     fn a_band_is_the_mean_of_its_lines() {
-        let band = color(&Asked { width_nm: 2.0, ..asked(560.0) });
+        let band = color(&LightRequest { width_nm: 2.0, ..asked(560.0) });
         // The mean from 559 to 561 nm of the 1 nm table, which is linear between its rows.
         let at = |nm| Observer::cie_1931_2deg().at(nm);
         let mean = [0, 1, 2].map(|i| (at(559.0)[i] + 2.0 * at(560.0)[i] + at(561.0)[i]) / 4.0);
@@ -184,13 +184,15 @@ mod tests {
             assert!((band["xy"][i].as_f64().expect("a number") - wanted[i]).abs() < 2e-6, "{band} {wanted:?}");
         }
         // A wide band around green lies inside the gamut of every screen.
-        assert!(color(&Asked { width_nm: 200.0, ..asked(540.0) })["outside"].as_array().expect("a list").is_empty());
+        assert!(
+            color(&LightRequest { width_nm: 200.0, ..asked(540.0) })["outside"].as_array().expect("a list").is_empty()
+        );
     }
 
     #[test]
     fn what_a_page_sends_is_looked_at() {
         let words = |nm: &'static str, space: &'static str| {
-            Asked::of(move |name| {
+            LightRequest::of(move |name| {
                 Some(str::to_owned(match name {
                     "nm" => nm,
                     "space" => space,

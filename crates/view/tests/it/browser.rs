@@ -2,7 +2,7 @@
 
 use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_view::{View, color_tester, view};
+use spectra_view::{ViewerSettings, color_tester, view};
 use std::process::Command;
 use std::sync::mpsc;
 use std::time::Duration;
@@ -30,7 +30,14 @@ fn a_person_turns_types_saves_and_is_told_what_is_wrong() {
     let scene = tempfile::tempdir().expect("a folder");
     let file = scene.path().join("scene.yaml");
     std::fs::write(&file, SCENE).expect("written");
-    let own = View { scene: file.clone(), stock: None, overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
+    let own = ViewerSettings {
+        scene: file.clone(),
+        stock: None,
+        overrides: Vec::new(),
+        port: 0,
+        isa: Isa::detect(),
+        threads: 2,
+    };
     if !driven("browser.mjs", |ready| drop(view(own, ready))) {
         return;
     }
@@ -40,7 +47,14 @@ fn a_person_turns_types_saves_and_is_told_what_is_wrong() {
 
 /// Opens a scene and makes this many changes, some with values that are refused.
 fn tells_the_truth(scene: &str, changes: u32) {
-    let own = View { scene: scene.into(), stock: None, overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
+    let own = ViewerSettings {
+        scene: scene.into(),
+        stock: None,
+        overrides: Vec::new(),
+        port: 0,
+        isa: Isa::detect(),
+        threads: 2,
+    };
     driven_with("truth.mjs", &[&changes.to_string()], |ready| drop(view(own, ready)));
 }
 

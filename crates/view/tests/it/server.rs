@@ -4,7 +4,7 @@ use half::f16;
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_view::{View, view};
+use spectra_view::{ViewerSettings, view};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::sync::mpsc;
@@ -66,8 +66,14 @@ impl Browser {
         let file = folder.path().join(name);
         std::fs::write(&file, bytes).expect("written");
         let (tell, hear) = mpsc::channel();
-        let own =
-            View { scene: file.clone(), stock: None, overrides: Vec::new(), port: 0, isa: Isa::detect(), threads: 2 };
+        let own = ViewerSettings {
+            scene: file.clone(),
+            stock: None,
+            overrides: Vec::new(),
+            port: 0,
+            isa: Isa::detect(),
+            threads: 2,
+        };
         // The thread ends with the process.
         std::thread::spawn(move || view(own, |address| tell.send(address.to_owned()).expect("heard")));
         let address = hear.recv_timeout(Duration::from_secs(60)).expect("an address");
@@ -453,11 +459,11 @@ fn a_photograph_is_developed() {
         let setting = |path: &str, value: &str| spectra_session::Setting {
             path: path.to_owned(),
             value: value.to_owned(),
-            said: String::new(),
+            as_typed: String::new(),
         };
         let file = browser.file.to_string_lossy().into_owned();
         let photograph = spectra_session::Photograph {
-            plate: spectra_session::Plate { file, output: "photo.png".to_owned(), number: None },
+            plate: spectra_session::PictureJob { file, output: "photo.png".to_owned(), number: None },
             settings: vec![setting("film.stock", stock), setting("source.illuminant", light)],
             format: None,
         };

@@ -23,7 +23,7 @@ use serde::Deserialize;
 use spectra_core::Isa;
 use spectra_core::batch::CONTINUUM;
 use spectra_core::isa::Vectorized;
-use spectra_core::math::whole;
+use spectra_core::math::floor_index;
 use spectra_core::params::{Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Grid, Line, SpectralPower};
@@ -228,7 +228,7 @@ impl Vectorized for Evaluate<'_> {
         for i in 0..len {
             let p = (wavelength_nm[i] - grid.start_nm) / grid.step_nm;
             let inside = (p >= 0.0) & (p <= top);
-            let (at, below) = whole(if inside { p } else { 0.0 }, last);
+            let (at, below) = floor_index(if inside { p } else { 0.0 }, last);
             between[i] = if inside { p - below } else { 0.0 };
             shade[i] = if inside { at } else { BESIDE };
         }
@@ -295,7 +295,7 @@ mod tests {
     use super::solver::Solver;
     use super::table::value;
     use super::*;
-    use spectra_color::{RealColors, RgbSpace, chromaticity};
+    use spectra_color::{RealGamut, RgbSpace, chromaticity};
     use spectra_core::spectral::BAND;
     use spectra_spectrum::Observer;
 
@@ -400,7 +400,7 @@ mod tests {
         let (mut worst, mut farthest) = (0.0_f64, 0.0_f64);
         for i in 0..360 {
             for depth in [1e-9, 0.2, 0.55, 0.85, 0.97, 1.0] {
-                let rgb = RealColors::color(f64::from(i) / 90.0 + 0.003, depth);
+                let rgb = RealGamut::color(f64::from(i) / 90.0 + 0.003, depth);
                 let spectrum = model.spectrum(rgb);
                 assert!(spectrum.continuum.iter().all(|v| *v >= 0.0));
                 let xyz = observer.xyz_of_power(&spectrum).map(|v| v / white);
@@ -411,7 +411,7 @@ mod tests {
             }
             let turn = f64::from(i) / 90.0 + 0.003;
             let [inside, outside] = [-1e-7, 1e-7].map(|depth| {
-                let border = RealColors::color(turn, 0.0);
+                let border = RealGamut::color(turn, 0.0);
                 model.spectrum(border.map(|v| v - depth * if v.abs() < 1e-9 { 1.0 } else { 0.0 }))
             });
             let most = inside.continuum.iter().fold(0.0_f64, |a, b| a.max(*b));

@@ -17,7 +17,7 @@ pub(super) struct Solver {
 }
 
 /// Computes linear sRGB of a reflectance and its derivatives by the three coefficients. A fourth value, 0, pads each vector.
-struct Seen<'a> {
+struct ComputeColor<'a> {
     points: &'a [([f64; 3], [f64; 3])],
     c: Coefficients,
 }
@@ -25,7 +25,7 @@ struct Seen<'a> {
 /// Number of wavelengths processed side by side.
 const ABREAST: usize = 32;
 
-impl Vectorized for Seen<'_> {
+impl Vectorized for ComputeColor<'_> {
     type Output = [[f64; 4]; 4];
     #[inline(always)]
     fn run(self) -> [[f64; 4]; 4] {
@@ -75,7 +75,7 @@ impl Solver {
 
     /// Returns the linear sRGB color of the reflectance and its derivatives by the coefficients (columns).
     pub(super) fn color(&self, c: Coefficients) -> ([f64; 3], matrix::Matrix) {
-        let [rgb, by_coefficient @ ..] = self.isa.run(Seen { points: &self.points, c });
+        let [rgb, by_coefficient @ ..] = self.isa.run(ComputeColor { points: &self.points, c });
         (from_fn(|i| rgb[i]), from_fn(|i| from_fn(|j| by_coefficient[j][i])))
     }
 

@@ -1,7 +1,7 @@
 //! Table of the coefficients of colors outside sRGB.
 //!
 //! Near the spectral locus only dark reflectances exist. The largest value to which a color is scaled therefore falls toward the boundary:
-//! on the triangle of sRGB it is that of sRGB's table, on the boundary of [`RealColors`] it is 0.005. The spectrum is scaled back. Spectra
+//! on the triangle of sRGB it is that of sRGB's table, on the boundary of [`RealGamut`] it is 0.005. The spectrum is scaled back. Spectra
 //! thus change without a step where a picture's colors leave sRGB.
 //!
 //! The table has a column for each direction from white, and more columns where coefficients change quickly: neighboring columns are so
@@ -10,7 +10,7 @@
 use super::reflectance::Coefficients;
 use super::solver::Solver;
 use super::table::LEVEL;
-use spectra_color::{RealColors, RgbSpace};
+use spectra_color::{RealGamut, RgbSpace};
 use spectra_core::math::exp;
 use std::sync::OnceLock;
 
@@ -32,9 +32,9 @@ const STEPS: usize = 12;
 
 type Column = Vec<Coefficients>;
 
-/// Table of coefficients over the direction and depth of a color, as defined by [`spectra_color::Place`].
+/// Table of coefficients over the direction and depth of a color, as defined by [`spectra_color::GamutPosition`].
 pub(super) struct WideTable {
-    real: RealColors,
+    real: RealGamut,
     points: Vec<Coefficients>,
 }
 
@@ -47,7 +47,7 @@ impl WideTable {
 
     fn new() -> Self {
         let solver = Solver::new();
-        let first = RealColors::even(DIRECTIONS);
+        let first = RealGamut::even(DIRECTIONS);
         let mut columns: Vec<(f64, Column)> = Vec::new();
         for turn in first.turns() {
             let column = (*turn, from_gray(&solver, *turn));
@@ -56,7 +56,7 @@ impl WideTable {
             }
             columns.push(column);
         }
-        let real = RealColors::new(columns.iter().map(|(turn, _)| *turn));
+        let real = RealGamut::new(columns.iter().map(|(turn, _)| *turn));
         let points = columns.iter().flat_map(|(_, column)| column.iter().copied()).collect();
         Self { real, points }
     }
@@ -69,7 +69,7 @@ impl WideTable {
         let weights = cubic(row, at - row as f64);
         let first = row.clamp(1, ROWS - 3) - 1;
         let mut mixed = [0.0; 3];
-        for (column, share) in [1.0 - place.along, place.along].into_iter().enumerate() {
+        for (column, share) in [1.0 - place.fraction, place.fraction].into_iter().enumerate() {
             let points = &self.points[(place.direction + column) * ROWS + first..][..4];
             for (point, weight) in points.iter().zip(weights) {
                 for (sum, value) in mixed.iter_mut().zip(point) {
@@ -77,7 +77,7 @@ impl WideTable {
                 }
             }
         }
-        Some((place.largest / level(place.depth), mixed))
+        Some((place.peak / level(place.depth), mixed))
     }
 }
 
@@ -109,7 +109,7 @@ fn row_of(depth: f64) -> f64 {
 }
 
 fn color(turn: f64, row: usize) -> [f64; 3] {
-    RealColors::color(turn, depth(row)).map(|v| v * level(depth(row)))
+    RealGamut::color(turn, depth(row)).map(|v| v * level(depth(row)))
 }
 
 /// Solves a column; each point starts from those before it.

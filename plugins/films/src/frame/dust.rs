@@ -1,6 +1,6 @@
 //! Dust on the film: specks and fibers, which block light.
 
-use super::chance::Chance;
+use super::random_seed::RandomSeed;
 use super::shape::{Capsule, cover};
 use spectra_core::math::{cos, exp, log10, pow, sin};
 use spectra_film::raster::Raster;
@@ -19,7 +19,7 @@ const OPAQUE: f64 = 2.0;
 
 /// Adds dust to a plane of amounts. `per_cm2` is the mean number of particles per square centimeter, and `most` is the largest amount that
 /// the layer can have.
-pub(super) fn apply(chance: Chance, per_cm2: f64, plane: &mut [f32], raster: &Raster, most: f64) {
+pub(super) fn apply(chance: RandomSeed, per_cm2: f64, plane: &mut [f32], raster: &Raster, most: f64) {
     let mean = per_cm2 * CELL_MM * CELL_MM / MM2_PER_CM2;
     let cells = |axis: usize, count: usize| {
         let cell = |px: i64| (px as f64 * raster.pitch_mm / CELL_MM).floor() as i64;
@@ -48,7 +48,7 @@ pub(super) fn apply(chance: Chance, per_cm2: f64, plane: &mut [f32], raster: &Ra
 }
 
 /// Draws a number with a Poisson distribution of the given mean, by Knuth's product of uniform numbers, which is fast for small means.
-fn poisson(chance: Chance, mean: f64) -> u64 {
+fn poisson(chance: RandomSeed, mean: f64) -> u64 {
     let least = exp(-mean);
     let mut product = 1.0;
     (0..)
@@ -60,7 +60,7 @@ fn poisson(chance: Chance, mean: f64) -> u64 {
 }
 
 /// Draws a speck or a fiber at a place, mm.
-fn grain(chance: Chance, at: [f64; 2]) -> Vec<Capsule> {
+fn grain(chance: RandomSeed, at: [f64; 2]) -> Vec<Capsule> {
     if chance.uniform(0) < FIBERS {
         return fiber(chance, at);
     }
@@ -76,7 +76,7 @@ fn grain(chance: Chance, at: [f64; 2]) -> Vec<Capsule> {
 }
 
 /// Draws a fiber: a chain of short pieces, each turned a little from the one before.
-fn fiber(chance: Chance, at: [f64; 2]) -> Vec<Capsule> {
+fn fiber(chance: RandomSeed, at: [f64; 2]) -> Vec<Capsule> {
     const PIECES: u64 = 14;
     let (radius, step) = (chance.between(1, 0.003, 0.007), chance.between(2, 0.2, 1.4) / PIECES as f64);
     let (mut place, mut turn) = (at, chance.between(3, 0.0, TAU));
@@ -100,9 +100,9 @@ mod tests {
     /// The number of particles is as stated. Dust is the same on pixels of half the size, and on a part of the film.
     #[test]
     fn dust_lies_on_the_film_and_not_on_pixels() {
-        let counts: u64 = (0..20_000).map(|k| poisson(Chance::new(k, "count"), 0.7)).sum();
+        let counts: u64 = (0..20_000).map(|k| poisson(RandomSeed::new(k, "count"), 0.7)).sum();
         assert!((counts as f64 / 14_000.0 - 1.0).abs() < 0.03, "{counts}");
-        let chance = Chance::new(5, "dust");
+        let chance = RandomSeed::new(5, "dust");
         let film = |pixels: usize, offset: i64, size: usize| {
             let raster = Raster { offset_px: [offset; 2], ..Raster::new(size, size, 10.0 / pixels as f64) };
             let mut plane = vec![0.5_f32; size * size];

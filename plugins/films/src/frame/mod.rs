@@ -5,14 +5,14 @@
 //! the resolution.
 
 mod border;
-mod chance;
 mod dust;
 mod motion;
+mod random_seed;
 mod scratches;
 mod shape;
 
 use border::Border;
-use chance::Chance;
+use random_seed::RandomSeed;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
@@ -128,8 +128,8 @@ impl FrameEffects {
         }
     }
 
-    fn chance(&self, what: &str) -> Chance {
-        Chance::new(self.seed, what)
+    fn chance(&self, what: &str) -> RandomSeed {
+        RandomSeed::new(self.seed, what)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Changes from frame to frame: the picture moves in the gate, and its exposure flickers.
 
-use super::chance::Chance;
+use super::random_seed::RandomSeed;
 use rayon::prelude::*;
 use spectra_core::math::pow;
 
@@ -8,18 +8,18 @@ use spectra_core::math::pow;
 const NEIGHBORS: [f64; 5] = [1.0, 3.0, 5.0, 3.0, 1.0];
 
 /// Returns a normal number of variance 1 that changes smoothly from frame to frame.
-fn wandering(chance: Chance, frame: u64) -> f64 {
+fn wandering(chance: RandomSeed, frame: u64) -> f64 {
     let norm = NEIGHBORS.iter().map(|w| w * w).sum::<f64>().sqrt();
     (0..).zip(NEIGHBORS).map(|(k, weight)| weight * chance.normal(frame.wrapping_add(k))).sum::<f64>() / norm
 }
 
 /// Returns the shift of the picture by gate weave, mm, across and down.
-pub(super) fn weave(chance: Chance, frame: u64, rms_mm: f64) -> [f64; 2] {
+pub(super) fn weave(chance: RandomSeed, frame: u64, rms_mm: f64) -> [f64; 2] {
     [0, 1].map(|axis| rms_mm * wandering(chance.with(axis), frame))
 }
 
 /// Returns the factor by which the exposure of a frame flickers.
-pub(super) fn flicker(chance: Chance, frame: u64, rms_stops: f64) -> f64 {
+pub(super) fn flicker(chance: RandomSeed, frame: u64, rms_stops: f64) -> f64 {
     pow(2.0, rms_stops * wandering(chance, frame))
 }
 
@@ -80,7 +80,7 @@ mod tests {
     /// Over many frames the shift has the stated root mean square. A frame always has the same shift, and neighboring frames similar ones.
     #[test]
     fn weave_is_as_wide_as_stated() {
-        let chance = Chance::new(3, "weave");
+        let chance = RandomSeed::new(3, "weave");
         let all: Vec<[f64; 2]> = (0..4000).map(|frame| weave(chance, frame, 0.02)).collect();
         for axis in 0..2 {
             let square: f64 = all.iter().map(|v| v[axis] * v[axis]).sum::<f64>() / 4000.0;

@@ -1,6 +1,6 @@
 //! Scratches along the film, which last for some frames.
 
-use super::chance::Chance;
+use super::random_seed::RandomSeed;
 use rayon::prelude::*;
 use spectra_core::math::{cos, sin};
 use spectra_film::raster::Raster;
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 /// One scratch on one frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scratch {
-    chance: Chance,
+    chance: RandomSeed,
     /// Position across the film, mm.
     place: f64,
     width: f64,
@@ -29,7 +29,7 @@ const DEPTH: (f64, f64) = (0.15, 0.7);
 
 /// Draws the scratches of a frame. `mean` is their mean number, `extent_mm` the left, top, right and bottom edges of the film, and
 /// `vertical` says whether the film runs down.
-pub(super) fn of(chance: Chance, frame: u64, mean: f64, extent_mm: [f64; 4], vertical: bool) -> Vec<Scratch> {
+pub(super) fn of(chance: RandomSeed, frame: u64, mean: f64, extent_mm: [f64; 4], vertical: bool) -> Vec<Scratch> {
     let slots = (SLOTS * mean).ceil().max(1.0);
     let [left, top, right, bottom] = extent_mm;
     let ((low, high), length) = if vertical { ((left, right), bottom - top) } else { ((top, bottom), right - left) };
@@ -104,7 +104,7 @@ mod tests {
     /// alike on pixels of other sizes.
     #[test]
     fn scratches_stay_and_scale() {
-        let chance = Chance::new(9, "scratches");
+        let chance = RandomSeed::new(9, "scratches");
         let frame = |k: u64| of(chance, k, 3.0, [0.0, 0.0, 22.0, 16.0], true);
         let mean = (0..4000).map(|k| frame(k).len()).sum::<usize>() as f64 / 4000.0;
         assert!((mean / 3.0 - 1.0).abs() < 0.25, "{mean}");

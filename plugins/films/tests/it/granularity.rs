@@ -104,7 +104,7 @@ fn color_film_is_as_grainy_as_its_sheet_through_each_filter() {
         let names: Vec<&str> = film.stock().layers.iter().map(|l| l.name.as_str()).collect();
         let products = film.stock().densitometry.products(&names).expect("filters");
         let densities = |amounts: &[f64]| -> Vec<f64> {
-            film.emulsion().deposit().seen(amounts, &products).into_iter().map(|v| -log10(v)).collect()
+            film.emulsion().deposit().receiver_sums(amounts, &products).into_iter().map(|v| -log10(v)).collect()
         };
         let least: Vec<f64> = (0..3).map(|l| film.emulsion().range(l).0).collect();
         let clear = densities(&least);

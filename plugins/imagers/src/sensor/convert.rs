@@ -8,7 +8,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use spectra_color::{Adaptation, Gamut, RgbSpace};
 use spectra_core::frame::{
-    DisplayPicture, ExposureChannel, ExposureFrame, Finished, FrameSize, RawColor, RawFrame, RawNoise, Wanted,
+    DisplayPicture, ExposureChannel, ExposureFrame, ExtraRequest, FinishedPicture, FrameSize, RawColor, RawFrame,
+    RawNoise,
 };
 use spectra_core::stage::Digitize;
 use spectra_film::display::{White, finish_xyz};
@@ -137,12 +138,12 @@ impl Converter {
     /// Develops a picture from a raw frame: demosaicing, white balance, color matrix, automatic exposure.
     #[must_use]
     pub fn show(&self, raw: &RawFrame) -> Option<DisplayPicture> {
-        self.finish(raw, Wanted::default()).map(|finished| finished.shown)
+        self.finish(raw, ExtraRequest::default()).map(|finished| finished.display)
     }
 
     /// Develops a picture from a raw frame as [`Converter::show`] does, with the further outputs that are `wanted`.
     #[must_use]
-    pub fn finish(&self, raw: &RawFrame, wanted: Wanted) -> Option<Finished> {
+    pub fn finish(&self, raw: &RawFrame, wanted: ExtraRequest) -> Option<FinishedPicture> {
         let (black, range) = (f32::from(self.black_level), f32::from(self.white_level) - f32::from(self.black_level));
         let linear: Vec<f32> = raw.values.iter().map(|v| (f32::from(*v) - black) / range).collect();
         let (width, height) = (raw.width_px as usize, raw.height_px as usize);

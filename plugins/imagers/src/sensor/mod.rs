@@ -17,11 +17,11 @@ pub use params::{PhotositeParams, SensorParams};
 pub use pattern::{Pattern, PatternName};
 pub use photosite::Photosite;
 
-use crate::plane::{Met, Plane};
+use crate::plane::{FrameHit, Plane};
 use glam::DVec3;
 use spectra_core::batch::{Columns, pixel_and_channel, tag_of};
 use spectra_core::cover::CoverStack;
-use spectra_core::frame::{DisplayPicture, ExposureFrame, Finished, FrameSize, Wanted};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, ExtraRequest, FinishedPicture, FrameSize};
 use spectra_core::loss::ALIVE;
 use spectra_core::numbers::seed_of_frame;
 use spectra_core::spectral::Channel;
@@ -86,7 +86,7 @@ impl Pixels {
 
     fn receive_one(&self, c: &mut Columns<'_>, i: usize) -> Result<(), (Loss, u32)> {
         let (from, way) = (DVec3::new(c.x[i], c.y[i], c.z[i]), DVec3::new(c.l[i], c.m[i], c.n[i]));
-        let Met { point, x, y, passed } =
+        let FrameHit { point, x, y, passed } =
             self.plane.meet(from, way, c.wavelength_nm[i], c.numbers.of(i)).ok_or(BESIDE)?;
         let pixel = self.plane.size().pixel_at(x, y).ok_or(BESIDE)?;
         let (column, row) = (pixel % self.plane.size().width_px, pixel / self.plane.size().width_px);
@@ -117,7 +117,7 @@ impl Pixels {
             c.tag[i] = self.tag(column, row, well);
             return Ok(());
         }
-        let Met { x, y, .. } = self.plane.meet(at, way, c.wavelength_nm[i], c.numbers.of(i)).ok_or(WALLED)?;
+        let FrameHit { x, y, .. } = self.plane.meet(at, way, c.wavelength_nm[i], c.numbers.of(i)).ok_or(WALLED)?;
         let [at_column, at_row] = self.place(x, y);
         let entry = [at_column - f64::from(column) - 0.5, at_row - f64::from(row) - 0.5];
         let [dc, dr] = self.landing(entry, x, y, way, c.wavelength_nm[i])?;
@@ -219,7 +219,7 @@ impl Response for Sensor {
         self.converter.show(&self.converter.raw(exposure))
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: Wanted) -> Option<Finished> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Option<FinishedPicture> {
         self.converter.finish(&self.converter.raw(exposure), wanted)
     }
 
@@ -231,7 +231,7 @@ impl Response for Sensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::standing::{Bend, Standing};
+    use crate::placement::{FrameShape, Placement};
     use spectra_core::Isa;
     use spectra_core::numbers::Numbers;
     use spectra_core::spectral::BAND;
@@ -240,9 +240,9 @@ mod tests {
     /// and on coarser ones. At 35 to 50 degrees many rays have passed a neighbor's filter; beyond that, walls stop them.
     #[test]
     fn receive_undoes_admit() {
-        let silicon = spectra_glass::Catalogue::bundled().medium("Si/Green-2008").expect("bundled");
+        let silicon = spectra_glass::Catalog::bundled().medium("Si/Green-2008").expect("bundled");
         let size = FrameSize { width_px: 60, height_px: 40, width_mm: 0.3, height_mm: 0.2 };
-        let standing = Standing::new([12.0, 6.0], [0.05, -0.03], Bend::Flat);
+        let standing = Placement::new([12.0, 6.0], [0.05, -0.03], FrameShape::Flat);
         let n = 2000;
         let column = |dimension: u32| {
             let mut out = vec![0.0; n];
@@ -253,7 +253,7 @@ mod tests {
         for coarse in [false, true] {
             let mut photosite = Photosite::new(0.005, &silicon, &BAND);
             (photosite.stack_mm, photosite.stack_index, photosite.microlens) = (0.003, 1.46, 0.4);
-            let plane = Plane::new(size).standing(standing);
+            let plane = Plane::new(size).with_placement(standing);
             let pattern = PatternName::Grbg.pattern();
             let pixels = Pixels { plane, pattern, open: 0.9, photosite: Some(photosite), coarse };
             let mut rays = RayBatch::new(n);

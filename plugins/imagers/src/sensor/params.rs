@@ -8,7 +8,7 @@ use spectra_core::params::{Faults, Length, NonNegative, OrInfinity, Params, Posi
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::Imager;
-use spectra_glass::Catalogue;
+use spectra_glass::Catalog;
 use spectra_spectrum::constants::{LIGHT_M_PER_S, PLANCK_J_S};
 use spectra_spectrum::{find_emission, find_emission_in, find_sensitivity_in};
 
@@ -209,7 +209,7 @@ impl SensorParams {
         let mut faults = Faults::new();
         let index = p.index.map_or(SILICA, |i| i.bare());
         let microlens = p.microlens.map_or(0.0, |m| m.number());
-        let silicon = Catalogue::bundled().medium(SILICON).map_err(|e| params.fault("photosite", e.to_string()));
+        let silicon = Catalog::bundled().medium(SILICON).map_err(|e| params.fault("photosite", e.to_string()));
         let Some(silicon) = faults.take(silicon) else { return Err(faults) };
         let mut photosite = Photosite::new(pitch_mm, &silicon, &context.grid);
         photosite.stack_mm = p.stack.mm();

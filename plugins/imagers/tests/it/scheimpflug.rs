@@ -5,7 +5,7 @@ use spectra_core::RayBatch;
 use spectra_core::frame::FrameSize;
 use spectra_core::stage::Launch;
 use spectra_optics::{RearPupil, stop_down};
-use spectra_plugin_imagers::{Bend, Plane, Standing};
+use spectra_plugin_imagers::{FrameShape, Placement, Plane};
 use spectra_plugin_surfaces as _;
 use spectra_scene::FileResources;
 use spectra_tracer::{Indices, Tracer, Travel};
@@ -50,8 +50,8 @@ fn a_tilted_imager_is_sharp_on_scheimpflugs_plane() {
     for tilt_deg in [-6.0_f64, 2.0, 5.0, 10.0] {
         let tilt = tilt_deg.to_radians();
         let size = FrameSize { width_px: 1, height_px: 5, width_mm: 1.0, height_mm: 2.5 };
-        let standing = Standing::new([0.0; 2], [tilt, 0.0], Bend::Flat);
-        let plane = Plane::new(size).standing(standing);
+        let standing = Placement::new([0.0; 2], [tilt, 0.0], FrameShape::Flat);
+        let plane = Plane::new(size).with_placement(standing);
         let points: Vec<DVec3> = (-10..=10).map(|k| standing.at(0.0, 0.125 * f64::from(k)).0).collect();
         let pupil = RearPupil::search(&lens, &tracer, &points, nm - 1.0, nm + 1.0).expect("an aperture");
         let sharp: Vec<DVec3> = (0..5).map(|pixel| sharp_point(&tracer, &pupil, &plane, pixel, nm)).collect();

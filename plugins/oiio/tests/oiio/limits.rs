@@ -1,7 +1,7 @@
 //! Cases that tests of the picture sources and the program do not cover: full disks, repeated writes, limits.
 
 /// The unit test of `stated.rs` runs with the tests of this file.
-#[path = "../../src/stated.rs"]
+#[path = "../../src/header_size.rs"]
 mod stated;
 
 use spectra_core::resources::Found;

@@ -3,7 +3,7 @@
 use super::font::{self, Pen};
 use super::ink::Ink;
 use super::shape::{Arc, Shape, Stroke};
-use super::sheet::{Chart, Landmark};
+use super::test_chart::{Chart, Landmark};
 
 /// Alignment of a line of text with its anchor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use super::cell::{Cell, Coverage};
 use super::ink::NO_INK;
 use super::shape::Shape;
 use spectra_core::isa::{Isa, Vectorized};
-use spectra_core::math::whole;
+use spectra_core::math::floor_index;
 
 /// Number of halvings from the whole chart to a cell.
 const DEPTH: u32 = 10;
@@ -151,8 +151,8 @@ impl Grid {
         const SIDE: u32 = BLOCK as u32;
         let inside = (x_mm.abs() <= self.half_width_mm) & (y_mm.abs() <= self.half_height_mm);
         // A point outside the chart still gets a valid cell of the grid.
-        let (column, _) = whole((x_mm + self.half_width_mm) * self.cells_per_mm, self.last[0] as f64);
-        let (row, _) = whole((y_mm + self.half_height_mm) * self.cells_per_mm, self.last[1] as f64);
+        let (column, _) = floor_index((x_mm + self.half_width_mm) * self.cells_per_mm, self.last[0] as f64);
+        let (row, _) = floor_index((y_mm + self.half_height_mm) * self.cells_per_mm, self.last[1] as f64);
         let within = row % SIDE * SIDE + column % SIDE;
         [row / SIDE * self.columns as u32 + column / SIDE, if inside { within } else { OUTSIDE }]
     }

@@ -9,7 +9,7 @@
 //! therefore not lengths: line widths per picture height (LW/PH) count the black and white lines that fit into the height of
 //! the chart.
 
-mod catalogue;
+mod catalog;
 mod cell;
 mod designs;
 mod drawing;
@@ -17,12 +17,12 @@ mod font;
 mod grid;
 mod ink;
 mod shape;
-mod sheet;
+mod test_chart;
 
-pub use catalogue::{CHARTS, ChartEntry, ChartError, OWN_PATCHES, chart, own_patches};
+pub use catalog::{CHARTS, ChartEntry, ChartError, OWN_PATCHES, chart, own_patches};
 pub use ink::NO_INK;
 pub use ink::{Ink, PATCHES};
-pub use sheet::{Chart, Landmark};
+pub use test_chart::{Chart, Landmark};
 
 #[cfg(test)]
 mod pictures;

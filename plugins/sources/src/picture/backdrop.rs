@@ -1,8 +1,8 @@
 //! The background behind the mixed pixels of a picture with depth, for rays that pass through them.
 
 use super::edges::{Mixed, Sparse};
-use super::field::{HeightField, Hit};
-use super::spot::Spot;
+use super::height_field::{HeightField, Hit};
+use super::pixel_quad::PixelQuad;
 use spectra_core::stage::ColorModel;
 
 /// A copy of the picture in which mixed pixels have the depth and color of their background, with the opacity of the foreground there.
@@ -56,7 +56,7 @@ impl Backdrop {
 
     /// Returns the opacity of the foreground at a point of a mixed pixel, linear between the centers of pixels; `None` in any other pixel.
     #[inline(always)]
-    pub(super) fn opacity(&self, cell: usize, spot: &Spot) -> Option<f32> {
+    pub(super) fn opacity(&self, cell: usize, spot: &PixelQuad) -> Option<f32> {
         let own = self.opacity[self.cells.place(cell)?];
         Some(spot.mix(|cell| [self.cells.place(cell).map_or(own, |place| self.opacity[place])])[0])
     }

@@ -1,6 +1,6 @@
 //! Depth bounds: the nearest and the farthest surface in squares of many sizes. What a ray meets lies between them.
 //!
-//! A ray is a straight chord over the picture (see [`super::field`]). The bounds in the square around the chord limit where the ray can
+//! A ray is a straight chord over the picture (see [`super::height_field`]). The bounds in the square around the chord limit where the ray can
 //! meet a surface. That shortens the chord, and a smaller square then has tighter bounds. Over a plane, a wall or a slope, two or three
 //! lookups leave a pixel or two to walk through.
 

@@ -9,12 +9,12 @@
 //! from the front, and the rest from the same ray in the background picture ([`Backdrop`]), where no mixed pixel is in front.
 
 use super::backdrop::Backdrop;
-use super::field::{HeightField, Hit};
-use super::map::PictureMap;
+use super::height_field::{HeightField, Hit};
 use super::narrowing::{Line, Lines, SIDE_BY_SIDE};
+use super::picture_texture::PictureTexture;
 use super::starts::{MOST_CELLS, Starts};
-use crate::flat::Texture;
-use crate::halves::Half;
+use crate::plane_source::Texture;
+use crate::split_source::LightPart;
 use spectra_core::RayBatch;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::{ALIVE, Loss};
@@ -25,7 +25,7 @@ use std::sync::{Arc, OnceLock};
 /// A picture source whose pixels lie at their depths.
 pub(super) struct DeepPicture {
     /// Colors of the picture. Its size is that on the plane at `plane_mm`.
-    pub(super) map: PictureMap,
+    pub(super) map: PictureTexture,
     pub(super) field: Arc<HeightField>,
     /// Background behind mixed pixels, if there are any.
     pub(super) behind: Option<Arc<Backdrop>>,
@@ -71,7 +71,7 @@ impl DeepPicture {
     /// Places the pixels of a map at the depths of a field, with the background of mixed pixels. `ends_mm` are the nearest and the farthest
     /// depth. `meaning` describes for the summary how the depths were read.
     pub(super) fn new(
-        map: PictureMap,
+        map: PictureTexture,
         (field, behind): (Arc<HeightField>, Option<Arc<Backdrop>>),
         plane_mm: f64,
         eye_mm: f64,
@@ -124,7 +124,7 @@ impl DeepPicture {
         if !hit.guessed && self.field.is_smooth(hit.cell) {
             return self.map.color(&spot);
         }
-        let is_whole = self.map.half == Half::Whole;
+        let is_whole = self.map.half == LightPart::Whole;
         if hit.guessed {
             let cell = self.field.goes_on(hit);
             // A light is not continued behind the foreground: it would shine over the whole guessed background.

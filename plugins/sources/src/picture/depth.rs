@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Positive, Ratio, StageNode, Warning};
 use spectra_core::registry::Context;
-use spectra_core::resources::Found;
-use spectra_pictures::read::{self, Choice, Linear, Trouble};
+use spectra_core::resources::FoundFile;
+use spectra_pictures::read::{self, FileProblem, LinearPicture, ReadOptions};
 
 /// `depth` of a picture, as written in a scene.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -52,7 +52,7 @@ pub(super) struct Depth {
     pub cleans_edges: bool,
     pub eye_mm: f64,
     /// Separate depth file, if there is one.
-    found: Option<Found>,
+    found: Option<FoundFile>,
 }
 
 /// Treatment of mixed pixels at edges.
@@ -138,7 +138,7 @@ impl Depth {
     /// plane on which the picture with its `overscan` is `width_mm` wide. Fails for depths that are not positive and finite.
     pub(super) fn of(
         &self,
-        picture: &Linear,
+        picture: &LinearPicture,
         plane_mm: f64,
         width_mm: f64,
         overscan: [u32; 2],
@@ -252,21 +252,21 @@ impl Depth {
         if overscan == [0; 2] {
             return overscan;
         }
-        let choice = Choice { name, depth: Some(self.name()), ..Choice::default() };
+        let choice = ReadOptions { name, depth: Some(self.name()), ..ReadOptions::default() };
         let [x, y] = read::depth_overscan(found, choice);
         [overscan[0].min(x), overscan[1].min(y)]
     }
 
     /// Reads a separate depth file: the channel of an OpenEXR, or the first channel of any other picture as linear numbers.
-    fn own(&self, name: &str, found: &Found, overscan: [u32; 2]) -> Result<Linear, Trouble> {
-        let choice = Choice { name, depth: Some(self.name()), overscan, ..Choice::default() };
+    fn own(&self, name: &str, found: &FoundFile, overscan: [u32; 2]) -> Result<LinearPicture, FileProblem> {
+        let choice = ReadOptions { name, depth: Some(self.name()), overscan, ..ReadOptions::default() };
         if read::is_exr(found)? {
             return read::depth(found, choice);
         }
-        let choice = Choice { name, transfer: Some("linear"), is_plain: true, ..Choice::default() };
+        let choice = ReadOptions { name, transfer: Some("linear"), is_plain: true, ..ReadOptions::default() };
         let mut read = read::decode(found, choice)?;
         if read.clipped_at.is_some() && self.p.scale.is_none() {
-            return Err(Trouble {
+            return Err(FileProblem {
                 key: "file",
                 text: "its integers are read as values from 0 to 1, which are not yet distances".to_owned(),
                 hint: Some(
@@ -282,7 +282,7 @@ impl Depth {
 
     /// Returns a warning if depth that was read as distance along the axis is probably distance along the ray, or vice versa, which curves
     /// walls and floors.
-    pub(super) fn doubt_kind(&self, depth: &[f32], plane_mm: f64, pixels: Pixels) -> Option<Warning> {
+    pub(super) fn kind_warning(&self, depth: &[f32], plane_mm: f64, pixels: Pixels) -> Option<Warning> {
         let (is_ray, other, bend) = match self.kind {
             DepthKind::Inverse => return None,
             DepthKind::Z => (false, "ray", "toward the edges they bend away from the lens"),
@@ -301,7 +301,7 @@ impl Depth {
     /// Returns a warning if the depths, mm, were probably read wrongly. It is raised if most depths lie far from the plane, while another
     /// unit or kind would bring them near, or if they run from 0 to 1. It is also raised if the nearest one is less than two focal lengths
     /// from the lens, while the plane is not that close.
-    pub(super) fn doubt(&self, depth: &[f32], plane_mm: f64, focal_length_mm: Option<f64>) -> Option<Warning> {
+    pub(super) fn scale_warning(&self, depth: &[f32], plane_mm: f64, focal_length_mm: Option<f64>) -> Option<Warning> {
         let farthest = self.p.far.map_or(f64::INFINITY, |l| l.mm());
         let mut all: Vec<f32> = depth.iter().copied().filter(|mm| f64::from(*mm) < farthest && *mm < 1e10).collect();
         if all.is_empty() {

@@ -2,10 +2,10 @@
 //! from which it starts is the first on its line.
 
 use super::deep::{CHUNK, DeepPicture, Looked};
-use super::field::Hit;
+use super::height_field::Hit;
 use super::narrowing::Line;
 use super::starts::{Start, Starts};
-use crate::halves::Half;
+use crate::split_source::LightPart;
 use spectra_core::RayBatch;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::{ALIVE, Loss};
@@ -47,7 +47,7 @@ impl DeepPicture {
 impl Emit for DeepPicture {
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) {
         let starts = self.starts.get_or_init(|| match (&self.map.lights, self.map.half) {
-            (Some(lights), Half::Lights) => self.starts(|cell| lights.level[cell]),
+            (Some(lights), LightPart::Lights) => self.starts(|cell| lights.level[cell]),
             _ => self.starts(|_| 1.0),
         });
         let picture_mm2 = self.map.width_mm * self.map.height_mm / (self.plane_mm * self.plane_mm);

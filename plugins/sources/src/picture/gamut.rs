@@ -1,8 +1,8 @@
 //! Gamut mapping: colors for which the color model has no spectrum are moved toward white and counted.
 
-use spectra_color::{MARGIN, fit};
+use spectra_color::{MARGIN, fit_to_gamut};
 use spectra_core::stage::{ColorGamut, ColorModel};
-use spectra_pictures::read::{Linear, Trouble};
+use spectra_pictures::read::{FileProblem, LinearPicture};
 
 /// Pixels whose largest value is below this fraction of white are too dark for a warning.
 const DARK: f32 = 1e-3;
@@ -11,17 +11,17 @@ const DARK: f32 = 1e-3;
 const UNSEEN: f64 = 3.0 * MARGIN;
 
 /// Moves the picture's colors into the gamut of the model, and adds a warning about how many moved.
-pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
+pub(super) fn bring_in(linear: &mut LinearPicture, model: &dyn ColorModel) {
     let gamut = model.gamut();
     let (mut moved, mut farthest, mut black) = (0_usize, 0.0_f64, 0_usize);
     for pixel in linear.rgb.iter_mut().filter(|pixel| pixel.iter().any(|v| *v < 0.0)) {
-        let fitted = fit(pixel.map(f64::from), gamut);
+        let fitted = fit_to_gamut(pixel.map(f64::from), gamut);
         let counts = pixel.iter().any(|v| v.abs() > DARK);
-        if counts && fitted.moved.is_infinite() {
+        if counts && fitted.distance_xy.is_infinite() {
             black += 1;
-        } else if counts && fitted.moved > 0.0 {
+        } else if counts && fitted.distance_xy > 0.0 {
             moved += 1;
-            farthest = farthest.max(fitted.moved);
+            farthest = farthest.max(fitted.distance_xy);
         }
         *pixel = fitted.rgb.map(|v| v as f32);
     }
@@ -50,5 +50,5 @@ pub(super) fn bring_in(linear: &mut Linear, model: &dyn ColorModel) {
             "convert it to a narrower gamut, such as Rec. 2020 or Display P3, in the program that made it"
         }
     };
-    linear.doubts.push(Trouble { key: "file", text: said.join("; "), hint: Some(hint.to_owned()) });
+    linear.warnings.push(FileProblem { key: "file", text: said.join("; "), hint: Some(hint.to_owned()) });
 }

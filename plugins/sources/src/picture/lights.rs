@@ -15,7 +15,7 @@
 //! of the picture, the noise only moved from its edges to its middle, for six times the time. The remaining noise is that each ray has one
 //! wavelength: behind the last surface that disperses light (seen from the imager), each wavelength takes a path of its own.
 
-use super::places::LightPlaces;
+use super::light_sampler::LightSampler;
 use spectra_core::spectral::SpectralPower;
 
 /// Smallest ratio of the brightness of a light to the mean of the rest.
@@ -36,7 +36,7 @@ pub(crate) struct Lights {
     /// these four belongs to the lights.
     pub touched: Vec<bool>,
     /// Draws points on the lights.
-    pub places: LightPlaces,
+    pub places: LightSampler,
     /// Mean light over the picture, of the lights and of the rest.
     pub mean: [SpectralPower; 2],
     /// Ratio of peak to mean, of the lights and of the rest, each among its own pixels.
@@ -45,7 +45,7 @@ pub(crate) struct Lights {
 }
 
 /// The lights as found from the brightness of pixels, before their spectra are known.
-pub(super) struct Found {
+pub(super) struct LightPixels {
     pub level: Vec<f32>,
     /// Brightness limit: a pixel that is not brighter is a light only as the neighbor of one.
     pub limit: f32,
@@ -62,7 +62,7 @@ pub(super) fn touched(width: usize, level: &[f32]) -> Vec<bool> {
 }
 
 /// Finds the lights among pixels of this brightness; `None` if there are none.
-pub(super) fn find(width: usize, brightness: &[f32]) -> Option<Found> {
+pub(super) fn find(width: usize, brightness: &[f32]) -> Option<LightPixels> {
     let all = brightness.len() as f64;
     let mean = |limit: f64| {
         let dark = brightness.iter().map(|b| f64::from(b.max(0.0))).filter(|b| *b <= limit);
@@ -118,7 +118,7 @@ pub(super) fn find(width: usize, brightness: &[f32]) -> Option<Found> {
     let least = LEAST * (lights[0] / lights[3]) as f32;
     level.iter_mut().zip(brightness).filter(|(level, _)| **level > 0.0).for_each(|(level, b)| *level = b.max(least));
     let peak_over_mean = moments.map(|[sum, _, peak, count]| if sum > 0.0 { peak * count / sum } else { 1.0 });
-    Some(Found { level, limit, peak_over_mean, pays: one >= PAYS * two })
+    Some(LightPixels { level, limit, peak_over_mean, pays: one >= PAYS * two })
 }
 
 #[cfg(test)]

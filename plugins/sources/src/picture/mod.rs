@@ -6,41 +6,41 @@ mod deep;
 mod depth;
 mod edges;
 mod emitted;
-mod field;
 mod gamut;
+mod height_field;
 mod highlights;
+mod light_sampler;
 pub(crate) mod lights;
-pub(crate) mod map;
 mod narrowing;
-mod places;
+pub(crate) mod picture_texture;
+mod pixel_quad;
 mod planes;
-mod spot;
 mod starts;
 mod tone;
 
-use crate::flat::Flat;
-use crate::frame::{Edge, Placed, Width};
-use crate::halves::{Half, Halves};
-use crate::lazy::Lazy;
+use crate::deferred_source::DeferredSource;
+use crate::frame::{Edge, PlanePlacement, Width};
+use crate::plane_source::PlaneSource;
+use crate::split_source::{LightPart, SplitSource};
 use crate::white;
 use backdrop::Backdrop;
 use deep::DeepPicture;
 use depth::Depth;
 use edges::Mixed;
-use field::HeightField;
+use height_field::HeightField;
+use light_sampler::LightSampler;
 use lights::Lights;
-use map::{Importance, PictureMap, are_lamps};
-use places::LightPlaces;
+use picture_texture::{Importance, PictureTexture, are_lamps};
 use planes::Pixels;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Fault, Faults, Length, Luminance, Params, Part, Positive, Quantity, Warning};
+use spectra_core::frame_view::FrameView;
+use spectra_core::params::{Deferred, Fault, Faults, Length, Luminance, Params, Positive, Quantity, Warning};
 use spectra_core::registry::{Context, StageOf, build as build_stage};
-use spectra_core::resources::{Found, ResourceError};
+use spectra_core::resources::{FoundFile, ResourceError};
 use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{ColorModel, Source, Still};
-use spectra_core::view::View;
-use spectra_pictures::read::{self, Choice, Header, Linear, Trouble};
+use spectra_pictures::read::{self, FileProblem, Header, LinearPicture, ReadOptions};
 use std::sync::Arc;
 use tone::CameraTone;
 
@@ -114,9 +114,9 @@ struct PictureParams {
     #[serde(default = "luminance")]
     luminance: Positive<Luminance>,
     /// Color model that turns RGB into a spectrum; `smooth` if left out.
-    color: Option<Part<StageOf<dyn ColorModel>>>,
+    color: Option<Deferred<StageOf<dyn ColorModel>>>,
     /// Distance of each pixel, from a depth channel; all pixels lie on the plane if left out.
-    depth: Option<Part<depth::DepthParams>>,
+    depth: Option<Deferred<depth::DepthParams>>,
     /// Estimates the light of clipped highlights in integer files; they stay clipped if left out.
     recover_highlights: Option<RecoverParams>,
 }
@@ -220,22 +220,22 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     };
     let width_mm = shown_mm * header.widened(overscan);
     let aspect = header.aspect_with(overscan);
-    let placed = Placed { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm: [0.0; 2] };
+    let placed = PlanePlacement { width_mm, height_mm: width_mm / aspect, distance_mm, center_mm: [0.0; 2] };
     if p.width.is_fill() {
         placed.warn_of_fisheye("the picture", params, context);
     } else if p.edge.is_none() {
         placed.warn_unless_filled("the picture", params, context);
     }
     file.warn(&header, context);
-    let making = Arc::new(Making { model, width_mm, luminance_cd_m2: p.luminance.cd_per_m2(), edge });
-    let stand_in = Flat { texture: making.white(aspect, &file.name), distance_mm };
+    let making = Arc::new(PictureSettings { model, width_mm, luminance_cd_m2: p.luminance.cd_per_m2(), edge });
+    let stand_in = PlaneSource { texture: making.white(aspect, &file.name), distance_mm };
     let emits = edge == Edge::Black;
     let file = Arc::new(file);
     let is_flat = depth.is_none();
-    let focal_length_mm = context.view.and_then(View::focal_length_mm);
+    let focal_length_mm = context.view.and_then(FrameView::focal_length_mm);
     let pixels = {
         let (file, making) = (Arc::clone(&file), Arc::clone(&making));
-        move |overscan: [u32; 2]| -> Result<Linear, Faults> {
+        move |overscan: [u32; 2]| -> Result<LinearPicture, Faults> {
             let mut linear = file.read(overscan)?;
             if tone == Tone::Camera {
                 let curve = CameraTone::new();
@@ -253,24 +253,25 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
         let (file, pixels, making) = (Arc::clone(&file), pixels.clone(), Arc::clone(&making));
         move || {
             pixels([0; 2]).map(|linear| {
-                let doubts = file.doubts(&linear);
+                let doubts = file.warnings(&linear);
                 (making.still(linear), doubts)
             })
         }
     };
-    let lazy = Lazy::new(Box::new(stand_in), emits, move || {
+    let lazy = DeferredSource::new(Box::new(stand_in), emits, move || {
         let mut linear = pixels(overscan)?;
-        let mut doubts = file.doubts(&linear);
+        let mut doubts = file.warnings(&linear);
         let Some(depth) = &depth else {
             let map = making.map(linear, &file.name);
-            return Ok((with_halves(map, emits, |texture| Flat { texture, distance_mm }), doubts));
+            return Ok((with_halves(map, emits, |texture| PlaneSource { texture, distance_mm }), doubts));
         };
         let plane_mm = distance_mm + depth.eye_mm;
         let mut all = depth.of(&linear, plane_mm, width_mm, overscan)?;
         let size_px = [linear.width, linear.height];
         let pixels = Pixels { size_px, aspect: linear.pixel_aspect, pixel_mm: width_mm / f64::from(linear.width) };
-        doubts
-            .extend(depth.doubt(&all, plane_mm, focal_length_mm).or_else(|| depth.doubt_kind(&all, plane_mm, pixels)));
+        doubts.extend(
+            depth.scale_warning(&all, plane_mm, focal_length_mm).or_else(|| depth.kind_warning(&all, plane_mm, pixels)),
+        );
         // The raw depths of the picture are no longer needed.
         linear.depth = None;
         let width_px = linear.width as usize;
@@ -297,17 +298,21 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
 
 /// Makes the source of a picture. If the picture has lights and may emit, the source also has a part with the lights and one with the
 /// rest.
-fn with_halves<S: Source + 'static>(map: PictureMap, emits: bool, make: impl Fn(PictureMap) -> S) -> Box<dyn Source> {
+fn with_halves<S: Source + 'static>(
+    map: PictureTexture,
+    emits: bool,
+    make: impl Fn(PictureTexture) -> S,
+) -> Box<dyn Source> {
     let Some(pays) = map.lights.as_ref().filter(|_| emits).map(|lights| lights.pays) else {
         return Box::new(make(map));
     };
-    let [lights, rest] = [Half::Lights, Half::Rest].map(|half| make(map.half(half)));
-    Box::new(Halves { lights, rest, whole: make(map), pays })
+    let [lights, rest] = [LightPart::Lights, LightPart::Rest].map(|half| make(map.half(half)));
+    Box::new(SplitSource { lights, rest, whole: make(map), pays })
 }
 
 /// A picture file that was found, with its keys in the scene.
 pub(crate) struct PictureFile {
-    pub found: Found,
+    pub found: FoundFile,
     pub name: String,
     pub transfer: Option<String>,
     pub layer: Option<String>,
@@ -320,11 +325,11 @@ pub(crate) struct PictureFile {
 }
 
 impl PictureFile {
-    fn choice(&self) -> Choice<'_> {
-        Choice {
+    fn choice(&self) -> ReadOptions<'_> {
+        ReadOptions {
             name: &self.name,
             transfer: self.transfer.as_deref(),
-            cover: self.cover,
+            alpha: self.cover,
             layer: self.layer.as_deref(),
             depth: self.depth.as_deref(),
             overscan: [0; 2],
@@ -338,19 +343,19 @@ impl PictureFile {
     }
 
     /// Reads the file in linear light, with this many pixels of its overscan on each side.
-    fn read(&self, overscan: [u32; 2]) -> Result<Linear, Faults> {
-        read::decode(&self.found, Choice { overscan, ..self.choice() })
+    fn read(&self, overscan: [u32; 2]) -> Result<LinearPicture, Faults> {
+        read::decode(&self.found, ReadOptions { overscan, ..self.choice() })
             .map_err(|e| trouble(&self.name, &e, &self.params).into())
     }
 
     /// Returns the warnings about the pixels of the file.
-    pub(crate) fn doubts(&self, linear: &Linear) -> Vec<Warning> {
-        linear.doubts.iter().map(|doubt| trouble(&self.name, doubt, &self.params).into()).collect()
+    pub(crate) fn warnings(&self, linear: &LinearPicture) -> Vec<Warning> {
+        linear.warnings.iter().map(|doubt| trouble(&self.name, doubt, &self.params).into()).collect()
     }
 
     /// Reports the warnings about the header, and warns of a photograph whose code values are taken as light.
     pub(crate) fn warn(&self, header: &Header, context: &Context<'_>) {
-        header.doubts.iter().for_each(|doubt| context.warn(trouble(&self.name, doubt, &self.params)));
+        header.warnings.iter().for_each(|doubt| context.warn(trouble(&self.name, doubt, &self.params)));
         if header.is_jpeg && self.transfer.as_deref() == Some("linear") {
             let text =
                 format!("`{}` is a JPEG, whose code values are sRGB: as linear light it is far too pale", self.name);
@@ -360,24 +365,24 @@ impl PictureFile {
 }
 
 /// Parameters that turn the pixels of a picture into light.
-pub(crate) struct Making {
+pub(crate) struct PictureSettings {
     pub model: Arc<dyn ColorModel>,
     pub width_mm: f64,
     pub luminance_cd_m2: f64,
     pub edge: Edge,
 }
 
-impl Making {
+impl PictureSettings {
     /// Reads a file, with colors moved into the gamut of the color model.
-    pub(crate) fn read(&self, file: &PictureFile, overscan: [u32; 2]) -> Result<Linear, Faults> {
+    pub(crate) fn read(&self, file: &PictureFile, overscan: [u32; 2]) -> Result<LinearPicture, Faults> {
         let mut linear = file.read(overscan)?;
         gamut::bring_in(&mut linear, &*self.model);
         Ok(linear)
     }
 
     /// Returns a white picture with this ratio of width to height.
-    pub(crate) fn white(&self, aspect: f64, name: &str) -> PictureMap {
-        let pixel = Linear {
+    pub(crate) fn white(&self, aspect: f64, name: &str) -> PictureTexture {
+        let pixel = LinearPicture {
             width: 1,
             height: 1,
             pixel_aspect: aspect,
@@ -385,7 +390,7 @@ impl Making {
             alpha: None,
             depth: None,
             clipped_at: None,
-            doubts: Vec::new(),
+            warnings: Vec::new(),
         };
         self.map(pixel, name)
     }
@@ -396,31 +401,31 @@ impl Making {
     }
 
     /// Returns the pixels of the picture, for exposing film without a lens.
-    fn still(&self, linear: Linear) -> Still {
-        let Linear { width, height, pixel_aspect, rgb, .. } = linear;
+    fn still(&self, linear: LinearPicture) -> Still {
+        let LinearPicture { width, height, pixel_aspect, rgb, .. } = linear;
         let (model, scale) = (Arc::clone(&self.model), self.scale());
         Still { width_px: width, height_px: height, pixel_aspect, rgb, model, scale }
     }
 
     /// Returns the picture on its plane. Its pixels are replaced in place by the coefficients of the color model.
-    pub(crate) fn map(&self, linear: Linear, name: &str) -> PictureMap {
+    pub(crate) fn map(&self, linear: LinearPicture, name: &str) -> PictureTexture {
         assemble(linear, name, self, None)
     }
 }
 
 /// Builds the color model under `color`, for this light.
 pub(crate) fn color_model(
-    color: Option<Part<StageOf<dyn ColorModel>>>,
+    color: Option<Deferred<StageOf<dyn ColorModel>>>,
     light: &SpectralPower,
     params: &Params,
     context: &Context<'_>,
 ) -> Result<Arc<dyn ColorModel>, Faults> {
-    let color = color.map_or_else(|| Ok(params.nothing_said("color")), |node| node.params())?;
+    let color = color.map_or_else(|| Ok(params.default_stage("color")), |node| node.params())?;
     build_stage::<dyn ColorModel>(&color, &Context { illuminant: Some(light), ..*context }).map(Arc::from)
 }
 
 /// Returns the fault of a picture file, at the key to which it belongs.
-pub(crate) fn trouble(file: &str, trouble: &Trouble, params: &Params) -> Fault {
+pub(crate) fn trouble(file: &str, trouble: &FileProblem, params: &Params) -> Fault {
     let named = trouble.key == "depth" && trouble.text.starts_with("the file has no depth channel");
     let key = match trouble.key {
         "depth" if named && params.get("channel").is_some() => "channel",
@@ -449,7 +454,7 @@ fn sequence_hint(file: &str) -> Option<String> {
     ))
 }
 
-pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<Found, Fault> {
+pub(crate) fn find(file: &str, params: &Params, context: &Context<'_>) -> Result<FoundFile, Fault> {
     context.resources.find(file, &["scenes"], &[], MAX_BYTES).map_err(|e| {
         let sequence = if matches!(e, ResourceError::NotFound(_)) { sequence_hint(file) } else { None };
         let hint = sequence.unwrap_or_else(|| match &e {
@@ -469,7 +474,7 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 }
 
 /// Makes the map of a picture on its plane. `rgb` holds the front color of mixed pixels.
-fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) -> PictureMap {
+fn assemble(linear: LinearPicture, name: &str, making: &PictureSettings, mixed: Option<&Mixed>) -> PictureTexture {
     let (width, height) = (linear.width as usize, linear.height as usize);
     let model = &making.model;
     let scale = making.scale();
@@ -504,7 +509,7 @@ fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) 
             sum.iter_mut().zip(whole(cell)).for_each(|(sum, value)| *sum += f64::from(value) / pixels);
         }
         Arc::new(Lights {
-            places: LightPlaces::new(width, &found.level, found.limit),
+            places: LightSampler::new(width, &found.level, found.limit),
             touched: lights::touched(width, &found.level),
             level: found.level,
             mean: sums.map(|sum| model.spectrum(sum).scaled(scale)),
@@ -515,7 +520,7 @@ fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) 
     for pixel in &mut rgb {
         *pixel = model.coefficients(pixel.map(f64::from));
     }
-    PictureMap {
+    PictureTexture {
         width_px: width,
         height_px: height,
         width_mm: making.width_mm,
@@ -526,7 +531,7 @@ fn assemble(linear: Linear, name: &str, making: &Making, mixed: Option<&Mixed>) 
         importance,
         is_lamps,
         lights,
-        half: Half::Whole,
+        half: LightPart::Whole,
         scale,
         model: Arc::clone(model),
         name: name.to_owned(),

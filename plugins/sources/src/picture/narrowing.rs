@@ -1,6 +1,6 @@
 //! Narrows lines through a height field to the part of each that has to be walked, many lines in parallel.
 
-use spectra_core::math::whole;
+use spectra_core::math::floor_index;
 
 /// Number of lines that are processed in parallel.
 pub(super) const SIDE_BY_SIDE: usize = 64;
@@ -133,7 +133,7 @@ impl Narrowing {
         self.len += usize::from(is_wanted);
     }
 
-    /// Computes the boxes of pixels under the parts of the lines to look at: see [`super::field::HeightField::around_line`].
+    /// Computes the boxes of pixels under the parts of the lines to look at: see [`super::height_field::HeightField::around_line`].
     #[inline(always)]
     pub(super) fn boxes(&self, last: [f64; 2], look: &mut Look) {
         for i in 0..self.len.next_multiple_of(VECTOR).min(SIDE_BY_SIDE) {
@@ -197,7 +197,7 @@ impl Narrowing {
 /// Returns the pixel that contains a position along a side, or the nearest one.
 #[inline(always)]
 pub(super) fn pixel(at: f64, last: f64) -> u32 {
-    whole(at, last).0
+    floor_index(at, last).0
 }
 
 /// Returns the smaller of two numbers, or the second one if one is NaN.

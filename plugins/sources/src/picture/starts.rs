@@ -2,8 +2,8 @@
 //! background of mixed pixels.
 
 use super::backdrop::Backdrop;
-use super::field::{HeightField, Hit, Wall};
-use super::map::PictureMap;
+use super::height_field::{HeightField, Hit, Wall};
+use super::picture_texture::PictureTexture;
 
 /// Largest number of pixels that a tag can hold besides side and kind.
 pub(super) const MOST_CELLS: usize = 1 << 28;
@@ -36,7 +36,7 @@ impl Starts {
     /// Finds the surfaces in a picture and in the background of its mixed pixels. A direction of slope 1 is `px_per_slope` pixels from the
     /// axis. `level` returns the brightness of a pixel, 0 if the pixel does not belong to this part of the picture.
     pub(super) fn of(
-        map: &PictureMap,
+        map: &PictureTexture,
         front: &HeightField,
         behind: Option<&Backdrop>,
         px_per_slope: f64,

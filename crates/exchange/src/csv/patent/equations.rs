@@ -1,7 +1,7 @@
 //! Reads tables of equations: `r1 = 61.844 d1 = 4.99 n1 = 1.77250 v1 = 49.6`, on one line or many.
 
-use super::words::{figure, is_back_focus, is_end, is_other, is_plane, is_stop_phrase};
-use super::{Found, Row, value};
+use super::vocabulary::{figure, is_back_focus, is_end, is_other, is_plane, is_stop_phrase};
+use super::{FoundRows, PatentRow, value};
 use crate::MAX_ITEMS;
 
 /// An equation of a patent: its name, its number and its value.
@@ -109,16 +109,16 @@ fn with_signs(lines: &[&str]) -> Option<Vec<String>> {
 }
 
 /// Reads the rows of a table of equations; `None` if there are fewer than three radii.
-pub(super) fn rows(lines: &[&str]) -> Option<Found> {
+pub(super) fn rows(lines: &[&str]) -> Option<FoundRows> {
     if let Some(typed) = with_signs(lines) {
         return rows_of(&typed.iter().map(String::as_str).collect::<Vec<_>>());
     }
     rows_of(lines)
 }
 
-fn rows_of(lines: &[&str]) -> Option<Found> {
+fn rows_of(lines: &[&str]) -> Option<FoundRows> {
     let mut found =
-        Found { head: 0, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: true, is_line_e: false };
+        FoundRows { head: 0, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: true, is_line_e: false };
     for (at, line) in lines.iter().enumerate() {
         if line.trim().starts_with('#') {
             continue;
@@ -137,7 +137,7 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
             && first_cell.is_some_and(is_stop_phrase)
             && !found.rows.is_empty()
         {
-            let mut row = Row { line: at, is_stop: true, ..Row::default() };
+            let mut row = PatentRow { line: at, is_stop: true, ..PatentRow::default() };
             row.cells.insert("radius", "inf".to_owned());
             found.rows.push(row);
         }
@@ -168,12 +168,18 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
             }
             if name == "radius" {
                 // Put one row on each line of the resulting table.
-                let line = found.rows.last().map_or(at, |last: &Row| at.max(last.line + 1));
+                let line = found.rows.last().map_or(at, |last: &PatentRow| at.max(last.line + 1));
                 let is_marked = equation.written.contains('*')
                     || equation.is_marked
                     || equation.words.to_lowercase().contains("aspher");
                 let is_stop = is_stop_phrase(&equation.words) || is_stop_word;
-                found.rows.push(Row { line, number: equation.number, is_marked, is_stop, ..Row::default() });
+                found.rows.push(PatentRow {
+                    line,
+                    number: equation.number,
+                    is_marked,
+                    is_stop,
+                    ..PatentRow::default()
+                });
             }
             found.is_line_e |= matches!(equation.name.as_str(), "ne" | "ve");
             let Some(row) = found.rows.last_mut() else { continue };
@@ -216,7 +222,7 @@ fn rows_of(lines: &[&str]) -> Option<Found> {
 
 /// Reads indices and Abbe numbers printed on lines of their own, one for each lens: `nD 1.623 1.670` and `v 56.9 47.2`. Lens k fills the
 /// gap `dk`.
-fn glasses_apart(lines: &[&str], rows: &mut [Row]) {
+fn glasses_apart(lines: &[&str], rows: &mut [PatentRow]) {
     if rows.iter().any(|row| row.cells.contains_key("nd")) {
         return;
     }
@@ -241,8 +247,8 @@ fn glasses_apart(lines: &[&str], rows: &mut [Row]) {
 }
 
 /// Removes the first of two rows for the same cemented surface, which may be printed twice, as `r4` and `r4'`. The first one has no gap.
-fn cemented(rows: &mut Vec<Row>) {
-    let is_twice = |pair: &[Row]| {
+fn cemented(rows: &mut Vec<PatentRow>) {
+    let is_twice = |pair: &[PatentRow]| {
         pair[0].number.is_some()
             && pair[0].number == pair[1].number
             && pair[0].cells.get("radius") == pair[1].cells.get("radius")

@@ -1,13 +1,13 @@
 //! Reads tables printed as lists one below the other: all radii, then all thicknesses and gaps, then the glasses of the lenses.
 
 use super::equations::equations_of;
-use super::words::{is_back_focus, is_plane};
-use super::{Found, Row, value};
+use super::vocabulary::{is_back_focus, is_plane};
+use super::{FoundRows, PatentRow, value};
 use crate::MAX_ITEMS;
 
 /// Reads the rows of such lists; `None` if radii and gaps are not separate, or their numbers do not match.
-pub(super) fn rows(lines: &[&str]) -> Option<Found> {
-    let mut rows: Vec<Row> = Vec::new();
+pub(super) fn rows(lines: &[&str]) -> Option<FoundRows> {
+    let mut rows: Vec<PatentRow> = Vec::new();
     // Letter, value and line of each gap.
     let mut gaps: Vec<(String, String, usize)> = Vec::new();
     for (at, line) in lines.iter().enumerate() {
@@ -28,7 +28,7 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
         let is_next_gap = number as usize == gaps.iter().filter(|(letter, ..)| letter == name).count() + 1;
         let is_radius = name == "r" && (value(&equation.value).is_some() || is_plane(&equation.value));
         if is_radius && number as usize == rows.len() + 1 && gaps.is_empty() && rows.len() < MAX_ITEMS {
-            let mut row = Row { line: at, number: Some(number), ..Row::default() };
+            let mut row = PatentRow { line: at, number: Some(number), ..PatentRow::default() };
             let radius = if is_plane(&equation.value) { "inf" } else { &equation.value };
             row.cells.insert("radius", radius.to_owned());
             rows.push(row);
@@ -76,7 +76,7 @@ pub(super) fn rows(lines: &[&str]) -> Option<Found> {
         }
     }
     let head = rows.first()?.line.saturating_sub(1);
-    Some(Found { head, rows, end, notes, is_needed: true, is_line_e: false })
+    Some(FoundRows { head, rows, end, notes, is_needed: true, is_line_e: false })
 }
 
 /// Reads the index and Abbe number of each lens, `L1 1.6227 56.9`, in order.

@@ -5,35 +5,35 @@
 //! (`7 stop`), gaps vary, and coefficients of aspheres and values of gaps follow below. All of this becomes one table. If possible, each
 //! row stays on the line on which it was printed, so that error messages name the right line.
 
-mod below;
+mod auxiliary_data;
 mod equations;
 mod lists;
 mod rows;
-mod words;
+mod vocabulary;
 
 use super::cells::cells;
 use super::columns::Column;
 use crate::number;
-use crate::place::shown;
-use below::Below;
+use crate::source::shortened;
+use auxiliary_data::AuxiliaryData;
 use rows::Head;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-pub(super) use words::{figure, is_stop_phrase, is_variable, plain};
+pub(super) use vocabulary::{figure, is_stop_phrase, is_variable, plain};
 
 /// A table converted to one with separators.
-pub(super) struct Retyped {
+pub(super) struct ConvertedTable {
     pub text: String,
     /// Notes of what was assumed or could not be carried over: line, whether light takes another path without it, text.
-    pub notes: Vec<Told>,
+    pub notes: Vec<TableNote>,
 }
 
 /// A note: line from 1, or 0; whether light takes another path without it; text.
-type Told = (usize, bool, String);
+type TableNote = (usize, bool, String);
 
 /// A surface of the table.
 #[derive(Clone, Debug, Default)]
-struct Row {
+struct PatentRow {
     line: usize,
     number: Option<u32>,
     /// Cells by the names in [`COLUMNS`].
@@ -45,13 +45,13 @@ struct Row {
 }
 
 /// The rows found in a table, and its extent.
-struct Found {
+struct FoundRows {
     /// Index of the line of headings.
     head: usize,
-    rows: Vec<Row>,
+    rows: Vec<PatentRow>,
     /// Index of the line after the last row.
     end: usize,
-    notes: Vec<Told>,
+    notes: Vec<TableNote>,
     /// Whether something in the table requires a conversion.
     is_needed: bool,
     /// Whether the indices are at the line e.
@@ -63,7 +63,7 @@ const COLUMNS: [&str; 10] =
     ["surface", "type", "radius", "thickness", "nd", "vd", "glass", "diameter", "semi-diameter", "comment"];
 
 /// Converts a table. `None` if the text is already a table with separators and headings in which nothing requires a conversion.
-pub(super) fn retype(text: &str) -> Option<Retyped> {
+pub(super) fn retype(text: &str) -> Option<ConvertedTable> {
     let lines: Vec<&str> = text.lines().collect();
     let is_word = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
     let first = lines.iter().position(is_word)?;
@@ -83,7 +83,7 @@ pub(super) fn retype(text: &str) -> Option<Retyped> {
         None => by_equations?,
     };
     let separator = head.take().and_then(|(_, head)| Some((head.separator?, head)));
-    let below = Below::of(&lines, found.end);
+    let below = AuxiliaryData::of(&lines, found.end);
     let mut notes = std::mem::take(&mut found.notes);
     fill_gaps(&mut found.rows, &below, &mut notes);
     if !found.rows.iter().any(|row| row.cells.contains_key("nd") || row.cells.contains_key("glass")) {
@@ -94,18 +94,25 @@ pub(super) fn retype(text: &str) -> Option<Retyped> {
         ));
     }
     if !found.rows.iter().any(|row| row.is_stop) {
-        notes.extend(words::stop_in_prose(&lines));
+        notes.extend(vocabulary::stop_in_prose(&lines));
     }
     let text = match &separator {
         Some((separator, head)) => kept(&lines, *separator, head, &found, &below, &mut notes),
         None => written(&lines, &found, &below, &mut notes),
     };
-    Some(Retyped { text, notes })
+    Some(ConvertedTable { text, notes })
 }
 
 /// Converts a table that has separators. Rows stay as they are except for marks, gaps that vary and data from below the table. Lines that
 /// are not rows are removed.
-fn kept(lines: &[&str], separator: char, head: &Head, found: &Found, below: &Below, notes: &mut Vec<Told>) -> String {
+fn kept(
+    lines: &[&str],
+    separator: char,
+    head: &Head,
+    found: &FoundRows,
+    below: &AuxiliaryData,
+    notes: &mut Vec<TableNote>,
+) -> String {
     let powers = below.powers();
     let mut out: Vec<String> = lines.iter().map(|_| "#".to_owned()).collect();
     let joined = |cells: Vec<String>| {
@@ -119,7 +126,7 @@ fn kept(lines: &[&str], separator: char, head: &Head, found: &Found, below: &Bel
     // Note an unknown heading and clear it, so that its column is ignored.
     for (cell, column) in heads.iter_mut().zip(&head.columns) {
         if column.is_none() && !cell.is_empty() {
-            notes.push((found.head + 1, false, format!("the column `{}` is not read", shown(cell))));
+            notes.push((found.head + 1, false, format!("the column `{}` is not read", shortened(cell))));
             cell.clear();
         }
     }
@@ -136,7 +143,7 @@ fn kept(lines: &[&str], separator: char, head: &Head, found: &Found, below: &Bel
             cells.resize(count, String::new());
         }
         if let Some(at) =
-            place(Column::Number).filter(|at| cells.get(*at).is_some_and(|cell| words::mark(cell).is_some()))
+            place(Column::Number).filter(|at| cells.get(*at).is_some_and(|cell| vocabulary::mark(cell).is_some()))
         {
             cells[at] =
                 if row.is_stop { "stop".to_owned() } else { row.number.map(|n| n.to_string()).unwrap_or_default() };
@@ -157,7 +164,7 @@ fn kept(lines: &[&str], separator: char, head: &Head, found: &Found, below: &Bel
 }
 
 /// Notes a surface that is marked as an asphere but has no coefficients.
-fn tell_marked(row: &Row, below: &Below, notes: &mut Vec<Told>) {
+fn tell_marked(row: &PatentRow, below: &AuxiliaryData, notes: &mut Vec<TableNote>) {
     if row.is_marked && row.number.is_none_or(|number| !below.aspheres.contains_key(&number)) {
         let number = row.number.map(|n| n.to_string()).unwrap_or_default();
         let text =
@@ -167,7 +174,7 @@ fn tell_marked(row: &Row, below: &Below, notes: &mut Vec<Told>) {
 }
 
 /// Notes coefficients of surfaces that the table does not have, and how kappa was interpreted.
-fn tell_unused(used: &BTreeSet<u32>, below: &Below, notes: &mut Vec<Told>) {
+fn tell_unused(used: &BTreeSet<u32>, below: &AuxiliaryData, notes: &mut Vec<TableNote>) {
     for number in below.aspheres.keys().filter(|number| !used.contains(number)) {
         notes.push((0, true, format!("coefficients of surface {number}, which the table does not have")));
     }
@@ -183,7 +190,7 @@ fn tell_unused(used: &BTreeSet<u32>, below: &Below, notes: &mut Vec<Told>) {
 
 /// Fills in gaps that vary with the first of their values, and the last gap with the back focus if it is printed anywhere. Otherwise the
 /// last gap is removed.
-fn fill_gaps(rows: &mut [Row], below: &Below, notes: &mut Vec<Told>) {
+fn fill_gaps(rows: &mut [PatentRow], below: &AuxiliaryData, notes: &mut Vec<TableNote>) {
     let count = rows.len();
     for (at, row) in rows.iter_mut().enumerate() {
         let is_last = at + 1 == count;
@@ -191,7 +198,7 @@ fn fill_gaps(rows: &mut [Row], below: &Below, notes: &mut Vec<Told>) {
         if cell.as_deref().is_some_and(|cell| !is_variable(cell)) || cell.is_none() && !is_last {
             continue;
         }
-        let own = words::gap_number(cell.as_deref()).or(row.number).and_then(|number| below.gaps.get(&number));
+        let own = vocabulary::gap_number(cell.as_deref()).or(row.number).and_then(|number| below.gaps.get(&number));
         let value = own.or(below.back_focus.as_ref().filter(|_| is_last));
         match (cell, value) {
             (Some(cell), Some(value)) if own.is_some() => {
@@ -213,7 +220,7 @@ fn fill_gaps(rows: &mut [Row], below: &Below, notes: &mut Vec<Told>) {
 }
 
 /// Returns the resulting table, with one line for each line of the text.
-fn written(lines: &[&str], found: &Found, below: &Below, notes: &mut Vec<Told>) -> String {
+fn written(lines: &[&str], found: &FoundRows, below: &AuxiliaryData, notes: &mut Vec<TableNote>) -> String {
     let powers = below.powers();
     let mut used = BTreeSet::new();
     let mut out: Vec<String> = lines.iter().map(|_| "#".to_owned()).collect();

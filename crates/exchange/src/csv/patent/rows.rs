@@ -1,7 +1,7 @@
 //! Reads tables with a line of headings, whose columns are separated by tabs, commas, semicolons or blanks.
 
-use super::words::{figure, is_end, is_other, is_plane, is_stop, is_stop_phrase, is_variable, mark};
-use super::{Found, Row, value};
+use super::vocabulary::{figure, is_end, is_other, is_plane, is_stop, is_stop_phrase, is_variable, mark};
+use super::{FoundRows, PatentRow, value};
 use crate::MAX_ITEMS;
 use crate::csv::cells::cells;
 use crate::csv::columns::{Column, by_name};
@@ -96,10 +96,10 @@ fn name_of(column: Column) -> Option<&'static str> {
 }
 
 /// Reads the rows below a line of headings.
-pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
+pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> FoundRows {
     let columns = &columns.with_effective(lines[head], lines.get(head + 1).copied().unwrap_or_default());
     let mut found =
-        Found { head, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: false, is_line_e: false };
+        FoundRows { head, rows: Vec::new(), end: lines.len(), notes: Vec::new(), is_needed: false, is_line_e: false };
     let mut resumed = head + 1;
     for (at, line) in lines.iter().enumerate().skip(head + 1) {
         let plain = line.trim();
@@ -141,7 +141,7 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
                 .collect(),
             None => by_rule(plain, columns),
         };
-        let mut row = Row { line: at, ..Row::default() };
+        let mut row = PatentRow { line: at, ..PatentRow::default() };
         let mut is_row = true;
         for (column, cell) in cells {
             let Some(name) = name_of(column) else { continue };
@@ -237,7 +237,7 @@ pub(super) fn rows(lines: &[&str], head: usize, columns: &Head) -> Found {
 }
 
 /// Whether a row has a radius: a number, or a word for a plane.
-fn value_of(row: &Row, name: &str) -> Option<()> {
+fn value_of(row: &PatentRow, name: &str) -> Option<()> {
     let cell = row.cells.get(name)?;
     (is_plane(cell) || cell.eq_ignore_ascii_case("stop") || value(cell).is_some()).then_some(())
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Shape, find_emission, find_reflectance, find_sensitivity};
+use crate::{SpectralFunction, find_emission, find_reflectance, find_sensitivity};
 
 /// Grid of 380-780 nm in steps of 1 nm.
 const GRID: Grid = Grid { start_nm: 380.0, step_nm: 1.0, count: 401 };
@@ -27,7 +27,7 @@ fn reaches(name: &str, values: &[f64], rows: &[(usize, f64)]) {
 
 #[test]
 fn fit_of_planck_5000_k() {
-    let values = Shape::blackbody(5000.0).expect("valid").on_grid(&GRID);
+    let values = SpectralFunction::blackbody(5000.0).expect("valid").on_grid(&GRID);
     reaches("Planck 5000 K", &values, &[(1, 0.023), (2, 0.0003), (3, 0.000_05)]);
 }
 

@@ -16,7 +16,7 @@ pub(super) struct Steps {
 /// Directions in a picture (columns and rows): horizontal, vertical and the two diagonals.
 pub(super) const WAYS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 
-/// Smallest step of w that counts, as a fraction of the largest w, as in [`super::super::field`].
+/// Smallest step of w that counts, as a fraction of the largest w, as in [`super::super::height_field`].
 const STEP: f32 = 1e-3;
 
 impl Steps {
