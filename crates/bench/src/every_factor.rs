@@ -196,7 +196,7 @@ struct Probe {
 }
 
 impl WavelengthSampler for Probe {
-    fn prepare(&self, _system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, _system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, spectra_core::params::Fault> {
         Ok(Box::new(Self { ..*self }))
     }
 }

@@ -119,7 +119,7 @@ struct Entrant {
 struct Shared(Arc<dyn WavelengthDensity>);
 
 impl WavelengthSampler for Shared {
-    fn prepare(&self, _system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, _system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, spectra_core::params::Fault> {
         Ok(Box::new(self.clone()))
     }
 }
@@ -216,7 +216,7 @@ impl<'a> Run<'a> {
                     Ok(entrant) => entrants.push(entrant),
                     // Skip silently: the user did not name it, and most scenes have a lens.
                     Err(_) if settings.strategies.is_empty() => {}
-                    Err(reason) => left_out.push(LeftOut { strategy: strategy.label(), reason }),
+                    Err(reason) => left_out.push(LeftOut { strategy: strategy.label(), reason: reason.to_string() }),
                 }
                 continue;
             }
@@ -237,7 +237,7 @@ impl<'a> Run<'a> {
                     scene.sampler = Arc::new(density.clone());
                     entrants.push(Entrant { strategy, scene, density });
                 }
-                Err(reason) => left_out.push(LeftOut { strategy: strategy.label(), reason }),
+                Err(reason) => left_out.push(LeftOut { strategy: strategy.label(), reason: reason.to_string() }),
             }
         }
         if entrants.is_empty() {

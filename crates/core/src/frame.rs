@@ -1,5 +1,6 @@
 //! Frames: what is recorded, and the pictures made from it.
 
+use crate::params::Fault;
 use crate::spectral::Channel;
 
 /// Size of the recorded frame.
@@ -90,8 +91,10 @@ impl ExposureFrame {
     ///
     /// # Errors
     /// A sentence that names the missing channel, in the form that [`crate::stage::Film::develop`] returns.
-    pub fn values(&self, name: &str) -> Result<&[f32], String> {
-        self.channel(name).map(|c| &c.values[..]).ok_or_else(|| format!("the exposure has no channel `{name}`"))
+    pub fn values(&self, name: &str) -> Result<&[f32], Fault> {
+        self.channel(name)
+            .map(|c| &c.values[..])
+            .ok_or_else(|| Fault::new(format!("the exposure has no channel `{name}`")))
     }
 
     /// Hashes the frame: 64-bit FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo) of the size in pixels, and of each channel's name and

@@ -1,6 +1,7 @@
 //! The simplest film: one layer, and a color for each exposure.
 
 use crate::frame::{DisplayPicture, ExposureFrame};
+use crate::params::Fault;
 use crate::registry::Context;
 use crate::spectral::Channel;
 use crate::stage::Film;
@@ -62,7 +63,7 @@ impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync + 'static> Film for OneLayer<T>
         self.exposure_time_s
     }
 
-    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
+    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, Fault> {
         let (size, values) = (exposure.size, exposure.values(&self.channel.name)?);
         let area_mm2 = size.pixel_area_mm2();
         let color = |(index, value): (usize, &f32)| {

@@ -3,7 +3,8 @@
 pub use crate::frame::{DisplayPicture, ExposureFrame, FrameSize};
 pub use crate::one_layer::{OneLayer, Pixel};
 pub use crate::params::{
-    Angle, Faults, Length, LengthOrInfinity, NonNegative, Params, Positive, Quantity, Temperature, Time, Wavelength,
+    Angle, Fault, Faults, Length, LengthOrInfinity, NonNegative, Params, Positive, Quantity, Temperature, Time,
+    Wavelength,
 };
 pub use crate::registry::Context;
 pub use crate::spectral::{Channel, Grid, Line, SpectralPower, SystemResponse};

@@ -19,7 +19,7 @@ use crate::RayBatch;
 use crate::cover::CoverStack;
 use crate::frame::{DisplayPicture, ExposureFrame, ExtraRequest, FinishedPicture, FrameSize, ImageState, RawFrame};
 use crate::isa::Isa;
-use crate::params::{Faults, Warning};
+use crate::params::{Fault, Faults, Warning};
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
 use std::any::Any;
 use std::sync::Arc;
@@ -225,7 +225,7 @@ pub trait WavelengthSampler: Send + Sync {
     ///
     /// # Errors
     /// The reason why this strategy cannot sample this system without bias.
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String>;
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault>;
 }
 
 /// A strategy for drawing wavelengths, fitted to a system.
@@ -472,13 +472,13 @@ pub trait Film: Any + Send + Sync {
     ///
     /// # Errors
     /// A sentence that names the missing channel.
-    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String>;
+    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, Fault>;
 
     /// Returns the picture of [`Film::develop`] with the extra data that are `wanted`, as far as they are known.
     ///
     /// # Errors
     /// As [`Film::develop`].
-    fn finish(&self, exposure: &ExposureFrame, _wanted: ExtraRequest) -> Result<FinishedPicture, String> {
+    fn finish(&self, exposure: &ExposureFrame, _wanted: ExtraRequest) -> Result<FinishedPicture, Fault> {
         self.develop(exposure).map(FinishedPicture::of)
     }
 
@@ -487,7 +487,7 @@ pub trait Film: Any + Send + Sync {
     ///
     /// # Errors
     /// As [`Film::develop`].
-    fn negative(&self, _exposure: &ExposureFrame, _wanted: ExtraRequest) -> Result<Option<Negative>, String> {
+    fn negative(&self, _exposure: &ExposureFrame, _wanted: ExtraRequest) -> Result<Option<Negative>, Fault> {
         Ok(None)
     }
 
@@ -495,8 +495,8 @@ pub trait Film: Any + Send + Sync {
     ///
     /// # Errors
     /// As [`Film::develop`]; a negative of another kind of film.
-    fn print(&self, _negative: &Negative, _wanted: ExtraRequest) -> Result<FinishedPicture, String> {
-        Err("this film makes no negative".to_owned())
+    fn print(&self, _negative: &Negative, _wanted: ExtraRequest) -> Result<FinishedPicture, Fault> {
+        Err(Fault::new("this film makes no negative"))
     }
 
     /// Returns whether the [`Film::negative`] of any exposure equals that of `other`, bit for bit.

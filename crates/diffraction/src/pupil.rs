@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use spectra_core::RayBatch;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::sin_cos_turns;
+use spectra_core::params::Fault;
 use spectra_lens::{Aperture, ApertureShape, Element};
 use spectra_numerics::linear::least_squares;
 use spectra_optics::{Bundle, Clipping, Optics};
@@ -61,7 +62,7 @@ impl<'o> Pupil<'o> {
     ///
     /// # Errors
     /// Explains why the diffraction at the stop cannot be computed.
-    pub fn new(optics: &'o Optics) -> Result<Self, String> {
+    pub fn new(optics: &'o Optics) -> Result<Self, Fault> {
         let smallest = || {
             let sized =
                 optics.elements.iter().enumerate().filter_map(|(at, e)| e.semi_diameter_mm.map(|size| (at, size)));
@@ -269,9 +270,9 @@ fn rim(e: &Element) -> Option<f64> {
 }
 
 /// Returns the outline of the light that passes the stop, as rings; `None` if the stop states no size.
-fn opening(e: &Element) -> Result<Option<Rings>, String> {
+fn opening(e: &Element) -> Result<Option<Rings>, Fault> {
     let unknown = || {
-        "diffraction by a picture used as a mask, or a drawing with gray or crossing outlines, is not known".to_owned()
+        Fault::new("diffraction by a picture used as a mask, or a drawing with gray or crossing outlines, is not known")
     };
     let holes: Vec<&Aperture> = e.apertures.iter().filter(|a| a.obscures).collect();
     let mut outer = e.apertures.iter().filter(|a| !a.obscures);

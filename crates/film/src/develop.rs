@@ -7,6 +7,7 @@ use crate::display::{MissingChannel, channel};
 use crate::emulsion::Emulsion;
 use crate::stock::Stock;
 use spectra_core::frame::{ExposureFrame, FrameSize};
+use spectra_core::params::Fault;
 
 /// Density of one layer, pixel by pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,14 +37,14 @@ pub fn develop(
     development: &str,
     exposure: &ExposureFrame,
     exposure_time_s: f64,
-) -> Result<Developed, String> {
+) -> Result<Developed, Fault> {
     let emulsion = Emulsion::new(stock, development).map_err(|e| e.to_string())?;
     let effect = stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(exposure_time_s));
     let planes = stock.layers.iter().map(|layer| {
         let seen = channel(exposure, &layer.name).map_err(|e: MissingChannel| e.to_string())?;
         Ok(seen.values.clone())
     });
-    let mut planes = planes.collect::<Result<Vec<_>, String>>()?;
+    let mut planes = planes.collect::<Result<Vec<_>, Fault>>()?;
     emulsion.develop_all(&mut planes, effect);
     let layers = stock.layers.iter().zip(planes);
     let layers = layers.map(|(layer, density)| DensityLayer { name: layer.name.clone(), density }).collect();

@@ -10,6 +10,7 @@
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::frame::ExposureChannel;
+use spectra_core::params::Fault;
 use spectra_core::spectral::{Channel, SpectralPower};
 use spectra_diffraction::{
     ChannelLight, LensView, Polygon, Pupil, Spread, SpreadReport, Wavefront, Wavefronts, brightest_star,
@@ -30,7 +31,7 @@ pub struct Diffracted {
 }
 
 /// Explains why the diffraction at the stop cannot be computed, if the scene asks for it; `None` if it can.
-pub(crate) fn fault(scene: &Scene) -> Option<String> {
+pub(crate) fn fault(scene: &Scene) -> Option<Fault> {
     if scene.render.diffraction == Some(true) { Pupil::new(&scene.lens).err() } else { None }
 }
 
@@ -50,7 +51,7 @@ pub(crate) fn spread(
     scene: &Scene,
     planes: &mut [ExposureChannel],
     recorded: &[usize],
-) -> Result<Vec<Diffracted>, String> {
+) -> Result<Vec<Diffracted>, Fault> {
     let size = scene.imager.size();
     let pupil = Pupil::new(&scene.lens)?;
     let one = |number: &usize| -> Option<Diffracted> {

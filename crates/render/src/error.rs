@@ -31,8 +31,8 @@ pub enum RenderError {
     #[error("no surface of the lens states a semi-diameter, so it is unknown where light can enter")]
     NoAperture,
     /// The wavelength strategy cannot be used in this scene.
-    #[error("wavelengths: {0}")]
-    Sampler(String),
+    #[error("wavelengths: {}", .0.message)]
+    Sampler(Fault),
     /// A medium of the lens has no refractive index somewhere in the band.
     #[error("lens: {0}")]
     Lens(String),
@@ -40,8 +40,8 @@ pub enum RenderError {
     #[error("glare: {0}")]
     Glare(String),
     /// The diffraction at the stop of this lens cannot be computed.
-    #[error("diffraction: {0}")]
-    Diffraction(String),
+    #[error("diffraction: {}", .0.message)]
+    Diffraction(Fault),
     /// A stage gave a number that no light can have: NaN or infinite.
     #[error("{0}")]
     NonFinite(NonFinite),
@@ -82,11 +82,10 @@ impl RenderError {
             Self::CannotEmit | Self::CannotReceive => at("render.direction", &text, "`direction: backward`"),
             Self::CannotLaunch | Self::NoRadiance => at("render.direction", &text, "`direction: forward`"),
             Self::NoAperture => at("lens", &text, spectra_scene::size_hint(scene.params.get("lens"))),
-            // The text of the strategy holds both the problem and the remedy.
-            Self::Sampler(text) => match text.split_once("; ") {
-                Some((text, hint)) => at("wavelengths", text, hint),
-                None => at("wavelengths", text, "leave `wavelengths` out for the usual strategy"),
-            },
+            Self::Sampler(fault) => {
+                let hint = fault.hint.as_deref().unwrap_or("leave `wavelengths` out for the usual strategy");
+                at("wavelengths", &fault.message, hint)
+            }
             Self::Lens(text) => at("lens", text, "use another glass, or another `wavelengths: {band: ...}`"),
             Self::Glare(text) => at("render.glare", text, "leave out `glare`, or use another lens"),
             Self::Diffraction(_) => at(

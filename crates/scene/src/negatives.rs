@@ -1,6 +1,7 @@
 //! A cache of developed films, for printing the same exposure several times.
 
 use spectra_core::frame::{ExposureFrame, ExtraRequest, FinishedPicture};
+use spectra_core::params::Fault;
 use spectra_core::stage::{Film, Negative};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,7 +22,7 @@ impl Negatives {
         place: usize,
         film: &Arc<dyn Film>,
         exposure: &ExposureFrame,
-    ) -> Result<FinishedPicture, String> {
+    ) -> Result<FinishedPicture, Fault> {
         let wanted = ExtraRequest::default();
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if all.len() <= place {

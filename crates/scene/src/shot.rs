@@ -13,6 +13,7 @@ use spectra_core::Isa;
 use spectra_core::frame::{
     DisplayPicture, ExposureChannel, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, ImageState,
 };
+use spectra_core::params::Fault;
 use spectra_core::sink::WriteFault;
 use std::sync::OnceLock;
 
@@ -39,7 +40,7 @@ pub struct Shot<'a> {
     tell: &'a (dyn Fn() -> Value + Sync),
     report: OnceLock<Value>,
     kept: Option<&'a Negatives>,
-    pictures: OnceLock<Result<All, String>>,
+    pictures: OnceLock<Result<All, Fault>>,
 }
 
 impl<'a> Shot<'a> {
@@ -97,7 +98,7 @@ impl<'a> Shot<'a> {
     ///
     /// # Errors
     /// The reason why there is no picture, as text.
-    pub fn pictures(&self) -> Result<&[Developed], String> {
+    pub fn pictures(&self) -> Result<&[Developed], Fault> {
         self.all().map(|(pictures, _)| &pictures[..])
     }
 
@@ -106,7 +107,7 @@ impl<'a> Shot<'a> {
     /// # Errors
     /// [`WriteFault::Format`] with the reason why there is no picture.
     pub fn picture(&self, film: usize) -> Result<&DisplayPicture, WriteFault> {
-        let (pictures, _) = self.all().map_err(WriteFault::Format)?;
+        let (pictures, _) = self.all().map_err(|fault| WriteFault::Format(fault.to_string()))?;
         pictures.get(film).map(|(_, picture)| picture).ok_or_else(no_film)
     }
 
@@ -116,7 +117,7 @@ impl<'a> Shot<'a> {
     /// # Errors
     /// [`WriteFault::Format`] with the reason why there is no picture.
     pub fn extra_data(&self, film: usize) -> Result<&ExtraData, WriteFault> {
-        let (_, beside) = self.all().map_err(WriteFault::Format)?;
+        let (_, beside) = self.all().map_err(|fault| WriteFault::Format(fault.to_string()))?;
         beside.get(film).ok_or_else(no_film)
     }
 
@@ -141,11 +142,11 @@ impl<'a> Shot<'a> {
         }
     }
 
-    fn all(&self) -> Result<&All, String> {
+    fn all(&self) -> Result<&All, Fault> {
         self.pictures.get_or_init(|| self.developed()).as_ref().map_err(Clone::clone)
     }
 
-    fn developed(&self) -> Result<All, String> {
+    fn developed(&self) -> Result<All, Fault> {
         let Self { scene, exposure, .. } = self;
         let outputs = scene.output.iter().map(|output| output.extra_request());
         let wanted = outputs.fold(ExtraRequest::default(), |a, b| ExtraRequest {
@@ -155,14 +156,14 @@ impl<'a> Shot<'a> {
         if scene.films.is_empty() {
             let shown = scene.imager.response().and_then(|own| own.finish(exposure, wanted));
             let FinishedPicture { display: shown, extra: mut beside } =
-                shown.ok_or_else(|| "this imager gives no picture without a film".to_owned())?;
+                shown.ok_or_else(|| Fault::new("this imager gives no picture without a film"))?;
             if wanted.layers {
                 let layers = exposure.channels.iter().cloned();
                 beside.layers = layers.map(|c| ExposureChannel { name: format!("exposure.{}", c.name), ..c }).collect();
             }
             return Ok((vec![(None, shown)], vec![beside]));
         }
-        let of = |(place, film): (usize, &SceneFilm)| -> Result<(Developed, ExtraData), String> {
+        let of = |(place, film): (usize, &SceneFilm)| -> Result<(Developed, ExtraData), Fault> {
             let finish = |exposure: &ExposureFrame| match self.kept {
                 None => film.film.finish(exposure, wanted),
                 Some(kept) => kept.finish(place, &film.film, exposure),
@@ -174,14 +175,14 @@ impl<'a> Shot<'a> {
             };
             if let Some([x, y]) = no_number(&finished.display) {
                 let film = film.film.name();
-                return Err(format!(
+                return Err(Fault::new(format!(
                     "{film}: the color of pixel {x}, {y} is not a number: its `develop` computed a NaN"
-                ));
+                )));
             }
             let FinishedPicture { display: shown, extra: beside } = finished;
             Ok(((film.name.clone(), shown), beside))
         };
-        let all = scene.films.iter().enumerate().map(of).collect::<Result<Vec<_>, String>>()?;
+        let all = scene.films.iter().enumerate().map(of).collect::<Result<Vec<_>, Fault>>()?;
         Ok(all.into_iter().unzip())
     }
 

@@ -254,7 +254,7 @@ impl FilmPipeline {
 
     /// Returns the picture of each set of channel exposures, sRGB encoded, 0 to 1. The meter sees mid gray.
     fn pictures(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
-        let picture = self.film.develop(&self.frame(exposures)).map_err(SessionError::Failed)?;
+        let picture = self.film.develop(&self.frame(exposures)).map_err(SessionError::of_stage)?;
         let space = RgbSpace::srgb();
         let encoded = |rgb: &[f32; 3]| space.encode(rgb.map(|v| f64::from(v).clamp(0.0, 1.0)));
         Ok(picture.rgb.iter().map(encoded).collect())
@@ -264,7 +264,7 @@ impl FilmPipeline {
     /// film can give such a picture.
     pub(crate) fn unclamped_pictures(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
         let wanted = ExtraRequest { unclamped: true, ..ExtraRequest::default() };
-        let finished = self.film.finish(&self.frame(exposures), wanted).map_err(SessionError::Failed)?;
+        let finished = self.film.finish(&self.frame(exposures), wanted).map_err(SessionError::of_stage)?;
         let picture = finished.extra.unclamped.unwrap_or(finished.display);
         Ok(picture.rgb.iter().map(|rgb| rgb.map(f64::from)).collect())
     }

@@ -33,6 +33,12 @@ pub enum SessionError {
 }
 
 impl SessionError {
+    /// Returns the error for a stage that failed, with its hint if it has one.
+    #[must_use]
+    pub fn of_stage(fault: Fault) -> Self {
+        Self::Failed(fault.to_string())
+    }
+
     /// Converts a render error: to faults of the scene if the scene caused it, otherwise to [`Self::Failed`].
     pub(crate) fn of(error: &RenderError, scene: &Scene) -> Self {
         error.faults(scene).map_or_else(|| Self::Failed(error.to_string()), Self::Faults)

@@ -287,7 +287,7 @@ impl Session {
         let exposure: ExposureFrame = self.rendering()?.exposure;
         let times = self.scene.film_times(&exposure);
         let shot = Shot::new(&self.scene, &exposure, &times, &[], self.isa);
-        shot.pictures().map(<[Developed]>::to_vec).map_err(SessionError::Failed)
+        shot.pictures().map(<[Developed]>::to_vec).map_err(SessionError::of_stage)
     }
 
     /// Returns the density from which wavelengths are drawn; `None` until the scene is prepared.

@@ -73,7 +73,7 @@ impl FilmLaws {
             less.channels.remove(missing);
             let name = &channels[missing].name;
             if let Err(text) = film.develop(&less) {
-                assert!(!text.trim().is_empty(), "without channel `{name}` its error is an empty text");
+                assert!(!text.message.trim().is_empty(), "without channel `{name}` its error is an empty text");
             }
         }
         let none = ExposureFrame { size: SIZE, channels: Vec::new() };

@@ -60,7 +60,7 @@ impl SamplerLaws {
                     accepted += 1;
                     self.hold_for(name, &system, &*density);
                 }
-                Err(text) => assert!(!text.trim().is_empty(), "{name}: refused without a reason"),
+                Err(text) => assert!(!text.message.trim().is_empty(), "{name}: refused without a reason"),
             }
         }
         assert!(accepted > 0, "it refuses every system");

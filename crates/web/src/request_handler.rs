@@ -175,7 +175,7 @@ impl OpenScene {
         let scene = self.session.scene();
         let times = scene.film_times(&rendering.exposure);
         let shot = Shot::new(scene, &rendering.exposure, &times, &[], Isa::detect());
-        let developed = shot.pictures().map_err(|error| failed(SessionError::Failed(error)))?;
+        let developed = shot.pictures().map_err(|error| failed(SessionError::of_stage(error)))?;
         let Some((_, DisplayPicture { width_px, height_px, rgb })) = developed.first() else {
             return Err(wrong("the imager gives no picture"));
         };

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
 use spectra_core::numbers::seed_of_frame;
-use spectra_core::params::{Faults, Length, Params, Positive};
+use spectra_core::params::{Fault, Faults, Length, Params, Positive};
 use spectra_film::adjacency::{Adjacency, Edges};
 use spectra_film::emulsion::Emulsion;
 use spectra_film::grain::{ColorGrain, FOG, Grain, GrainError, usual_half_power};
@@ -229,14 +229,14 @@ impl Effects {
     }
 
     /// Returns the raster that says where the pixels of a frame lie on the film. Fails if they must be square and are not.
-    pub(crate) fn raster(&self, size: FrameSize) -> Result<Raster, String> {
+    pub(crate) fn raster(&self, size: FrameSize) -> Result<Raster, Fault> {
         self.check_frame(&size).map_err(|[text, hint]| format!("{text}: {hint}"))?;
         let [across, down] = pixel_mm(&size);
         Ok(Raster::new(size.width_px as usize, size.height_px as usize, (across * down).sqrt()))
     }
 
     /// Returns a plane of exposure after scatter in the emulsion of a layer.
-    pub(crate) fn scattered(&self, layer: usize, plane: &[f32], raster: &Raster) -> Result<Vec<f32>, String> {
+    pub(crate) fn scattered(&self, layer: usize, plane: &[f32], raster: &Raster) -> Result<Vec<f32>, Fault> {
         match &self.mtf[layer] {
             Some(mtf) => Ok(Scatter::new(mtf, raster).map_err(|e| e.to_string())?.applied(plane)),
             None => Ok(plane.to_vec()),
@@ -251,7 +251,7 @@ impl Effects {
         plane: &[f32],
         raster: &Raster,
         spare: &mut Vec<f32>,
-    ) -> Result<Vec<f32>, String> {
+    ) -> Result<Vec<f32>, Fault> {
         let Some(base) = &self.halation[layer] else { return self.scattered(layer, plane, raster) };
         let halation = Halation::new(base, raster).map_err(|e| e.to_string())?;
         let Some(mtf) = &self.mtf[layer] else { return Ok(halation.applied(plane)) };
@@ -269,7 +269,7 @@ impl Effects {
     }
 
     /// Adds grain to the amounts of a layer. `clear` is its least amount, at which there is no grain except fog.
-    pub(crate) fn grain(&self, layer: usize, plane: &mut [f32], clear: f64, raster: &Raster) -> Result<(), String> {
+    pub(crate) fn grain(&self, layer: usize, plane: &mut [f32], clear: f64, raster: &Raster) -> Result<(), Fault> {
         let (grain, base) = match &self.grain {
             None => return Ok(()),
             Some(Granularity::Silver(rms)) => {

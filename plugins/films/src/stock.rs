@@ -13,7 +13,7 @@ use spectra_core::frame::{
 };
 use spectra_core::math::pow;
 use spectra_core::names;
-use spectra_core::params::{Faults, Params, Positive};
+use spectra_core::params::{Fault, Faults, Params, Positive};
 use spectra_core::registry::Context;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::{Film, Misexposure, Negative};
@@ -148,7 +148,7 @@ impl StockFilm {
     ///
     /// # Errors
     /// A message that names the missing channel, or says that pixels must be square.
-    pub fn exposed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+    pub fn exposed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, Fault> {
         let factor = self.meter.factor(exposure) as f32;
         let raster = self.effects.raster(exposure.size)?;
         let mut spare = Vec::new();
@@ -165,7 +165,7 @@ impl StockFilm {
     ///
     /// # Errors
     /// A message that names the missing channel, or says that pixels must be square.
-    pub fn developed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+    pub fn developed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, Fault> {
         self.planes(exposure, false).map(|planes| planes.amounts)
     }
 
@@ -178,7 +178,7 @@ impl StockFilm {
     }
 
     /// Develops the film; if `kept`, also returns the exposure of its layers as layers of a file.
-    fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<DevelopedPlanes, String> {
+    fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<DevelopedPlanes, Fault> {
         let factor = self.meter.factor(exposure);
         let time_s = self.exposure_time_s * factor;
         let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
@@ -200,7 +200,7 @@ impl StockFilm {
             }
             Ok(plane)
         });
-        let mut amounts = spread.collect::<Result<Vec<_>, String>>()?;
+        let mut amounts = spread.collect::<Result<Vec<_>, Fault>>()?;
         drop(spare);
         self.emulsion.develop_all(&mut amounts, factor * effect * breathing);
         for (i, plane) in amounts.iter_mut().enumerate() {
@@ -220,7 +220,7 @@ impl StockFilm {
         &self,
         exposure: &ExposureFrame,
         wanted: ExtraRequest,
-    ) -> Result<(DevelopedPlanes, Vec<ExposureChannel>), String> {
+    ) -> Result<(DevelopedPlanes, Vec<ExposureChannel>), Fault> {
         let mut planes = self.planes(exposure, wanted.layers)?;
         let mut layers = std::mem::take(&mut planes.exposed);
         if wanted.layers {
@@ -241,7 +241,7 @@ impl StockFilm {
         negative: &DevelopedPlanes,
         mut layers: Vec<ExposureChannel>,
         wanted: ExtraRequest,
-    ) -> Result<FinishedPicture, String> {
+    ) -> Result<FinishedPicture, Fault> {
         let DevelopedPlanes { amounts, raster, laid, .. } = negative;
         let planes: Vec<&[f32]> = amounts.iter().map(Vec::as_slice).collect();
         if wanted.layers {
@@ -260,7 +260,9 @@ impl StockFilm {
                 (positive.picture(planes), wanted.unclamped.then(|| positive.unclamped_picture(planes)))
             }
             // `build` makes paper prints of one layer only.
-            (Picture::Paper(_), _) => return Err(format!("{} is not a film with one layer", self.stock.name)),
+            (Picture::Paper(_), _) => {
+                return Err(Fault::new(format!("{} is not a film with one layer", self.stock.name)));
+            }
         };
         if let Some(laid) = laid {
             laid.punch(&mut shown, self.hole(GamutLimit::Screen));
@@ -412,20 +414,20 @@ impl Film for StockFilm {
         self.stock.name.clone()
     }
 
-    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
+    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, Fault> {
         self.finish(exposure, ExtraRequest::default()).map(|finished| finished.display)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<FinishedPicture, String> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<FinishedPicture, Fault> {
         let (negative, layers) = self.seen_through(exposure, wanted)?;
         self.printed(&negative, layers, wanted)
     }
 
-    fn negative(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<Option<Negative>, String> {
+    fn negative(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<Option<Negative>, Fault> {
         Ok(Some(Box::new(self.seen_through(exposure, wanted)?)))
     }
 
-    fn print(&self, negative: &Negative, wanted: ExtraRequest) -> Result<FinishedPicture, String> {
+    fn print(&self, negative: &Negative, wanted: ExtraRequest) -> Result<FinishedPicture, Fault> {
         let made = negative.downcast_ref::<(DevelopedPlanes, Vec<ExposureChannel>)>();
         let (negative, layers) = made.ok_or_else(|| format!("{} did not make this negative", self.stock.name))?;
         self.printed(negative, layers.clone(), wanted)

@@ -10,7 +10,7 @@ use spectra_core::frame::{
     DisplayPicture, ExposureChannel, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, FrameSize,
 };
 use spectra_core::names;
-use spectra_core::params::{Faults, Params, Positive as AboveZero};
+use spectra_core::params::{Fault, Faults, Params, Positive as AboveZero};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Channel};
 use spectra_core::stage::Film;
@@ -307,7 +307,7 @@ impl ThreeStrip {
     ///
     /// # Errors
     /// A message that names the missing channel, or says that pixels must be square.
-    pub fn negatives(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, String> {
+    pub fn negatives(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, Fault> {
         self.records(exposure, |_, _, _| ())
     }
 
@@ -317,7 +317,7 @@ impl ThreeStrip {
         &self,
         exposure: &ExposureFrame,
         mut exposed: impl FnMut(&str, &[f32], f64),
-    ) -> Result<Vec<Vec<f32>>, String> {
+    ) -> Result<Vec<Vec<f32>>, Fault> {
         let factor = self.meter.factor(exposure);
         let raster = self.effects[BLUE].raster(exposure.size)?;
         let mut spare = Vec::new();
@@ -460,11 +460,11 @@ impl Film for ThreeStrip {
         "three-strip film".to_owned()
     }
 
-    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
+    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, Fault> {
         self.finish(exposure, ExtraRequest::default()).map(|finished| finished.display)
     }
 
-    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<FinishedPicture, String> {
+    fn finish(&self, exposure: &ExposureFrame, wanted: ExtraRequest) -> Result<FinishedPicture, Fault> {
         let mut layers = Vec::new();
         let mut negatives = self.records(exposure, |name, plane, factor| {
             if wanted.layers {

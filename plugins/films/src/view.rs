@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use spectra_core::params::Fault;
 use spectra_core::params::Positive as AboveZero;
 use spectra_film::positive::{Positive, ScanScale};
 use spectra_film::print::{Paper, Print};
@@ -163,17 +164,17 @@ pub(crate) struct PaperPrint {
 
 impl PaperPrint {
     /// Returns the finished picture of a negative, given its densities: one gray value per pixel.
-    pub(crate) fn pictures(&self, density: &[f32]) -> Result<Vec<f32>, String> {
+    pub(crate) fn pictures(&self, density: &[f32]) -> Result<Vec<f32>, Fault> {
         Ok(self.of(density)?.pictures(density))
     }
 
     /// Returns the densities of the print over the paper's white, given the densities of the negative.
-    pub(crate) fn densities(&self, density: &[f32]) -> Result<Vec<f32>, String> {
+    pub(crate) fn densities(&self, density: &[f32]) -> Result<Vec<f32>, Fault> {
         let print = self.of(density)?;
         Ok(density.iter().map(|d| print.density(f64::from(*d)) as f32).collect())
     }
 
-    fn of(&self, density: &[f32]) -> Result<Cow<'_, Print>, String> {
+    fn of(&self, density: &[f32]) -> Result<Cow<'_, Print>, Fault> {
         let automatic = self.automatic.as_ref().map(|paper| Print::automatic(paper, density, self.black));
         let automatic = automatic.transpose().map_err(|error| error.to_string())?.flatten();
         Ok(automatic.map_or(Cow::Borrowed(&self.metered), Cow::Owned))

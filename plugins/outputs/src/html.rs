@@ -77,7 +77,7 @@ fn of_picture(shot: &Shot<'_>) -> Result<Page, WriteFault> {
                 page.picture(&bytes, size, name.as_deref().unwrap_or(&scene.name));
             }
         }
-        Err(why) => page.aside(&why),
+        Err(why) => page.aside(&why.to_string()),
     }
     if report["partial"] == true {
         page.paragraph("Partial: stopped before all samples were taken.");

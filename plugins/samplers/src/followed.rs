@@ -12,6 +12,7 @@
 use crate::truncated_gaussian::EDGE;
 use crate::{Cells, Continuum};
 use spectra_core::isa::Isa;
+use spectra_core::params::Fault;
 use spectra_core::spectral::Grid;
 use spectra_spectrum::{GaussianMixture, TruncatedGaussian};
 
@@ -46,7 +47,7 @@ const LEAST: f64 = 1e-3;
 impl Followed {
     /// Prepares the terms of `mixture` on the band of `grid`, and the residual of `source`, given at the points of the grid. Fails if no
     /// term reaches the band.
-    pub(crate) fn new(mixture: &GaussianMixture, grid: Grid, source: &[f64]) -> Result<Self, String> {
+    pub(crate) fn new(mixture: &GaussianMixture, grid: Grid, source: &[f64]) -> Result<Self, Fault> {
         let (min_nm, max_nm) = (grid.start_nm, grid.end_nm());
         let integrals: Vec<f64> = mixture.terms().iter().map(|t| t.band_integral(min_nm, max_nm).abs()).collect();
         let left: Vec<f64> =

@@ -16,7 +16,7 @@ use crate::{Cells, Continuum, Floor};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::Isa;
-use spectra_core::params::{Faults, Params};
+use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -104,7 +104,7 @@ impl GaussianTerms {
 }
 
 impl WavelengthSampler for GaussianTerms {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         let seen = RecordedSpectrum::of(system)?;
         if !seen.draws_continuum() {
             return Ok(Box::new(seen.mixture::<Signed>(system, None)?));
@@ -123,10 +123,11 @@ impl WavelengthSampler for GaussianTerms {
         if self.follow == Follow::OneTerm && seen.has_continuum {
             let followed = Followed::new(mixture, grid, &system.source.continuum)?;
             if let Some(nm) = seen.wavelengths_nm(&grid).find(|w| !followed.can_follow(*w)) {
-                return Err(format!(
+                return Err(Fault::new(format!(
                     "the terms cancel at {nm} nm, where a channel is sensitive: a sample of one term would have a hundred times \
-                     its proper weight; use fewer or more terms, or `follow: collapsed`"
-                ));
+                     its proper weight"
+                ))
+                .hint("use fewer or more terms, or `follow: collapsed`"));
             }
             return Ok(Box::new(seen.mixture(system, Some(followed))?));
         }
@@ -136,10 +137,10 @@ impl WavelengthSampler for GaussianTerms {
         let centers = mixture.terms().iter().map(|t| t.center_nm());
         let centers = centers.filter(|w| grid.interpolate(&seen.response, *w) > 0.0);
         if let Some(nm) = seen.wavelengths_nm(&grid).chain(centers).find(|w| !signed.can_draw(*w)) {
-            return Err(format!(
-                "the terms cancel, or are all far away, at {nm} nm, where a channel is sensitive; \
-                 use more terms, a floor, or `follow: collapsed`"
-            ));
+            return Err(Fault::new(format!(
+                "the terms cancel, or are all far away, at {nm} nm, where a channel is sensitive"
+            ))
+            .hint("use more terms, a floor, or `follow: collapsed`"));
         }
         Ok(Box::new(seen.mixture(system, Some(signed))?))
     }
@@ -170,11 +171,11 @@ impl Signed {
         floor: Option<(f64, Cells)>,
         min_nm: f64,
         max_nm: f64,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, Fault> {
         let integrals: Vec<f64> = mixture.terms().iter().map(|t| t.band_integral(min_nm, max_nm)).collect();
         let sum: f64 = integrals.iter().map(|w| w.abs()).sum();
         if !(sum > 0.0 && sum.is_finite()) {
-            return Err("no Gaussian term reaches the band".to_owned());
+            return Err(Fault::new("no Gaussian term reaches the band"));
         }
         let mut upper = floor.as_ref().map_or(0.0, |f| f.0);
         let rest = 1.0 - upper;

@@ -13,7 +13,7 @@ use crate::SourceTimesResponse;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::Isa;
-use spectra_core::params::{Deferred, Faults, Params};
+use spectra_core::params::{Deferred, Fault, Faults, Params};
 use spectra_core::registry::{self, Context, StageOf};
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -68,7 +68,7 @@ impl Hero {
 }
 
 impl WavelengthSampler for Hero {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         Ok(Box::new(Rotated { group: self.group, density: self.density.prepare(system)? }))
     }
 }

@@ -7,7 +7,7 @@ use crate::recorded_spectrum::RecordedSpectrum;
 use crate::{Floor, Quantiles};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Params};
+use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Grid, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -62,7 +62,7 @@ impl InverseTransform {
 }
 
 impl WavelengthSampler for InverseTransform {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         let seen = RecordedSpectrum::of(system)?;
         let grid = system.grid;
         let resampled = (grid != self.grid)
@@ -74,11 +74,12 @@ impl WavelengthSampler for InverseTransform {
                 either(&seen.response) && !either(spectrum)
             };
             if let Some(i) = (0..grid.count - 1).find(blind) {
-                return Err(format!(
-                    "`{}` is zero at {} nm, where a channel is sensitive: that light would never be sampled; add a `floor`",
+                return Err(Fault::new(format!(
+                    "`{}` is zero at {} nm, where a channel is sensitive: that light would never be sampled",
                     self.name,
                     grid.wavelength_nm(i)
-                ));
+                ))
+                .hint("add a `floor`"));
             }
         }
         let shape = seen.with_floor(spectrum, grid.integrate(spectrum), self.floor.share());

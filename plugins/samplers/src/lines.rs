@@ -3,7 +3,7 @@
 use crate::{Mixture, Quantiles, Shares};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Params};
+use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::registry::Context;
 
 use spectra_core::spectral::SystemResponse;
@@ -14,16 +14,15 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 pub struct Lines;
 
 impl WavelengthSampler for Lines {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         if system.source.continuum.iter().any(|v| *v != 0.0) {
-            return Err("the source has a continuum, which sampling only lines would miss; \
-                        use `source-times-response`, or give the source a color model of lines"
-                .to_owned());
+            return Err(Fault::new("the source has a continuum, which sampling only lines would miss")
+                .hint("use `source-times-response`, or give the source a color model of lines"));
         }
         let weights: Vec<f64> = system.source.lines.iter().map(|l| l.power.abs()).collect();
         Mixture::<Quantiles>::new(&system.source.lines, &weights, Shares::Proportional, 1.0, None)
             .map(|m| Box::new(m) as Box<dyn WavelengthDensity>)
-            .ok_or_else(|| "the source has no spectral lines".to_owned())
+            .ok_or_else(|| Fault::new("the source has no spectral lines"))
     }
 }
 

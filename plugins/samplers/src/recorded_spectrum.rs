@@ -1,6 +1,7 @@
 //! The light of the source as the channels see it.
 
 use crate::{Mixture, Shares};
+use spectra_core::params::Fault;
 use spectra_core::spectral::{Grid, SystemResponse};
 
 /// The source multiplied by the sum of all channels' responses.
@@ -29,12 +30,12 @@ const LEAST: f64 = 0.05;
 
 impl RecordedSpectrum {
     /// Multiplies the source by the channels' responses. Fails if no channel has any response.
-    pub fn of(system: &SystemResponse) -> Result<Self, String> {
+    pub fn of(system: &SystemResponse) -> Result<Self, Fault> {
         let grid = system.grid;
         let response = system.summed_response();
         let of_response = grid.integrate(&response);
         if of_response.is_nan() || of_response <= 0.0 {
-            return Err("no channel sees anything in the band".to_owned());
+            return Err(Fault::new("no channel sees anything in the band"));
         }
         let product: Vec<f64> = system.source.continuum.iter().zip(&response).map(|(s, r)| s.abs() * r).collect();
         let lines: Vec<f64> =
@@ -72,11 +73,11 @@ impl RecordedSpectrum {
     }
 
     /// Builds the mixture of the lines, weighted by the channels' response to them, and `continuum`. Fails if there is nothing to draw.
-    pub fn mixture<C>(&self, system: &SystemResponse, continuum: Option<C>) -> Result<Mixture<C>, String> {
+    pub fn mixture<C>(&self, system: &SystemResponse, continuum: Option<C>) -> Result<Mixture<C>, Fault> {
         // A single channel is exact with proportional shares; rounding to strata would spoil that.
         let shares = if self.channels > 1 { Shares::WholeStrata } else { Shares::Proportional };
         Mixture::new(&system.source.lines, &self.lines, shares, self.line_share(), continuum)
-            .ok_or_else(|| "the imager sees none of the source's light".to_owned())
+            .ok_or_else(|| Fault::new("the imager sees none of the source's light"))
     }
 
     /// Returns wavelengths, nm, at which a channel is sensitive: sixteen in the interior of each cell of the grid.

@@ -11,7 +11,7 @@ use crate::recorded_spectrum::RecordedSpectrum;
 use crate::{Mixture, Quantiles};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Params};
+use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::registry::Context;
 
 use spectra_core::spectral::SystemResponse;
@@ -25,7 +25,7 @@ const FLOOR: f64 = 0.05;
 pub struct SourceTimesResponse;
 
 impl SourceTimesResponse {
-    pub(crate) fn density(system: &SystemResponse) -> Result<Mixture, String> {
+    pub(crate) fn density(system: &SystemResponse) -> Result<Mixture, Fault> {
         let seen = RecordedSpectrum::of(system)?;
         let continuum = seen
             .draws_continuum()
@@ -36,7 +36,7 @@ impl SourceTimesResponse {
 }
 
 impl WavelengthSampler for SourceTimesResponse {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         Ok(Box::new(Self::density(system)?))
     }
 }

@@ -14,7 +14,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::numbers::mix64;
-use spectra_core::params::{Faults, Params};
+use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -59,7 +59,7 @@ impl Stratified {
 }
 
 impl WavelengthSampler for Stratified {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         let has_continuum = system.source.continuum.iter().any(|v| *v != 0.0);
         let (start_nm, end_nm) = (system.grid.start_nm, system.grid.end_nm());
         let continuum = (has_continuum || system.source.lines.is_empty()).then_some(Strata {
@@ -70,7 +70,7 @@ impl WavelengthSampler for Stratified {
         let weights = vec![1.0; system.source.lines.len()];
         Mixture::new(&system.source.lines, &weights, Shares::WholeStrata, 0.5, continuum)
             .map(|m| Box::new(m) as Box<dyn WavelengthDensity>)
-            .ok_or_else(|| "the source emits nothing".to_owned())
+            .ok_or_else(|| Fault::new("the source emits nothing"))
     }
 }
 

@@ -10,7 +10,7 @@ use crate::{Cells, Continuum, Floor};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::isa::{Isa, Vectorized};
-use spectra_core::params::{Faults, Params, Wavelength};
+use spectra_core::params::{Fault, Faults, Params, Wavelength};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{Grid, SystemResponse};
 use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
@@ -60,21 +60,22 @@ impl TruncatedGaussianSampler {
 
     /// Fails if the Gaussian is practically zero from the shortest to the longest wavelength to which a channel is sensitive: then every
     /// ray except those of the floor would be lost. A center written in mm instead of nm ends here.
-    fn reaches(&self, gaussian: &TruncatedGaussian, seen: &RecordedSpectrum, grid: &Grid) -> Result<(), String> {
+    fn reaches(&self, gaussian: &TruncatedGaussian, seen: &RecordedSpectrum, grid: &Grid) -> Result<(), Fault> {
         let (low, high) =
             seen.wavelengths_nm(grid).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), w| (a.min(w), b.max(w)));
         if low > high || is_drawn(gaussian.density(self.center_nm.clamp(low, high))) {
             return Ok(());
         }
-        Err(format!(
-            "truncated-gaussian: centered at {} nm with a `sigma` of {} nm, it does not reach what the channels see, {low:.0} to {high:.0} nm; set `center` within that",
+        Err(Fault::new(format!(
+            "truncated-gaussian: centered at {} nm with a `sigma` of {} nm, it does not reach what the channels see, {low:.0} to {high:.0} nm",
             self.center_nm, self.sigma_nm
         ))
+        .hint("set `center` within that"))
     }
 }
 
 impl WavelengthSampler for TruncatedGaussianSampler {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         let seen = RecordedSpectrum::of(system)?;
         let (min_nm, max_nm) = (system.grid.start_nm, system.grid.end_nm());
         let gaussian = TruncatedGaussian::new(self.center_nm, self.sigma_nm, min_nm, max_nm)
@@ -86,9 +87,10 @@ impl WavelengthSampler for TruncatedGaussianSampler {
         if floor.is_none()
             && let Some(nm) = seen.wavelengths_nm(&system.grid).find(|w| !is_drawn(gaussian.density(*w)))
         {
-            return Err(format!(
-                "at {nm} nm, where a channel is sensitive, the Gaussian is too weak to be sampled; add a `floor`"
-            ));
+            return Err(Fault::new(format!(
+                "at {nm} nm, where a channel is sensitive, the Gaussian is too weak to be sampled"
+            ))
+            .hint("add a `floor`"));
         }
         let continuum = seen.draws_continuum().then_some(WithFloor { gaussian, floor });
         Ok(Box::new(seen.mixture(system, continuum)?))

@@ -3,7 +3,7 @@
 use crate::{Mixture, Quantiles, Shares};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::params::{Faults, Params};
+use spectra_core::params::{Fault, Faults, Params};
 use spectra_core::registry::Context;
 
 use spectra_core::spectral::SystemResponse;
@@ -14,7 +14,7 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 pub struct Uniform;
 
 impl WavelengthSampler for Uniform {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         let has_continuum = system.source.continuum.iter().any(|v| *v != 0.0);
         let continuum = (has_continuum || system.source.lines.is_empty())
             .then(|| Quantiles::of(system.grid, &vec![1.0; system.grid.count]))
@@ -22,7 +22,7 @@ impl WavelengthSampler for Uniform {
         let weights = vec![1.0; system.source.lines.len()];
         Mixture::new(&system.source.lines, &weights, Shares::WholeStrata, 0.5, continuum)
             .map(|m| Box::new(m) as Box<dyn WavelengthDensity>)
-            .ok_or_else(|| "the source emits nothing".to_owned())
+            .ok_or_else(|| Fault::new("the source emits nothing"))
     }
 }
 

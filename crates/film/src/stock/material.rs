@@ -20,14 +20,14 @@ impl SpectralDensity {
     /// # Errors
     /// A text that says which point is wrong: wavelengths that do not increase, or values outside -1 to 10 (the difference of two
     /// measurements may be a little below 0). Also if there are no points.
-    pub fn new(points: &[[f64; 2]]) -> Result<Self, String> {
+    pub fn new(points: &[[f64; 2]]) -> Result<Self, Fault> {
         let mut before = 0.0;
         for [nm, density] in points {
             if !(*nm > before && nm.is_finite()) {
-                return Err(format!("wavelengths must increase: {nm} nm comes after {before} nm"));
+                return Err(Fault::new(format!("wavelengths must increase: {nm} nm comes after {before} nm")));
             }
             if !(-1.0..=10.0).contains(density) {
-                return Err(format!("{density} at {nm} nm is not a density"));
+                return Err(Fault::new(format!("{density} at {nm} nm is not a density")));
             }
             before = *nm;
         }
@@ -181,8 +181,8 @@ pub(super) struct DyeFile {
 
 impl DyeFile {
     pub(super) fn read(&self, params: &Params, at: &str) -> Result<Dye, Fault> {
-        let density =
-            SpectralDensity::new(&self.table).map_err(|text| params.fault(&format!("{at}.dye.table"), text))?;
+        let density = SpectralDensity::new(&self.table)
+            .map_err(|fault| params.fault(&format!("{at}.dye.table"), fault.message))?;
         if !self.table.iter().any(|p| p[1] > 0.0) {
             return Err(params.fault(&format!("{at}.dye.table"), "this dye absorbs nothing"));
         }
@@ -205,7 +205,8 @@ pub(super) struct MinimumDensityFile {
 
 impl MinimumDensityFile {
     pub(super) fn read(&self, params: &Params) -> Result<MinimumDensity, Fault> {
-        let density = SpectralDensity::new(&self.table).map_err(|text| params.fault("minimum-density.table", text))?;
+        let density =
+            SpectralDensity::new(&self.table).map_err(|fault| params.fault("minimum-density.table", fault.message))?;
         if self.assumed && self.remark.as_ref().is_none_or(|r| r.trim().is_empty()) {
             let fault = params.fault("minimum-density.assumed", "an assumed density needs a remark");
             return Err(fault.hint("add a `remark` that says what it is based on"));

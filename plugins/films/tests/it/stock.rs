@@ -119,7 +119,7 @@ fn a_frame_without_its_channel_is_refused() {
     let film = build("stock: ilford-ortho-plus\nexposure: 1/60 s\nhalation: off\ngrain: false\n").expect("sound");
     let mut other = frame(&[1.0]);
     other.channels[0].name = "Y".into();
-    assert!(film.develop(&other).unwrap_err().contains("ortho"));
+    assert!(film.develop(&other).unwrap_err().message.contains("ortho"));
 }
 
 fn frame_of(names: &[&str], planes: &[Vec<f32>]) -> ExposureFrame {

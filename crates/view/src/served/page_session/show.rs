@@ -144,7 +144,7 @@ impl PageSession {
     pub(super) fn show(&self, taken: &DevelopJob) -> Result<(), SessionError> {
         let DevelopJob { scene, plate, times, kind, .. } = taken;
         let shot = Shot::new(scene, &plate.exposure, times, &[], self.order.isa).with_negatives(&plate.negatives);
-        let Some((_, picture)) = shot.pictures().map_err(SessionError::Failed)?.first() else { return Ok(()) };
+        let Some((_, picture)) = shot.pictures().map_err(SessionError::of_stage)?.first() else { return Ok(()) };
         let DisplayPicture { width_px, height_px, rgb } = picture;
         let [width_px, height_px] = [*width_px, *height_px];
         let is_draft = *kind == PictureRole::Draft;

@@ -83,7 +83,7 @@ impl Film for MyStage {
         self.exposure_time_s
     }
 
-    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, String> {
+    fn develop(&self, exposure: &ExposureFrame) -> Result<DisplayPicture, Fault> {
         let planes = self.layers.iter().map(|layer| exposure.values(&layer.name)).collect::<Result<Vec<_>, _>>()?;
         let pixel = |i| {
             let exposures: Vec<f64> = planes.iter().map(|plane| f64::from(plane[i])).collect();

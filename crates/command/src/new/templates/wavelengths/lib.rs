@@ -34,7 +34,7 @@ struct MyStage {
 }
 
 impl WavelengthSampler for MyStage {
-    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, String> {
+    fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         let (grid, lines) = (system.grid, &system.source.lines);
         let power = |line: &Line| if grid.contains(line.wavelength_nm) { line.power } else { 0.0 };
         let sum: f64 = lines.iter().map(power).sum();
@@ -43,7 +43,7 @@ impl WavelengthSampler for MyStage {
             (true, true) => 0.5,
             (true, false) => 1.0,
             (false, true) => 0.0,
-            (false, false) => return Err("the source emits nothing".to_owned()),
+            (false, false) => return Err("the source emits nothing".into()),
         };
         let probability = |line: &Line| if sum > 0.0 { of_lines * power(line) / sum } else { 0.0 };
         Ok(Box::new(Density {
