@@ -9,9 +9,9 @@
 //! index of a glass is relative to air as its maker gives it, so air is 1 and vacuum a little less than 1 (see [`air`]).
 //!
 //! ```
-//! use spectra_glass::{Catalogue, Dispersion, Medium, lines};
+//! use spectra_glass::{Catalog, Dispersion, Medium, lines};
 //!
-//! let glass = Catalogue::bundled().find("SCHOTT/N-BK7")?;
+//! let glass = Catalog::bundled().find("SCHOTT/N-BK7")?;
 //! assert!((glass.index(lines::D.wavelength_nm) - 1.516_800).abs() < 1e-6);
 //! let fast = Dispersion::fit(&Medium::from(glass), 350.0, 830.0)?;
 //! assert!(fast.max_error() <= 2e-10);

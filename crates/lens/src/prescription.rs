@@ -58,7 +58,7 @@ pub(crate) struct LensFile {
     /// F-number in the name of the lens, as makers round it. `f-number: f/1.4` in a scene then means full aperture, even if that is
     /// f/1.44. None if absent.
     f_number: Option<FNumber>,
-    /// For an anamorphic lens: the factor by which it squeezes the picture horizontally, 0.1 to 10, as makers round it. Pixels of its
+    /// Factor by which an anamorphic lens squeezes the picture horizontally, 0.1 to 10, as makers round it. Pixels of its
     /// pictures are shown that many times as wide. 1 if absent.
     #[schemars(range(min = 0.1, max = 10))]
     squeeze: Option<f64>,

@@ -32,7 +32,7 @@ pub enum RenderError {
     NoAperture,
     /// The wavelength strategy cannot be used in this scene.
     #[error("wavelengths: {}", .0.message)]
-    Sampler(Fault),
+    Sampler(Box<Fault>),
     /// A medium of the lens has no refractive index somewhere in the band.
     #[error("lens: {0}")]
     Lens(String),
@@ -41,7 +41,7 @@ pub enum RenderError {
     Glare(String),
     /// The diffraction at the stop of this lens cannot be computed.
     #[error("diffraction: {}", .0.message)]
-    Diffraction(Fault),
+    Diffraction(Box<Fault>),
     /// A stage gave a number that no light can have: NaN or infinite.
     #[error("{0}")]
     NonFinite(NonFinite),

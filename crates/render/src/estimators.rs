@@ -3,10 +3,11 @@
 use crate::backward::Backward;
 use crate::estimator::Estimator;
 use crate::forward::Forward;
-use crate::ghosts::{GhostRays, Ghosts, LightLedger, MATTERS};
+use crate::ghosts::{Ghosts, LightLedger, MATTERS};
+use crate::options::{GhostRays, Traced};
 use crate::pipeline::{Pipeline, SourcePart};
 use crate::veil::Veil;
-use crate::{RenderError, Traced, Workers};
+use crate::{RenderError, Workers};
 use spectra_scene::{Direction, LightKind, Lights};
 use std::sync::Arc;
 

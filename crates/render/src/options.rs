@@ -1,6 +1,5 @@
 //! How a renderer is made ready.
 
-use crate::GhostRays;
 use spectra_core::Isa;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::workers::{SingleThread, Workers};
@@ -34,6 +33,16 @@ pub enum Traced {
     Directions(Vec<Direction>),
     /// Ghosts alone, with these rays, to measure them. Without a reflecting surface there is no light.
     Ghosts(GhostRays),
+}
+
+/// The way rays are shared out over the ghost paths and over the front of the lens.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GhostRays {
+    /// Shares rays out as a preceding search finds best.
+    #[default]
+    Found,
+    /// Gives each path equally many rays, all over the front: the reference for the search.
+    Even,
 }
 
 impl Default for RenderOptions<'_> {

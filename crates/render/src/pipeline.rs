@@ -1,7 +1,7 @@
 //! Parts that both directions share: the prepared stages, and the buffers of one thread.
 
-use crate::RenderOptions;
 use crate::error::RenderError;
+use crate::options::RenderOptions;
 use crate::response::Responses;
 use crate::spots::Before;
 use crate::sums::{OwnSteps, OwnSums};
@@ -71,12 +71,13 @@ impl Pipeline {
     pub(crate) fn new(scene: &Arc<Scene>, options: &RenderOptions<'_>) -> Result<Self, RenderError> {
         let (isa, effort) = (options.isa, options.effort);
         if let Some(text) = crate::diffracted::fault(scene) {
-            return Err(RenderError::Diffraction(text));
+            return Err(RenderError::Diffraction(Box::new(text)));
         }
         // The channels of meters are not recorded: whether a camera meters must not change the picture's samples.
         let recorded = scene.picture_channels();
         let system = system(scene, SourcePart::Whole, &recorded);
-        let fitted = || scene.sampler.prepare(&system).map(Arc::from).map_err(RenderError::Sampler);
+        let fitted =
+            || scene.sampler.prepare(&system).map(Arc::from).map_err(|fault| RenderError::Sampler(Box::new(fault)));
         let density = options.density.clone().map_or_else(fitted, Ok)?;
         let tracer = tracer(scene)?;
         let responses = Responses::new(scene.grid, &system.channels);

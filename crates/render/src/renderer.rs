@@ -357,7 +357,7 @@ impl Renderer {
         let diffraction = if scene.render.diffraction.unwrap_or_else(|| self.has_seen_star(scene, &planes)) {
             let before = if star.is_some() { planes.clone() } else { Vec::new() };
             let done = diffracted::spread(scene, &mut planes, recorded);
-            let done = done.map_err(RenderError::Diffraction)?;
+            let done = done.map_err(|fault| RenderError::Diffraction(Box::new(fault)))?;
             for ((star, plane), before) in star.into_iter().flat_map(|s| &mut s.channels).zip(&planes).zip(before) {
                 let moved = plane.values.iter().zip(before.values).map(|(now, before)| now - before);
                 star.values = moved.collect();

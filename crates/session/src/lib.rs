@@ -8,10 +8,10 @@
 //! files. Warnings, notes and results come back as values.
 //!
 //! ```no_run
-//! use spectra_session::{Alone, Control, Session};
+//! use spectra_session::{Control, Session, SingleThread};
 //! # fn main() -> Result<(), spectra_session::SessionError> {
 //! let mut session = Session::open("scene.yaml".as_ref(), &[], spectra_core::Isa::detect())?;
-//! session.step(16, &Alone, &Control::new())?;
+//! session.step(16, &SingleThread, &Control::new())?;
 //! let picture = session.develop()?.remove(0).1;
 //! let kept = session.change("film.exposure=1/250 s")?;
 //! assert!(kept.light);

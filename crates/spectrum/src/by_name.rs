@@ -36,8 +36,9 @@ use spectra_core::resources::{ResourceError, Resources};
 use spectra_core::spectral::Line;
 
 // A circle with `document.rs`: a name may refer to a document, which names the spectra that it is made of.
-use crate::any_spectrum::AnySpectrum;
 use crate::document;
+
+use crate::any_spectrum::AnySpectrum;
 use crate::emission::Emission;
 use crate::error::SpectrumError;
 use crate::expression::{self, Sign, Tree};

@@ -8,14 +8,14 @@ use std::borrow::Cow;
 use std::marker::PhantomData;
 
 /// The schema of any registered stage of a kind: a name, or a map with `kind` and that stage's own parameters. For nested
-/// stages, kept as a [`Part`](crate::params::Deferred):
+/// stages, kept as a [`Deferred`](crate::params::Deferred):
 ///
 /// ```
-/// # use {schemars::JsonSchema, spectra_core::{params::Part, registry::StageOf, stage::ColorModel}};
+/// # use {schemars::JsonSchema, spectra_core::{params::Deferred, registry::StageOf, stage::ColorModel}};
 /// #[derive(JsonSchema)]
 /// struct LampParams {
 ///     /// How the lamp's color becomes a spectrum.
-///     color: Option<Part<StageOf<dyn ColorModel>>>,
+///     color: Option<Deferred<StageOf<dyn ColorModel>>>,
 /// }
 /// ```
 ///

@@ -3,7 +3,7 @@
 //! ```
 //! use spectra_film::curve::ToeShoulder;
 //!
-//! ISO 80: 0.8/80 lx s gives 0.1 above base and fog; 1.5 further to the right, the density is 1.5 * 0.66 higher.
+//! // ISO 80: 0.8/80 lx s gives 0.1 above base and fog; 1.5 further to the right, the density is 1.5 * 0.66 higher.
 //! let curve = ToeShoulder::through([-2.0, 0.1], [-0.5, 0.1 + 1.5 * 0.66], 0.2, 2.5, 4.0).unwrap();
 //! assert!((curve.density(-2.0) - 0.1).abs() < 1e-12);
 //! ```

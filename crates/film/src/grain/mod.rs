@@ -80,7 +80,7 @@ pub fn usual_half_power(rms: f64) -> f64 {
 /// let raster = Raster::new(96, 64, 0.006);
 /// let mut density = vec![1.0; raster.pixels()];
 /// grain.apply(&mut density, &raster);
-/// A part of the frame has the same grain.
+/// // A part of the frame has the same grain.
 /// let mut part = vec![1.0; 10 * 10];
 /// grain.apply(&mut part, &raster.part(50, 20, 10, 10));
 /// assert_eq!(part[0], density[20 * 96 + 50]);

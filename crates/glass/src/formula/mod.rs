@@ -8,7 +8,7 @@
 //! use serde::Deserialize;
 //! use spectra_core::params::{Faults, Params};
 //! use spectra_core::registry::Context;
-//! use spectra_glass::{Form, Formula, FormulaEntry};
+//! use spectra_glass::{ClosedForm, Formula, FormulaEntry};
 //!
 //! /// A straight line: n = c0 + c1 L.
 //! #[derive(Debug, Deserialize, JsonSchema)]
@@ -22,10 +22,10 @@
 //!
 //! fn build(params: &Params, _: &Context<'_>) -> Result<Box<Formula>, Faults> {
 //!     let p: Straight = params.parse()?;
-//!     let form = Form { name: "straight", count: 2, index: |c, um| c[0] + c[1] * um };
+//!     let form = ClosedForm { name: "straight", count: 2, index: |c, um| c[0] + c[1] * um };
 //!     Ok(Box::new(form.with(&p.coefficients)))
 //! }
-//! # let straight = Form { name: "straight", count: 2, index: |c, um| c[0] + c[1] * um };
+//! # let straight = ClosedForm { name: "straight", count: 2, index: |c, um| c[0] + c[1] * um };
 //! # assert_eq!(straight.with(&[1.5]).coefficients(), [1.5, 0.0]);
 //! ```
 

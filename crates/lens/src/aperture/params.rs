@@ -130,7 +130,7 @@ struct MaskParams {
     file: String,
     /// Width of the picture or of the drawing's page, mm if bare; may be omitted for a drawing that states its own width.
     width: Option<Positive<Length>>,
-    /// For a drawing only. `filled` (the default): everything painted passes. `white`, as in a picture: white passes, black
+    /// How a drawing is read. `filled` (the default): everything painted passes. `white`, as in a picture: white passes, black
     /// stops, gray passes a part.
     open: Option<Open>,
 }

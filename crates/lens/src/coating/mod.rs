@@ -286,7 +286,7 @@ mod tests {
         }
     }
 
-    /// The same fraction of light passes backward along the same path.
+    /// An equal fraction of light passes backward along the same path.
     #[test]
     fn both_ways_alike() {
         for coating in

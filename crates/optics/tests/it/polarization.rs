@@ -85,7 +85,7 @@ fn a_pile_of_plates_polarizes() {
     }
 }
 
-/// For two plates whose planes of incidence are at right angles, the s light of one is the p light of the other, and the light leaves
+/// Two plates have planes of incidence at right angles: the s light of one is the p light of the other, and the light leaves
 /// unpolarized again. The product of the mean transmittances, which plain batches use, is larger.
 #[test]
 fn crossed_plates_cancel() {

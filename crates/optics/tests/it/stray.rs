@@ -163,7 +163,7 @@ fn both_directions_agree_and_the_books_close() {
     }
 }
 
-/// With walls that absorb nothing and no other exit, all light leaves through the front.
+/// If walls absorb nothing and there is no other exit, all light leaves through the front.
 #[test]
 fn white_walls_lose_nothing() {
     let mut lens = biotar(2.0).with_coating(Coating::Bare);

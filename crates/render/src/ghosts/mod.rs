@@ -54,6 +54,7 @@ use crate::estimator::{Estimator, Scratch, UnitResult};
 use crate::finite_check::FiniteCheck;
 use crate::forward::source_points;
 use crate::non_finite::Step;
+use crate::options::GhostRays;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::sums::{ExactSums, OwnSums, scale_for};
@@ -74,16 +75,6 @@ use spectra_tracer::{Indices, Path, Route, Tracer, Travel};
 use std::ops::Range;
 use std::sync::Arc;
 use zones::Zones;
-
-/// The way rays are shared out over the ghost paths and over the front of the lens.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum GhostRays {
-    /// Shares rays out as a preceding search finds best.
-    #[default]
-    Found,
-    /// Gives each path equally many rays, all over the front: the reference for the search.
-    Even,
-}
 
 /// Threshold above which ghosts or diffraction are computed without being requested. Ghosts: the brightest block, as a fraction of the mean
 /// of the frame. Diffraction: the brightest star, as a fraction of the median of the frame.

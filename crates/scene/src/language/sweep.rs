@@ -260,7 +260,7 @@ mod tests {
             ("{a: {from: 1, to: 2, steps: 1e9}}", "found 1e9, which is out of range"),
             ("{a: {from: 1, to: 2, steps: 3, spacing: log}}", "unknown value `log` for `spacing`"),
             ("{a: {from: 1 m, to: 2 s, steps: 3}}", "`2 s` and `1 m` are of different kinds"),
-            (&many, "the sweep has 1020 pictures, at most 1000 are made"),
+            (&many, "the sweep has 1020 pictures, but at most 1000 can be made"),
             ("[3]", "t.yaml:1:9: each entry of such a sweep is a map"),
             ("[{sweep: 1}]", "`sweep` cannot change from picture to picture"),
         ] {

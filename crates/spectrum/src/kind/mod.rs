@@ -6,7 +6,7 @@
 //! use schemars::JsonSchema;
 //! use serde::Deserialize;
 //! use spectra_core::params::{Faults, Wavelength};
-//! use spectra_spectrum::{Making, Piece, Shape, SpectrumEntry, SpectrumError, SpectrumKind, build_kind};
+//! use spectra_spectrum::{SpectrumContext, PendingSpectrum, SpectralFunction, SpectrumEntry, SpectrumError, SpectrumKind, build_kind};
 //!
 //! /// Two Gaussians of 20 nm, one on each side of a wavelength.
 //! #[derive(Debug, Deserialize, JsonSchema)]
@@ -22,13 +22,13 @@
 //!     text.parse().ok().map(two)
 //! });
 //!
-//! fn two(center_nm: f64) -> Result<Piece, SpectrumError> {
-//!     let [low, high] = [Shape::gaussian(center_nm - 50.0, 20.0)?, Shape::gaussian(center_nm + 50.0, 20.0)?];
-//!     Ok(Piece::Bare(low.plus(&high)))
+//! fn two(center_nm: f64) -> Result<PendingSpectrum, SpectrumError> {
+//!     let [low, high] = [SpectralFunction::gaussian(center_nm - 50.0, 20.0)?, SpectralFunction::gaussian(center_nm + 50.0, 20.0)?];
+//!     Ok(PendingSpectrum::Bare(low.plus(&high)))
 //! }
 //!
 //! impl SpectrumKind for Pair {
-//!     fn make(&self, making: &Making<'_>) -> Result<Piece, Faults> {
+//!     fn make(&self, making: &SpectrumContext<'_>) -> Result<PendingSpectrum, Faults> {
 //!         two(self.center.nm()).map_err(making.at("center"))
 //!     }
 //! }
