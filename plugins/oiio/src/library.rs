@@ -2,7 +2,7 @@
 
 use crate::bridge::ffi;
 use crate::{reading, writing};
-use spectra_core::resources::Found;
+use spectra_core::resources::FoundFile;
 use spectra_core::sink::Out;
 use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 
@@ -23,11 +23,11 @@ impl PictureLibrary for OpenImageIo {
         format!("OpenImageIO {}", ffi::version())
     }
 
-    fn read(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String> {
+    fn read(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, String> {
         reading::read(ending, file, limits, true)
     }
 
-    fn header(&self, ending: &str, file: &Found, limits: PictureLimits) -> Result<FilePicture, String> {
+    fn header(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, String> {
         reading::read(ending, file, limits, false)
     }
 

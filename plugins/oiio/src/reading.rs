@@ -2,7 +2,7 @@
 
 use crate::bridge::ffi::{self, Header, Wanted};
 use crate::header_size;
-use spectra_core::resources::{Found, ResourceError};
+use spectra_core::resources::{FoundFile, ResourceError};
 use spectra_pictures::library::{FilePicture, PictureLimits};
 use std::io::Write;
 use std::path::Path;
@@ -40,7 +40,7 @@ pub(crate) fn endings() -> Vec<String> {
 const BEGINNING_BYTES: u64 = 1 << 20;
 
 /// Reads the first picture of a file; without `pixels`, only its header.
-pub(crate) fn read(ending: &str, file: &Found, limits: PictureLimits, pixels: bool) -> Result<FilePicture, String> {
+pub(crate) fn read(ending: &str, file: &FoundFile, limits: PictureLimits, pixels: bool) -> Result<FilePicture, String> {
     let format = format_of(ending)?;
     let text = |cause: cxx::Exception| tidy(cause.what());
     let system = |cause: ResourceError| cause.to_string();

@@ -1,7 +1,7 @@
 //! Compares files of other formats, written by OpenImageIO and by hand, with what was written.
 
-use spectra_core::resources::Found;
-use spectra_pictures::read::{self, Choice, ENDINGS, Linear, Trouble};
+use spectra_core::resources::FoundFile;
+use spectra_pictures::read::{self, ENDINGS, FileProblem, LinearPicture, ReadOptions};
 use spectra_plugin_oiio::{OpenImageIo, Samples, Written, make_texture, write};
 use std::io::{Read, Seek};
 
@@ -98,21 +98,21 @@ impl<'a> File<'a> {
     }
 }
 
-fn decode(bytes: &[u8], choice: Choice<'_>) -> Result<Linear, Trouble> {
-    read::decode(&Found::bytes("a file".to_owned(), bytes.to_vec().into()), choice)
+fn decode(bytes: &[u8], choice: ReadOptions<'_>) -> Result<LinearPicture, FileProblem> {
+    read::decode(&FoundFile::bytes("a file".to_owned(), bytes.to_vec().into()), choice)
 }
 
 fn jpeg_2000() -> Vec<u8> {
     File { ending: "jp2", ..File::new("jpeg2000", Samples::U8) }.bytes()
 }
 
-fn read(bytes: &[u8], name: &str) -> Result<Linear, Trouble> {
-    decode(bytes, Choice { name, cover: true, ..Choice::default() })
+fn read(bytes: &[u8], name: &str) -> Result<LinearPicture, FileProblem> {
+    decode(bytes, ReadOptions { name, alpha: true, ..ReadOptions::default() })
 }
 
 /// Returns the largest difference between the light and that of the ramps by `curve`, where a code value may be off by `step`.
 /// The unit is the difference that `step` and single precision explain: 1 is the limit.
-fn worst(found: &Linear, levels: u32, curve: impl Fn(f64) -> f64, step: f64) -> f64 {
+fn worst(found: &LinearPicture, levels: u32, curve: impl Fn(f64) -> f64, step: f64) -> f64 {
     assert_eq!((found.width, found.height), (WIDTH, HEIGHT));
     let ramps = ramps(levels);
     let mut worst = 0.0_f64;
@@ -173,7 +173,7 @@ fn a_dpx_file_that_says_nothing_is_not_guessed() {
     let bytes = File::new("dpx", Samples::U16).bits(10).text("oiio:ColorSpace", "").bytes();
     let trouble = read(&bytes, "a.dpx").expect_err("refused");
     assert!(trouble.text.contains("Undefined") && trouble.hint.is_some_and(|h| h.contains("transfer: srgb")));
-    let said = decode(&bytes, Choice { name: "a.dpx", transfer: Some("srgb"), ..Choice::default() }).unwrap();
+    let said = decode(&bytes, ReadOptions { name: "a.dpx", transfer: Some("srgb"), ..ReadOptions::default() }).unwrap();
     assert!(worst(&said, 1023, srgb, 1.0 / 65_535.0) <= 1.0);
     // Film scanners write transfer characteristic 1 of SMPTE 268M, byte 801 of the file.
     let mut density = bytes;

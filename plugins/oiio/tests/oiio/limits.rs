@@ -1,10 +1,10 @@
-//! Cases that tests of the picture sources and the program do not cover: full disks, repeated writes, limits.
+//! Cases that tests of the picture sources and the program do not alpha: full disks, repeated writes, limits.
 
 /// The unit test of `stated.rs` runs with the tests of this file.
 #[path = "../../src/header_size.rs"]
 mod stated;
 
-use spectra_core::resources::Found;
+use spectra_core::resources::FoundFile;
 use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLimits, TiledExr, library};
 use spectra_plugin_oiio::{OpenImageIo, Samples, Written, write};
 use std::fs::File;
@@ -12,8 +12,8 @@ use std::io::{Read, Seek};
 
 const LIMITS: PictureLimits = PictureLimits { side_px: 65_535, pixels: 120_000_000 };
 
-fn file_of(bytes: &[u8]) -> Found {
-    Found::bytes("a file".to_owned(), bytes.to_vec().into())
+fn file_of(bytes: &[u8]) -> FoundFile {
+    FoundFile::bytes("a file".to_owned(), bytes.to_vec().into())
 }
 
 fn ramp(pixels: u32) -> Vec<f32> {
