@@ -9,15 +9,14 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
 use std::net::{Shutdown, TcpListener, TcpStream};
-use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// Largest number of connections at a time. If there are more, the oldest one that has not sent its request yet is closed; if there is
 /// none, the new one is refused.
 const MAX_CONNECTIONS: usize = 64;
-/// Largest number of connections including those that are being closed to make room.
-const MOST_CONNECTIONS: usize = 2 * MAX_CONNECTIONS;
+/// Longest time that the server waits for a connection that it closes to make room; until then new connections queue in the system.
+const CLOSING: Duration = Duration::from_secs(1);
 /// Largest number of pages at a time; the one opened first is closed to make room.
 const MAX_DESKS: usize = 4;
 /// Longest time that a request for a picture waits; after that the page asks again.
@@ -38,18 +37,42 @@ pub(crate) struct Server {
     /// Scene to show; `None` if only the color tester is served.
     order: Option<RenderJob>,
     desks: Mutex<(u64, BTreeMap<u64, Arc<PageSession>>)>,
-    connections: AtomicUsize,
+    connections: Connections,
     /// Connections whose request has not arrived yet, by number, the oldest first. A page sends its request at once, so a connection that
     /// stays here for long takes a place that others need.
     silent: Mutex<BTreeMap<u64, TcpStream>>,
 }
 
+/// Number of open connections.
+#[derive(Default)]
+struct Connections {
+    count: Mutex<usize>,
+    one_ended: Condvar,
+}
+
+impl Connections {
+    fn count(&self) -> MutexGuard<'_, usize> {
+        self.count.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits up to [`CLOSING`] until there is room for one more connection; returns whether there is.
+    fn have_room(&self) -> bool {
+        let waited = self.one_ended.wait_timeout_while(self.count(), CLOSING, |count| *count >= MAX_CONNECTIONS);
+        *waited.unwrap_or_else(PoisonError::into_inner).0 < MAX_CONNECTIONS
+    }
+
+    fn ended(&self) {
+        *self.count() -= 1;
+        self.one_ended.notify_all();
+    }
+}
+
 /// Counts a connection as open until it is dropped.
-struct Counted<'a>(&'a AtomicUsize);
+struct Counted<'a>(&'a Connections);
 
 impl Drop for Counted<'_> {
     fn drop(&mut self) {
-        self.0.fetch_sub(1, SeqCst);
+        self.0.ended();
     }
 }
 
@@ -63,7 +86,7 @@ impl Server {
             guard,
             order,
             desks: Mutex::default(),
-            connections: AtomicUsize::new(0),
+            connections: Connections::default(),
             silent: Mutex::default(),
         })
     }
@@ -87,13 +110,12 @@ impl Server {
                     continue;
                 }
             };
-            let before = server.connections.fetch_add(1, SeqCst);
-            if before >= MAX_CONNECTIONS && (before >= MOST_CONNECTIONS || !server.makes_room()) {
-                server.connections.fetch_sub(1, SeqCst);
+            if !server.makes_room() {
                 let _ = stream.set_nonblocking(true);
                 let _ = Answer::refused(503, "too many connections").send(&mut stream);
                 continue;
             }
+            *server.connections.count() += 1;
             // If the stream cannot be cloned, the connection cannot be closed from here, and ends by its timeout.
             if let Ok(held) = stream.try_clone() {
                 server.silent().insert(number, held);
@@ -107,7 +129,7 @@ impl Server {
             if let Err(error) = spawned {
                 // The closure was dropped, and the connection with it.
                 server.silent().remove(&number);
-                server.connections.fetch_sub(1, SeqCst);
+                server.connections.ended();
                 if error.kind() != io::ErrorKind::WouldBlock {
                     return error;
                 }
@@ -119,11 +141,18 @@ impl Server {
         self.silent.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Closes the connection that has been silent for longest; returns whether there was one.
+    /// Returns whether there is room for one more connection. If there is none, closes the connection that has been silent for longest
+    /// and waits until it has ended: a connection whose request has just come is read in the meantime, however fast others come.
     fn makes_room(&self) -> bool {
+        if *self.connections.count() < MAX_CONNECTIONS {
+            return true;
+        }
         let oldest = self.silent().pop_first();
-        // A connection that has already ended makes room as well.
-        oldest.inspect(|(_, stream)| drop(stream.shutdown(Shutdown::Both))).is_some()
+        oldest.is_some_and(|(_, stream)| {
+            // A connection that has already ended makes room as well.
+            let _ = stream.shutdown(Shutdown::Both);
+            self.connections.have_room()
+        })
     }
 
     fn answer(&self, number: u64, stream: &mut TcpStream) {
