@@ -33,14 +33,7 @@ impl Factors {
             if lu[p * n + k] == 0.0 || lu[p * n + k].is_nan() {
                 return None;
             }
-            for i in k + 1..n {
-                let r = order[i];
-                let factor = lu[r * n + k] / lu[p * n + k];
-                lu[r * n + k] = factor;
-                for j in k + 1..n {
-                    lu[r * n + j] -= factor * lu[p * n + j];
-                }
-            }
+            eliminate(&mut lu, n, &order, k);
         }
         Some(Factors { lu, order, n })
     }
@@ -52,13 +45,50 @@ impl Factors {
             let row = self.order[i] * n;
             x[i] = b[self.order[i]] - (0..i).map(|j| self.lu[row + j] * x[j]).sum::<f64>();
         }
-        for i in (0..n).rev() {
-            let row = self.order[i] * n;
-            let sum: f64 = (i + 1..n).map(|j| self.lu[row + j] * x[j]).sum();
-            x[i] = (x[i] - sum) / self.lu[row + i];
-        }
+        substitute_back(&self.lu, n, &self.order, &mut x);
         x
     }
+}
+
+/// Eliminates unknown `k` from the rows after the one at `k` in `order`, and leaves the factors in its place. Rows are `width` long.
+fn eliminate(rows: &mut [f64], width: usize, order: &[usize], k: usize) {
+    let p = order[k] * width;
+    for r in order[k + 1..].iter().map(|r| r * width) {
+        let factor = rows[r + k] / rows[p + k];
+        rows[r + k] = factor;
+        for j in k + 1..width {
+            rows[r + j] -= factor * rows[p + j];
+        }
+    }
+}
+
+/// Solves the upper triangle of eliminated rows in place: `x` holds the right side before and the unknowns afterwards.
+fn substitute_back(rows: &[f64], width: usize, order: &[usize], x: &mut [f64]) {
+    for i in (0..x.len()).rev() {
+        let row = order[i] * width;
+        let sum: f64 = (i + 1..x.len()).map(|j| rows[row + j] * x[j]).sum();
+        x[i] = (x[i] - sum) / rows[row + i];
+    }
+}
+
+/// Solves the square system `a x = b` (row-major, `b.len()` unknowns) by elimination without pivoting, which suits a positive definite
+/// matrix. `None` if the matrix is not positive definite.
+#[must_use]
+pub fn solve_definite(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
+    let n = b.len();
+    let width = n + 1;
+    let mut rows: Vec<f64> = (0..n).flat_map(|i| a[i * n..(i + 1) * n].iter().chain([&b[i]])).copied().collect();
+    let order: Vec<usize> = (0..n).collect();
+    for k in 0..n {
+        let pivot = rows[k * width + k];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        eliminate(&mut rows, width, &order, k);
+    }
+    let mut x: Vec<f64> = (0..n).map(|i| rows[i * width + n]).collect();
+    substitute_back(&rows, width, &order, &mut x);
+    x.iter().all(|v| v.is_finite()).then_some(x)
 }
 
 /// Returns the least-squares solution of `a x = b` with `columns` unknowns, by Householder reflections. `None` if there are
@@ -115,6 +145,10 @@ mod tests {
             assert!((x - (j as f64 + 1.0)).abs() < 1e-8);
         }
         assert!(solve(&[1.0, 2.0, 2.0, 4.0], &[1.0, 2.0]).is_none());
+        for (j, x) in solve_definite(&a, &b).expect("positive definite").iter().enumerate() {
+            assert!((x - (j as f64 + 1.0)).abs() < 1e-8);
+        }
+        assert!(solve_definite(&[1.0, 2.0, 2.0, 1.0], &[1.0, 2.0]).is_none());
     }
 
     #[test]

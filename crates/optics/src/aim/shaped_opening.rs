@@ -9,6 +9,7 @@
 use super::nodes::Node;
 use glam::DVec3;
 use spectra_core::RayBatch;
+use spectra_core::linear::solve_definite;
 use spectra_core::loss::ALIVE;
 use spectra_core::math::sin_cos_turns;
 use spectra_lens::{Aperture, ApertureShape};
@@ -223,7 +224,7 @@ impl Fit {
         self.count += 1;
     }
 
-    /// Solves the normal equations. A positive definite system needs no pivoting; it is scaled because powers of mm differ in size.
+    /// Solves the normal equations, scaled because powers of mm differ in size. Returns `None` if there are too few points.
     fn solved(mut self) -> Option<[f64; TERMS]> {
         if self.count < 2 * TERMS {
             return None;
@@ -236,24 +237,7 @@ impl Fit {
             self.right[i] *= scale[i];
             self.rows[i][i] += 1e-13;
         }
-        for i in 0..TERMS {
-            let pivot = self.rows[i][i];
-            if pivot.is_nan() || pivot <= 0.0 {
-                return None;
-            }
-            for k in i + 1..TERMS {
-                let factor = self.rows[k][i] / pivot;
-                for j in i..TERMS {
-                    self.rows[k][j] -= factor * self.rows[i][j];
-                }
-                self.right[k] -= factor * self.right[i];
-            }
-        }
-        let mut x = [0.0; TERMS];
-        for i in (0..TERMS).rev() {
-            let known: f64 = (i + 1..TERMS).map(|j| self.rows[i][j] * x[j]).sum();
-            x[i] = (self.right[i] - known) / self.rows[i][i];
-        }
+        let x = solve_definite(self.rows.as_flattened(), &self.right)?;
         Some(std::array::from_fn(|i| x[i] * scale[i])).filter(|x: &[f64; TERMS]| x.iter().all(|v| v.is_finite()))
     }
 }
