@@ -3,6 +3,7 @@
 use super::fan;
 use super::part::AimPart;
 use super::table::{FIELDS, SLOTS, Table};
+use super::toward::toward;
 use glam::DVec3;
 use spectra_core::isa::Vectorized;
 use spectra_core::math::{concentric_disk, polar_disk};
@@ -175,17 +176,10 @@ fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         let tx = radial * ex - across * ey;
         let ty = radial * ey + across * ex;
         let tz = eye + (f[2] + p * f[4]);
-        let (dx, dy, dz) = (tx - px, ty - py, tz - pz);
-        let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
-        let (dl, dm, dn) = (dx * inverse, dy * inverse, dz * inverse);
         let area = f[8];
-        // Solid angle of the area as seen from the point.
-        let cosine = ((dl * ex + dm * ey) * f[6] + dn * f[7]).abs();
-        let mut solid_angle = area * cosine * inverse * inverse;
-        if BACKWARD {
-            // The direction holds the imager's normal.
-            solid_angle *= positive(dl * l[i] + dm * m[i] + dn * n[i]);
-        }
+        let facing = [l[i], m[i], n[i]];
+        let ([dl, dm, dn], solid_angle) =
+            toward::<BACKWARD>([px, py, pz], [tx, ty, tz], [ex, ey], [f[6], f[7]], area, facing);
         weight[i] *= solid_angle;
         let none = area == 0.0;
         dark += u64::from(none);
@@ -194,10 +188,4 @@ fn aim_loop<const BACKWARD: bool, const RINGS: bool, const MANY: bool>(
         (l[i], m[i], n[i]) = (dl, dm, dn);
     }
     dark as usize
-}
-
-/// Returns the larger of a number and 0, in one instruction on every tier.
-#[inline(always)]
-fn positive(value: f64) -> f64 {
-    if value > 0.0 { value } else { 0.0 }
 }

@@ -5,6 +5,7 @@ use super::outline::{Outlines, RING, STRIDE, TURN_STEPS};
 use super::part::{AimPart, RIM_EVERY};
 use super::star_region::CORNERS;
 use super::table::{SLOTS, Table};
+use super::toward::toward;
 use spectra_core::isa::Vectorized;
 use spectra_core::{Loss, RayBatch};
 
@@ -298,17 +299,10 @@ fn turn<const BACKWARD: bool>(
         let tx = radial * ex - across * ey;
         let ty = radial * ey + across * ex;
         let tz = table.eye_z_mm + (zz[i] - along * nr[i]);
-        let (dx, dy, dz) = (tx - x[i], ty - y[i], tz - z[i]);
-        let inverse = 1.0 / (dx * dx + dy * dy + dz * dz).sqrt();
-        let (dl, dm, dn) = (dx * inverse, dy * inverse, dz * inverse);
-        let cosine = ((dl * ex + dm * ey) * nr[i] + dn * nz[i]).abs();
         let mm2 = 0.5 * CORNERS as f64 * stands_for * doubled * (size * size) * (grown_a * grown_c);
-        let mut solid_angle = mm2 * cosine * inverse * inverse;
-        if BACKWARD {
-            // The direction holds the imager's normal.
-            let facing = dl * l[i] + dm * m[i] + dn * n[i];
-            solid_angle *= if facing > 0.0 { facing } else { 0.0 };
-        }
+        let (point, facing) = ([x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+        let ([dl, dm, dn], solid_angle) =
+            toward::<BACKWARD>(point, [tx, ty, tz], [ex, ey], [nr[i], nz[i]], mm2, facing);
         let none = area[i] == 0.0;
         weight[i] *= if none { 0.0 } else { solid_angle };
         dark += u64::from(none);

@@ -48,6 +48,7 @@ mod sphere;
 mod star_region;
 mod table;
 mod task;
+mod toward;
 
 pub use aiming::AimPattern;
 pub use effort::Effort;
