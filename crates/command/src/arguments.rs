@@ -8,6 +8,7 @@ use crate::lens::LensArguments;
 use crate::new::NewArguments;
 use crate::picture::PictureArguments;
 use crate::quantity::{parse, percent};
+use crate::report::JsonReport;
 use crate::set::Set;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
@@ -272,9 +273,8 @@ pub(crate) struct Doc {
     /// Show every stage and key whose name or description contains this word.
     #[arg(long, value_name = "WORD", conflicts_with = "name")]
     pub search: Option<String>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Arguments of `spectra schema`.
@@ -361,6 +361,19 @@ pub(crate) enum OtherBench {
     Ghosts(BenchGhosts),
 }
 
+/// Scenes that are rendered several times, each time with another seed.
+#[derive(Debug, Args)]
+pub(crate) struct SeededScenes {
+    /// Scene files, or names of bundled scenes.
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub set: Set,
+    /// Number of seeds, at least 2.
+    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(2..=1000))]
+    pub seeds: u16,
+}
+
 /// Arguments of `spectra bench ghosts`.
 #[derive(Debug, Args)]
 #[command(
@@ -373,14 +386,8 @@ pub(crate) enum OtherBench {
     after_long_help = "Example: one sun through an uncoated lens of 1927\n  spectra bench ghosts bench/ghosts-sun --seeds 8"
 )]
 pub(crate) struct BenchGhosts {
-    /// Scene files, or names of bundled scenes.
-    #[arg(value_name = "SCENE", required = true)]
-    pub scenes: Vec<PathBuf>,
     #[command(flatten)]
-    pub set: Set,
-    /// Number of seeds, at least 2.
-    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(2..=1000))]
-    pub seeds: u16,
+    pub renders: SeededScenes,
     /// Number of render threads; all processors if not given.
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -402,14 +409,8 @@ pub(crate) struct BenchGhosts {
         spectra bench noise bench/noise-flat bench/noise-portrait bench/noise-lights bench/noise-night --directions auto"
 )]
 pub(crate) struct BenchNoise {
-    /// Scene files, or names of bundled scenes.
-    #[arg(value_name = "SCENE", required = true)]
-    pub scenes: Vec<PathBuf>,
     #[command(flatten)]
-    pub set: Set,
-    /// Number of seeds, at least 2.
-    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(2..=1000))]
-    pub seeds: u16,
+    pub renders: SeededScenes,
     /// Longest time to trace for each seed, in seconds.
     #[arg(long, value_name = "S", default_value = "10", value_parser = clap::value_parser!(u16).range(1..=36000))]
     pub seconds: u16,

@@ -74,16 +74,16 @@ pub(crate) fn bench(arguments: &Bench, isa: Isa) -> Outcome {
 fn noise(arguments: &BenchNoise, isa: Isa) -> Outcome {
     let threads = arguments.threads.map(usize::from);
     let settings = NoiseSettings {
-        seeds: arguments.seeds.into(),
+        seeds: arguments.renders.seeds.into(),
         seconds: arguments.seconds.into(),
         directions: arguments.directions.clone(),
         threads: threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
         isa,
     };
     let mut rows = Vec::new();
-    for scene in &arguments.scenes {
+    for scene in &arguments.renders.scenes {
         let mut tell = |line: &str| console::note(line);
-        rows.extend(spectra_bench::noise(scene, &arguments.set.overrides, &settings, &mut tell)?);
+        rows.extend(spectra_bench::noise(scene, &arguments.renders.set.overrides, &settings, &mut tell)?);
     }
     if arguments.json {
         console::pretty_json(&rows)?;
@@ -99,15 +99,15 @@ fn noise(arguments: &BenchNoise, isa: Isa) -> Outcome {
 fn ghosts(arguments: &BenchGhosts, isa: Isa) -> Outcome {
     let threads = arguments.threads.map(usize::from);
     let settings = GhostSettings {
-        seeds: arguments.seeds.into(),
+        seeds: arguments.renders.seeds.into(),
         threads: threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
         isa,
         processor_s,
     };
     let mut rows = Vec::new();
-    for scene in &arguments.scenes {
+    for scene in &arguments.renders.scenes {
         let mut tell = |line: &str| console::note(line);
-        rows.push(spectra_bench::ghosts(scene, &arguments.set.overrides, &settings, &mut tell)?);
+        rows.push(spectra_bench::ghosts(scene, &arguments.renders.set.overrides, &settings, &mut tell)?);
     }
     if arguments.json {
         console::pretty_json(&rows)?;

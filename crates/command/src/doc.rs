@@ -18,7 +18,7 @@ const WIDTH: usize = 100;
 pub(crate) fn doc(arguments: &Doc) -> Outcome {
     if let Some(word) = &arguments.search {
         let hits = search(word)?;
-        if arguments.json {
+        if arguments.report.json {
             console::pretty_json(&hits.iter().map(Hit::to_json).collect::<Vec<_>>())?;
         } else {
             console::out(&hits.iter().map(Hit::text).collect::<String>())?;
@@ -26,7 +26,7 @@ pub(crate) fn doc(arguments: &Doc) -> Outcome {
         return Ok(DONE);
     }
     let page = find(arguments.name.as_deref().unwrap_or_default().trim())?;
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&page.to_json())?;
     } else {
         console::out(&page.text())?;

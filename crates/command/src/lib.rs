@@ -31,6 +31,7 @@ mod new;
 mod outcome;
 mod picture;
 mod quantity;
+mod report;
 mod run;
 mod schema;
 mod set;

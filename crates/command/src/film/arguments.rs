@@ -1,6 +1,7 @@
 //! Command-line arguments of `spectra film`.
 
 use crate::quantity::percent;
+use crate::report::JsonReport;
 use crate::set::Set;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -94,18 +95,24 @@ pub(crate) struct FilmLamp {
     /// The light that the lamp is compared with.
     #[arg(long, value_name = "NAME", default_value = "D55")]
     pub reference: String,
+    #[command(flatten)]
+    pub viewing: Viewing,
+    /// Output figure, FILE.svg or FILE.png.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub report: JsonReport,
+}
+
+/// Options for the way from the developed film to a picture.
+#[derive(Debug, Args)]
+pub(crate) struct Viewing {
     /// How the film is viewed: print, negative, scan, projection; the usual way for the stock if not given.
     #[arg(long, value_name = "VIEW")]
     pub view: Option<String>,
     /// The print stock or color paper; the one by the stock's maker if not given.
     #[arg(long, value_name = "NAME")]
     pub print: Option<String>,
-    /// Output figure, FILE.svg or FILE.png.
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// Arguments of `spectra film develop`.
@@ -217,12 +224,8 @@ pub(crate) struct FilmKeys {
     /// Push processing in stops; pull if negative.
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     pub push: Option<String>,
-    /// How the film is viewed: print, negative, scan, projection; the usual way for the stock if not given.
-    #[arg(long, value_name = "VIEW")]
-    pub view: Option<String>,
-    /// The print stock or color paper; the one by the stock's maker if not given.
-    #[arg(long, value_name = "NAME")]
-    pub print: Option<String>,
+    #[command(flatten)]
+    pub viewing: Viewing,
     /// Contrast grade of the black-and-white paper, 0 to 5 or auto; 2 if not given.
     #[arg(long, value_name = "GRADE")]
     pub grade: Option<String>,
@@ -260,9 +263,8 @@ pub(crate) struct FilmCube {
     pub stops: f64,
     #[command(flatten)]
     pub keys: FilmKeys,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Parses the number of `--stops`.

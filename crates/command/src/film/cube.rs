@@ -30,7 +30,7 @@ pub(super) fn cube(arguments: &FilmCube) -> Outcome {
     write_atomically(&output, |out| Ok(out.write_all(file.text.as_bytes())?)).map_err(Failure::from)?;
     let ([mean, p95, most], [patches, worst]) = (file.errors.colors, file.errors.reflectances);
     let left_out = ["scatter", "halation", "adjacency", "grain", "optics"];
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&json!({
             "file": output.display().to_string(),
             "film": file.film,

@@ -51,15 +51,15 @@ pub(super) fn settings(keys: &FilmKeys, said: &str, stock: &str) -> Vec<Setting>
         ("film.iso", "--iso", &keys.iso),
         ("film.development", "--development", &keys.development),
         ("film.push", "--push", &keys.push),
-        ("film.view", "--view", &keys.view),
-        ("film.print", "--print", &keys.print),
+        ("film.view", "--view", &keys.viewing.view),
+        ("film.print", "--print", &keys.viewing.print),
         ("film.paper.grade", "--grade", &keys.grade),
         ("film.scan", "--scan", &keys.scan),
     ] {
         all.extend(value.as_ref().map(|value| set(path, option, value)));
     }
     // Only a scan has a scale, so `--scan` alone implies the view `scan`.
-    if let (Some(scale), None) = (&keys.scan, &keys.view) {
+    if let (Some(scale), None) = (&keys.scan, &keys.viewing.view) {
         all.push(following("film.view", format!("--scan {scale}"), "scan"));
     }
     all

@@ -95,7 +95,7 @@ pub(crate) fn lamp(arguments: &FilmLamp) -> Outcome {
         console::note(&format!("wrote {}", path.display()));
     }
     let parting = parting(&rows);
-    if arguments.json {
+    if arguments.report.json {
         let patches: Vec<_> = rows
             .iter()
             .map(|r| json!({ "name": r.name, "eye": r.apart[0], "layers": r.apart[1], "film": r.apart[2] }))
@@ -143,8 +143,8 @@ fn parting(rows: &[LampPatch]) -> Vec<&LampPatch> {
 fn film(arguments: &FilmLamp, stock: &Stock) -> Result<FilmInLight, Failure> {
     let called = called(&arguments.stock)?;
     let mut settings = vec![set("film.stock", "STOCK", &called)];
-    settings.extend(arguments.view.as_ref().map(|view| set("film.view", "--view", view)));
-    settings.extend(arguments.print.as_ref().map(|print| set("film.print", "--print", print)));
+    settings.extend(arguments.viewing.view.as_ref().map(|view| set("film.view", "--view", view)));
+    settings.extend(arguments.viewing.print.as_ref().map(|print| set("film.print", "--print", print)));
     let made_for = set("source.illuminant", "STOCK", &stock.reference_illuminant);
     Ok(FilmInLight::new(&settings, &made_for)?)
 }

@@ -1,6 +1,7 @@
 //! Command-line arguments of `spectra glass`.
 
 use crate::quantity::wavelength;
+use crate::report::JsonReport;
 use clap::{Args, Subcommand, ValueEnum};
 use spectra_core::params::Wavelength;
 use spectra_glass::{Category, Era, LineTriple};
@@ -195,9 +196,8 @@ pub(crate) struct GlassMatch {
     pub limit: Option<u16>,
     #[command(flatten)]
     pub own: OwnCatalogues,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Dispersion formula that can be fitted.
@@ -261,9 +261,8 @@ pub(crate) struct GlassFit {
 pub(crate) struct GlassCheck {
     #[command(flatten)]
     pub own: OwnCatalogues,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 fn temperature(text: &str) -> Result<f64, String> {

@@ -31,7 +31,7 @@ struct DeviationRow {
 /// Compares computed values with listed ones, and writes the result to standard output.
 pub(crate) fn check(arguments: &GlassCheck) -> Outcome {
     let report = report(catalogue(&arguments.own)?.check_listed());
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&report)?;
     } else {
         console::out(&text(&report))?;

@@ -93,7 +93,7 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
             report(&catalogue, wanted, &query)
         })
         .collect();
-    match (&arguments.lens, arguments.json) {
+    match (&arguments.lens, arguments.report.json) {
         (None, true) => console::pretty_json(&reports[0])?,
         (Some(_), true) => console::pretty_json(&reports)?,
         (_, false) => console::out(&reports.iter().map(text).collect::<Vec<_>>().join("\n"))?,

@@ -2,6 +2,7 @@
 
 use crate::glass::OwnCatalogues;
 use crate::quantity::{parse, wavelength};
+use crate::report::JsonReport;
 use clap::{Args, Subcommand};
 use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Ratio, Wavelength};
 use spectra_optics::Criterion;
@@ -61,9 +62,8 @@ pub(crate) struct LensScale {
     /// Overwrite the output file if it exists.
     #[arg(long)]
     pub force: bool,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Arguments of `spectra lens compare`.
@@ -84,9 +84,8 @@ pub(crate) struct LensCompare {
     pub options: LensOptions,
     #[command(flatten)]
     pub light: OneLight,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Arguments of `spectra lens draw`.
@@ -294,9 +293,8 @@ pub(crate) struct LensInfo {
     /// Diffuse reflectance of the film or sensor, for --glare; 0 if not given, because ISO 9358 measures the lens alone.
     #[arg(long, value_name = "PART", value_parser = part, requires = "glare")]
     pub film_reflectance: Option<f64>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Arguments of `spectra lens ghosts`.

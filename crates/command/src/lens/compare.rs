@@ -11,7 +11,7 @@ use spectra_optics::{ApertureError, Optics, stop_down};
 pub(crate) fn compare(arguments: &LensCompare) -> Outcome {
     let lenses = arguments.lenses.iter().map(|name| one(arguments, name)).collect::<Result<Vec<_>, _>>()?;
     let comparison = Comparison::of(&lenses, one_light(&arguments.light));
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&comparison)?;
     } else {
         console::out(&comparison.to_string())?;

@@ -51,5 +51,5 @@ pub(crate) fn scale(arguments: &LensScale) -> Outcome {
     if output.is_some() {
         console::note(&format!("focal length {before} -> {after}, all lengths multiplied by {factor:.6}"));
     }
-    deliver(&scaled.name, scaled.surfaces().count(), output, text.as_bytes(), &scaled.left_out, arguments.json)
+    deliver(&scaled.name, scaled.surfaces().count(), output, text.as_bytes(), &scaled.left_out, arguments.report.json)
 }

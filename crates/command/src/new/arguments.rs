@@ -57,7 +57,7 @@ pub(crate) struct NewPlugin {
     pub core: Option<PathBuf>,
 }
 
-/// Arguments of `spectra new scene` and `spectra new lens`.
+/// Arguments of `spectra new scene` and `spectra new lens`, and of other commands that create a file.
 #[derive(Debug, Args)]
 pub(crate) struct NewFile {
     /// Name of the file; `.yaml` is added.
@@ -77,15 +77,11 @@ pub(crate) struct NewFile {
     after_long_help = "Example: a film based on Tri-X\n  spectra new film my-pan --like tri-x"
 )]
 pub(crate) struct NewFilm {
-    /// Name of the file; `.yaml` is added.
-    #[arg(value_name = "NAME")]
-    pub name: String,
     /// The stock to start from: a bundled one, or a file.
     #[arg(long, value_name = "STOCK", default_value = "kodak-tri-x-400")]
     pub like: String,
-    /// Folder to create the file in.
-    #[arg(long, value_name = "FOLDER", default_value = ".")]
-    pub path: PathBuf,
+    #[command(flatten)]
+    pub file: NewFile,
 }
 
 /// Kind of stage that has a template for plugins.

@@ -11,8 +11,8 @@ use std::fmt::Write;
 /// Writes the stock file and prints the next steps.
 pub(super) fn film(arguments: &NewFilm) -> Outcome {
     let (like, stock) = stock_called(&arguments.like)?;
-    let name = arguments.name.strip_suffix(".yaml").unwrap_or(&arguments.name);
-    let path = written(name, &arguments.path, &text(name, &like, &stock))?;
+    let name = arguments.file.name.strip_suffix(".yaml").unwrap_or(&arguments.file.name);
+    let path = written(name, &arguments.file.path, &text(name, &like, &stock))?;
     let figure = path.replace(".yaml", ".svg");
     console::out(&format!(
         "{path} is ready; next:\n  spectra film info {path}\n  spectra film plot {path} -o {figure}\n"

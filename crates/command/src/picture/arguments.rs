@@ -1,6 +1,7 @@
 //! Command-line arguments of `spectra picture`.
 
 use crate::eye::EyeName;
+use crate::report::JsonReport;
 use clap::{Args, Subcommand};
 use spectra_analysis::picture::Rectangle;
 use std::path::PathBuf;
@@ -170,9 +171,8 @@ pub(crate) struct PictureSpectrum {
     /// Chromaticity diagram to write, FILE.svg or FILE.png.
     #[arg(long, value_name = "FILE")]
     pub diagram: Option<PathBuf>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Arguments of `spectra picture compare`.
@@ -198,9 +198,8 @@ pub(crate) struct PictureCompare {
     /// Map of CIEDE2000 to write, FILE.png or FILE.svg.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {

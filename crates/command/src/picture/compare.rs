@@ -70,7 +70,7 @@ pub(super) fn compare(arguments: &PictureCompare) -> Outcome {
         }),
         channels: difference.channels,
     };
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&report)?;
     } else {
         console::out(&text(&report))?;

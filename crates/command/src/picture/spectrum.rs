@@ -76,7 +76,7 @@ pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
         console::note(&format!("wrote {}", diagram.display()));
     }
     let reports: Vec<Report> = areas.into_iter().map(|area| report(area, &picture)).collect();
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&serde_json::json!({ "file": path.display().to_string(), "areas": reports }))?;
     } else {
         console::out(&reports.iter().map(text).collect::<Vec<_>>().join("\n"))?;

@@ -1,6 +1,7 @@
 //! Command-line arguments of `spectra spectrum`.
 
 use crate::eye::EyeName;
+use crate::report::JsonReport;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -193,9 +194,8 @@ pub(crate) struct SpectrumFit {
     /// Output file, FILE.yaml.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Arguments of `spectra spectrum product`.
@@ -222,9 +222,8 @@ pub(crate) struct SpectrumProduct {
     /// Output file: FILE.svg or FILE.png for a figure, FILE.csv for the errors. Can be repeated.
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Kind of random numbers.
@@ -277,9 +276,19 @@ pub(crate) struct SpectrumDraw {
     /// Output file, FILE.csv; standard output if not given.
     #[arg(short, long, value_name = "FILE", conflicts_with = "json")]
     pub output: Option<PathBuf>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
+}
+
+/// Color models, and the light that they take as white.
+#[derive(Debug, Args)]
+pub(crate) struct ColorModels {
+    /// A color model, with its keys in braces if it has any; all models if not given. Can be repeated.
+    #[arg(long, value_name = "NAME", default_value = "all")]
+    pub model: Vec<String>,
+    /// The light that counts as white.
+    #[arg(long, value_name = "NAME", default_value = "D65")]
+    pub illuminant: String,
 }
 
 /// Arguments of `spectra spectrum color`.
@@ -294,15 +303,10 @@ pub(crate) struct SpectrumColor {
     /// Red, green and blue from 0 to 255, or #ff8040.
     #[arg(value_name = "COLOR", required = true, num_args = 1..=3)]
     pub color: Vec<String>,
-    /// A color model, with its keys in braces if it has any; all models if not given. Can be repeated.
-    #[arg(long, value_name = "NAME", default_value = "all")]
-    pub model: Vec<String>,
-    /// The light that counts as white.
-    #[arg(long, value_name = "NAME", default_value = "D65")]
-    pub illuminant: String,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub models: ColorModels,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Arguments of `spectra spectrum models`.
@@ -314,21 +318,16 @@ pub(crate) struct SpectrumColor {
     after_long_help = "Example:\n  spectra spectrum models --model smooth --model 'fraunhofer{secondary: [F, D]}' -o colors.png"
 )]
 pub(crate) struct SpectrumModels {
-    /// A color model, with its keys in braces if it has any; all models if not given. Can be repeated.
-    #[arg(long, value_name = "NAME", default_value = "all")]
-    pub model: Vec<String>,
-    /// The light that counts as white.
-    #[arg(long, value_name = "NAME", default_value = "D65")]
-    pub illuminant: String,
+    #[command(flatten)]
+    pub models: ColorModels,
     /// Step between colors, 1 to 255.
     #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u8).range(1..=255))]
     pub step: u8,
     /// Output picture, FILE.svg or FILE.png.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Write a JSON object to standard output.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: JsonReport,
 }
 
 /// Arguments of `spectra spectrum list`.

@@ -1,6 +1,6 @@
 //! `spectra spectrum color` and `spectra spectrum models`: convert colors to spectra and back to colors.
 
-use super::arguments::{SpectrumColor, SpectrumModels};
+use super::arguments::{ColorModels, SpectrumColor, SpectrumModels};
 use super::{files, load_illuminant};
 use crate::console;
 use crate::formatting::counted;
@@ -31,11 +31,11 @@ fn entries() -> Vec<&'static Entry<dyn ColorModel>> {
 }
 
 /// Builds the requested models. `wanted` has names, with keys in braces if any; `all` means every registered model.
-fn models(wanted: &[String], illuminant: &str) -> Result<Vec<Model>, Failure> {
+fn models(ColorModels { model, illuminant }: &ColorModels) -> Result<Vec<Model>, Failure> {
     let light = load_illuminant(illuminant)?.to_power(&BAND);
     let all = || entries().iter().map(|e| e.name.to_owned()).collect::<Vec<_>>();
     let names: Vec<String> =
-        wanted.iter().flat_map(|w| if w.trim() == "all" { all() } else { vec![w.trim().to_owned()] }).collect();
+        model.iter().flat_map(|w| if w.trim() == "all" { all() } else { vec![w.trim().to_owned()] }).collect();
     let files = files();
     let build = |name: String| {
         let text = match name.split_once('{') {
@@ -77,7 +77,7 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
     let srgb = RgbSpace::srgb();
     let linear = srgb.decode(rgb.map(from_u8));
     let mut trips = Vec::new();
-    for model in &models(&arguments.model, &arguments.illuminant)? {
+    for model in &models(&arguments.models)? {
         let trip = round_trip(model)?;
         let back = trip.code(rgb);
         let power = model.model.spectrum(linear);
@@ -97,9 +97,9 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
             lines: power.lines.iter().filter(|l| l.power > 0.0).count(),
         });
     }
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&serde_json::json!({
-            "srgb": rgb, "srgb_linear": linear, "illuminant": arguments.illuminant.trim(), "models": trips,
+            "srgb": rgb, "srgb_linear": linear, "illuminant": arguments.models.illuminant.trim(), "models": trips,
         }))?;
         return Ok(DONE);
     }
@@ -109,7 +109,7 @@ pub(crate) fn color(arguments: &SpectrumColor) -> Outcome {
         linear[0],
         linear[1],
         linear[2],
-        arguments.illuminant.trim()
+        arguments.models.illuminant.trim()
     );
     let width = trips.iter().map(|t| t.model.len()).max().unwrap_or(0).max(5);
     // Writing to a String cannot fail.
@@ -171,7 +171,7 @@ pub(crate) fn measure(arguments: &SpectrumModels) -> Outcome {
     if let Some(path) = &arguments.output {
         Format::of(path).map_err(|e| Failure::Input(e.to_string()))?;
     }
-    let models = models(&arguments.model, &arguments.illuminant)?;
+    let models = models(&arguments.models)?;
     let mut measured = Vec::new();
     for model in &models {
         let e = round_trip(model)?.errors(arguments.step);
@@ -185,9 +185,9 @@ pub(crate) fn measure(arguments: &SpectrumModels) -> Outcome {
         canvas.write(path).map_err(|e| Failure::Failed(e.to_string()))?;
         console::note(&format!("wrote {}", path.display()));
     }
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&serde_json::json!({
-            "illuminant": arguments.illuminant.trim(), "step": arguments.step, "models": measured,
+            "illuminant": arguments.models.illuminant.trim(), "step": arguments.step, "models": measured,
         }))?;
         return Ok(DONE);
     }
@@ -195,7 +195,7 @@ pub(crate) fn measure(arguments: &SpectrumModels) -> Outcome {
     let mut out = format!(
         "8-bit colors in steps of {}, under {}: to a spectrum and back to a color; differences in 255ths\n\n",
         arguments.step,
-        arguments.illuminant.trim()
+        arguments.models.illuminant.trim()
     );
     // Writing to a String cannot fail.
     let _ =

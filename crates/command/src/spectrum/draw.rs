@@ -57,7 +57,7 @@ pub(crate) fn draw(arguments: &SpectrumDraw) -> Outcome {
         let number = (line[i] != CONTINUUM).then_some(line[i]);
         (nm[i], number, weight[i], light_at(i), grid.interpolate(response, nm[i]), probability)
     });
-    if arguments.json {
+    if arguments.report.json {
         let rows: Vec<_> = rows
             .map(|(nm, line, weight, light, response, density)| {
                 json!({ "wavelength_nm": nm, "line": line, "weight": weight, "light": light, "response": response, "density": density })

@@ -90,7 +90,7 @@ pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
         };
         console::warning(&format!("{below}; {then}"));
     }
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&report)?;
     } else {
         console::out(&text(&report))?;

@@ -61,7 +61,7 @@ pub(super) fn local(arguments: &SpectrumFit, at_nm: f64, shape: &SpectralFunctio
         close_nm: good.map(|term| close(shape, term, at_nm)),
         none_because: term.as_ref().err().map(ToString::to_string),
     };
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&report)?;
     } else {
         console::out(&text(&report))?;

@@ -36,7 +36,7 @@ pub(crate) fn product(arguments: &SpectrumProduct) -> Outcome {
         }
         console::note(&format!("wrote {}", path.display()));
     }
-    if arguments.json {
+    if arguments.report.json {
         console::pretty_json(&chain)?;
     } else {
         console::out(&text(&chain))?;
