@@ -21,18 +21,7 @@ impl Source {
 
     /// Creates a fault at a word of the text, which must be a slice of [`Source::text`].
     pub(crate) fn fault(&self, word: &str, message: impl Into<String>) -> Fault {
-        let text = self.text();
-        let offset = (word.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize);
-        let span = match text.get(..offset) {
-            Some(before) if offset + word.len() <= text.len() => Span {
-                line: 1 + before.matches('\n').count(),
-                column: 1 + before.rsplit('\n').next().unwrap_or("").chars().count(),
-                offset,
-                len: word.len(),
-            },
-            _ => Span::default(),
-        };
-        Fault::new(message).at(Arc::clone(&self.file), span)
+        Fault::new(message).at(Arc::clone(&self.file), Span::of(word, self.text()))
     }
 
     /// Creates a fault that concerns the whole file.

@@ -61,18 +61,9 @@ impl TablePosition {
     #[must_use]
     pub fn span(&self) -> Span {
         let text = &self.text.text;
-        let line = text.split_inclusive('\n').nth(self.row.saturating_sub(1)).unwrap_or_default();
-        let start: usize = text.split_inclusive('\n').take(self.row.saturating_sub(1)).map(str::len).sum();
-        let trimmed = line.trim_end();
-        let (mut from, mut to) = (0, trimmed.len());
-        let field = self.column.checked_sub(1).and_then(|i| self.separator.fields(trimmed).get(i).copied());
-        if let Some(field) = field {
-            from = field.as_ptr() as usize - trimmed.as_ptr() as usize;
-            to = from + field.trim_end().len();
-            from += field.len() - field.trim_start().len();
-        }
-        let to = to.max(from);
-        Span { line: self.row, column: trimmed[..from].chars().count() + 1, offset: start + from, len: to - from }
+        let line = text.lines().nth(self.row.saturating_sub(1)).unwrap_or_default().trim_end();
+        let field = self.column.checked_sub(1).and_then(|i| self.separator.fields(line).get(i).copied());
+        Span::of(field.map_or(line, |field| field.trim_start().trim_end()), text)
     }
 }
 

@@ -24,6 +24,22 @@ impl Default for Span {
 }
 
 impl Span {
+    /// Returns the span of a part of a text, which must be a slice of it; otherwise the start of the file. A byte order mark does not
+    /// count as a character.
+    #[must_use]
+    pub fn of(part: &str, text: &str) -> Self {
+        let offset = (part.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize);
+        match text.get(..offset) {
+            Some(before) if offset + part.len() <= text.len() => {
+                let before = before.strip_prefix('\u{feff}').unwrap_or(before);
+                let line = 1 + before.matches('\n').count();
+                let column = 1 + before.rsplit('\n').next().unwrap_or("").chars().count();
+                Self { line, column, offset, len: part.len() }
+            }
+            _ => Self::default(),
+        }
+    }
+
     /// Returns the part of the span on its first line; messages point there if a value spans several lines.
     #[must_use]
     pub fn first_line(self, text: &str) -> Self {
@@ -74,5 +90,20 @@ impl fmt::Debug for SourceFile {
     /// Prints the name only, because every node refers to its file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "SourceFile({})", self.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slice_has_its_line_and_column() {
+        let text = "\u{feff}a,\u{e9},b\nc,d";
+        let span = |part: &str| Span::of(part, text);
+        assert_eq!(span(&text[8..9]), Span { line: 1, column: 5, offset: 8, len: 1 });
+        assert_eq!(span(&text[12..]), Span { line: 2, column: 3, offset: 12, len: 1 });
+        assert_eq!(span(&text[text.len()..]), Span { line: 2, column: 4, offset: 13, len: 0 });
+        assert_eq!(span("elsewhere"), Span::default());
     }
 }

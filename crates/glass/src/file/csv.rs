@@ -1,7 +1,7 @@
 //! Tables of n, and of k where it is known, as CSV; of one material or of several.
 
 use super::{OWN_MAKER, sensible};
-use crate::fit::samples::{CellPosition, IndexRow, Material, read_rows};
+use crate::fit::samples::{IndexRow, Material, read_rows};
 use crate::{Category, Extinction, Formula, Glass, Table};
 use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Faults, SourceFile, Span};
@@ -17,10 +17,7 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
         return Err(Fault::new(format!("{name}: more than {MAX_ROWS} rows")).into());
     }
     let file = Arc::new(SourceFile::new(name, text));
-    let at = |place: CellPosition, text: String| {
-        let CellPosition { line, offset, column, len } = place;
-        Fault::new(text).at(Arc::clone(&file), Span { line, column, offset, len })
-    };
+    let at = |place: Span, message: String| Fault::new(message).at(Arc::clone(&file), place);
     let found = read_rows(text).map_err(|e| match e.hint {
         Some(hint) => at(e.place, e.message).hint(hint),
         None => at(e.place, e.message),
@@ -29,8 +26,8 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
     let rows = rows_of(&found, material, stem)?;
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
     if let Some(pair) = rows.windows(2).find(|pair| pair[1].wavelength_nm <= pair[0].wavelength_nm) {
-        let text = format!("{} nm is not above the wavelength of the row before", pair[1].wavelength_nm);
-        let fault = at(pair[1].place, text);
+        let message = format!("{} nm is not above the wavelength of the row before", pair[1].wavelength_nm);
+        let fault = at(Span::of(pair[1].cell, text), message);
         return Err(fault.hint("wavelengths must rise; a column `material` separates several tables").into());
     }
     let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.wavelength_nm, row.n)).collect();
@@ -45,7 +42,7 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
 }
 
 /// Returns the rows of the requested material, or of the only one.
-fn rows_of<'a>(found: &'a [Material], material: Option<&str>, shown: &str) -> Result<&'a [IndexRow], Fault> {
+fn rows_of<'a>(found: &'a [Material<'a>], material: Option<&str>, shown: &str) -> Result<&'a [IndexRow<'a>], Fault> {
     let names = || found.iter().filter_map(|(name, _)| name.as_deref());
     match (material, found) {
         (None, [(_, rows)]) => Ok(rows),

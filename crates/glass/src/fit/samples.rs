@@ -1,6 +1,7 @@
 //! Tables of measured indices, as text.
 
 use super::Sample;
+use spectra_core::params::Span;
 
 /// The samples of one material of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,64 +49,40 @@ struct Columns {
 
 /// A row of a table of indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct IndexRow {
+pub(crate) struct IndexRow<'a> {
     pub(crate) wavelength_nm: f64,
     pub(crate) n: f64,
     pub(crate) k: Option<f64>,
-    /// Place of the wavelength in the text.
-    pub(crate) place: CellPosition,
-}
-
-/// The place of a value in the text.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CellPosition {
-    /// Line, from 1.
-    pub(crate) line: usize,
-    /// Bytes from the start of the text.
-    pub(crate) offset: usize,
-    /// Characters from the start of the line, from 1.
-    pub(crate) column: usize,
-    /// Length, bytes.
-    pub(crate) len: usize,
+    /// The wavelength as written, a slice of the text.
+    pub(crate) cell: &'a str,
 }
 
 /// An error in a table, with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RowError {
-    pub(crate) place: CellPosition,
+    pub(crate) place: Span,
     pub(crate) message: String,
     pub(crate) hint: Option<&'static str>,
 }
 
 /// The rows of one material: its name if the file has a column for it, and the rows in the order of the file.
-pub(crate) type Material = (Option<String>, Vec<IndexRow>);
+pub(crate) type Material<'a> = (Option<String>, Vec<IndexRow<'a>>);
 
 /// The contents of a header, for messages.
 const HEAD: &str = "columns `wavelength_nm` (or `wavelength_um`), `n` and, where they are known, `k` and `material`";
 
 /// Reads a table of indices; all readers use this function. See [`read_csv`] for the format.
-pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
+pub(crate) fn read_rows(text: &str) -> Result<Vec<Material<'_>>, RowError> {
     let mut columns: Option<Columns> = None;
-    let mut found: Vec<Material> = Vec::new();
-    let mark = text.len() - text.strip_prefix('\u{feff}').unwrap_or(text).len();
-    let mut offset = mark;
-    for (i, whole) in text[mark..].split_inclusive('\n').enumerate() {
-        let start = offset;
-        offset += whole.len();
-        let line = whole.trim_end();
-        if line.trim().is_empty() || line.trim_start().starts_with('#') {
+    let mut found: Vec<Material<'_>> = Vec::new();
+    for line in text.strip_prefix('\u{feff}').unwrap_or(text).lines().map(str::trim_end) {
+        if line.is_empty() || line.trim_start().starts_with('#') {
             continue;
         }
         let values = split(line);
-        let place = |at: usize| {
-            let (from, len) = values
-                .get(at)
-                .map_or((line.len(), 0), |value| (value.as_ptr() as usize - line.as_ptr() as usize, value.len()));
-            CellPosition { line: i + 1, offset: start + from, column: line[..from].chars().count() + 1, len }
-        };
+        let cell = |at: usize| values.get(at).copied().unwrap_or(&line[line.len()..]);
         let number = |at: usize| values.get(at).and_then(|v| v.parse::<f64>().ok());
-        let fail =
-            |(at, message, hint): (usize, String, Option<&'static str>)| RowError { place: place(at), message, hint };
+        let fail = |(at, message, hint): Wrong| RowError { place: Span::of(cell(at), text), message, hint };
         if columns.is_none() {
             if number(0).is_some() && number(1).is_some() {
                 columns = Some(Columns { wavelength: 0, unit_nm: 1.0, index: 1, extinction: None, material: None });
@@ -116,7 +93,7 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
         }
         let Some(columns) = &columns else { continue };
         let (wavelength_nm, n, k) = row(columns, &values).map_err(fail)?;
-        let row = IndexRow { wavelength_nm, n, k, place: place(columns.wavelength) };
+        let row = IndexRow { wavelength_nm, n, k, cell: cell(columns.wavelength) };
         let name = columns.material.map(|at| values.get(at).copied().unwrap_or_default().to_owned());
         match found.iter_mut().find(|(other, _)| *other == name) {
             Some((_, rows)) => rows.push(row),
@@ -125,7 +102,7 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
     }
     if found.is_empty() {
         let message = "no samples: a table has columns `wavelength_nm` and `n`".to_owned();
-        let place = CellPosition { line: text.lines().count().max(1), offset: text.len(), column: 1, len: 0 };
+        let place = Span { line: text.lines().count().max(1), offset: text.len(), column: 1, len: 0 };
         return Err(RowError { place, message, hint: Some(HEAD) });
     }
     Ok(found)
@@ -139,8 +116,8 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Material>, RowError> {
 /// The first line that cannot be read; a file without samples.
 pub fn read_csv(text: &str) -> Result<Vec<NamedSamples>, SamplesError> {
     let found = read_rows(text).map_err(|e| SamplesError { line: e.place.line, message: e.message })?;
-    let sample = |row: IndexRow| Sample { wavelength_nm: row.wavelength_nm, n: row.n };
-    let material = |(name, rows): Material| NamedSamples { name, samples: rows.into_iter().map(sample).collect() };
+    let sample = |row: IndexRow<'_>| Sample { wavelength_nm: row.wavelength_nm, n: row.n };
+    let material = |(name, rows): Material<'_>| NamedSamples { name, samples: rows.into_iter().map(sample).collect() };
     Ok(found.into_iter().map(material).collect())
 }
 
