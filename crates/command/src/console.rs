@@ -5,6 +5,7 @@
 
 use spectra_core::params::{Fault, Faults, Warning};
 use spectra_scene::diagnostics;
+use spectra_sheet::Sheet;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -97,6 +98,14 @@ pub(crate) fn json(value: &serde_json::Value) -> io::Result<()> {
 pub(crate) fn pretty_json(value: &impl serde::Serialize) -> io::Result<()> {
     let text = serde_json::to_string_pretty(value).map_err(io::Error::other)?;
     out(&format!("{text}\n"))
+}
+
+/// Writes a result to standard output: as indented JSON, or as text.
+///
+/// # Errors
+/// Fails like [`out`].
+pub(crate) fn sheet(sheet: &Sheet, as_json: bool) -> io::Result<()> {
+    if as_json { pretty_json(&sheet.to_json()) } else { out(&sheet.to_text()) }
 }
 
 /// Writes a line to standard error. A failure is ignored, because there is nowhere left to report it.

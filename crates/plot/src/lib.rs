@@ -5,6 +5,7 @@
 //!
 //! - [`Canvas`]: lines, polygons, gradients, pictures and text, in CSS pixels, y downward;
 //! - [`Axes`]: a frame with ticks, labels and a grid, which maps values to points on the canvas;
+//! - [`legend`]: names beside pieces of their lines;
 //! - [`Page`]: figures, pictures, tables and texts in one HTML file.
 //!
 //! ```
@@ -24,6 +25,7 @@ mod color;
 pub mod font;
 mod geometry;
 mod labels;
+pub mod legend;
 mod page;
 mod paint;
 mod raster;

@@ -1,6 +1,6 @@
 //! The Abbe diagram: refractive index against Abbe number.
 
-use super::{entry_disc, palette, rows, shortened};
+use spectra_plot::legend::{entry_disc, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Point, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 980.0;

@@ -1,7 +1,8 @@
 //! The chromaticity diagram with locus, gamuts and named points.
 
-use super::{SAMPLE, entry, sheet as paper, shortened};
+use super::sheet as paper;
 use spectra_color::{RgbSpace, chromaticity as chromaticity_of, to_u8, uv_1976, xyz_of_xy};
+use spectra_plot::legend::{SAMPLE, entry, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Picture, Point, Rect, Stroke, TextStyle, text_width};
 use spectra_spectrum::{Emission, Observer};
 

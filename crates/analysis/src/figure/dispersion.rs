@@ -1,6 +1,6 @@
 //! Figure of refractive index against wavelength.
 
-use super::{entry, palette, rows, shortened};
+use spectra_plot::legend::{entry, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Point, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 900.0;

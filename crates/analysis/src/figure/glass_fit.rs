@@ -1,6 +1,6 @@
 //! Figure of fitted dispersion formulas with the data that they were fitted to.
 
-use super::{entry, entry_disc, palette, rows, shortened};
+use spectra_plot::legend::{entry, entry_disc, palette, rows, shortened};
 use spectra_plot::{Axes, Axis, Canvas, Color, Rect, Stroke, TextStyle};
 
 const WIDTH: f64 = 900.0;

@@ -1,6 +1,6 @@
 //! Figure of how the colors of objects change from one light to another, for the eye and on film.
 
-use super::shortened;
+use spectra_plot::legend::shortened;
 use spectra_plot::{Canvas, Color, Rect, Stroke, TextStyle, nice_ticks};
 
 const WIDTH: f64 = 1000.0;

@@ -5,7 +5,6 @@ mod chromaticity;
 mod dispersion;
 mod glass_fit;
 mod lamp;
-mod lines;
 mod spectrum;
 mod swatches;
 
@@ -17,55 +16,7 @@ pub use lamp::{Patch as LampPatch, lamp};
 pub use spectrum::{spectrum, spectrum_and_functions};
 pub use swatches::swatches;
 
-pub(crate) use lines::{order, palette, stroke};
-
-use spectra_plot::{Canvas, Color, Point, Rect, Stroke, TextStyle, text_width};
-
-/// Longest name in a legend, in characters; a longer one would push the others off the sheet.
-const LONGEST_NAME: usize = 48;
-
-fn shortened(name: &str) -> String {
-    if name.chars().count() <= LONGEST_NAME {
-        return name.to_owned();
-    }
-    let start: String = name.chars().take(LONGEST_NAME - 3).collect();
-    format!("{start}...")
-}
-
-/// Lays out the entries of a legend in rows from the left, each with a piece of its line. Returns the baseline start of each entry and the
-/// number of rows.
-pub(crate) fn rows(names: &[String], start: Point, right: f64, style: &TextStyle) -> (Vec<Point>, usize) {
-    const GAP: f64 = 24.0;
-    let mut at = start;
-    let mut rows = 1;
-    let places = names.iter().map(|name| {
-        let width = SAMPLE + text_width(name, style.size) + GAP;
-        if at[0] > start[0] && at[0] + width - GAP > right {
-            at = [start[0], at[1] + 1.6 * style.size];
-            rows += 1;
-        }
-        let place = at;
-        at[0] += width;
-        place
-    });
-    let places = places.collect();
-    (places, rows)
-}
-
-/// Length of the piece of line in a legend entry, with the gap to the name.
-const SAMPLE: f64 = 30.0;
-
-pub(crate) fn entry(canvas: &mut Canvas, at: Point, name: &str, stroke: &Stroke, style: &TextStyle) {
-    let y = at[1] - style.half_cap();
-    canvas.line([at[0], y], [at[0] + SAMPLE - 7.0, y], stroke);
-    canvas.text([at[0] + SAMPLE, at[1]], name, style);
-}
-
-/// Draws an entry like [`entry`], with a disc instead of a line.
-fn entry_disc(canvas: &mut Canvas, at: Point, name: &str, color: Color, style: &TextStyle) {
-    canvas.disc([at[0] + 0.5 * (SAMPLE - 7.0), at[1] - style.half_cap()], 4.0, color);
-    canvas.text([at[0] + SAMPLE, at[1]], name, style);
-}
+use spectra_plot::{Canvas, Color, Rect, Stroke};
 
 /// Draws a white sheet behind a legend.
 fn sheet(canvas: &mut Canvas, rect: Rect) {
@@ -76,7 +27,7 @@ fn sheet(canvas: &mut Canvas, rect: Rect) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spectra_plot::Pixels;
+    use spectra_plot::{Pixels, Point};
     use spectra_spectrum::{AnySpectrum, find};
 
     fn pixel(pixels: &Pixels, at: Point) -> [i32; 3] {
@@ -119,13 +70,5 @@ mod tests {
         assert_eq!(at(0.53, 0.555), [255; 3]);
         let pixels = chromaticity(&[("here".to_owned(), [0.53, 0.555])]).to_pixels(1.0);
         assert!(pixel(&pixels, [76.0 + 800.0 * 0.61, 22.0 + 800.0 * 0.345])[0] < 128);
-    }
-
-    #[test]
-    fn long_legends_take_rows_and_long_names_are_cut() {
-        let names: Vec<String> = (0..9).map(|i| format!("a rather long name of a light, {i}")).collect();
-        let (places, rows) = rows(&names, [90.0, 26.0], 876.0, &TextStyle::new(14.0));
-        assert!(rows > 2 && places.iter().all(|p| p[0] + SAMPLE + text_width(&names[0], 14.0) <= 876.0));
-        assert_eq!(shortened(&"x".repeat(500)).len(), LONGEST_NAME);
     }
 }

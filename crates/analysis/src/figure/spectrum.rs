@@ -1,7 +1,7 @@
 //! Figure of spectra against wavelength.
 
-use super::{entry, order, palette, rows, shortened, stroke};
 use spectra_color::{RgbSpace, spectral_color_linear, to_u8};
+use spectra_plot::legend::{entry, order, palette, rows, shortened, stroke};
 use spectra_plot::{Axes, Axis, Canvas, Color, Labels, Paint, Point, Rect, Stop, Stroke, TextStyle};
 use spectra_spectrum::{AnySpectrum, BAND, Grid, Kind, Line, Tabulated};
 
