@@ -14,7 +14,7 @@ enum Part {
     Facts(Vec<(String, String)>),
     Table(Table),
     Chart(Chart),
-    Note(String),
+    Notes(Vec<String>),
 }
 
 /// A result as data: a title, figures, tables, curves and notes.
@@ -35,6 +35,13 @@ impl Sheet {
     /// Adds a value to the data that readers do not see. A value without a JSON form, such as infinity, is `null`.
     pub fn data(&mut self, key: &str, value: impl Serialize) {
         self.data.insert(key.to_owned(), serde_json::to_value(value).unwrap_or(Value::Null));
+    }
+
+    /// Adds every field of a struct to the data.
+    pub fn fields(&mut self, value: impl Serialize) {
+        if let Ok(Value::Object(fields)) = serde_json::to_value(value) {
+            self.data.extend(fields);
+        }
     }
 
     /// Adds a line for readers that is not in the data: a label and a text. Nothing is shown without a text.
@@ -63,14 +70,22 @@ impl Sheet {
         self.parts.push(Part::Heading(text.to_owned()));
     }
 
-    /// Adds a sentence for readers.
+    /// Adds a sentence for readers, on a line of its own.
     pub fn note(&mut self, text: &str) {
-        self.parts.push(Part::Note(text.to_owned()));
+        match self.parts.last_mut() {
+            Some(Part::Notes(notes)) => notes.push(text.to_owned()),
+            _ => self.parts.push(Part::Notes(vec![text.to_owned()])),
+        }
     }
 
     /// Adds a table. In the data it is an array of objects under the key of the table; without rows, readers do not see it.
     pub fn table(&mut self, table: Table) {
         self.data.insert(table.key.clone(), table.to_json());
+        self.show(table);
+    }
+
+    /// Adds a table for readers whose values are in the data already, in another form. Without rows it is left out.
+    pub fn show(&mut self, table: Table) {
         if !table.is_empty() {
             self.parts.push(Part::Table(table));
         }
@@ -98,7 +113,8 @@ impl Sheet {
         for part in &self.parts {
             out.push('\n');
             match part {
-                Part::Heading(text) | Part::Note(text) => out += &format!("{text}\n"),
+                Part::Heading(text) => out += &format!("{text}\n"),
+                Part::Notes(notes) => notes.iter().for_each(|note| out += &format!("{note}\n")),
                 Part::Facts(facts) => {
                     for (label, text) in facts {
                         out += &format!("  {label:<width$}  {text}\n");
@@ -129,7 +145,7 @@ impl Sheet {
                         page.figure(&canvas, chart.title());
                     }
                 }
-                Part::Note(text) => page.paragraph(text),
+                Part::Notes(notes) => notes.iter().for_each(|note| page.paragraph(note)),
             }
         }
         page.to_html()
@@ -156,13 +172,13 @@ mod tests {
         chart.push("sagittal", [[0.0, 1.0], [10.0, 0.5]]);
         sheet.chart(chart);
         sheet.note("the stop is open");
+        sheet.note("nothing moves");
         sheet
     }
 
     #[test]
     fn readers_see_what_is_known_in_its_order() {
-        let text =
-            "a <lens>\n\n  maker     Zeiss\n  f-number  f/1.4\n\nfields\n\n  field\n   12.2\n\nthe stop is open\n";
+        let text = "a <lens>\n\n  maker     Zeiss\n  f-number  f/1.4\n\nfields\n\n  field\n   12.2\n\nthe stop is open\nnothing moves\n";
         assert_eq!(sheet().to_text(), text);
     }
 

@@ -5,7 +5,7 @@ use super::lens_field::{FREQUENCY_PER_MM, NEAR_AXIS_RAD, distortion};
 use crate::AnalysisLight;
 use serde::Serialize;
 use spectra_optics::{Beam, ObjectPoint, Optics};
-use std::fmt;
+use spectra_sheet::{Column, Sheet, Table};
 
 /// Several lenses side by side, in the order in which they were named.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,73 +81,49 @@ fn diffraction_limit(part: f64) -> f64 {
     std::f64::consts::FRAC_2_PI * (spectra_core::math::atan2(root, part) - part * root)
 }
 
-/// A row of the table: its label, and the function that formats the value of a lens.
-type TableRow = (String, Box<dyn Fn(&Compared) -> String>);
-
-impl fmt::Display for Comparison {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fn row(name: &str, answer: impl Fn(&Compared) -> Option<String> + 'static) -> TableRow {
-            (name.to_owned(), Box::new(move |lens| answer(lens).unwrap_or_else(|| "-".to_owned())))
-        }
-        fn mm(value: Option<f64>) -> Option<String> {
-            value.filter(|v| v.is_finite()).map(|v| format!("{v:.2} mm"))
-        }
+impl Comparison {
+    /// Returns the sheet of the comparison: its fields as data, and a table with a column for each lens.
+    #[must_use]
+    pub fn sheet(&self) -> Sheet {
+        let mut sheet = Sheet::new("lenses side by side");
+        sheet.fields(self);
+        let names = self.lenses.iter().map(|lens| Column::text(&lens.info.name, &lens.info.name));
+        let mut table = Table::new("lenses", std::iter::once(Column::text("figure", "")).chain(names));
+        let mut row = |name: &str, figure: &dyn Fn(&Compared) -> Option<String>| {
+            let figures = self.lenses.iter().map(figure);
+            table.push(std::iter::once(Some(name.to_owned())).chain(figures).collect::<Vec<_>>());
+        };
+        let mm = |value: Option<f64>| value.filter(|v| v.is_finite()).map(|v| format!("{v:.2} mm"));
         let per_mm = self.contrast_frequency_per_mm;
-        let mut rows: Vec<TableRow> = vec![
-            row("year", |l| l.info.year.map(|y| y.to_string())),
-            row("focal length", |l| mm(Some(l.info.efl_mm))),
-            row("f-number", |l| l.info.f_number.map(|n| format!("f/{n:.3}"))),
-            row("T-number", |l| l.info.t_number.map(|n| format!("T/{n:.3}"))),
-            row("  counted", |l| Some(l.info.losses.clone())),
-            row("entrance pupil", |l| mm(l.info.entrance_pupil_diameter_mm)),
-            row("largest field", |l| l.info.max_field_deg.map(|deg| format!("{deg:.1} deg"))),
-            row("image circle", |l| mm(l.image_circle_mm)),
-            row("last surface to image", |l| mm(Some(l.info.image_distance_mm))),
-            row("length", |l| mm(Some(l.info.vertex_length_mm))),
-            row("surfaces", |l| Some(l.info.surfaces.len().to_string())),
-            row(&format!("geometrical contrast at {per_mm} lp/mm, axis, best focus"), |l| {
-                l.axial_contrast.map(|c| format!("{c:.3}"))
-            }),
-            row("  diffraction limit", move |l| {
-                let (n, nm) = l.info.f_number.zip(l.info.wavelength_nm)?;
-                Some(format!("{:.3}", diffraction_limit(per_mm * n * nm * 1e-6)))
-            }),
-        ];
+        row("year", &|l| l.info.year.map(|y| y.to_string()));
+        row("focal length", &|l| mm(Some(l.info.efl_mm)));
+        row("f-number", &|l| l.info.f_number.map(|n| format!("f/{n:.3}")));
+        row("T-number", &|l| l.info.t_number.map(|n| format!("T/{n:.3}")));
+        row("  counted", &|l| Some(l.info.losses.clone()));
+        row("entrance pupil", &|l| mm(l.info.entrance_pupil_diameter_mm));
+        row("largest field", &|l| l.info.max_field_deg.map(|deg| format!("{deg:.1} deg")));
+        row("image circle", &|l| mm(l.image_circle_mm));
+        row("last surface to image", &|l| mm(Some(l.info.image_distance_mm)));
+        row("length", &|l| mm(Some(l.info.vertex_length_mm)));
+        row("surfaces", &|l| Some(l.info.surfaces.len().to_string()));
+        row(&format!("geometrical contrast at {per_mm} lp/mm, axis, best focus"), &|l| {
+            l.axial_contrast.map(|c| format!("{c:.3}"))
+        });
+        row("  diffraction limit", &|l| {
+            let (n, nm) = l.info.f_number.zip(l.info.wavelength_nm)?;
+            Some(format!("{:.3}", diffraction_limit(per_mm * n * nm * 1e-6)))
+        });
         if let Some(deg) = self.field_deg {
-            rows.push(row(&format!("  at {deg:.1} deg, mean of both sections"), |l| {
-                l.field_contrast.map(|c| format!("{c:.3}"))
-            }));
-            rows.push(row(&format!("distortion at {deg:.1} deg"), |l| {
-                l.distortion.map(|d| format!("{:+.2} %", 100.0 * d))
-            }));
+            let contrast = |l: &Compared| l.field_contrast.map(|c| format!("{c:.3}"));
+            row(&format!("  at {deg:.1} deg, mean of both sections"), &contrast);
+            row(&format!("distortion at {deg:.1} deg"), &|l| l.distortion.map(|d| format!("{:+.2} %", 100.0 * d)));
         }
-        let first = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-        let columns: Vec<Vec<String>> = self
-            .lenses
-            .iter()
-            .map(|lens| {
-                std::iter::once(lens.info.name.clone()).chain(rows.iter().map(|(_, answer)| answer(lens))).collect()
-            })
-            .collect();
-        let widths: Vec<usize> =
-            columns.iter().map(|c| c.iter().map(|cell| cell.chars().count()).max().unwrap_or(0)).collect();
-        let names = std::iter::once("").chain(rows.iter().map(|(name, _)| name.as_str()));
-        for (at, name) in names.enumerate() {
-            let mut line = format!("{name:<first$}");
-            for (column, width) in columns.iter().zip(&widths) {
-                line += &format!("   {:<width$}", column[at], width = *width);
-            }
-            writeln!(f, "{}", line.trim_end())?;
+        sheet.show(table);
+        for LensReport { name, notes, warnings, .. } in self.lenses.iter().map(|lens| &lens.info) {
+            notes.iter().for_each(|note| sheet.note(&format!("note: {name}: {note}")));
+            warnings.iter().for_each(|warning| sheet.note(&format!("warning: {name}: {warning}")));
         }
-        for lens in &self.lenses {
-            for note in &lens.info.notes {
-                writeln!(f, "note: {}: {note}", lens.info.name)?;
-            }
-            for warning in &lens.info.warnings {
-                writeln!(f, "warning: {}: {warning}", lens.info.name)?;
-            }
-        }
-        Ok(())
+        sheet
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use spectra_glass::{AbsorptionSubstitute, Medium};
 use spectra_lens::Lens;
-use std::fmt;
+use spectra_sheet::Sheet;
 
 /// A medium with assumed properties.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,28 +42,25 @@ pub(super) fn assumed(lens: &Lens) -> Vec<AssumedMedium> {
     each.collect()
 }
 
-/// Writes the lines of the report about these media; writes nothing if nothing is assumed.
-pub(super) fn write(media: &[AssumedMedium], f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    let list = |media: Vec<String>| media.join("; ");
-    let modeled: Vec<String> =
-        (media.iter().filter(|m| m.modeled_from_lines == Some(1))).map(|m| m.medium.clone()).collect();
+/// Adds sentences about these media to a sheet; adds none if nothing is assumed.
+pub(super) fn note(media: &[AssumedMedium], sheet: &mut Sheet) {
+    let list = |is_asked: &dyn Fn(usize) -> bool| {
+        let asked = media.iter().filter(|m| m.modeled_from_lines.is_some_and(is_asked));
+        asked.map(|m| m.medium.as_str()).collect::<Vec<_>>().join("; ")
+    };
+    let modeled = list(&|lines| lines == 1);
     if !modeled.is_empty() {
-        writeln!(f, "modeled dispersion (ordinary glass of this nd and Vd): {}", list(modeled))?;
-        writeln!(
-            f,
-            "  for nine glasses out of ten the index is right within 0.0002 at r, 0.0004 at g and 0.0009 at h;"
-        )?;
-        writeln!(f, "  the error is larger for dense flints, short flints, fluor crowns and phosphate crowns")?;
+        sheet.note(&format!("modeled dispersion (ordinary glass of this nd and Vd): {modeled}"));
+        sheet.note("  for nine glasses out of ten the index is right within 0.0002 at r, 0.0004 at g and 0.0009 at h;");
+        sheet.note("  the error is larger for dense flints, short flints, fluor crowns and phosphate crowns");
     }
-    let through: Vec<String> =
-        media.iter().filter(|m| m.modeled_from_lines.is_some_and(|n| n > 1)).map(|m| m.medium.clone()).collect();
+    let through = list(&|lines| lines > 1);
     if !through.is_empty() {
-        writeln!(f, "modeled dispersion (interpolated between the stated lines): {}", list(through))?;
+        sheet.note(&format!("modeled dispersion (interpolated between the stated lines): {through}"));
     }
     let borrowed: Vec<String> =
         media.iter().filter_map(|m| Some(format!("{} from {}", m.medium, m.absorption_of.as_ref()?))).collect();
     if !borrowed.is_empty() {
-        writeln!(f, "absorption taken from a similar glass (assumed): {}", list(borrowed))?;
+        sheet.note(&format!("absorption taken from a similar glass (assumed): {}", borrowed.join("; ")));
     }
-    Ok(())
 }

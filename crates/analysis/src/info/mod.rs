@@ -3,10 +3,10 @@
 mod compare;
 mod illuminance;
 mod lens_field;
+mod lens_sheet;
 mod media;
 mod mounts;
 mod report;
-mod table;
 
 pub use compare::{Compared, Comparison};
 pub use lens_field::{FieldReport, LimitReport, useful_field_rad};

@@ -11,11 +11,7 @@ use spectra_optics::{ApertureError, Optics, stop_down};
 pub(crate) fn compare(arguments: &LensCompare) -> Outcome {
     let lenses = arguments.lenses.iter().map(|name| one(arguments, name)).collect::<Result<Vec<_>, _>>()?;
     let comparison = Comparison::of(&lenses, one_light(&arguments.light));
-    if arguments.report.json {
-        console::pretty_json(&comparison)?;
-    } else {
-        console::out(&comparison.to_string())?;
-    }
+    console::sheet(&comparison.sheet(), arguments.report.json)?;
     Ok(DONE)
 }
 

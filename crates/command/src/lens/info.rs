@@ -51,11 +51,7 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
         let found = glare(&lens, &task, &Threads(limits::processors()));
         report.glare = Some(found.map_err(|e| Failure::Input(format!("{}: --glare: {e}", arguments.setting.lens)))?);
     }
-    if arguments.report.json {
-        console::pretty_json(&report)?;
-    } else {
-        console::out(&report.to_string())?;
-    }
+    console::sheet(&report.sheet(), arguments.report.json)?;
     Ok(DONE)
 }
 

@@ -1,7 +1,7 @@
-//! The report of a lens as text.
+//! The sheet of a lens.
 
 use super::{LensReport, MountReport};
-use std::fmt;
+use spectra_sheet::{Column, Sheet, Table, percent};
 
 /// Text for a figure that the lens does not have.
 const UNKNOWN: &str = "unknown";
@@ -17,49 +17,37 @@ fn mm(value: Option<f64>) -> String {
     }
 }
 
-impl fmt::Display for LensReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.name)?;
-        if let Some(year) = self.year {
-            write!(f, " ({year})")?;
-        }
-        writeln!(f)?;
+impl LensReport {
+    /// Returns the sheet of the lens: the fields of this report as data, and its figures, field points and surfaces for readers.
+    #[must_use]
+    pub fn sheet(&self) -> Sheet {
+        let year = self.year.map_or(String::new(), |year| format!(" ({year})"));
+        let mut sheet = Sheet::new(&format!("{}{year}", self.name));
+        sheet.fields(self);
         let origin =
             [("maker", &self.maker), ("patent", &self.patent), ("source", &self.source), ("remark", &self.remark)];
-        for (name, text) in origin {
-            if let Some(text) = text {
-                writeln!(f, "{name}: {}", text.trim())?;
-            }
+        for (label, text) in origin {
+            sheet.line(label, text.as_ref().map(|text| text.trim().to_owned()));
         }
-        if let Some(rims) = &self.rims {
-            writeln!(f, "rims: {rims}")?;
-        }
-        match (self.wavelength_nm, self.line) {
-            (Some(nm), Some(line)) => writeln!(f, "wavelength: {nm} nm (line {line})")?,
-            (Some(nm), None) => writeln!(f, "wavelength: {nm} nm")?,
-            (None, _) => writeln!(f, "wavelength: none; every glass has the index that the prescription states")?,
-        }
-        writeln!(f, "distances along the axis are positive toward the image")?;
-        writeln!(f)?;
-        self.figures(f)?;
-        self.glare(f)?;
-        writeln!(f)?;
-        self.field(f)?;
-        self.room(f)?;
-        self.prescription(f)?;
-        super::media::write(&self.assumed_media, f)?;
-        for note in &self.notes {
-            writeln!(f, "note: {note}")?;
-        }
-        for warning in &self.warnings {
-            writeln!(f, "warning: {warning}")?;
-        }
-        Ok(())
+        sheet.line("rims", self.rims.as_ref().map(ToString::to_string));
+        let wavelength = match (self.wavelength_nm, self.line) {
+            (Some(nm), Some(line)) => format!("{nm} nm (line {line})"),
+            (Some(nm), None) => format!("{nm} nm"),
+            (None, _) => "none; every glass has the index that the prescription states".to_owned(),
+        };
+        sheet.line("wavelength", Some(wavelength));
+        sheet.note("distances along the axis are positive toward the image");
+        sheet.show(self.figures());
+        self.field(&mut sheet);
+        self.room(&mut sheet);
+        self.prescription(&mut sheet);
+        super::media::note(&self.assumed_media, &mut sheet);
+        self.notes.iter().for_each(|note| sheet.note(&format!("note: {note}")));
+        self.warnings.iter().for_each(|warning| sheet.note(&format!("warning: {warning}")));
+        sheet
     }
-}
 
-impl LensReport {
-    fn figures(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn figures(&self) -> Table {
         let f_number = self.f_number.map_or(UNKNOWN.to_owned(), |n| format!("f/{n:.4}"));
         let t_number = self.t_number.map_or(UNKNOWN.to_owned(), |n| format!("T/{n:.4}"));
         let max_field = self.max_field_deg.map_or(UNKNOWN.to_owned(), |field| format!("{field:.3} deg"));
@@ -109,81 +97,77 @@ impl LensReport {
             ("  smallest spot", mm(self.rms_focus_shift_mm), "from the image plane; RMS radius, real rays"),
             ("  best contrast", mm(self.contrast_focus_shift_mm), &contrast),
         ]);
+        let mut table =
+            Table::new("figures", [Column::text("figure", ""), Column::plain("value", ""), Column::text("remark", "")]);
         for (name, value, remark) in rows {
             // Drop the remark of an unknown figure, which would mislead. The remark of the T-number is on the losses and stays.
             let remark = if value == UNKNOWN && name != "T-number" { "" } else { remark };
-            let line = format!("{name:<22} {value:>16}   {remark}");
-            writeln!(f, "{}", line.trim_end())?;
+            table.push((name, value, remark));
         }
-        Ok(())
+        self.glare(&mut table);
+        table
     }
 
-    fn glare(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(glare) = &self.glare else { return Ok(()) };
-        let percent = |part: f64| format!("{:.*} %", if part < 0.01 { 3 } else { 2 }, 100.0 * part);
-        let row = |f: &mut fmt::Formatter<'_>, name: &str, value: String, remark: String| {
-            writeln!(f, "{}", format!("{name:<22} {value:>16}   {remark}").trim_end())
-        };
+    fn glare(&self, table: &mut Table) {
+        let Some(glare) = &self.glare else { return };
+        let percent = |part: f64| percent(part, if part < 0.01 { 3 } else { 2 });
         let of = |what: &str, part: f64| {
             if part > 0.0 { format!(", {what} reflects {}", percent(part)) } else { String::new() }
         };
-        row(
-            f,
-            "veiling glare",
-            percent(glare.index),
-            format!(
-                "+- {} (standard error); ISO 9358, integral, a black disk of {:.2} mm in the image{}{}",
-                percent(glare.standard_error),
-                glare.disk_mm,
-                of("paint", glare.paint),
-                of("film", glare.imager)
-            ),
-        )?;
+        let remark = format!(
+            "+- {} (standard error); ISO 9358, integral, a black disk of {:.2} mm in the image{}{}",
+            percent(glare.standard_error),
+            glare.disk_mm,
+            of("paint", glare.paint),
+            of("film", glare.imager)
+        );
+        table.push(("veiling glare", percent(glare.index), remark));
         let by_glass = (glare.index - glare.scattered).max(0.0);
-        row(f, "  by glass alone", percent(by_glass), "reflected twice or more, never scattered".to_owned())
+        table.push(("  by glass alone", percent(by_glass), "reflected twice or more, never scattered"));
     }
 
-    fn field(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.chief_ray_exit_angle_deg.is_empty() {
-            return Ok(());
-        }
-        writeln!(
-            f,
-            "field points (sagittal, tangential: focus of close rays from the image plane; light: relative to the center)"
-        )?;
-        writeln!(
-            f,
-            "{:>10} {:>12} {:>15} {:>12} {:>14} {:>14} {:>9}",
-            "field", "exit angle", "image height", "distortion", "sagittal", "tangential", "light"
-        )?;
-        let percent = |part: Option<f64>, digits: usize, sign: bool| match part.map(|part| 100.0 * part) {
-            // Write no sign for a value that rounds to zero.
-            Some(percent) if percent.abs() < 0.5 * 0.1_f64.powi(digits as i32) => format!("{:.digits$} %", 0.0),
-            Some(percent) if sign => format!("{percent:+.digits$} %"),
-            Some(percent) => format!("{percent:.digits$} %"),
-            None => "-".to_owned(),
+    fn field(&self, sheet: &mut Sheet) {
+        let focus = |key: &str, label: &str| Column::fixed(key, &format!("{label} mm"), 4);
+        let mut table = Table::new(
+            "chief_ray_exit_angle_deg",
+            [
+                Column::fixed("field_deg", "field deg", 2),
+                Column::fixed("angle_deg", "exit angle deg", 3),
+                focus("image_height_mm", "image height"),
+                Column::text("distortion", "distortion"),
+                focus("sagittal_focus_mm", "sagittal"),
+                focus("tangential_focus_mm", "tangential"),
+                Column::percent("relative_illuminance", "light", 1),
+            ],
+        );
+        let signed = |part: f64| match percent(part, 2) {
+            shown if part > 0.0 && shown != "0.00 %" => format!("+{shown}"),
+            shown => shown,
         };
-        let focus = |focus_mm: Option<f64>| focus_mm.map_or("-".to_owned(), |z| mm(Some(z)));
         for p in &self.chief_ray_exit_angle_deg {
-            writeln!(
-                f,
-                "{:>8.2} ° {:>10.3} ° {:>12.4} mm {:>12} {:>14} {:>14} {:>9}",
+            table.push((
                 p.field_deg,
                 p.angle_deg,
                 p.image_height_mm,
-                percent(p.distortion, 2, true),
-                focus(p.sagittal_focus_mm),
-                focus(p.tangential_focus_mm),
-                percent(p.relative_illuminance, 1, false),
-            )?;
+                p.distortion.map(signed),
+                p.sagittal_focus_mm,
+                p.tangential_focus_mm,
+                p.relative_illuminance,
+            ));
         }
+        if table.is_empty() {
+            return;
+        }
+        sheet.heading(
+            "field points (sagittal, tangential: focus of close rays from the image plane; light: relative to the center)",
+        );
+        sheet.show(table);
         if self.is_cut {
-            writeln!(f, "  shown to the corner of 135 film: no rim limits the field to a useful size")?;
+            sheet.note("shown to the corner of 135 film: no rim limits the field to a useful size");
         }
-        writeln!(f)
     }
 
-    fn room(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn room(&self, sheet: &mut Sheet) {
         let dips =
             |m: &MountReport| (m.clearance_mm < 0.0).then(|| format!(" ({:.1} behind the flange)", -m.clearance_mm));
         let words = |m: &MountReport| format!("{} {}{}", m.name, m.flange_mm, dips(m).unwrap_or_default());
@@ -195,40 +179,39 @@ impl LensReport {
             more => mounts.push(format!("and {more} less common ones (`--mounts` lists them)")),
         }
         if !mounts.is_empty() {
-            writeln!(f, "fits these mounts (flange focal distance in mm): {}", mounts.join(", "))?;
-            writeln!(f)?;
+            sheet.note(&format!("fits these mounts (flange focal distance in mm): {}", mounts.join(", ")));
         }
-        Ok(())
     }
 
-    fn prescription(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn prescription(&self, sheet: &mut Sheet) {
         let nm = self.wavelength_nm.map_or(String::new(), |nm| format!("; index at {nm} nm"));
         let across = if self.surfaces.iter().any(|s| s.radius_x_mm.is_some()) { "; x: in the x-z section" } else { "" };
-        writeln!(f, "surfaces (lengths in mm{nm}{across})")?;
-        let kinds = self.surfaces.iter().map(|s| s.kind.len()).max().unwrap_or(0).max(7);
-        writeln!(
-            f,
-            "{:>3}  {:<kinds$} {:>13} {:>11} {:>13} {:>10}  medium behind",
-            "#", "surface", "radius", "thickness", "semi-diameter", "index"
-        )?;
+        sheet.heading(&format!("surfaces (lengths in mm{nm}{across})"));
+        let mut table = Table::new(
+            "surfaces",
+            [
+                Column::plain("number", "#"),
+                Column::text("kind", "surface"),
+                Column::plain("radius_mm", "radius"),
+                Column::fixed("thickness_mm", "thickness", 4),
+                Column::fixed("semi_diameter_mm", "semi-diameter", 4),
+                Column::fixed("index", "index", 6),
+                Column::text("medium", "medium behind"),
+            ],
+        );
         for s in &self.surfaces {
             let radius = match (s.radius_mm, s.radius_x_mm) {
                 (Some(radius_mm), _) => format!("{radius_mm:.4}"),
                 (None, Some(radius_x_mm)) => format!("x {radius_x_mm:.4}"),
                 (None, None) => "flat".to_owned(),
             };
-            let semi_diameter = s.semi_diameter_mm.map_or("-".to_owned(), |d| format!("{d:.4}"));
-            let medium = if s.mirror { "mirror" } else { &s.medium };
             let across = match (s.radius_mm, s.radius_x_mm) {
                 (Some(_), Some(radius_x_mm)) => format!(" (radius x {radius_x_mm:.4})"),
                 _ => String::new(),
             };
-            writeln!(
-                f,
-                "{:>3}  {:<kinds$} {radius:>13} {:>11.4} {semi_diameter:>13} {:>10.6}  {medium}{across}",
-                s.number, s.kind, s.thickness_mm, s.index
-            )?;
+            let medium = format!("{}{across}", if s.mirror { "mirror" } else { &s.medium });
+            table.push((s.number, &s.kind, radius, s.thickness_mm, s.semi_diameter_mm, s.index, medium));
         }
-        Ok(())
+        sheet.show(table);
     }
 }
