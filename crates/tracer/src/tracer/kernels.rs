@@ -22,6 +22,23 @@ impl Vectorized for Evaluate<'_> {
     }
 }
 
+/// Returns the position, mm, and the direction of a ray in the frame that `pose` is given in.
+#[inline(always)]
+fn reframed(pose: &Pose, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let Pose { origin_mm: o, rotation: r } = pose;
+    let position = [
+        r.x_axis.x * x + r.y_axis.x * y + r.z_axis.x * z + o.x,
+        r.x_axis.y * x + r.y_axis.y * y + r.z_axis.y * z + o.y,
+        r.x_axis.z * x + r.y_axis.z * y + r.z_axis.z * z + o.z,
+    ];
+    let direction = [
+        r.x_axis.x * l + r.y_axis.x * m + r.z_axis.x * n,
+        r.x_axis.y * l + r.y_axis.y * m + r.z_axis.y * n,
+        r.x_axis.z * l + r.y_axis.z * m + r.z_axis.z * n,
+    ];
+    (position, direction)
+}
+
 /// Brings rays from one frame into another.
 pub(super) struct Reframe<'a> {
     pub(super) rays: &'a mut RayBatch,
@@ -33,24 +50,18 @@ impl Vectorized for Reframe<'_> {
     type Output = ();
     #[inline(always)]
     fn run(self) {
-        let Pose { origin_mm: o, rotation: r } = self.pose;
         let c = self.rays.columns_mut();
         let len = c.x.len();
         let (x, y, z) = (&mut c.x[..len], &mut c.y[..len], &mut c.z[..len]);
         let (l, m, n) = (&mut c.l[..len], &mut c.m[..len], &mut c.n[..len]);
         for i in 0..len {
-            let (px, py, pz) = (x[i], y[i], z[i]);
-            x[i] = r.x_axis.x * px + r.y_axis.x * py + r.z_axis.x * pz + o.x;
-            y[i] = r.x_axis.y * px + r.y_axis.y * py + r.z_axis.y * pz + o.y;
-            z[i] = r.x_axis.z * px + r.y_axis.z * py + r.z_axis.z * pz + o.z;
-            let (dl, dm, dn) = (l[i], m[i], n[i]);
-            l[i] = r.x_axis.x * dl + r.y_axis.x * dm + r.z_axis.x * dn;
-            m[i] = r.x_axis.y * dl + r.y_axis.y * dm + r.z_axis.y * dn;
-            n[i] = r.x_axis.z * dl + r.y_axis.z * dm + r.z_axis.z * dn;
+            let (position, direction) = reframed(&self.pose, [x[i], y[i], z[i]], [l[i], m[i], n[i]]);
+            (x[i], y[i], z[i]) = position.into();
+            (l[i], m[i], n[i]) = direction.into();
         }
         let [ax, ay, az] = c.polarization.axis;
         for ((x, y), z) in ax.iter_mut().zip(ay).zip(az) {
-            (*x, *y, *z) = (r * DVec3::new(*x, *y, *z)).into();
+            (*x, *y, *z) = (self.pose.rotation * DVec3::new(*x, *y, *z)).into();
         }
     }
 }
