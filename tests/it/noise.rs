@@ -4,7 +4,7 @@ use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
 use spectra_render::{RenderOptions, Renderer, Rendering};
-use spectra_session::{Control, Session, SingleThread, Threads, Workers};
+use spectra_session::{Control, Session, SessionOptions, SingleThread, Threads, Workers};
 use std::path::Path;
 
 const WIDTH: usize = 48;
@@ -226,8 +226,10 @@ fn the_same_bits_however_the_work_is_done() {
         let whole = render(scene, &["render.samples=1024"], &Threads(3));
         let alone = render(scene, &["render.samples=1024", "render.batch=100"], &SingleThread);
         assert_eq!(bits(&whole.exposure), bits(&alone.exposure), "{scene}");
-        let open =
-            || Session::open(&path(scene), &settings(&["render.samples=1024"]), Isa::detect()).expect("a session");
+        let open = || {
+            Session::open(&path(scene), &settings(&["render.samples=1024"]), SessionOptions::default())
+                .expect("a session")
+        };
         let mut first = open();
         first.advance(100, &Threads(2), &Control::new()).expect("rendered");
         let mut file = Vec::new();

@@ -1,13 +1,12 @@
 //! Tests sessions: the bits of a picture after changes, and what is computed again.
 
-use spectra_core::params::Faults;
+use spectra_core::params::{Faults, Params};
 use spectra_core::resources::{FoundFile, Resource, ResourceError, Resources};
 use spectra_core::sink::Memory;
-use spectra_core::{Isa, params::Params};
 use spectra_plugins as _;
 use spectra_render::{Light, RenderOptions, Renderer, Traced};
-use spectra_scene::{Direction, FileResources};
-use spectra_session::{Control, Session, SessionError, SingleThread, Threads, Workers};
+use spectra_scene::{Direction, FileResources, series_of_text};
+use spectra_session::{Control, Effort, Session, SessionError, SessionOptions, SingleThread, Threads, Workers};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -22,7 +21,13 @@ const SCENES: [(&str, &[&str]); 3] = [
 fn session(scene: &str, set: &[&str]) -> Session {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.yaml"));
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
-    Session::open(&path, &set, Isa::detect()).unwrap_or_else(|error| panic!("{scene}: {error}"))
+    Session::open(&path, &set, SessionOptions::default()).unwrap_or_else(|error| panic!("{scene}: {error}"))
+}
+
+/// Opens a draft of the same picture with another value.
+fn draft(whole: &Session, text: &str) -> Session {
+    let options = SessionOptions { effort: Effort::Draft, ..whole.options() };
+    whole.branch(&[text.to_owned()], options).expect("the same scene")
 }
 
 /// Returns the bits of the exposure, channel after channel.
@@ -249,7 +254,8 @@ fn a_change_makes_again_what_rests_on_it() {
     let small = ["imager.resolution=[24, 16]", "render.samples=8", "source.width=1.5 m"];
     let reads = Arc::new(AtomicUsize::new(0));
     let files = Arc::new(Counting(FileResources::beside(&root.join("scenes")), Arc::clone(&reads)));
-    let mut changed = Session::of_text("biotar-ortho.yaml", &text, files, Isa::detect()).expect("a scene");
+    let series = series_of_text("biotar-ortho.yaml", &text, &[], files).expect("a scene");
+    let mut changed = Session::new(series, SessionOptions::default()).expect("a scene");
     for set in small {
         changed.change(set).expect("set");
     }
@@ -295,8 +301,9 @@ fn it_works_without_threads_and_disk() {
         }
     }
     let made = |workers: &dyn Workers| {
-        let mut session = Session::of_text("card.yaml", text, Arc::new(Bundled), Isa::detect())
-            .unwrap_or_else(|error| panic!("{error}"));
+        let series =
+            series_of_text("card.yaml", text, &[], Arc::new(Bundled)).unwrap_or_else(|error| panic!("{error}"));
+        let mut session = Session::new(series, SessionOptions::default()).unwrap_or_else(|error| panic!("{error}"));
         session.advance(4, workers, &Control::new()).expect("rendered");
         let memory = Memory::default();
         session.write(&memory).expect("written");
@@ -342,11 +349,11 @@ fn what_a_frame_sees_is_searched_by_those_who_are_asked() {
     let mut whole = session("biotar-ortho", &small);
     go(&mut whole, 4);
     let before = bits(&mut whole);
-    let draft = whole.draft(&["imager.resolution=[12, 8]".to_owned()]).expect("the same scene");
-    assert!(whole.change_after(f15, &draft, &Stopped).is_err());
+    let draft = draft(&whole, "imager.resolution=[12, 8]");
+    assert!(whole.change_unprepared(&[f15], 0, Some(&draft), &Stopped).is_err());
     assert_eq!(bits(&mut whole), before, "the refused change had an effect");
     let counting = Counting(AtomicUsize::new(0));
-    whole.change_after(f15, &draft, &counting).expect("it stops down");
+    whole.change_unprepared(&[f15], 0, Some(&draft), &counting).expect("it stops down");
     assert!(counting.0.load(Relaxed) > 0, "the given workers did no search");
     go(&mut whole, 4);
     let mut fresh = session("biotar-ortho", &[&small[..], &[f15]].concat());
@@ -360,10 +367,10 @@ fn a_change_can_be_made_ready_later() {
     let small = ["imager.resolution=[24, 16]", "render.samples=4"];
     let mut later = session("biotar-ortho", &small);
     go(&mut later, 4);
-    let kept = later.change_later("lens.f-number=f/8").expect("it stops down");
+    let kept = later.change_unprepared(&["lens.f-number=f/8"], 0, None, &SingleThread).expect("it stops down");
     assert!(!kept.light && kept.density && !kept.lens, "{kept:?}");
     // A second change before the first was prepared.
-    later.change_later("imager.tilt=[3 deg, 0 deg]").expect("it tilts");
+    later.change_unprepared(&["imager.tilt=[3 deg, 0 deg]"], 0, None, &SingleThread).expect("it tilts");
     later.advance(4, &Stopped, &Control::new()).expect("nobody waits for it");
     assert_eq!((later.samples(), later.has_light()), (0, false));
     go(&mut later, 4);
@@ -372,7 +379,7 @@ fn a_change_can_be_made_ready_later() {
     go(&mut whole, 4);
     assert_eq!(bits(&mut later), bits(&mut whole));
     // A change that only affects development keeps the light.
-    assert!(later.change_later("film.grain=false").expect("it has no grain").light);
+    assert!(later.change_unprepared(&["film.grain=false"], 0, None, &SingleThread).expect("it has no grain").light);
     assert_eq!(bits(&mut later), bits(&mut whole));
 }
 
@@ -382,11 +389,11 @@ fn a_lens_is_focused_once() {
     let small = ["imager.resolution=[24, 16]", "render.samples=4"];
     let mut whole = session("biotar-ortho", &small);
     go(&mut whole, 4);
-    let mut draft = whole.draft(&["imager.resolution=[12, 8]".to_owned()]).expect("the same scene");
+    let mut draft = draft(&whole, "imager.resolution=[12, 8]");
     let before = Arc::clone(&whole.scene().lens);
     for change in ["lens.focus=1.5 m", "imager.tilt=[3 deg, 0 deg]"] {
         draft.change(change).expect("it can be");
-        whole.change_after(change, &draft, &SingleThread).expect("it can be");
+        whole.change_unprepared(&[change], 0, Some(&draft), &SingleThread).expect("it can be");
         assert!(Arc::ptr_eq(&whole.scene().lens, &draft.scene().lens), "{change}");
     }
     assert!(!Arc::ptr_eq(&whole.scene().lens, &before));
@@ -397,7 +404,7 @@ fn a_lens_is_focused_once() {
     go(&mut fresh, 4);
     assert_eq!(bits(&mut whole), bits(&mut fresh));
     // Another kind of light requires new focusing, whatever was drafted.
-    whole.change_after("film.stock=kodak-tri-x-400", &draft, &SingleThread).expect("it can be");
+    whole.change_unprepared(&["film.stock=kodak-tri-x-400"], 0, Some(&draft), &SingleThread).expect("it can be");
     assert!(!Arc::ptr_eq(&whole.scene().lens, &focused));
 }
 
@@ -411,7 +418,7 @@ fn a_draft_is_as_bright_as_the_whole() {
         &["lens.aperture={shape: iris, blades: 5}"],
     ] {
         let mut whole = session("biotar-trix", &["imager.resolution=[48, 32]", "render.samples=64"]);
-        let mut draft = whole.draft(&["render.samples=64".to_owned()]).expect("the same scene");
+        let mut draft = draft(&whole, "render.samples=64");
         for text in set {
             draft.change(text).expect("it can be");
             whole.change(text).expect("it can be");

@@ -1,14 +1,13 @@
 //! Turns the focus ring and prints how sharp the picture is: `cargo run --release -p spectra-session --example focus`.
 
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
-use spectra_session::{Control, Session, SessionError, Threads};
+use spectra_session::{Control, Session, SessionError, SessionOptions, Threads};
 
 fn main() -> Result<(), SessionError> {
     let scene = std::env::args().nth(1).unwrap_or_else(|| "biotar-ortho".to_owned());
     let set = ["imager.resolution=[480, 320]", "render.samples=16"].map(str::to_owned);
-    let mut session = Session::open(scene.as_ref(), &set, Isa::detect())?;
+    let mut session = Session::open(scene.as_ref(), &set, SessionOptions::default())?;
     println!("focus / m   sharpness");
     for step in 0..=10 {
         let metres = 1.5 + 0.1 * f64::from(step);

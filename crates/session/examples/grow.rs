@@ -1,9 +1,8 @@
 //! Shows a picture in the terminal while it grows: `cargo run --release -p spectra-session --example grow -- scenes/biotar-trix.yaml`.
 
-use spectra_core::Isa;
 use spectra_core::frame::DisplayPicture;
 use spectra_plugins as _;
-use spectra_session::{Control, Session, Threads};
+use spectra_session::{Control, Session, SessionOptions, Threads};
 use std::io::Write;
 
 /// Number of columns that the picture takes in the terminal.
@@ -13,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = std::env::args().nth(1).unwrap_or_else(|| "biotar-trix".to_owned());
     // A cell of the terminal shows two pixels, one above the other.
     let size = format!("imager.resolution=[{COLUMNS}, {}]", COLUMNS * 2 / 3);
-    let mut session = Session::open(scene.as_ref(), &[size], Isa::detect())?;
+    let mut session = Session::open(scene.as_ref(), &[size], SessionOptions::default())?;
     for warning in session.warnings() {
         eprintln!("warning: {warning}");
     }

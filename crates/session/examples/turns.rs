@@ -4,9 +4,8 @@
 //! whole picture is changed. ONLY is a part of the names of the changes to make. Times are processor times if the system reports
 //! them, otherwise wall-clock times.
 
-use spectra_core::Isa;
 use spectra_plugins as _;
-use spectra_session::{Control, Session, SingleThread};
+use spectra_session::{Control, Effort, Session, SessionOptions, SingleThread};
 use std::time::Instant;
 
 /// Returns the time that this thread has run, in nanoseconds.
@@ -46,11 +45,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = given.next().ok_or("turns SCENE [EVENTS [ONLY]]")?;
     let events: usize = given.next().map_or(Ok(100), |text| text.parse())?;
     let only = given.next().unwrap_or_default();
-    let mut whole = Session::open(scene.as_ref(), &["imager.resolution=[480, 320]".to_owned()], Isa::detect())?;
+    let mut whole =
+        Session::open(scene.as_ref(), &["imager.resolution=[480, 320]".to_owned()], SessionOptions::default())?;
     whole.step(1, &SingleThread, &Control::new())?;
     let small =
         ["imager.resolution=[120, 80]", "render.samples=4", "render.reflections.order=0", "render.diffraction=false"];
-    let mut draft = whole.draft(&small.map(str::to_owned))?;
+    let mut draft =
+        whole.branch(&small.map(str::to_owned), SessionOptions { effort: Effort::Draft, ..whole.options() })?;
     draft.step(4, &SingleThread, &Control::new())?;
     let (mut random, begun) = (Random(1), Instant::now());
     println!(
@@ -71,7 +72,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let text = next(i, &mut random);
             let mut marks = vec![cpu_ns(begun)];
             let mut mark = || marks.push(cpu_ns(begun));
-            if draft.change_later(&text).is_err() {
+            if draft.change_unprepared(&[&text], 0, None, &SingleThread).is_err() {
                 // This lens or paper has no such setting.
                 continue;
             }
@@ -82,7 +83,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             mark();
             draft.develop()?;
             mark();
-            whole.change_after(&text, &draft, &SingleThread)?;
+            whole.change_unprepared(&[&text], 0, Some(&draft), &SingleThread)?;
             mark();
             rows.push(std::array::from_fn(|k| (marks[k + 1] - marks[k]) as f64 / 1e6));
         }

@@ -9,7 +9,9 @@ use crate::generated::{MADE, without_generated_places};
 use crate::run::{fits, picture};
 use crate::still::WHITE_CD_M2;
 use crate::traced_picture::{IncompletePolicy, TracedPicture};
-use crate::{Event, Host, Job, JobEnd, LightFrom, Names, SeriesPosition, Session, SessionError, formatting};
+use crate::{
+    Event, Host, Job, JobEnd, LightFrom, Names, SeriesPosition, Session, SessionError, SessionOptions, formatting,
+};
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::params::{Fault, Faults, Node, Params, SourceFile, Warning};
@@ -325,7 +327,7 @@ fn all(job: &Develop<'_>, plates: &[PictureJob], host: &dyn Host) -> Result<JobE
 /// traced with all samples, because fewer would change the last digits of the metered time.
 fn meter(job: &Develop<'_>, plate: &PictureJob, host: &dyn Host) -> Option<FilmTime> {
     let (series, light) = scene(job, plate, None).ok()?;
-    let mut session = Session::of_series(series, 0, job.isa).ok()?;
+    let mut session = Session::new(series, SessionOptions { isa: job.isa, ..SessionOptions::default() }).ok()?;
     let rendering = match light {
         LightFrom::Pixels => session.expose().ok()?,
         LightFrom::Rays if !session.scene().films.iter().any(|film| film.film.is_metered()) => return None,

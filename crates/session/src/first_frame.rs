@@ -4,7 +4,7 @@
 //! traced with few rays before any picture is made, and all frames, including the first, are exposed as metered there. It does
 //! not matter which frames are asked for: frame 17 alone has the same exposure as in the whole shot.
 
-use crate::{Event, Host, Job, Session, SessionError};
+use crate::{Event, Host, Job, Session, SessionError, SessionOptions};
 use spectra_core::params::Warning;
 use spectra_core::shutter;
 use spectra_scene::SeriesKind;
@@ -32,7 +32,8 @@ pub(crate) fn metered(job: &Job<'_>, host: &dyn Host) -> Result<Option<spectra_s
     let pixels = u64::from(size.width_px) * u64::from(size.height_px);
     let samples = SAMPLES.div_ceil(pixels.max(1)).next_power_of_two().min(u64::from(first.render.samples.max(1)));
     let few = series.with_all(&["render.noise=null".to_owned(), format!("render.samples={samples}")]);
-    let mut session = Session::of_series(few.map_err(SessionError::Faults)?, 0, job.isa)?;
+    let options = SessionOptions { isa: job.isa, ..SessionOptions::default() };
+    let mut session = Session::new(few.map_err(SessionError::Faults)?, options)?;
     session.prepare(host.workers())?;
     let samples = samples.min(u64::from(session.scene().render.samples));
     session.advance(samples, host.workers(), &host.control())?;

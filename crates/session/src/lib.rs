@@ -1,6 +1,6 @@
 //! Sessions: renders that a program holds, changes and continues.
 //!
-//! A [`Session`] holds one picture of a scene. Load it from a path, a text or a tree; trace some samples and look at the result.
+//! A [`Session`] holds one picture of a scene. Open it from a path or a series; trace some samples and look at the result.
 //! Change a value and continue with all results that the change leaves valid. Save the light and load it again, develop it, and
 //! write it to files. [`run()`] does all of that for every picture of a scene, as `spectra run` does.
 //!
@@ -8,9 +8,9 @@
 //! files. Warnings, notes and results come back as values.
 //!
 //! ```no_run
-//! use spectra_session::{Control, Session, SingleThread};
+//! use spectra_session::{Control, Session, SessionOptions, SingleThread};
 //! # fn main() -> Result<(), spectra_session::SessionError> {
-//! let mut session = Session::open("scene.yaml".as_ref(), &[], spectra_core::Isa::detect())?;
+//! let mut session = Session::open("scene.yaml".as_ref(), &[], SessionOptions::default())?;
 //! session.step(16, &SingleThread, &Control::new())?;
 //! let picture = session.develop()?.remove(0).1;
 //! let kept = session.change("film.exposure=1/250 s")?;
@@ -37,6 +37,7 @@ mod host;
 mod job;
 mod lamp;
 mod names;
+mod options;
 mod pace;
 mod report;
 mod run;
@@ -58,10 +59,11 @@ pub use host::{Event, Folder, Host, SeriesPosition};
 pub use job::{Job, JobEnd, LightFrom};
 pub use lamp::FilmInLight;
 pub use names::Names;
+pub use options::SessionOptions;
 pub use pace::Pace;
 pub use report::Report;
 pub use run::run;
 pub use session::{Session, Snapshot, ValidResults};
-pub use spectra_render::{Control, Rendering, SingleThread, Threads, Workers};
+pub use spectra_render::{Control, Effort, Rendering, SingleThread, Threads, Workers};
 pub use spectra_scene::Developed;
 pub use threads::make_threads;

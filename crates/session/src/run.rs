@@ -5,7 +5,7 @@ use crate::files::{Files, write_report};
 use crate::generated::{is_generated, without_generated_place};
 use crate::job::{Job, JobEnd, LightFrom};
 use crate::traced_picture::{IncompletePolicy, TracedPicture, prepare};
-use crate::{Event, Host, Report, Session, SessionError, formatting, header, series};
+use crate::{Event, Host, Report, Session, SessionError, SessionOptions, formatting, header, series};
 use spectra_scene::{FilmTime, SeriesKind, Shot};
 
 /// Renders and writes all pictures of a job.
@@ -26,7 +26,7 @@ pub(crate) fn picture(
     unfinished: IncompletePolicy,
     host: &dyn Host,
 ) -> Result<(JobEnd, Vec<FilmTime>), SessionError> {
-    let mut session = Session::of_series(job.series.clone(), 0, job.isa)?;
+    let mut session = Session::new(job.series.clone(), SessionOptions { isa: job.isa, ..SessionOptions::default() })?;
     let member = session.member();
     let files = Files::of(&job.names, session.scene(), &member)?;
     // Checked before any folder is made, so that a scene that does not fit into memory leaves none behind.

@@ -5,11 +5,13 @@ use crate::contact::Contact;
 use crate::exposure_warnings::exposure_warnings;
 use crate::files::Files;
 use crate::traced_picture::{IncompletePolicy, TracedPicture, prepare};
-use crate::{Event, Host, Job, JobEnd, Report, SeriesPosition, Session, SessionError, first_frame, formatting, header};
+use crate::{
+    Event, Host, Job, JobEnd, Report, SeriesPosition, Session, SessionError, SessionOptions, first_frame, formatting,
+    header,
+};
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};
 use spectra_core::sink::WriteFault;
-use spectra_render::Effort;
 use spectra_scene::{Member, Scene, Series, SeriesKind, SeriesSummary, Shot};
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -206,7 +208,8 @@ impl SeriesRun<'_> {
             return Ok(true);
         }
         // The scenes of the check are not kept: a thousand of them would not fit into memory.
-        let mut session = Session::after(self.series.clone(), picture.index, self.other.take(), job.isa, Effort::Full)?;
+        let options = SessionOptions { isa: job.isa, picture: picture.index, ..SessionOptions::default() };
+        let mut session = Session::sharing(self.series.clone(), self.other.take(), options)?;
         let control = host.control();
         session.prepare(host.workers())?;
         for doubt in session.scene().source.warnings() {

@@ -5,14 +5,13 @@
 //! wavelength density and channels are still the same stages ([`ValidResults`]).
 
 use crate::files::Files;
-use crate::{Control, Names, Rendering, SessionError, SingleThread, Workers, header, still};
-use spectra_core::params::{Faults, Node, Warning};
-use spectra_core::resources::Resources;
+use crate::{Control, Names, Rendering, SessionError, SessionOptions, SingleThread, Workers, header, still};
+use spectra_core::frame::ExposureFrame;
+use spectra_core::params::{Faults, Warning};
 use spectra_core::sink::Sink;
 use spectra_core::stage::{Still, WavelengthDensity};
-use spectra_core::{Isa, frame::ExposureFrame};
-use spectra_render::{Effort, Light, RenderError, RenderOptions, Renderer};
-use spectra_scene::{Developed, Scene, Series, Shot, ViewSearch, load_series, series_of_text, series_of_tree};
+use spectra_render::{Light, RenderError, RenderOptions, Renderer};
+use spectra_scene::{Developed, Scene, Series, Shot, ViewSearch, load_series};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -55,14 +54,12 @@ impl Snapshot {
 /// A session on one picture of a scene: its stages, and its light so far.
 pub struct Session {
     series: Series,
-    index: usize,
-    isa: Isa,
+    options: SessionOptions,
     scene: Arc<Scene>,
     /// The prepared scene and its light, once light is asked for.
     ready: Option<(Renderer, Light)>,
     /// A wavelength density that fits the scene, if one is known from before.
     density: Option<Arc<dyn WavelengthDensity>>,
-    effort: Effort,
 }
 
 impl Session {
@@ -70,44 +67,42 @@ impl Session {
     ///
     /// # Errors
     /// Every fault of the scene.
-    pub fn open(path: &Path, overrides: &[String], isa: Isa) -> Result<Self, SessionError> {
-        Self::of_series(load_series(path, overrides)?, 0, isa)
+    pub fn open(path: &Path, overrides: &[String], options: SessionOptions) -> Result<Self, SessionError> {
+        Self::new(load_series(path, overrides)?, options)
     }
 
-    /// Opens a scene from its text. Its stages get their files from `resources`.
+    /// Opens a picture of a series.
     ///
     /// # Errors
-    /// The errors of [`Session::open`].
-    pub fn of_text(name: &str, text: &str, resources: Arc<dyn Resources>, isa: Isa) -> Result<Self, SessionError> {
-        Self::of_series(series_of_text(name, text, &[], resources)?, 0, isa)
+    /// Every fault of the scene.
+    pub fn new(series: Series, options: SessionOptions) -> Result<Self, SessionError> {
+        Self::sharing(series, None, options)
     }
 
-    /// Opens a scene from a tree. Its stages get their files from `resources`.
-    ///
-    /// # Errors
-    /// The errors of [`Session::open`].
-    pub fn of_tree(name: &str, root: Node, resources: Arc<dyn Resources>, isa: Isa) -> Result<Self, SessionError> {
-        Self::of_series(series_of_tree(name, root, &[], resources)?, 0, isa)
-    }
-
-    /// Opens a picture of a series by its index, from 0.
-    ///
-    /// # Errors
-    /// The errors of [`Session::open`].
-    pub fn of_series(series: Series, index: usize, isa: Isa) -> Result<Self, SessionError> {
-        Self::after(series, index, None, isa, Effort::Full)
-    }
-
-    /// Opens a picture of a series, and takes over the stages of `other` where both scenes have the same section.
-    pub(crate) fn after(
+    /// Opens a picture of a series. Takes over the stages of `other` where both scenes have the same section.
+    pub(crate) fn sharing(
         series: Series,
-        index: usize,
         other: Option<Arc<Scene>>,
-        isa: Isa,
-        effort: Effort,
+        options: SessionOptions,
     ) -> Result<Self, SessionError> {
-        let scene = series.scene_between(index, other, None, ViewSearch { effort, workers: &SingleThread })?.into();
-        Ok(Self { series, index, isa, scene, ready: None, density: None, effort })
+        let search = ViewSearch { effort: options.effort, workers: &SingleThread };
+        let scene = series.scene_between(options.picture, other, None, search)?.into();
+        Ok(Self { series, options, scene, ready: None, density: None })
+    }
+
+    /// Returns another session, without light, with these values `path=value` on top. It shares the stages that do not depend on
+    /// them. `self` does not change.
+    ///
+    /// # Errors
+    /// Every fault of the changed scene.
+    pub fn branch(&self, texts: &[String], options: SessionOptions) -> Result<Self, SessionError> {
+        Self::sharing(self.series.with_all(texts)?, Some(Arc::clone(&self.scene)), options)
+    }
+
+    /// Options of this session, with the index of its current picture.
+    #[must_use]
+    pub fn options(&self) -> SessionOptions {
+        self.options
     }
 
     /// The assembled scene of the picture.
@@ -121,40 +116,10 @@ impl Session {
         self.scene
     }
 
-    /// Returns a session on the same picture with these values `path=value` on top, without light. It shares the stages that do
-    /// not depend on these values. `self` does not change.
-    ///
-    /// # Errors
-    /// Every fault of the changed scene.
-    pub fn branch(&self, texts: &[String]) -> Result<Self, SessionError> {
-        self.branched(texts, self.index, Effort::Full)
-    }
-
-    fn branched(&self, texts: &[String], index: usize, effort: Effort) -> Result<Self, SessionError> {
-        Self::after(self.series.with_all(texts)?, index, Some(Arc::clone(&self.scene)), self.isa, effort)
-    }
-
-    /// Returns a draft, for a first look, of what [`Session::branch`] returns. Less effort is spent on the search for the rays
-    /// that pass the lens, and for those that frame and meters see. The result therefore differs in its bits.
-    ///
-    /// # Errors
-    /// The errors of [`Session::branch`].
-    pub fn draft(&self, texts: &[String]) -> Result<Self, SessionError> {
-        self.draft_of(texts, self.index)
-    }
-
-    /// Returns a draft, as [`Session::draft`] does, of another picture of the series by its index, from 0.
-    ///
-    /// # Errors
-    /// The errors of [`Session::branch`].
-    pub fn draft_of(&self, texts: &[String], index: usize) -> Result<Self, SessionError> {
-        self.branched(texts, index, Effort::Draft)
-    }
-
     /// Returns the number, values and name of the picture in its series.
     #[must_use]
     pub fn member(&self) -> spectra_scene::Member {
-        self.series.member(self.index)
+        self.series.member(self.options.picture)
     }
 
     /// Returns the files on disk that the pictures depend on: the scene, its includes, and the files that its stages have read so
@@ -178,7 +143,7 @@ impl Session {
         if self.ready.is_some() {
             return Ok(());
         }
-        match self.made(&self.scene, self.density.clone(), workers) {
+        match self.begin(&self.scene, self.density.clone(), workers) {
             Ok(ready) => self.ready = Some(ready),
             Err(RenderError::Stopped) => {}
             Err(error) => return Err(SessionError::of(&error, &self.scene)),
@@ -186,7 +151,8 @@ impl Session {
         Ok(())
     }
 
-    fn made(
+    /// Returns a renderer for a scene, and its light before any ray.
+    fn begin(
         &self,
         scene: &Arc<Scene>,
         density: Option<Arc<dyn WavelengthDensity>>,
@@ -194,7 +160,13 @@ impl Session {
     ) -> Result<(Renderer, Light), RenderError> {
         let renderer = Renderer::new(
             Arc::clone(scene),
-            &RenderOptions { isa: self.isa, density, effort: self.effort, workers, ..RenderOptions::default() },
+            &RenderOptions {
+                isa: self.options.isa,
+                density,
+                effort: self.options.effort,
+                workers,
+                ..RenderOptions::default()
+            },
         )?;
         let light = renderer.begin()?;
         Ok((renderer, light))
@@ -286,7 +258,7 @@ impl Session {
     pub fn develop(&mut self) -> Result<Vec<Developed>, SessionError> {
         let exposure: ExposureFrame = self.rendering()?.exposure;
         let times = self.scene.film_times(&exposure);
-        let shot = Shot::new(&self.scene, &exposure, &times, &[], self.isa);
+        let shot = Shot::new(&self.scene, &exposure, &times, &[], self.options.isa);
         shot.pictures().map(<[Developed]>::to_vec).map_err(SessionError::of_stage)
     }
 
@@ -305,7 +277,7 @@ impl Session {
         let (scene, exposure) = (&self.scene, &rendering.exposure);
         let times = scene.film_times(exposure);
         let attributes = header::attributes(scene, exposure, &times, rendering.partial, env!("CARGO_PKG_VERSION"));
-        let shot = Shot::new(scene, exposure, &times, &attributes, self.isa).with_layers(&rendering.layers);
+        let shot = Shot::new(scene, exposure, &times, &attributes, self.options.isa).with_layers(&rendering.layers);
         let files = Files::of(&Names::of_scene(), scene, &self.member())?;
         files.write(&shot, sink, None)?;
         Ok(files.names())
@@ -317,74 +289,43 @@ impl Session {
     /// # Errors
     /// Every fault of the changed scene.
     pub fn change(&mut self, text: &str) -> Result<ValidResults, SessionError> {
-        self.change_on(text, &SingleThread)
+        self.set(&[text], self.options.picture, true, None, &SingleThread)
     }
 
-    /// Sets a value as [`Session::change`] does, and runs the searches that it needs on these workers. Any workers give the same
-    /// bits.
+    /// Sets several values, as [`Session::change`] does, and goes to another picture of the series, by its index from 0. The scene
+    /// is prepared when light is asked for, where it can be stopped; errors of the preparation are reported then. If `lens_from`
+    /// has a focused lens that fits, such as a draft with the same change, it is taken over. Any workers give the same bits.
     ///
     /// # Errors
-    /// The errors of [`Session::change`].
-    pub fn change_on(&mut self, text: &str, workers: &dyn Workers) -> Result<ValidResults, SessionError> {
-        self.changed(&[text], self.index, true, None, workers)
-    }
-
-    /// Sets a value as [`Session::change`] does, but leaves the preparation of the scene until light is asked for, where it can
-    /// be stopped. Errors of the preparation are reported then.
-    ///
-    /// # Errors
-    /// Faults of the stages of the changed scene.
-    pub fn change_later(&mut self, text: &str) -> Result<ValidResults, SessionError> {
-        self.changed(&[text], self.index, false, None, &SingleThread)
-    }
-
-    /// Sets a value as [`Session::change_later`] does. Takes the focused lens from `other` if it fits, such as from a draft with
-    /// the same change.
-    ///
-    /// # Errors
-    /// The errors of [`Session::change_later`]; an error if the workers are told to stop meanwhile, which leaves everything
+    /// Faults of the stages of the changed scene; an error if the workers are told to stop meanwhile. Either leaves everything
     /// unchanged.
-    pub fn change_after(
-        &mut self,
-        text: &str,
-        other: &Self,
-        workers: &dyn Workers,
-    ) -> Result<ValidResults, SessionError> {
-        self.changed(&[text], self.index, false, Some(&other.scene), workers)
-    }
-
-    /// Sets several values at once and goes to another picture of the series, by its index from 0. The scene is prepared when
-    /// light is asked for. `other` may provide the focused lens, as in [`Session::change_after`].
-    ///
-    /// # Errors
-    /// The errors of [`Session::change_after`].
-    pub fn turn(
+    pub fn change_unprepared(
         &mut self,
         texts: &[impl AsRef<str>],
-        index: usize,
-        other: Option<&Self>,
+        picture: usize,
+        lens_from: Option<&Self>,
         workers: &dyn Workers,
     ) -> Result<ValidResults, SessionError> {
         let texts: Vec<&str> = texts.iter().map(AsRef::as_ref).collect();
-        self.changed(&texts, index, false, other.map(|other| &*other.scene), workers)
+        self.set(&texts, picture, false, lens_from.map(|other| &*other.scene), workers)
     }
 
     /// Returns the current state, for [`Session::restore`].
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot { series: self.series.clone(), index: self.index, scene: Arc::clone(&self.scene) }
+        Snapshot { series: self.series.clone(), index: self.options.picture, scene: Arc::clone(&self.scene) }
     }
 
     /// Returns to an earlier state, and keeps the light if it is still valid. This cannot fail, because the state was valid
     /// before.
     pub fn restore(&mut self, moment: &Snapshot) -> ValidResults {
         let Snapshot { series, index, scene } = moment.clone();
-        let kept = self.kept(&scene);
+        let kept = self.valid_results(&scene);
         if !kept.light {
             let known = self.ready.take().map(|(renderer, _)| Arc::clone(renderer.density())).or(self.density.take());
             self.density = known.filter(|_| kept.density);
         }
-        (self.series, self.index, self.scene) = (series, index, scene);
+        (self.series, self.options.picture, self.scene) = (series, index, scene);
         kept
     }
 
@@ -397,21 +338,21 @@ impl Session {
     /// Index of the picture in the series, from 0.
     #[must_use]
     pub fn index(&self) -> usize {
-        self.index
+        self.options.picture
     }
 
-    fn changed(
+    fn set(
         &mut self,
         texts: &[&str],
-        index: usize,
-        is_made_ready: bool,
-        lens_of: Option<&Scene>,
+        picture: usize,
+        is_prepared: bool,
+        lens_from: Option<&Scene>,
         workers: &dyn Workers,
     ) -> Result<ValidResults, SessionError> {
         let series = self.series.with_all(texts)?;
-        let search = ViewSearch { effort: self.effort, workers };
-        let scene: Arc<Scene> = series.scene_between(index, Some(Arc::clone(&self.scene)), lens_of, search)?.into();
-        let mut kept = self.kept(&scene);
+        let search = ViewSearch { effort: self.options.effort, workers };
+        let scene: Arc<Scene> = series.scene_between(picture, Some(Arc::clone(&self.scene)), lens_from, search)?.into();
+        let mut kept = self.valid_results(&scene);
         let (system, same_light) = (kept.density, kept.light);
         let ready = self.ready.take();
         let known = ready.as_ref().map(|(renderer, _)| renderer.density()).or(self.density.as_ref());
@@ -422,21 +363,21 @@ impl Session {
                 None
             }
             Some(ready) if same_light => Some(ready),
-            Some(_) if !is_made_ready => None,
-            Some(ready) => match self.made(&scene, density.clone(), workers) {
-                Ok(made) => Some(made),
+            Some(_) if !is_prepared => None,
+            Some(ready) => match self.begin(&scene, density.clone(), workers) {
+                Ok(begun) => Some(begun),
                 Err(error) => {
                     self.ready = Some(ready);
                     return Err(SessionError::of(&error, &scene));
                 }
             },
         };
-        (self.series, self.index, self.scene, self.density) = (series, index, scene, density);
+        (self.series, self.options.picture, self.scene, self.density) = (series, picture, scene, density);
         Ok(kept)
     }
 
     /// Returns which results for the current scene remain valid for another one.
-    fn kept(&self, scene: &Scene) -> ValidResults {
+    fn valid_results(&self, scene: &Scene) -> ValidResults {
         let before = &*self.scene;
         let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
             which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()

@@ -589,9 +589,9 @@ mod tests {
 
     #[test]
     fn each_control_that_is_turned_to_its_own_value_leaves_the_scene_as_it_is() {
-        use spectra_session::Session;
+        use spectra_session::{Session, SessionOptions};
         let mut session =
-            Session::open("biotar-ortho".as_ref(), &[], spectra_core::Isa::detect()).expect("a bundled scene");
+            Session::open("biotar-ortho".as_ref(), &[], SessionOptions::default()).expect("a bundled scene");
         let all = of_scene(session.scene().params.node());
         let mut turned = 0;
         for control in all.iter().filter(|control| !control.value.is_null()) {

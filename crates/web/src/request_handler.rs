@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use spectra_core::frame::DisplayPicture;
 use spectra_core::{Isa, registry};
 use spectra_scene::{Shot, bundled::Bundled};
-use spectra_session::{Control as Stop, Session, SessionError, SingleThread, ValidResults};
+use spectra_session::{Control as Stop, Session, SessionError, SessionOptions, SingleThread, ValidResults};
 use spectra_view::parts::{Control, SeriesValues, error_json, halves, head, of_session, packed, pixel, spectra, svg};
 use std::path::Path;
 
@@ -101,7 +101,7 @@ fn wrong(message: &str) -> Value {
 impl OpenScene {
     /// Opens a bundled scene.
     fn scene(name: &str, set: &[String]) -> Result<Self, SessionError> {
-        let session = Session::open(Path::new(name), set, Isa::detect())?;
+        let session = Session::open(Path::new(name), set, SessionOptions::default())?;
         let size = session.scene().imager.size();
         let aspect = f64::from(size.height_px) / f64::from(size.width_px);
         let controls = of_session(&session);
@@ -128,7 +128,7 @@ impl OpenScene {
 
     /// Goes to another picture of the series.
     fn pick(&mut self, path: &str, index: usize) -> Answer {
-        let changed = self.session.turn(&[""; 0], index, None, &SingleThread);
+        let changed = self.session.change_unprepared(&[""; 0], index, None, &SingleThread);
         self.changed(path, changed)
     }
 
@@ -238,7 +238,8 @@ mod tests {
             }
             found.push(ask(&mut desk, &json!({"do": "fingerprint"})));
         }
-        let mut session = Session::open(Path::new("biotar-ortho"), &set.map(str::to_owned), Isa::detect()).expect("it");
+        let mut session =
+            Session::open(Path::new("biotar-ortho"), &set.map(str::to_owned), SessionOptions::default()).expect("it");
         session.step(4, &SingleThread, &Stop::new()).expect("light");
         let command = format!("{:016x}", session.rendering().expect("light").exposure.fingerprint());
         assert!(found.iter().all(|answer| answer["fingerprint"] == command.as_str()), "{found:?}, {command}");

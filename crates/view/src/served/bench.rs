@@ -11,7 +11,7 @@ use spectra_files::write_atomically;
 use spectra_glass::Medium;
 use spectra_lens::Lens;
 use spectra_scene::Scene;
-use spectra_session::Session;
+use spectra_session::{Session, SessionOptions};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -88,7 +88,8 @@ pub(super) fn keep(order: &RenderJob, prism: &Prism, print: &str) -> Result<Valu
     if print_of(&before) != print {
         return Err(format!("{} has changed meanwhile: reload the page", file.display()));
     }
-    let session = Session::open(file, &order.overrides, order.isa).map_err(|error| error.to_string())?;
+    let options = SessionOptions { isa: order.isa, ..SessionOptions::default() };
+    let session = Session::open(file, &order.overrides, options).map_err(|error| error.to_string())?;
     let scene = session.scene();
     let known = words(scene).filter(|_| is_prism(&scene.lens)).ok_or("the scene no longer has a prism")?;
     let root = scene.params.node();

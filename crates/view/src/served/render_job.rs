@@ -2,7 +2,7 @@
 
 use super::photograph;
 use spectra_core::Isa;
-use spectra_session::{Photograph, Session, SessionError, is_picture};
+use spectra_session::{Photograph, Session, SessionError, SessionOptions, is_picture};
 use std::path::{Path, PathBuf};
 
 /// A scene or photograph to render, and the means to do it.
@@ -38,9 +38,10 @@ impl RenderJob {
     /// # Errors
     /// Every fault of the scene or the photograph.
     pub(crate) fn session(&self) -> Result<Session, SessionError> {
+        let options = SessionOptions { isa: self.isa, ..SessionOptions::default() };
         match &self.photograph {
-            Some(photograph) => Session::of_series(photograph.series(&self.overrides, self.isa)?, 0, self.isa),
-            None => Session::open(&self.scene, &self.overrides, self.isa),
+            Some(photograph) => Session::new(photograph.series(&self.overrides, self.isa)?, options),
+            None => Session::open(&self.scene, &self.overrides, options),
         }
     }
 

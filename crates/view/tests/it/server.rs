@@ -174,10 +174,16 @@ fn value_of(said: &Value, path: &str) -> Value {
     all.iter().find(|control| control["path"] == path).unwrap_or_else(|| panic!("no {path}"))["value"].clone()
 }
 
+/// Opens the text of a scene.
+fn opened(text: &str) -> spectra_session::Session {
+    let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
+    let series = spectra_scene::series_of_text("scene.yaml", text, &[], resources).expect("a scene");
+    spectra_session::Session::new(series, spectra_session::SessionOptions::default()).expect("a scene")
+}
+
 /// Renders the text of a scene with all its samples, and returns the picture as a page receives it.
 fn picture_of(text: &str) -> Vec<f32> {
-    let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
-    let mut session = spectra_session::Session::of_text("scene.yaml", text, resources, Isa::detect()).expect("a scene");
+    let mut session = opened(text);
     let samples = u64::from(session.scene().render.samples);
     session.step(samples, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
     as_sent(&session.develop().expect("a picture").remove(0).1.rgb.concat())
@@ -238,9 +244,7 @@ fn a_picture_follows_what_is_turned_and_is_saved() {
     assert_eq!(browser.turn(desk, "lens.f-number", json!(4)).status, 200);
     let (closed, light) = browser.frame(desk, pushed["frame"].as_u64().expect("a number"), is_done);
     let text = SCENE.replace("[60, 40]", "[480, 320]").replace("f/2", "f/4").replace("1/80 s", "1/80 s, push: 1");
-    let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
-    let mut session =
-        spectra_session::Session::of_text("scene.yaml", &text, resources, Isa::detect()).expect("a scene");
+    let mut session = opened(&text);
     session.step(4, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
     let wanted = session.develop().expect("a picture").remove(0).1;
     assert!(light == as_sent(&wanted.rgb.concat()), "{closed}");
@@ -298,9 +302,7 @@ fn a_draft_comes_first_and_the_whole_picture_is_that_of_a_run() {
     let (whole, light) = browser.frame(desk, draft["frame"].as_u64().expect("a number"), is_done);
     assert_eq!((&whole["draft"], &whole["light"]), (&json!(false), &json!([480, 320])));
     let text = SCENE.replace("[60, 40]", "[480, 320]").replace("focus: 2 m", "focus: 1.5 m");
-    let resources = std::sync::Arc::new(spectra_scene::FileResources::beside(".".as_ref()));
-    let mut session =
-        spectra_session::Session::of_text("scene.yaml", &text, resources, Isa::detect()).expect("a scene");
+    let mut session = opened(&text);
     session.step(4, &spectra_session::Threads(2), &spectra_session::Control::new()).expect("light");
     let wanted = session.develop().expect("a picture").remove(0).1;
     assert!(light == as_sent(&wanted.rgb.concat()), "{whole}");
@@ -468,7 +470,8 @@ fn a_photograph_is_developed() {
             format: None,
         };
         let series = photograph.series(&[], Isa::detect()).expect("a scene");
-        let session = spectra_session::Session::of_series(series, 0, Isa::detect()).expect("a scene");
+        let session =
+            spectra_session::Session::new(series, spectra_session::SessionOptions::default()).expect("a scene");
         let exposure = session.expose().expect("light").exposure;
         let times = session.scene().film_times(&exposure);
         let shot = spectra_scene::Shot::new(session.scene(), &exposure, &times, &[], Isa::detect());

@@ -8,7 +8,7 @@
 //! which shares the stages that do not depend on size. A change goes to the draft first. The whole gets it once nothing has changed for 60
 //! ms. Changes of a film's development go to the whole at once, because its light mostly stays; the draft gets them when it is next needed.
 //! A draft is prepared with little effort (`Effort::Draft`): few zones, no outlines, few rays for meters, no ghosts and no stars. The whole
-//! takes the focused lens of the draft (`Session::change_after`) and is prepared when it is traced.
+//! takes the focused lens of the draft (`Session::change_unprepared`) and is prepared when it is traced.
 //!
 //! **Refused changes** are reported until the control changes again, and leave the scene as it was. If a fault shows only when light is
 //! traced, the session goes back to an earlier state (`Moment`), as for a step back (`history`). `turns_settled` counts the changes that

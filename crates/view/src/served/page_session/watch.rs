@@ -50,8 +50,8 @@ impl Stamps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spectra_core::Isa;
     use spectra_plugins as _;
+    use spectra_session::SessionOptions;
 
     #[test]
     fn what_a_scene_includes_and_names_is_watched() {
@@ -65,7 +65,8 @@ mod tests {
             "spectra: 1\ninclude: base.yaml\nlens: {file: own.yaml}\nfilm: {stock: kodak-tri-x-400, exposure: 1/80 s}\n\
              source: {kind: chart, chart: resolution, distance: 2 m, luminance: 300 cd/m2, width: fill}\n",
         );
-        let session = Session::open(&at("scene.yaml"), &[], Isa::detect()).unwrap_or_else(|error| panic!("{error}"));
+        let session =
+            Session::open(&at("scene.yaml"), &[], SessionOptions::default()).unwrap_or_else(|error| panic!("{error}"));
         let before = Stamps::default().now(&session, &at("scene.yaml"));
         assert_eq!(before.0.keys().collect::<Vec<_>>(), [&at("base.yaml"), &at("own.yaml")]);
         assert!(!before.now(&session, &at("scene.yaml")).differ(&before));

@@ -10,7 +10,7 @@ use crate::controls;
 use crate::parts::{SeriesValues, error_json, packed};
 use serde_json::{Value, json};
 use spectra_scene::NumberFamily;
-use spectra_session::{Control as Stop, Session, SessionError, Threads, Workers};
+use spectra_session::{Control as Stop, Effort, Session, SessionError, SessionOptions, Threads, Workers};
 use std::mem::take;
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
@@ -281,7 +281,8 @@ impl PageSession {
         if hand.session.scene().imager.size().width_px != hand.width_px {
             // The session had another width then. If the chosen width cannot be set, the old width remains.
             let resolution = hand.shape.resolution(hand.width_px);
-            let _ = hand.session.turn(&[resolution], hand.session.index(), None, &Threads(self.order.threads));
+            let _ =
+                hand.session.change_unprepared(&[resolution], hand.session.index(), None, &Threads(self.order.threads));
             *is_light_kept = false;
         }
         hand.unproved = None;
@@ -309,7 +310,8 @@ impl PageSession {
                 let mut texts: Vec<String> = hand.owed.iter().flat_map(|owed| hand.shape.texts(&owed.turned)).collect();
                 texts.extend(hand.shape.draft(&hand.session));
                 // Faults are reported when the whole scene is changed.
-                hand.draft = hand.session.draft_of(&texts, index).ok();
+                let options = SessionOptions { picture: index, effort: Effort::Draft, ..hand.session.options() };
+                hand.draft = hand.session.branch(&texts, options).ok();
             }
             Some(draft) => {
                 let mut texts = take(&mut hand.behind);
@@ -321,7 +323,7 @@ impl PageSession {
                         _ => {}
                     }
                 }
-                match draft.turn(&texts, index, None, &workers) {
+                match draft.change_unprepared(&texts, index, None, &workers) {
                     Ok(kept) => same_light &= kept.light,
                     Err(_) => return hand.without_draft(),
                 }
@@ -377,7 +379,7 @@ impl PageSession {
             let index = owed.turned.picture().unwrap_or(hand.session.index());
             // A draft with this change has the focused lens, which the scene can take over.
             let draft = hand.draft.as_ref().filter(|_| !NOT_DRAFTED.contains(&&*control));
-            let changed = hand.session.turn(&texts, index, draft, &workers);
+            let changed = hand.session.change_unprepared(&texts, index, draft, &workers);
             match changed {
                 Ok(kept) => {
                     is_light_kept &= kept.light;
@@ -459,7 +461,7 @@ impl PageSession {
             let shape = AspectRatio::of(&session);
             let mut texts: Vec<String> = changes.iter().map(|(_, text)| text.clone()).collect();
             texts.push(shape.resolution(hand.width_px));
-            session.branch(&texts).map(|session| (session, shape))
+            session.branch(&texts, session.options()).map(|session| (session, shape))
         });
         match opened {
             Ok((session, shape)) => {
