@@ -7,13 +7,13 @@ use crate::glass::GlassArguments;
 use crate::lens::LensArguments;
 use crate::new::NewArguments;
 use crate::picture::PictureArguments;
-use crate::quantity::{parse, percent};
+use crate::quantity::percent;
 use crate::report::JsonReport;
 use crate::set::Set;
 use crate::spectrum::SpectrumArguments;
 use crate::version;
 use clap::{Args, Parser, Subcommand};
-use spectra_core::params::{Positive, Time};
+use spectra_core::params::{Fault, Positive, Quantity, Time};
 use std::path::PathBuf;
 
 /// The open spectral camera: light of every wavelength, through real glass, onto measured film.
@@ -143,7 +143,7 @@ pub(crate) struct Run {
     pub quality: Option<Quality>,
     /// Stop tracing light after this time (30s, 5min) from the start of the program, then develop and write the picture so far,
     /// which takes some seconds more. Nothing is written if the scene is not ready to render by then.
-    #[arg(long, value_name = "TIME", value_parser = parse::<Positive<Time>>)]
+    #[arg(long, value_name = "TIME", value_parser = Positive::<Time>::from_text)]
     pub time_limit: Option<Positive<Time>>,
     /// Render only these frames of an animation: 17, 10-20, 10-, or several of these separated by commas.
     #[arg(long, value_name = "FRAMES", value_parser = <Frames as std::str::FromStr>::from_str)]
@@ -178,22 +178,22 @@ impl Quality {
 }
 
 /// Parses one of the numbers of `spectra bench --samples`.
-fn sample_count(text: &str) -> Result<u32, String> {
+fn sample_count(text: &str) -> Result<u32, Fault> {
     const MOST: u32 = 1_048_576;
     let wanted = "expected whole numbers separated by commas, such as 1,4,16,64";
     let number = text.trim().parse::<u32>().ok().filter(|n| (1..=MOST).contains(n));
     number.ok_or_else(|| match text.parse::<f64>() {
-        Ok(_) => format!("expected whole numbers from 1 to {MOST}, such as 1,4,16,64"),
-        Err(_) => wanted.to_owned(),
+        Ok(_) => format!("expected whole numbers from 1 to {MOST}, such as 1,4,16,64").into(),
+        Err(_) => wanted.into(),
     })
 }
 
 /// Parses the number of `--samples`.
-fn samples(text: &str) -> Result<u32, String> {
+fn samples(text: &str) -> Result<u32, Fault> {
     let wanted = "expected a whole number from 1 to 4194304, such as 64";
     match text.trim().parse::<u32>() {
         Ok(samples) if (1..=4_194_304).contains(&samples) => Ok(samples),
-        _ => Err(wanted.to_owned()),
+        _ => Err(wanted.into()),
     }
 }
 

@@ -1,6 +1,7 @@
 //! `--frames`: which frames of an animation are rendered.
 
 use crate::outcome::Failure;
+use spectra_core::params::Fault;
 use spectra_scene::{Series, SeriesKind};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
@@ -10,11 +11,13 @@ use std::str::FromStr;
 pub(crate) struct Frames(Vec<(u32, Option<u32>)>);
 
 impl FromStr for Frames {
-    type Err = String;
+    type Err = Fault;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number =
-            |text: &str| text.trim().parse::<u32>().map_err(|_| format!("`{}` is not a frame number", text.trim()));
+    fn from_str(text: &str) -> Result<Self, Fault> {
+        let number = |text: &str| {
+            let text = text.trim();
+            text.parse::<u32>().map_err(|_| Fault::new(format!("`{text}` is not a frame number")))
+        };
         let part = |part: &str| match part.split_once('-') {
             None => number(part).map(|n| (n, Some(n))),
             Some((first, "")) => Ok((number(first)?, None)),
@@ -23,7 +26,7 @@ impl FromStr for Frames {
                 if first <= last {
                     Ok((first, Some(last)))
                 } else {
-                    Err(format!("the range {first}-{last} runs backward"))
+                    Err(format!("the range {first}-{last} runs backward").into())
                 }
             }
         };

@@ -169,10 +169,7 @@ fn stated_white(params: &Params, text: &str, timed: bool) -> Result<White, Fault
     } else {
         Positive::<Illuminance>::from_text(text).map(|v| v.lx())
     };
-    white.map(White::Stated).map_err(|error| match error.split_once("\nhint: ") {
-        Some((message, hint)) => params.fault("white", message).hint(hint),
-        None => params.fault("white", error),
-    })
+    white.map(White::Stated).map_err(|fault| Fault { hint: fault.hint, ..params.fault("white", fault.message) })
 }
 
 spectra_core::register!(imager "xyz": XyzParams, build);

@@ -5,7 +5,7 @@ use crate::Cells;
 use crate::recorded_spectrum::RecordedSpectrum;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use spectra_core::params::{NonNegative, Quantity, Ratio, schema_of};
+use spectra_core::params::{Fault, NonNegative, Quantity, Ratio, schema_of};
 use spectra_core::quantity;
 use spectra_core::spectral::Grid;
 
@@ -72,7 +72,8 @@ impl<'de> Deserialize<'de> for Floor {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let share: Ratio = quantity::deserialize(deserializer)?;
         Self::new(share.bare()).ok_or_else(|| {
-            serde::de::Error::custom("a floor takes a share of the samples\nhint: 0 or more and below 1, such as 5 %")
+            let fault = Fault::new("a floor takes a share of the samples");
+            serde::de::Error::custom(fault.hint("0 or more and below 1, such as 5 %"))
         })
     }
 }

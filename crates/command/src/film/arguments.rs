@@ -4,6 +4,7 @@ use crate::quantity::percent;
 use crate::report::JsonReport;
 use crate::set::Set;
 use clap::{Args, Subcommand, ValueEnum};
+use spectra_core::params::Fault;
 use std::path::PathBuf;
 
 /// Arguments of `spectra film`.
@@ -268,7 +269,7 @@ pub(crate) struct FilmCube {
 }
 
 /// Parses the number of `--stops`.
-fn stops(text: &str) -> Result<f64, String> {
-    let wanted = || "expected a number from 2 to 40, such as 14".to_owned();
+fn stops(text: &str) -> Result<f64, Fault> {
+    let wanted = || "expected a number from 2 to 40, such as 14".into();
     text.trim().parse().ok().filter(|stops| (2.0..=40.0).contains(stops)).ok_or_else(wanted)
 }

@@ -3,7 +3,7 @@
 use crate::quantity::wavelength;
 use crate::report::JsonReport;
 use clap::{Args, Subcommand, ValueEnum};
-use spectra_core::params::Wavelength;
+use spectra_core::params::{Fault, Wavelength};
 use spectra_glass::{Category, Era, LineTriple};
 use std::path::PathBuf;
 
@@ -265,12 +265,12 @@ pub(crate) struct GlassCheck {
     pub report: JsonReport,
 }
 
-fn temperature(text: &str) -> Result<f64, String> {
+fn temperature(text: &str) -> Result<f64, Fault> {
     let number = text.trim().trim_end_matches(['C', '\u{b0}', ' ']).parse::<f64>();
     number.ok().filter(|t| (-100.0..=200.0).contains(t)).ok_or_else(|| "expected degrees Celsius, -100 to 200".into())
 }
 
-fn range(text: &str) -> Result<(f64, f64), String> {
+fn range(text: &str) -> Result<(f64, f64), Fault> {
     let parts = text.split_once([',', '-']).map(|(a, b)| (a.trim().parse::<f64>(), b.trim().parse::<f64>()));
     match parts {
         Some((Ok(from), Ok(to))) if 100.0 <= from && from + 1.0 <= to && to <= 50_000.0 => Ok((from, to)),
@@ -279,19 +279,19 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 }
 
 /// Parses the lines of `--lines`.
-fn three_lines(text: &str) -> Result<LineTriple, String> {
+fn three_lines(text: &str) -> Result<LineTriple, Fault> {
     let expected = "expected three lines or wavelengths in nm from blue to red, such as F',e,C' or 450,580,680";
-    LineTriple::read(text).filter(|_| text.contains(',')).ok_or_else(|| expected.to_owned())
+    LineTriple::read(text).filter(|_| text.contains(',')).ok_or_else(|| expected.into())
 }
 
 /// Parses the lines of `--line`.
-fn reference(text: &str) -> Result<LineTriple, String> {
+fn reference(text: &str) -> Result<LineTriple, Fault> {
     let expected =
         "expected d, D or e, or three lines or wavelengths in nm from blue to red, such as F',e,C' or 450,580,680";
-    LineTriple::read(text).ok_or_else(|| expected.to_owned())
+    LineTriple::read(text).ok_or_else(|| expected.into())
 }
 
-fn category(name: &str) -> Result<Category, String> {
+fn category(name: &str) -> Result<Category, Fault> {
     let name = name.trim().to_lowercase();
     let found = Category::by_name(&name).or_else(|| Category::by_name(&format!("{name} glass")));
     found.ok_or_else(|| {

@@ -1,10 +1,10 @@
 //! Command-line arguments of `spectra lens`.
 
 use crate::glass::OwnCatalogues;
-use crate::quantity::{parse, wavelength};
+use crate::quantity::wavelength;
 use crate::report::JsonReport;
 use clap::{Args, Subcommand};
-use spectra_core::params::{FNumber, Length, OrInfinity, Positive, Ratio, Wavelength};
+use spectra_core::params::{FNumber, Fault, Length, OrInfinity, Positive, Quantity, Ratio, Wavelength};
 use spectra_optics::Criterion;
 use std::path::PathBuf;
 
@@ -51,7 +51,7 @@ pub(crate) struct LensScale {
     #[arg(value_name = "LENS")]
     pub lens: String,
     /// Focal length of the scaled lens (85mm).
-    #[arg(long, value_name = "LENGTH", value_parser = parse::<Positive<Length>>, conflicts_with = "by", required_unless_present = "by")]
+    #[arg(long, value_name = "LENGTH", value_parser = Positive::<Length>::from_text, conflicts_with = "by", required_unless_present = "by")]
     pub to: Option<Positive<Length>>,
     /// Factor that all lengths are multiplied by.
     #[arg(long, value_name = "FACTOR")]
@@ -115,7 +115,7 @@ pub(crate) struct LensDraw {
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u16).range(0..=1001))]
     pub rays: u16,
     /// Distance of the object from the first surface (2m, inf).
-    #[arg(long, value_name = "DISTANCE", default_value = "inf", value_parser = parse::<OrInfinity<Positive<Length>>>)]
+    #[arg(long, value_name = "DISTANCE", default_value = "inf", value_parser = OrInfinity::<Positive<Length>>::from_text)]
     pub object: OrInfinity<Positive<Length>>,
     /// Plane of the cross-section: `y` is the y-z plane, `x` the x-z plane.
     #[arg(long, value_enum, default_value_t = CutArgument::Y)]
@@ -140,26 +140,26 @@ pub(crate) enum CutArgument {
 }
 
 /// Parses the number of a surface, counted from 1.
-fn surface(text: &str) -> Result<usize, String> {
-    text.trim().parse().map_err(|_| "surfaces are whole numbers, counted from 1, such as 7,3".to_owned())
+fn surface(text: &str) -> Result<usize, Fault> {
+    text.trim().parse().map_err(|_| "surfaces are whole numbers, counted from 1, such as 7,3".into())
 }
 
 /// Parses a fraction from 0 to 1.
-fn share(text: &str) -> Result<f64, String> {
+fn share(text: &str) -> Result<f64, Fault> {
     let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
-    value.ok_or_else(|| "expected a fraction from 0 to 1, such as 1e-8".to_owned())
+    value.ok_or_else(|| "expected a fraction from 0 to 1, such as 1e-8".into())
 }
 
 /// Parses a field angle in degrees, between -90 and 90.
-fn field(text: &str) -> Result<f64, String> {
+fn field(text: &str) -> Result<f64, Fault> {
     let value = text.parse::<f64>().ok().filter(|v| v.abs() < 90.0);
-    value.ok_or_else(|| "expected degrees between -90 and 90".to_owned())
+    value.ok_or_else(|| "expected degrees between -90 and 90".into())
 }
 
-fn wavelength_or_line(text: &str) -> Result<f64, String> {
+fn wavelength_or_line(text: &str) -> Result<f64, Fault> {
     match spectra_glass::lines::by_name(text.trim()) {
         Some(line) => Ok(line.wavelength_nm),
-        None => wavelength(text).map(|w| w.nm()).map_err(|e| format!("{e}; or a line such as F', e, C'")),
+        None => wavelength(text).map(|w| w.nm()).map_err(|e| format!("{e}; or a line such as F', e, C'").into()),
     }
 }
 
@@ -177,16 +177,16 @@ pub(crate) struct LensSetting {
 #[derive(Debug, Args)]
 pub(crate) struct LensOptions {
     /// Focus at this distance from the first surface (2m, 77cm, inf); as in the file if not given.
-    #[arg(long, value_name = "DISTANCE", value_parser = parse::<OrInfinity<Positive<Length>>>)]
+    #[arg(long, value_name = "DISTANCE", value_parser = OrInfinity::<Positive<Length>>::from_text)]
     pub focus: Option<OrInfinity<Positive<Length>>>,
     /// Focus distance as a plain number in millimeters.
-    #[arg(long, value_name = "MM", value_parser = parse::<OrInfinity<Positive<Length>>>, conflicts_with = "focus")]
+    #[arg(long, value_name = "MM", value_parser = OrInfinity::<Positive<Length>>::from_text, conflicts_with = "focus")]
     pub focus_mm: Option<OrInfinity<Positive<Length>>>,
     /// Measure that --focus optimizes, at the lens's reference line, on axis and at the chosen aperture.
     #[arg(long, value_name = "MEASURE", value_enum, default_value_t = FocusMeasure::Contrast)]
     pub focus_by: FocusMeasure,
     /// Set the stop to this f-number (f/2), which is measured with the real marginal ray; as in the file if not given.
-    #[arg(long, value_name = "F/N", value_parser = parse::<FNumber>)]
+    #[arg(long, value_name = "F/N", value_parser = FNumber::from_text)]
     pub f_number: Option<FNumber>,
     /// Coating of all surfaces: ideal (no reflection), bare, single-layer, three-layer, any other of `spectra list coating` without
     /// required parameters, or a file; as in the lens file if not given.
@@ -236,17 +236,17 @@ pub(crate) struct OneLight {
 }
 
 /// Parses the name of a spectral line; returns its wavelength, nm.
-fn line(name: &str) -> Result<f64, String> {
+fn line(name: &str) -> Result<f64, Fault> {
     spectra_glass::lines::by_name(name).map(|line| line.wavelength_nm).ok_or_else(|| {
         let known: Vec<&str> = spectra_glass::lines::ALL.iter().map(|line| line.name).collect();
-        format!("no such spectral line; {}", spectra_core::names::hint(name, &known, ""))
+        format!("no such spectral line; {}", spectra_core::names::hint(name, &known, "")).into()
     })
 }
 
 /// Parses a fraction of the light: `4 %`, `0.04`.
-fn part(text: &str) -> Result<f64, String> {
-    let part = parse::<Ratio>(text)?.number();
-    if (0.0..=1.0).contains(&part) { Ok(part) } else { Err("expected a value from 0 to 100 %".to_owned()) }
+fn part(text: &str) -> Result<f64, Fault> {
+    let part = Ratio::from_text(text)?.number();
+    if (0.0..=1.0).contains(&part) { Ok(part) } else { Err("expected a value from 0 to 100 %".into()) }
 }
 
 /// Arguments of `spectra lens info`.
@@ -279,7 +279,7 @@ pub(crate) struct LensInfo {
     #[command(flatten)]
     pub light: OneLight,
     /// Show the field in the middle and at 0.5, 0.7 and 1 of this image height (21.6mm), instead of in ten steps to the largest field.
-    #[arg(long, value_name = "LENGTH", value_parser = parse::<Positive<Length>>)]
+    #[arg(long, value_name = "LENGTH", value_parser = Positive::<Length>::from_text)]
     pub image_height: Option<Positive<Length>>,
     /// List every mount that the lens fits, not only the common ones.
     #[arg(long)]

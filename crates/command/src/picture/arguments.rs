@@ -4,6 +4,7 @@ use crate::eye::EyeName;
 use crate::report::JsonReport;
 use clap::{Args, Subcommand};
 use spectra_analysis::picture::Rectangle;
+use spectra_core::params::Fault;
 use std::path::PathBuf;
 
 /// Arguments of `spectra picture`.
@@ -209,29 +210,29 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
 }
 
 /// Parses the number of `--white`.
-fn positive(text: &str) -> Result<f64, String> {
+fn positive(text: &str) -> Result<f64, Fault> {
     let [value] = numbers(text).filter(|[v]| *v > 0.0).ok_or("expected a number above 0, such as 0.4")?;
     Ok(value)
 }
 
 /// Parses the numbers of `--range`.
-fn range(text: &str) -> Result<[f64; 2], String> {
+fn range(text: &str) -> Result<[f64; 2], Fault> {
     let rises = |[from, to]: &[f64; 2]| from < to;
-    numbers(text).filter(rises).ok_or_else(|| "expected two increasing numbers, such as 0.1,100".to_owned())
+    numbers(text).filter(rises).ok_or_else(|| "expected two increasing numbers, such as 0.1,100".into())
 }
 
 /// Parses the numbers of `--line`.
-fn line(text: &str) -> Result<[f64; 4], String> {
-    numbers(text).ok_or_else(|| "expected four numbers: column and row of each end, such as 10,10,200,90".to_owned())
+fn line(text: &str) -> Result<[f64; 4], Fault> {
+    numbers(text).ok_or_else(|| "expected four numbers: column and row of each end, such as 10,10,200,90".into())
 }
 
 /// Parses the numbers of `--area`.
-fn rectangle(text: &str) -> Result<Rectangle, String> {
+fn rectangle(text: &str) -> Result<Rectangle, Fault> {
     let all: Option<Vec<u32>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
     match all.as_deref() {
         Some(&[x, y, width, height]) if width > 0 && height > 0 => {
             Ok(Rectangle { from: [x, y], size: [width, height] })
         }
-        _ => Err("expected four whole numbers: column, row, width and height, such as 10,10,20,20".to_owned()),
+        _ => Err("expected four whole numbers: column, row, width and height, such as 10,10,20,20".into()),
     }
 }

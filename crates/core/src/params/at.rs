@@ -35,10 +35,9 @@ impl<'n, 'p> At<'n, 'p> {
         self.way.map_or_else(|| self.prefix.to_owned(), |(step, before)| joined(&before.path(), step))
     }
 
-    /// Creates a fault at this node. A line of `words` that starts with `hint: ` becomes the hint.
-    pub(super) fn fault(&self, words: &str) -> Fault {
-        let (message, hint) =
-            words.split_once("\nhint: ").map_or((words, None), |(m, hint)| (m, Some(hint.to_owned())));
-        Fault { hint, ..self.node.fault(message).path(self.path()) }
+    /// Places a fault at this node.
+    pub(super) fn fault(&self, fault: impl Into<Fault>) -> Fault {
+        let (file, span) = self.node.place();
+        fault.into().at(file, span).path(self.path())
     }
 }

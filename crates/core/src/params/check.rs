@@ -104,9 +104,9 @@ impl<'s> Check<'s> {
         name.and_then(|path| self.root.pointer(path)).unwrap_or(schema)
     }
 
-    fn say(&mut self, at: &At<'_, '_>, words: &str) {
+    fn say(&mut self, at: &At<'_, '_>, fault: Fault) {
         if self.faults.len() <= MOST_FAULTS {
-            self.faults.push(at.fault(words));
+            self.faults.push(at.fault(fault));
         }
     }
 
@@ -174,8 +174,7 @@ impl<'s> Check<'s> {
             (_, Some((_, example))) => Some(format!("write it as in `{example}`")),
             _ => None,
         };
-        let hint = hint.map_or_else(String::new, |hint| format!("\nhint: {hint}"));
-        self.say(at, &format!("found {}, expected {expected}{hint}", found(at.node)));
+        self.say(at, Fault { hint, ..Fault::new(format!("found {}, expected {expected}", found(at.node))) });
     }
 
     fn word(&mut self, at: &At<'_, '_>, words: &[&str]) {
@@ -184,7 +183,7 @@ impl<'s> Check<'s> {
             Some(text) => {
                 let hint = names::hint(text, words, "");
                 let of = at.key().map_or_else(String::new, |key| format!(" for `{}`", shown(key)));
-                self.say(at, &format!("unknown value `{}`{of}\nhint: {hint}", shown(text)));
+                self.say(at, Fault::new(format!("unknown value `{}`{of}", shown(text))).hint(hint));
             }
             None => self.mismatch(at, &format!("one of {}", names::listed(words, "")), None),
         }
@@ -290,15 +289,15 @@ impl<'s> Check<'s> {
             Value::Number(super::Number { text, .. }) | Value::String(text) => form.read(text).map(|_| ()),
             value => {
                 let hint = match value {
-                    Value::Null => format!("\nhint: {}", no_value(at.node)),
-                    Value::Seq(_) => "\nhint: one value, without brackets".to_owned(),
-                    _ => format!("\nhint: write it as in `{}`", form.example()),
+                    Value::Null => no_value(at.node),
+                    Value::Seq(_) => "one value, without brackets".to_owned(),
+                    _ => format!("write it as in `{}`", form.example()),
                 };
-                Err(format!("found {}, expected {}{hint}", found(at.node), form.expected()))
+                Err(Fault::new(format!("found {}, expected {}", found(at.node), form.expected())).hint(hint))
             }
         };
-        if let Err(words) = result {
-            self.say(at, &words);
+        if let Err(fault) = result {
+            self.say(at, fault);
         }
     }
 
@@ -306,12 +305,14 @@ impl<'s> Check<'s> {
         let Value::Number(number) = &at.node.value else { return self.mismatch(at, "a number such as 1.5", None) };
         let text = shown(&number.text);
         let is_written_out = !number.text.to_ascii_lowercase().contains("inf");
+        let as_in = "write it as in `1.5`";
         if number.value.is_infinite() && is_written_out {
-            self.say(at, &format!("found {text}, which is too large; expected a number\nhint: write it as in `1.5`"));
+            self.say(at, Fault::new(format!("found {text}, which is too large; expected a number")).hint(as_in));
         } else if !number.value.is_finite() {
-            self.say(at, &format!("found {text}, expected a number such as 1.5\nhint: write it as in `1.5`"));
+            self.say(at, Fault::new(format!("found {text}, expected a number such as 1.5")).hint(as_in));
         } else if !limits.allow(number.value) {
-            self.say(at, &format!("found {text}, which is out of range\nhint: a number {}", limits.words("")));
+            let fault = Fault::new(format!("found {text}, which is out of range"));
+            self.say(at, fault.hint(format!("a number {}", limits.words(""))));
         }
     }
 
@@ -324,11 +325,14 @@ impl<'s> Check<'s> {
             // A version number: only one value is allowed.
             _ if least == most => {
                 let key = at.key().unwrap_or("it");
-                self.say(at, &format!("unknown value {text} for `{key}`\nhint: this program reads `{key}: {least}`"));
+                let fault = Fault::new(format!("unknown value {text} for `{key}`"));
+                self.say(at, fault.hint(format!("this program reads `{key}: {least}`")));
             }
             Exact::Not => self.mismatch(at, "a whole number such as 16", Some(format!("from {least} to {most}"))),
-            Exact::Is(_) | Exact::Beyond => self
-                .say(at, &format!("found {text}, which is out of range\nhint: a whole number from {least} to {most}")),
+            Exact::Is(_) | Exact::Beyond => {
+                let fault = Fault::new(format!("found {text}, which is out of range"));
+                self.say(at, fault.hint(format!("a whole number from {least} to {most}")));
+            }
         }
     }
 
@@ -374,11 +378,8 @@ impl<'s> Check<'s> {
         let found = elements.len();
         match exact {
             Some(len) if len != found => {
-                self.say(
-                    at,
-                    &format!("found a list of {found}, expected a list of {len}\nhint: {}", list_hint("", len)),
-                );
-                return;
+                let fault = Fault::new(format!("found a list of {found}, expected a list of {len}"));
+                return self.say(at, fault.hint(list_hint("", len)));
             }
             None if least.is_some_and(|least| found < least) || most.is_some_and(|most| found > most) => {
                 let hint = match (least, most) {
@@ -386,7 +387,7 @@ impl<'s> Check<'s> {
                     (Some(least), None) => format!("at least {least} of them"),
                     (None, most) => format!("at most {} of them", most.unwrap_or_default()),
                 };
-                self.say(at, &format!("found a list of {found}\nhint: {hint}"));
+                self.say(at, Fault::new(format!("found a list of {found}")).hint(hint));
             }
             _ => {}
         }
@@ -423,7 +424,7 @@ impl<'s> Check<'s> {
         }
         for key in texts(schema, "required") {
             if at.node.get(key).is_none() && !meant.contains(&key) {
-                self.say(at, &format!("missing key `{key}`\nhint: add `{key}: ...`"));
+                self.say(at, Fault::new(format!("missing key `{key}`")).hint(format!("add `{key}: ...`")));
                 if let Some(fault) = self.faults.last_mut() {
                     fault.path = super::path::joined(&at.path(), Step::Key(key));
                 }

@@ -50,9 +50,9 @@
 //!
 //! The struct is the only declaration: its type states unit and form, attributes state the range, an enum states the words, and the
 //! doc comment states the meaning. `schemars` makes its schema, `check` compares the tree with the schema, and serde then reads
-//! the tree. A check by serde itself (`try_from`, a hand-written `Deserialize`) comes last, and its fault is placed at the map
-//! around the value; it may add a hint to its message, on a line that starts with `hint: `. A stage's `build` checks only what
-//! concerns several keys, or what depends on the world (a file, a glass, a lens).
+//! the tree. A check by serde itself (`try_from`, a hand-written `Deserialize`) comes last, and its message is placed at the map
+//! around the value. A stage's `build` checks only what concerns several keys, or what depends on the world (a file, a glass, a
+//! lens).
 //!
 //! Three modules share the work, each of which uses only those before it: [`names`](crate::names) finds what a typed name meant,
 //! [`quantity`](crate::quantity) knows how `50 mm` or `f/2.8` is read, shown and bounded, and this module places messages in a file.

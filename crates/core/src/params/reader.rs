@@ -53,7 +53,7 @@ pub(super) fn parse<T: Readable>(node: &Node, prefix: &str) -> Result<T, Faults>
     check(&at, &schema::<T>())?;
     T::deserialize(Reader(at)).map_err(|error| match *error.0 {
         Inner::Placed(fault) => fault.into(),
-        Inner::Words(words) => at.fault(&words).into(),
+        Inner::Words(words) => at.fault(words).into(),
         Inner::Node(_) => at.fault("a part with its places is wanted here").into(),
     })
 }
@@ -107,7 +107,7 @@ enum Inner {
 impl ReadError {
     fn at(self, at: &At<'_, '_>) -> Self {
         match *self.0 {
-            Inner::Words(words) => Self(Box::new(Inner::Placed(at.fault(&words)))),
+            Inner::Words(words) => Self(Box::new(Inner::Placed(at.fault(words)))),
             _ => self,
         }
     }

@@ -1,5 +1,6 @@
 //! Whole numbers, read from their digits, because an f64 would silently change those above 2^53.
 
+use super::fault::Fault;
 use crate::quantity::decimal_end;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error};
@@ -103,7 +104,8 @@ impl<'de, const MIN: u64, const MAX: u64> Deserialize<'de> for Whole<MIN, MAX> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let value = u64::deserialize(deserializer)?;
         Self::new(value).ok_or_else(|| {
-            D::Error::custom(format!("found {value}, which is out of range\nhint: a whole number from {MIN} to {MAX}"))
+            let fault = Fault::new(format!("found {value}, which is out of range"));
+            D::Error::custom(fault.hint(format!("a whole number from {MIN} to {MAX}")))
         })
     }
 }

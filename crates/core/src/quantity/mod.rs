@@ -1,7 +1,7 @@
 //! Quantities as people write them: `50 mm`, `f/2.8`, `1/125 s`.
 //!
 //! A [`Quantity`] is a type with a dimension, the unit of its bare number and a bound; it knows how it is read, shown and
-//! described in a schema. This module knows nothing of files: errors are texts, and [`crate::params`] attaches their place.
+//! described in a schema. This module knows nothing of files: its faults have no place, and [`crate::params`] attaches it.
 
 mod kinds;
 mod light;

@@ -3,6 +3,7 @@
 use super::limits::Limits;
 use super::units::{Dimension, Reading, Unit};
 use crate::names::{nearest, shown};
+use crate::params::Fault;
 use serde::de::{Deserializer, Error, Visitor};
 use serde_json::Value;
 use std::fmt;
@@ -72,8 +73,8 @@ pub trait Quantity: Copy {
     /// Reads a text such as `50 mm`; a number without a unit is in [`Self::BARE_UNIT`].
     ///
     /// # Errors
-    /// What was found and what is expected, perhaps followed by a line that starts with `hint: `.
-    fn from_text(text: &str) -> Result<Self, String> {
+    /// What was found and what is expected.
+    fn from_text(text: &str) -> Result<Self, Fault> {
         let form = QuantityFormat {
             noun: Self::NOUN,
             dimension: Self::DIMENSION,
@@ -134,10 +135,10 @@ impl<'a> QuantityFormat<'a> {
     }
 
     /// Reads a text as a number and its unit; there is no unit if the number is bare.
-    pub(crate) fn read(&self, text: &str) -> Result<(f64, Option<&'static Unit>), String> {
+    pub(crate) fn read(&self, text: &str) -> Result<(f64, Option<&'static Unit>), Fault> {
         let expected = self.expected();
         let as_in = format!("write it as in `{}`", self.example);
-        let found = |what: &str, hint: &str| Err(format!("found {what}, expected {expected}\nhint: {hint}"));
+        let found = |what: &str, hint: &str| Err(Fault::new(format!("found {what}, expected {expected}")).hint(hint));
         match Reading::of(text) {
             Reading::Bare(value) => self.allowed(value, text).map(|()| (value, None)),
             Reading::Quantity { value, unit } if unit.dimension == self.dimension => {
@@ -145,12 +146,14 @@ impl<'a> QuantityFormat<'a> {
                 self.allowed(bare, text).map(|()| (value, Some(unit)))
             }
             Reading::Quantity { .. } => {
-                Err(format!("found {}, expected {expected}{}", found_text(text), self.units_hint()))
+                let message = format!("found {}, expected {expected}", found_text(text));
+                Err(Fault { hint: self.units_hint(), ..Fault::new(message) })
             }
             Reading::Infinity(false) if self.infinity => Ok((f64::INFINITY, None)),
             Reading::Infinity(_) | Reading::NotANumber => found(&shown(text), &as_in),
             Reading::TooLarge => {
-                Err(format!("found {}, which is too large; expected {expected}\nhint: {as_in}", shown(text)))
+                let message = format!("found {}, which is too large; expected {expected}", shown(text));
+                Err(Fault::new(message).hint(as_in))
             }
             Reading::DecimalComma => {
                 found(&format!("the text `{}`", shown(text)), "write a decimal point, not a comma")
@@ -161,44 +164,41 @@ impl<'a> QuantityFormat<'a> {
             Reading::UnknownUnit(unit) => {
                 let units = self.dimension.units();
                 let usual = usual_symbol(unit).filter(|symbol| units.contains(symbol));
-                let hint = match usual.or_else(|| nearest(unit, units.iter().copied())) {
-                    Some(near) => format!("\nhint: did you mean `{near}`?"),
-                    None => self.units_hint(),
-                };
-                Err(format!("unknown unit `{}`, expected {expected}{hint}", shown(unit)))
+                let near = usual.or_else(|| nearest(unit, units.iter().copied()));
+                let hint = near.map(|near| format!("did you mean `{near}`?")).or_else(|| self.units_hint());
+                Err(Fault { hint, ..Fault::new(format!("unknown unit `{}`, expected {expected}", shown(unit))) })
             }
             Reading::Text => found(&format!("the text `{}`", shown(text)), &self.text_hint(text)),
         }
     }
 
     /// Checks that a number in the unit of bare numbers is within the limits.
-    pub(crate) fn allowed(&self, value: f64, written: &str) -> Result<(), String> {
+    pub(crate) fn allowed(&self, value: f64, written: &str) -> Result<(), Fault> {
         let written = shown(written);
         if !value.is_finite() {
-            let expected = self.expected();
-            return Err(format!(
-                "found {written}, which is too large, expected {expected}\nhint: write it as in `{}`",
-                self.example
-            ));
+            let fault = Fault::new(format!("found {written}, which is too large, expected {}", self.expected()));
+            return Err(fault.hint(format!("write it as in `{}`", self.example)));
         }
         if self.limits.allow(value) {
             return Ok(());
         }
         let words = self.limits.words(self.unit);
         Err(if self.limits.sign_is_wrong(value) {
-            format!("found {written}, expected {}\nhint: {words}, as in `{}`", self.expected(), self.example)
+            let fault = Fault::new(format!("found {written}, expected {}", self.expected()));
+            fault.hint(format!("{words}, as in `{}`", self.example))
         } else {
-            format!("found {written}, which is out of range\nhint: {} {words}", with_article(self.noun))
+            let fault = Fault::new(format!("found {written}, which is out of range"));
+            fault.hint(format!("{} {words}", with_article(self.noun)))
         })
     }
 
-    /// Lists the units as a hint, on a line of its own.
-    fn units_hint(&self) -> String {
+    /// Lists the units as a hint; `None` if there are none to choose from.
+    fn units_hint(&self) -> Option<String> {
         let units: Vec<&str> = self.dimension.units().into_iter().filter(|u| !u.is_empty()).collect();
         match (units.is_empty() || self.dimension == Dimension::FNumber, self.unit) {
-            (true, _) => String::new(),
-            (false, "") => format!("\nhint: units: {}; or a bare number", units.join(", ")),
-            (false, bare) => format!("\nhint: units: {}; a bare number is in {bare}", units.join(", ")),
+            (true, _) => None,
+            (false, "") => Some(format!("units: {}; or a bare number", units.join(", "))),
+            (false, bare) => Some(format!("units: {}; a bare number is in {bare}", units.join(", "))),
         }
     }
 
