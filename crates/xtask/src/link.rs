@@ -4,6 +4,7 @@
 //! references. This program therefore stands in for the linker: it asks for the plugins' libraries as a whole, and passes the
 //! arguments on to the toolchain's own linker.
 
+use crate::TaskResult;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,11 +16,11 @@ pub const ASKED: &str = "SPECTRA_WEB_LINKER";
 ///
 /// # Errors
 /// The linker cannot be started, or it failed and has printed why.
-pub fn link(arguments: Vec<OsString>) -> Result<(), String> {
+pub fn link(arguments: Vec<OsString>) -> TaskResult {
     let own = std::env::var_os(ASKED).unwrap_or_default();
     let status = Command::new(&own).args(["-flavor", "wasm"]).args(whole(arguments)).status();
     let status = status.map_err(|error| format!("{}: {error}", own.display()))?;
-    if status.success() { Ok(()) } else { Err(format!("{}: {status}", own.display())) }
+    if status.success() { Ok(()) } else { Err(format!("{}: {status}", own.display()).into()) }
 }
 
 /// Returns the arguments with each library of a plugin included as a whole.
@@ -40,13 +41,13 @@ fn whole(arguments: Vec<OsString>) -> Vec<OsString> {
 ///
 /// # Errors
 /// The toolchain has no linker, or `rustc` cannot be run.
-pub fn own() -> Result<PathBuf, String> {
-    let ask = |what: &str| -> Result<String, String> {
+pub fn own() -> TaskResult<PathBuf> {
+    let ask = |what: &str| -> TaskResult<String> {
         let said = Command::new("rustc").args(["--print", what]).output().map_err(|error| format!("rustc: {error}"))?;
         Ok(String::from_utf8_lossy(&said.stdout).trim().to_owned())
     };
     let (sysroot, host) = (ask("sysroot")?, ask("host-tuple")?);
     let linker = Path::new(&sysroot).join("lib/rustlib").join(host).join("bin/rust-lld");
     let linker = linker.with_extension(std::env::consts::EXE_EXTENSION);
-    if linker.is_file() { Ok(linker) } else { Err(format!("the toolchain has no {}", linker.display())) }
+    if linker.is_file() { Ok(linker) } else { Err(format!("the toolchain has no {}", linker.display()).into()) }
 }

@@ -8,7 +8,11 @@ mod link;
 mod times;
 mod web;
 
+use std::error::Error;
 use std::process::ExitCode;
+
+/// Result of a task, or the error to print.
+pub(crate) type TaskResult<T = ()> = Result<T, Box<dyn Error>>;
 
 const USAGE: &str =
     "usage: cargo run -p xtask -- web [FOLDER] | times [ARGUMENTS OF CARGO TEST] | timed PROGRAM | slow FILE SECONDS";
@@ -29,13 +33,13 @@ fn main() -> ExitCode {
         },
         Some("slow") => match (arguments.next(), arguments.next().and_then(|limit| limit.parse().ok())) {
             (Some(file), Some(limit_s)) => ended(times::slow(file.as_ref(), limit_s)),
-            _ => ended(Err(USAGE.to_owned())),
+            _ => ended(Err(USAGE.into())),
         },
-        _ => ended(Err(USAGE.to_owned())),
+        _ => ended(Err(USAGE.into())),
     }
 }
 
-fn ended(done: Result<(), String>) -> ExitCode {
+fn ended(done: TaskResult) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {

@@ -4,6 +4,7 @@
 //! the time of each test, passes on what it prints, and appends the times to a file. [`times`] runs all tests this way and prints a table.
 //! [`slow`] reads the file and runs tests that took too long again, alone, since every test is slow while others run.
 
+use crate::TaskResult;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write};
@@ -15,24 +16,27 @@ use std::time::Instant;
 pub const FILE: &str = "SPECTRA_TIMES";
 
 /// Runs a test program and records how long it and each of its tests took. `arguments` are the program's path and its own arguments.
-pub fn timed(mut arguments: impl Iterator<Item = String>) -> Result<ExitStatus, String> {
+///
+/// # Errors
+/// The program is missing or cannot be run, or the times cannot be written.
+pub fn timed(mut arguments: impl Iterator<Item = String>) -> TaskResult<ExitStatus> {
     let program = arguments.next().ok_or("usage: xtask timed PROGRAM [ARGUMENTS]")?;
     let begun = Instant::now();
     let mut child = harness(&program).args(arguments).spawn().map_err(|error| format!("{program}: {error}"))?;
     let mut lines = String::new();
     let mut out = std::io::stdout();
     for line in BufReader::new(child.stdout.take().ok_or("no pipe")?).split(b'\n') {
-        let line = String::from_utf8_lossy(&line.map_err(|error| error.to_string())?).into_owned();
+        let line = String::from_utf8_lossy(&line?).into_owned();
         if let Some((test, seconds)) = reported(&line) {
             let _ = writeln!(lines, "{program}\t{}\t{test}\t{seconds}", folder()?);
         }
-        writeln!(out, "{line}").map_err(|error| error.to_string())?;
+        writeln!(out, "{line}")?;
     }
-    let status = child.wait().map_err(|error| error.to_string())?;
+    let status = child.wait()?;
     let _ = writeln!(lines, "{program}\t{}\t\t{:.3}", folder()?, begun.elapsed().as_secs_f64());
     if let Some(file) = std::env::var_os(FILE) {
-        let mut file = std::fs::File::options().create(true).append(true).open(&file).map_err(|e| e.to_string())?;
-        file.write_all(lines.as_bytes()).map_err(|error| error.to_string())?;
+        let mut file = std::fs::File::options().create(true).append(true).open(&file)?;
+        file.write_all(lines.as_bytes())?;
     }
     Ok(status)
 }
@@ -45,8 +49,8 @@ fn harness(program: &str) -> Command {
     command
 }
 
-fn folder() -> Result<String, String> {
-    Ok(std::env::current_dir().map_err(|error| error.to_string())?.display().to_string())
+fn folder() -> TaskResult<String> {
+    Ok(std::env::current_dir()?.display().to_string())
 }
 
 /// Parses the name and the seconds from a line such as `test NAME ... ok <1.234s>`; `None` for other lines.
@@ -65,7 +69,7 @@ struct TimeRecord {
     seconds: f64,
 }
 
-fn rows(file: &Path) -> Result<Vec<TimeRecord>, String> {
+fn rows(file: &Path) -> TaskResult<Vec<TimeRecord>> {
     let text = std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
     let row = |line: &str| {
         let mut cells = line.split('\t').map(str::to_owned);
@@ -104,8 +108,11 @@ fn table(rows: &[TimeRecord], most: usize) -> String {
 }
 
 /// Runs all tests, or those that cargo's `arguments` choose, and prints programs and tests sorted by time.
-pub fn times(arguments: impl Iterator<Item = String>) -> Result<(), String> {
-    let own = std::env::current_exe().map_err(|error| error.to_string())?;
+///
+/// # Errors
+/// Cargo cannot be run, or a test fails.
+pub fn times(arguments: impl Iterator<Item = String>) -> TaskResult {
+    let own = std::env::current_exe()?;
     let file = std::env::temp_dir().join(format!("spectra-times-{}", std::process::id()));
     let version = Command::new("rustc").arg("-vV").output().map_err(|error| format!("rustc: {error}"))?.stdout;
     let version = String::from_utf8_lossy(&version).into_owned();
@@ -118,11 +125,14 @@ pub fn times(arguments: impl Iterator<Item = String>) -> Result<(), String> {
     let read = rows(&file);
     let _ = std::fs::remove_file(&file);
     println!("{}", table(&read?, 50));
-    if status.success() { Ok(()) } else { Err(format!("cargo test: {status}")) }
+    if status.success() { Ok(()) } else { Err(format!("cargo test: {status}").into()) }
 }
 
 /// Prints the ten slowest programs and tests of a file of times; fails if a test takes more than `limit_s` seconds when run alone.
-pub fn slow(file: &Path, limit_s: f64) -> Result<(), String> {
+///
+/// # Errors
+/// The file cannot be read, a program cannot be run, or a test takes too long.
+pub fn slow(file: &Path, limit_s: f64) -> TaskResult {
     let rows = rows(file)?;
     println!("{}", table(&rows, 10));
     let mut wrong = String::new();
@@ -142,7 +152,8 @@ pub fn slow(file: &Path, limit_s: f64) -> Result<(), String> {
     }
     Err(format!(
         "{wrong}a test may take at most {limit_s} s: make it faster, or mark it `#[ignore]` and name it in a long step of .ci/run"
-    ))
+    )
+    .into())
 }
 
 #[cfg(test)]

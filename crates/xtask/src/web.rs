@@ -1,7 +1,7 @@
 //! The folder of the page without a server: the page of `spectra view`, the engine as a WebAssembly module, and the scripts that connect
 //! them.
 
-use crate::link;
+use crate::{TaskResult, link};
 use serde_json::{Map, Value, json};
 use std::fs;
 use std::path::Path;
@@ -35,7 +35,7 @@ const SAMPLES: u32 = 32;
 ///
 /// # Errors
 /// Cargo fails, the toolchain lacks the WebAssembly target, a scene does not render, or a file cannot be written.
-pub fn web(folder: &Path) -> Result<(), String> {
+pub fn web(folder: &Path) -> TaskResult {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into);
     let module = module(&root, &target)?;
@@ -52,7 +52,7 @@ pub fn web(folder: &Path) -> Result<(), String> {
     let page = String::from_utf8_lossy(&read(&root.join("crates/view/page/index.html"))?).into_owned();
     let joined = page.replace("<script type=\"module\" src=\"page.js\">", JOINED);
     if joined == page {
-        return Err("the page has no script `page.js` before which the engine's script could be inserted".to_owned());
+        return Err("the page has no script `page.js` before which the engine's script could be inserted".into());
     }
     write("index.html", joined.as_bytes())?;
     write("fingerprints.json", known.to_string().as_bytes())?;
@@ -69,14 +69,14 @@ fn said(path: &Path, error: &std::io::Error) -> String {
     format!("{}: {error}", path.display())
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, String> {
-    fs::read(path).map_err(|error| said(path, &error))
+fn read(path: &Path) -> TaskResult<Vec<u8>> {
+    Ok(fs::read(path).map_err(|error| said(path, &error))?)
 }
 
-fn run(command: &mut Command) -> Result<(), String> {
+fn run(command: &mut Command) -> TaskResult {
     let name = command.get_program().to_string_lossy().into_owned();
     let status = command.status().map_err(|error| format!("{name}: {error}"))?;
-    if status.success() { Ok(()) } else { Err(format!("{name} failed: {status}")) }
+    if status.success() { Ok(()) } else { Err(format!("{name} failed: {status}").into()) }
 }
 
 fn cargo(root: &Path) -> Command {
@@ -86,7 +86,7 @@ fn cargo(root: &Path) -> Command {
 }
 
 /// Builds the engine as a WebAssembly module and returns its bytes.
-fn module(root: &Path, target: &Path) -> Result<Vec<u8>, String> {
+fn module(root: &Path, target: &Path) -> TaskResult<Vec<u8>> {
     let own = std::env::current_exe().map_err(|error| format!("cannot find the path of this program: {error}"))?;
     let mut cargo = cargo(root);
     cargo.env(link::ASKED, link::own()?).env("CARGO_PROFILE_RELEASE_STRIP", "true");
@@ -98,7 +98,7 @@ fn module(root: &Path, target: &Path) -> Result<Vec<u8>, String> {
 
 /// Renders the scenes with the command and returns their fingerprints by name, the settings `set` and `samples` to render them with, and
 /// the number of stages.
-fn fingerprints(root: &Path, target: &Path) -> Result<Value, String> {
+fn fingerprints(root: &Path, target: &Path) -> TaskResult<Value> {
     run(cargo(root).args(["build", "--locked", "--release", "--bin", "spectra"]))?;
     let program = target.join("release/spectra").with_extension(std::env::consts::EXE_EXTENSION);
     let folder = target.join("web-fingerprints");
