@@ -10,6 +10,62 @@ use std::ops::Range;
 ///
 /// Samples are numbered from 0. A span of samples is divided into units of work, each a pure function of the scene, the seed, the span and
 /// the number of the unit. Units may run in any order on any thread, because their results are added as integers.
+///
+/// An estimator that adds a constant, such as the fog of a light leak, traces no rays and needs one unit:
+///
+/// ```
+/// use spectra_render::{Done, Estimator, ExactSums, RenderError, Scratch, UnitResult, Workers};
+/// use spectra_scene::LightKind;
+/// use std::ops::Range;
+///
+/// /// Fog with the same irradiance in every pixel and channel.
+/// #[derive(Clone)]
+/// struct Fog {
+///     pixels: usize,
+///     channels: usize,
+///     w_m2: f64,
+/// }
+///
+/// impl Estimator for Fog {
+///     fn name(&self) -> &'static str {
+///         "fog"
+///     }
+///     fn light(&self) -> LightKind {
+///         LightKind::Glare
+///     }
+///     fn tiles(&self) -> usize {
+///         1
+///     }
+///     fn tile_of(&self, _pixel: usize) -> usize {
+///         0
+///     }
+///     fn reseeded(&self, _picture: u64, _seed: u64) -> Box<dyn Estimator> {
+///         Box::new(self.clone())
+///     }
+///     fn units(&self, _samples: &Range<u64>, tiles: &[u32]) -> u64 {
+///         tiles.len() as u64
+///     }
+///     fn rays(&self, _samples: &Range<u64>, _tiles: &[u32]) -> u64 {
+///         0
+///     }
+///     fn scratch(&self) -> Scratch {
+///         Scratch::default()
+///     }
+///     fn run(&self, samples: &Range<u64>, _: &[u32], _unit: u64, _: &mut Scratch, sums: &ExactSums) -> UnitResult {
+///         let count = (samples.end - samples.start) as i64;
+///         (0..self.pixels * self.channels).for_each(|cell| sums.add(cell, count));
+///         UnitResult { rays: 0, error: None }
+///     }
+///     fn weights(&self, done: &Done, _rays: u64, time_s: f64) -> Vec<f64> {
+///         // Each sample has added 1 to each sum.
+///         let samples = done.samples_of(0).max(1) as f64;
+///         vec![self.w_m2 * time_s / samples; self.pixels]
+///     }
+///     fn metered(&self, _workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
+///         Ok(Vec::new())
+///     }
+/// }
+/// ```
 pub trait Estimator: Send + Sync {
     /// Name of the estimator, such as `forward` or `backward`.
     fn name(&self) -> &'static str;
@@ -78,5 +134,7 @@ pub struct UnitResult {
     pub error: Option<RenderError>,
 }
 
-/// The buffers of one thread: its rays, what it counted, and what it summed but has not yet added to the shared sums.
+/// The buffers of one thread: its rays, what it counted, and what it summed but has not yet added to the shared sums. The default has no
+/// room for rays; it is for estimators that trace none, or trace in buffers of their own.
+#[derive(Default)]
 pub struct Scratch(pub(crate) ThreadState);

@@ -208,16 +208,29 @@ pub(crate) struct ThreadState {
     pub detected: u64,
 }
 
+impl Default for ThreadState {
+    /// Returns buffers without room for a ray.
+    fn default() -> Self {
+        Self::of(RayBatch::new(0), Work::default(), 0, 0)
+    }
+}
+
 impl ThreadState {
     pub(crate) fn new(pipeline: &Pipeline, capacity: usize) -> Self {
         let rays = RayBatch::new(capacity).on(pipeline.isa);
         let rays = if pipeline.tracer.polarizes() { rays.with_polarization() } else { rays };
+        let rays = if pipeline.draws { rays.with_numbers() } else { rays };
+        Self::of(rays, pipeline.tracer.work_for_light(capacity), capacity, pipeline.responses.channels())
+    }
+
+    /// Allocates buffers for `capacity` rays and this number of recorded channels.
+    fn of(rays: RayBatch, work: Work, capacity: usize, channels: usize) -> Self {
         Self {
-            rays: if pipeline.draws { rays.with_numbers() } else { rays },
-            work: pipeline.tracer.work_for_light(capacity),
+            rays,
+            work,
             numbers: std::array::from_fn(|_| Column::new(capacity)),
             values: vec![0.0; capacity],
-            integers: vec![vec![0; capacity]; pipeline.responses.channels()],
+            integers: vec![vec![0; capacity]; channels],
             own: None,
             steps: None,
             before: Before::default(),

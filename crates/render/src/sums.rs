@@ -77,8 +77,13 @@ impl ExactSums {
         Some(Self { cells: all, overflow: AtomicBool::new(false) })
     }
 
+    /// Adds an integer to a cell. The cells of a pixel are its recorded channels, one after the other; the pixels follow row by row.
+    /// A sum that reaches 2^62 ends the render with [`RenderError::Overflow`](crate::RenderError::Overflow).
+    ///
+    /// # Panics
+    /// If there is no such cell.
     #[inline(always)]
-    pub(crate) fn add(&self, cell: usize, value: i64) {
+    pub fn add(&self, cell: usize, value: i64) {
         let old = self.cells[cell].fetch_add(value, Relaxed);
         if old.unsigned_abs() >= LIMIT {
             self.overflow.store(true, Relaxed);

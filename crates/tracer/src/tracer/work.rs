@@ -10,7 +10,7 @@ use spectra_core::{LossCounts, RayBatch};
 use spectra_glass::Dispersion;
 
 /// Scratch space of one thread that traces: index columns, notes, and lost rays.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Work {
     pub(super) media: Vec<IndexColumnPair>,
     /// Rays lost so far, by cause and surface.
