@@ -1,6 +1,5 @@
 //! Tests stopping at a noise level: the promised noise is reached without bias, with the same bits on any number of threads.
 
-use spectra_core::Isa;
 use spectra_core::frame::ExposureFrame;
 use spectra_plugins as _;
 use spectra_render::{RenderOptions, Renderer, Rendering};

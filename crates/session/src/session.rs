@@ -4,6 +4,10 @@
 //! `--set` does and assembles the scene again; sections that are unchanged keep their stages. The light is kept if source, lens, imager,
 //! wavelength density and channels are still the same stages ([`ValidResults`]).
 
+mod snapshot;
+
+pub use snapshot::{Snapshot, ValidResults};
+
 use crate::files::Files;
 use crate::{Control, Names, Rendering, SessionError, SessionOptions, SingleThread, Workers, header, still};
 use spectra_core::frame::ExposureFrame;
@@ -15,41 +19,6 @@ use spectra_scene::{Developed, Scene, Series, Shot, ViewSearch, load_series};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// The results that remain valid after a change of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ValidResults {
-    /// Whether the light is kept, so that nothing is traced again.
-    pub light: bool,
-    /// Whether the wavelength density is kept.
-    pub density: bool,
-    /// Whether the focused lens is kept.
-    pub lens: bool,
-    /// Whether the source is kept, with its files.
-    pub source: bool,
-}
-
-/// A saved state of a session: its values, its picture of the series and its stages, without the light.
-#[derive(Clone)]
-pub struct Snapshot {
-    series: Series,
-    index: usize,
-    scene: Arc<Scene>,
-}
-
-impl Snapshot {
-    /// The pictures that the scene stands for in this state.
-    #[must_use]
-    pub fn series(&self) -> &Series {
-        &self.series
-    }
-
-    /// Index of the picture in the series, from 0.
-    #[must_use]
-    pub fn index(&self) -> usize {
-        self.index
-    }
-}
 
 /// A session on one picture of a scene: its stages, and its light so far.
 pub struct Session {
@@ -310,25 +279,6 @@ impl Session {
         self.set(&texts, picture, false, lens_from.map(|other| &*other.scene), workers)
     }
 
-    /// Returns the current state, for [`Session::restore`].
-    #[must_use]
-    pub fn snapshot(&self) -> Snapshot {
-        Snapshot { series: self.series.clone(), index: self.options.picture, scene: Arc::clone(&self.scene) }
-    }
-
-    /// Returns to an earlier state, and keeps the light if it is still valid. This cannot fail, because the state was valid
-    /// before.
-    pub fn restore(&mut self, moment: &Snapshot) -> ValidResults {
-        let Snapshot { series, index, scene } = moment.clone();
-        let kept = self.valid_results(&scene);
-        if !kept.light {
-            let known = self.ready.take().map(|(renderer, _)| Arc::clone(renderer.density())).or(self.density.take());
-            self.density = known.filter(|_| kept.density);
-        }
-        (self.series, self.options.picture, self.scene) = (series, index, scene);
-        kept
-    }
-
     /// The pictures that the scene stands for: one, the members of a sweep, or the frames of an animation.
     #[must_use]
     pub fn series(&self) -> &Series {
@@ -374,33 +324,6 @@ impl Session {
         };
         (self.series, self.options.picture, self.scene, self.density) = (series, picture, scene, density);
         Ok(kept)
-    }
-
-    /// Returns which results for the current scene remain valid for another one.
-    fn valid_results(&self, scene: &Scene) -> ValidResults {
-        let before = &*self.scene;
-        let responses = |scene: &Scene, which: Vec<usize>| -> Vec<Vec<f64>> {
-            which.iter().filter_map(|at| scene.channels.get(*at)).map(|c| c.response.clone()).collect()
-        };
-        let same_channels = responses(before, before.picture_channels()) == responses(scene, scene.picture_channels());
-        let same_meters = responses(before, before.meter_channels()) == responses(scene, scene.meter_channels())
-            && before.metered_pixels() == scene.metered_pixels();
-        let source = Arc::ptr_eq(&before.source, &scene.source);
-        let lens = Arc::ptr_eq(&before.lens, &scene.lens);
-        // A source that fills the frame is rebuilt for every lens, but the spectrum of its light stays the same.
-        let system = before.source.spectrum() == scene.source.spectrum()
-            && same_channels
-            && before.grid == scene.grid
-            && Arc::ptr_eq(&before.sampler, &scene.sampler);
-        let same_light = system
-            && source
-            && same_meters
-            && lens
-            && before.imager.size() == scene.imager.size()
-            && Arc::ptr_eq(&before.imager, &scene.imager)
-            && before.ghost_paths() == scene.ghost_paths()
-            && before.render.traces_as(&scene.render);
-        ValidResults { light: same_light, density: system, lens, source }
     }
 
     /// Frees the memory of the light.

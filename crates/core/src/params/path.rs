@@ -90,14 +90,14 @@ impl Node {
         // A key that is created points to the argument; the value behind it has its exact place.
         let whole = Span { len: file.text.find('=').unwrap_or(0), ..Span::default() };
         let made = if file.is_argument() { whole } else { node.span };
-        self.put(&steps, "", made, node).map_err(|message| {
+        self.put(&steps, "", made, node).map_err(|fault| {
             let hint = "a path names keys and, in brackets, entries from 0: `film.exposure`, `output[0]`";
-            Fault::new(message).at(file, made).path(shown(path)).hint(hint)
+            fault.at(file, made).path(shown(path)).hint(hint)
         })
     }
 
     /// Puts a node where the steps lead; `path` is the path of this node. New keys and maps get the place `made`.
-    fn put(&mut self, steps: &[Step<'_>], path: &str, made: Span, node: Node) -> Result<(), String> {
+    fn put(&mut self, steps: &[Step<'_>], path: &str, made: Span, node: Node) -> Result<(), Fault> {
         let Some((&step, rest)) = steps.split_first() else {
             *self = node;
             return Ok(());
@@ -120,22 +120,22 @@ impl Node {
                     entries.push((Key { text: key.to_owned(), span: made }, value));
                 }
             },
-            (Step::Key(key), _) => return Err(format!("{} is {what}, which has no key `{}`", at(), shown(key))),
+            (Step::Key(key), _) => return Err(format!("{} is {what}, which has no key `{}`", at(), shown(key)).into()),
             (Step::Index(index), Value::Seq(elements)) => {
                 let len = elements.len();
                 match elements.get_mut(index) {
                     Some(element) => element.put(rest, &inner, made, node)?,
                     None if index == len => elements.push(Self::around(node, rest, &inner, made)?),
-                    None => return Err(format!("{} has no entry {index}: it has {len}, from 0", at())),
+                    None => return Err(format!("{} has no entry {index}: it has {len}, from 0", at()).into()),
                 }
             }
-            (Step::Index(_), _) => return Err(format!("{} is {what}, not a list", at())),
+            (Step::Index(_), _) => return Err(format!("{} is {what}, not a list", at()).into()),
         }
         Ok(())
     }
 
     /// Wraps a node in the maps and lists that the steps to it need.
-    fn around(node: Self, steps: &[Step<'_>], path: &str, made: Span) -> Result<Self, String> {
+    fn around(node: Self, steps: &[Step<'_>], path: &str, made: Span) -> Result<Self, Fault> {
         let Some((&step, rest)) = steps.split_first() else { return Ok(node) };
         let file = Arc::clone(&node.file);
         let inner = Self::around(node, rest, &joined(path, step), made)?;
@@ -143,7 +143,7 @@ impl Node {
             match step {
                 Step::Key(key) => Value::Map(vec![(Key { text: key.to_owned(), span: made }, inner)]),
                 Step::Index(0) => Value::Seq(vec![inner]),
-                Step::Index(index) => return Err(format!("`{path}` has no entry {index}: it is empty")),
+                Step::Index(index) => return Err(format!("`{path}` has no entry {index}: it is empty").into()),
             },
             made,
             file,
