@@ -108,6 +108,17 @@ pub(crate) fn sheet(sheet: &Sheet, as_json: bool) -> io::Result<()> {
     if as_json { pretty_json(&sheet.to_json()) } else { out(&sheet.to_text()) }
 }
 
+/// Writes several results to standard output: as an indented JSON array, or as texts with a blank line between them.
+///
+/// # Errors
+/// Fails like [`out`].
+pub(crate) fn sheets(sheets: &[Sheet], as_json: bool) -> io::Result<()> {
+    if as_json {
+        return pretty_json(&sheets.iter().map(Sheet::to_json).collect::<Vec<_>>());
+    }
+    out(&sheets.iter().map(Sheet::to_text).collect::<Vec<_>>().join("\n"))
+}
+
 /// Writes a line to standard error. A failure is ignored, because there is nowhere left to report it.
 pub(crate) fn note(line: &str) {
     let _ = with_captured(|kept| match kept {

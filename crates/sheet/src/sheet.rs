@@ -190,6 +190,16 @@ mod tests {
     }
 
     #[test]
+    fn a_table_for_readers_is_not_in_the_data() {
+        let mut sheet = Sheet::new("rows");
+        let mut table = Table::new("years", [Column::text("years", "listed")]);
+        table.push(["1923-1967"]);
+        sheet.show_table(table);
+        assert_eq!(sheet.to_text(), "rows\n\n  listed\n  1923-1967\n");
+        assert_eq!(sheet.to_json(), serde_json::json!({}));
+    }
+
+    #[test]
     fn a_page_has_all_parts_and_escapes_texts() {
         let html = sheet().to_html();
         for part in ["a &lt;lens&gt;", "f/1.4", "12.2", "data:image/svg+xml", "the stop is open"] {

@@ -4,59 +4,25 @@ use super::arguments::{GlassFit, Model};
 use super::read;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
-use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use spectra_analysis::figure::{FittedCurve, glass_fit};
 use spectra_core::params::Fault;
 use spectra_files::write_atomically;
-use spectra_glass::Formula;
 use spectra_glass::fit::{
-    Fit, FitError, NamedSamples, Sample, cauchy_by_rows, cauchy_least_squares, conrady_least_squares,
+    CauchyRows, Fit, FitError, NamedSamples, Sample, cauchy_by_rows, cauchy_least_squares, conrady_least_squares,
     herzberger_least_squares, read_csv, schott_least_squares, sellmeier_least_squares,
 };
 use spectra_plot::{Format, PlotError};
-use std::fmt::Write;
-use std::io::Write as _;
+use spectra_sheet::{Column, Sheet, Table};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The fits of one material.
-#[derive(Debug, Serialize)]
-struct Report {
-    material: Option<String>,
-    samples: usize,
-    /// Shortest and longest wavelength.
-    range_nm: [f64; 2],
-    fits: Vec<FitReport>,
-    #[serde(skip)]
-    rows: Vec<Sample>,
-}
-
-/// Fit of one formula.
-#[derive(Debug, Serialize)]
-struct FitReport {
-    /// Name of the formula as in `--model`.
-    model: &'static str,
-    /// Formula of n as a function of the wavelength L in micrometers.
-    formula: &'static str,
-    /// Coefficients by name; for wavelengths in nm if the name says so, in micrometers otherwise.
-    #[serde(skip_serializing_if = "Map::is_empty")]
-    coefficients: Map<String, Value>,
-    mean_deviation: Option<f64>,
-    rms_deviation: Option<f64>,
-    max_deviation: Option<f64>,
-    /// Reason why there are no coefficients.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<String>,
-    #[serde(skip)]
-    shown: Vec<(String, f64)>,
-    /// Index of the formula minus that of the row, for each row.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    deviations: Vec<f64>,
-    #[serde(skip)]
-    found: Option<Formula>,
-    /// Cauchy's A and B (nm^2) of each row, if the formula is their mean.
-    #[serde(skip)]
-    by_rows: Option<(Vec<f64>, Vec<f64>)>,
+/// A formula fitted to the rows of a material, or the reason why it could not be.
+struct FittedFormula {
+    model: Model,
+    fit: Result<Fit, FitError>,
+    /// Cauchy's A and B of each row, if the formula is their mean.
+    by_rows: Option<CauchyRows>,
 }
 
 /// Fits formulas to the materials of a table, writes the requested files, and prints the results.
@@ -100,24 +66,21 @@ pub(crate) fn fit(arguments: &GlassFit) -> Outcome {
     }
     let models =
         if arguments.models.is_empty() { vec![Model::Cauchy, Model::CauchyLs] } else { arguments.models.clone() };
-    let reports: Vec<Report> = materials.iter().map(|m| report(m, &models, arguments.terms)).collect();
-    let failed = |r: &Report| r.fits.iter().any(|f| f.error.is_some());
-    if let (Some(report), false) = (reports.first().filter(|_| alone), reports.iter().any(failed)) {
-        write_files(arguments, &file, report)?;
+    let terms = arguments.terms.map(usize::from);
+    let fits_of = |m: &NamedSamples| models.iter().map(|model| fit_formula(*model, &m.samples, terms)).collect();
+    let fits: Vec<Vec<FittedFormula>> = materials.iter().map(fits_of).collect();
+    let failure = |(material, fits): (&NamedSamples, &Vec<FittedFormula>)| {
+        let (fitted, error) = fits.iter().find_map(|f| Some((f, f.fit.as_ref().err()?)))?;
+        let of = material.name.as_ref().map_or(String::new(), |m| format!(" of {m}"));
+        Some(Failure::Input(format!("{name}: no fit{of} by {}: {error}", describe(fitted.model).0)))
+    };
+    let failure = materials.iter().zip(&fits).find_map(failure);
+    if let (true, None, [material], [fits]) = (alone, &failure, materials.as_slice(), fits.as_slice()) {
+        write_files(arguments, &file, material, fits)?;
     }
-    if arguments.json {
-        console::pretty_json(&reports)?;
-    } else {
-        console::out(&reports.iter().map(|report| show(report, arguments.rows)).collect::<Vec<_>>().join("\n"))?;
-    }
-    match reports.iter().find(|r| failed(r)) {
-        None => Ok(DONE),
-        Some(report) => {
-            let of = report.material.as_ref().map_or(String::new(), |m| format!(" of {m}"));
-            let text = report.fits.iter().find_map(|f| Some(format!("{}: {}", f.model, f.error.as_ref()?)));
-            Err(Failure::Input(format!("{name}: no fit{of} by {}", text.unwrap_or_default())))
-        }
-    }
+    let sheets: Vec<Sheet> = materials.iter().zip(&fits).map(|(m, fits)| sheet(m, fits, arguments.rows)).collect();
+    console::sheets(&sheets, arguments.json)?;
+    failure.map_or(Ok(DONE), Err)
 }
 
 /// Splits FILE#MATERIAL into the file and the material. A path that exists, even with a `#`, is the file itself.
@@ -141,25 +104,31 @@ fn not_drawn(error: PlotError) -> Failure {
 }
 
 /// Writes the glass file and the figure, if requested.
-fn write_files(arguments: &GlassFit, file: &Path, report: &Report) -> Result<(), Failure> {
+fn write_files(
+    arguments: &GlassFit,
+    file: &Path,
+    material: &NamedSamples,
+    fits: &[FittedFormula],
+) -> Result<(), Failure> {
     let stem = file.file_stem().map_or_else(|| "glass".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let called = report.material.clone().unwrap_or(stem);
-    if let (Some(output), Some(fit)) = (&arguments.output, report.fits.first()) {
-        let text = glass_file(&called, &file.display().to_string(), report, fit);
+    let called = material.name.clone().unwrap_or(stem);
+    let found: Vec<(Model, &Fit)> = fits.iter().filter_map(|f| Some((f.model, f.fit.as_ref().ok()?))).collect();
+    if let (Some(output), Some((model, fit))) = (&arguments.output, found.first()) {
+        let text = glass_file(&called, &file.display().to_string(), &material.samples, *model, fit);
         write_atomically(output, |out| Ok(out.write_all(text.as_bytes())?))?;
         console::note(&format!("wrote {}", output.display()));
     }
     if let Some(plot) = &arguments.plot {
         const POINTS: usize = 300;
-        let [from, to] = report.range_nm;
+        let [from, to] = range_nm(&material.samples);
         let at = |i: usize| from + (to - from) * i as f64 / POINTS as f64;
-        let curve = |fit: &FitReport| {
-            let formula = fit.found.as_ref()?;
-            let points = (0..=POINTS).map(|i| [at(i), formula.index(at(i))]).collect();
-            Some(FittedCurve { name: fit.model.to_owned(), points, deviations: fit.deviations.clone() })
+        let curve = |(model, fit): &(Model, &Fit)| FittedCurve {
+            name: describe(*model).0.to_owned(),
+            points: (0..=POINTS).map(|i| [at(i), fit.formula.index(at(i))]).collect(),
+            deviations: deviations(fit, &material.samples),
         };
-        let curves: Vec<FittedCurve> = report.fits.iter().filter_map(curve).collect();
-        let measured: Vec<[f64; 2]> = report.rows.iter().map(|row| [row.wavelength_nm, row.n]).collect();
+        let curves: Vec<FittedCurve> = found.iter().map(curve).collect();
+        let measured: Vec<[f64; 2]> = material.samples.iter().map(|row| [row.wavelength_nm, row.n]).collect();
         let canvas = glass_fit(&format!("{called}: fitted dispersion"), &measured, &curves);
         canvas.write(plot).map_err(not_drawn)?;
         console::note(&format!("wrote {}", plot.display()));
@@ -168,95 +137,66 @@ fn write_files(arguments: &GlassFit, file: &Path, report: &Report) -> Result<(),
 }
 
 /// Returns the text of a glass file with the fit, with all digits. Cauchy's coefficients are in nm, as usual in tables.
-fn glass_file(called: &str, from: &str, report: &Report, fit: &FitReport) -> String {
+fn glass_file(called: &str, from: &str, samples: &[Sample], model: Model, fit: &Fit) -> String {
     let quoted = |text: &str| Value::String(text.to_owned()).to_string();
-    let formula = match fit.model {
-        "cauchy" | "cauchy-ls" => "cauchy",
-        "sellmeier" => "sellmeier-1",
-        other => other,
-    };
-    let is_cauchy = formula == "cauchy";
-    let mut micrometers = fit.found.as_ref().map(Formula::coefficients).unwrap_or_default();
-    if fit.model == "sellmeier" {
-        // Fits with one and two terms include a constant, which is 0. The form with three terms takes them without it, padded with zeros.
-        if micrometers.len() % 2 == 1 {
-            micrometers.remove(0);
+    let (name, description) = describe(model);
+    let mut numbers = fit.formula.coefficients();
+    let (formula, unit) = match model {
+        Model::Cauchy | Model::CauchyLs => {
+            numbers = named(model, &numbers).into_iter().map(|(_, v)| v).collect();
+            ("cauchy", "unit: nm\n")
         }
-        micrometers.resize(6, 0.0);
-    }
-    let numbers: Vec<f64> = if is_cauchy { fit.shown.iter().map(|(_, v)| *v).collect() } else { micrometers };
+        Model::Sellmeier => {
+            // Fits with one and two terms include a constant, which is 0. The form with three terms takes them without it, padded with
+            // zeros.
+            if numbers.len() % 2 == 1 {
+                numbers.remove(0);
+            }
+            numbers.resize(6, 0.0);
+            ("sellmeier-1", "")
+        }
+        Model::Conrady | Model::Schott | Model::Herzberger => (name, ""),
+    };
     let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
-    let [from_nm, to_nm] = report.range_nm;
-    let deviation = |d: Option<f64>| d.unwrap_or(f64::NAN);
+    let [from_nm, to_nm] = range_nm(samples);
     format!(
-        "# {}\n# Deviation from {} rows: mean {:.2e}, rms {:.2e}, largest {:.2e}.\nspectra: 1\nname: {}\nsource: {}\n\
-         formula: {formula}\n{}coefficients: [{}]\nrange: [{from_nm} nm, {to_nm} nm]\n",
-        fit.formula,
-        report.samples,
-        deviation(fit.mean_deviation),
-        deviation(fit.rms_deviation),
-        deviation(fit.max_deviation),
+        "# {description}\n# Deviation from {} rows: {}.\nspectra: 1\nname: {}\nsource: {}\n\
+         formula: {formula}\n{unit}coefficients: [{}]\nrange: [{from_nm} nm, {to_nm} nm]\n",
+        samples.len(),
+        deviation_text(fit),
         quoted(called),
         quoted(&format!("fitted to {from}")),
-        if is_cauchy { "unit: nm\n" } else { "" },
         numbers.join(", "),
     )
 }
 
-fn report(material: &NamedSamples, models: &[Model], terms: Option<u8>) -> Report {
-    let wavelengths = || material.samples.iter().map(|s| s.wavelength_nm);
-    Report {
-        material: material.name.clone(),
-        samples: material.samples.len(),
-        range_nm: [wavelengths().fold(f64::INFINITY, f64::min), wavelengths().fold(0.0, f64::max)],
-        fits: models.iter().map(|model| one(*model, &material.samples, terms.map(usize::from))).collect(),
-        rows: material.samples.clone(),
-    }
+fn deviation_text(fit: &Fit) -> String {
+    let Fit { mean_deviation, rms_deviation, max_deviation, .. } = fit;
+    format!("mean {mean_deviation:.2e}, rms {rms_deviation:.2e}, largest {max_deviation:.2e}")
 }
 
-fn one(model: Model, samples: &[Sample], terms: Option<usize>) -> FitReport {
-    let (name, formula) = describe(model);
-    let mut report = FitReport {
-        model: name,
-        formula,
-        coefficients: Map::new(),
-        mean_deviation: None,
-        rms_deviation: None,
-        max_deviation: None,
-        error: None,
-        shown: Vec::new(),
-        deviations: Vec::new(),
-        found: None,
-        by_rows: None,
-    };
-    let result: Result<Fit, FitError> = match model {
-        Model::Cauchy => cauchy_by_rows(samples).map(|rows| {
-            report.coefficients.insert("b_rows_nm2".into(), rows.b_rows_nm2.clone().into());
-            report.coefficients.insert("a_rows".into(), rows.a_rows.clone().into());
-            report.by_rows = Some((rows.a_rows, rows.b_rows_nm2));
-            rows.fit
-        }),
+/// Returns the shortest and the longest wavelength.
+fn range_nm(samples: &[Sample]) -> [f64; 2] {
+    let wavelengths = || samples.iter().map(|s| s.wavelength_nm);
+    [wavelengths().fold(f64::INFINITY, f64::min), wavelengths().fold(0.0, f64::max)]
+}
+
+/// Returns the index of the formula minus that of the row, for each row.
+fn deviations(fit: &Fit, samples: &[Sample]) -> Vec<f64> {
+    samples.iter().map(|s| fit.formula.index(s.wavelength_nm) - s.n).collect()
+}
+
+fn fit_formula(model: Model, samples: &[Sample], terms: Option<usize>) -> FittedFormula {
+    let mut by_rows = None;
+    let fit = match model {
+        Model::Cauchy => cauchy_by_rows(samples).map(|rows| by_rows.insert(rows).fit.clone()),
         Model::CauchyLs => cauchy_least_squares(samples, terms.unwrap_or(2)),
         Model::Sellmeier => sellmeier_least_squares(samples, terms.unwrap_or(3)),
         Model::Conrady => conrady_least_squares(samples),
         Model::Schott => schott_least_squares(samples),
         Model::Herzberger => herzberger_least_squares(samples),
     };
-    match result {
-        Ok(fit) => {
-            report.shown = named(model, &fit.formula.coefficients());
-            for (name, value) in &report.shown {
-                report.coefficients.insert(name.clone(), (*value).into());
-            }
-            report.mean_deviation = Some(fit.mean_deviation);
-            report.rms_deviation = Some(fit.rms_deviation);
-            report.max_deviation = Some(fit.max_deviation);
-            report.deviations = samples.iter().map(|s| fit.formula.index(s.wavelength_nm) - s.n).collect();
-            report.found = Some(fit.formula);
-        }
-        Err(error) => report.error = Some(error.to_string()),
-    }
-    report
+    FittedFormula { model, fit, by_rows }
 }
 
 fn describe(model: Model) -> (&'static str, &'static str) {
@@ -296,72 +236,79 @@ fn named(model: Model, c: &[f64]) -> Vec<(String, f64)> {
     }
 }
 
-/// Formats the rows: wavelength, index, Cauchy's A and B, and the deviation of each formula.
-fn show_rows(report: &Report) -> String {
-    let by_rows = report.fits.iter().find_map(|fit| fit.by_rows.as_ref());
-    let mut out = format!("\n  {:>10}  {:>9}", "nm", "n");
-    // Writing to a String cannot fail.
-    if by_rows.is_some() {
-        let _ = write!(out, "  {:>10}  {:>12}", "A", "B / nm^2");
-    }
-    let fits = || report.fits.iter().filter(|fit| !fit.deviations.is_empty());
-    fits().for_each(|fit| {
-        let _ = write!(out, "  {:>10}", fit.model);
-    });
-    out.push('\n');
-    let mut means = (0.0, 0.0);
-    for (i, row) in report.rows.iter().enumerate() {
-        let _ = write!(out, "  {:>10.4}  {:>9.6}", row.wavelength_nm, row.n);
-        if let Some((a, b)) = by_rows {
-            let _ = write!(out, "  {:>10.6}  {:>12.3}", a[i], b[i]);
-            means = (means.0 + a[i], means.1 + b[i]);
+/// Makes the sheet of the fits of one material.
+fn sheet(material: &NamedSamples, fits: &[FittedFormula], with_rows: bool) -> Sheet {
+    let [from, to] = range_nm(&material.samples);
+    let title = material.name.as_deref().unwrap_or("samples");
+    let mut sheet = Sheet::new(&format!("{title}: {} rows, {from} to {to} nm", material.samples.len()));
+    sheet.data("material", &material.name);
+    sheet.data("samples", material.samples.len());
+    sheet.data("range_nm", [from, to]);
+    sheet.data("fits", fits.iter().map(|fitted| to_json(fitted, &material.samples)).collect::<Vec<_>>());
+    for fitted in fits {
+        let (name, formula) = describe(fitted.model);
+        sheet.line(name, Some(formula.to_owned()));
+        match &fitted.fit {
+            Err(error) => sheet.line("  none:", Some(error.to_string())),
+            Ok(fit) => {
+                for (name, value) in named(fitted.model, &fit.formula.coefficients()) {
+                    let (name, unit) = name.split_once('_').unwrap_or((&name, ""));
+                    let unit = if unit == "um2" { " um^2".to_owned() } else { unit.replacen("nm", " nm^", 1) };
+                    sheet.line(&format!("  {}", name.to_uppercase()), Some(format!("{value:>16.9}{unit}")));
+                }
+                sheet.line("  deviation:", Some(deviation_text(fit)));
+            }
         }
-        fits().for_each(|fit| {
-            let _ = write!(out, "  {:>+10.2e}", fit.deviations[i]);
-        });
-        out.push('\n');
     }
-    if by_rows.is_some() {
-        let count = report.rows.len().max(1) as f64;
-        let _ = write!(out, "  {:>10}  {:>9}  {:>10.6}  {:>12.3}", "mean", "", means.0 / count, means.1 / count);
-        fits().for_each(|fit| {
-            let _ = write!(out, "  {:>10.2e}", fit.mean_deviation.unwrap_or(f64::NAN));
-        });
-        out.push('\n');
+    if with_rows {
+        sheet.show_table(rows(&material.samples, fits));
     }
-    out
+    sheet
 }
 
-fn show(report: &Report, rows: bool) -> String {
-    let material = report.material.as_deref().unwrap_or("samples");
-    let [from, to] = report.range_nm;
-    let mut out = format!("{material}: {} rows, {from} to {to} nm\n", report.samples);
-    // Writing to a String cannot fail.
-    for fit in &report.fits {
-        let _ = writeln!(out, "  {:<11} {}", fit.model, fit.formula);
-        if let Some(error) = &fit.error {
-            let _ = writeln!(out, "    none: {error}");
-            continue;
+/// Returns the data of a fit. Coefficients are for wavelengths in nm if their name says so, in micrometers otherwise.
+fn to_json(fitted: &FittedFormula, samples: &[Sample]) -> Value {
+    let (model, formula) = describe(fitted.model);
+    let fit = match &fitted.fit {
+        Ok(fit) => fit,
+        Err(error) => {
+            return json!({
+                "model": model, "formula": formula, "mean_deviation": null, "rms_deviation": null, "max_deviation": null,
+                "error": error.to_string(),
+            });
         }
-        for (name, value) in &fit.shown {
-            let (name, unit) = match name.split_once('_') {
-                Some((name, "um2")) => (name.to_uppercase(), " um^2".to_owned()),
-                Some((name, unit)) => (name.to_uppercase(), unit.replacen("nm", " nm^", 1)),
-                None => (name.to_uppercase(), String::new()),
-            };
-            let _ = writeln!(out, "    {name:<4} {value:>16.9}{unit}");
+    };
+    let coefficients = named(fitted.model, &fit.formula.coefficients());
+    let mut coefficients: Map<_, _> = coefficients.into_iter().map(|(name, value)| (name, json!(value))).collect();
+    if let Some(rows) = &fitted.by_rows {
+        coefficients.insert("b_rows_nm2".to_owned(), json!(rows.b_rows_nm2));
+        coefficients.insert("a_rows".to_owned(), json!(rows.a_rows));
+    }
+    json!({
+        "model": model, "formula": formula, "coefficients": coefficients, "mean_deviation": fit.mean_deviation,
+        "rms_deviation": fit.rms_deviation, "max_deviation": fit.max_deviation, "deviations": deviations(fit, samples),
+    })
+}
+
+/// Makes the table of the rows: wavelength, index, Cauchy's A and B, and the deviation of each formula.
+fn rows(samples: &[Sample], fits: &[FittedFormula]) -> Table {
+    let cauchy = fits.iter().find_map(|fitted| fitted.by_rows.as_ref());
+    let found: Vec<_> = fits.iter().filter_map(|f| Some((describe(f.model).0, f.fit.as_ref().ok()?))).collect();
+    let cauchy_labels = cauchy.map_or(&[][..], |_| &["A", "B / nm^2"]);
+    let labels = ["nm", "n"].iter().chain(cauchy_labels).chain(found.iter().map(|(name, _)| name));
+    let mut table = Table::new("rows", labels.map(|label| Column::plain(label, label)));
+    for (i, Sample { wavelength_nm, n }) in samples.iter().enumerate() {
+        let mut row = vec![format!("{wavelength_nm:.4}"), format!("{n:.6}")];
+        if let Some(CauchyRows { a_rows, b_rows_nm2, .. }) = cauchy {
+            row.extend([format!("{:.6}", a_rows[i]), format!("{:.3}", b_rows_nm2[i])]);
         }
-        let deviation = |d: Option<f64>| d.unwrap_or(f64::NAN);
-        let _ = writeln!(
-            out,
-            "    deviation: mean {:.2e}, rms {:.2e}, largest {:.2e}",
-            deviation(fit.mean_deviation),
-            deviation(fit.rms_deviation),
-            deviation(fit.max_deviation)
-        );
+        row.extend(found.iter().map(|(_, fit)| format!("{:+.2e}", fit.formula.index(*wavelength_nm) - n)));
+        table.push(row);
     }
-    if rows {
-        out.push_str(&show_rows(report));
+    if let Some(CauchyRows { a, b_nm2, .. }) = cauchy {
+        let mut means = vec!["mean".to_owned(), String::new(), format!("{a:.6}"), format!("{b_nm2:.3}")];
+        means.extend(found.iter().map(|(_, fit)| format!("{:.2e}", fit.mean_deviation)));
+        table.push(means);
     }
-    out
+    table
 }

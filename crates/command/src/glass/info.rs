@@ -1,85 +1,29 @@
 //! `spectra glass info`: shows the data of a glass.
 
 use super::arguments::GlassInfo;
-use super::{catalogue, named, own_file, unknown};
+use super::{catalogue, named, own_file, period, unknown};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
-use serde::{Serialize, Serializer};
+use serde_json::json;
 use spectra_glass::air::{self, AirConditions, CATALOGUE_AIR};
 use spectra_glass::interface::{brewster_angle, critical_angle, fresnel};
 use spectra_glass::{Catalog, Category, Formula, Glass, GlassFacts, LineTriple, Medium, ModelGlass, lines};
-use std::fmt::Write;
+use spectra_sheet::{Column, Sheet, Table, percent};
+use std::collections::BTreeMap;
 
 /// Thickness for which internal transmittances are stated, mm.
 const THICKNESS_MM: f64 = 10.0;
-
-/// Values with the names of their spectral lines, from short to long wavelengths.
-#[derive(Debug)]
-struct ByLine(Vec<(&'static str, f64)>);
-
-impl Serialize for ByLine {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().copied())
-    }
-}
-
-/// Data of a medium. Unknown values are `None`.
-#[derive(Debug, Serialize)]
-struct Report {
-    name: String,
-    maker: Option<String>,
-    category: Option<&'static str>,
-    status: Option<&'static str>,
-    /// Years of the first and the last catalogue that list the glass.
-    years: Option<(u16, u16)>,
-    formula: Option<&'static str>,
-    coefficients: Option<Vec<f64>>,
-    /// Expected difference between the index of the formula and that of the maker, if the formula is a coarse fit.
-    expected_error: Option<&'static str>,
-    range_nm: Option<(f64, f64)>,
-    /// Medium that indices are relative to: `air` or `vacuum`.
-    relative_to: &'static str,
-    /// Temperature of glass and air.
-    temperature_c: f64,
-    nd: Option<f64>,
-    vd: Option<f64>,
-    ne: Option<f64>,
-    ve: Option<f64>,
-    /// Wavelengths of the requested lines, from blue to red; `v_lines` is their Abbe number.
-    lines_nm: Option<[f64; 3]>,
-    v_lines: Option<f64>,
-    listed_nd: Option<f64>,
-    listed_vd: Option<f64>,
-    /// Indices at the lines within the measured range.
-    n: ByLine,
-    wavelength_nm: Option<f64>,
-    n_at: Option<f64>,
-    /// Transmittance of 10 mm without reflections, at the lines where absorption is known.
-    internal_transmittance_10mm: Option<ByLine>,
-    internal_transmittance_10mm_at: Option<f64>,
-    /// Reflectance of one bare surface to air at normal incidence, d line.
-    reflectance: Option<f64>,
-    /// Angle in the medium at which total reflection begins, d line.
-    critical_angle_deg: Option<f64>,
-    /// Angle in air at which p-polarized light is not reflected, d line.
-    brewster_angle_deg: Option<f64>,
-    /// Change of the index per kelvin from 20 to 40 C at the e line, relative to air, times 1e6.
-    dn_dt_relative_1e6: Option<f64>,
-    dn_dt_absolute_1e6: Option<f64>,
-    source: Option<String>,
-    warnings: Vec<String>,
-}
 
 /// Writes the data of a glass to standard output, as text or JSON.
 pub(crate) fn info(arguments: &GlassInfo) -> Outcome {
     let catalogue = catalogue(&arguments.own)?;
     let medium = medium(arguments, &catalogue)?;
-    let report = report(&medium, arguments);
-    if arguments.json {
-        console::pretty_json(&report)?;
-    } else {
-        console::out(&text(&report))?;
-        report.warnings.iter().for_each(|warning| console::warning(warning));
+    let warnings = warnings(&medium, arguments);
+    let mut sheet = sheet(&medium, arguments);
+    sheet.data("warnings", &warnings);
+    console::sheet(&sheet, arguments.json)?;
+    if !arguments.json {
+        warnings.iter().for_each(|warning| console::warning(warning));
     }
     Ok(DONE)
 }
@@ -115,70 +59,150 @@ fn medium(arguments: &GlassInfo, catalogue: &Catalog) -> Result<Medium, Failure>
     }
 }
 
-fn report(medium: &Medium, arguments: &GlassInfo) -> Report {
-    let glass = match medium {
+fn glass(medium: &Medium) -> Option<&Glass> {
+    match medium {
         Medium::Glass(glass) => Some(glass.as_ref()),
         _ => None,
-    };
+    }
+}
+
+/// Makes the sheet of a medium. Glass and air have the same temperature.
+fn sheet(medium: &Medium, arguments: &GlassInfo) -> Sheet {
+    let glass = glass(medium);
+    let (name, category) = (medium.name(), glass.map(|g| g.category.name()));
+    let mut sheet = Sheet::new(&category.map_or_else(|| name.clone(), |category| format!("{name}: {category}")));
+    sheet.data("name", name);
+    sheet.data("maker", glass.map(|g| &*g.maker));
+    sheet.data("category", category);
+    origin(&mut sheet, medium);
     let reference_c = glass.and_then(|g| g.temperature_c).unwrap_or(CATALOGUE_AIR.temperature_c);
     let temperature_c = arguments.temperature_c.unwrap_or(reference_c);
+    let relative_to = if arguments.absolute { "vacuum" } else { "air" };
+    sheet.line("index relative to", Some(format!("{relative_to}, at {temperature_c} C")));
+    sheet.data("relative_to", relative_to);
+    sheet.data("temperature_c", temperature_c);
     let index = |nm: f64| index(medium, nm, arguments.temperature_c, temperature_c, arguments.absolute);
-    let covers = |nm: f64| medium.covers(nm, nm);
-    let known = |nm: f64| Some(index(nm)).filter(|n| covers(nm) && n.is_finite());
+    let known = |nm: f64| Some(index(nm)).filter(|n| medium.covers(nm, nm) && n.is_finite());
+    indices(&mut sheet, medium, arguments, &index, &known);
+    heat_and_surface(&mut sheet, medium);
+    by_line(&mut sheet, medium, &known);
+    sheet
+}
+
+/// Adds where the data of a medium are from, and their form.
+fn origin(sheet: &mut Sheet, medium: &Medium) {
+    let glass = glass(medium);
+    let status = glass.map(|g| g.status.name());
+    let years = glass.and_then(|g| g.years);
+    let listed = years.map(|years| format!("in catalogues of {}", period(years)));
+    let status_text: Vec<_> = status.filter(|s| *s != "unknown").map(str::to_owned).into_iter().chain(listed).collect();
+    sheet.line("status", Some(status_text.join(", ")).filter(|s| !s.is_empty()));
+    sheet.data("status", status);
+    sheet.data("years", years);
+    sheet.text("source", "source", glass.map(|g| &*g.source).filter(|s| !s.is_empty()));
+    let formula = match medium {
+        Medium::Glass(glass) => glass.formula.name(),
+        Medium::Model(_) => "normal lines of partial dispersion, from index and Abbe number",
+        Medium::Air | Medium::Vacuum => "Ciddor 1996",
+        Medium::Constant(_) => "constant",
+    };
+    sheet.text("formula", "formula", Some(formula));
+    let coefficients = glass.map(|g| g.formula.coefficients());
+    let few = coefficients.as_ref().filter(|c| c.len() <= 20);
+    sheet.line("coefficients", few.map(|c| c.iter().map(ToString::to_string).collect::<Vec<_>>().join("  ")));
+    sheet.data("coefficients", coefficients);
+    sheet.text("expected_error", "expected error", expected_error(medium));
+    sheet.fact("range_nm", "measured", medium.range_nm(), |(from, to)| format!("{from} to {to} nm"));
+}
+
+/// Adds indices and Abbe numbers at the usual and the requested lines. `known` is the index within the measured range.
+fn indices(
+    sheet: &mut Sheet,
+    medium: &Medium,
+    arguments: &GlassInfo,
+    index: &dyn Fn(f64) -> f64,
+    known: &dyn Fn(f64) -> Option<f64>,
+) {
+    let glass = glass(medium);
     let abbe = |lines: LineTriple| {
-        let covered = [lines.short, lines.mid, lines.long].iter().all(|line| covers(line.wavelength_nm));
+        let covered =
+            [lines.short, lines.mid, lines.long].iter().all(|l| medium.covers(l.wavelength_nm, l.wavelength_nm));
         Some(lines.abbe_number(index)).filter(|v| covered && v.is_finite())
     };
-    let wavelength_nm = arguments.wavelength_nm.map(|w| w.nm());
-    let nd = known(lines::D.wavelength_nm);
-    let n_relative = Some(medium.index(lines::D.wavelength_nm)).filter(|n| covers(lines::D.wavelength_nm) && *n > 0.0);
-    let n = lines::ALL.iter().filter_map(|line| Some((line.name, known(line.wavelength_nm)?))).collect();
-    let internal = |nm: f64| medium.internal_transmittance(nm, THICKNESS_MM);
-    let transmittances: Vec<_> =
-        lines::ALL.iter().filter_map(|line| Some((line.name, internal(line.wavelength_nm)?))).collect();
-    let measured = glass.is_some_and(|g| g.extinction.is_some()) && !transmittances.is_empty();
-    let slope = |n: &dyn Fn(&Glass, f64) -> f64| {
-        glass.filter(|g| g.thermal.is_some()).map(|g| (n(g, 40.0) - n(g, 20.0)) / 20.0 * 1e6)
-    };
-    let e = lines::E.wavelength_nm;
-    Report {
-        name: medium.name(),
-        maker: glass.map(|g| g.maker.to_string()),
-        category: glass.map(|g| g.category.name()),
-        status: glass.map(|g| g.status.name()),
-        years: glass.and_then(|g| g.years),
-        formula: match medium {
-            Medium::Glass(glass) => Some(glass.formula.name()),
-            Medium::Model(_) => Some("normal lines of partial dispersion, from index and Abbe number"),
-            Medium::Air | Medium::Vacuum => Some("Ciddor 1996"),
-            Medium::Constant(_) => Some("constant"),
-        },
-        coefficients: glass.map(|g| g.formula.coefficients()),
-        expected_error: expected_error(medium),
-        range_nm: medium.range_nm(),
-        relative_to: if arguments.absolute { "vacuum" } else { "air" },
-        temperature_c,
-        nd,
-        vd: abbe(LineTriple::FDC),
-        ne: known(e),
-        ve: abbe(LineTriple::F_PRIME_E_C_PRIME),
-        lines_nm: arguments.lines.map(|l| [l.short, l.mid, l.long].map(|line| line.wavelength_nm)),
-        v_lines: arguments.lines.and_then(abbe),
-        listed_nd: glass.and_then(|g| g.listed_nd),
-        listed_vd: glass.and_then(|g| g.listed_vd),
-        n: ByLine(n),
-        wavelength_nm,
-        n_at: wavelength_nm.map(index).filter(|n| n.is_finite()),
-        internal_transmittance_10mm: measured.then_some(ByLine(transmittances)),
-        internal_transmittance_10mm_at: wavelength_nm.filter(|_| measured).and_then(internal),
-        reflectance: n_relative.map(|n| fresnel(1.0, n, 1.0).mean()),
-        critical_angle_deg: n_relative.and_then(|n| critical_angle(n, 1.0)).map(f64::to_degrees),
-        brewster_angle_deg: n_relative.map(|n| brewster_angle(1.0, n).to_degrees()),
-        dn_dt_relative_1e6: slope(&|g, t| g.index_at(e, t)),
-        dn_dt_absolute_1e6: slope(&|g, t| g.absolute_index(e, t)),
-        source: glass.map(|g| g.source.to_string()).filter(|s| !s.is_empty()),
-        warnings: warnings(medium, glass, arguments),
+    let [listed_nd, listed_vd] = [glass.and_then(|g| g.listed_nd), glass.and_then(|g| g.listed_vd)];
+    let listed = |v: Option<f64>| v.map_or(String::new(), |v| format!("  (listed: {v})"));
+    let abbe_text = |v: &f64| format!("{v:.2}");
+    sheet.fact("nd", "nd", known(lines::D.wavelength_nm), |n| format!("{n:.6}{}", listed(listed_nd)));
+    sheet.fact("vd", "Vd", abbe(LineTriple::FDC), |v| abbe_text(v) + &listed(listed_vd));
+    sheet.data("listed_nd", listed_nd);
+    sheet.data("listed_vd", listed_vd);
+    sheet.fact("ne", "ne", known(lines::E.wavelength_nm), |n| format!("{n:.6}"));
+    sheet.fact("ve", "Ve", abbe(LineTriple::F_PRIME_E_C_PRIME), abbe_text);
+    let lines_nm = arguments.lines.map(|l| [l.short, l.mid, l.long].map(|line| line.wavelength_nm));
+    let v_lines = arguments.lines.and_then(abbe);
+    if let Some([blue, middle, red]) = lines_nm {
+        let text = v_lines.as_ref().map_or_else(|| "outside the measured range".to_owned(), abbe_text);
+        sheet.line(&format!("V {blue} {middle} {red} nm"), Some(text));
     }
+    sheet.data("lines_nm", lines_nm);
+    sheet.data("v_lines", v_lines);
+    let wavelength_nm = arguments.wavelength_nm.map(|w| w.nm());
+    let tau = wavelength_nm.filter(|_| transmittances(medium).is_some());
+    let tau = tau.and_then(|nm| medium.internal_transmittance(nm, THICKNESS_MM));
+    let tau_text = tau.map_or(String::new(), |t| format!("  (internal transmittance of 10 mm: {t:.4})"));
+    let label = wavelength_nm.map_or(String::new(), |nm| format!("n at {nm} nm"));
+    let n_at = wavelength_nm.map(index).filter(|n| n.is_finite());
+    sheet.fact("n_at", &label, n_at, |n| format!("{n:.6}{tau_text}"));
+    sheet.data("wavelength_nm", wavelength_nm);
+    sheet.data("internal_transmittance_10mm_at", tau);
+}
+
+/// Adds the change of the index per kelvin from 20 to 40 C at the e line, and figures of one bare surface to air at the d line.
+fn heat_and_surface(sheet: &mut Sheet, medium: &Medium) {
+    let e = lines::E.wavelength_nm;
+    let slope = |n: &dyn Fn(f64) -> f64| (n(40.0) - n(20.0)) / 20.0 * 1e6;
+    let slopes = glass(medium)
+        .filter(|g| g.thermal.is_some())
+        .map(|g| [slope(&|t| g.index_at(e, t)), slope(&|t| g.absolute_index(e, t))]);
+    let text = |[relative, absolute]: [f64; 2]| format!("{relative:.2}e-6 / K  (absolute: {absolute:.2}e-6 / K)");
+    sheet.line("dn/dT at e, 20 to 40 C", slopes.map(text));
+    sheet.data("dn_dt_relative_1e6", slopes.map(|[relative, _]| relative));
+    sheet.data("dn_dt_absolute_1e6", slopes.map(|[_, absolute]| absolute));
+    let d = lines::D.wavelength_nm;
+    let n = Some(medium.index(d)).filter(|n| medium.covers(d, d) && *n > 0.0);
+    let degrees = |angle: &f64| format!("{angle:.3} deg");
+    let critical = n.and_then(|n| critical_angle(n, 1.0)).map(f64::to_degrees);
+    sheet.fact("reflectance", "reflectance (d, bare)", n.map(|n| fresnel(1.0, n, 1.0).mean()), |r| percent(*r, 3));
+    sheet.fact("critical_angle_deg", "critical angle (d)", critical, degrees);
+    let brewster = n.map(|n| brewster_angle(1.0, n).to_degrees());
+    sheet.fact("brewster_angle_deg", "Brewster's angle (d)", brewster, degrees);
+}
+
+/// Adds indices and internal transmittances at the lines, from short to long wavelengths.
+fn by_line(sheet: &mut Sheet, medium: &Medium, known: &dyn Fn(f64) -> Option<f64>) {
+    let taus = transmittances(medium);
+    let tau_column =
+        taus.is_some().then(|| Column::plain("internal_transmittance_10mm", "internal transmittance, 10 mm"));
+    let columns = [Column::text("line", "line"), Column::fixed("nm", "nm", 4), Column::fixed("n", "n", 6)];
+    let mut table = Table::new("n", columns.into_iter().chain(tau_column));
+    let mut indices = BTreeMap::new();
+    for line in lines::ALL {
+        let Some(n) = known(line.wavelength_nm) else { continue };
+        let mut row = vec![json!(line.name), json!(line.wavelength_nm), json!(n)];
+        row.extend(taus.as_ref().map(|t| t.get(line.name).map_or(String::new(), |t| format!("{t:.4}")).into()));
+        table.push(row);
+        indices.insert(line.name, n);
+    }
+    sheet.show_table(table);
+    sheet.data("n", indices);
+    sheet.data("internal_transmittance_10mm", taus);
+}
+
+/// Returns the transmittance of 10 mm without reflections at the lines where the absorption of a glass is known. `None` if there are none.
+fn transmittances(medium: &Medium) -> Option<BTreeMap<&'static str, f64>> {
+    glass(medium)?.extinction.as_ref()?;
+    let at = |line: &lines::Line| Some((line.name, medium.internal_transmittance(line.wavelength_nm, THICKNESS_MM)?));
+    Some(lines::ALL.iter().filter_map(at).collect()).filter(|all: &BTreeMap<_, _>| !all.is_empty())
 }
 
 /// Returns the index at a wavelength (nm). Relative indices are for the catalogue's temperature unless another one is requested
@@ -197,7 +221,8 @@ fn index(medium: &Medium, nm: f64, asked_c: Option<f64>, temperature_c: f64, abs
     }
 }
 
-fn warnings(medium: &Medium, glass: Option<&Glass>, arguments: &GlassInfo) -> Vec<String> {
+fn warnings(medium: &Medium, arguments: &GlassInfo) -> Vec<String> {
+    let glass = glass(medium);
     let mut warnings = Vec::new();
     let name = medium.name();
     if let Some(nm) = arguments.wavelength_nm.map(|w| w.nm()).filter(|nm| !medium.covers(*nm, *nm))
@@ -238,67 +263,4 @@ fn expected_error(medium: &Medium) -> Option<&'static str> {
     };
     let is_coarse = model.is_some_and(|model| model.stated_lines() == 1);
     is_coarse.then_some("2e-4 in n at r, 4e-4 at g, 9e-4 at h for nine out of ten glasses")
-}
-
-/// Formats the report as text.
-fn text(report: &Report) -> String {
-    let mut out = format!("{}{}\n\n", report.name, report.category.map_or(String::new(), |c| format!(": {c}")));
-    let mut row = |name: &str, value: Option<String>| {
-        if let Some(value) = value {
-            // Writing to a String cannot fail.
-            let _ = writeln!(out, "  {name:<24}{}{value}", if name.chars().count() < 24 { "" } else { "  " });
-        }
-    };
-    let years =
-        report.years.map(|(first, last)| if first == last { format!("{first}") } else { format!("{first}-{last}") });
-    let status = report.status.filter(|s| *s != "unknown");
-    let listed = [status.map(str::to_owned), years.map(|y| format!("in catalogues of {y}"))];
-    row("status", Some(listed.into_iter().flatten().collect::<Vec<_>>().join(", ")).filter(|s| !s.is_empty()));
-    row("source", report.source.clone());
-    row("formula", report.formula.map(str::to_owned));
-    let coefficients = report.coefficients.as_ref().filter(|c| c.len() <= 20);
-    row("coefficients", coefficients.map(|c| c.iter().map(ToString::to_string).collect::<Vec<_>>().join("  ")));
-    row("expected error", report.expected_error.map(str::to_owned));
-    row("measured", report.range_nm.map(|(from, to)| format!("{from} to {to} nm")));
-    row("index relative to", Some(format!("{}, at {} C", report.relative_to, report.temperature_c)));
-    let listed = |v: Option<f64>| v.map_or(String::new(), |v| format!("  (listed: {v})"));
-    row("nd", report.nd.map(|n| format!("{n:.6}{}", listed(report.listed_nd))));
-    row("Vd", report.vd.map(|v| format!("{v:.2}{}", listed(report.listed_vd))));
-    row("ne", report.ne.map(|n| format!("{n:.6}")));
-    row("Ve", report.ve.map(|v| format!("{v:.2}")));
-    if let Some([blue, middle, red]) = report.lines_nm {
-        let value = report.v_lines.map_or_else(|| "outside the measured range".to_owned(), |v| format!("{v:.2}"));
-        row(&format!("V {blue} {middle} {red} nm"), Some(value));
-    }
-    if let (Some(nm), Some(n)) = (report.wavelength_nm, report.n_at) {
-        let tau = report
-            .internal_transmittance_10mm_at
-            .map_or(String::new(), |t| format!("  (internal transmittance of 10 mm: {t:.4})"));
-        row(&format!("n at {nm} nm"), Some(format!("{n:.6}{tau}")));
-    }
-    let slopes = report.dn_dt_relative_1e6.zip(report.dn_dt_absolute_1e6);
-    row(
-        "dn/dT at e, 20 to 40 C",
-        slopes.map(|(relative, absolute)| format!("{relative:.2}e-6 / K  (absolute: {absolute:.2}e-6 / K)")),
-    );
-    row("reflectance (d, bare)", report.reflectance.map(|r| format!("{:.3} %", 100.0 * r)));
-    row("critical angle (d)", report.critical_angle_deg.map(|a| format!("{a:.3} deg")));
-    row("Brewster's angle (d)", report.brewster_angle_deg.map(|a| format!("{a:.3} deg")));
-    let transmittance = |name: &str| {
-        let of_lines = report.internal_transmittance_10mm.as_ref()?;
-        of_lines.0.iter().find(|(n, _)| *n == name).map(|(_, t)| *t)
-    };
-    if !report.n.0.is_empty() {
-        let _ = writeln!(
-            out,
-            "\n  line    nm          n{}",
-            if report.internal_transmittance_10mm.is_some() { "         internal transmittance, 10 mm" } else { "" }
-        );
-    }
-    for (name, n) in &report.n.0 {
-        let nm = lines::by_name(name).map_or(0.0, |line| line.wavelength_nm);
-        let tau = transmittance(name).map_or(String::new(), |t| format!("  {t:.4}"));
-        let _ = writeln!(out, "  {name:<4} {nm:>10.4}  {n:.6}{tau}");
-    }
-    out
 }

@@ -1,7 +1,7 @@
 //! `spectra glass list`: lists media by name.
 
 use super::arguments::GlassList;
-use super::{catalogue, makers};
+use super::{catalogue, makers, period};
 use crate::console;
 use crate::outcome::{DONE, Outcome};
 use serde::Serialize;
@@ -76,10 +76,7 @@ fn text(rows: &[GlassListRow]) -> String {
         let nd = row.nd.map_or(String::new(), |n| format!("{n:.5}"));
         let vd = row.vd.map_or(String::new(), |v| format!("{v:.2}"));
         let status = if row.status == "unknown" { "" } else { row.status };
-        let years = row.years.map_or(String::new(), |(first, last)| match first == last {
-            true => first.to_string(),
-            false => format!("{first}-{last}"),
-        });
+        let years = row.years.map_or(String::new(), period);
         let line = format!("{:<width$}  {nd:>8}  {vd:>6}  {:<15}  {status:<9}  {years}", row.name, row.category);
         let _ = writeln!(out, "{}", line.trim_end());
     }

@@ -120,3 +120,8 @@ fn makers(asked: &[String], catalogue: &Catalog) -> Result<Vec<String>, Failure>
     };
     asked.iter().map(find).collect()
 }
+
+/// Formats the years of the first and the last catalogue that list a glass: `1923-1967`, or one year.
+fn period((first, last): (u16, u16)) -> String {
+    if first == last { first.to_string() } else { format!("{first}-{last}") }
+}

@@ -1,49 +1,15 @@
 //! `spectra glass match`: finds the glasses nearest to an index and an Abbe number.
 
 use super::arguments::GlassMatch;
-use super::{catalogue, makers};
+use super::{catalogue, makers, period};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
-use serde::Serialize;
-use spectra_glass::{Catalog, Category, LineTriple, Match, Query};
+use serde_json::json;
+use spectra_glass::{Category, LineTriple, Match, Query};
 use spectra_lens::Lens;
 use spectra_scene::FileResources;
-use std::fmt::Write;
+use spectra_sheet::{Column, Sheet, Table};
 use std::path::Path;
-
-/// The glasses nearest to one index and Abbe number.
-#[derive(Debug, Serialize)]
-struct Report {
-    /// Name of the medium in the lens; null if `--nd` was given.
-    medium: Option<String>,
-    /// Surfaces of the lens in front of the medium, from 1.
-    surfaces: Vec<usize>,
-    /// Name or wavelength of the middle line.
-    line: String,
-    /// Wavelengths of all three lines, from blue to red.
-    lines_nm: [f64; 3],
-    #[serde(skip)]
-    called: [String; 2],
-    n: f64,
-    v: Option<f64>,
-    matches: Vec<GlassMatchRow>,
-}
-
-/// A glass of the catalogue and its distance from the wanted values.
-#[derive(Debug, Serialize)]
-struct GlassMatchRow {
-    name: String,
-    maker: String,
-    n: f64,
-    v: f64,
-    delta_n: f64,
-    /// Difference of the Abbe number; null if none was given.
-    delta_v: Option<f64>,
-    /// Distance in units of the usual catalogue tolerance.
-    distance: f64,
-    status: &'static str,
-    years: Option<(u16, u16)>,
-}
 
 /// Values to match: those of a medium of a lens with its label and surfaces, or those given on the command line.
 struct MatchTarget {
@@ -76,29 +42,30 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
     };
     let makers = makers(&arguments.makers, &catalogue)?;
     let limit = arguments.limit.map_or(if arguments.lens.is_some() { 3 } else { 10 }, usize::from);
-    let reports: Vec<Report> = wanted
-        .into_iter()
-        .map(|wanted| {
-            let mut query = Query::new(wanted.n, wanted.v, lines);
-            query.makers.clone_from(&makers);
-            query.count = limit;
-            if arguments.all_media {
-                query.categories.clear();
-            } else {
-                query.categories.push(Category::User);
-            }
-            if let Some(era) = arguments.era {
-                era.narrow(&mut query);
-            }
-            report(&catalogue, wanted, &query)
-        })
-        .collect();
-    match (&arguments.lens, arguments.report.json) {
-        (None, true) => console::pretty_json(&reports[0])?,
-        (Some(_), true) => console::pretty_json(&reports)?,
-        (_, false) => console::out(&reports.iter().map(text).collect::<Vec<_>>().join("\n"))?,
+    let mut query = Query::new(f64::NAN, None, lines);
+    query.makers = makers;
+    query.count = limit;
+    if arguments.all_media {
+        query.categories.clear();
+    } else {
+        query.categories.push(Category::User);
     }
-    if reports.iter().any(|r| r.matches.is_empty()) {
+    if let Some(era) = arguments.era {
+        era.narrow(&mut query);
+    }
+    let mut sheets = Vec::new();
+    let mut is_lacking = false;
+    for wanted in &wanted {
+        (query.n, query.v) = (wanted.n, wanted.v);
+        let matches = catalogue.nearest(&query);
+        is_lacking |= matches.is_empty();
+        sheets.push(sheet(wanted, lines, &matches));
+    }
+    match sheets.as_slice() {
+        [only] if arguments.lens.is_none() => console::sheet(only, arguments.report.json)?,
+        all => console::sheets(all, arguments.report.json)?,
+    }
+    if is_lacking {
         console::note("no glass fits; widen --maker or --era");
     }
     Ok(DONE)
@@ -124,70 +91,45 @@ fn media(lens: &Lens, lines: LineTriple) -> Vec<MatchTarget> {
     lens.media.iter().enumerate().skip(1).map(of).collect()
 }
 
-fn report(catalogue: &Catalog, wanted: MatchTarget, query: &Query) -> Report {
-    let row = |m: Match| GlassMatchRow {
-        name: m.glass.full_name(),
-        maker: m.glass.maker.to_string(),
-        n: m.n,
-        v: m.v,
-        delta_n: m.delta_n,
-        delta_v: query.v.map(|_| m.delta_v),
-        distance: m.distance,
-        status: m.glass.status.name(),
-        years: m.glass.years,
-    };
-    Report {
-        medium: wanted.label,
-        surfaces: wanted.surfaces,
-        line: query.lines.mid.label(),
-        lines_nm: [query.lines.short, query.lines.mid, query.lines.long].map(|line| line.wavelength_nm),
-        called: [query.lines.mid.indexed("n"), query.lines.abbe_label()],
-        n: wanted.n,
-        v: wanted.v,
-        matches: catalogue.nearest(query).into_iter().map(row).collect(),
+/// Makes the sheet of the glasses nearest to one index and Abbe number. `distance` is in units of the usual catalogue tolerance.
+fn sheet(wanted: &MatchTarget, lines: LineTriple, matches: &[Match]) -> Sheet {
+    let [n_label, v_label] = [lines.mid.indexed("n"), lines.abbe_label()];
+    let surfaces = wanted.surfaces.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let place = wanted.label.as_ref().map_or(String::new(), |medium| format!("behind surface {surfaces}: {medium}, "));
+    let v = wanted.v.map_or(String::new(), |v| format!(", {v_label} {}", rounded(v)));
+    let mut sheet = Sheet::new(&format!("{place}{n_label} {}{v}", wanted.n));
+    sheet.data("medium", &wanted.label);
+    sheet.data("surfaces", &wanted.surfaces);
+    sheet.data("line", lines.mid.label());
+    sheet.data("lines_nm", [lines.short, lines.mid, lines.long].map(|line| line.wavelength_nm));
+    sheet.data("n", wanted.n);
+    sheet.data("v", wanted.v);
+    let columns = [
+        Column::text("name", "glass"),
+        Column::fixed("n", if n_label.len() > 9 { "n" } else { &n_label }, 5),
+        Column::fixed("v", if v_label.len() > 7 { "V" } else { &v_label }, 2),
+        Column::plain("delta_n", "dn"),
+        Column::plain("delta_v", "dV"),
+        Column::fixed("distance", "distance", 2),
+        Column::text("status", "status"),
+        Column::text("years", "listed"),
+    ];
+    let mut table = Table::new("matches", columns);
+    let mut data = Vec::new();
+    for Match { glass, n, v, delta_n, delta_v, distance } in matches {
+        let (name, status) = (glass.full_name(), glass.status.name());
+        let delta_v = wanted.v.map(|_| delta_v);
+        let delta_v_text = delta_v.map_or(String::new(), |v| format!("{v:+.2}"));
+        let years = glass.years.map_or(String::new(), period);
+        table.push((&name, n, v, format!("{delta_n:+.5}"), delta_v_text, distance, status, years));
+        data.push(json!({
+            "name": name, "maker": &*glass.maker, "n": n, "v": v, "delta_n": delta_n, "delta_v": delta_v,
+            "distance": distance, "status": status, "years": glass.years,
+        }));
     }
-}
-
-fn text(report: &Report) -> String {
-    let [of_n, of_v] = &report.called;
-    let mut out = String::new();
-    // Writing to a String cannot fail.
-    if let Some(medium) = &report.medium {
-        let numbers: Vec<String> = report.surfaces.iter().map(ToString::to_string).collect();
-        let _ = write!(out, "behind surface {}: {medium}, ", numbers.join(", "));
-    }
-    let _ = write!(out, "{of_n} {}", report.n);
-    let _ = report.v.map(|v| write!(out, ", {of_v} {}", rounded(v)));
-    let width = report.matches.iter().map(|row| row.name.len()).max().unwrap_or(0).max(5);
-    let _ = writeln!(
-        out,
-        "\n  {:<width$}  {:>9}  {:>7}  {:>9}  {:>7}  {:>8}  {:<9}  listed",
-        "glass",
-        if of_n.len() > 9 { "n" } else { of_n },
-        if of_v.len() > 7 { "V" } else { of_v },
-        "dn",
-        "dV",
-        "distance",
-        "status"
-    );
-    for row in &report.matches {
-        let years = row.years.map_or(String::new(), |(first, last)| match first == last {
-            true => first.to_string(),
-            false => format!("{first}-{last}"),
-        });
-        let line = format!(
-            "  {:<width$}  {:>9.5}  {:>7.2}  {:>+9.5}  {:>7}  {:>8.2}  {:<9}  {years}",
-            row.name,
-            row.n,
-            row.v,
-            row.delta_n,
-            row.delta_v.map_or(String::new(), |v| format!("{v:+.2}")),
-            row.distance,
-            row.status,
-        );
-        let _ = writeln!(out, "{}", line.trim_end());
-    }
-    out
+    sheet.show_table(table);
+    sheet.data("matches", data);
+    sheet
 }
 
 /// Formats a number with at most two decimals, without trailing zeros.
