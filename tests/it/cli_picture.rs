@@ -58,7 +58,7 @@ fn a_file_cut_short_and_a_long_name_are_told_whole() {
     let folder = tempfile::tempdir().expect("a folder");
     let whole = folder.path().join("whole.png");
     image::RgbImage::from_pixel(8, 4, image::Rgb([255; 3])).save(&whole).expect("written");
-    assert!(good(&["picture", "info", shown(&whole)]).contains("at the end of the scale 100.00 %"));
+    assert!(good(&["picture", "info", shown(&whole)]).contains("at the end of the scale  100.00 %"));
     let bytes = fs::read(&whole).expect("there");
     let cut = folder.path().join("cut.png");
     fs::write(&cut, &bytes[..bytes.len() / 2]).expect("written");

@@ -1,37 +1,15 @@
 //! `spectra picture compare`: compares two pictures.
 
 use super::arguments::PictureCompare;
-use super::{load, not_written, percent, refuse, significant, stem};
+use super::{MOST_CHANNELS, load, not_written, percent, refuse, stem};
 use crate::console;
 use crate::folder::apart;
 use crate::outcome::{DONE, Outcome};
-use serde::Serialize;
-use spectra_analysis::picture::{self, Differs, NotMeasured, Scale, view};
+use serde_json::json;
+use spectra_analysis::picture::{self, Difference, Differs, NotMeasured, Scale, view};
 use spectra_core::params::Fault;
 use spectra_plot::Format;
-use std::fmt::Write as _;
-
-/// Statistics of CIEDE2000 between two pictures.
-#[derive(Debug, Serialize)]
-struct DeltaE {
-    mean: f64,
-    median: f64,
-    percentile_95: f64,
-    maximum: f64,
-    /// Column and row of the maximum.
-    maximum_at: [u32; 2],
-    /// White of both pictures, as text.
-    white: Option<String>,
-}
-
-/// Result of comparing two pictures.
-#[derive(Debug, Serialize)]
-struct Report {
-    first: String,
-    second: String,
-    delta_e_2000: Option<DeltaE>,
-    channels: Vec<Differs>,
-}
+use spectra_sheet::{Column, Sheet, Table};
 
 /// Compares two pictures and writes the result to standard output, and a map of CIEDE2000 if requested.
 pub(super) fn compare(arguments: &PictureCompare) -> Outcome {
@@ -56,67 +34,60 @@ pub(super) fn compare(arguments: &PictureCompare) -> Outcome {
         canvas.write(output).map_err(not_written)?;
         console::note(&format!("wrote {}", output.display()));
     }
-    let delta_e = difference.delta_e_figures(first.planes.width);
-    let report = Report {
-        first: first_path.display().to_string(),
-        second: second_path.display().to_string(),
-        delta_e_2000: delta_e.map(|([mean, median, percentile_95, maximum], maximum_at)| DeltaE {
-            mean,
-            median,
-            percentile_95,
-            maximum,
-            maximum_at,
-            white: difference.white.clone(),
-        }),
-        channels: difference.channels,
-    };
-    if arguments.report.json {
-        console::pretty_json(&report)?;
-    } else {
-        console::out(&text(&report))?;
-    }
+    let names = [first_path, second_path].map(|path| path.display().to_string());
+    console::sheet(&sheet(&names, &difference, first.planes.width), arguments.report.json)?;
     Ok(DONE)
 }
 
-/// Largest number of channels that are shown one by one.
-const MOST_CHANNELS: usize = 12;
+/// Makes the sheet of a comparison of two pictures, `width` pixels wide.
+fn sheet([first, second]: &[String; 2], difference: &Difference, width: u32) -> Sheet {
+    let mut sheet = Sheet::new(&format!("{first} and {second}"));
+    sheet.data("first", first);
+    sheet.data("second", second);
+    let delta_e = difference.delta_e_figures(width).map(|([mean, median, below, maximum], [column, row])| {
+        sheet.line("CIEDE2000", Some(format!(
+            "mean {mean:.4}, median {median:.4}, 95 % below {below:.4}, largest {maximum:.4} at column {column}, row {row}"
+        )));
+        sheet.line("", difference.white.clone());
+        json!({
+            "mean": mean, "median": median, "percentile_95": below, "maximum": maximum, "maximum_at": [column, row],
+            "white": difference.white,
+        })
+    });
+    sheet.data("delta_e_2000", delta_e);
+    sheet.show_table(channels(&difference.channels));
+    sheet.data("channels", &difference.channels);
+    sheet
+}
 
-/// Formats the report as text.
-fn text(report: &Report) -> String {
-    let mut out = format!("{} and {}\n\n", report.first, report.second);
-    if let Some(e) = &report.delta_e_2000 {
-        let [column, row] = e.maximum_at;
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            out,
-            "  CIEDE2000  mean {:.4}, median {:.4}, 95 % below {:.4}, largest {:.4} at column {column}, row {row}",
-            e.mean, e.median, e.percentile_95, e.maximum
-        );
-        let _ = writeln!(out, "             {}\n", e.white.as_deref().unwrap_or_default());
+/// Makes the table of the differences by channel.
+fn channels(channels: &[Differs]) -> Table {
+    let columns = [
+        Column::text("name", "channel"),
+        Column::significant("mean_1", "mean 1"),
+        Column::significant("mean_2", "mean 2"),
+        Column::percent("relative_mean", "difference", 3),
+        Column::percent("relative_standard_error", "+-", 3),
+        Column::percent("relative_rms", "RMS", 3),
+        Column::percent("relative_noise", "noise", 3),
+        Column::plain("blocks_beyond_3", "blocks > 3 se"),
+        Column::text("unit", ""),
+    ];
+    let mut table = Table::new("channels", columns).most(MOST_CHANNELS);
+    for c in channels {
+        let [difference, error] = [c.relative_mean, c.relative_standard_error];
+        let blocks = c.blocks_beyond_3.map(percent);
+        table.push((
+            &c.name,
+            c.means[0],
+            c.means[1],
+            difference,
+            error,
+            c.relative_rms,
+            c.relative_noise,
+            blocks,
+            &c.unit,
+        ));
     }
-    let width = report.channels.iter().take(MOST_CHANNELS).map(|c| c.name.chars().count()).fold(7, usize::max);
-    let _ = writeln!(
-        out,
-        "  {:<width$}  {:>12}  {:>12}  {:>10}  {:>10}  {:>10}  {:>10}  {:>14}",
-        "channel", "mean 1", "mean 2", "difference", "+-", "RMS", "noise", "blocks > 3 se"
-    );
-    let share = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{:.3} %", 100.0 * v));
-    for c in report.channels.iter().take(MOST_CHANNELS) {
-        let [one, two] = c.means.map(significant);
-        let row = format!(
-            "  {:<width$}  {one:>12}  {two:>12}  {:>10}  {:>10}  {:>10}  {:>10}  {:>14}  {}",
-            c.name,
-            share(c.relative_mean),
-            share(c.relative_standard_error),
-            share(c.relative_rms),
-            share(c.relative_noise),
-            c.blocks_beyond_3.map_or_else(|| "-".to_owned(), percent),
-            c.unit
-        );
-        let _ = writeln!(out, "{}", row.trim_end());
-    }
-    if report.channels.len() > MOST_CHANNELS {
-        let _ = writeln!(out, "  ... {} channels in all (--json shows each)", report.channels.len());
-    }
-    out
+    table
 }

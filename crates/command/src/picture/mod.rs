@@ -20,6 +20,9 @@ use spectra_pictures::read::{FileProblem, ReadOptions, planes};
 use spectra_plot::PlotError;
 use std::path::{Path, PathBuf};
 
+/// Largest number of channels that text shows one by one.
+const MOST_CHANNELS: usize = 12;
+
 /// Runs one of the commands of `spectra picture`.
 pub(crate) fn picture(command: &PictureCommand) -> Outcome {
     match command {
@@ -92,19 +95,6 @@ fn not_written(error: PlotError) -> Failure {
     match error {
         PlotError::Ending { .. } => Failure::Input(error.to_string()),
         PlotError::Write(error) => error.into(),
-    }
-}
-
-/// Formats a number with six digits, with a power of ten if it is large or small.
-fn significant(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let shown = format!("{value:.5e}");
-    // The power of ten is taken after rounding.
-    match shown.split_once('e').and_then(|(_, power)| power.parse::<i32>().ok()) {
-        Some(power @ -4..=5) => format!("{value:.*}", (5 - power) as usize),
-        _ => shown,
     }
 }
 

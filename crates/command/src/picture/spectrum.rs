@@ -1,39 +1,18 @@
 //! `spectra picture spectrum`: shows the mean color and the spectrum of areas.
 
 use super::arguments::PictureSpectrum;
-use super::{load, not_written, refuse, significant, stem};
+use super::{load, not_written, refuse, stem};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
-use serde::Serialize;
+use serde_json::{Value, json};
 use spectra_analysis::figure;
-use spectra_analysis::picture::{Area, Measured, Rectangle};
-use spectra_color::{cct, chromaticity, dominant_wavelength};
+use spectra_analysis::picture::{Area, Rectangle};
+use spectra_color::{RgbSpace, cct, chromaticity, dominant_wavelength};
 use spectra_files::write_atomically;
 use spectra_plot::Format;
-use std::fmt::Write as _;
-use std::io::Write as _;
+use spectra_sheet::{Sheet, percent, significant};
+use std::io::Write;
 use std::path::Path;
-
-/// Figures of an area of a picture.
-#[derive(Debug, Serialize)]
-struct Report {
-    /// Column, row, width and height of the area, pixels.
-    area_px: [u32; 4],
-    /// Mean XYZ (CIE 1931) in `unit`.
-    xyz: Option<[f64; 3]>,
-    unit: &'static str,
-    xy: Option<[f64; 2]>,
-    cct_k: Option<f64>,
-    duv: Option<f64>,
-    /// Dominant wavelength with a white of D65. For a purple, the complementary wavelength with a negative sign.
-    dominant_wavelength_nm: Option<f64>,
-    purity: Option<f64>,
-    /// Mean irradiance of each band, W m^-2 nm^-1; `edges_nm` has the edges of the bands.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    irradiance_w_m2_nm: Vec<f64>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    edges_nm: Vec<f64>,
-}
 
 /// Shows the mean colors of areas, and writes a spectrum and a diagram of them if requested.
 pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
@@ -75,11 +54,12 @@ pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
         figure::chromaticity(&points).write(diagram).map_err(not_written)?;
         console::note(&format!("wrote {}", diagram.display()));
     }
-    let reports: Vec<Report> = areas.into_iter().map(|area| report(area, &picture)).collect();
+    let sheets: Vec<Sheet> = areas.iter().map(|area| sheet(area, picture.unit.symbol())).collect();
     if arguments.report.json {
-        console::pretty_json(&serde_json::json!({ "file": path.display().to_string(), "areas": reports }))?;
+        let areas: Vec<Value> = sheets.iter().map(Sheet::to_json).collect();
+        console::pretty_json(&json!({ "file": path.display().to_string(), "areas": areas }))?;
     } else {
-        console::out(&reports.iter().map(text).collect::<Vec<_>>().join("\n"))?;
+        console::sheets(&sheets, false)?;
     }
     Ok(DONE)
 }
@@ -94,49 +74,35 @@ fn written(area: Rectangle) -> String {
     format!("{x},{y},{width},{height}")
 }
 
-fn report(area: Area, picture: &Measured) -> Report {
-    let xy = area.xyz.and_then(chromaticity);
-    let d65 = spectra_color::RgbSpace::srgb().white_xy;
-    let temperature = xy.and_then(cct);
-    let dominant = xy.and_then(|xy| dominant_wavelength(xy, d65));
+/// Makes the sheet of an area, whose XYZ are in `unit`. The dominant wavelength is for a white of D65; a purple has the complementary
+/// wavelength with a negative sign. Irradiance is the mean of each band between two edges, W m^-2 nm^-1.
+fn sheet(area: &Area, unit: &str) -> Sheet {
+    let mut sheet = Sheet::new(&format!("area {}", written(area.rectangle)));
     let Rectangle { from: [x, y], size: [width, height] } = area.rectangle;
-    Report {
-        area_px: [x, y, width, height],
-        xyz: area.xyz,
-        unit: picture.unit.symbol(),
-        xy,
-        cct_k: temperature.map(|t| t.kelvin),
-        duv: temperature.map(|t| t.duv),
-        dominant_wavelength_nm: dominant.map(|d| if d.complementary { -d.wavelength_nm } else { d.wavelength_nm }),
-        purity: dominant.map(|d| d.purity),
-        irradiance_w_m2_nm: area.bands,
-        edges_nm: area.edges_nm,
+    sheet.data("area_px", [x, y, width, height]);
+    let xyz_text = |xyz: &[f64; 3]| format!("{}  {unit}", xyz.map(significant).join("  ")).trim_end().to_owned();
+    sheet.fact("xyz", "XYZ", area.xyz, xyz_text);
+    sheet.data("unit", unit);
+    let xy = area.xyz.and_then(chromaticity);
+    sheet.fact("xy", "xy", xy, |[x, y]| format!("{x:.5}  {y:.5}"));
+    let temperature = xy.and_then(cct);
+    sheet.line("color temperature", temperature.map(|t| format!("{:.1} K  (Duv {:+.4})", t.kelvin, t.duv)));
+    sheet.data("cct_k", temperature.map(|t| t.kelvin));
+    sheet.data("duv", temperature.map(|t| t.duv));
+    let dominant = xy.and_then(|xy| dominant_wavelength(xy, RgbSpace::srgb().white_xy));
+    let signed_nm = dominant.map(|d| if d.complementary { -d.wavelength_nm } else { d.wavelength_nm });
+    let label = if dominant.is_some_and(|d| d.complementary) { "complementary" } else { "dominant wavelength" };
+    sheet.fact("dominant_wavelength_nm", label, signed_nm, |nm| format!("{:.2} nm", nm.abs()));
+    sheet.fact("purity", "excitation purity", dominant.map(|d| d.purity), |p| percent(*p, 2));
+    if let [first, .., last] = area.edges_nm[..] {
+        let bands = || area.bands.iter().zip(area.edges_nm.windows(2));
+        let power: f64 = bands().map(|(mean, pair)| mean * (pair[1] - pair[0])).sum();
+        let power = format!("{} W/m2 from {first:.1} to {last:.1} nm", significant(power));
+        sheet.line("irradiance", Some(power));
+        let peak = bands().max_by(|a, b| a.0.total_cmp(b.0));
+        sheet.line("highest band", peak.map(|(_, pair)| format!("{:.1} to {:.1} nm", pair[0], pair[1])));
+        sheet.data("irradiance_w_m2_nm", &area.bands);
+        sheet.data("edges_nm", &area.edges_nm);
     }
-}
-
-/// Formats the report as text.
-fn text(report: &Report) -> String {
-    let [x, y, width, height] = report.area_px;
-    let mut out = format!("area {x},{y},{width},{height}\n");
-    let mut row = |name: &str, value: Option<String>| {
-        if let Some(value) = value {
-            // Writing to a String cannot fail.
-            let _ = writeln!(out, "  {name:<22}{}", value.trim_end());
-        }
-    };
-    row("XYZ", report.xyz.map(|xyz| format!("{}  {}", xyz.map(significant).join("  "), report.unit)));
-    row("xy", report.xy.map(|[x, y]| format!("{x:.5}  {y:.5}")));
-    let duv = report.duv.map_or_else(String::new, |duv| format!("  (Duv {duv:+.4})"));
-    row("color temperature", report.cct_k.map(|k| format!("{k:.1} K{duv}")));
-    row("dominant wavelength", report.dominant_wavelength_nm.filter(|nm| *nm > 0.0).map(|nm| format!("{nm:.2} nm")));
-    row("complementary", report.dominant_wavelength_nm.filter(|nm| *nm < 0.0).map(|nm| format!("{:.2} nm", -nm)));
-    row("excitation purity", report.purity.map(|p| format!("{:.2} %", 100.0 * p)));
-    let widths = report.edges_nm.windows(2).map(|pair| pair[1] - pair[0]);
-    let power: f64 = report.irradiance_w_m2_nm.iter().zip(widths).map(|(mean, width)| mean * width).sum();
-    let ends = report.edges_nm.first().zip(report.edges_nm.last());
-    row("irradiance", ends.map(|(a, b)| format!("{} W/m2 from {a:.1} to {b:.1} nm", significant(power))));
-    let peak = report.irradiance_w_m2_nm.iter().zip(report.edges_nm.windows(2));
-    let peak = peak.max_by(|a, b| a.0.total_cmp(b.0)).map(|(_, pair)| (pair[0], pair[1]));
-    row("highest band", peak.map(|(a, b)| format!("{a:.1} to {b:.1} nm")));
-    out
+    sheet
 }
