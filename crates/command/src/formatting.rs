@@ -11,6 +11,11 @@ pub(crate) fn figure_of(name: &str) -> PathBuf {
     PathBuf::from(format!("{}.svg", stem.chars().map(plain).collect::<String>()))
 }
 
+/// Whether the name of a file has the extension of YAML.
+pub(crate) fn is_yaml(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("yaml") || e.eq_ignore_ascii_case("yml"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

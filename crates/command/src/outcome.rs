@@ -3,6 +3,7 @@
 use crate::console;
 use spectra_core::params::{Fault, Faults};
 use spectra_files::WriteError;
+use spectra_plot::PlotError;
 use spectra_session::SessionError;
 use std::io;
 
@@ -75,6 +76,16 @@ impl From<SessionError> for Failure {
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         Self::Failed(error.to_string())
+    }
+}
+
+/// Converts an error of writing a figure. An unknown extension is wrong input.
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        match error {
+            PlotError::Ending { .. } => Self::Input(error.to_string()),
+            PlotError::Write(error) => error.into(),
+        }
     }
 }
 

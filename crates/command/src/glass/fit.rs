@@ -3,6 +3,7 @@
 use super::arguments::{GlassFit, Model};
 use super::read;
 use crate::console;
+use crate::formatting::is_yaml;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::{Map, Value, json};
 use spectra_analysis::figure::{FittedCurve, glass_fit};
@@ -12,7 +13,7 @@ use spectra_glass::fit::{
     CauchyRows, Fit, FitError, NamedSamples, Sample, cauchy_by_rows, cauchy_least_squares, conrady_least_squares,
     herzberger_least_squares, read_csv, schott_least_squares, sellmeier_least_squares,
 };
-use spectra_plot::{Format, PlotError};
+use spectra_plot::Format;
 use spectra_sheet::{Column, Sheet, Table};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -29,7 +30,7 @@ struct FittedFormula {
 pub(crate) fn fit(arguments: &GlassFit) -> Outcome {
     if let Some(plot) = &arguments.plot {
         // A wrong extension is reported before anything is read.
-        Format::of(plot).map_err(not_drawn)?;
+        Format::of(plot)?;
     }
     if let Some(output) = arguments.output.as_ref().filter(|path| !is_yaml(path)) {
         return Err(Failure::Input(format!("{}: the name of a glass file must end in .yaml", output.display())));
@@ -52,17 +53,11 @@ pub(crate) fn fit(arguments: &GlassFit) -> Outcome {
     let alone = arguments.output.is_some() || arguments.plot.is_some();
     if alone && materials.len() > 1 {
         let named: Vec<&str> = materials.iter().filter_map(|m| m.name.as_deref()).collect();
-        let fault = Fault::new(format!(
-            "{name}: the table holds {} materials, but -o and --plot take only one",
-            materials.len()
-        ));
-        return Err(fault
-            .hint(format!(
-                "name one, such as `{name}#{}`; there are {}",
-                named.first().unwrap_or(&""),
-                named.join(", ")
-            ))
-            .into());
+        let first = named.first().unwrap_or(&"");
+        let hint = format!("name one, such as `{name}#{first}`; there are {}", named.join(", "));
+        let count = materials.len();
+        let text = format!("{name}: the table holds {count} materials, but -o and --plot take only one");
+        return Err(Fault::new(text).hint(hint).into());
     }
     let models =
         if arguments.models.is_empty() { vec![Model::Cauchy, Model::CauchyLs] } else { arguments.models.clone() };
@@ -89,17 +84,6 @@ fn one_of(path: &Path) -> (PathBuf, Option<String>) {
     match text.rsplit_once('#') {
         Some((file, material)) if !path.exists() => (PathBuf::from(file), Some(material.trim().to_owned())),
         _ => (path.to_owned(), None),
-    }
-}
-
-fn is_yaml(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("yaml") || e.eq_ignore_ascii_case("yml"))
-}
-
-fn not_drawn(error: PlotError) -> Failure {
-    match error {
-        PlotError::Ending { .. } => Failure::Input(error.to_string()),
-        PlotError::Write(error) => error.into(),
     }
 }
 
@@ -130,7 +114,7 @@ fn write_files(
         let curves: Vec<FittedCurve> = found.iter().map(curve).collect();
         let measured: Vec<[f64; 2]> = material.samples.iter().map(|row| [row.wavelength_nm, row.n]).collect();
         let canvas = glass_fit(&format!("{called}: fitted dispersion"), &measured, &curves);
-        canvas.write(plot).map_err(not_drawn)?;
+        canvas.write(plot)?;
         console::note(&format!("wrote {}", plot.display()));
     }
     Ok(())

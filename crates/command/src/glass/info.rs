@@ -1,7 +1,7 @@
 //! `spectra glass info`: shows the data of a glass.
 
 use super::arguments::GlassInfo;
-use super::{catalogue, named, own_file, period, unknown};
+use super::{catalogue, chosen, named, own_file, period};
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::json;
@@ -41,17 +41,10 @@ fn medium(arguments: &GlassInfo, catalogue: &Catalog) -> Result<Medium, Failure>
         }
         (Some(name), None) => named(name, catalogue),
         (Some(name), Some(melt)) => {
+            let figures = Some((melt.0, Some(melt.1), LineTriple::FDC));
             let glass = match own_file(name)? {
                 Some(glass) => glass,
-                None => {
-                    let figures = Some((melt.0, Some(melt.1), LineTriple::FDC));
-                    let chosen =
-                        catalogue.choose(name, GlassFacts { figures, ..GlassFacts::default() }).map_err(unknown)?;
-                    if let Some(note) = &chosen.note {
-                        console::note(note);
-                    }
-                    chosen.glass
-                }
+                None => chosen(name, GlassFacts { figures, ..GlassFacts::default() }, catalogue)?,
             };
             glass.melt(melt.0, melt.1).map(Medium::from).ok_or_else(|| refuse(melt))
         }

@@ -67,14 +67,17 @@ fn named(name: &str, catalogue: &Catalog) -> Result<Medium, Failure> {
         None if ["air", "vacuum"].iter().any(|medium| name.trim().eq_ignore_ascii_case(medium)) => {
             catalogue.medium(name).map_err(unknown)
         }
-        None => {
-            let chosen = catalogue.choose(name, GlassFacts::default()).map_err(unknown)?;
-            if let Some(note) = &chosen.note {
-                console::note(note);
-            }
-            Ok(chosen.glass.into())
-        }
+        None => Ok(chosen(name, GlassFacts::default(), catalogue)?.into()),
     }
+}
+
+/// Returns the glass that a name and known facts select. A note says so if several glasses have the name.
+fn chosen(name: &str, facts: GlassFacts<'_>, catalogue: &Catalog) -> Result<Glass, Failure> {
+    let chosen = catalogue.choose(name, facts).map_err(unknown)?;
+    if let Some(note) = &chosen.note {
+        console::note(note);
+    }
+    Ok(chosen.glass)
 }
 
 /// Converts the error for an unknown or ambiguous name.

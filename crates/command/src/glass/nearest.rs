@@ -40,11 +40,9 @@ pub(crate) fn nearest(arguments: &GlassMatch) -> Outcome {
             (arguments.line, vec![MatchTarget { label: None, surfaces: Vec::new(), n, v: arguments.vd }])
         }
     };
+    let count = arguments.limit.map_or(if arguments.lens.is_some() { 3 } else { 10 }, usize::from);
     let makers = makers(&arguments.makers, &catalogue)?;
-    let limit = arguments.limit.map_or(if arguments.lens.is_some() { 3 } else { 10 }, usize::from);
-    let mut query = Query::new(f64::NAN, None, lines);
-    query.makers = makers;
-    query.count = limit;
+    let mut query = Query { makers, count, ..Query::new(f64::NAN, None, lines) };
     if arguments.all_media {
         query.categories.clear();
     } else {

@@ -6,7 +6,7 @@ use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
 use spectra_analysis::figure::{self, AbbeGroup, IndexCurve};
 use spectra_glass::{Catalog, Category, LineTriple, Medium, Query, lines};
-use spectra_plot::{Canvas, Format, PlotError};
+use spectra_plot::{Canvas, Format};
 use std::path::PathBuf;
 
 /// Spectral lines that are marked in the plot.
@@ -19,7 +19,7 @@ pub(crate) fn plot(arguments: &GlassPlot) -> Outcome {
     let default = || PathBuf::from(if arguments.abbe { "abbe.svg" } else { "dispersion.svg" });
     let output = arguments.output.clone().unwrap_or_else(default);
     // A wrong extension is reported before anything is computed.
-    Format::of(&output).map_err(failure)?;
+    Format::of(&output)?;
     let catalogue = catalogue(&arguments.own)?;
     // A material of a file with several is labeled by its own name.
     let label = |name: &str| match name.rsplit_once('#') {
@@ -30,16 +30,9 @@ pub(crate) fn plot(arguments: &GlassPlot) -> Outcome {
     let media = arguments.names.iter().map(find).collect::<Result<Vec<_>, Failure>>()?;
     let canvas =
         if arguments.abbe { abbe(arguments, &catalogue, &media)? } else { dispersion(&media, arguments.range_nm)? };
-    canvas.write(&output).map_err(failure)?;
+    canvas.write(&output)?;
     console::note(&format!("wrote {}", output.display()));
     Ok(DONE)
-}
-
-fn failure(error: PlotError) -> Failure {
-    match error {
-        PlotError::Ending { .. } => Failure::Input(error.to_string()),
-        PlotError::Write(error) => error.into(),
-    }
 }
 
 fn dispersion(media: &[(String, Medium)], band_nm: (f64, f64)) -> Result<Canvas, Failure> {

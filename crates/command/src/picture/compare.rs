@@ -1,7 +1,7 @@
 //! `spectra picture compare`: compares two pictures.
 
 use super::arguments::PictureCompare;
-use super::{MOST_CHANNELS, load, not_written, percent, refuse, stem};
+use super::{MOST_CHANNELS, load, percent, refuse, stem};
 use crate::console;
 use crate::folder::apart;
 use crate::outcome::{DONE, Outcome};
@@ -15,7 +15,7 @@ use spectra_sheet::{Column, Sheet, Table};
 pub(super) fn compare(arguments: &PictureCompare) -> Outcome {
     let [first_path, second_path] = [&arguments.first, &arguments.second];
     if let Some(output) = &arguments.output {
-        Format::of(output).map_err(not_written)?;
+        Format::of(output)?;
         apart(output, &[first_path, second_path])?;
     }
     let (first, second) = (load(first_path)?, load(second_path)?);
@@ -31,7 +31,7 @@ pub(super) fn compare(arguments: &PictureCompare) -> Outcome {
         };
         let title = format!("{} and {}", stem(first_path), stem(second_path));
         let canvas = view(&first, &field, Scale::default(), &title).map_err(between)?;
-        canvas.write(output).map_err(not_written)?;
+        canvas.write(output)?;
         console::note(&format!("wrote {}", output.display()));
     }
     let names = [first_path, second_path].map(|path| path.display().to_string());

@@ -1,7 +1,7 @@
 //! `spectra picture cut`: plots quantities along a line through a picture.
 
 use super::arguments::PictureCut;
-use super::{field, load, not_written, output, quantity, refuse, stem};
+use super::{field, load, output, quantity, refuse, stem};
 use crate::console;
 use crate::folder::apart;
 use crate::outcome::{DONE, Failure, Outcome};
@@ -49,7 +49,7 @@ pub(super) fn cut(arguments: &PictureCut) -> Outcome {
     } else {
         let title = format!("{}: {said}", stem(path));
         let canvas = curve(&cut, arguments.log, &title).map_err(|error| refuse(path, error))?;
-        canvas.write(&output).map_err(not_written)?;
+        canvas.write(&output)?;
     }
     console::note(&format!("wrote {}", output.display()));
     Ok(DONE)

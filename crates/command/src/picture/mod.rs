@@ -17,7 +17,6 @@ use spectra_core::names::nearest;
 use spectra_core::params::{Fault, Warning};
 use spectra_core::resources::FoundFile;
 use spectra_pictures::read::{FileProblem, ReadOptions, planes};
-use spectra_plot::PlotError;
 use std::path::{Path, PathBuf};
 
 /// Largest number of channels that text shows one by one.
@@ -89,13 +88,6 @@ fn stem(path: &Path) -> String {
 fn output(given: Option<&PathBuf>, path: &Path, rest: &str) -> PathBuf {
     let plain = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
     given.cloned().unwrap_or_else(|| format!("{}-{rest}", stem(path)).chars().map(plain).collect::<String>().into())
-}
-
-fn not_written(error: PlotError) -> Failure {
-    match error {
-        PlotError::Ending { .. } => Failure::Input(error.to_string()),
-        PlotError::Write(error) => error.into(),
-    }
 }
 
 /// Formats a fraction as a percentage; a value that is not quite 0 is not shown as 0.

@@ -1,7 +1,7 @@
 //! `spectra picture plot`: plots a quantity in false color, or the picture in its colors.
 
 use super::arguments::PicturePlot;
-use super::{field, load, not_written, output, quantity, refuse, stem};
+use super::{field, load, output, quantity, refuse, stem};
 use crate::console;
 use crate::folder::apart;
 use crate::outcome::{DONE, Outcome};
@@ -18,7 +18,7 @@ pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
     let path = &arguments.file;
     if let Some(given) = &arguments.output {
         // A wrong extension is reported before anything is read.
-        Format::of(given).map_err(not_written)?;
+        Format::of(given)?;
     }
     let picture = load(path)?;
     let asked = arguments.quantity.as_deref().map(str::trim);
@@ -53,7 +53,7 @@ pub(super) fn plot(arguments: &PicturePlot) -> Outcome {
     };
     let output = output(arguments.output.as_ref(), path, &format!("{name}.png"));
     apart(&output, &[path])?;
-    canvas.write(&output).map_err(not_written)?;
+    canvas.write(&output)?;
     console::note(&format!("wrote {}", output.display()));
     Ok(DONE)
 }

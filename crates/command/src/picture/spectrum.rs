@@ -1,8 +1,9 @@
 //! `spectra picture spectrum`: shows the mean color and the spectrum of areas.
 
 use super::arguments::PictureSpectrum;
-use super::{load, not_written, refuse, stem};
+use super::{load, refuse, stem};
 use crate::console;
+use crate::formatting::is_yaml;
 use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::{Value, json};
 use spectra_analysis::figure;
@@ -12,13 +13,12 @@ use spectra_files::write_atomically;
 use spectra_plot::Format;
 use spectra_sheet::{Sheet, percent, significant};
 use std::io::Write;
-use std::path::Path;
 
 /// Shows the mean colors of areas, and writes a spectrum and a diagram of them if requested.
 pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
     let path = &arguments.file;
     if let Some(diagram) = &arguments.diagram {
-        Format::of(diagram).map_err(not_written)?;
+        Format::of(diagram)?;
     }
     if let Some(output) = &arguments.output {
         if !is_yaml(output) {
@@ -29,11 +29,9 @@ pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
         }
     }
     let picture = load(path)?;
-    let asked: Vec<Option<Rectangle>> = match arguments.areas.as_slice() {
-        [] => vec![None],
-        areas => areas.iter().copied().map(Some).collect(),
-    };
-    let areas = asked.into_iter().map(|area| Area::of(&picture, area).map_err(|error| refuse(path, error)));
+    let whole = arguments.areas.is_empty().then_some(None);
+    let asked = arguments.areas.iter().copied().map(Some).chain(whole);
+    let areas = asked.map(|area| Area::of(&picture, area).map_err(|error| refuse(path, error)));
     let areas = areas.collect::<Result<Vec<Area>, Failure>>()?;
     if picture.colors.is_none() {
         return Err(refuse(path, picture.without_colors()));
@@ -51,7 +49,7 @@ pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
             let text = format!("{}: no light falls on the area, so it has no chromaticity", path.display());
             return Err(Failure::Input(text));
         }
-        figure::chromaticity(&points).write(diagram).map_err(not_written)?;
+        figure::chromaticity(&points).write(diagram)?;
         console::note(&format!("wrote {}", diagram.display()));
     }
     let sheets: Vec<Sheet> = areas.iter().map(|area| sheet(area, picture.unit.symbol())).collect();
@@ -62,10 +60,6 @@ pub(super) fn spectrum(arguments: &PictureSpectrum) -> Outcome {
         console::sheets(&sheets, false)?;
     }
     Ok(DONE)
-}
-
-fn is_yaml(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("yaml") || e.eq_ignore_ascii_case("yml"))
 }
 
 /// Formats an area as it is written on the command line.
