@@ -1,42 +1,18 @@
 //! `spectra spectrum fit`: fits Gaussian terms to a spectrum.
 
 use super::arguments::SpectrumFit;
+use super::info::{on_grid, shape_of};
 use super::load;
 use super::local::local;
 use crate::console;
 use crate::outcome::{DONE, Failure, Outcome};
-use serde::Serialize;
+use serde_json::json;
 use spectra_files::write_atomically;
-use spectra_spectrum::{AnySpectrum, GaussianFit, GaussianMixture, Grid, Line, fit_gaussians};
+use spectra_sheet::{Column, Sheet, Table, percent};
+use spectra_spectrum::{AnySpectrum, GaussianFit, GaussianTerm, Grid, Kind, Line, fit_gaussians};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
-
-/// A Gaussian term of the fit.
-#[derive(Debug, Serialize)]
-struct Term {
-    amplitude: f64,
-    center_nm: f64,
-    sigma_nm: f64,
-    /// Integral over the band.
-    integral: f64,
-}
-
-/// Terms of a fit and their errors.
-#[derive(Debug, Serialize)]
-struct Report {
-    name: String,
-    kind: &'static str,
-    band_nm: [f64; 2],
-    terms: Vec<Term>,
-    relative_l2: f64,
-    maximum: f64,
-    integral: f64,
-    smallest: f64,
-    kappa: f64,
-    /// Number of spectral lines, which are not fitted; the written file lists them after the terms.
-    lines: usize,
-}
 
 /// Largest number of points to fit.
 const MOST_POINTS: f64 = 10_000.0;
@@ -53,48 +29,33 @@ pub(crate) fn fit(arguments: &SpectrumFit) -> Outcome {
             let text = "--at shows a Gaussian and writes no file: leave out --output".to_owned();
             return Err(Failure::Input(text));
         }
-        let shape = match &found {
-            AnySpectrum::Emission(light) => light.continuum(),
-            AnySpectrum::Transmittance(filter) => Some(filter.shape()),
-            AnySpectrum::Reflectance(surface) => Some(surface.shape()),
-            AnySpectrum::Sensitivity(detector) => Some(detector.shape()),
-        };
         let none = || Failure::Input(format!("`{name}` has only spectral lines, which have no local Gaussian"));
-        return local(arguments, at_nm, shape.ok_or_else(none)?);
+        return local(arguments, at_nm, shape_of(&found).ok_or_else(none)?);
     }
     let grid = grid(&arguments.band, arguments.step.unwrap_or(1.0))?;
-    let (values, lines) = match &found {
-        AnySpectrum::Emission(light) if light.continuum().is_none() => {
-            let text = format!("`{name}` has only spectral lines, which are not fitted by Gaussians");
-            return Err(Failure::Input(text));
-        }
-        AnySpectrum::Emission(light) => (light.on_grid(&grid), light.lines().to_vec()),
-        AnySpectrum::Transmittance(filter) => (filter.on_grid(&grid), Vec::new()),
-        AnySpectrum::Reflectance(surface) => (surface.on_grid(&grid), Vec::new()),
-        AnySpectrum::Sensitivity(detector) => (detector.on_grid(&grid), Vec::new()),
-    };
-    let fit = fit_gaussians(&grid, &values, usize::from(arguments.terms))
+    if shape_of(&found).is_none() {
+        let text = format!("`{name}` has only spectral lines, which are not fitted by Gaussians");
+        return Err(Failure::Input(text));
+    }
+    let lines = if let AnySpectrum::Emission(light) = &found { light.lines() } else { &[] };
+    let fit = fit_gaussians(&grid, &on_grid(&found, &grid), usize::from(arguments.terms))
         .map_err(|e| Failure::Input(format!("`{name}` cannot be fitted: {e}")))?;
-    let report = report(name, &found, &grid, &fit, lines.len());
     if let Some(path) = &arguments.output {
-        let text = file(&report, &fit.mixture, &lines);
+        let text = file(name, found.kind(), &grid, &fit, lines);
         write_atomically(path, |out| Ok(out.write_all(text.as_bytes())?))?;
         console::note(&format!("wrote {}", path.display()));
     }
-    if report.smallest < 0.0 {
-        let below = format!("the terms fall to {:.2} % of the peak below 0", -100.0 * report.smallest);
-        let then = if report.smallest < -0.1 {
+    let smallest = fit.report.smallest;
+    if smallest < 0.0 {
+        let below = format!("the terms fall to {} of the peak below 0", percent(-smallest, 2));
+        let then = if smallest < -0.1 {
             "this is beyond the 10 % up to which a scene counts them as 0: use more terms or another band"
         } else {
             "a scene counts them as 0 there"
         };
         console::warning(&format!("{below}; {then}"));
     }
-    if arguments.report.json {
-        console::pretty_json(&report)?;
-    } else {
-        console::out(&text(&report))?;
-    }
+    console::sheet(&sheet(name, found.kind(), &grid, &fit, lines.len()), arguments.report.json)?;
     Ok(DONE)
 }
 
@@ -124,90 +85,73 @@ pub(super) fn grid(band: &[f64], step: f64) -> Result<Grid, Failure> {
     Ok(Grid { start_nm: from, step_nm: step, count })
 }
 
-fn report(name: &str, found: &AnySpectrum, grid: &Grid, fit: &GaussianFit, lines: usize) -> Report {
-    let band_nm = [grid.start_nm, grid.end_nm()];
-    let term = |t: &spectra_spectrum::GaussianTerm| Term {
-        amplitude: t.peak(),
-        center_nm: t.center_nm(),
-        sigma_nm: t.sigma_nm(),
-        integral: t.band_integral(band_nm[0], band_nm[1]),
-    };
-    let r = fit.report;
-    Report {
-        name: name.to_owned(),
-        kind: found.kind().word(),
-        band_nm,
-        terms: fit.mixture.terms().iter().map(term).collect(),
-        relative_l2: r.relative_l2,
-        maximum: r.maximum,
-        integral: r.integral,
-        smallest: r.smallest,
-        kappa: r.kappa,
-        lines,
+/// Returns the terms of a fit and its errors. `lines` is the number of spectral lines, which are not fitted.
+fn sheet(name: &str, kind: Kind, grid: &Grid, fit: &GaussianFit, lines: usize) -> Sheet {
+    let (terms, [from, to]) = (fit.mixture.terms(), [grid.start_nm, grid.end_nm()]);
+    let title = format!("{name}: {}, {} Gaussian terms on {from}-{to} nm", kind.word(), terms.len());
+    let mut sheet = Sheet::new(&title);
+    sheet.data("name", name);
+    sheet.data("kind", kind.word());
+    sheet.data("band_nm", [from, to]);
+    let labels = ["amplitude", "center/nm", "sigma/nm", "integral"];
+    let mut table = Table::new("terms", labels.map(|label| Column::plain(label, label)));
+    let mut data = Vec::new();
+    for term in terms {
+        let (amplitude, center, sigma) = (term.peak(), term.center_nm(), term.sigma_nm());
+        let integral = term.band_integral(from, to);
+        table.push([
+            format!("{amplitude:.6e}"),
+            format!("{center:.3}"),
+            format!("{sigma:.3}"),
+            format!("{integral:.6e}"),
+        ]);
+        data.push(json!({ "amplitude": amplitude, "center_nm": center, "sigma_nm": sigma, "integral": integral }));
     }
-}
-
-/// Formats the report as text.
-fn text(report: &Report) -> String {
-    let [from, to] = report.band_nm;
-    let mut out =
-        format!("{}: {}, {} Gaussian terms on {from}-{to} nm\n\n", report.name, report.kind, report.terms.len());
-    // Writing to a String cannot fail.
-    let _ = writeln!(out, "  {:>13}  {:>10}  {:>10}  {:>13}", "amplitude", "center/nm", "sigma/nm", "integral");
-    for t in &report.terms {
-        let _ = writeln!(
-            out,
-            "  {:>13.6e}  {:>10.3}  {:>10.3}  {:>13.6e}",
-            t.amplitude, t.center_nm, t.sigma_nm, t.integral
-        );
-    }
-    out.push('\n');
-    let mut row = |name: &str, value: String| {
-        let _ = writeln!(out, "  {name:<24}{value}");
-    };
-    row("relative L2 error", format!("{:.6}", report.relative_l2));
-    row("largest error", format!("{:.6} of the peak", report.maximum));
-    row("error of the integral", format!("{:+.2e}", report.integral));
-    row("smallest value", format!("{:.6} of the peak", report.smallest));
-    row("kappa", format!("{:.4}  (sum |w| / |sum w|: how much the terms cancel)", report.kappa));
-    if report.lines > 0 {
-        row("spectral lines", report.lines.to_string());
-    }
-    out
+    sheet.lines(table);
+    sheet.data("terms", data);
+    let errors = fit.report;
+    let of_peak = |v: &f64| format!("{v:.6} of the peak");
+    sheet.fact("relative_l2", "relative L2 error", Some(errors.relative_l2), |v| format!("{v:.6}"));
+    sheet.fact("maximum", "largest error", Some(errors.maximum), of_peak);
+    sheet.fact("integral", "error of the integral", Some(errors.integral), |v| format!("{v:+.2e}"));
+    sheet.fact("smallest", "smallest value", Some(errors.smallest), of_peak);
+    sheet.fact("kappa", "kappa", Some(errors.kappa), |v| {
+        format!("{v:.4}  (sum |w| / |sum w|: how much the terms cancel)")
+    });
+    sheet.data("lines", lines);
+    sheet.line("spectral lines", (lines > 0).then(|| lines.to_string()));
+    sheet
 }
 
 /// Returns the terms and lines as a spectrum file for scenes, with all digits.
-fn file(report: &Report, mixture: &GaussianMixture, lines: &[Line]) -> String {
-    let [from, to] = report.band_nm;
+fn file(name: &str, kind: Kind, grid: &Grid, fit: &GaussianFit, lines: &[Line]) -> String {
+    let (terms, errors) = (fit.mixture.terms(), fit.report);
     let mut out = format!(
-        "# {} Gaussian terms, fitted on {from}-{to} nm.\n# Relative L2 error {:.6}, largest {:.6} of the peak, integral \
+        "# {} Gaussian terms, fitted on {}-{} nm.\n# Relative L2 error {:.6}, largest {:.6} of the peak, integral \
          {:+.2e}, kappa {:.4}.\nspectra: 1\nname: {}\nof: {}\n",
-        mixture.terms().len(),
-        report.relative_l2,
-        report.maximum,
-        report.integral,
-        report.kappa,
-        quoted(&format!("{}, {} Gaussian terms", report.name, mixture.terms().len())),
-        report.kind
+        terms.len(),
+        grid.start_nm,
+        grid.end_nm(),
+        errors.relative_l2,
+        errors.maximum,
+        errors.integral,
+        errors.kappa,
+        json!(format!("{name}, {} Gaussian terms", terms.len())),
+        kind.word()
     );
-    let term = |indent: &str, t: &spectra_spectrum::GaussianTerm| {
+    let term = |indent: &str, t: &GaussianTerm| {
         format!("{indent}- {{amplitude: {}, center: {}, sigma: {}}}\n", t.peak(), t.center_nm(), t.sigma_nm())
     };
     if lines.is_empty() {
         out.push_str("kind: mixture\nterms:\n");
-        mixture.terms().iter().for_each(|t| out.push_str(&term("  ", t)));
+        terms.iter().for_each(|t| out.push_str(&term("  ", t)));
         return out;
     }
     out.push_str("kind: sum\nparts:\n  - kind: mixture\n    terms:\n");
-    mixture.terms().iter().for_each(|t| out.push_str(&term("      ", t)));
+    terms.iter().for_each(|t| out.push_str(&term("      ", t)));
     out.push_str("  - kind: lines\n    lines:\n");
     for line in lines {
         let _ = writeln!(out, "      - {{wavelength: {}, power: {}}}", line.wavelength_nm, line.power);
     }
     out
-}
-
-/// Returns a text in double quotes, valid in YAML and JSON.
-fn quoted(text: &str) -> String {
-    serde_json::Value::String(text.to_owned()).to_string()
 }
