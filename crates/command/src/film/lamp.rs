@@ -17,8 +17,9 @@ use spectra_film::stock::Stock;
 use spectra_plot::Format;
 use spectra_scene::FileResources;
 use spectra_session::FilmInLight;
+use spectra_sheet::{Column, Sheet, Table};
 use spectra_spectrum::{Emission, Observer, Reflectance, find_emission_in, find_reflectance_in};
-use std::fmt::Write;
+use std::iter::once;
 use std::path::Path;
 
 /// Bundled table of the ColorChecker patches that are compared.
@@ -82,49 +83,53 @@ pub(crate) fn lamp(arguments: &FilmLamp) -> Outcome {
     let eye = |light: &Named<'_>| samples.iter().map(|sample| to_eye(light, sample)).collect::<Result<Vec<_>, _>>();
     let eye_rf = fidelity_of(&eye(&test)?, &eye(&reference)?);
     let (ra, rf) = (color_rendering(&test.light).map(|r| r.ra), fidelity(&test.light).map(|f| f.rf));
-    let mean = |which: usize| rows.iter().map(|r| r.apart[which]).sum::<f64>() / rows.len().max(1) as f64;
+    let mean = [0, 1, 2].map(|which| rows.iter().map(|r| r.apart[which]).sum::<f64>() / rows.len().max(1) as f64);
     let index = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.1}"));
     let indices = format!("CIE Ra {}, TM-30 Rf {}", index(ra), index(rf));
-    let against = format!("fidelity against {}: eye {eye_rf:.1}, film {film_rf:.1}", reference.name);
-    let means = format!("mean CIEDE2000: eye {:.2}, layers {:.2}, film {:.2}", mean(0), mean(1), mean(2));
+    let against = format!("fidelity against {}", reference.name);
+    let fidelities = format!("eye {eye_rf:.1}, film {film_rf:.1}");
+    let means = format!("eye {:.2}, layers {:.2}, film {:.2}", mean[0], mean[1], mean[2]);
     let title = format!("{} against {} on {}", test.name, reference.name, stock.name);
     if let Some(path) = &arguments.output {
         let first = format!("left half: {}, right half: {}. {}: {indices}", reference.name, test.name, test.name);
-        let second = format!("{against}; {means}");
+        let second = format!("{against}: {fidelities}; mean CIEDE2000: {means}");
         figure(&title, [&first, &second], &rows).write(path).map_err(failure)?;
         console::note(&format!("wrote {}", path.display()));
     }
-    let parting = parting(&rows);
-    if arguments.report.json {
-        let patches: Vec<_> = rows
-            .iter()
-            .map(|r| json!({ "name": r.name, "eye": r.apart[0], "layers": r.apart[1], "film": r.apart[2] }))
-            .collect();
-        let parting: Vec<&str> = parting.iter().map(|row| row.name.as_str()).collect();
-        console::pretty_json(&json!({
-            "stock": arguments.stock, "lamp": arguments.lamp, "reference": arguments.reference, "cie_ra": ra, "tm30_rf": rf,
-            "fidelity": { "eye": eye_rf, "film": film_rf },
-            "mean_eye": mean(0), "mean_layers": mean(1), "mean_film": mean(2), "ciede2000": patches, "parting": parting,
-        }))?;
-        return Ok(DONE);
+    let mut sheet = Sheet::new(&title);
+    sheet.data("stock", &arguments.stock);
+    sheet.data("lamp", &arguments.lamp);
+    sheet.data("reference", &arguments.reference);
+    sheet.data("cie_ra", ra);
+    sheet.data("tm30_rf", rf);
+    sheet.line(test.name, Some(indices));
+    sheet.data("fidelity", json!({ "eye": eye_rf, "film": film_rf }));
+    sheet.line(&against, Some(format!("{fidelities} (99 samples, scale of TM-30)")));
+    for (key, mean) in ["mean_eye", "mean_layers", "mean_film"].into_iter().zip(mean) {
+        sheet.data(key, mean);
     }
-    let mut out = format!(
-        "{title}\n\n  {}: {indices}\n  {against} (99 samples, scale of TM-30)\n  {means}\n\n  {:<16}  {:>6}  {:>6}  {:>6}\n",
-        test.name, "CIEDE2000", "eye", "layers", "film"
-    );
-    for row in &rows {
-        // Writing to a String cannot fail.
-        let [eye, layers, film] = row.apart;
-        let _ = writeln!(out, "  {:<16}  {eye:>6.2}  {layers:>6.2}  {film:>6.2}", row.name);
-    }
-    if !parting.is_empty() {
-        let named =
-            |row: &&LampPatch| format!("{} ({:.1} on film, {:.1} to the eye)", row.name, row.apart[2], row.apart[0]);
-        let all: Vec<String> = parting.iter().map(named).collect();
-        let _ = writeln!(out, "\n  colors that differ more on film than to the eye: {}", all.join(", "));
-    }
-    console::out(&out)?;
+    sheet.line("mean CIEDE2000", Some(means));
+    differences(&mut sheet, &rows);
+    console::sheet(&sheet, arguments.report.json)?;
     Ok(DONE)
+}
+
+/// Adds the color difference of each patch, CIEDE2000, and the patches that change more on film than to the eye.
+fn differences(sheet: &mut Sheet, rows: &[LampPatch]) {
+    let kinds = ["eye", "layers", "film"].map(|kind| Column::fixed(kind, kind, 2));
+    let mut table = Table::new("ciede2000", once(Column::text("name", "CIEDE2000")).chain(kinds));
+    for LampPatch { name, apart: [eye, layers, film], .. } in rows {
+        table.push((name, eye, layers, film));
+    }
+    sheet.table(table);
+    let parting = parting(rows);
+    let named =
+        |row: &&LampPatch| format!("{} ({:.1} on film, {:.1} to the eye)", row.name, row.apart[2], row.apart[0]);
+    if !parting.is_empty() {
+        let all: Vec<String> = parting.iter().map(named).collect();
+        sheet.note(&format!("colors that differ more on film than to the eye: {}", all.join(", ")));
+    }
+    sheet.data("parting", parting.iter().map(|row| &row.name).collect::<Vec<_>>());
 }
 
 /// Largest number of patches named in the summary.

@@ -1,7 +1,7 @@
 //! Interaction between the layers of a color film, and aim densities of print stocks.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use spectra_core::params::{Fault, Faults, Params};
 
 /// Base of a print stock, which determines how the print is viewed.
@@ -19,7 +19,7 @@ pub enum Medium {
 ///
 /// Nothing changes if all layers have the densities of a neutral subject, because the sheet's curves already include their interaction. If
 /// the other layers have less dye than for a neutral subject of its exposure, a layer develops more, as if it were exposed more.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interlayer {
     /// Rows: the inhibited layer; columns: the inhibiting layer, both in the order of the stock. Log10 of exposure per unit of dye that
     /// develops in the inhibiting layer.
@@ -31,7 +31,7 @@ pub struct Interlayer {
 }
 
 /// Densities to which the print of a mid gray is timed, including base and fog.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AimDensity {
     /// Density through the red filter.
     pub red: f64,

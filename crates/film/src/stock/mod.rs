@@ -135,7 +135,7 @@ pub struct Development {
 }
 
 /// Exposure factor of a filter.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct FilterFactor {
     /// The filter, as the sheet names it.
     pub filter: String,

@@ -2,7 +2,7 @@
 
 use super::{Development, Process, Stock};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use spectra_core::math::{log10, pow};
 
 /// Exposure of the speed point of a film of ISO 1, lx s (ISO 6:1993).
@@ -78,7 +78,7 @@ impl MeterResponse {
 }
 
 /// Speed that the curves of a negative give with the development of ISO 6.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Iso6 {
     /// Arithmetic speed.
     pub speed: f64,

@@ -1,11 +1,11 @@
 //! Structure of a film besides its sensitive layers: base, backing, granularity and modulation transfer.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use spectra_core::params::{Fault, Faults, Length, Params, Positive};
 
 /// The base on which an emulsion is coated.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Base {
     /// Film formats with this base, as the sheet names them.
     pub formats: String,
@@ -20,7 +20,7 @@ pub struct Base {
 }
 
 /// RMS granularity: 1000 times the standard deviation of density through a round aperture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Granularity {
     /// RMS granularity of the sheet.
     pub rms: f64,
@@ -33,7 +33,7 @@ pub struct Granularity {
 }
 
 /// Anti-halation backing, which absorbs light at the film's back. Makers name the kind and no figure: the figures are assumed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
 pub enum Backing {
@@ -72,13 +72,14 @@ impl Backing {
 }
 
 /// Halation: light that returns from the film's back.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Halation {
     /// Light that enters the base, relative to the light that exposes the layer next to the base, 0 to 1.
     pub scattered: f64,
     /// Transmittance of base and backing for one pass, 0 to 1. Light passes them twice.
     pub backing: f64,
     /// Kind of backing, if the file names it.
+    #[serde(rename = "backing_kind")]
     pub kind: Option<Backing>,
     /// Share of the returning light that the emulsion reflects down again, 0 to 0.95.
     pub reflected: f64,
