@@ -162,13 +162,10 @@ fn patch_colors(
     xyz_of_layers: &[[f64; 3]; 3],
     surfaces: &[&Reflectance],
 ) -> Result<Vec<PatchColors>, Failure> {
-    let white = exposures(stock, &light.light, None);
-    if white.iter().any(|e| !(*e > 0.0 && e.is_finite())) {
-        return Err(light.dark());
-    }
+    let white = white_exposures(stock, light)?;
     let pictures = film.pictures(&light.light, surfaces)?.ok_or_else(|| light.dark())?;
     let one = |(surface, film): (&&Reflectance, [f64; 3])| {
-        let exposed = exposures(stock, &light.light, Some(surface));
+        let exposed = exposures(stock, &(&light.light * *surface));
         let layers = matrix::apply(xyz_of_layers, [0, 1, 2].map(|i| exposed[i] / white[i]));
         Ok(PatchColors { eye: to_eye(light, surface)?, layers, film })
     };
@@ -208,9 +205,14 @@ fn patches(files: &FileResources) -> Result<Vec<(String, Reflectance)>, Failure>
     columns.into_iter().map(one).collect()
 }
 
-/// Returns the exposure of each layer by a surface in a light, or by the light itself if there is no surface.
-fn exposures(stock: &Stock, light: &Emission, surface: Option<&Reflectance>) -> [f64; 3] {
-    let light = surface.map_or_else(|| light.clone(), |surface| light * surface);
+/// Returns the exposure of each layer by a light itself. Fails if a layer does not respond to it.
+fn white_exposures(stock: &Stock, light: &Named<'_>) -> Result<[f64; 3], Failure> {
+    let white = exposures(stock, &light.light);
+    if white.iter().all(|e| *e > 0.0 && e.is_finite()) { Ok(white) } else { Err(light.dark()) }
+}
+
+/// Returns the exposure of each layer by a light.
+fn exposures(stock: &Stock, light: &Emission) -> [f64; 3] {
     let power = light.to_power(&BAND);
     [0, 1, 2].map(|i| {
         let layer = &stock.layers[i].sensitivity;
@@ -229,10 +231,7 @@ fn to_d65(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
 /// kept. It stands for a laboratory's timing and masks, so that only the changes due to the lamp are left. Fails if the layers do not
 /// separate colors.
 fn layers_matrix(stock: &Stock, reference: &Named<'_>, chart: &[&Reflectance]) -> Result<[[f64; 3]; 3], Failure> {
-    let white = exposures(stock, &reference.light, None);
-    if white.iter().any(|e| !(*e > 0.0 && e.is_finite())) {
-        return Err(reference.dark());
-    }
+    let white = white_exposures(stock, reference)?;
     let (mut squares, mut products) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
     let mut add = |from: [f64; 3], to: [f64; 3], weight: f64| {
         for i in 0..3 {
@@ -243,7 +242,7 @@ fn layers_matrix(stock: &Stock, reference: &Named<'_>, chart: &[&Reflectance]) -
         }
     };
     for surface in chart {
-        let exposed = exposures(stock, &reference.light, Some(surface));
+        let exposed = exposures(stock, &(&reference.light * *surface));
         let from = [0, 1, 2].map(|i| exposed[i] / white[i]);
         // Dark patches count as much as light ones.
         let weight = 1.0 / from.iter().sum::<f64>().max(1e-3);
@@ -251,13 +250,7 @@ fn layers_matrix(stock: &Stock, reference: &Named<'_>, chart: &[&Reflectance]) -
     }
     // White has by far the largest weight.
     add([1.0; 3], RgbSpace::srgb().white_xyz(), 1e4);
-    let inverse = matrix::inverse(&squares);
-    let mut out = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            out[i][j] = (0..3).map(|k| products[i][k] * inverse[k][j]).sum();
-        }
-    }
+    let out = matrix::product(&products, &matrix::inverse(&squares));
     if out.iter().flatten().any(|v| !v.is_finite()) {
         return Err(Failure::Input(format!("the layers of `{}` do not separate colors", stock.name)));
     }

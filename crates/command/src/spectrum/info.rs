@@ -248,6 +248,7 @@ fn is_matter(found: &AnySpectrum) -> bool {
     matches!(found, AnySpectrum::Transmittance(_) | AnySpectrum::Reflectance(_))
 }
 
+/// Returns the observer with this name.
 pub(super) fn observer(name: ObserverName) -> &'static Observer {
     match name {
         ObserverName::Cie1931 => Observer::cie_1931_2deg(),
@@ -257,7 +258,8 @@ pub(super) fn observer(name: ObserverName) -> &'static Observer {
     }
 }
 
-fn xyz_of(found: &AnySpectrum, illuminant: &Emission, observer: &Observer) -> Option<[f64; 3]> {
+/// Returns the tristimulus values of a light, or of a filter or surface in the illuminant; `None` for a detector and without visible light.
+pub(super) fn xyz_of(found: &AnySpectrum, illuminant: &Emission, observer: &Observer) -> Option<[f64; 3]> {
     match found {
         AnySpectrum::Emission(light) => xyz_of_light(light, observer),
         AnySpectrum::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),

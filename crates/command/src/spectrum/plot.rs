@@ -1,13 +1,13 @@
 //! `spectra spectrum plot`: plots spectra or their chromaticities.
 
 use super::arguments::{DiagramName, SpectrumPlot};
-use super::info::observer;
+use super::info::{observer, on_grid, xyz_of};
 use super::{files, load_as, load_illuminant, tell_reading};
 use crate::console;
 use crate::formatting::figure_of;
 use crate::outcome::{DONE, Failure, Outcome};
 use spectra_analysis::figure;
-use spectra_color::{chromaticity, xyz_of_light, xyz_of_reflectance, xyz_of_transmittance};
+use spectra_color::chromaticity;
 use spectra_plot::{Format, PlotError};
 use spectra_spectrum::{AnySpectrum, BAND, Emission, Observer, SpectrumError, find_in, function_in};
 
@@ -108,24 +108,16 @@ fn columns(names: &[String], chromaticity: bool) -> Result<Vec<String>, Failure>
 const MOST_CURVES: usize = 28;
 
 fn xy(name: &str, found: &AnySpectrum, illuminant: &Emission, observer: &Observer) -> Result<[f64; 2], Failure> {
-    let xyz = match found {
-        AnySpectrum::Emission(light) => xyz_of_light(light, observer),
-        AnySpectrum::Transmittance(filter) => xyz_of_transmittance(filter, illuminant, observer),
-        AnySpectrum::Reflectance(surface) => xyz_of_reflectance(surface, illuminant, observer),
-        AnySpectrum::Sensitivity(_) => {
-            return Err(Failure::Input(format!("`{name}` is a sensitivity and has no chromaticity")));
-        }
-    };
-    let xy = xyz.and_then(chromaticity);
+    if let AnySpectrum::Sensitivity(_) = found {
+        return Err(Failure::Input(format!("`{name}` is a sensitivity and has no chromaticity")));
+    }
+    let xy = xyz_of(found, illuminant, observer).and_then(chromaticity);
     xy.ok_or_else(|| Failure::Input(format!("`{name}` has no chromaticity, because it has no visible light")))
 }
 
 fn is_dark(found: &AnySpectrum) -> bool {
-    let dark = |values: Vec<f64>| values.iter().all(|v| *v <= 0.0);
     match found {
         AnySpectrum::Emission(light) => light.to_power(&BAND).is_dark(),
-        AnySpectrum::Transmittance(filter) => dark(filter.on_grid(&BAND)),
-        AnySpectrum::Reflectance(surface) => dark(surface.on_grid(&BAND)),
-        AnySpectrum::Sensitivity(detector) => dark(detector.on_grid(&BAND)),
+        matter => on_grid(matter, &BAND).iter().all(|v| *v <= 0.0),
     }
 }
