@@ -11,6 +11,7 @@ mod coated;
 pub mod coating;
 mod cover;
 mod element;
+mod element_reader;
 mod first_order;
 mod focus;
 mod glass_checks;
@@ -32,6 +33,7 @@ mod schema;
 mod separation;
 mod shape_checks;
 pub mod solid;
+mod stated_medium;
 mod surface_file;
 mod symmetry;
 
