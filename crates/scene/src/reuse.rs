@@ -44,7 +44,7 @@ pub(crate) struct ReusableStages<'a> {
     frame: Option<u64>,
     said: BuildMessages,
     /// Whether the sections of lens and imager are unchanged.
-    pub same_view: bool,
+    same_view: bool,
     /// Whether the scene is only checked: noise and grain need not be those of its frame.
     pub is_check: bool,
     /// Effort and workers of a new search for what the frame sees.
@@ -77,6 +77,11 @@ impl<'a> ReusableStages<'a> {
     /// Returns whether one of these lenses may be usable.
     pub(crate) fn may_have_lens(&self) -> bool {
         !self.lenses.is_empty()
+    }
+
+    /// Returns whether the kept source needs no new search for what the frame sees.
+    pub(crate) fn knows_view(&self) -> bool {
+        self.source.is_some() && (self.same_view || self.is_check)
     }
 
     /// Adds the lens of another scene as a candidate, and nothing else of that scene.

@@ -62,16 +62,10 @@ impl Warnings {
         }
     }
 
-    /// Returns the warnings added so far.
+    /// Returns the warnings added so far, in the order in which they were added.
     #[must_use]
     pub fn all(&self) -> Vec<Warning> {
         self.all.borrow().clone()
-    }
-
-    /// Returns all warnings, in the order in which they were added.
-    #[must_use]
-    pub fn into_vec(self) -> Vec<Warning> {
-        self.all.into_inner()
     }
 
     /// Adds a table that may need a warning about its ends.
