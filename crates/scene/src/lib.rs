@@ -31,6 +31,7 @@ mod responses;
 mod reuse;
 mod scene;
 mod scene_builder;
+mod scene_file;
 mod schema;
 mod shot;
 mod warnings;

@@ -2,13 +2,13 @@
 //!
 //! Focus needs all other sections, and a source needs the view of the lens. Faults are reported in the order of the sections all the same.
 
-use crate::assemble::{BandSection, SceneFile};
 use crate::build_messages::BuildMessages;
 use crate::focus::FocusLight;
 use crate::frame_view::UncoveredFrame;
 use crate::lens_section::{ConfiguredLens, UnfocusedLens, configure_lens, size_hint};
 use crate::render_section::RenderSection;
 use crate::reuse::ReusableStages;
+use crate::scene_file::{BandSection, SceneFile};
 use crate::warnings::AssembledScene;
 use crate::{
     Lights, Output, RenderSettings, Scene, SceneFilm, color_cast, films, filters, frame_view, lamps, landing, output,

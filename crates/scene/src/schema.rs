@@ -1,7 +1,7 @@
 //! JSON Schemas of the files that users write, made from the types that read them and from the registered stages.
 
-use crate::assemble::{BandSection, SceneFile};
 use crate::films::FilmKeys;
+use crate::scene_file::{BandSection, SceneFile};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde_json::{Value, json};
 use spectra_core::registry::{self, Documentation};

@@ -1,5 +1,7 @@
 //! Pictures in linear light, and errors and warnings about picture files.
 
+use image::ImageError;
+
 /// Largest side of a picture, pixels.
 pub(super) const MAX_SIDE: u32 = 65_535;
 /// Largest picture, pixels: linear light takes 12 bytes for each.
@@ -73,6 +75,29 @@ impl FileProblem {
 
     pub(super) fn hint(self, hint: impl Into<String>) -> Self {
         Self { hint: Some(hint.into()), ..self }
+    }
+}
+
+/// Reasons why a file of a known kind is not read.
+pub(super) enum NotRead {
+    /// The file is faulty.
+    Trouble(FileProblem),
+    /// A sound variant of the kind that this crate does not support.
+    Unsupported(String),
+}
+
+impl From<FileProblem> for NotRead {
+    fn from(trouble: FileProblem) -> Self {
+        Self::Trouble(trouble)
+    }
+}
+
+impl From<ImageError> for NotRead {
+    fn from(error: ImageError) -> Self {
+        match error {
+            ImageError::Unsupported(why) => Self::Unsupported(why.to_string()),
+            other => Self::Trouble(FileProblem::file(other.to_string())),
+        }
     }
 }
 

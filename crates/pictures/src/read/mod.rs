@@ -5,6 +5,8 @@ mod block_check;
 mod channels;
 mod cmyk;
 mod decode;
+#[cfg(test)]
+mod decode_tests;
 mod encoding;
 mod exif;
 mod exr;
@@ -23,6 +25,7 @@ mod radiance;
 mod space;
 mod tags;
 mod tiff;
+mod to_light;
 
 pub use beginning::header;
 pub use channels::planes;

@@ -8,6 +8,11 @@ pub(super) fn is_on_its_side(orientation: u8) -> bool {
     (5..=8).contains(&orientation)
 }
 
+/// Returns width over height of a pixel as the picture is seen, from that of a stored pixel.
+pub(super) fn seen_aspect(stored: Option<f64>, turned: bool) -> f64 {
+    stored.map_or(1.0, |aspect| if turned { 1.0 / aspect } else { aspect })
+}
+
 /// Returns the stored index of pixel `i` of the upright picture; both are row by row. `width` and `height` are those of the stored picture.
 pub(super) fn stored(i: usize, [width, height]: [usize; 2], orientation: u8) -> usize {
     let columns = if is_on_its_side(orientation) { height } else { width };
