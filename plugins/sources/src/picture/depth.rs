@@ -1,8 +1,8 @@
 //! Depth of a picture: converts the numbers of a file to millimeters along the axis.
 
 use super::edges::Mixed;
+use super::picture_file::{find, trouble};
 use super::planes::{self, Pixels};
-use super::{find, trouble};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::params::{Faults, Length, Params, Positive, Ratio, StageNode, Warning};

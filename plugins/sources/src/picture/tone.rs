@@ -10,7 +10,20 @@
 //! gray, since at a saturation-based speed S a camera saturates at 78/S lx s and meters for 10/S lx s (ISO 12232:2019). The assumed
 //! c = 0.25 makes the file 1.32 times as steep as the scene at gray.
 
+use schemars::JsonSchema;
+use serde::Deserialize;
 use spectra_core::math::{log, pow};
+
+/// `tone` as written in a scene.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Tone {
+    /// The tone curve of a camera.
+    Camera,
+    /// No tone curve: values are proportional to light.
+    #[default]
+    None,
+}
 
 /// Mid gray in the file and in the scene, as a fraction of white.
 pub(super) const MID_GRAY: f64 = 0.18;
