@@ -1,7 +1,7 @@
 //! Reads what is printed below a table: coefficients of aspheres, gaps that vary, and the back focus.
 
 use super::equations::{Equation, equations_of};
-use super::rows::Head;
+use super::head::Head;
 use super::value;
 use super::vocabulary::{figure, gap_number, is_back_focus, is_other, surface_number};
 use crate::number;

@@ -128,96 +128,98 @@ fn rows_of(lines: &[&str]) -> Option<FoundRows> {
             found.end = at;
             break;
         }
-        let plain = unmarked(line);
-        let all = equations_of(line);
-        // The stop is printed between the lenses, with a gap but no radius of its own.
-        let first_cell = line.split('|').next().unwrap_or_default().split("  ").find(|cell| !cell.trim().is_empty());
-        if !all.is_empty()
-            && !all.iter().any(|equation| equation.name == "r")
-            && first_cell.is_some_and(is_stop_phrase)
-            && !found.rows.is_empty()
-        {
-            let mut row = PatentRow { line: at, is_stop: true, ..PatentRow::default() };
-            row.cells.insert("radius", "inf".to_owned());
-            found.rows.push(row);
-        }
-        for equation in &all {
-            let name = match equation.name.as_str() {
-                "r" => "radius",
-                "d" | "t" | "l" | "s" | "b" if !is_back_focus(&equation.written) => "thickness",
-                // Read `a2` as an air gap if the row has none yet, otherwise as a coefficient.
-                "a" if found.rows.last().is_some_and(|row| !row.cells.contains_key("thickness")) => "thickness",
-                "n" | "nd" | "ne" => "nd",
-                "v" | "vd" | "ve" | "nu" | "ny" => "vd",
-                "phi" | "ø" | "φ" => "diameter",
-                _ => continue,
-            };
-            let is_stop_word = is_stop_phrase(&equation.value);
-            // Skip the image plane.
-            if name == "radius" && is_end(equation.words.trim_start_matches('(')) {
-                continue;
-            }
-            if name == "radius" && !is_stop_word && !is_plane(&equation.value) && value(&equation.value).is_none() {
-                // Skip a sentence about radii.
-                continue;
-            }
-            // A gap without a number is accepted if the row has none yet.
-            let is_new_gap = || found.rows.last().is_some_and(|row| !row.cells.contains_key("thickness"));
-            if equation.number.is_none() && !(name == "thickness" && is_new_gap()) {
-                continue;
-            }
-            if name == "radius" {
-                // Put one row on each line of the resulting table.
-                let line = found.rows.last().map_or(at, |last: &PatentRow| at.max(last.line + 1));
-                let is_marked = equation.written.contains('*')
-                    || equation.is_marked
-                    || equation.words.to_lowercase().contains("aspher");
-                let is_stop = is_stop_phrase(&equation.words) || is_stop_word;
-                found.rows.push(PatentRow {
-                    line,
-                    number: equation.number,
-                    is_marked,
-                    is_stop,
-                    ..PatentRow::default()
-                });
-            }
-            found.is_line_e |= matches!(equation.name.as_str(), "ne" | "ve");
-            let Some(row) = found.rows.last_mut() else { continue };
-            let is_plane = name == "radius" && (is_stop_word || is_plane(&equation.value));
-            row.cells.insert(name, if is_plane { "inf".to_owned() } else { equation.value.clone() });
-            if name == "thickness" {
-                row.gap = equation.number.map(|number| (equation.name.clone(), number));
-            }
-            if name == "thickness"
-                && !row.cells.contains_key("nd")
-                && let Some([nd, vd]) = glass_in(&equation.words)
-            {
-                row.cells.insert("nd", nd);
-                row.cells.insert("vd", vd);
-            }
-        }
-        // Read the figures of a glass in columns of their own, before the first equation.
-        let before = plain.split('=').next().unwrap_or_default();
-        if !all.is_empty()
-            && let (Some([nd, vd]), Some(row)) = (glass_in(before), found.rows.last_mut())
-            && !row.cells.contains_key("nd")
-        {
-            row.cells.insert("nd", nd);
-            row.cells.insert("vd", vd);
-        }
-        // Read a word for the stop that is printed alone below a radius.
-        if all.is_empty()
-            && is_stop_phrase(line)
-            && line.split_whitespace().count() <= 2
-            && let Some(row) = found.rows.last_mut()
-        {
-            row.is_stop = true;
-        }
+        read_line(&mut found, at, line);
     }
     cemented(&mut found.rows);
     glasses_apart(lines, &mut found.rows);
     found.head = found.rows.first()?.line.saturating_sub(1);
     (found.rows.len() >= 3).then_some(found)
+}
+
+/// Reads the equations of a line, and the words for the stop and the figures of a glass beside them.
+fn read_line(found: &mut FoundRows, at: usize, line: &str) {
+    let all = equations_of(line);
+    // The stop is printed between the lenses, with a gap but no radius of its own.
+    let first_cell = line.split('|').next().unwrap_or_default().split("  ").find(|cell| !cell.trim().is_empty());
+    if !all.is_empty()
+        && !all.iter().any(|equation| equation.name == "r")
+        && first_cell.is_some_and(is_stop_phrase)
+        && !found.rows.is_empty()
+    {
+        let mut row = PatentRow { line: at, is_stop: true, ..PatentRow::default() };
+        row.cells.insert("radius", "inf".to_owned());
+        found.rows.push(row);
+    }
+    for equation in &all {
+        add_equation(found, at, equation);
+    }
+    let Some(row) = found.rows.last_mut() else { return };
+    if !all.is_empty() {
+        // Read the figures of a glass in columns of their own, before the first equation.
+        add_glass(row, unmarked(line).split('=').next().unwrap_or_default());
+    } else if is_stop_phrase(line) && line.split_whitespace().count() <= 2 {
+        // Read a word for the stop that is printed alone below a radius.
+        row.is_stop = true;
+    }
+}
+
+/// Adds the value of an equation to its row. A radius begins a new row.
+fn add_equation(found: &mut FoundRows, at: usize, equation: &Equation) {
+    let Some(name) = column_of(equation, found.rows.last()) else { return };
+    let is_stop_word = is_stop_phrase(&equation.value);
+    if name == "radius" {
+        found.rows.push(PatentRow {
+            // Put one row on each line of the resulting table.
+            line: found.rows.last().map_or(at, |last| at.max(last.line + 1)),
+            number: equation.number,
+            is_marked: equation.written.contains('*')
+                || equation.is_marked
+                || equation.words.to_lowercase().contains("aspher"),
+            is_stop: is_stop_phrase(&equation.words) || is_stop_word,
+            ..PatentRow::default()
+        });
+    }
+    found.is_line_e |= matches!(equation.name.as_str(), "ne" | "ve");
+    let Some(row) = found.rows.last_mut() else { return };
+    let is_plane = name == "radius" && (is_stop_word || is_plane(&equation.value));
+    row.cells.insert(name, if is_plane { "inf".to_owned() } else { equation.value.clone() });
+    if name == "thickness" {
+        row.gap = equation.number.map(|number| (equation.name.clone(), number));
+        add_glass(row, &equation.words);
+    }
+}
+
+/// Returns the column of an equation behind the row `last`; `None` if it is not part of the table.
+fn column_of(equation: &Equation, last: Option<&PatentRow>) -> Option<&'static str> {
+    let is_new_gap = last.is_some_and(|row| !row.cells.contains_key("thickness"));
+    let name = match equation.name.as_str() {
+        "r" => "radius",
+        "d" | "t" | "l" | "s" | "b" if !is_back_focus(&equation.written) => "thickness",
+        // Read `a2` as an air gap if the row has none yet, otherwise as a coefficient.
+        "a" if is_new_gap => "thickness",
+        "n" | "nd" | "ne" => "nd",
+        "v" | "vd" | "ve" | "nu" | "ny" => "vd",
+        "phi" | "ø" | "φ" => "diameter",
+        _ => return None,
+    };
+    let is_image = is_end(equation.words.trim_start_matches('('));
+    let is_radius = is_stop_phrase(&equation.value) || is_plane(&equation.value) || value(&equation.value).is_some();
+    // Skip the image plane, and a sentence about radii.
+    if name == "radius" && (is_image || !is_radius) {
+        return None;
+    }
+    // A gap without a number is accepted if the row has none yet.
+    (equation.number.is_some() || name == "thickness" && is_new_gap).then_some(name)
+}
+
+/// Adds the figures of a glass in a text without equations, if the row has none yet.
+fn add_glass(row: &mut PatentRow, words: &str) {
+    if !row.cells.contains_key("nd")
+        && let Some([nd, vd]) = glass_in(words)
+    {
+        row.cells.insert("nd", nd);
+        row.cells.insert("vd", vd);
+    }
 }
 
 /// Reads indices and Abbe numbers printed on lines of their own, one for each lens: `nD 1.623 1.670` and `v 56.9 47.2`. Lens k fills the

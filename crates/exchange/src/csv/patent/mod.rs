@@ -6,7 +6,9 @@
 //! row stays on the line on which it was printed, so that error messages name the right line.
 
 mod auxiliary_data;
+mod blank_cells;
 mod equations;
+mod head;
 mod lists;
 mod rows;
 mod vocabulary;
@@ -16,7 +18,7 @@ use super::columns::Column;
 use crate::number;
 use crate::source::shortened;
 use auxiliary_data::AuxiliaryData;
-use rows::Head;
+use head::Head;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 pub(super) use vocabulary::{figure, is_stop_phrase, is_variable, plain};
