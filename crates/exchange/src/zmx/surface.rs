@@ -9,6 +9,40 @@ use crate::source::{Source, shortened};
 use spectra_core::params::Faults;
 use std::collections::BTreeMap;
 
+/// Numbers of a record. A word that is not a number is a fault if its number is needed; otherwise it is noted.
+struct Numbers<'a> {
+    record: &'a Record<'a>,
+    /// Keyword of the record in upper case.
+    keyword: &'a str,
+    source: &'a Source,
+    faults: &'a mut Faults,
+    unread: Vec<String>,
+}
+
+impl Numbers<'_> {
+    fn get(&mut self, at: usize, is_needed: bool) -> Option<f64> {
+        let word = self.record.word(at)?;
+        let value = number::parse(word);
+        if value.is_none() {
+            let text = format!("{}: `{}` is not a number", self.keyword, shortened(word));
+            if is_needed {
+                self.faults.push(self.source.fault(word, text));
+            } else {
+                self.unread.push(text);
+            }
+        }
+        value
+    }
+
+    fn needed(&mut self, at: usize) -> Option<f64> {
+        self.get(at, true)
+    }
+
+    fn optional(&mut self, at: usize) -> Option<f64> {
+        self.get(at, false)
+    }
+}
+
 /// A glass record of a file.
 #[derive(Clone, Debug)]
 pub(super) struct GlassRecord {
@@ -27,19 +61,19 @@ pub(super) struct GlassRecord {
 
 impl GlassRecord {
     /// Reads `GLAS name kind pickup nd Vd dPgF`; flags that follow, for variation, are ignored.
-    fn read(record: &Record<'_>, number: &mut dyn FnMut(usize, bool) -> Option<f64>) -> Option<Self> {
-        let name = record.word(0)?;
+    fn read(numbers: &mut Numbers<'_>) -> Option<Self> {
+        let name = numbers.record.word(0)?;
         let is_model = name.starts_with("___") || name.is_empty();
-        let kind = number(1, false);
+        let kind = numbers.optional(1);
         // Figures next to a name are those of a catalog at the time of writing.
         let needed = is_model && kind != Some(2.0);
         Some(Self {
             name: shortened(name),
             is_model,
-            pickup: number(2, kind == Some(2.0)).filter(|_| kind == Some(2.0)).map(|n| n as usize),
-            nd: number(3, needed).unwrap_or(1.5),
-            vd: number(4, needed).unwrap_or(40.0),
-            deviation: number(5, false).filter(|_| is_model && kind != Some(2.0)).unwrap_or(0.0),
+            pickup: numbers.get(2, kind == Some(2.0)).filter(|_| kind == Some(2.0)).map(|n| n as usize),
+            nd: numbers.get(3, needed).unwrap_or(1.5),
+            vd: numbers.get(4, needed).unwrap_or(40.0),
+            deviation: numbers.optional(5).filter(|_| is_model && kind != Some(2.0)).unwrap_or(0.0),
         })
     }
 
@@ -144,94 +178,82 @@ impl Block {
         };
         for record in records.iter().skip(1) {
             let keyword = record.keyword.to_ascii_uppercase();
-            // A required value that is not a number is a fault; any other is noted.
-            let mut unread: Vec<String> = Vec::new();
-            let mut number_of = |at: usize, is_needed: bool| {
-                let word = record.word(at)?;
-                let value = number::parse(word);
-                if value.is_none() {
-                    let text = format!("{keyword}: `{}` is not a number", shortened(word));
-                    if is_needed {
-                        faults.push(source.fault(word, text));
-                    } else {
-                        unread.push(text);
-                    }
-                }
-                value
-            };
-            if keyword == "GLAS" {
-                block.glass = GlassRecord::read(record, &mut number_of);
-            }
-            let is_needed = ["CURV", "DISZ"].contains(&&*keyword);
-            let mut number = |at: usize| number_of(at, is_needed);
-            match keyword.as_str() {
-                "TYPE" => block.kind = record.word(0).unwrap_or("STANDARD").to_ascii_uppercase(),
-                "CURV" => {
-                    let curvature = number(0).unwrap_or(0.0);
-                    block.curvature_radius_mm = number::radius_mm(curvature, unit_mm);
-                }
-                "DISZ" => block.thickness_mm = number(0).map(|t| t * unit_mm),
-                "CONI" => {
-                    let conic = number(0).unwrap_or(0.0);
-                    if conic.is_finite() {
-                        block.conic = conic;
-                    } else {
-                        lens.leave_out(record.line, true, "CONI: an infinite conic constant");
-                    }
-                }
-                "GLAS" => {}
-                "PARM" | "XDAT" => {
-                    let map = if keyword == "PARM" { &mut block.parameters } else { &mut block.extra };
-                    if let (Some(at), Some(value)) = (number(0), number(1)) {
-                        if (0.0..=LARGEST_NUMBER).contains(&at) && value.is_finite() {
-                            map.insert(at as u32, value);
-                        } else if value != 0.0 {
-                            let what = if at > LARGEST_NUMBER { "more data than is read" } else { "no such number" };
-                            lens.leave_out(record.line, true, format!("{keyword} {at} {value}: {what}"));
-                        }
-                    }
-                }
-                "STOP" => block.stop = true,
-                "DIAM" => {
-                    block.aperture.semi_diameter_mm = number(0).map(|d| d * unit_mm).filter(|d| d.is_finite());
-                    block.aperture.typed = record.number(1) == Some(1.0);
-                }
-                "MEMA" => block.aperture.mechanical_mm = number(0).map(|d| d * unit_mm).filter(|d| d.is_finite()),
-                "CLAP" | "FLAP" | "OBSC" | "SQAP" | "SQOB" | "ELAP" | "ELOB" => {
-                    let sizes = [number(0).unwrap_or(0.0) * unit_mm, number(1).unwrap_or(0.0) * unit_mm];
-                    block.clip(&keyword, sizes, record.line, lens);
-                }
-                "USAP" | "USOB" | "SPID" | "UDAP" | "UDAD" | "UDOB" => {
-                    block.aperture.foreign = true;
-                    let text =
-                        format!("{keyword} {}: an aperture from a file or a spider does not clip here", record.rest);
-                    lens.leave_out(record.line, true, shortened(&text));
-                }
-                "OBDC" => {
-                    block.aperture.center_mm = [0, 1].map(|at| number(at).unwrap_or(0.0) * unit_mm);
-                }
-                "COMM" => block.comment = shortened(record.rest),
-                // Coatings are noted once for the whole lens.
-                "COAT" => {}
-                "SCBD" => block.own_tilt(record, unit_mm, lens),
-                "IGNR" => {
-                    if number(0).is_some_and(|flag| flag != 0.0) {
-                        lens.leave_out(record.line, true, "a surface that the program ignores is carried here");
-                    }
-                }
-                // Skip solves: their values are in the records that they solve.
-                "PPAR" | "PZUP" | "MAZH" | "CHZH" => {}
-                _ if keywords::is_harmless_on_surface(&keyword) => {}
-                _ => {
-                    let entry = unknown.entry(shortened(&keyword)).or_insert((record.line, 0));
-                    entry.1 += 1;
-                }
-            }
-            for text in unread {
+            let mut numbers = Numbers { record, keyword: &keyword, source, faults, unread: Vec::new() };
+            let is_known = block.read_record(&mut numbers, lens);
+            for text in numbers.unread {
                 lens.leave_out(record.line, true, text);
+            }
+            if !is_known {
+                unknown.entry(shortened(&keyword)).or_insert((record.line, 0)).1 += 1;
             }
         }
         block
+    }
+
+    /// Reads a record of the surface, and returns whether its keyword is known.
+    fn read_record(&mut self, numbers: &mut Numbers<'_>, lens: &mut Prescription) -> bool {
+        let (unit_mm, record, keyword) = (self.unit_mm, numbers.record, numbers.keyword);
+        match keyword {
+            "TYPE" => self.kind = record.word(0).unwrap_or("STANDARD").to_ascii_uppercase(),
+            "CURV" => {
+                let curvature = numbers.needed(0).unwrap_or(0.0);
+                self.curvature_radius_mm = number::radius_mm(curvature, unit_mm);
+            }
+            "DISZ" => self.thickness_mm = numbers.needed(0).map(|t| t * unit_mm),
+            "CONI" => {
+                let conic = numbers.optional(0).unwrap_or(0.0);
+                if conic.is_finite() {
+                    self.conic = conic;
+                } else {
+                    lens.leave_out(record.line, true, "CONI: an infinite conic constant");
+                }
+            }
+            "GLAS" => self.glass = GlassRecord::read(numbers),
+            "PARM" | "XDAT" => {
+                let map = if keyword == "PARM" { &mut self.parameters } else { &mut self.extra };
+                if let (Some(at), Some(value)) = (numbers.optional(0), numbers.optional(1)) {
+                    if (0.0..=LARGEST_NUMBER).contains(&at) && value.is_finite() {
+                        map.insert(at as u32, value);
+                    } else if value != 0.0 {
+                        let what = if at > LARGEST_NUMBER { "more data than is read" } else { "no such number" };
+                        lens.leave_out(record.line, true, format!("{keyword} {at} {value}: {what}"));
+                    }
+                }
+            }
+            "STOP" => self.stop = true,
+            "DIAM" => {
+                self.aperture.semi_diameter_mm = numbers.optional(0).map(|d| d * unit_mm).filter(|d| d.is_finite());
+                self.aperture.typed = record.number(1) == Some(1.0);
+            }
+            "MEMA" => self.aperture.mechanical_mm = numbers.optional(0).map(|d| d * unit_mm).filter(|d| d.is_finite()),
+            "CLAP" | "FLAP" | "OBSC" | "SQAP" | "SQOB" | "ELAP" | "ELOB" => {
+                let sizes =
+                    [numbers.optional(0).unwrap_or(0.0) * unit_mm, numbers.optional(1).unwrap_or(0.0) * unit_mm];
+                self.clip(keyword, sizes, record.line, lens);
+            }
+            "USAP" | "USOB" | "SPID" | "UDAP" | "UDAD" | "UDOB" => {
+                self.aperture.foreign = true;
+                let text = format!("{keyword} {}: an aperture from a file or a spider does not clip here", record.rest);
+                lens.leave_out(record.line, true, shortened(&text));
+            }
+            "OBDC" => {
+                self.aperture.center_mm = [0, 1].map(|at| numbers.optional(at).unwrap_or(0.0) * unit_mm);
+            }
+            "COMM" => self.comment = shortened(record.rest),
+            // Coatings are noted once for the whole lens.
+            "COAT" => {}
+            "SCBD" => self.own_tilt(record, lens),
+            "IGNR" => {
+                if numbers.optional(0).is_some_and(|flag| flag != 0.0) {
+                    lens.leave_out(record.line, true, "a surface that the program ignores is carried here");
+                }
+            }
+            // Skip solves: their values are in the records that they solve.
+            "PPAR" | "PZUP" | "MAZH" | "CHZH" => {}
+            _ if keywords::is_harmless_on_surface(keyword) => {}
+            _ => return false,
+        }
+        true
     }
 
     fn clip(&mut self, keyword: &str, [a, b]: [f64; 2], line: usize, lens: &mut Prescription) {
@@ -259,11 +281,11 @@ impl Block {
     }
 
     /// Reads `SCBD side order pickup x y tilt-x tilt-y tilt-z`, where side 1 is before and 2 behind the surface.
-    fn own_tilt(&mut self, record: &Record<'_>, unit_mm: f64, lens: &mut Prescription) {
+    fn own_tilt(&mut self, record: &Record<'_>, lens: &mut Prescription) {
         // A word among the numbers makes the whole tilt unreadable.
         let value = |at| record.word(at).map_or(0.0, |word| number::parse(word).unwrap_or(f64::NAN));
         let by = Displacement {
-            decenter_mm: [value(3) * unit_mm, value(4) * unit_mm],
+            decenter_mm: [value(3) * self.unit_mm, value(4) * self.unit_mm],
             tilt_deg: [value(5), value(6), value(7)],
         };
         let finite = by.decenter_mm.iter().chain(&by.tilt_deg).all(|v| v.is_finite());
