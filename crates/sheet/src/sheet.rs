@@ -194,7 +194,7 @@ mod tests {
         let mut sheet = Sheet::new("rows");
         let mut table = Table::new("years", [Column::text("years", "listed")]);
         table.push(["1923-1967"]);
-        sheet.show_table(table);
+        sheet.show(table);
         assert_eq!(sheet.to_text(), "rows\n\n  listed\n  1923-1967\n");
         assert_eq!(sheet.to_json(), serde_json::json!({}));
     }

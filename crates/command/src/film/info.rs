@@ -240,7 +240,7 @@ fn developments(sheet: &mut Sheet, stock: &Stock, layer: &Layer) -> Vec<Value> {
             "log10_lx_s_and_density": points(&d.curve, 0.1),
         }));
     }
-    sheet.lines(table);
+    sheet.show(table);
     data
 }
 
@@ -257,7 +257,7 @@ fn sensitivities(sheet: &mut Sheet, stock: &Stock) {
             table.push(once(Some(nm)).chain(values).collect::<Vec<_>>());
         }
     }
-    sheet.lines(table);
+    sheet.show(table);
 }
 
 /// Returns the speed as text, with its kind and what the kind means.

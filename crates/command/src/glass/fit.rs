@@ -245,7 +245,7 @@ fn sheet(material: &NamedSamples, fits: &[FittedFormula], with_rows: bool) -> Sh
         }
     }
     if with_rows {
-        sheet.show_table(rows(&material.samples, fits));
+        sheet.show(rows(&material.samples, fits));
     }
     sheet
 }

@@ -186,7 +186,7 @@ fn by_line(sheet: &mut Sheet, medium: &Medium, known: &dyn Fn(f64) -> Option<f64
         table.push(row);
         indices.insert(line.name, n);
     }
-    sheet.show_table(table);
+    sheet.show(table);
     sheet.data("n", indices);
     sheet.data("internal_transmittance_10mm", taus);
 }

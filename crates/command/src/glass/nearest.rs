@@ -125,7 +125,7 @@ fn sheet(wanted: &MatchTarget, lines: LineTriple, matches: &[Match]) -> Sheet {
             "distance": distance, "status": status, "years": glass.years,
         }));
     }
-    sheet.show_table(table);
+    sheet.show(table);
     sheet.data("matches", data);
     sheet
 }

@@ -55,7 +55,7 @@ fn sheet([first, second]: &[String; 2], difference: &Difference, width: u32) -> 
         })
     });
     sheet.data("delta_e_2000", delta_e);
-    sheet.show_table(channels(&difference.channels));
+    sheet.show(channels(&difference.channels));
     sheet.data("channels", &difference.channels);
     sheet
 }

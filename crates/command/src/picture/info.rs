@@ -24,7 +24,7 @@ fn sheet(file: &str, picture: &Measured) -> Sheet {
     sheet.data("format", planes.format);
     sheet.data("width_px", planes.width);
     sheet.data("height_px", planes.height);
-    sheet.show_table(channels(&summary.channels));
+    sheet.show(channels(&summary.channels));
     sheet.data("channels", &summary.channels);
     sheet.fact("film_size_mm", "film size", picture.size_mm, |[w, h]| format!("{w} x {h} mm"));
     let aspect = planes.pixel_aspect;

@@ -107,7 +107,7 @@ fn sheet(name: &str, kind: Kind, grid: &Grid, fit: &GaussianFit, lines: usize) -
         ]);
         data.push(json!({ "amplitude": amplitude, "center_nm": center, "sigma_nm": sigma, "integral": integral }));
     }
-    sheet.lines(table);
+    sheet.show(table);
     sheet.data("terms", data);
     let errors = fit.report;
     let of_peak = |v: &f64| format!("{v:.6} of the peak");
