@@ -45,9 +45,10 @@ fn complete(name: &str, doc: &Documentation, faults: &mut Vec<String>) {
     must(!doc.examples.is_empty(), "there is an example");
     for p in &doc.parameters {
         must(p.description.len() >= 4, &format!("`{}` is described", p.key));
-        must(p.kind != "anything" && !p.kind.is_empty(), &format!("`{}` has a type", p.key));
-        let quantity = WITH_UNIT.iter().any(|q| p.kind.split([' ', ',']).any(|word| word == *q) && p.kind != "text");
-        must(!quantity || !p.unit.is_empty(), &format!("`{}`, a {}, has a unit", p.key, p.kind));
+        let form = p.form.to_string();
+        must(form != "anything" && !form.is_empty(), &format!("`{}` has a type", p.key));
+        let quantity = WITH_UNIT.iter().any(|q| form.split([' ', ',']).any(|word| word == *q) && form != "text");
+        must(!quantity || !p.unit.is_empty(), &format!("`{}`, a {form}, has a unit", p.key));
     }
 }
 

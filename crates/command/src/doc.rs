@@ -6,7 +6,7 @@ use crate::outcome::{DONE, Failure, Outcome};
 use serde_json::{Value, json};
 use spectra_core::names::{self, Match};
 use spectra_core::params::Fault;
-use spectra_core::registry::{self, Documentation, Listed, Parameter};
+use spectra_core::registry::{self, Documentation, Listed, Parameter, ValueForm};
 use spectra_scene::bundled::{self, Bundled};
 use spectra_scene::{FileKind, file_documentation, shared_documentation};
 use std::fmt::Write;
@@ -436,13 +436,11 @@ fn parameters(out: &mut String, all: &[Parameter]) {
         told.push(at);
         skip = if before.is_some() { own.len() } else { 0 };
         let reference = before.map(|other| format!(" Its keys are the same as those of `{}` above.", all[other].key));
-        let mut words = vec![p.kind.clone()];
+        let mut words = vec![p.form.to_string()];
         if !p.unit.is_empty() && p.unit != "f/" && !p.description.contains("if bare") {
             words.push(format!("in {} if bare", p.unit));
         }
-        if !p.range.is_empty() {
-            words.push(p.range.clone());
-        }
+        words.extend([p.range.to_string()].into_iter().filter(|range| !range.is_empty()));
         match (&p.default, forms.iter().all(|form| form.required)) {
             (_, true) => words.push("required".to_owned()),
             (Some(default), _) => words.push(format!("default {}", plain(default))),
@@ -451,9 +449,12 @@ fn parameters(out: &mut String, all: &[Parameter]) {
         wrapped(out, &format!("{}: {}", p.key, words.join(", ")), 2, 10);
         let mut said = p.description.clone();
         // The usual example of a quantity shows how to write its unit. For a parameter whose unit is stated it would only mislead.
-        if let (Some(example), false) =
-            (p.examples.first(), matches!(p.kind.as_str(), "number" | "ratio") || said.contains("if bare"))
-        {
+        let is_plain_number = match &p.form {
+            ValueForm::Number => true,
+            ValueForm::Quantity { noun, or_infinity } => noun == "ratio" && !or_infinity,
+            _ => false,
+        };
+        if let (Some(example), false) = (p.examples.first(), is_plain_number || said.contains("if bare")) {
             let _ = write!(said, " Example: {}.", plain(example));
         }
         for form in &forms[1..] {

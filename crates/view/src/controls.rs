@@ -5,8 +5,9 @@
 
 use serde_json::{Value, json};
 use spectra_core::params::{Node, Value as Written};
-use spectra_core::registry::{self, Listed, Parameter};
+use spectra_core::registry::{self, Listed, Parameter, Stage, ValueForm};
 use spectra_film::stock::{Process, Stock};
+use spectra_lens::Coating;
 use spectra_scene::bundled::Bundled;
 use spectra_scene::{FileKind, FileResources, NO_LENS, Series, SeriesKind, file_documentation, shared_documentation};
 use spectra_session::Session;
@@ -99,6 +100,8 @@ struct Declared {
     shared: Vec<(&'static str, Vec<Parameter>)>,
     /// Parameters of the sections `lens` and `render`, which hold no stage.
     of_file: Vec<Parameter>,
+    /// Names of the coatings that have no required parameters, so that a name alone stands for them.
+    coatings: Vec<String>,
 }
 
 static DECLARED: LazyLock<Declared> = LazyLock::new(|| {
@@ -107,7 +110,12 @@ static DECLARED: LazyLock<Declared> = LazyLock::new(|| {
     let of_stage = |stage| shared_documentation(stage).map(|found| (stage, found.parameters));
     let mut of_file = file_documentation(FileKind::Scene).parameters;
     of_file.retain(|parameter| parameter.key.starts_with("lens.") || parameter.key.starts_with("render."));
+    let has_no_required =
+        |listed: &Listed| listed.documentation().parameters.iter().all(|parameter| !parameter.required);
+    let coatings =
+        registry::list().into_iter().filter(|listed| listed.stage == Coating::NAME && has_no_required(listed));
     Declared {
+        coatings: coatings.map(|listed| listed.name.to_owned()).collect(),
         stages: stages.map(|listed| (listed, listed.documentation().parameters)).collect(),
         shared: SECTIONS.iter().filter_map(|(_, stage)| of_stage(*stage)).collect(),
         of_file,
@@ -151,7 +159,7 @@ pub(crate) fn gather() {
 #[must_use]
 pub fn of_scene(root: &Node) -> Vec<Control> {
     let mut all = Vec::new();
-    let Declared { stages, shared, of_file } = &*DECLARED;
+    let Declared { stages, shared, of_file, .. } = &*DECLARED;
     let mut section = |prefix: &str, stage: &str| {
         let Some(node) = root.at_path(prefix).filter(|node| matches!(node.value, Written::Map(_))) else { return };
         let of_stage = || stages.iter().filter(|(listed, _)| listed.stage == stage);
@@ -303,9 +311,7 @@ fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
         return None;
     }
     let node = root.at_path(path).filter(|node| !matches!(node.value, Written::Null));
-    let words = || parameter.kind.split(" | ").map(str::to_owned).collect::<Vec<_>>();
-    let first = parameter.kind.split(',').next().unwrap_or_default();
-    let (least, most) = range(&parameter.range);
+    let [least, most] = parameter.range.limits();
     let written = node.and_then(number);
     let unit = match (&written, parameter.unit.as_str()) {
         (Some((_, _, unit)), _) => unit.clone(),
@@ -321,20 +327,19 @@ fn control(root: &Node, path: &str, parameter: &Parameter) -> Option<Control> {
             names.insert(0, NO_LENS.to_owned());
         }
         Kind::Choice(names)
-    } else if parameter.kind == "true or false" {
-        Kind::Switch
-    } else if parameter.kind.contains(" | ") {
-        Kind::Choice(words())
-    } else if let Some(of) = parameter.kind.strip_prefix("list of 2 of ") {
-        if of.contains("number") && parameter.unit.is_empty() {
-            return None;
-        }
-        Kind::Pair { unit: parameter.unit.clone(), least, most }
-    } else if first == "text" || first.contains("list") || first.contains("map") || first.contains("see `") {
-        return None;
     } else {
-        let before = if parameter.unit == "f/" { "f/" } else { "" };
-        Kind::Number { before, unit, least, most, whole: first == "whole number" }
+        match parameter.form.usual() {
+            ValueForm::Boolean => Kind::Switch,
+            ValueForm::Choice(words) => Kind::Choice(words.clone()),
+            ValueForm::List { count: Some(2), of } if matches!(**of, ValueForm::Quantity { .. }) => {
+                Kind::Pair { unit: parameter.unit.clone(), least, most }
+            }
+            form @ (ValueForm::Integer | ValueForm::Number | ValueForm::Quantity { .. }) => {
+                let before = if parameter.unit == "f/" { "f/" } else { "" };
+                Kind::Number { before, unit, least, most, whole: *form == ValueForm::Integer }
+            }
+            _ => return None,
+        }
     };
     let value = match (&kind, node) {
         (Kind::Number { .. }, _) => written.map(|(_, value, _)| json!(value)),
@@ -382,7 +387,7 @@ fn names(path: &str) -> Option<Vec<String>> {
     Some(match (path, key) {
         // Names in folders are parts for tests; a word from a page never holds a `/`.
         ("lens.file", _) => Bundled::Lens.names().into_iter().filter(|name| !name.contains('/')).collect(),
-        ("lens.coating", _) => ["ideal", "bare", "single-layer", "three-layer"].map(str::to_owned).into(),
+        ("lens.coating", _) => DECLARED.coatings.clone(),
         ("film.stock", _) => STOCKS[0].clone(),
         ("film.print", _) => STOCKS[1].clone(),
         ("film.halation" | "film.optics", _) => vec!["off".to_owned()],
@@ -392,23 +397,6 @@ fn names(path: &str) -> Option<Vec<String>> {
         }
         _ => return None,
     })
-}
-
-/// Parses the least and largest value from a range in words, as `spectra doc` prints it.
-fn range(words: &str) -> (Option<f64>, Option<f64>) {
-    let words = words.trim_start_matches("each ");
-    if let Some((least, most)) = words.split_once(" to ") {
-        return (least.parse().ok(), most.parse().ok());
-    }
-    let (mut least, mut most) = (None, None);
-    for part in words.split(", ") {
-        if let Some(number) = part.strip_prefix(">= ").or_else(|| part.strip_prefix("> ")) {
-            least = number.parse().ok();
-        } else if let Some(number) = part.strip_prefix("<= ").or_else(|| part.strip_prefix("< ")) {
-            most = number.parse().ok();
-        }
-    }
-    (least, most)
 }
 
 /// Describes a range in words, for a message.
@@ -585,6 +573,15 @@ mod tests {
             }
             assert!(control.text(&json!({"a": 1})).is_err() && control.text(&json!("/etc/passwd")).is_err());
         }
+    }
+
+    spectra_core::register!(spectra_lens::CoatingEntry, "of-a-plugin": (), |_, _| Ok(Box::new(Coating::Bare)));
+
+    #[test]
+    fn coatings_whose_name_alone_stands_for_them_can_be_chosen() {
+        let coating = of(&controls(SCENE), "lens.coating");
+        let registered = ["bare", "ideal", "of-a-plugin", "single-layer", "three-layer"];
+        assert_eq!(coating.kind, Kind::Choice(registered.map(str::to_owned).into()));
     }
 
     #[test]

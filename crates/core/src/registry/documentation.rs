@@ -1,6 +1,6 @@
 //! The documentation of a stage, taken from the schema of its parameters.
 
-use super::SchemaOf;
+use super::{SchemaOf, ValueForm, ValueRange};
 use schemars::SchemaGenerator;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -25,13 +25,13 @@ pub struct Documentation {
 pub struct Parameter {
     /// Key of the parameter; `.` goes into a map, `[]` into a list.
     pub key: String,
-    /// Form of the value, in words.
+    /// Form of the value.
     #[serde(rename = "type")]
-    pub kind: String,
+    pub form: ValueForm,
     /// Unit of a bare number; empty if it has none.
     pub unit: String,
-    /// Allowed values, in words; empty if the type allows all.
-    pub range: String,
+    /// Allowed values.
+    pub range: ValueRange,
     /// Default value; `None` if the parameter must be given, or if leaving it out has a meaning of its own.
     pub default: Option<Value>,
     /// Whether the parameter must be given.
@@ -137,9 +137,9 @@ fn parameters(
         let said = property.get("description").or_else(|| inner.get("description"));
         found.push(Parameter {
             key: path.clone(),
-            kind: kind(property, definitions),
+            form: ValueForm::of(property, definitions),
             unit: unit(inner, definitions).to_owned(),
-            range: range(inner),
+            range: ValueRange::of(inner),
             default: property.get("default").or_else(|| inner.get("default")).filter(|d| !d.is_null()).cloned(),
             required: required(key),
             description: said.and_then(Value::as_str).unwrap_or_default().replace('\n', " "),
@@ -215,11 +215,11 @@ fn kinds(schema: &Value) -> Vec<(&str, &Value)> {
     .collect()
 }
 
-fn alternatives(schema: &Value) -> impl Iterator<Item = &Value> {
+pub(super) fn alternatives(schema: &Value) -> impl Iterator<Item = &Value> {
     ["anyOf", "oneOf"].into_iter().filter_map(|key| schema.get(key)?.as_array()).flatten()
 }
 
-fn is(schema: &Value, name: &str) -> bool {
+pub(super) fn is(schema: &Value, name: &str) -> bool {
     match schema.get("type") {
         Some(Value::String(one)) => one == name,
         Some(Value::Array(several)) => several.iter().any(|s| s.as_str() == Some(name)),
@@ -228,7 +228,7 @@ fn is(schema: &Value, name: &str) -> bool {
 }
 
 /// Follows references. If a schema allows something or null, it follows the something.
-fn resolved<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a Value {
+pub(super) fn resolved<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a Value {
     let mut at = schema;
     for _ in 0..8 {
         if let Some(name) = at.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
@@ -247,108 +247,8 @@ fn resolved<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a V
     at
 }
 
-fn is_null(schema: &Value) -> bool {
+pub(super) fn is_null(schema: &Value) -> bool {
     schema.get("type").and_then(Value::as_str) == Some("null")
-}
-
-/// Describes the form of a value in words.
-fn kind(schema: &Value, definitions: &Map<String, Value>) -> String {
-    let schema = resolved(schema, definitions);
-    if let Some(words) = schema.get("x-words").and_then(Value::as_str) {
-        return match schema.get("x-see").and_then(Value::as_str) {
-            Some(page) => format!("{words} (see `spectra doc {page}`)"),
-            None => words.to_owned(),
-        };
-    }
-    if let Some(stage) = schema.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
-        return format!("{stage} (see `spectra doc {stage}`)");
-    }
-    if let Some(quantity) = schema.get("x-quantity").and_then(Value::as_str) {
-        let infinity = if schema.get("x-infinity").is_some() { " or inf" } else { "" };
-        return format!("{quantity}{infinity}");
-    }
-    if let Some(all) = schema.get("enum").and_then(Value::as_array) {
-        return words(all.iter().filter_map(Value::as_str));
-    }
-    let several: Vec<&Value> = alternatives(schema).filter(|a| !is_null(a)).collect();
-    if !several.is_empty() {
-        let names: Option<Vec<&str>> = several.iter().map(|a| a.get("const").and_then(Value::as_str)).collect();
-        return match names {
-            Some(names) => words(names.into_iter()),
-            None => {
-                let mut all: Vec<String> = several.iter().map(|a| kind(a, definitions)).collect();
-                all.dedup();
-                all.join(", or ")
-            }
-        };
-    }
-    if let Some(each) = schema.get("prefixItems").and_then(Value::as_array) {
-        let each: Vec<String> = each.iter().map(|item| kind(item, definitions)).collect();
-        return format!("[{}]", each.join(", "));
-    }
-    if is(schema, "array") {
-        let count = match (bound(schema, "minItems"), bound(schema, "maxItems")) {
-            (Some(min), Some(max)) if min == max => format!("{min} of "),
-            _ => String::new(),
-        };
-        let of = schema.get("items").map_or_else(|| "anything".to_owned(), |items| kind(items, definitions));
-        return format!("list of {count}{of}");
-    }
-    for (name, word) in [
-        ("object", "map"),
-        ("boolean", "true or false"),
-        ("integer", "whole number"),
-        ("number", "number"),
-        ("string", "text"),
-    ] {
-        if is(schema, name) {
-            return word.to_owned();
-        }
-    }
-    "anything".to_owned()
-}
-
-fn words<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    names.collect::<Vec<_>>().join(" | ")
-}
-
-fn bound<'a>(schema: &'a Value, key: &str) -> Option<&'a Value> {
-    schema.get(key)
-}
-
-/// Describes the allowed values in words.
-fn range(schema: &Value) -> String {
-    let mut parts = Vec::new();
-    let least = schema.get("minimum").filter(|v| v.as_f64() != Some(f64::from(i32::MIN)));
-    let most = schema.get("maximum");
-    match (least, most) {
-        (Some(least), Some(most)) if least == most => parts.push(format!("{least} only")),
-        (Some(least), Some(most)) => parts.push(format!("{least} to {most}")),
-        (Some(least), None) => parts.push(format!(">= {least}")),
-        _ => {}
-    }
-    // If both are stated, the greater one is enough.
-    let below = schema.get("exclusiveMinimum").filter(|b| least.is_none_or(|l| l.as_f64() <= b.as_f64()));
-    if let Some(below) = below {
-        parts.push(format!("> {below}"));
-    }
-    if let (None, Some(most)) = (least, most) {
-        parts.push(format!("<= {most}"));
-    }
-    if let Some(above) = schema.get("exclusiveMaximum") {
-        parts.push(format!("< {above}"));
-    }
-    if let Some(each) = schema.get("items").map(range).filter(|each| !each.is_empty()) {
-        parts.push(format!("each {each}"));
-    }
-    let count = (schema.get("minItems"), schema.get("maxItems"));
-    match count {
-        (Some(min), Some(max)) if min != max => parts.push(format!("{min} to {max} of them")),
-        (Some(min), None) => parts.push(format!("{min} of them or more")),
-        (None, Some(max)) => parts.push(format!("{max} of them at most")),
-        _ => {}
-    }
-    parts.join(", ")
 }
 
 #[cfg(test)]
@@ -430,7 +330,7 @@ mod tests {
                 format!(
                     "{}: {} [{}] {} {default} {}",
                     p.key,
-                    p.kind,
+                    p.form,
                     p.unit,
                     p.range,
                     if p.required { "!" } else { "" }

@@ -73,9 +73,11 @@
 //! names; the command calls it before anything else.
 
 mod documentation;
+mod form;
 mod schema;
 
 pub use documentation::{Documentation, Parameter};
+pub use form::{ValueForm, ValueRange};
 pub use schema::{NameOf, StageOf, definitions, kinds};
 
 use crate::frame_view::FrameView;
