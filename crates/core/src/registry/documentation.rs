@@ -1,6 +1,7 @@
 //! The documentation of a stage, taken from the schema of its parameters.
 
-use super::{SchemaOf, ValueForm, ValueRange};
+use super::SchemaOf;
+use super::form::{ValueForm, ValueRange, alternatives, is, resolved};
 use schemars::SchemaGenerator;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -213,42 +214,6 @@ fn kinds(schema: &Value) -> Vec<(&str, &Value)> {
         then.get("properties").is_some().then_some((kind, then))
     })
     .collect()
-}
-
-pub(super) fn alternatives(schema: &Value) -> impl Iterator<Item = &Value> {
-    ["anyOf", "oneOf"].into_iter().filter_map(|key| schema.get(key)?.as_array()).flatten()
-}
-
-pub(super) fn is(schema: &Value, name: &str) -> bool {
-    match schema.get("type") {
-        Some(Value::String(one)) => one == name,
-        Some(Value::Array(several)) => several.iter().any(|s| s.as_str() == Some(name)),
-        _ => false,
-    }
-}
-
-/// Follows references. If a schema allows something or null, it follows the something.
-pub(super) fn resolved<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a Value {
-    let mut at = schema;
-    for _ in 0..8 {
-        if let Some(name) = at.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
-            match definitions.get(name) {
-                Some(definition) => at = definition,
-                None => return at,
-            }
-            continue;
-        }
-        let mut others = alternatives(at).filter(|a| !is_null(a));
-        match (others.next(), others.next()) {
-            (Some(only), None) => at = only,
-            _ => return at,
-        }
-    }
-    at
-}
-
-pub(super) fn is_null(schema: &Value) -> bool {
-    schema.get("type").and_then(Value::as_str) == Some("null")
 }
 
 #[cfg(test)]

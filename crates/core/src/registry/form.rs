@@ -1,6 +1,5 @@
 //! The form and the range of a parameter's value, taken from its schema, and the words for them.
 
-use super::documentation::{alternatives, is, is_null, resolved};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Number, Value};
 use std::fmt;
@@ -215,4 +214,40 @@ impl Serialize for ValueRange {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
+}
+
+pub(super) fn alternatives(schema: &Value) -> impl Iterator<Item = &Value> {
+    ["anyOf", "oneOf"].into_iter().filter_map(|key| schema.get(key)?.as_array()).flatten()
+}
+
+pub(super) fn is(schema: &Value, name: &str) -> bool {
+    match schema.get("type") {
+        Some(Value::String(one)) => one == name,
+        Some(Value::Array(several)) => several.iter().any(|s| s.as_str() == Some(name)),
+        _ => false,
+    }
+}
+
+/// Follows references. If a schema allows something or null, it follows the something.
+pub(super) fn resolved<'a>(schema: &'a Value, definitions: &'a Map<String, Value>) -> &'a Value {
+    let mut at = schema;
+    for _ in 0..8 {
+        if let Some(name) = at.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/")) {
+            match definitions.get(name) {
+                Some(definition) => at = definition,
+                None => return at,
+            }
+            continue;
+        }
+        let mut others = alternatives(at).filter(|a| !is_null(a));
+        match (others.next(), others.next()) {
+            (Some(only), None) => at = only,
+            _ => return at,
+        }
+    }
+    at
+}
+
+fn is_null(schema: &Value) -> bool {
+    schema.get("type").and_then(Value::as_str) == Some("null")
 }
