@@ -30,7 +30,7 @@ enum Kind {
 
 /// A control of the page: one value of the scene that can be changed.
 #[derive(Clone, Debug)]
-pub struct Control {
+pub(crate) struct Control {
     path: String,
     kind: Kind,
     /// Value in the scene; null if the scene leaves it out.
@@ -156,8 +156,7 @@ pub(crate) fn gather() {
 }
 
 /// Returns the controls of a scene, given the root of its tree as written.
-#[must_use]
-pub fn of_scene(root: &Node) -> Vec<Control> {
+fn of_scene(root: &Node) -> Vec<Control> {
     let mut all = Vec::new();
     let Declared { stages, shared, of_file, .. } = &*DECLARED;
     let mut section = |prefix: &str, stage: &str| {
@@ -196,8 +195,7 @@ pub fn of_scene(root: &Node) -> Vec<Control> {
 }
 
 /// Returns the controls of a session: those of its scene, with controls that select among the pictures of its series.
-#[must_use]
-pub fn of_session(session: &Session) -> Vec<Control> {
+pub(crate) fn of_session(session: &Session) -> Vec<Control> {
     let mut all = of_scene(session.scene().params.node());
     let series = session.series();
     for control in all.iter_mut().filter(|control| control.path == "lens.f-number") {
@@ -434,8 +432,7 @@ fn number(node: &Node) -> Option<(&'static str, f64, String)> {
 
 impl Control {
     /// Path of the control's value in the scene.
-    #[must_use]
-    pub fn path(&self) -> &str {
+    pub(crate) fn path(&self) -> &str {
         &self.path
     }
 
@@ -448,8 +445,7 @@ impl Control {
     }
 
     /// Returns the control as JSON for the page.
-    #[must_use]
-    pub fn to_json(&self) -> Value {
+    pub(crate) fn to_json(&self) -> Value {
         let kind = match &self.kind {
             Kind::Number { before, unit, least, most, whole } => {
                 json!({"is": "number", "before": before, "unit": unit, "least": least, "most": most, "whole": whole})
@@ -473,8 +469,7 @@ impl Control {
     }
 
     /// Returns the word for `value` that selects a picture of the series; `None` if the control selects none.
-    #[must_use]
-    pub fn picked(&self, value: &Value) -> Option<String> {
+    pub(crate) fn picked(&self, value: &Value) -> Option<String> {
         let word = || value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         self.picks.then(word)
     }
@@ -483,7 +478,7 @@ impl Control {
     ///
     /// # Errors
     /// The reason why this control cannot have the value.
-    pub fn text(&self, value: &Value) -> Result<String, String> {
+    pub(crate) fn text(&self, value: &Value) -> Result<String, String> {
         if let Some(why) = &self.fixed {
             return Err(why.clone());
         }

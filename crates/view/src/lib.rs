@@ -14,7 +14,8 @@
 //!
 //! - `controls` makes a control for each declared parameter of the scene's stages. A page sends numbers, switches, and words of lists that
 //!   the program made. `Control::text` composes the text `path=value`, so no file path comes from a page.
-//! - `served::desk` holds the scene twice, whole and as a small draft, and decides what is traced and developed when.
+//! - `served::page_session` holds the scene twice, whole and as a small draft, and decides what is traced and developed when.
+//! - [`page`] holds what a page knows of its session, whoever runs it: controls, counters, and the last picture.
 //! - [`parts`] packs a picture: a head as JSON, and linear light as 16-bit floats (binary16), because a browser is slow to receive bytes.
 //!   The page draws only the part that is seen, no finer than it is seen, and counts at most 200 000 pixels for the histogram.
 //! - `served::save` writes changed values into the scene's file where they stand, if the file then states the scene that is seen.
@@ -29,6 +30,7 @@
 //! holds the engine as a WebAssembly module.
 
 mod controls;
+pub mod page;
 pub mod parts;
 mod section;
 mod series_values;

@@ -1,8 +1,6 @@
-//! Data for a page, wherever its engine runs: controls, the drawing of the lens, pictures and faults in the page's format.
+//! Data for a page, wherever its engine runs: the drawing of the lens, pictures and faults in the page's format.
 
-pub use crate::controls::{Control, of_session};
 pub use crate::section::svg;
-pub use crate::series_values::SeriesValues;
 
 use half::f16;
 use half::slice::HalfFloatSliceExt;
@@ -14,16 +12,14 @@ use spectra_session::{Session, SessionError};
 
 /// Returns the numbers of a picture as 16-bit floats (IEEE 754 binary16), little-endian. They are right to one part in 2048, which is finer
 /// than any screen's codes, and take half as many bytes as 32-bit floats.
-#[must_use]
-pub fn halves(numbers: &[f32]) -> Vec<u8> {
+pub(crate) fn halves(numbers: &[f32]) -> Vec<u8> {
     let mut halves = vec![f16::ZERO; numbers.len()];
     halves.convert_from_f32_slice(numbers);
     halves.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
 /// Packs a picture for the page: the length of the head (`u32`, little-endian), the head as JSON, then the numbers, aligned to four bytes.
-#[must_use]
-pub fn packed(head: &Value, numbers: &[u8]) -> Vec<u8> {
+pub(crate) fn packed(head: &Value, numbers: &[u8]) -> Vec<u8> {
     let mut head = head.to_string();
     head.push_str(&" ".repeat((4 - head.len() % 4) % 4));
     let mut bytes = Vec::with_capacity(4 + head.len() + numbers.len());
@@ -33,12 +29,20 @@ pub fn packed(head: &Value, numbers: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Adds facts about a session's picture to the head `own`: samples so far, rays, exposure time, lens, film, focus and warnings. `times` are
+/// Returns a JSON object with the entries of both objects.
+pub(crate) fn joined(mut one: Value, other: Value) -> Value {
+    if let (Value::Object(one), Value::Object(other)) = (&mut one, other) {
+        one.extend(other);
+    }
+    one
+}
+
+/// Returns facts about a session's picture for its head: samples so far, rays, exposure time, lens, film, focus and warnings. `times` are
 /// the exposure times of the films.
 #[must_use]
-pub fn head(mut own: Value, session: &Session, times: &[FilmTime], rays: u64) -> Value {
+pub fn head(session: &Session, times: &[FilmTime], rays: u64) -> Value {
     let scene = session.scene();
-    let known = json!({
+    json!({
         "samples": session.samples(),
         "of": scene.render.samples,
         "rays": rays,
@@ -47,17 +51,12 @@ pub fn head(mut own: Value, session: &Session, times: &[FilmTime], rays: u64) ->
         "film": times.first().map(|time| time.film.clone()),
         "focus": scene.focus.to_string(),
         "warnings": session.warnings().map(|warning| fault_json(&warning.0)).collect::<Vec<_>>(),
-    });
-    if let (Value::Object(own), Value::Object(known)) = (&mut own, known) {
-        own.extend(known);
-    }
-    own
+    })
 }
 
 /// Returns the exposure of a pixel in each channel, at each film's own exposure time, in the frame of this number. `None` if there is no
 /// such pixel.
-#[must_use]
-pub fn pixel(exposure: &ExposureFrame, times: &[FilmTime], frame: u64, [x, y]: [u64; 2]) -> Option<Value> {
+pub(crate) fn pixel(exposure: &ExposureFrame, times: &[FilmTime], frame: u64, [x, y]: [u64; 2]) -> Option<Value> {
     let [width, height] = [exposure.size.width_px, exposure.size.height_px].map(u64::from);
     if x >= width || y >= height {
         return None;
@@ -84,8 +83,7 @@ pub fn error_json(error: &SessionError, path: &str) -> Value {
 }
 
 /// Returns a fault as JSON for the page: message, place and hint.
-#[must_use]
-pub fn fault_json(fault: &Fault) -> Value {
+fn fault_json(fault: &Fault) -> Value {
     json!({"message": fault.message, "place": fault.place_text(), "hint": fault.hint})
 }
 

@@ -8,15 +8,14 @@ const MANY: usize = 1000;
 
 /// The values of each picture of a series, by path and as written, and the index of the picture that is shown.
 #[derive(Clone, Debug, Default)]
-pub struct SeriesValues {
+pub(crate) struct SeriesValues {
     all: Vec<Vec<(String, String)>>,
     at: usize,
 }
 
 impl SeriesValues {
     /// Gathers the values of the pictures of a session; empty if there is only one picture.
-    #[must_use]
-    pub fn of(session: &Session) -> Self {
+    pub(crate) fn of(session: &Session) -> Self {
         let series = session.series();
         let count = if series.count() > 1 { series.count().min(MANY) } else { 0 };
         Self { all: (0..count).map(|index| series.member(index).values).collect(), at: session.index() }
@@ -25,8 +24,7 @@ impl SeriesValues {
     /// Finds the picture that has the value `word` at a path. If several have it, the one that shares most values with picture `from` is
     /// taken, or with the picture that is shown if `from` is `None`. For the path `picture`, the value is the picture's number, from 1.
     /// Returns the index of the picture.
-    #[must_use]
-    pub fn with(&self, from: Option<usize>, path: &str, word: &str) -> Option<usize> {
+    pub(crate) fn with(&self, from: Option<usize>, path: &str, word: &str) -> Option<usize> {
         if path == PICTURE {
             let number: usize = word.split(':').next()?.trim().parse().ok()?;
             return number.checked_sub(1).filter(|index| *index < self.all.len());

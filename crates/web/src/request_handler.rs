@@ -1,17 +1,12 @@
 //! The state behind a page without a server: one session, changed by the page's requests.
 
 use serde_json::{Value, json};
-use spectra_core::frame::DisplayPicture;
 use spectra_core::{Isa, registry};
-use spectra_scene::{Shot, bundled::Bundled};
-use spectra_session::{Control as Stop, Session, SessionError, SessionOptions, SingleThread, ValidResults};
-use spectra_view::parts::{Control, SeriesValues, error_json, halves, head, of_session, packed, pixel, spectra, svg};
+use spectra_scene::{Negatives, bundled::Bundled};
+use spectra_session::{Control as Stop, Session, SessionError, SessionOptions, SingleThread};
+use spectra_view::page::{AspectRatio, PagePicture, PageState, SceneControls};
+use spectra_view::parts::{error_json, head, spectra, svg};
 use std::path::Path;
-
-/// Widths of the picture that a page may choose, pixels.
-const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
-/// Initial width of the picture, pixels.
-const WIDTH_PX: u32 = 480;
 
 /// A service that answers the requests of a page.
 #[derive(Default)]
@@ -23,13 +18,8 @@ pub struct RequestHandler {
 struct OpenScene {
     name: String,
     session: Session,
-    controls: Vec<Control>,
-    /// Height over width of the picture in pixels.
-    aspect: f64,
-    /// Counters that the page compares: pictures so far, scenes, and lenses.
-    frames: u64,
-    scenes: u64,
-    lenses: u64,
+    shape: AspectRatio,
+    page: PageState,
     fault: Option<Value>,
 }
 
@@ -59,12 +49,17 @@ impl RequestHandler {
                 let open = OpenScene::scene(word("scene"), &set).map_err(|error| error_json(&error, ""))?;
                 Ok(json(&self.open.insert(open).state()))
             }
-            "width" => self.open()?.width(number("width")),
+            "width" => self.open()?.turn("width", &request["width"]),
             "turn" => self.open()?.turn(word("path"), &request["value"]),
             "step" => self.open()?.step(number("samples").max(1)),
             "look" => self.open()?.look(),
-            "controls" => self.open().map(|open| json(&open.controls())),
-            "pixel" => self.open()?.pixel(number("x"), number("y")),
+            "controls" => self
+                .open()
+                .map(|open| json(&open.page.controls(Some(&open.name), json!({"saves": false, "changes": 0})))),
+            "pixel" => {
+                let at = ["x", "y"].map(|key| u32::try_from(number(key)).unwrap_or(u32::MAX));
+                self.open()?.page.pixel(at).map(|pixel| json(&pixel)).ok_or_else(|| wrong("no such pixel"))
+            }
             "section" => {
                 let drawn = svg(self.open()?.session.scene(), word("ground") == "dark");
                 drawn.map(String::into_bytes).map_err(|why| wrong(&why))
@@ -102,10 +97,8 @@ impl OpenScene {
     /// Opens a bundled scene.
     fn scene(name: &str, set: &[String]) -> Result<Self, SessionError> {
         let session = Session::open(Path::new(name), set, SessionOptions::default())?;
-        let size = session.scene().imager.size();
-        let aspect = f64::from(size.height_px) / f64::from(size.width_px);
-        let controls = of_session(&session);
-        Ok(Self { name: name.to_owned(), session, controls, aspect, frames: 0, scenes: 1, lenses: 1, fault: None })
+        let (shape, page) = (AspectRatio::of(&session), PageState::of(&session));
+        Ok(Self { name: name.to_owned(), session, shape, page, fault: None })
     }
 
     /// Returns the size and progress of the picture.
@@ -121,43 +114,23 @@ impl OpenScene {
         })
     }
 
-    fn change(&mut self, path: &str, text: &str) -> Answer {
-        let changed = self.session.change(text);
-        self.changed(path, changed)
-    }
-
-    /// Goes to another picture of the series.
-    fn pick(&mut self, path: &str, index: usize) -> Answer {
-        let changed = self.session.change_unprepared(&[""; 0], index, None, &SingleThread);
-        self.changed(path, changed)
-    }
-
-    fn changed(&mut self, path: &str, changed: Result<ValidResults, SessionError>) -> Answer {
+    fn turn(&mut self, path: &str, value: &Value) -> Answer {
+        let change = self.page.change(path, value, None).map_err(|why| wrong(&why))?;
+        let changed = match change.texts(&self.shape).first() {
+            Some(text) => self.session.change(text),
+            // Another picture of the series.
+            None => {
+                let index = change.picture().unwrap_or(self.session.index());
+                self.session.change_unprepared(&[""; 0], index, None, &SingleThread)
+            }
+        };
         self.fault = changed.as_ref().err().map(|error| error_json(error, path));
         let kept = changed.map_err(|error| error_json(&error, path))?;
-        self.controls = of_session(&self.session);
-        self.scenes += 1;
-        self.lenses += u64::from(!kept.lens);
+        self.page.draw(self.session.scene(), false);
+        self.page.adopt(&self.session, SceneControls::of(&self.session));
         let mut state = self.state();
         state["kept"] = kept.light.into();
         Ok(json(&state))
-    }
-
-    fn width(&mut self, width_px: u64) -> Answer {
-        let width_px = WIDTHS_PX.into_iter().find(|w| u64::from(*w) == width_px).unwrap_or(WIDTH_PX);
-        let height_px = (f64::from(width_px) * self.aspect).round().max(1.0);
-        self.change("width", &format!("imager.resolution=[{width_px}, {height_px}]"))
-    }
-
-    fn turn(&mut self, path: &str, value: &Value) -> Answer {
-        let control = self.controls.iter().find(|control| control.path() == path);
-        let control = control.ok_or_else(|| wrong("no such control"))?;
-        let text = control.text(value).map_err(|why| wrong(&why))?;
-        if let Some(word) = control.picked(value) {
-            let picture = SeriesValues::of(&self.session).with(None, path, &word);
-            return self.pick(path, picture.ok_or_else(|| wrong("no picture of the scene has this value"))?);
-        }
-        self.change(path, &text)
     }
 
     fn step(&mut self, samples: u64) -> Answer {
@@ -174,39 +147,12 @@ impl OpenScene {
         let rendering = self.session.rendering().map_err(failed)?;
         let scene = self.session.scene();
         let times = scene.film_times(&rendering.exposure);
-        let shot = Shot::new(scene, &rendering.exposure, &times, &[], Isa::detect());
-        let developed = shot.pictures().map_err(|error| failed(SessionError::of_stage(error)))?;
-        let Some((_, DisplayPicture { width_px, height_px, rgb })) = developed.first() else {
-            return Err(wrong("the imager gives no picture"));
-        };
-        self.frames += 1;
-        let own = json!({
-            "frame": self.frames,
-            "scene": self.scenes,
-            "lens_drawn": self.lenses,
-            "fault": self.fault,
-            "width": width_px,
-            "height": height_px,
-        });
-        Ok(packed(&head(own, &self.session, &times, rendering.rays), &halves(rgb.as_flattened())))
-    }
-
-    fn controls(&self) -> Value {
-        json!({
-            "name": self.name,
-            "controls": self.controls.iter().map(Control::to_json).collect::<Vec<_>>(),
-            "widths": WIDTHS_PX,
-            "saves": false,
-            "changes": 0,
-        })
-    }
-
-    /// Returns the exposure of a pixel, channel by channel.
-    fn pixel(&mut self, x: u64, y: u64) -> Answer {
-        let rendering = self.session.rendering().map_err(|error| error_json(&error, ""))?;
-        let times = self.session.scene().film_times(&rendering.exposure);
-        let seen = pixel(&rendering.exposure, &times, self.frames, [x, y]);
-        seen.map(|seen| json(&seen)).ok_or_else(|| wrong("no such pixel"))
+        let head = head(&self.session, &times, rendering.rays);
+        let negatives = Negatives::default();
+        let picture = PagePicture::develop(scene, rendering.exposure.into(), times, &negatives, Isa::detect());
+        let picture = picture.map_err(failed)?.ok_or_else(|| wrong("the imager gives no picture"))?;
+        let size_px = picture.size_px();
+        Ok(self.page.show(picture, size_px, head, self.fault.as_ref()).to_vec())
     }
 
     /// Returns a hash of the exposure's bits, as in the report of `spectra run`.

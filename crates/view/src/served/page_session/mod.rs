@@ -1,33 +1,37 @@
-//! The desk of one page: a separate session on its own thread.
+//! The desk of one page: a separate session on its own thread, around the [`PageState`] that every page has.
 //!
 //! The page leaves changes on the desk and takes frames from it. If several changes of one control arrive while a picture is traced, only
 //! the last one counts; current work is stopped for changes. A desk that receives no requests for 25 s is closed. There are at most four
 //! desks.
 //!
-//! **Draft and whole** (`hand`). The desk holds the scene twice: the whole session, and a draft of it, 120 pixels wide with four samples,
-//! which shares the stages that do not depend on size. A change goes to the draft first. The whole gets it once nothing has changed for 60
-//! ms. Changes of a film's development go to the whole at once, because its light mostly stays; the draft gets them when it is next needed.
-//! A draft is prepared with little effort (`Effort::Draft`): few zones, no outlines, few rays for meters, no ghosts and no stars. The whole
-//! takes the focused lens of the draft (`Session::change_unprepared`) and is prepared when it is traced.
+//! **Draft and whole** (`draft`, `apply`). The desk holds the scene twice: the whole session, and a draft of it, 120 pixels wide with four
+//! samples, which shares the stages that do not depend on size. A change goes to the draft first. The whole gets it once nothing has
+//! changed for 60 ms. Changes of a film's development go to the whole at once, because its light mostly stays; the draft gets them when it
+//! is next needed. A draft is prepared with little effort (`Effort::Draft`): few zones, no outlines, few rays for meters, no ghosts and no
+//! stars. The whole takes the focused lens of the draft (`Session::change_unprepared`) and is prepared when it is traced.
 //!
 //! **Refused changes** are reported until the control changes again, and leave the scene as it was. If a fault shows only when light is
 //! traced, the session goes back to an earlier state (`Moment`), as for a step back (`history`). `turns_settled` counts the changes that
 //! the controls have. A field of the page waits until that count reaches the number of its own change; then it shows the value, or is red.
-//! A control of a swept key chooses a picture ([`SeriesValues`]).
+//! A control of a swept key chooses a picture.
 //!
 //! **Pieces** (`work`). The whole is traced in pieces of half of the time since the change, up to 1 s. Preparation and tracing stop if more
 //! changes arrive. Stars are spread on the desk's thread and cannot be stopped. Light that does not have all of its samples is therefore
 //! shown without them.
 //!
-//! **Files** (`watch`). The scene's file and all files that it names are checked about three times a second. A different text is taken up
-//! as a new session.
+//! **Files** (`watch`, `reload`). The scene's file and all files that it names are checked about three times a second. A different text is
+//! taken up as a new session.
 //!
 //! A photograph ([`super::photograph`]) is the scene that `film develop` makes. Without a lens its film is exposed to pixels that are kept,
 //! and there is no draft.
 
+mod apply;
 mod change;
+mod draft;
 mod history;
 mod priority;
+mod publish;
+mod reload;
 mod show;
 mod watch;
 mod work;
@@ -36,31 +40,15 @@ mod work_state;
 use super::bench::is_prism;
 use super::render_job::RenderJob;
 use super::{export, memory, save};
-use crate::controls::Control;
-use crate::parts::{SeriesValues, pixel, spectra};
+use crate::page::{ChangeKind, PageState};
+use crate::parts::spectra;
 use crate::section;
-use change::{Change, ChangeKind};
+use change::Change;
 use serde_json::{Value, json};
-use spectra_core::frame::ExposureFrame;
-use spectra_scene::FilmTime;
 use spectra_session::{Control as Stop, Snapshot};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-
-/// Widths of the picture that a page may choose, pixels.
-const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
-
-/// A picture for the page.
-pub(crate) struct Frame {
-    pub number: u64,
-    /// The length of the head, the head as JSON, and linear red, green and blue in the format of [`halves`](crate::parts::halves).
-    pub bytes: Vec<u8>,
-    exposure: Arc<ExposureFrame>,
-    times: Vec<FilmTime>,
-    /// Width of the whole picture, pixels; for a draft it is more than the width of the numbers in `bytes`.
-    whole_px: u32,
-}
 
 #[derive(Default)]
 struct State {
@@ -68,15 +56,9 @@ struct State {
     pending: Vec<Change>,
     /// Number of undo steps that are requested and not taken yet.
     backs: usize,
-    controls: Vec<Control>,
-    /// Values of the pictures of the series.
-    picks: SeriesValues,
-    /// The last picture made for the page.
-    frame: Option<Arc<Frame>>,
+    page: PageState,
     /// The last message without a picture: its number and its packed head.
     note: Option<(u64, Arc<Vec<u8>>)>,
-    /// Number of pictures and notes so far; the last one has this number.
-    number: u64,
     /// Reason why there is no picture of the current scene at all. Until something changes, nothing is traced.
     fault: Option<Value>,
     /// Refused changes, by control, with the errors; the scene is as it was before them.
@@ -84,22 +66,14 @@ struct State {
     /// The refused changes of which the page was told.
     refused_told: BTreeMap<String, Value>,
     section: [Option<Arc<String>>; 2],
-    scene: Option<Arc<spectra_scene::Scene>>,
     /// Current state of the session.
     moment: Option<Snapshot>,
-    /// Number of times that the scene changed; when it changes, the page requests the controls again.
-    scenes: u64,
     /// Changes that the page made and that are not saved to the scene's file, as paths and texts `path=value`.
     changes: Vec<(String, String)>,
     /// Number of steps that can be undone.
     undos: usize,
-    /// Number of times that the lens changed; when it changes, the page requests the drawing again.
-    lenses: u64,
     /// Number of times that the scene's file was loaded again after somebody wrote it.
     reread: u64,
-    /// Width of the whole picture, pixels; `widths_px` are the widths to choose from.
-    width_px: u32,
-    widths_px: Vec<u32>,
     /// Number of changes that the page has sent; `turns_taken` counts those that the next picture has, and `turns_settled` those that the
     /// controls show or that are refused.
     turns: u64,
@@ -178,20 +152,11 @@ impl PageSession {
     /// The reason why the scene cannot have such a value.
     pub(crate) fn turn(&self, path: &str, value: &Value) -> Result<u64, String> {
         let mut state = lock(&self.state);
-        let what = if path == "width" {
-            let width = value.as_u64().and_then(|w| u32::try_from(w).ok());
-            ChangeKind::Width(width.filter(|w| state.widths_px.contains(w)).ok_or("not one of the widths")?)
-        } else {
-            let control = state.controls.iter().find(|c| c.path() == path).ok_or("no such control")?;
-            let text = control.text(value)?;
-            match control.picked(value) {
-                Some(word) => {
-                    let from = state.pending.iter().rev().find_map(Change::picture);
-                    ChangeKind::Picture(state.picks.with(from, path, &word).ok_or("no picture of the series has it")?)
-                }
-                None => ChangeKind::Set(self.together(path, text)?),
-            }
-        };
+        let from = state.pending.iter().rev().find_map(|change| change.what.picture());
+        let mut what = state.page.change(path, value, from)?;
+        if let ChangeKind::Set(texts) = &mut what {
+            self.complete(path, texts)?;
+        }
         // Only the last value of each control counts.
         state.pending.retain(|other| other.control != path);
         state.pending.push(Change { control: path.to_owned(), what });
@@ -202,16 +167,15 @@ impl PageSession {
         Ok(number)
     }
 
-    /// Returns a text `path=value` with the texts that go with it: another film for a photograph also sets the light for which the film is
-    /// made, so that gray stays gray.
-    fn together(&self, path: &str, text: String) -> Result<Vec<String>, String> {
-        let mut all = vec![text];
+    /// Adds the texts that go with those of a control: another film for a photograph also sets the light for which the film is made, so
+    /// that gray stays gray.
+    fn complete(&self, path: &str, texts: &mut Vec<String>) -> Result<(), String> {
         if path == "film.stock" && self.order.photograph.is_some() {
-            let stock = all[0].split_once('=').map_or("", |(_, stock)| stock).to_owned();
-            let light = super::photograph::light_of(&stock).map_err(|error| error.to_string())?;
-            all.push(format!("source.illuminant={light}"));
+            let stock = texts.first().and_then(|text| text.split_once('=')).map_or("", |(_, stock)| stock);
+            let light = super::photograph::light_of(stock).map_err(|error| error.to_string())?;
+            texts.push(format!("source.illuminant={light}"));
         }
-        Ok(all)
+        Ok(())
     }
 
     /// Requests to undo the last step, and returns the number of this change.
@@ -227,12 +191,13 @@ impl PageSession {
     /// Waits for a picture or a note with a higher number than `number`, and returns the last one; `None` if none comes within `patience`.
     pub(crate) fn frame_after(&self, number: u64, patience: Duration) -> Option<Vec<u8>> {
         let found = |state: &State| {
-            let picture = state.frame.as_ref().filter(|frame| frame.number > number).map(|frame| frame.bytes.clone());
+            let picture =
+                state.page.frame.as_ref().filter(|frame| frame.number > number).map(|frame| frame.bytes.clone());
             let note = || state.note.as_ref().filter(|note| note.0 > number).map(|note| note.1.to_vec());
             picture.or_else(note)
         };
         let is_waiting = |state: &mut State| {
-            let last = [state.frame.as_ref().map(|frame| frame.number), state.note.as_ref().map(|note| note.0)];
+            let last = [state.page.frame.as_ref().map(|frame| frame.number), state.note.as_ref().map(|note| note.0)];
             !state.is_closed && last.into_iter().flatten().all(|last| last <= number)
         };
         let waited = self.turned.wait_timeout_while(lock(&self.state), patience, is_waiting);
@@ -245,35 +210,29 @@ impl PageSession {
         let saves = lock(&self.written).is_some();
         let state = lock(&self.state);
         let name = self.order.scene.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        json!({
-            "name": name,
-            "controls": state.controls.iter().map(Control::to_json).collect::<Vec<_>>(),
-            "widths": state.widths_px,
-            "width": state.width_px,
+        let own = json!({
             "saves": saves,
             "changes": state.changes.len(),
             "undos": state.undos,
             "turns": state.turns_settled,
             "refused": state.refused,
             "photograph": self.order.photograph.is_some(),
-            "is_prism": state.scene.as_ref().is_some_and(|scene| is_prism(&scene.lens)),
-        })
+            "is_prism": state.page.scene.as_ref().is_some_and(|scene| is_prism(&scene.lens)),
+        });
+        state.page.controls(name.as_deref(), own)
     }
 
     /// Returns the exposure of a pixel of the last frame in each channel; `None` if there is no such pixel.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> Option<Value> {
-        let frame = lock(&self.state).frame.clone()?;
-        let size = frame.exposure.size;
-        // In a draft, the coarser pixel that covers the place.
-        let part = |at: u32| u64::from(at) * u64::from(size.width_px) / u64::from(frame.whole_px.max(1));
-        pixel(&frame.exposure, &frame.times, frame.number, [x, y].map(part))
+        let frame = lock(&self.state).page.frame.clone()?;
+        frame.pixel([x, y])
     }
 
     /// Returns the cross-section of the current lens as SVG; an empty text if it cannot be drawn, `None` without a scene.
     pub(crate) fn section(&self, is_dark: bool) -> Option<Arc<String>> {
         let (drawn, scene) = {
             let state = lock(&self.state);
-            (state.section[usize::from(is_dark)].clone(), state.scene.clone())
+            (state.section[usize::from(is_dark)].clone(), state.page.scene.clone())
         };
         if drawn.is_some() {
             return drawn;
@@ -281,7 +240,7 @@ impl PageSession {
         let scene = scene?;
         let made = Arc::new(section::svg(&scene, is_dark).unwrap_or_default());
         let mut state = lock(&self.state);
-        if state.scene.as_ref().is_some_and(|now| Arc::ptr_eq(now, &scene)) {
+        if state.page.scene.as_ref().is_some_and(|now| Arc::ptr_eq(now, &scene)) {
             state.section[usize::from(is_dark)] = Some(Arc::clone(&made));
         }
         Some(made)
@@ -289,7 +248,7 @@ impl PageSession {
 
     /// Returns the spectrum of the light and the responses of the layers of the current scene; `None` without a scene.
     pub(crate) fn spectra(&self) -> Option<Value> {
-        let scene = lock(&self.state).scene.clone()?;
+        let scene = lock(&self.state).page.scene.clone()?;
         Some(spectra(&scene))
     }
 

@@ -3,11 +3,28 @@
 //! The whole picture is traced and developed by such threads. Drafts, the server and the browser on the same machine run before them. Only
 //! Linux has a priority per thread; elsewhere all threads are equal.
 
+use spectra_session::{Control as Stop, Workers};
 use std::sync::OnceLock;
+
+/// Threads of low priority whose work stops when something changes.
+pub(super) struct Until<'a> {
+    pub(super) threads: usize,
+    pub(super) stop: &'a Stop,
+}
+
+impl Workers for Until<'_> {
+    fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
+        each(self.threads, work);
+    }
+
+    fn should_stop(&self) -> bool {
+        self.stop.should_stop()
+    }
+}
 
 /// Does the work on this many threads of low priority, and waits for them. Threads that answer the page, and the browser on the same
 /// machine, run before them.
-pub(super) fn each(threads: usize, work: &(dyn Fn() + Sync)) {
+fn each(threads: usize, work: &(dyn Fn() + Sync)) {
     let is_begun = std::thread::scope(|scope| {
         let begin = |number: usize| {
             let thread = std::thread::Builder::new().name(format!("render {number}"));

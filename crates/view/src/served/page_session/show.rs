@@ -3,12 +3,12 @@
 //! Large pictures are developed one at a time, beside the desk's thread, and dropped if more changes arrive meanwhile. The desk waits only
 //! for the picture by which a change is first seen.
 
-use super::work_state::{AspectRatio, ExposedFilm, WorkState, has_stars};
-use super::{Frame, PageSession, State, lock, priority};
-use crate::parts::{error_json, halves, head, packed};
+use super::work_state::{ExposedFilm, WorkState, has_stars};
+use super::{PageSession, State, lock, priority};
+use crate::page::{AspectRatio, PagePicture};
+use crate::parts::{error_json, head, joined};
 use serde_json::{Value, json};
-use spectra_core::frame::DisplayPicture;
-use spectra_scene::{FilmTime, Scene, Shot};
+use spectra_scene::{FilmTime, Scene};
 use spectra_session::{Session, SessionError};
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
@@ -50,45 +50,40 @@ impl DevelopJob {
 
 impl PageSession {
     /// Develops the light so far and gives the picture to the page. If `quick`, a small picture comes before a large one.
-    pub(super) fn picture(
-        self: &Arc<Self>,
-        hand: &mut WorkState,
-        started: Instant,
-        quick: bool,
-    ) -> Result<(), SessionError> {
-        let of = |hand: &WorkState, plate, kind| {
-            let mut taken = self.taken(&hand.session, &hand.shape, started, plate, kind);
-            if hand.is_without_stars() {
+    pub(super) fn picture(self: &Arc<Self>, work: &mut WorkState, quick: bool) -> Result<(), SessionError> {
+        let of = |work: &WorkState, plate, kind| {
+            let mut taken = self.taken(&work.session, &work.shape, work.clock.started, plate, kind);
+            if work.is_without_stars() {
                 taken.head["left_out"] = json!(["stars"]);
             }
             taken
         };
         if quick {
-            let small = match &hand.small {
+            let small = match &work.small {
                 Some(small) => Some(Arc::clone(small)),
-                None => hand.look()?.small().map(Arc::new),
+                None => work.look()?.small().map(Arc::new),
             };
-            hand.small.clone_from(&small);
+            work.small.clone_from(&small);
             match small {
                 // If the small picture cannot be developed, the whole one follows anyway.
-                Some(small) => drop(self.show(&of(hand, small, PictureRole::Draft))),
+                Some(small) => drop(self.show(&of(work, small, PictureRole::Draft))),
                 None => {
-                    let whole = hand.look()?;
-                    return self.show(&of(hand, whole, PictureRole::First));
+                    let whole = work.look()?;
+                    return self.show(&of(work, whole, PictureRole::First));
                 }
             }
         }
-        let whole = hand.look()?;
+        let whole = work.look()?;
         // For a first look, half as many rays are good enough. The small light, with its negatives, is kept until there are twice as many
         // rays, or all samples.
-        let is_whole = hand.session.samples() >= u64::from(hand.session.scene().render.samples);
+        let is_whole = work.session.samples() >= u64::from(work.session.scene().render.samples);
         let is_better = |rays: u64| whole.rays >= 2 * rays || (is_whole && whole.rays > rays);
-        if !quick && hand.small.as_ref().is_none_or(|small| is_better(small.rays)) {
-            hand.small = whole.small().map(Arc::new);
+        if !quick && work.small.as_ref().is_none_or(|small| is_better(small.rays)) {
+            work.small = whole.small().map(Arc::new);
         }
         // Large pictures are developed one after the other, in the background, so that changes need not wait for them.
         if self.is_developed() {
-            self.show_beside(of(hand, whole, PictureRole::Later))?;
+            self.show_beside(of(work, whole, PictureRole::Later))?;
             self.is_developed();
         }
         Ok(())
@@ -129,7 +124,7 @@ impl PageSession {
     ) -> DevelopJob {
         let scene = Arc::clone(session.scene());
         let times = scene.film_times(&plate.exposure);
-        let mut head = head(json!({}), session, &times, plate.rays);
+        let mut head = head(session, &times, plate.rays);
         if session.series().is_without_lens() {
             // No samples are traced, so the picture is complete.
             (head["samples"], head["of"], head["flat"]) = (1.into(), 1.into(), true.into());
@@ -143,41 +138,29 @@ impl PageSession {
     /// Develops light and gives the picture to the page, unless it is outdated by then.
     pub(super) fn show(&self, taken: &DevelopJob) -> Result<(), SessionError> {
         let DevelopJob { scene, plate, times, kind, .. } = taken;
-        let shot = Shot::new(scene, &plate.exposure, times, &[], self.order.isa).with_negatives(&plate.negatives);
-        let Some((_, picture)) = shot.pictures().map_err(SessionError::of_stage)?.first() else { return Ok(()) };
-        let DisplayPicture { width_px, height_px, rgb } = picture;
-        let [width_px, height_px] = [*width_px, *height_px];
+        let exposure = Arc::clone(&plate.exposure);
+        let developed = PagePicture::develop(scene, exposure, times.clone(), &plate.negatives, self.order.isa)?;
+        let Some(picture) = developed else { return Ok(()) };
+        let [width_px, height_px] = picture.size_px();
         let is_draft = *kind == PictureRole::Draft;
         let is_late = |state: &State| {
             state.turns_taken != taken.turns || (*kind == PictureRole::Later && !state.pending.is_empty())
         };
-        let light = halves(bytemuck::cast_slice(rgb));
         let mut state = lock(&self.state);
         if is_late(&state) {
             return Ok(());
         }
-        state.number += 1;
-        let whole_px = if is_draft { state.width_px } else { width_px };
         let own = json!({
-            "frame": state.number,
-            "scene": state.scenes,
-            "lens_drawn": state.lenses,
             "reread": state.reread,
             "turns": taken.turns,
-            "fault": state.said(),
-            "width": whole_px,
-            "height": if is_draft { taken.shape.height_px(whole_px) } else { height_px },
             "light": [width_px, height_px],
             "draft": is_draft,
             "since_change_ms": taken.started.elapsed().as_millis() as u64,
         });
-        let mut head = taken.head.clone();
-        if let (Value::Object(head), Value::Object(own)) = (&mut head, own) {
-            head.extend(own);
-        }
-        let (exposure, times) = (Arc::clone(&plate.exposure), times.clone());
-        let (number, bytes) = (state.number, packed(&head, &light));
-        state.frame = Some(Arc::new(Frame { number, bytes, exposure, times, whole_px }));
+        let whole_px = state.page.width_px;
+        let whole_px = if is_draft { [whole_px, taken.shape.height_px(whole_px)] } else { [width_px, height_px] };
+        let fault = state.said();
+        state.page.show(picture, whole_px, joined(taken.head.clone(), own), fault.as_ref());
         self.turned.notify_all();
         Ok(())
     }

@@ -1,14 +1,16 @@
 //! Working state of a desk's thread: the scene, a small draft of it, and the changes that each of them still lacks.
 
-use super::change::{Change, ChangeKind};
+use super::change::Change;
 use super::history::{History, SavedState};
 use super::watch::Stamps;
+use crate::page::AspectRatio;
 use crate::served::photograph::Small;
 use spectra_core::frame::ExposureFrame;
 use spectra_core::params::Node;
 use spectra_scene::Negatives;
-use spectra_session::{Rendering, Session, SessionError};
+use spectra_session::{Control as Stop, Rendering, Session, SessionError};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Width of a draft, the first picture after a change, pixels; `DRAFT_SAMPLES` is its number of samples per pixel.
 const DRAFT_PX: u32 = 120;
@@ -29,14 +31,15 @@ pub(super) struct UnrenderedChange {
     pub(super) controls: Vec<String>,
 }
 
-/// Outcome of making a draft.
-pub(super) enum Drafted {
-    /// The page has the draft.
-    Shown,
-    /// The light is still valid, so the whole picture is developed as quickly as a draft.
-    SameLight,
-    /// There is no draft.
-    None,
+/// Times of the work.
+#[derive(Clone, Copy)]
+pub(super) struct WorkClock {
+    /// Time of the last change.
+    pub(super) started: Instant,
+    /// Time when the scene's file was last checked.
+    pub(super) looked: Instant,
+    /// Time of the last work, until its memory is returned.
+    pub(super) worked: Option<Instant>,
 }
 
 /// The exposure of the film, and the negatives developed from it.
@@ -73,6 +76,11 @@ pub(super) struct WorkState {
     /// Texts `path=value` that the draft does not have yet.
     pub(super) behind: Vec<String>,
     pub(super) is_light_owed: bool,
+    /// Whether the page waits for a draft. The first picture of a scene is a draft, too.
+    pub(super) is_draft_owed: bool,
+    pub(super) clock: WorkClock,
+    /// Stops the current work when something changes.
+    pub(super) stop: Arc<Stop>,
     /// Light of the session so far, until more is traced.
     pub(super) light: Option<Arc<ExposedFilm>>,
     /// Light with fewer pixels, from at least half of the rays last shown. It gives the first picture after a change of the development.
@@ -101,6 +109,9 @@ impl WorkState {
             owed: Vec::new(),
             behind: Vec::new(),
             is_light_owed: true,
+            is_draft_owed: true,
+            clock: WorkClock { started: Instant::now(), looked: Instant::now(), worked: None },
+            stop: Arc::new(Stop::new()),
             light: None,
             small: None,
             pace_s: None,
@@ -158,60 +169,19 @@ impl WorkState {
 
     /// Returns the index of the picture of the series that is to be shown: the last one asked for, or the current one.
     pub(super) fn index_owed(&self) -> usize {
-        self.owed.iter().rev().find_map(|owed| owed.turned.picture()).unwrap_or(self.session.index())
+        self.owed.iter().rev().find_map(|owed| owed.turned.what.picture()).unwrap_or(self.session.index())
     }
 
-    pub(super) fn without_draft(&mut self) -> Drafted {
+    /// Drops the draft, and returns `false`: the page has none.
+    pub(super) fn without_draft(&mut self) -> bool {
         self.draft = None;
-        Drafted::None
+        false
     }
 
-    /// Replaces the scene by another one; changes that are not applied yet remain.
-    pub(super) fn take_up(&mut self, session: Session, shape: AspectRatio) {
-        let owed = std::mem::take(&mut self.owed);
-        *self = Self { owed, ..Self::of(session, shape, self.width_px) };
-    }
-}
-
-/// Returns whether lights get stars. If the scene does not say, they do if its source has lights.
-pub(super) fn has_stars(session: &Session) -> bool {
-    let scene = session.scene();
-    scene.render.diffraction.unwrap_or_else(|| scene.source.split().is_some())
-}
-
-/// The aspect ratio of a scene's picture, from the scene's file.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct AspectRatio {
-    /// Height divided by width, both in pixels.
-    pub(super) aspect: f64,
-}
-
-impl AspectRatio {
-    pub(super) fn of(session: &Session) -> Self {
-        let size = session.scene().imager.size();
-        Self { aspect: f64::from(size.height_px) / f64::from(size.width_px) }
-    }
-
-    pub(super) fn height_px(&self, width_px: u32) -> u32 {
-        (f64::from(width_px) * self.aspect).round().max(1.0) as u32
-    }
-
-    pub(super) fn resolution(&self, width_px: u32) -> String {
-        format!("imager.resolution=[{width_px}, {}]", self.height_px(width_px))
-    }
-
-    /// Returns the texts `path=value` that a change sets on the whole picture.
-    pub(super) fn texts(&self, turned: &Change) -> Vec<String> {
-        match &turned.what {
-            ChangeKind::Set(texts) => texts.clone(),
-            ChangeKind::Width(width_px) => vec![self.resolution(*width_px)],
-            ChangeKind::Picture(_) => Vec::new(),
-        }
-    }
-
-    /// Returns the texts `path=value` that turn a scene into a draft.
-    pub(super) fn draft(&self, session: &Session) -> Vec<String> {
-        let mut texts = vec![self.resolution(DRAFT_PX), format!("render.samples={DRAFT_SAMPLES}")];
+    /// Returns the texts `path=value` that turn the scene into a draft.
+    pub(super) fn draft_texts(&self) -> Vec<String> {
+        let (session, shape) = (&self.session, &self.shape);
+        let mut texts = vec![shape.resolution(DRAFT_PX), format!("render.samples={DRAFT_SAMPLES}")];
         // Searching for ghosts and computing diffraction at the stop takes seconds, so a draft does without.
         texts.extend(["render.reflections.order=0", "render.diffraction=false"].map(str::to_owned));
         let render = &session.scene().render;
@@ -223,13 +193,25 @@ impl AspectRatio {
             .and_then(Node::as_str)
             .and_then(|text| text.parse::<f64>().ok())
         {
-            let pixels = |width_px: u32| f64::from(width_px) * f64::from(self.height_px(width_px));
+            let pixels = |width_px: u32| f64::from(width_px) * f64::from(shape.height_px(width_px));
             let whole = session.scene().imager.size().pixels() as f64 * f64::from(render.samples);
             let part = pixels(DRAFT_PX) * f64::from(DRAFT_SAMPLES) / whole;
             texts.push(format!("render.rays={}", (rays * part).ceil().max(1.0)));
         }
         texts
     }
+
+    /// Replaces the scene by another one; changes that are not applied yet remain.
+    pub(super) fn take_up(&mut self, session: Session, shape: AspectRatio) {
+        let (owed, stop) = (std::mem::take(&mut self.owed), Arc::clone(&self.stop));
+        *self = Self { owed, stop, clock: self.clock, ..Self::of(session, shape, self.width_px) };
+    }
+}
+
+/// Returns whether lights get stars. If the scene does not say, they do if its source has lights.
+pub(super) fn has_stars(session: &Session) -> bool {
+    let scene = session.scene();
+    scene.render.diffraction.unwrap_or_else(|| scene.source.split().is_some())
 }
 
 /// Returns an exposure with fewer pixels, each the mean of those that it covers.
