@@ -3,9 +3,11 @@
 mod base_stock;
 mod color;
 mod file;
+mod layer_file;
 mod material;
 mod reciprocity;
 mod sensitivity;
+mod sensitivity_file;
 mod speed;
 mod structure;
 
