@@ -101,9 +101,9 @@ impl<'a> SceneBuilder<'a> {
         // A key whose value is null counts as absent: `--set film=null` removes the film. If a section is missing or unknown, the others
         // are still checked, so that all faults are reported together.
         let others = others.without_nulls();
-        let mut section = |key: &str| faults.take(others.stage_at(key)).flatten();
+        let section = |key: &str| faults.take(others.stage_at(key)).flatten();
         let [wavelengths, source, lens, imager, film, render] =
-            ["wavelengths", "source", "lens", "imager", "film", "render"].map(&mut section);
+            ["wavelengths", "source", "lens", "imager", "film", "render"].map(section);
         let wavelengths = wavelengths.unwrap_or_else(|| params.default_stage("wavelengths"));
         let (band, sampler) = wavelengths.split(&keys_of::<BandSection>());
         let grid = faults.take(band.parse::<BandSection>().and_then(|b| b.grid(&band))).unwrap_or(BAND);

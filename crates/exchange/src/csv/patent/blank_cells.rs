@@ -22,7 +22,7 @@ pub(super) fn cells_by_rule(line: &str, head: &Head) -> Vec<Cell> {
         }
     }
     if head.has(Column::Kind) {
-        cells.extend(words.next_if(is_word).map(|kind| (Column::Kind, kind)));
+        cells.extend(words.next_if(|word| is_word(word)).map(|kind| (Column::Kind, kind)));
     }
     cells.extend(words.next().map(|radius| (Column::Radius, radius)));
     // Treat a dash as an empty cell.
@@ -111,7 +111,7 @@ fn add_glass_and_size(cells: &mut Vec<Cell>, mut rest: Vec<String>, head: &Head)
         rest.remove(0);
     }
     if head.has(Column::Glass)
-        && rest.first().is_some_and(is_word)
+        && rest.first().is_some_and(|word| is_word(word))
         && rest.get(1).is_some_and(|word| value(word).is_some())
     {
         cells.push((Column::Glass, rest.remove(0)));
@@ -160,7 +160,7 @@ fn figure_at(figures: &[String], i: usize) -> f64 {
 }
 
 /// Whether this is a word instead of a number.
-fn is_word(word: &String) -> bool {
+fn is_word(word: &str) -> bool {
     word.chars().next().is_some_and(char::is_alphabetic) && value(word).is_none()
 }
 
