@@ -1,52 +1,164 @@
-//! Development: turns exposure into density.
+//! Development: turns the exposure of a film into the densities of its layers, with the effects of the film itself.
 //!
-//! The chain is exposure in lx s -> reciprocity -> amounts in each layer. Effects on the light inside the film come before the curve,
-//! effects on the silver after it, each on the whole frame.
+//! [`develop`] is the order that every film process follows. Scatter and halation spread the light in the film while it lies in the gate
+//! of the camera. The characteristic curve turns exposure into silver or dye. Adjacency moves the edges, grain roughens the result, and
+//! dirt comes last. A film leaves out the steps that its [`Effects`] leave out.
 
-use crate::display::{MissingChannel, channel};
+use crate::adjacency::{Adjacency, Edges};
 use crate::emulsion::Emulsion;
-use crate::stock::Stock;
-use spectra_core::frame::{ExposureFrame, FrameSize};
+use crate::grain::{ColorGrain, FOG, Grain, GrainError, usual_half_power};
+use crate::halation::{Halation, HalationBase};
+use crate::raster::Raster;
+use crate::scatter::{Mtf, Scatter};
+use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::Fault;
 
-/// Density of one layer, pixel by pixel.
+/// Granularity of a film's layers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DensityLayer {
-    /// Name of the layer.
-    pub name: String,
-    /// Silver: optical density (diffuse, transmission). Dye: amount in units of the stock's table. Row-major, upright.
-    pub density: Vec<f32>,
+pub enum Granularity {
+    /// RMS granularity of silver times 1000, through an aperture of 48 um at density 1.
+    Silver(f64),
+    /// Granularity of each dye layer as a function of its amount.
+    Dyes(ColorGrain),
 }
 
-/// A developed film: the densities of its layers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Developed {
-    /// Size of the frame in pixels and mm.
-    pub size: FrameSize,
-    /// Densities of the layers, in the order of the stock.
-    pub layers: Vec<DensityLayer>,
+impl Granularity {
+    /// Builds the grain of a layer, which is number `first_layer + layer` among all layers of the picture.
+    ///
+    /// The half-power frequency of the spectrum of a dye layer follows from its granularity in the middle of its range.
+    ///
+    /// # Errors
+    /// [`GrainError`]: no grain has this granularity.
+    pub fn grain(&self, layer: usize, first_layer: u32, seed: u64) -> Result<Grain, GrainError> {
+        let number = first_layer + layer as u32;
+        match self {
+            Self::Silver(rms) => Grain::calibrated(*rms, usual_half_power(*rms), seed, number),
+            Self::Dyes(color) => {
+                let most = color.most(layer);
+                let half_power = usual_half_power(color.rms(layer, most / 2.0).max(1.0));
+                Grain::by_density(|amount| color.rms(layer, amount), most, half_power, seed, number)
+            }
+        }
+    }
 }
 
-/// Develops a frame whose channels are the stock's layers, in lx s, exposed for `exposure_time_s`, with the development named
-/// `development`.
+/// Scatter, halation, adjacency and grain of one film. Each vector has an element per layer, in the order of the emulsion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effects {
+    /// MTF of the scatter in each layer; `None` if it is unknown or switched off.
+    pub mtf: Vec<Option<Mtf>>,
+    /// Adjacency effect of each layer; `None` if edges do not stand out or the effect is switched off.
+    pub adjacency: Vec<Option<Adjacency>>,
+    /// Halation of each layer; `None` if no light comes back to it.
+    pub halation: Vec<Option<HalationBase>>,
+    /// Granularity of all layers; `None` if there is no grain.
+    pub granularity: Option<Granularity>,
+    /// Names of the effects that rest on assumed figures.
+    pub assumed: Vec<&'static str>,
+    /// Seed that identifies the piece of film, the same for all frames.
+    pub piece: u64,
+    /// Seed of the grains, derived from the piece and the frame.
+    pub seed: u64,
+    /// Number of the first layer among all layers of the picture; each layer has its own grains.
+    pub first_layer: u32,
+}
+
+impl Effects {
+    /// Gives frame `frame` of an animation its own grains.
+    pub fn set_frame(&mut self, frame: u64) {
+        self.seed = seed_of_frame(self.piece, frame);
+    }
+
+    /// Returns whether any effect is computed on a raster, whose pixels are square.
+    #[must_use]
+    pub fn need_raster(&self) -> bool {
+        self.adjacency.iter().any(Option::is_some)
+            || self.halation.iter().any(Option::is_some)
+            || self.granularity.is_some()
+            || self.mtf.iter().any(Option::is_some)
+    }
+
+    /// Returns a plane of exposure after scatter in the emulsion of a layer.
+    ///
+    /// # Errors
+    /// A message: the scatter cannot be computed at this size of pixels.
+    pub fn scattered(&self, layer: usize, plane: &[f32], raster: &Raster) -> Result<Vec<f32>, Fault> {
+        match &self.mtf[layer] {
+            Some(mtf) => Ok(Scatter::new(mtf, raster).map_err(|e| e.to_string())?.applied(plane)),
+            None => Ok(plane.to_vec()),
+        }
+    }
+
+    /// Returns the plane of exposure that a layer receives: scattered in its emulsion, with halation added. `spare` is a work buffer
+    /// that successive layers share.
+    ///
+    /// # Errors
+    /// A message: scatter or halation cannot be computed at this size of pixels.
+    pub fn spread(
+        &self,
+        layer: usize,
+        plane: &[f32],
+        raster: &Raster,
+        spare: &mut Vec<f32>,
+    ) -> Result<Vec<f32>, Fault> {
+        let Some(base) = &self.halation[layer] else { return self.scattered(layer, plane, raster) };
+        let halation = Halation::new(base, raster).map_err(|e| e.to_string())?;
+        let Some(mtf) = &self.mtf[layer] else { return Ok(halation.applied(plane)) };
+        spare.resize(plane.len(), 0.0);
+        Scatter::new(mtf, raster).map_err(|e| e.to_string())?.apply_to(plane, spare);
+        Ok(halation.applied(spare))
+    }
+
+    /// Applies the adjacency effect to the developed amounts of a layer.
+    fn edges(&self, layer: usize, plane: &mut [f32], emulsion: &Emulsion, raster: &Raster) {
+        if let Some(adjacency) = &self.adjacency[layer] {
+            let unexposed = emulsion.amount(layer, f64::NEG_INFINITY);
+            Edges::new(adjacency, raster).apply(plane, unexposed, emulsion.range(layer));
+        }
+    }
+
+    /// Adds grain to the amounts of a layer. `clear` is its least amount, at which there is no grain except fog.
+    fn roughen(&self, layer: usize, plane: &mut [f32], clear: f64, raster: &Raster) -> Result<(), Fault> {
+        let Some(granularity) = &self.granularity else { return Ok(()) };
+        let base = match granularity {
+            Granularity::Silver(_) => clear,
+            Granularity::Dyes(_) => clear - FOG,
+        } as f32;
+        plane.iter_mut().for_each(|d| *d -= base);
+        let grain = granularity.grain(layer, self.first_layer, self.seed);
+        grain.map_err(|e| e.to_string())?.apply(plane, raster);
+        plane.iter_mut().for_each(|d| *d += base);
+        Ok(())
+    }
+}
+
+/// Develops a film and returns one plane of amounts per layer (see [`crate::deposit::Deposit`]), in the order of the emulsion.
+///
+/// `light` has the exposure of each layer on the raster `gate`. The effect of an exposure is `factor` times it, in lx s; that includes
+/// the camera's meter and reciprocity. After scatter and halation, `lay` places the plane of a layer on the raster `film`, which exceeds
+/// the gate if the picture has a border. Last, `soil` adds dirt and damage to the amounts of a layer.
 ///
 /// # Errors
-/// A text: the frame has no channel for a layer, the stock has no such development, or its layers cannot be developed.
+/// A message: an effect cannot be computed at this size of pixels.
 pub fn develop(
-    stock: &Stock,
-    development: &str,
-    exposure: &ExposureFrame,
-    exposure_time_s: f64,
-) -> Result<Developed, Fault> {
-    let emulsion = Emulsion::new(stock, development).map_err(|e| e.to_string())?;
-    let effect = stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(exposure_time_s));
-    let planes = stock.layers.iter().map(|layer| {
-        let seen = channel(exposure, &layer.name).map_err(|e: MissingChannel| e.to_string())?;
-        Ok(seen.values.clone())
-    });
-    let mut planes = planes.collect::<Result<Vec<_>, Fault>>()?;
-    emulsion.develop_all(&mut planes, effect);
-    let layers = stock.layers.iter().zip(planes);
-    let layers = layers.map(|(layer, density)| DensityLayer { name: layer.name.clone(), density }).collect();
-    Ok(Developed { size: exposure.size, layers })
+    emulsion: &Emulsion,
+    effects: &Effects,
+    light: &[&[f32]],
+    factor: f64,
+    [gate, film]: [&Raster; 2],
+    mut lay: impl FnMut(usize, Vec<f32>) -> Vec<f32>,
+    soil: impl Fn(usize, &mut [f32]),
+) -> Result<Vec<Vec<f32>>, Fault> {
+    let mut spare = Vec::new();
+    let spread = light.iter().enumerate();
+    let spread = spread.map(|(i, plane)| Ok(lay(i, effects.spread(i, plane, gate, &mut spare)?)));
+    let mut planes = spread.collect::<Result<Vec<_>, Fault>>()?;
+    drop(spare);
+    emulsion.develop_all(&mut planes, factor);
+    for (i, plane) in planes.iter_mut().enumerate() {
+        effects.edges(i, plane, emulsion, film);
+        effects.roughen(i, plane, emulsion.range(i).0, film)?;
+        soil(i, plane);
+    }
+    Ok(planes)
 }

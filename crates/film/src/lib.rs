@@ -3,7 +3,8 @@
 //! An imager records linear exposure, channel by channel. This crate turns it into a picture:
 //!
 //! - [`stock`]: spectral sensitivity, curves and structure of a film, from a data file;
-//! - [`curve`]: density over log exposure; [`emulsion`], [`develop`]: exposure to amounts of silver or dye;
+//! - [`develop`]: the order of development, and the effects that a film has in it;
+//! - [`curve`]: density over log exposure; [`emulsion`]: exposure to amounts of silver or dye;
 //! - [`scatter`], [`halation`] before the curve, [`adjacency`], [`grain`] after it: effects of a film that involve more than one place;
 //! - [`optics`]: the lens through which a developed film is printed, scanned or projected;
 //! - [`deposit`]: spectral transmittance of silver and dyes;

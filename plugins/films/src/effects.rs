@@ -1,17 +1,16 @@
-//! Effects inside the film: scatter and halation spread light before the characteristic curve; adjacency and grain act after it.
+//! Parameters of the effects inside the film (scatter, halation, adjacency, grain), and the [`Effects`] that a scene asks for.
 
 use crate::view::View;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::frame::FrameSize;
-use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::{Fault, Faults, Length, Params, Positive};
-use spectra_film::adjacency::{Adjacency, Edges};
+use spectra_film::develop::{Effects, Granularity};
 use spectra_film::emulsion::Emulsion;
-use spectra_film::grain::{ColorGrain, FOG, Grain, GrainError, usual_half_power};
+use spectra_film::grain::ColorGrain;
 use spectra_film::halation::{Halation, HalationBase};
 use spectra_film::raster::Raster;
-use spectra_film::scatter::{Modulation, Mtf, Scatter};
+use spectra_film::scatter::Modulation;
 use spectra_film::stock::{Backing, Stock};
 
 /// The map `halation` as written in a scene; see [`HalationBase`].
@@ -115,35 +114,6 @@ pub(crate) struct Switches<'a> {
     pub first_layer: u32,
 }
 
-/// Granularity of a film's layers.
-#[derive(Clone, Debug, PartialEq)]
-enum Granularity {
-    /// RMS granularity of silver times 1000, through an aperture of 48 um at density 1.
-    Silver(f64),
-    /// Granularity of each dye layer as a function of its amount.
-    Dyes(ColorGrain),
-}
-
-/// Scatter, adjacency, halation and grain of one film.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Effects {
-    /// MTF of the scatter in each layer; `None` if it is unknown or switched off.
-    mtf: Vec<Option<Mtf>>,
-    /// Adjacency effect of each layer; `None` if edges do not stand out or the effect is switched off.
-    adjacency: Vec<Option<Adjacency>>,
-    /// Halation of each layer; `None` if no light comes back to it.
-    halation: Vec<Option<HalationBase>>,
-    /// Names of the effects that rest on assumed figures.
-    assumed: Vec<&'static str>,
-    grain: Option<Granularity>,
-    /// Seed that identifies the piece of film, the same for all frames.
-    piece: u64,
-    /// Seed of the grains, derived from the piece and the frame.
-    seed: u64,
-    /// Number of the first layer among all layers of the picture.
-    first_layer: u32,
-}
-
 /// Returns a hint on how to get square pixels: another number of rows, or a crop to the aspect ratio of the resolution.
 fn square_frame(size: &FrameSize) -> String {
     let rows = (f64::from(size.width_px) * size.height_mm / size.width_mm).round();
@@ -160,136 +130,68 @@ pub(crate) fn pixel_mm(size: &FrameSize) -> [f64; 2] {
     [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)]
 }
 
-impl Effects {
-    pub(crate) fn new(p: &Switches<'_>, params: &Params, stock: &Stock, emulsion: &Emulsion) -> Result<Self, Faults> {
-        let mut faults = Faults::new();
-        let counts = p.assumed == Assumed::On || stock.assumed.mtf.is_none();
-        if p.scatter == Some(true) && !(counts && stock.layers.iter().any(|l| !l.mtf.is_empty())) {
-            let measured = if counts { "" } else { "measured " };
-            let text = format!("{} has no {measured}modulation transfer in its file", stock.name);
-            faults.push(params.fault("scatter", text).hint("leave it out, or give the stock's layers an `mtf`"));
-        }
-        let (mut mtf, mut adjacency) = (Vec::new(), Vec::new());
-        for layer in &stock.layers {
-            let unfit = |e| params.fault(p.key, format!("{}: {e}", stock.name));
-            let known = counts && !layer.mtf.is_empty();
-            let parts = known.then(|| Modulation::measured(&layer.mtf).map_err(unfit));
-            let parts = parts.and_then(|m| faults.take(m));
-            adjacency.push(parts.as_ref().and_then(|m| m.adjacency).filter(|_| p.adjacency.unwrap_or(true)));
-            mtf.push(parts.map(|m| m.mtf).filter(|_| p.scatter.unwrap_or(true)));
-        }
-        if p.adjacency == Some(true) && adjacency.iter().all(Option::is_none) {
-            let text = format!("{} has no modulation transfer above 1 in its file", stock.name);
-            faults.push(params.fault("adjacency", text).hint("leave it out, or give the stock's layers an `mtf`"));
-        }
-        let grain = granularity(p, params, stock, emulsion, &mut faults);
-        let halation = halation(p, params, stock, &mut faults);
-        let mut assumed = Vec::new();
-        if p.halation.is_none() && halation.iter().any(Option::is_some) && halation_is_assumed(stock) {
-            assumed.push("halation");
-        }
-        if grain.is_some() && granularity_is_assumed(stock) {
-            assumed.push("grain");
-        }
-        if stock.assumed.mtf.is_some() && mtf.iter().any(Option::is_some) {
-            assumed.push("scatter");
-        }
-        let (piece, first_layer) = (p.grain_seed, p.first_layer);
-        faults.into_result(Self { mtf, adjacency, halation, assumed, grain, piece, seed: piece, first_layer })
+/// Builds the effects that a scene asks for on a stock.
+pub(crate) fn effects(
+    p: &Switches<'_>,
+    params: &Params,
+    stock: &Stock,
+    emulsion: &Emulsion,
+) -> Result<Effects, Faults> {
+    let mut faults = Faults::new();
+    let counts = p.assumed == Assumed::On || stock.assumed.mtf.is_none();
+    if p.scatter == Some(true) && !(counts && stock.layers.iter().any(|l| !l.mtf.is_empty())) {
+        let measured = if counts { "" } else { "measured " };
+        let text = format!("{} has no {measured}modulation transfer in its file", stock.name);
+        faults.push(params.fault("scatter", text).hint("leave it out, or give the stock's layers an `mtf`"));
     }
-
-    /// Names of the effects that rest on assumed figures.
-    pub(crate) fn assumed(&self) -> &[&'static str] {
-        &self.assumed
+    let (mut mtf, mut adjacency) = (Vec::new(), Vec::new());
+    for layer in &stock.layers {
+        let unfit = |e| params.fault(p.key, format!("{}: {e}", stock.name));
+        let known = counts && !layer.mtf.is_empty();
+        let parts = known.then(|| Modulation::measured(&layer.mtf).map_err(unfit));
+        let parts = parts.and_then(|m| faults.take(m));
+        adjacency.push(parts.as_ref().and_then(|m| m.adjacency).filter(|_| p.adjacency.unwrap_or(true)));
+        mtf.push(parts.map(|m| m.mtf).filter(|_| p.scatter.unwrap_or(true)));
     }
-
-    /// Gives frame `frame` of an animation its own grains.
-    pub(crate) fn set_frame(&mut self, frame: u64) {
-        self.seed = seed_of_frame(self.piece, frame);
+    if p.adjacency == Some(true) && adjacency.iter().all(Option::is_none) {
+        let text = format!("{} has no modulation transfer above 1 in its file", stock.name);
+        faults.push(params.fault("adjacency", text).hint("leave it out, or give the stock's layers an `mtf`"));
     }
-
-    /// Checks that the pixels of a frame are square, to 1 %, if any effect on the film needs that. The error is a message and a hint.
-    pub(crate) fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
-        let [across, down] = pixel_mm(size);
-        let edges = self.adjacency.iter().any(Option::is_some);
-        let any = edges
-            || self.halation.iter().any(Option::is_some)
-            || self.grain.is_some()
-            || self.mtf.iter().any(Option::is_some);
-        if any && (across / down - 1.0).abs() > 0.01 {
-            let text =
-                format!("scatter, halation, adjacency and grain need square pixels, not {across:.5} x {down:.5} mm");
-            let hint = format!(
-                "{}, or `scatter: false, adjacency: false, halation: off, grain: false` for the film",
-                square_frame(size)
-            );
-            return Err([text, hint]);
-        }
-        Ok(())
+    let granularity = granularity(p, params, stock, emulsion, &mut faults);
+    let halation = halation(p, params, stock, &mut faults);
+    let mut assumed = Vec::new();
+    if p.halation.is_none() && halation.iter().any(Option::is_some) && halation_is_assumed(stock) {
+        assumed.push("halation");
     }
-
-    /// Returns the raster that says where the pixels of a frame lie on the film. Fails if they must be square and are not.
-    pub(crate) fn raster(&self, size: FrameSize) -> Result<Raster, Fault> {
-        self.check_frame(&size).map_err(|[text, hint]| format!("{text}: {hint}"))?;
-        let [across, down] = pixel_mm(&size);
-        Ok(Raster::new(size.width_px as usize, size.height_px as usize, (across * down).sqrt()))
+    if granularity.is_some() && granularity_is_assumed(stock) {
+        assumed.push("grain");
     }
-
-    /// Returns a plane of exposure after scatter in the emulsion of a layer.
-    pub(crate) fn scattered(&self, layer: usize, plane: &[f32], raster: &Raster) -> Result<Vec<f32>, Fault> {
-        match &self.mtf[layer] {
-            Some(mtf) => Ok(Scatter::new(mtf, raster).map_err(|e| e.to_string())?.applied(plane)),
-            None => Ok(plane.to_vec()),
-        }
+    if stock.assumed.mtf.is_some() && mtf.iter().any(Option::is_some) {
+        assumed.push("scatter");
     }
-
-    /// Returns the plane of exposure that a layer receives: scattered in its emulsion, with halation added. `spare` is a work buffer
-    /// that successive layers share.
-    pub(crate) fn spread(
-        &self,
-        layer: usize,
-        plane: &[f32],
-        raster: &Raster,
-        spare: &mut Vec<f32>,
-    ) -> Result<Vec<f32>, Fault> {
-        let Some(base) = &self.halation[layer] else { return self.scattered(layer, plane, raster) };
-        let halation = Halation::new(base, raster).map_err(|e| e.to_string())?;
-        let Some(mtf) = &self.mtf[layer] else { return Ok(halation.applied(plane)) };
-        spare.resize(plane.len(), 0.0);
-        Scatter::new(mtf, raster).map_err(|e| e.to_string())?.apply_to(plane, spare);
-        Ok(halation.applied(spare))
-    }
-
-    /// Applies the adjacency effect to the developed amounts of a layer.
-    pub(crate) fn edges(&self, layer: usize, plane: &mut [f32], emulsion: &Emulsion, raster: &Raster) {
-        if let Some(adjacency) = &self.adjacency[layer] {
-            let unexposed = emulsion.amount(layer, f64::NEG_INFINITY);
-            Edges::new(adjacency, raster).apply(plane, unexposed, emulsion.range(layer));
-        }
-    }
-
-    /// Adds grain to the amounts of a layer. `clear` is its least amount, at which there is no grain except fog.
-    pub(crate) fn grain(&self, layer: usize, plane: &mut [f32], clear: f64, raster: &Raster) -> Result<(), Fault> {
-        let (grain, base) = match &self.grain {
-            None => return Ok(()),
-            Some(Granularity::Silver(rms)) => {
-                (Grain::calibrated(*rms, usual_half_power(*rms), self.seed, self.first_layer + layer as u32), clear)
-            }
-            Some(Granularity::Dyes(color)) => (by_dye(color, layer, self.seed), clear - FOG),
-        };
-        let base = base as f32;
-        plane.iter_mut().for_each(|d| *d -= base);
-        grain.map_err(|e| e.to_string())?.apply(plane, raster);
-        plane.iter_mut().for_each(|d| *d += base);
-        Ok(())
-    }
+    let (piece, first_layer) = (p.grain_seed, p.first_layer);
+    faults.into_result(Effects { mtf, adjacency, halation, granularity, assumed, piece, seed: piece, first_layer })
 }
 
-/// Builds the grain of a dye layer. The half-power frequency of its spectrum follows from its granularity in the middle of its range.
-fn by_dye(color: &ColorGrain, layer: usize, seed: u64) -> Result<Grain, GrainError> {
-    let most = color.most(layer);
-    let half_power = usual_half_power(color.rms(layer, most / 2.0).max(1.0));
-    Grain::by_density(|amount| color.rms(layer, amount), most, half_power, seed, layer as u32)
+/// Checks that the pixels of a frame are square, to 1 %, if any effect on the film needs that. The error is a message and a hint.
+pub(crate) fn check_frame(effects: &Effects, size: &FrameSize) -> Result<(), [String; 2]> {
+    let [across, down] = pixel_mm(size);
+    if effects.need_raster() && (across / down - 1.0).abs() > 0.01 {
+        let text = format!("scatter, halation, adjacency and grain need square pixels, not {across:.5} x {down:.5} mm");
+        let hint = format!(
+            "{}, or `scatter: false, adjacency: false, halation: off, grain: false` for the film",
+            square_frame(size)
+        );
+        return Err([text, hint]);
+    }
+    Ok(())
+}
+
+/// Returns the raster that says where the pixels of a frame lie on the film. Fails if they must be square and are not.
+pub(crate) fn raster(effects: &Effects, size: FrameSize) -> Result<Raster, Fault> {
+    check_frame(effects, &size).map_err(|[text, hint]| format!("{text}: {hint}"))?;
+    let [across, down] = pixel_mm(&size);
+    Ok(Raster::new(size.width_px as usize, size.height_px as usize, (across * down).sqrt()))
 }
 
 fn granularity(
@@ -310,11 +212,7 @@ fn granularity(
     }
     let left_out = p.assumed == Assumed::Off && granularity_is_assumed(stock);
     let known = known.filter(|_| p.grain.unwrap_or(true) && !left_out)?;
-    let tried = match &known {
-        Granularity::Silver(rms) => Grain::calibrated(*rms, usual_half_power(*rms), 0, 0),
-        Granularity::Dyes(color) => by_dye(color, 0, 0),
-    };
-    match tried {
+    match known.grain(0, 0, 0) {
         Ok(_) => Some(known),
         Err(error) => {
             faults.push(params.fault(p.key, format!("{}: {error}", stock.name)));

@@ -2,6 +2,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod camera;
 mod described_process;
 mod effects;
 mod frame;

@@ -1,9 +1,10 @@
 //! The film kind `stock`: film from a data file, exposed, developed, and printed, scanned or projected.
 
+use crate::camera::{Camera, exposed_by_camera};
 use crate::described_process::build_process;
-use crate::effects::{Assumed, Effects, mtf50, pixel_mm};
+use crate::effects::{Assumed, check_frame, effects, mtf50, pixel_mm, raster};
 use crate::frame::{FrameEffects, Laid};
-use crate::metering::{ExposureSettings, METER, Meter, Metered, Metering, overruled};
+use crate::metering::{ExposureSettings, Meter, Metering};
 use crate::misexposure::{ends, misexposure};
 use crate::settings::StockParams;
 use crate::stocks::load_stock;
@@ -15,8 +16,8 @@ use spectra_core::math::pow;
 use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Params, Positive};
 use spectra_core::registry::Context;
-use spectra_core::spectral::Channel;
 use spectra_core::stage::{Film, Misexposure, Negative};
+use spectra_film::develop::{Effects, develop};
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
@@ -33,13 +34,7 @@ pub struct StockFilm {
     stock: Stock,
     development: String,
     emulsion: Emulsion,
-    channels: Vec<Channel>,
-    exposure_time_s: f64,
-    /// Whether an exposure time was stated although the camera meters.
-    is_overruled: bool,
-    keeps_exposure: bool,
-    meters: Metered,
-    meter: Meter,
+    camera: Camera,
     effects: Effects,
     frame: Option<FrameEffects>,
     /// Exposure of a mid gray subject, lx s.
@@ -78,7 +73,7 @@ impl StockFilm {
         else {
             return Err(faults);
         };
-        let effects = faults.take(Effects::new(&(&p).into(), params, &stock, &emulsion));
+        let effects = faults.take(effects(&(&p).into(), params, &stock, &emulsion));
         let Some(effects) = faults.into_result(effects)? else { return Err(Faults::new()) };
         let gray_lx_s = metered_exposure_lx_s(speed);
         // Curves that do not match the stated speed are the likeliest reason why a film cannot be printed, and otherwise make the picture
@@ -100,18 +95,12 @@ impl StockFilm {
         let frame = p.frame.map(|frame| FrameEffects::new(frame, &stock.name, p.grain_seed));
         let own = channels.first().filter(|_| stock.meter == MeterResponse::Film).cloned();
         channels.extend(meter.channel(&context.grid, own.as_ref()));
-        let (exposure_time_s, is_overruled) = (exposed.time_s, exposed.is_overruled);
         let (picture, words) = (seen.picture, seen.words);
         Ok(Self {
             stock,
             development,
             emulsion,
-            channels,
-            exposure_time_s,
-            is_overruled,
-            keeps_exposure: exposed.keeps,
-            meters: p.meter,
-            meter,
+            camera: Camera { channels, settings: exposed, frames: p.meter, meter },
             effects,
             frame,
             gray_lx_s,
@@ -149,12 +138,11 @@ impl StockFilm {
     /// # Errors
     /// A message that names the missing channel, or says that pixels must be square.
     pub fn exposed(&self, exposure: &ExposureFrame) -> Result<Vec<Vec<f32>>, Fault> {
-        let factor = self.meter.factor(exposure) as f32;
-        let raster = self.effects.raster(exposure.size)?;
+        let factor = self.camera.meter.factor(exposure) as f32;
+        let raster = raster(&self.effects, exposure.size)?;
         let mut spare = Vec::new();
-        let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
-            let channel = channel(exposure, &layer.name).map_err(|error| error.to_string())?;
-            let mut plane = self.effects.spread(i, &channel.values, &raster, &mut spare)?;
+        let layers = self.light(exposure)?.into_iter().enumerate().map(|(i, light)| {
+            let mut plane = self.effects.spread(i, light, &raster, &mut spare)?;
             plane.iter_mut().for_each(|v| *v *= factor);
             Ok(plane)
         });
@@ -177,42 +165,48 @@ impl StockFilm {
         }
     }
 
+    /// Returns the planes of `exposure` that the layers record, in the order of the stock.
+    fn light<'a>(&self, exposure: &'a ExposureFrame) -> Result<Vec<&'a [f32]>, Fault> {
+        let layers = self.stock.layers.iter();
+        let planes = layers.map(|layer| channel(exposure, &layer.name).map(|channel| &channel.values[..]));
+        Ok(planes.collect::<Result<_, _>>().map_err(|error| error.to_string())?)
+    }
+
     /// Develops the film; if `kept`, also returns the exposure of its layers as layers of a file.
     fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<DevelopedPlanes, Fault> {
-        let factor = self.meter.factor(exposure);
-        let time_s = self.exposure_time_s * factor;
-        let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(time_s));
-        let frame_raster = self.effects.raster(exposure.size)?;
-        let laid = self.frame.as_ref().map(|frame| frame.laid(&frame_raster));
-        let raster = laid.as_ref().map_or(frame_raster, |laid| laid.raster);
+        let metered = self.camera.meter.factor(exposure);
+        let effect = self.reciprocity_effect(metered);
         let breathing = self.frame.as_ref().map_or(1.0, FrameEffects::exposure);
-        let (mut exposed, mut spare) = (Vec::new(), Vec::new());
-        let spread = self.stock.layers.iter().enumerate().map(|(i, layer)| {
-            let channel = channel(exposure, &layer.name).map_err(|error| error.to_string())?;
-            let mut plane = self.effects.spread(i, &channel.values, &frame_raster, &mut spare)?;
+        let factor = metered * effect * breathing;
+        let gate = raster(&self.effects, exposure.size)?;
+        let laid = self.frame.as_ref().map(|frame| frame.laid(&gate));
+        let raster = laid.as_ref().map_or(gate, |laid| laid.raster);
+        let mut exposed = Vec::new();
+        let lay = |i: usize, mut plane: Vec<f32>| {
             if let Some(laid) = &laid {
-                plane = laid.lay(plane, &frame_raster);
-                laid.print(&mut plane, (EDGE_PRINT * self.gray_lx_s / (factor * effect * breathing)) as f32);
+                plane = laid.lay(plane, &gate);
+                laid.print(&mut plane, (EDGE_PRINT * self.gray_lx_s / factor) as f32);
             }
             if kept {
-                let got = plane.iter().map(|v| *v * (factor * breathing) as f32).collect();
-                exposed.push(layer_of("exposure", &layer.name, "lx s", got));
+                let got = plane.iter().map(|v| *v * (metered * breathing) as f32).collect();
+                exposed.push(layer_of("exposure", &self.stock.layers[i].name, "lx s", got));
             }
-            Ok(plane)
-        });
-        let mut amounts = spread.collect::<Result<Vec<_>, Fault>>()?;
-        drop(spare);
-        self.emulsion.develop_all(&mut amounts, factor * effect * breathing);
-        for (i, plane) in amounts.iter_mut().enumerate() {
-            let range = self.emulsion.range(i);
-            self.effects.edges(i, plane, &self.emulsion, &raster);
-            self.effects.grain(i, plane, range.0, &raster)?;
+            plane
+        };
+        let soil = |i: usize, plane: &mut [f32]| {
             if let (Some(frame), Some(laid)) = (&self.frame, &laid) {
                 let clear = self.emulsion.amount(i, f64::NEG_INFINITY);
-                frame.soil(plane, laid, range, clear, self.stock.process == Process::Reversal);
+                frame.soil(plane, laid, self.emulsion.range(i), clear, self.stock.process == Process::Reversal);
             }
-        }
+        };
+        let light = self.light(exposure)?;
+        let amounts = develop(&self.emulsion, &self.effects, &light, factor, [&gate, &raster], lay, soil)?;
         Ok(DevelopedPlanes { amounts, exposed, raster, laid })
+    }
+
+    /// Returns how much the exposure of a frame counts, relative to a short one, if the meter lengthens it by the factor `metered`.
+    fn reciprocity_effect(&self, metered: f64) -> f64 {
+        self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(self.camera.settings.time_s * metered))
     }
 
     /// Develops the film, applies the blur of the lens that views it, and returns the other `wanted` planes as layers of a file.
@@ -293,7 +287,7 @@ struct DevelopedPlanes {
 }
 
 /// Returns a plane as a layer of a file, named `group.layer`.
-fn layer_of(group: &str, layer: &str, unit: &str, values: Vec<f32>) -> ExposureChannel {
+pub(crate) fn layer_of(group: &str, layer: &str, unit: &str, values: Vec<f32>) -> ExposureChannel {
     ExposureChannel { name: format!("{group}.{layer}"), unit: unit.to_owned(), values }
 }
 
@@ -330,45 +324,7 @@ fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsi
 }
 
 impl Film for StockFilm {
-    fn channels(&self) -> Vec<Channel> {
-        self.channels.clone()
-    }
-
-    fn picture_channels(&self) -> usize {
-        self.channels.iter().filter(|c| c.name != METER).count()
-    }
-
-    fn exposure_time_s(&self) -> f64 {
-        self.exposure_time_s
-    }
-
-    fn metered_time_s(&self, exposure: &ExposureFrame) -> f64 {
-        self.exposure_time_s * self.meter.factor(exposure)
-    }
-
-    fn is_metered(&self) -> bool {
-        self.meter.is_on()
-    }
-
-    fn keeps_exposure(&self) -> bool {
-        self.keeps_exposure
-    }
-
-    fn meter(&self) -> Option<&'static str> {
-        self.meter.word()
-    }
-
-    fn meters_each_frame(&self) -> bool {
-        self.meters == Metered::Each
-    }
-
-    fn is_metered_at(&self, size: &FrameSize, pixel: u32) -> bool {
-        self.meter.looks_at(size, pixel)
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        overruled(self.is_overruled)
-    }
+    exposed_by_camera!();
 
     fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
         if let Some(frame) = &self.frame {
@@ -379,12 +335,12 @@ impl Film for StockFilm {
             }
             frame.check(size)?;
         }
-        self.effects.check_frame(size)
+        check_frame(&self.effects, size)
     }
 
     fn misexposure(&self, exposure: &ExposureFrame) -> Option<Misexposure> {
-        let factor = self.meter.factor(exposure);
-        let effect = self.stock.reciprocity.as_ref().map_or(1.0, |r| r.effect(self.exposure_time_s * factor));
+        let factor = self.camera.meter.factor(exposure);
+        let effect = self.reciprocity_effect(factor);
         let layers = self.stock.layers.iter().enumerate().map(|(i, layer)| {
             let plane = &exposure.channel(&layer.name)?.values[..];
             let curve = |x: f64| match &self.picture {
@@ -407,7 +363,7 @@ impl Film for StockFilm {
     fn gray_time_s(&self, exposure: &ExposureFrame) -> Option<f64> {
         let plane = &exposure.channel(&self.stock.layers.first()?.name)?.values;
         let mean = plane.iter().map(|v| f64::from(*v)).sum::<f64>() / plane.len() as f64;
-        Some(self.exposure_time_s * self.gray_lx_s / mean).filter(|time| time.is_finite() && *time > 0.0)
+        Some(self.camera.settings.time_s * self.gray_lx_s / mean).filter(|time| time.is_finite() && *time > 0.0)
     }
 
     fn name(&self) -> String {
@@ -434,7 +390,7 @@ impl Film for StockFilm {
     }
 
     fn develops_as(&self, other: &dyn Film) -> bool {
-        let of = |film: &Self| (film.exposure_time_s, film.meter, film.gray_lx_s, film.mtf50);
+        let of = |film: &Self| (film.camera.settings.time_s, film.camera.meter, film.gray_lx_s, film.mtf50);
         (other as &dyn Any).downcast_ref::<Self>().is_some_and(|other| {
             of(self) == of(other)
                 && self.effects == other.effects
@@ -465,7 +421,7 @@ impl Film for StockFilm {
         if self.stock.layers.iter().any(named) {
             assumed.push("curve");
         }
-        assumed.extend(self.effects.assumed());
+        assumed.extend(&self.effects.assumed);
         let assumed = match &assumed[..] {
             [] => String::new(),
             [one] => format!(" ({one} assumed)"),
@@ -476,7 +432,7 @@ impl Film for StockFilm {
             "{}{iso}, {} development{assumed}, {}, {}",
             self.stock.name,
             self.development,
-            self.meter.words(self.exposure_time_s),
+            self.camera.meter.words(self.camera.settings.time_s),
             self.words
         )
     }

@@ -1,19 +1,22 @@
 //! The film kind `three-strip`: three separation negatives behind a beam splitter, printed by dye transfer.
 
-use crate::effects::{Assumed, Effects, HalationSetting, Off, OpticsSetting, Switches, mtf50, pixel_mm};
-use crate::metering::{ExposureParams, ExposureSettings, METER, Meter, Metered, Metering, SpotParams, overruled};
+use crate::camera::{Camera, exposed_by_camera};
+use crate::effects::{
+    Assumed, HalationSetting, Off, OpticsSetting, Switches, check_frame, effects, mtf50, pixel_mm, raster,
+};
+use crate::metering::{ExposureParams, ExposureSettings, Meter, Metered, Metering, SpotParams};
+use crate::stock::layer_of;
 use crate::stocks::load_stock;
 use crate::view::{BlackParams, SurroundParams, WhiteParams};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use spectra_core::frame::{
-    DisplayPicture, ExposureChannel, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, FrameSize,
-};
+use spectra_core::frame::{DisplayPicture, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, FrameSize};
 use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Params, Positive as AboveZero};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Channel};
 use spectra_core::stage::Film;
+use spectra_film::develop::{Effects, develop};
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
@@ -169,13 +172,7 @@ fn technicolor() -> String {
 /// A three-strip camera and its dye-transfer print.
 #[derive(Clone, Debug)]
 pub struct ThreeStrip {
-    channels: Vec<Channel>,
-    exposure_time_s: f64,
-    /// Whether an exposure time was stated although the camera meters.
-    is_overruled: bool,
-    keeps_exposure: bool,
-    meters: Metered,
-    meter: Meter,
+    camera: Camera,
     positive: Positive,
     /// Emulsion of each record, in the order of the print's layers.
     developed: [Emulsion; 3],
@@ -254,9 +251,7 @@ impl ThreeStrip {
         let positive = positive.map_err(|e| params.fault("print", e.to_string()))?;
         let stocks: Vec<&str> = records.iter().map(|r| r.name.as_str()).collect();
         let words = format!("three-strip camera, ISO {iso} ({}), printed as {}", stocks.join(", "), print.name);
-        let (exposure_time_s, is_overruled) = (exposed.time_s, exposed.is_overruled);
-        let mut developed = Vec::new();
-        let mut effects = Vec::new();
+        let (mut developed, mut record_effects) = (Vec::new(), Vec::new());
         for (i, record) in records.iter().enumerate() {
             let key = format!("{}.stock", record.key);
             let own = Emulsion::with_curves(&record.stock, vec![record.curve.clone()]);
@@ -272,10 +267,10 @@ impl ThreeStrip {
                 grain_seed: p.grain_seed,
                 first_layer: i as u32,
             };
-            effects.push(Effects::new(&switches, params, &record.stock, &own)?);
+            record_effects.push(effects(&switches, params, &record.stock, &own)?);
             developed.push(own);
         }
-        let (Ok(developed), Ok(effects)) = (developed.try_into(), effects.try_into()) else {
+        let (Ok(developed), Ok(effects)) = (developed.try_into(), record_effects.try_into()) else {
             return Err(params.fault_here("three records are expected").into());
         };
         let mtf50 = mtf50(p.optics, None);
@@ -285,12 +280,7 @@ impl ThreeStrip {
         unknown.dedup();
         let unknown = unknown.join(", ");
         Ok(Self {
-            channels,
-            exposure_time_s,
-            is_overruled,
-            keeps_exposure: exposed.keeps,
-            meters: p.meter,
-            meter,
+            camera: Camera { channels, settings: exposed, frames: p.meter, meter },
             positive,
             developed,
             effects,
@@ -318,24 +308,26 @@ impl ThreeStrip {
         exposure: &ExposureFrame,
         mut exposed: impl FnMut(&str, &[f32], f64),
     ) -> Result<Vec<Vec<f32>>, Fault> {
-        let factor = self.meter.factor(exposure);
-        let raster = self.effects[BLUE].raster(exposure.size)?;
-        let mut spare = Vec::new();
-        let negatives = RECORDS.iter().enumerate().map(|(i, name)| {
-            let light = &channel(exposure, name).map_err(|error| error.to_string())?.values;
-            let (effects, film) = (&self.effects[i], &self.developed[i]);
-            let mut plane = match i {
-                RED => effects.spread(0, &self.effects[BLUE].scattered(0, light, &raster)?, &raster, &mut spare)?,
-                _ => effects.spread(0, light, &raster, &mut spare)?,
+        let factor = self.camera.meter.factor(exposure);
+        let raster = raster(&self.effects[BLUE], exposure.size)?;
+        let time_s = self.camera.settings.time_s * factor;
+        let mut negatives = Vec::new();
+        for (i, name) in RECORDS.iter().enumerate() {
+            let mut light = &channel(exposure, name).map_err(|error| error.to_string())?.values[..];
+            let behind;
+            if i == RED {
+                behind = self.effects[BLUE].scattered(0, light, &raster)?;
+                light = &behind;
+            }
+            let factor_of_record = factor * self.reciprocity[i].as_ref().map_or(1.0, |r| r.effect(time_s));
+            let lay = |_, plane: Vec<f32>| {
+                exposed(name, &plane, factor);
+                plane
             };
-            exposed(name, &plane, factor);
-            let reciprocity = self.reciprocity[i].as_ref();
-            film.develop(0, &mut plane, factor * reciprocity.map_or(1.0, |r| r.effect(self.exposure_time_s * factor)));
-            effects.edges(0, &mut plane, film, &raster);
-            effects.grain(0, &mut plane, film.range(0).0, &raster)?;
-            Ok(plane)
-        });
-        negatives.collect()
+            let (film, effects, rasters) = (&self.developed[i], &self.effects[i], [&raster; 2]);
+            negatives.extend(develop(film, effects, &[light], factor_of_record, rasters, lay, |_, _| ())?);
+        }
+        Ok(negatives)
     }
 }
 
@@ -400,41 +392,7 @@ impl Record {
 }
 
 impl Film for ThreeStrip {
-    fn channels(&self) -> Vec<Channel> {
-        self.channels.clone()
-    }
-
-    fn picture_channels(&self) -> usize {
-        self.channels.iter().filter(|c| c.name != METER).count()
-    }
-
-    fn exposure_time_s(&self) -> f64 {
-        self.exposure_time_s
-    }
-
-    fn metered_time_s(&self, exposure: &ExposureFrame) -> f64 {
-        self.exposure_time_s * self.meter.factor(exposure)
-    }
-
-    fn is_metered(&self) -> bool {
-        self.meter.is_on()
-    }
-
-    fn keeps_exposure(&self) -> bool {
-        self.keeps_exposure
-    }
-
-    fn meter(&self) -> Option<&'static str> {
-        self.meter.word()
-    }
-
-    fn meters_each_frame(&self) -> bool {
-        self.meters == Metered::Each
-    }
-
-    fn is_metered_at(&self, size: &FrameSize, pixel: u32) -> bool {
-        self.meter.looks_at(size, pixel)
-    }
+    exposed_by_camera!();
 
     fn balanced_channels(&self) -> usize {
         RECORDS.len()
@@ -444,12 +402,8 @@ impl Film for ThreeStrip {
         unknown_reciprocity(None, &self.unknown, time_s).filter(|_| !self.unknown.is_empty())
     }
 
-    fn warnings(&self) -> Vec<String> {
-        overruled(self.is_overruled)
-    }
-
     fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
-        self.effects.iter().try_for_each(|effects| effects.check_frame(size))
+        self.effects.iter().try_for_each(|effects| check_frame(effects, size))
     }
 
     fn set_frame(&mut self, frame: u64) {
@@ -469,20 +423,15 @@ impl Film for ThreeStrip {
         let mut negatives = self.records(exposure, |name, plane, factor| {
             if wanted.layers {
                 let values = plane.iter().map(|v| *v * factor as f32).collect();
-                layers.push(ExposureChannel { name: format!("exposure.{name}"), unit: "lx s".into(), values });
+                layers.push(layer_of("exposure", name, "lx s", values));
             }
         })?;
         if wanted.layers {
-            let density = |(name, plane): (&&str, &Vec<f32>)| ExposureChannel {
-                name: format!("density.{name}"),
-                unit: String::new(),
-                values: plane.clone(),
-            };
-            layers.extend(RECORDS.iter().zip(&negatives).map(density));
+            let named = RECORDS.iter().zip(&negatives);
+            layers.extend(named.map(|(name, plane)| layer_of("density", name, "", plane.clone())));
         }
         if let Some(mtf50) = self.mtf50 {
-            let lens = Optics::new(mtf50, pixel_mm(&exposure.size));
-            negatives.iter_mut().for_each(|plane| lens.apply(plane, exposure.size.width_px as usize));
+            Optics::new(mtf50, pixel_mm(&exposure.size)).apply_to_all(&mut negatives, exposure.size.width_px as usize);
         }
         let planes: Vec<&[f32]> = negatives.iter().map(Vec::as_slice).collect();
         let size = exposure.size;
@@ -497,11 +446,11 @@ impl Film for ThreeStrip {
     }
 
     fn describe(&self) -> String {
-        let mut assumed: Vec<&str> = self.effects.iter().flat_map(|e| e.assumed().iter().copied()).collect();
+        let mut assumed: Vec<&str> = self.effects.iter().flat_map(|e| e.assumed.iter().copied()).collect();
         assumed.sort_unstable();
         assumed.dedup();
         let assumed = if assumed.is_empty() { String::new() } else { format!(" ({} assumed)", assumed.join(" and ")) };
-        format!("{}{assumed}, {}", self.words, self.meter.words(self.exposure_time_s))
+        format!("{}{assumed}, {}", self.words, self.camera.meter.words(self.camera.settings.time_s))
     }
 }
 

@@ -1,9 +1,10 @@
 //! Tests of the bundled Ilford Ortho Plus against its sheet.
 
-use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
 use spectra_core::math::{log10, pow};
 use spectra_core::spectral::{BAND, Grid};
-use spectra_film::develop::develop;
+use spectra_film::develop::{Effects, develop};
+use spectra_film::emulsion::{Emulsion, EmulsionError};
+use spectra_film::raster::Raster;
 use spectra_film::stock::{SensitivityScale, SpectralSensitivity, Stock};
 use spectra_scene::FileResources;
 use spectra_spectrum::{Emission, illuminant, v_lambda};
@@ -112,26 +113,41 @@ fn curve_passes_the_speed_point_with_the_gradient_of_the_sheet() {
     assert_eq!(curve.unexposed_density(), 0.0);
 }
 
+/// Develops a row of pixels, exposed for `time_s`, on a film without effects.
+fn developed(development: &str, row: &[f32], time_s: f64) -> Result<Vec<f32>, EmulsionError> {
+    let stock = ortho_plus();
+    let emulsion = Emulsion::new(&stock, development)?;
+    let effects = Effects {
+        mtf: vec![None],
+        adjacency: vec![None],
+        halation: vec![None],
+        granularity: None,
+        assumed: Vec::new(),
+        piece: 0,
+        seed: 0,
+        first_layer: 0,
+    };
+    let factor = stock.reciprocity.map_or(1.0, |r| r.effect(time_s));
+    let raster = Raster::new(row.len(), 1, 1.0);
+    let planes = develop(&emulsion, &effects, &[row], factor, [&raster; 2], |_, plane| plane, |_, _| ());
+    Ok(planes.expect("no effects").remove(0))
+}
+
 /// A step wedge of 21 half-stop steps through the whole development gives the stock's own curve.
 #[test]
 fn a_step_wedge_recovers_the_curve() {
-    let stock = ortho_plus();
+    let curve = &ortho_plus().layers[0].developments[0].curve;
     let steps: Vec<f32> = (0..21).map(|i| 1e-3 * pow(2.0, f64::from(i) * 0.5) as f32).collect();
-    let size = FrameSize { width_px: 21, height_px: 1, width_mm: 21.0, height_mm: 1.0 };
-    let channel = ExposureChannel { name: "ortho".into(), unit: "lx s".into(), values: steps.clone() };
-    let frame = ExposureFrame { size, channels: vec![channel] };
-    let developed = develop(&stock, "pictorial", &frame, 1.0 / 60.0).expect("complete");
-    for (step, density) in steps.iter().zip(&developed.layers[0].density) {
-        let want = stock.layers[0].developments[0].curve.density(log10(f64::from(*step)));
+    let wedge = developed("pictorial", &steps, 1.0 / 60.0).expect("complete");
+    assert_eq!(wedge.len(), steps.len());
+    for (step, density) in steps.iter().zip(&wedge) {
+        let want = curve.density(log10(f64::from(*step)));
         // Interpolation 5e-7, and rounding to 24 bits.
         assert!((f64::from(*density) - want).abs() < 1e-6, "{step}");
     }
     // No light, negative light and NaN leave it clear.
-    let odd = ExposureChannel { name: "ortho".into(), unit: "lx s".into(), values: vec![0.0, -1.0, f32::NAN] };
-    let size = FrameSize { width_px: 3, ..size };
-    let clear = develop(&stock, "pictorial", &ExposureFrame { size, channels: vec![odd] }, 1.0).expect("complete");
-    assert_eq!(clear.layers[0].density, [0.0; 3]);
-    assert!(develop(&stock, "lith", &frame, 1.0).is_err());
+    assert_eq!(developed("pictorial", &[0.0, -1.0, f32::NAN], 1.0).expect("complete"), [0.0; 3]);
+    assert!(developed("lith", &steps, 1.0).is_err());
 }
 
 /// From the sheet: a metered 10 s becomes 17.8 s, so 17.8 s have the effect of 10 s; up to 1 s nothing is lost.
