@@ -8,7 +8,7 @@ use spectra_core::names::{self, Match};
 use spectra_core::params::Fault;
 use spectra_core::registry::{self, Documentation, Listed, Parameter, ValueForm};
 use spectra_scene::bundled::{self, Bundled};
-use spectra_scene::{FileKind, file_documentation, shared_documentation};
+use spectra_scene::{FileKind, FoundKeys, file_documentation, find_keys, key_pages, shared_documentation};
 use std::fmt::Write;
 
 /// Width of a page, characters.
@@ -42,127 +42,8 @@ enum Page {
     Kind(&'static str, Vec<Listed>),
     /// A kind of file.
     File(FileKind),
-    /// A key given by name or path. For each page that has it: the name of the page, then the key and the keys below it.
-    Keys(String, Vec<(String, Vec<Parameter>)>),
-}
-
-/// Parameters of a page, with their paths in a scene.
-struct Keys {
-    /// Name of the page for `spectra doc`.
-    page: String,
-    /// Prefix of the parameters' paths in a scene, such as `film.`.
-    at: &'static str,
-    summary: String,
-    parameters: Vec<Parameter>,
-}
-
-/// Returns all pages with their keys: files first, then stages. The shared keys of each kind of stage come before its members.
-fn pages() -> Vec<Keys> {
-    let mut all: Vec<Keys> = Vec::new();
-    for kind in FileKind::ALL {
-        let documentation = file_documentation(kind);
-        let (summary, parameters) = (documentation.summary, documentation.parameters);
-        all.push(Keys { page: kind.name().to_owned(), at: "", summary, parameters });
-    }
-    let mut before = "";
-    for stage in registry::list() {
-        let at = match stage.stage {
-            "source" => "source.",
-            "color" => "source.color.",
-            "wavelengths" => "wavelengths.",
-            "surface" => "surfaces[].",
-            "imager" => "imager.",
-            "response" => "imager.response.",
-            "film" => "film.",
-            "coating" => "lens.coating.",
-            "aperture" => "lens.aperture.",
-            _ => "",
-        };
-        if stage.stage != before {
-            before = stage.stage;
-            if let Some(shared) = shared_documentation(stage.stage) {
-                let (summary, parameters) = (shared.summary, shared.parameters);
-                all.push(Keys { page: stage.stage.to_owned(), at, summary, parameters });
-            }
-        }
-        let Documentation { summary, mut parameters, .. } = stage.documentation();
-        // The page of the file lists these parameters already.
-        if FileKind::ALL.iter().any(|kind| kind.name() == stage.stage) {
-            parameters.clear();
-        }
-        all.push(Keys { page: format!("{}/{}", stage.stage, stage.name), at, summary, parameters });
-    }
-    all
-}
-
-/// Returns a path in lower case without the marks of kinds and lists: `output(rays)[].size` becomes `output.size`.
-fn plain_path(path: &str) -> String {
-    let mut out = String::new();
-    let mut inside = false;
-    for c in path.trim().to_lowercase().chars() {
-        match c {
-            '(' => inside = true,
-            ')' => inside = false,
-            '[' | ']' => {}
-            '_' | ' ' => out.push('-'),
-            c if !inside => out.push(c),
-            _ => {}
-        }
-    }
-    out
-}
-
-/// Finds a key on all pages. Tries the whole path first, then a name or the end of a path, then a part of a key's name.
-/// The error holds the keys that come nearest, if any.
-fn keys(name: &str) -> Result<Page, Vec<String>> {
-    let pages = pages();
-    let wanted = plain_path(name);
-    if wanted.is_empty() {
-        return Err(Vec::new());
-    }
-    let end = format!(".{wanted}");
-    let collect = |fits: &dyn Fn(&str) -> bool| -> Vec<(String, Vec<Parameter>)> {
-        let mut found: Vec<(String, Vec<Parameter>)> = Vec::new();
-        for page in &pages {
-            let full = |p: &Parameter| plain_path(&format!("{}{}", page.at, p.key));
-            let heads: Vec<String> = page.parameters.iter().map(full).filter(|path| fits(path)).collect();
-            let below = |path: &str| {
-                heads
-                    .iter()
-                    .any(|head| path.strip_prefix(head.as_str()).is_some_and(|r| r.is_empty() || r.starts_with('.')))
-            };
-            let of_page: Vec<Parameter> = page.parameters.iter().filter(|p| below(&full(p))).cloned().collect();
-            if !of_page.is_empty() {
-                found.push((page.page.clone(), of_page));
-            }
-        }
-        found
-    };
-    // A path with a dot is first matched as a whole; a bare name matches at the end of any path.
-    let found = if wanted.contains('.') { collect(&|path| path == wanted) } else { Vec::new() };
-    let found = if found.is_empty() { collect(&|path| path == wanted || path.ends_with(&end)) } else { found };
-    if !found.is_empty() {
-        return Ok(Page::Keys(wanted, found));
-    }
-    let mut last: Vec<String> = Vec::new();
-    for parameter in pages.iter().flat_map(|page| &page.parameters) {
-        let path = plain_path(&parameter.key);
-        let key = path.rsplit('.').next().unwrap_or(&path).to_owned();
-        if !last.contains(&key) {
-            last.push(key);
-        }
-    }
-    match names::find(&wanted, last.iter().map(String::as_str)) {
-        // A bundled name or a glossary word takes precedence over a part of a key: `tri-x` does not mean `matrix`.
-        Match::One(key) if names::normalized(key) == names::normalized(&wanted) || elsewhere(name).is_none() => {
-            keys(key)
-        }
-        Match::One(key) => Err(vec![key.to_owned()]),
-        Match::Several(several) => Err(several.into_iter().map(str::to_owned).collect()),
-        Match::Nothing => {
-            Err(names::nearest(&wanted, last.iter().map(String::as_str)).map(str::to_owned).into_iter().collect())
-        }
-    }
+    /// A key given by name or path.
+    Keys(FoundKeys),
 }
 
 /// Looks up a name without a page: a lens, a film, a spectrum or a term of photography. Returns what it is and the command that shows it.
@@ -179,21 +60,6 @@ fn elsewhere(name: &str) -> Option<(String, String)> {
         Bundled::Glass => "glass info",
     };
     Some((kind.noun().to_owned(), format!("spectra {command} {name}")))
-}
-
-/// Returns the unit of a bare number at a path of a scene, if all pages agree on it.
-pub(crate) fn unit_of(path: &str) -> Option<String> {
-    let wanted = plain_path(path);
-    let mut units: Vec<String> = Vec::new();
-    for page in pages().into_iter().filter(|page| !["lens", "stock", "spectrum"].contains(&page.page.as_str())) {
-        let at = |p: &Parameter| plain_path(&format!("{}{}", page.at, p.key)) == wanted;
-        units.extend(page.parameters.iter().filter(|p| at(p)).map(|p| p.unit.clone()));
-    }
-    units.dedup();
-    match &units[..] {
-        [unit] if !unit.is_empty() => Some(unit.clone()),
-        _ => None,
-    }
 }
 
 /// A stage or a key found by `--search`.
@@ -222,7 +88,7 @@ fn search(word: &str) -> Result<Vec<Hit>, Failure> {
     let wanted = word.trim().to_lowercase();
     let holds = |text: &str| !wanted.is_empty() && text.to_lowercase().contains(&wanted);
     let mut hits = Vec::new();
-    for page in pages() {
+    for page in key_pages() {
         if page.page.contains('/') && (holds(&page.page) || holds(&page.summary)) {
             hits.push(Hit { page: page.page.clone(), key: String::new(), text: page.summary.clone() });
         }
@@ -258,15 +124,16 @@ fn find(name: &str) -> Result<Page, Failure> {
     match wanted[..] {
         [one] => Ok(Page::Stage(*one)),
         [] => {
-            let near_keys = match keys(name) {
-                Ok(page) => return Ok(page),
+            let meaning = elsewhere(name);
+            let near_keys = match find_keys(name, meaning.is_some()) {
+                Ok(found) => return Ok(Page::Keys(found)),
                 Err(near) => near,
             };
             let mut names: Vec<String> = all.iter().map(full).collect();
             names.extend(all.iter().map(|l| l.stage.to_owned()));
             names.extend(all.iter().map(|l| l.name.to_owned()));
             names.extend(FileKind::ALL.map(|kind| kind.name().to_owned()));
-            if let Some((what, command)) = elsewhere(name) {
+            if let Some((what, command)) = meaning {
                 let fault = Fault::new(format!("`{name}` has no page of its own: {what}"));
                 return Err(fault.hint(format!("see `{command}`")).into());
             }
@@ -320,9 +187,9 @@ impl Page {
                 "shared": shared_documentation(kind),
             }),
             Self::File(kind) => json!({ "file": kind.name(), "documentation": file_documentation(*kind) }),
-            Self::Keys(key, found) => json!({
-                "key": key,
-                "found": found.iter().map(|(page, all)| json!({ "page": page, "parameters": all })).collect::<Vec<_>>(),
+            Self::Keys(found) => json!({
+                "key": found.key,
+                "found": found.pages.iter().map(|(page, all)| json!({ "page": page, "parameters": all })).collect::<Vec<_>>(),
             }),
         }
     }
@@ -361,8 +228,8 @@ impl Page {
                 let _ = writeln!(out, "{} file\n", kind.name());
                 body(&mut out, &file_documentation(*kind));
             }
-            Self::Keys(_, found) => {
-                for (at, (page, all)) in found.iter().enumerate() {
+            Self::Keys(found) => {
+                for (at, (page, all)) in found.pages.iter().enumerate() {
                     let gap = if at == 0 { "" } else { "\n" };
                     let _ = writeln!(out, "{gap}{page} (the whole page: `spectra doc {page}`)");
                     parameters(&mut out, all);

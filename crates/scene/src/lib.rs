@@ -16,6 +16,7 @@ mod filters;
 mod focus;
 mod frame_view;
 mod hints;
+mod keys;
 mod lamps;
 mod landing;
 mod language;
@@ -41,6 +42,7 @@ pub use spectra_yaml as yaml;
 pub use color_cast::place as place_of_film;
 pub use focus::{Focus, FocusBy};
 pub use frame_view::ViewSearch;
+pub use keys::{FoundKeys, KeyPage, find_keys, key_pages, unit_of};
 pub use language::{
     Member, Series, SeriesKind, SweptAxis, document, load, load_series, series_of_text, series_of_tree,
 };

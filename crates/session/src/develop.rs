@@ -74,8 +74,6 @@ pub struct Develop<'a> {
     pub version: &'a str,
     /// Versions that a result depends on, for the record.
     pub versions: Value,
-    /// Function that returns the unit of a bare number at a path of a scene.
-    pub unit_of: &'a (dyn Fn(&str) -> Option<String> + Sync),
 }
 
 /// A photograph on a film, for use as a [`Session`] instead of only being written. The scene is the one that [`develop`] makes of
@@ -110,7 +108,6 @@ impl Photograph {
             isa,
             version: "",
             versions: Value::Null,
-            unit_of: &|_| None,
         };
         Ok(scene(&job, &self.plate, None).map_err(without_generated_places)?.0)
     }
@@ -365,7 +362,6 @@ fn one(
         overrides: series.overrides().to_vec(),
         version: job.version,
         versions: job.versions.clone(),
-        unit_of: job.unit_of,
     };
     picture(&job, unfinished, host).map_err(|error| match error {
         SessionError::Faults(faults) => SessionError::Faults(without_generated_places(faults)),

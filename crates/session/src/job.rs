@@ -27,8 +27,6 @@ pub struct Job<'a> {
     pub version: &'a str,
     /// Versions that a result depends on, for the record.
     pub versions: Value,
-    /// Function that returns the unit of a bare number at a path of a scene.
-    pub unit_of: &'a (dyn Fn(&str) -> Option<String> + Sync),
 }
 
 /// Source of the light of a picture.

@@ -12,7 +12,7 @@ use crate::{
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};
 use spectra_core::sink::WriteFault;
-use spectra_scene::{Member, Scene, Series, SeriesKind, SeriesSummary, Shot};
+use spectra_scene::{Member, Scene, Series, SeriesKind, SeriesSummary, Shot, unit_of};
 use std::collections::HashMap;
 use std::io::Cursor;
 use std::sync::Arc;
@@ -123,15 +123,15 @@ fn what(series: &Series, pictures: usize) -> String {
 }
 
 /// Returns the unit of a bare number at a path of the scene. The unit of a variable follows from the places that use it.
-fn unit_of(job: &Job<'_>, path: &str) -> Option<String> {
-    let Some(name) = path.strip_prefix("variables.") else { return (job.unit_of)(path) };
-    job.series.uses_of_variable(name).into_iter().find_map(|(path, text)| {
+fn unit_in(series: &Series, path: &str) -> Option<String> {
+    let Some(name) = path.strip_prefix("variables.") else { return unit_of(path) };
+    series.uses_of_variable(name).into_iter().find_map(|(path, text)| {
         let is_temperature =
             ["blackbody:", "daylight:"].iter().any(|head| text.contains(&format!("{head}${{{name}}}")));
         let is_whole = text == format!("${name}") || text == format!("${{{name}}}");
         match () {
             () if is_temperature => Some("K".to_owned()),
-            () if is_whole => (job.unit_of)(&path),
+            () if is_whole => unit_of(&path),
             () => None,
         }
     })
@@ -145,7 +145,7 @@ fn contact(job: &Job<'_>, planned: &[Planned]) -> Option<Contact> {
     let mut units: HashMap<String, Option<String>> = HashMap::new();
     let mut complete = |path: &str, value: &mut String| {
         if let Reading::Bare(_) = Reading::of(value.trim_matches('"'))
-            && let Some(unit) = units.entry(path.to_owned()).or_insert_with(|| unit_of(job, path))
+            && let Some(unit) = units.entry(path.to_owned()).or_insert_with(|| unit_in(job.series, path))
         {
             *value = if unit == "f/" { format!("f/{value}") } else { format!("{value} {unit}") };
         }

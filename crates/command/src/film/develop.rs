@@ -5,7 +5,7 @@ use super::keys::{self, set};
 use super::{called, pictures};
 use crate::outcome::{Failure, Outcome};
 use crate::run::{CliHost, OutputMode, with_json_error};
-use crate::{doc, version};
+use crate::version;
 use spectra_core::Isa;
 use spectra_session::{Develop, Setting, picture_ending};
 use std::time::Instant;
@@ -33,7 +33,6 @@ fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
         isa,
         version: version::VERSION,
         versions: version::to_json(),
-        unit_of: &doc::unit_of,
     };
     let speaks = OutputMode { json: arguments.json, quiet: arguments.quiet };
     let face = CliHost::new(target, arguments.threads, isa, started, speaks, None);

@@ -7,7 +7,7 @@ use crate::folder::{Target, Temporary};
 use crate::interrupt::{self, Interrupt};
 use crate::outcome::{DONE, Failure, Outcome};
 use crate::time_limit::SetUp;
-use crate::{console, doc, frames, limits, memory, version};
+use crate::{console, frames, limits, memory, version};
 use progress::Progress;
 use serde_json::json;
 use spectra_core::Isa;
@@ -60,7 +60,6 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
         overrides,
         version: version::VERSION,
         versions: version::to_json(),
-        unit_of: &doc::unit_of,
     };
     let speaks = OutputMode { json: arguments.json, quiet: arguments.quiet };
     let face = CliHost { deadline, set_up, ..CliHost::new(target, arguments.threads, isa, started, speaks, deadline) };
