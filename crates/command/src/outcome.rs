@@ -31,6 +31,11 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// Returns the failure of a command whose stage failed.
+    pub(crate) fn of_stage(fault: Fault) -> Self {
+        Self::Failed(fault.to_string())
+    }
+
     /// Reports the failure on standard error; returns the exit code.
     pub(crate) fn report(&self) -> u8 {
         match self {

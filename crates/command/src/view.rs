@@ -7,7 +7,7 @@ use crate::limits;
 use crate::outcome::{Failure, Outcome};
 use spectra_core::Isa;
 use spectra_core::params::Fault;
-use spectra_session::{PICTURES, is_picture};
+use spectra_darkroom::{PICTURES, is_picture};
 use spectra_view::ViewerSettings;
 use std::fs::File;
 use std::io::Read;

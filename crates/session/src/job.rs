@@ -3,6 +3,7 @@
 use crate::Names;
 use serde_json::Value;
 use spectra_core::Isa;
+use spectra_darkroom::LightFrom;
 use spectra_scene::Series;
 
 /// A scene to render and write to files.
@@ -27,16 +28,6 @@ pub struct Job<'a> {
     pub version: &'a str,
     /// Versions that a result depends on, for the record.
     pub versions: Value,
-}
-
-/// Source of the light of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LightFrom {
-    /// Rays through the lens.
-    #[default]
-    Rays,
-    /// The pixels of the scene's flat picture, imaged by an ideal lens; no ray is traced.
-    Pixels,
 }
 
 /// How a job ended.

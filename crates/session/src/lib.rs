@@ -23,7 +23,6 @@
 
 mod check;
 mod contact;
-mod cube;
 mod develop;
 mod error;
 mod exposure_backup;
@@ -31,11 +30,9 @@ mod exposure_warnings;
 mod files;
 mod first_frame;
 pub mod formatting;
-mod generated;
 mod header;
 mod host;
 mod job;
-mod lamp;
 mod names;
 mod options;
 mod pace;
@@ -43,27 +40,23 @@ mod report;
 mod run;
 mod series;
 mod session;
-mod still;
 mod summary;
 mod threads;
 mod traced_picture;
 
 pub use check::{CheckSettings, Checked, check};
-pub use cube::{Cube, CubeErrors, CubeFile, RANDOM_COLORS};
-pub use develop::{
-    Develop, PICTURES, Photograph, PictureJob, Setting, TRACED_PX, develop, is_picture, last_number, picture_ending,
-};
+pub use develop::{Develop, develop, picture_ending};
 pub use error::SessionError;
 pub use header::films;
 pub use host::{Event, Folder, Host, SeriesPosition};
-pub use job::{Job, JobEnd, LightFrom};
-pub use lamp::FilmInLight;
+pub use job::{Job, JobEnd};
 pub use names::Names;
 pub use options::SessionOptions;
 pub use pace::Pace;
 pub use report::Report;
 pub use run::run;
 pub use session::{Session, Snapshot, ValidResults};
+pub use spectra_darkroom::LightFrom;
 pub use spectra_render::{Control, Effort, Rendering, SingleThread, Threads, Workers};
 pub use spectra_scene::Developed;
 pub use threads::make_threads;

@@ -2,10 +2,10 @@
 
 use crate::exposure_warnings::exposure_warnings;
 use crate::files::{Files, write_report};
-use crate::generated::{is_generated, without_generated_place};
-use crate::job::{Job, JobEnd, LightFrom};
+use crate::job::{Job, JobEnd};
 use crate::traced_picture::{IncompletePolicy, TracedPicture, prepare};
 use crate::{Event, Host, Report, Session, SessionError, SessionOptions, formatting, header, series};
+use spectra_darkroom::{LightFrom, is_generated, without_generated_place};
 use spectra_scene::{FilmTime, SeriesKind, Shot};
 
 /// Renders and writes all pictures of a job.

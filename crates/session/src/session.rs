@@ -9,7 +9,7 @@ mod snapshot;
 pub use snapshot::{Snapshot, ValidResults};
 
 use crate::files::Files;
-use crate::{Control, Names, Rendering, SessionError, SessionOptions, SingleThread, Workers, header, still};
+use crate::{Control, Names, Rendering, SessionError, SessionOptions, SingleThread, Workers, header};
 use spectra_core::frame::ExposureFrame;
 use spectra_core::params::{Faults, Warning};
 use spectra_core::sink::Sink;
@@ -196,7 +196,7 @@ impl Session {
     /// # Errors
     /// The source is not a flat picture, or its file is broken; the film has more pixels than the picture, or another shape.
     pub fn expose(&self) -> Result<Rendering, SessionError> {
-        still::expose(&self.scene)
+        Ok(spectra_darkroom::expose(&self.scene)?)
     }
 
     /// Exposes the film, as [`Session::expose`] does, to pixels that [`spectra_core::stage::Source::still`] of its source gave
@@ -205,7 +205,7 @@ impl Session {
     /// # Errors
     /// The film has more pixels than the picture, or another shape.
     pub fn expose_still(&self, still: &Still) -> Result<Rendering, SessionError> {
-        still::of_still(&self.scene, still)
+        Ok(spectra_darkroom::expose_still(&self.scene, still)?)
     }
 
     /// Returns whether any ray was traced.

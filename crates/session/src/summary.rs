@@ -4,6 +4,7 @@ use crate::{LightFrom, Report, formatting};
 use spectra_core::math::log10;
 use spectra_core::params::{Node, Value};
 use spectra_core::{Loss, shutter};
+use spectra_darkroom::is_picture;
 use spectra_render::GhostNoise;
 use spectra_scene::FilmTime;
 use std::path::Path;
@@ -122,7 +123,7 @@ fn of_pixels(report: &Report<'_>) -> String {
 /// Describes how each film was exposed.
 fn all_exposed(report: &Report<'_>) -> String {
     // A developed photograph has no scene file to edit, so messages name command-line options.
-    let has_options = crate::develop::is_picture(Path::new(&report.job.scene_file));
+    let has_options = is_picture(Path::new(&report.job.scene_file));
     let one = |(at, time): (usize, &FilmTime)| {
         let gray = report.rendering.mid_gray.as_deref();
         exposed(time, gray.and_then(|gray| report.scene.stops_over_file(at, time, gray)), has_options)

@@ -6,8 +6,8 @@ use crate::outcome::{DONE, Failure, Outcome};
 use crate::{console, version};
 use serde_json::json;
 use spectra_core::params::Fault;
+use spectra_darkroom::{Cube, FilmPipeline, RANDOM_COLORS};
 use spectra_files::write_atomically;
-use spectra_session::{Cube, RANDOM_COLORS};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -20,13 +20,14 @@ pub(super) fn cube(arguments: &FilmCube) -> Outcome {
         let text = format!("{}: the name of a look-up table must end in .cube", output.display());
         return Err(Fault::new(text).hint("write `-o film.cube`").into());
     }
+    let illuminant = keys::illuminant(&arguments.keys, &arguments.stock, &stock)?;
     let cube = Cube {
-        settings: keys::settings(&arguments.keys, &arguments.stock, &stock),
-        illuminant: keys::illuminant(&arguments.keys, &arguments.stock, &stock)?,
+        film: FilmPipeline::of(&keys::settings(&arguments.keys, &arguments.stock, &stock), &illuminant)?,
+        illuminant: illuminant.value,
         size: arguments.size as usize,
         stops: arguments.stops,
     };
-    let file = cube.file(version::VERSION)?;
+    let file = cube.file(version::VERSION).map_err(Failure::of_stage)?;
     write_atomically(&output, |out| Ok(out.write_all(file.text.as_bytes())?)).map_err(Failure::from)?;
     let ([mean, p95, most], [patches, worst]) = (file.errors.colors, file.errors.reflectances);
     let left_out = ["scatter", "halation", "adjacency", "grain", "optics"];
@@ -36,7 +37,7 @@ pub(super) fn cube(arguments: &FilmCube) -> Outcome {
             "film": file.film,
             "size": arguments.size,
             "stops": arguments.stops,
-            "illuminant": cube.illuminant.value,
+            "illuminant": cube.illuminant,
             "left_out": left_out,
             "random_colors": { "count": RANDOM_COLORS, "mean_ciede2000": mean, "p95_ciede2000": p95, "largest_ciede2000": most },
             "colorchecker": { "mean_ciede2000": patches, "largest_ciede2000": worst },

@@ -7,7 +7,8 @@ use crate::outcome::{Failure, Outcome};
 use crate::run::{CliHost, OutputMode, with_json_error};
 use crate::version;
 use spectra_core::Isa;
-use spectra_session::{Develop, Setting, picture_ending};
+use spectra_darkroom::{DevelopSettings, Setting};
+use spectra_session::{Develop, picture_ending};
 use std::time::Instant;
 
 /// Develops pictures. With `--json`, a failure is also written as an event.
@@ -24,11 +25,13 @@ fn developed(arguments: &FilmDevelop, isa: Isa, started: Instant) -> Outcome {
         plates,
         is_series,
         notes: missing.into_iter().collect(),
-        settings: settings(arguments, &stock)?,
-        overrides: arguments.set.overrides.clone(),
-        format: arguments.format.as_ref().map(|format| set("imager.format", "--format", format)),
-        side_px: arguments.side,
-        meter_each: arguments.meter == MeterWhich::Each,
+        settings: DevelopSettings {
+            settings: settings(arguments, &stock)?,
+            overrides: arguments.set.overrides.clone(),
+            format: arguments.format.as_ref().map(|format| set("imager.format", "--format", format)),
+            side_px: arguments.side,
+            meter_each: arguments.meter == MeterWhich::Each,
+        },
         skip_existing: arguments.skip_existing,
         isa,
         version: version::VERSION,

@@ -4,7 +4,7 @@ use super::arguments::FilmKeys;
 use super::load;
 use crate::outcome::Failure;
 use spectra_core::params::Fault;
-use spectra_session::Setting;
+use spectra_darkroom::Setting;
 use std::path::Path;
 
 /// Returns the setting of an option's value at a path of a scene.

@@ -13,10 +13,10 @@ use spectra_color::{
 };
 use spectra_core::params::Fault;
 use spectra_core::spectral::BAND;
+use spectra_darkroom::FilmInLight;
 use spectra_film::stock::Stock;
 use spectra_plot::Format;
 use spectra_scene::FileResources;
-use spectra_session::FilmInLight;
 use spectra_sheet::{Column, Sheet, Table};
 use spectra_spectrum::{Emission, Observer, Reflectance, find_emission_in, find_reflectance_in};
 use std::iter::once;
@@ -163,7 +163,7 @@ fn patch_colors(
     surfaces: &[&Reflectance],
 ) -> Result<Vec<PatchColors>, Failure> {
     let white = white_exposures(stock, light)?;
-    let pictures = film.pictures(&light.light, surfaces)?.ok_or_else(|| light.dark())?;
+    let pictures = film.pictures(&light.light, surfaces).map_err(Failure::of_stage)?.ok_or_else(|| light.dark())?;
     let one = |(surface, film): (&&Reflectance, [f64; 3])| {
         let exposed = exposures(stock, &(&light.light * *surface));
         let layers = matrix::apply(xyz_of_layers, [0, 1, 2].map(|i| exposed[i] / white[i]));

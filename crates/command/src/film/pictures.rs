@@ -3,7 +3,8 @@
 use crate::folder::Target;
 use crate::outcome::Failure;
 use spectra_core::params::Fault;
-use spectra_session::{Names, PICTURES, PictureJob, is_picture, last_number};
+use spectra_darkroom::{PICTURES, PictureJob, is_picture, last_number};
+use spectra_session::Names;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

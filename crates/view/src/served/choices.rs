@@ -3,8 +3,9 @@
 
 use super::render_job::RenderJob;
 use serde_json::{Value, json};
+use spectra_darkroom::is_picture;
 use spectra_scene::bundled::Bundled;
-use spectra_session::{SessionError, is_picture};
+use spectra_session::SessionError;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,10 @@
 //! Photographs in the viewer: the scene that `film develop` would make of one.
 
 use spectra_core::stage::{Source, Still};
+use spectra_darkroom::{Photograph, PictureJob, Setting, last_number};
 use spectra_film::stock::Stock;
 use spectra_scene::FileResources;
-use spectra_session::{Photograph, PictureJob, Rendering, Session, SessionError, Setting, last_number};
+use spectra_session::{Rendering, Session, SessionError};
 use std::path::Path;
 use std::sync::Arc;
 

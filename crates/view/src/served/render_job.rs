@@ -2,7 +2,8 @@
 
 use super::photograph;
 use spectra_core::Isa;
-use spectra_session::{Photograph, Session, SessionError, SessionOptions, is_picture};
+use spectra_darkroom::{Photograph, is_picture};
+use spectra_session::{Session, SessionError, SessionOptions};
 use std::path::{Path, PathBuf};
 
 /// A scene or photograph to render, and the means to do it.
@@ -40,7 +41,7 @@ impl RenderJob {
     pub(crate) fn session(&self) -> Result<Session, SessionError> {
         let options = SessionOptions { isa: self.isa, ..SessionOptions::default() };
         match &self.photograph {
-            Some(photograph) => Session::new(photograph.series(&self.overrides, self.isa)?, options),
+            Some(photograph) => Session::new(photograph.series(&self.overrides)?, options),
             None => Session::open(&self.scene, &self.overrides, options),
         }
     }

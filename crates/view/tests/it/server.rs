@@ -458,18 +458,18 @@ fn a_photograph_is_developed() {
     assert_eq!((&said["photograph"], &said["widths"], &said["saves"]), (&json!(true), &json!([60]), &json!(false)));
     assert!(said["controls"].as_array().expect("a list").iter().all(|control| control["path"] != "lens.f-number"));
     let wanted = |stock: &str, light: &str| {
-        let setting = |path: &str, value: &str| spectra_session::Setting {
+        let setting = |path: &str, value: &str| spectra_darkroom::Setting {
             path: path.to_owned(),
             value: value.to_owned(),
             as_typed: String::new(),
         };
         let file = browser.file.to_string_lossy().into_owned();
-        let photograph = spectra_session::Photograph {
-            plate: spectra_session::PictureJob { file, output: "photo.png".to_owned(), number: None },
+        let photograph = spectra_darkroom::Photograph {
+            plate: spectra_darkroom::PictureJob { file, output: "photo.png".to_owned(), number: None },
             settings: vec![setting("film.stock", stock), setting("source.illuminant", light)],
             format: None,
         };
-        let series = photograph.series(&[], Isa::detect()).expect("a scene");
+        let series = photograph.series(&[]).expect("a scene");
         let session =
             spectra_session::Session::new(series, spectra_session::SessionOptions::default()).expect("a scene");
         let exposure = session.expose().expect("light").exposure;

@@ -9,10 +9,10 @@
 
 mod wide;
 
-use crate::SessionError;
 use rayon::prelude::*;
 use spectra_core::LossCounts;
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
+use spectra_core::params::Faults;
 use spectra_core::spectral::Channel;
 use spectra_core::stage::{ColorModel, Still};
 use spectra_render::Rendering;
@@ -39,20 +39,33 @@ const LANES: usize = 4;
 /// Number of pixels in a task of one thread.
 const PIXELS_A_TASK: usize = 1 << 14;
 
+/// Source of the light of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightFrom {
+    /// Rays through the lens.
+    #[default]
+    Rays,
+    /// The pixels of the scene's flat picture, imaged by an ideal lens; no ray is traced.
+    Pixels,
+}
+
 /// Exposes the scene's film to the scene's picture, without its lens.
 ///
 /// # Errors
 /// The source is not a flat picture, or its file is broken; the film has more pixels than the picture, or another shape.
-pub(crate) fn expose(scene: &Scene) -> Result<Rendering, SessionError> {
+pub fn expose(scene: &Scene) -> Result<Rendering, Faults> {
     let Some(still) = scene.source.still() else {
         let fault = scene.params.fault("source.kind", "only a flat picture can be exposed without a lens");
         return Err(fault.hint("use `kind: picture` without `depth`, or name a lens").into());
     };
-    of_still(scene, &still?)
+    expose_still(scene, &still?)
 }
 
-/// Exposes the scene's film to pixels that were read before.
-pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, SessionError> {
+/// Exposes the scene's film to pixels that were read before, as [`expose`] does.
+///
+/// # Errors
+/// The film has more pixels than the picture, or another shape.
+pub fn expose_still(scene: &Scene, still: &Still) -> Result<Rendering, Faults> {
     let size = scene.imager.size();
     let [across, down] = [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)];
     let aspects =
@@ -106,7 +119,7 @@ pub(crate) fn of_still(scene: &Scene, still: &Still) -> Result<Rendering, Sessio
 }
 
 /// Lookup of the channels' exposures by a color.
-pub(crate) struct Colors<'a> {
+struct Colors<'a> {
     model: &'a dyn ColorModel,
     channels: &'a [Channel],
     factor: f64,
@@ -127,7 +140,7 @@ fn value(i: usize) -> f64 {
 
 impl<'a> Colors<'a> {
     /// Tabulates the exposures of `channels`, which are `factor` times the integrals over the model's spectra.
-    pub(crate) fn new(model: &'a dyn ColorModel, channels: &'a [Channel], factor: f64) -> Self {
+    fn new(model: &'a dyn ColorModel, channels: &'a [Channel], factor: f64) -> Self {
         let step = |i: usize| if i + 1 < SIDE { value(i + 1) - value(i) } else { 1.0 };
         let values = (0..SIDE).map(|i| [value(i) as f32, (1.0 / step(i)) as f32]).collect();
         let mut colors = Self { model, channels, factor, points: Vec::new(), values, wide: None };
@@ -156,13 +169,13 @@ impl<'a> Colors<'a> {
     }
 
     /// Computes the exposure of each channel by a color by integration.
-    pub(crate) fn integrals(&self, color: [f64; 3]) -> Vec<f64> {
+    fn integrals(&self, color: [f64; 3]) -> Vec<f64> {
         let light = self.model.spectrum(color);
         self.channels.iter().map(|channel| self.factor * light.seen_by(&channel.response)).collect()
     }
 
     /// Returns the largest error of the table against integrals, over dark, bright, gray and saturated colors.
-    pub(crate) fn worst(&self) -> f64 {
+    fn worst(&self) -> f64 {
         let off = |i: usize| {
             // Additive recurrences with irrational steps fill a cube evenly (the three-dimensional relative of the plastic
             // number).
@@ -240,7 +253,7 @@ impl<'a> Colors<'a> {
     }
 
     /// Returns a plane for each channel with its exposure by each of these pixels.
-    pub(crate) fn of_pixels(&self, pixels: &[[f32; 3]]) -> Vec<Vec<f32>> {
+    fn of_pixels(&self, pixels: &[[f32; 3]]) -> Vec<Vec<f32>> {
         let mut planes: Vec<Vec<f32>> = self.channels.iter().map(|_| vec![0.0; pixels.len()]).collect();
         let mut pieces: Vec<Vec<&mut [f32]>> = pixels.chunks(PIXELS_A_TASK).map(|_| Vec::new()).collect();
         for plane in &mut planes {

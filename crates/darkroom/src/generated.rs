@@ -6,17 +6,20 @@ use spectra_core::params::{Fault, Faults, Warning};
 pub(crate) const MADE: &str = "--made";
 
 /// Returns the faults without the places of values that the user did not write.
-pub(crate) fn without_generated_places(faults: Faults) -> Faults {
+#[must_use]
+pub fn without_generated_places(faults: Faults) -> Faults {
     faults.into_iter().map(without_made).collect::<Vec<_>>().into()
 }
 
 /// Returns a warning as it is shown: without the place if the user did not write the value.
-pub(crate) fn without_generated_place(warning: &Warning) -> Warning {
+#[must_use]
+pub fn without_generated_place(warning: &Warning) -> Warning {
     Warning(without_made(warning.0.clone()))
 }
 
 /// Returns whether a warning is about a value that the user did not write.
-pub(crate) fn is_generated(warning: &Warning) -> bool {
+#[must_use]
+pub fn is_generated(warning: &Warning) -> bool {
     at_made(&warning.0)
 }
 

@@ -1,13 +1,11 @@
 //! Pictures of surfaces on a developed film, in one light or another.
 
-use crate::cube::FilmPipeline;
-use crate::{SessionError, Setting};
+use crate::photograph::Setting;
+use crate::pipeline::{FilmPipeline, GRAY};
 use spectra_color::RgbSpace;
+use spectra_core::params::{Fault, Faults};
 use spectra_core::spectral::BAND;
 use spectra_spectrum::{Emission, Reflectance};
-
-/// Fraction of the light that a mid gray reflects.
-const GRAY: f64 = 0.18;
 
 /// A film whose development and print, scan or projection stay the same, whatever light its pictures are taken in.
 pub struct FilmInLight(FilmPipeline);
@@ -18,7 +16,7 @@ impl FilmInLight {
     ///
     /// # Errors
     /// Faults of the settings.
-    pub fn new(settings: &[Setting], made_for: &Setting) -> Result<Self, SessionError> {
+    pub fn new(settings: &[Setting], made_for: &Setting) -> Result<Self, Faults> {
         Ok(Self(FilmPipeline::of(settings, made_for)?))
     }
 
@@ -29,8 +27,8 @@ impl FilmInLight {
     /// Returns `None` if a layer does not respond to the light.
     ///
     /// # Errors
-    /// The film cannot be developed.
-    pub fn pictures(&self, light: &Emission, surfaces: &[&Reflectance]) -> Result<Option<Vec<[f64; 3]>>, SessionError> {
+    /// A message: the film cannot be developed.
+    pub fn pictures(&self, light: &Emission, surfaces: &[&Reflectance]) -> Result<Option<Vec<[f64; 3]>>, Fault> {
         let chain = &self.0;
         let white = chain.exposures(&light.to_power(&BAND));
         let filters: Vec<f64> = chain.metered.iter().zip(&white).map(|(gray, white)| gray / (GRAY * white)).collect();

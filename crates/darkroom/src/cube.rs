@@ -3,30 +3,22 @@
 //! The table leaves out effects that need a pixel's neighbors: scatter, halation, adjacency, grain, and the lens of the printer
 //! or scanner.
 
-use crate::still::{F_NUMBER, WHITE_CD_M2};
-use crate::{SessionError, Setting};
+use crate::pipeline::{FilmPipeline, GRAY};
 use rayon::prelude::*;
 use spectra_color::{RgbSpace, ciede2000, lab, xyz_of_reflectance};
-use spectra_core::frame::{ExposureChannel, ExposureFrame, ExtraRequest, FrameSize};
 use spectra_core::math::{log2, pow};
 use spectra_core::numbers::mix64;
-use spectra_core::params::{Faults, Key, Node, Params, SourceFile, Value};
-use spectra_core::registry::{self, Context};
-use spectra_core::spectral::{BAND, Channel, Line, SpectralPower};
-use spectra_core::stage::{ColorModel, Film};
-use spectra_scene::{FileResources, yaml};
-use spectra_spectrum::{COLOR_CHECKER, Observer, find_emission_in, find_reflectance, illuminant};
-use std::f64::consts::PI;
+use spectra_core::params::Fault;
+use spectra_core::spectral::{BAND, Line, SpectralPower};
+use spectra_spectrum::{COLOR_CHECKER, Observer, find_reflectance, illuminant};
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// A 3-D look-up table to compute: film, light and resolution.
-#[derive(Clone, Debug)]
 pub struct Cube {
-    /// Settings of the film section of a scene, such as `film.stock`.
-    pub settings: Vec<Setting>,
+    /// The film, exposed in the light of the scene.
+    pub film: FilmPipeline,
     /// Name of the light of the scene.
-    pub illuminant: Setting,
+    pub illuminant: String,
     /// Number of points along each side.
     pub size: usize,
     /// Range of a side in stops, half of them above mid gray.
@@ -56,27 +48,14 @@ pub struct CubeFile {
 
 /// Number of random colors that a table is tested with.
 pub const RANDOM_COLORS: usize = 10_000;
-/// Linear light of a mid gray.
-const GRAY: f64 = 0.18;
-
-/// The film, and the color model that exposes it.
-pub(crate) struct FilmPipeline {
-    film: Box<dyn Film>,
-    model: Box<dyn ColorModel>,
-    channels: Vec<Channel>,
-    /// Exposure, lx s, per integral over the model's spectra.
-    factor: f64,
-    /// Exposure of each channel by a mid gray, which the meter sees.
-    pub(crate) metered: Vec<f64>,
-}
 
 impl Cube {
     /// Computes the table. `version` is written into its header.
     ///
     /// # Errors
-    /// Faults of the settings; a film that cannot be developed.
-    pub fn file(&self, version: &str) -> Result<CubeFile, SessionError> {
-        let chain = FilmPipeline::of(&self.settings, &self.illuminant)?;
+    /// A message: the film cannot be developed.
+    pub fn file(&self, version: &str) -> Result<CubeFile, Fault> {
+        let chain = &self.film;
         let side: Vec<f64> = (0..self.size).map(|i| self.linear(i as f64 / (self.size - 1) as f64)).collect();
         let mut lattice = Vec::with_capacity(self.size * self.size * self.size);
         // Red varies fastest, as in every `.cube` file.
@@ -88,7 +67,7 @@ impl Cube {
         let exposures: Vec<Vec<f64>> =
             lattice.par_iter().map(|rgb| chain.exposures(&chain.model.spectrum(*rgb))).collect();
         let points = chain.pictures(&exposures)?;
-        let errors = self.errors(&chain, &points)?;
+        let errors = self.errors(&points)?;
         let film = chain.film.describe();
         let mut text = self.header(&film, version, errors);
         for [r, g, b] in &points {
@@ -126,7 +105,8 @@ impl Cube {
         sum
     }
 
-    fn errors(&self, chain: &FilmPipeline, points: &[[f64; 3]]) -> Result<CubeErrors, SessionError> {
+    fn errors(&self, points: &[[f64; 3]]) -> Result<CubeErrors, Fault> {
+        let chain = &self.film;
         let space = RgbSpace::srgb();
         let of_code = |code: u64| space.transfer.decode((code & 0xff) as f64 / 255.0);
         let colors: Vec<[f64; 3]> = (0..RANDOM_COLORS as u64)
@@ -144,13 +124,12 @@ impl Cube {
         let largest = |off: &[f64]| off.iter().copied().fold(0.0, f64::max);
         let colors = [of_colors, off[off.len() * 95 / 100], largest(&off)];
 
-        let daylight = illuminant("D65").map_err(|e| SessionError::Failed(e.to_string()))?;
+        let daylight = illuminant("D65").map_err(|e| Fault::new(e.to_string()))?;
         let observer = Observer::cie_1931_2deg();
         let white = chain.model.spectrum([1.0; 3]);
         let (mut seen, mut lights) = (Vec::new(), Vec::new());
         for patch in COLOR_CHECKER {
-            let surface =
-                find_reflectance(&format!("colorchecker#{patch}")).map_err(|e| SessionError::Failed(e.to_string()))?;
+            let surface = find_reflectance(&format!("colorchecker#{patch}")).map_err(|e| Fault::new(e.to_string()))?;
             let xyz = xyz_of_reflectance(&surface, &daylight, observer).unwrap_or_default();
             seen.push(space.from_xyz(xyz.map(|v| v / 100.0)).map(|v| v.max(0.0)));
             let lit = white.continuum.iter().zip(surface.on_grid(&BAND)).map(|(p, r)| p * r).collect();
@@ -191,98 +170,9 @@ impl Cube {
              LUT_3D_SIZE {size}\nDOMAIN_MIN 0.0 0.0 0.0\nDOMAIN_MAX 1.0 1.0 1.0\n",
             stops = self.stops,
             high = low + self.stops,
-            light = self.illuminant.value,
+            light = self.illuminant,
             count = RANDOM_COLORS,
             size = self.size,
         )
-    }
-}
-
-impl FilmPipeline {
-    /// Builds the film of these settings, metered for a mid gray in the light `illuminant`. Effects that need a pixel's neighbors
-    /// are off.
-    pub(crate) fn of(settings: &[Setting], illuminant: &Setting) -> Result<Self, Faults> {
-        const MADE: &str = "--made";
-        let resources = FileResources::beside(Path::new(""));
-        let text = "{kind: stock, metering: average, scatter: false, adjacency: false, halation: off, grain: false, optics: off}";
-        let film = yaml::parse(SourceFile::new(MADE, text))?;
-        let entries = vec![(Key { text: "film".to_owned(), span: Default::default() }, film.clone())];
-        let mut root = Node::new(Value::Map(entries), film.span, film.file);
-        let mut faults = Faults::new();
-        for setting in settings {
-            let node = faults.take(yaml::parse(SourceFile::new(setting.as_typed.as_str(), setting.value.as_str())));
-            if let Some(node) = node {
-                if setting.path == "film.paper.grade" && node.as_str() == Some("auto") {
-                    let fault =
-                        node.fault("an automatic grade differs from frame to frame, but a table is the same for all");
-                    faults.push(fault.hint("write a grade from 0 to 5"));
-                }
-                faults.take(root.set_path(&setting.path, node));
-            }
-        }
-        let light = yaml::parse(SourceFile::new(illuminant.as_typed.as_str(), illuminant.value.as_str()))?;
-        let named = light.as_str().unwrap_or_default();
-        let found = find_emission_in(named, &resources).map_err(|e| e.faults(|text| light.fault(text)));
-        let found = faults.take(found);
-        let Some(found) = faults.into_result(found)? else { return Err(Faults::new()) };
-        let light = found.to_power(&BAND);
-        let context = Context::new(&resources, BAND);
-        let film = root.get("film").cloned().unwrap_or(root);
-        let film = registry::build::<dyn Film>(&Params::stage(film, "film")?, &context)?;
-        let color = Params::stage(yaml::parse(SourceFile::new(MADE, "{kind: smooth}"))?, "source.color")?;
-        let model = registry::build::<dyn ColorModel>(&color, &Context { illuminant: Some(&light), ..context })?;
-        let channels = film.channels();
-        let white = model.spectrum([1.0; 3]);
-        let lux =
-            spectra_spectrum::constants::LUMINOUS_EFFICACY_LM_PER_W * Observer::cie_1931_2deg().xyz_of_power(&white)[1];
-        let factor = WHITE_CD_M2 / lux * PI / (4.0 * F_NUMBER * F_NUMBER) * film.exposure_time_s();
-        let gray = model.spectrum([GRAY; 3]);
-        let mut chain = Self { film, model, channels, factor, metered: Vec::new() };
-        chain.metered = chain.exposures(&gray);
-        Ok(chain)
-    }
-
-    /// Returns the picture of each light, sRGB encoded, 0 to 1.
-    fn pictures_of_lights(&self, lights: impl Iterator<Item = SpectralPower>) -> Result<Vec<[f64; 3]>, SessionError> {
-        self.pictures(&lights.map(|light| self.exposures(&light)).collect::<Vec<_>>())
-    }
-
-    /// Returns the exposure of each channel by a light, lx s.
-    pub(crate) fn exposures(&self, light: &SpectralPower) -> Vec<f64> {
-        self.channels.iter().map(|channel| self.factor * light.seen_by(&channel.response)).collect()
-    }
-
-    /// Returns the picture of each set of channel exposures, sRGB encoded, 0 to 1. The meter sees mid gray.
-    fn pictures(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
-        let picture = self.film.develop(&self.frame(exposures)).map_err(SessionError::of_stage)?;
-        let space = RgbSpace::srgb();
-        let encoded = |rgb: &[f32; 3]| space.encode(rgb.map(|v| f64::from(v).clamp(0.0, 1.0)));
-        Ok(picture.rgb.iter().map(encoded).collect())
-    }
-
-    /// Returns the picture of each set of channel exposures in linear light of sRGB primaries, not compressed into a gamut if the
-    /// film can give such a picture.
-    pub(crate) fn unclamped_pictures(&self, exposures: &[Vec<f64>]) -> Result<Vec<[f64; 3]>, SessionError> {
-        let wanted = ExtraRequest { unclamped: true, ..ExtraRequest::default() };
-        let finished = self.film.finish(&self.frame(exposures), wanted).map_err(SessionError::of_stage)?;
-        let picture = finished.extra.unclamped.unwrap_or(finished.display);
-        Ok(picture.rgb.iter().map(|rgb| rgb.map(f64::from)).collect())
-    }
-
-    /// Returns a frame of one row, with a pixel for each set of channel exposures. Channels of the meter hold mid gray.
-    fn frame(&self, exposures: &[Vec<f64>]) -> ExposureFrame {
-        let pictured = self.film.picture_channels();
-        let plane = |k: usize| -> Vec<f32> {
-            let of_meter = k >= pictured;
-            exposures.iter().map(|got| if of_meter { self.metered[k] as f32 } else { got[k] as f32 }).collect()
-        };
-        let channels = self.channels.iter().enumerate().map(|(k, channel)| ExposureChannel {
-            name: channel.name.clone(),
-            unit: channel.unit.clone(),
-            values: plane(k),
-        });
-        let width = exposures.len() as u32;
-        let size = FrameSize { width_px: width, height_px: 1, width_mm: f64::from(width), height_mm: 1.0 };
-        ExposureFrame { size, channels: channels.collect() }
     }
 }
