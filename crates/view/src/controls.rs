@@ -3,50 +3,13 @@
 //! A page sends numbers, switches and words of a control's own list, never free text. The values for the scene are put together here, so
 //! no file path comes from a page.
 
+use crate::control::{Control, Kind};
+use crate::declared::{DECLARED, Declared, SECTIONS, names};
 use serde_json::{Value, json};
 use spectra_core::params::{Node, Value as Written};
-use spectra_core::registry::{self, Listed, Parameter, Stage, ValueForm};
-use spectra_film::stock::{Process, Stock};
-use spectra_lens::Coating;
-use spectra_scene::bundled::Bundled;
-use spectra_scene::{FileKind, FileResources, NO_LENS, Series, SeriesKind, file_documentation, shared_documentation};
+use spectra_core::registry::{Parameter, ValueForm};
+use spectra_scene::{NO_LENS, Series, SeriesKind};
 use spectra_session::Session;
-use spectra_spectrum::bundled_spectra;
-use std::path::Path;
-use std::sync::LazyLock;
-
-/// The kind of a control's value, and how it is written.
-#[derive(Clone, Debug, PartialEq)]
-enum Kind {
-    /// A number from `least` to `most`, with a text before it and a unit behind it.
-    Number { before: &'static str, unit: String, least: Option<f64>, most: Option<f64>, whole: bool },
-    /// A list of two numbers with the same unit and range.
-    Pair { unit: String, least: Option<f64>, most: Option<f64> },
-    /// One of these words.
-    Choice(Vec<String>),
-    /// A value that is true or false.
-    Switch,
-}
-
-/// A control of the page: one value of the scene that can be changed.
-#[derive(Clone, Debug)]
-pub(crate) struct Control {
-    path: String,
-    kind: Kind,
-    /// Value in the scene; null if the scene leaves it out.
-    value: Value,
-    help: String,
-    /// Whether the control is shown at once, because the scene sets it or most people look for it.
-    is_in_front: bool,
-    /// Text before and behind the number, if the number alone is not the value.
-    within: Option<[&'static str; 2]>,
-    /// Whether the control selects a picture of a sweep, or a frame of an animation, and changes none of them.
-    picks: bool,
-    /// Reason why the control cannot be changed; `None` if it can.
-    fixed: Option<String>,
-    /// Start of the control's scale, if it differs from the range: a lens cannot be opened beyond its own f-number.
-    from: Option<f64>,
-}
 
 /// Path of the control that selects the picture of a series.
 pub(crate) const PICTURE: &str = "picture";
@@ -83,78 +46,6 @@ const OF_RAYS: [&str; 10] = [
     "render.",
     "wavelengths.",
 ];
-const LIGHTS: [&str; 3] = ["illuminant", "lamp", "light"];
-
-/// Sections of a scene, each with the kind of stage that it holds.
-const SECTIONS: [(&str, &str); 5] = [
-    ("film", "film"),
-    ("imager", "imager"),
-    ("imager.response", "response"),
-    ("source", "source"),
-    ("wavelengths", "wavelengths"),
-];
-
-/// The parameters that this program's stages declare. They are the same for every scene, and slow to gather.
-struct Declared {
-    stages: Vec<(Listed, Vec<Parameter>)>,
-    shared: Vec<(&'static str, Vec<Parameter>)>,
-    /// Parameters of the sections `lens` and `render`, which hold no stage.
-    of_file: Vec<Parameter>,
-    /// Names of the coatings that have no required parameters, so that a name alone stands for them.
-    coatings: Vec<String>,
-}
-
-static DECLARED: LazyLock<Declared> = LazyLock::new(|| {
-    let is_wanted = |stage: &str| SECTIONS.iter().any(|(_, of)| *of == stage);
-    let stages = registry::list().into_iter().filter(|listed| is_wanted(listed.stage));
-    let of_stage = |stage| shared_documentation(stage).map(|found| (stage, found.parameters));
-    let mut of_file = file_documentation(FileKind::Scene).parameters;
-    of_file.retain(|parameter| parameter.key.starts_with("lens.") || parameter.key.starts_with("render."));
-    let has_no_required =
-        |listed: &Listed| listed.documentation().parameters.iter().all(|parameter| !parameter.required);
-    let coatings =
-        registry::list().into_iter().filter(|listed| listed.stage == Coating::NAME && has_no_required(listed));
-    Declared {
-        coatings: coatings.map(|listed| listed.name.to_owned()).collect(),
-        stages: stages.map(|listed| (listed, listed.documentation().parameters)).collect(),
-        shared: SECTIONS.iter().filter_map(|(_, stage)| of_stage(*stage)).collect(),
-        of_file,
-    }
-});
-
-/// Names of the bundled camera stocks, and of the bundled print stocks.
-static STOCKS: LazyLock<[Vec<String>; 2]> = LazyLock::new(|| {
-    let bundled = FileResources::beside(Path::new(""));
-    let mut both = [Vec::new(), Vec::new()];
-    for name in Stock::bundled() {
-        if let Ok(stock) = Stock::load(name, &bundled) {
-            both[usize::from(stock.process == Process::Print)].push(name.to_owned());
-        }
-    }
-    both
-});
-
-/// The camera stocks as the page shows them side by side: name, title, speed and kind.
-static TILES: LazyLock<Value> = LazyLock::new(|| {
-    let bundled = FileResources::beside(Path::new(""));
-    let tile = |name: &String| {
-        let stock = Stock::load(name, &bundled).ok()?;
-        let kind = match stock.process {
-            _ if stock.layers.len() == 1 => "gray",
-            Process::Reversal => "slide",
-            _ => "color",
-        };
-        Some(json!({"word": name, "title": stock.name, "iso": stock.iso, "kind": kind}))
-    };
-    STOCKS[0].iter().filter_map(tile).collect()
-});
-
-/// Gathers the data that all scenes have in common, ahead of the first page.
-pub(crate) fn gather() {
-    LazyLock::force(&DECLARED);
-    LazyLock::force(&TILES);
-}
-
 /// Returns the controls of a scene, given the root of its tree as written.
 fn of_scene(root: &Node) -> Vec<Control> {
     let mut all = Vec::new();
@@ -379,35 +270,6 @@ fn is_flat_picture(root: &Node) -> bool {
     says("source.kind") == Some("picture") && root.at_path("source.depth").is_none()
 }
 
-/// Returns the names that are allowed as the text at a path; `None` if there is no list of names for it.
-fn names(path: &str) -> Option<Vec<String>> {
-    let key = path.rsplit('.').next().unwrap_or_default();
-    Some(match (path, key) {
-        // Names in folders are parts for tests; a word from a page never holds a `/`.
-        ("lens.file", _) => Bundled::Lens.names().into_iter().filter(|name| !name.contains('/')).collect(),
-        ("lens.coating", _) => DECLARED.coatings.clone(),
-        ("film.stock", _) => STOCKS[0].clone(),
-        ("film.print", _) => STOCKS[1].clone(),
-        ("film.halation" | "film.optics", _) => vec!["off".to_owned()],
-        (_, key) if LIGHTS.contains(&key) => {
-            let all = bundled_spectra().filter(|(_, path)| path.starts_with("spectra/illuminants/"));
-            all.map(|(name, _)| name.to_owned()).collect()
-        }
-        _ => return None,
-    })
-}
-
-/// Describes a range in words, for a message.
-fn range_said(least: Option<f64>, most: Option<f64>, unit: &str) -> String {
-    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    match (least, most) {
-        (Some(least), Some(most)) => format!("it goes from {least} to {most}{unit}"),
-        (Some(least), None) => format!("it is at least {least}{unit}"),
-        (None, Some(most)) => format!("it is at most {most}{unit}"),
-        (None, None) => "any number".to_owned(),
-    }
-}
-
 /// Reads a number as it is written: the text before it, its value and its unit. `None` if it is not a finite number.
 fn number(node: &Node) -> Option<(&'static str, f64, String)> {
     match &node.value {
@@ -430,96 +292,10 @@ fn number(node: &Node) -> Option<(&'static str, f64, String)> {
     }
 }
 
-impl Control {
-    /// Path of the control's value in the scene.
-    pub(crate) fn path(&self) -> &str {
-        &self.path
-    }
-
-    /// Unit of the control's numbers; empty if they have none.
-    fn unit(&self) -> &str {
-        match &self.kind {
-            Kind::Number { unit, .. } | Kind::Pair { unit, .. } => unit,
-            Kind::Choice(_) | Kind::Switch => "",
-        }
-    }
-
-    /// Returns the control as JSON for the page.
-    pub(crate) fn to_json(&self) -> Value {
-        let kind = match &self.kind {
-            Kind::Number { before, unit, least, most, whole } => {
-                json!({"is": "number", "before": before, "unit": unit, "least": least, "most": most, "whole": whole})
-            }
-            Kind::Pair { unit, least, most } => json!({"is": "pair", "unit": unit, "least": least, "most": most}),
-            Kind::Choice(words) if self.path == "film.stock" && !self.picks => {
-                json!({"is": "choice", "words": words, "tiles": *TILES})
-            }
-            Kind::Choice(words) => json!({"is": "choice", "words": words}),
-            Kind::Switch => json!({"is": "switch"}),
-        };
-        json!({
-            "path": self.path,
-            "kind": kind,
-            "value": self.value,
-            "help": self.help,
-            "front": self.is_in_front,
-            "fixed": self.fixed,
-            "from": self.from,
-        })
-    }
-
-    /// Returns the word for `value` that selects a picture of the series; `None` if the control selects none.
-    pub(crate) fn picked(&self, value: &Value) -> Option<String> {
-        let word = || value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        self.picks.then(word)
-    }
-
-    /// Returns the text `path=value` for a value that a page sent.
-    ///
-    /// # Errors
-    /// The reason why this control cannot have the value.
-    pub(crate) fn text(&self, value: &Value) -> Result<String, String> {
-        if let Some(why) = &self.fixed {
-            return Err(why.clone());
-        }
-        let bounded = |value: &Value, least: Option<f64>, most: Option<f64>| match value.as_f64() {
-            Some(number) if !number.is_finite() => Err("not a finite number".to_owned()),
-            Some(number) if least.is_some_and(|least| number < least) || most.is_some_and(|most| number > most) => {
-                Err(format!("{number} is out of range: {}", range_said(least, most, self.unit())))
-            }
-            Some(number) => Ok(number),
-            None => Err("not a number".to_owned()),
-        };
-        let with_unit = |unit: &str| if unit.is_empty() { String::new() } else { format!(" {unit}") };
-        let written = match &self.kind {
-            Kind::Number { before, unit, least, most, whole } => {
-                let number = bounded(value, *least, *most)?;
-                if *whole && number.fract() != 0.0 {
-                    return Err("not a whole number".to_owned());
-                }
-                format!("{before}{number}{}", with_unit(unit))
-            }
-            Kind::Pair { unit, least, most } => match value.as_array().map(Vec::as_slice) {
-                Some([a, b]) => {
-                    let (a, b, unit) = (bounded(a, *least, *most)?, bounded(b, *least, *most)?, with_unit(unit));
-                    format!("[{a}{unit}, {b}{unit}]")
-                }
-                _ => return Err("not two numbers".to_owned()),
-            },
-            Kind::Choice(words) => match value.as_str() {
-                Some(word) if words.iter().any(|known| known == word) => word.to_owned(),
-                _ => return Err("not one of the choices".to_owned()),
-            },
-            Kind::Switch => value.as_bool().ok_or("neither true nor false")?.to_string(),
-        };
-        let [before, behind] = self.within.unwrap_or(["", ""]);
-        Ok(format!("{}={before}{written}{behind}", self.path))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spectra_lens::Coating;
     use spectra_plugins as _;
 
     fn controls(text: &str) -> Vec<Control> {

@@ -29,7 +29,9 @@
 //! **Without a server** (`crates/web`) the same page talks to a worker: `serverless.js` answers what the page requests, and `worker.js`
 //! holds the engine as a WebAssembly module.
 
+mod control;
 mod controls;
+mod declared;
 pub mod page;
 pub mod parts;
 mod section;

@@ -3,7 +3,8 @@
 //! A server keeps it behind a lock and adds drafts, undo and the scene's file (`served::page_session`). Without a server (`crates/web`) it
 //! stands beside the session. Both lend their own workers to the session, and a server adds the times that it measures to a picture's head.
 
-use crate::controls::{Control, of_session};
+use crate::control::Control;
+use crate::controls::of_session;
 use crate::parts::{halves, joined, packed, pixel};
 use crate::series_values::SeriesValues;
 use serde_json::{Value, json};

@@ -14,7 +14,7 @@ mod server;
 mod study;
 mod tester;
 
-use crate::controls;
+use crate::declared;
 use render_job::RenderJob;
 use server::Server;
 use spectra_core::Isa;
@@ -51,7 +51,7 @@ pub fn view(view: ViewerSettings, ready: impl FnOnce(&str)) -> Result<std::conve
     let server = bound(port, Some(order))?;
     ready(&server.address());
     // A page that comes sooner waits for this data; without this thread, the first page gathers it.
-    let _ = std::thread::Builder::new().name("gather".to_owned()).spawn(controls::gather);
+    let _ = std::thread::Builder::new().name("gather".to_owned()).spawn(declared::gather);
     Err(SessionError::Failed(format!("the server ended: {}", server.serve())))
 }
 
