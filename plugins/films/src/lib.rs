@@ -4,6 +4,7 @@
 
 mod camera;
 mod described_process;
+mod development;
 mod effects;
 mod frame;
 mod metering;
@@ -12,6 +13,7 @@ mod settings;
 mod stock;
 mod stocks;
 mod three_strip;
+mod three_strip_settings;
 mod view;
 
 pub use effects::{Assumed, HalationParams, HalationSetting, Off, OpticsParams, OpticsSetting};
@@ -19,5 +21,6 @@ pub use frame::{BorderKind, FrameParams};
 pub use metering::{Metering, SpotParams};
 pub use settings::StockParams;
 pub use stock::StockFilm;
-pub use three_strip::{RecordParams, ThreeStrip, ThreeStripParams};
+pub use three_strip::ThreeStrip;
+pub use three_strip_settings::{RecordParams, ThreeStripParams};
 pub use view::{PaperParams, View};

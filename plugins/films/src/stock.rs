@@ -2,7 +2,8 @@
 
 use crate::camera::{Camera, exposed_by_camera};
 use crate::described_process::build_process;
-use crate::effects::{Assumed, check_frame, effects, mtf50, pixel_mm, raster};
+use crate::development::develop_as;
+use crate::effects::{check_frame, effects, mtf50, pixel_mm, raster};
 use crate::frame::{FrameEffects, Laid};
 use crate::metering::{ExposureSettings, Meter, Metering};
 use crate::misexposure::{ends, misexposure};
@@ -13,7 +14,6 @@ use spectra_core::frame::{
     DisplayPicture, ExposureChannel, ExposureFrame, ExtraData, ExtraRequest, FinishedPicture, FrameSize, ImageState,
 };
 use spectra_core::math::pow;
-use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Params, Positive};
 use spectra_core::registry::Context;
 use spectra_core::stage::{Film, Misexposure, Negative};
@@ -23,7 +23,6 @@ use spectra_film::emulsion::Emulsion;
 use spectra_film::optics::Optics;
 use spectra_film::positive::{GamutLimit, densities};
 use spectra_film::print::{Print, metered_exposure_lx_s};
-use spectra_film::push::{PushError, pushed_or_assumed};
 use spectra_film::raster::Raster;
 use spectra_film::stock::{MeterResponse, Process, Stock, unknown_reciprocity};
 use std::any::Any;
@@ -289,38 +288,6 @@ struct DevelopedPlanes {
 /// Returns a plane as a layer of a file, named `group.layer`.
 pub(crate) fn layer_of(group: &str, layer: &str, unit: &str, values: Vec<f32>) -> ExposureChannel {
     ExposureChannel { name: format!("{group}.{layer}"), unit: unit.to_owned(), values }
-}
-
-/// Returns the emulsion with the curves of the chosen development or push, and the development in words.
-fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Result<(Emulsion, String), Faults> {
-    let known: Vec<&str> = stock.developments().collect();
-    let chosen = p.development.as_deref().or(known.first().copied()).unwrap_or_default();
-    if !known.contains(&chosen) {
-        let text = format!("{} has no curve for the development `{chosen}`", stock.name);
-        return Err(params.fault("development", text).hint(names::hint(chosen, &known, "")).into());
-    }
-    let Some(stops) = p.push else {
-        let emulsion = Emulsion::new(stock, chosen).map_err(|e| params.fault("stock", e.to_string()))?;
-        return Ok((emulsion, chosen.to_owned()));
-    };
-    let developed = pushed_or_assumed(stock, chosen, stops).map_err(|e| {
-        let other = "set another `iso` to expose the same film differently";
-        let hint = match &e {
-            PushError::Beyond { .. } | PushError::BeyondAssumed { .. } => format!("a smaller `push`, or {other}"),
-            _ => format!("leave `push` out, or {other}"),
-        };
-        params.fault("push", e.to_string()).hint(hint)
-    })?;
-    let emulsion = Emulsion::with_curves(stock, developed.curves).map_err(|e| params.fault("push", e.to_string()))?;
-    if developed.minutes.is_none() && p.assumed == Assumed::Off {
-        let text = format!("the effect of a push on {} is assumed, and `assumed: off` excludes that", stock.name);
-        return Err(params.fault("push", text).hint("leave out one of the two").into());
-    }
-    let how = match developed.minutes {
-        Some(minutes) => format!("{minutes:.1} min (pushed {stops:+} stops)"),
-        None => format!("{chosen} (pushed {stops:+} stops, assumed: the median of other films)"),
-    };
-    Ok((emulsion, how))
 }
 
 impl Film for StockFilm {
