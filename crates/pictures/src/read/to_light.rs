@@ -136,7 +136,7 @@ impl<'a> PixelFormat<'a> {
     }
 
     fn has_alpha(&self) -> bool {
-        self.count % 2 == 0
+        self.count.is_multiple_of(2)
     }
 
     fn is_float(&self) -> bool {
