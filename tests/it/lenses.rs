@@ -190,14 +190,15 @@ fn misread_glasses_are_doubted() {
 #[test]
 fn rims_have_an_origin() {
     for (name, words) in [
-        ("tessar-50-f4.5", "rims: computed from rays that were meant to pass"),
-        ("zeiss-biotar-50-f1.4", "rims: guessed"),
-        ("meyer-primoplan-100-f1.5", "rims: stated by the source"),
-        ("helios-44-58-f2", "rims: fitted to the light of a Helios-44 58 mm f/2 at f/2 and f/2.8"),
-        ("canon-ef-70-200-f2.8-at-72", "rims: fitted to the light of a Canon EF 70-200 mm f/2.8L"),
+        ("tessar-50-f4.5", "computed from rays that were meant to pass"),
+        ("zeiss-biotar-50-f1.4", "guessed"),
+        ("meyer-primoplan-100-f1.5", "stated by the source"),
+        ("helios-44-58-f2", "fitted to the light of a Helios-44 58 mm f/2 at f/2 and f/2.8"),
+        ("canon-ef-70-200-f2.8-at-72", "fitted to the light of a Canon EF 70-200 mm f/2.8L"),
     ] {
         let said = good(&["lens", "info", name]);
-        assert!(said.contains(words), "{name}: {said}");
+        let rims = said.lines().find_map(|line| line.trim().strip_prefix("rims")).unwrap_or_default();
+        assert!(rims.trim().starts_with(words), "{name}: {said}");
     }
     let said = good(&["lens", "info", "helios-44-58-f2", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&said).expect("JSON");

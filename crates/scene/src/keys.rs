@@ -22,7 +22,7 @@ pub struct KeyPage {
 pub struct FoundKeys {
     /// Name or path that was looked up, in lower case and without the marks of kinds and lists.
     pub key: String,
-    /// For each page that has the key: the name of the page, then the key and the keys below it.
+    /// Name of each page that has the key, with the key and the keys below it.
     pub pages: Vec<(String, Vec<Parameter>)>,
 }
 

@@ -1,4 +1,4 @@
-//! Numbers as text.
+//! Formatting of numbers as text.
 
 /// Formats a number with six digits, with a power of ten if it is under 1e-4 or over 1e6. Zero is `0`.
 #[must_use]

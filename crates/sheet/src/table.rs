@@ -8,17 +8,17 @@ use spectra_plot::Cell;
 /// How the values of a column are shown to readers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
-    /// As they are, to the left.
+    /// Values as they are, to the left.
     Text,
-    /// As they are, to the right.
+    /// Values as they are, to the right.
     Plain,
-    /// With this many decimals.
+    /// Numbers with this many decimals.
     Fixed(usize),
-    /// With six digits.
+    /// Numbers with six digits.
     Significant,
-    /// As a percentage with this many decimals.
+    /// Fractions as percentages with this many decimals.
     Percent(usize),
-    /// In data only.
+    /// Values that are in the data only.
     Hidden,
 }
 
@@ -132,7 +132,7 @@ impl Table {
         self.rows.push(row);
     }
 
-    /// Number of rows.
+    /// Number of rows of the table.
     #[must_use]
     pub fn len(&self) -> usize {
         self.rows.len()
@@ -149,7 +149,7 @@ impl Table {
         self.columns.iter().enumerate().filter(|(_, column)| column.format != Format::Hidden)
     }
 
-    /// Formats the table as lines of text with a header, each indented by two spaces.
+    /// Formats the table as lines of text, each indented by two spaces, below a header if any column has a label.
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut lines = vec!["  ".to_owned(); self.rows.len().min(self.most) + 1];
@@ -162,7 +162,8 @@ impl Table {
                 *line += &if column.is_right() { format!("{cell:>width$}  ") } else { format!("{cell:<width$}  ") };
             }
         }
-        let mut out: String = lines.iter().map(|line| format!("{}\n", line.trim_end())).collect();
+        let without = usize::from(self.shown().all(|(_, column)| column.label.is_empty()));
+        let mut out: String = lines.iter().skip(without).map(|line| format!("{}\n", line.trim_end())).collect();
         if self.rows.len() > self.most {
             out += &format!("  ... {} rows in all (--json shows each)\n", self.rows.len());
         }
@@ -228,6 +229,13 @@ mod tests {
             "  glass           nd    loss\n  BK7, \"old\"  1.5168   0.0 %\n  SF6              -  25.0 %\n"
         );
         assert_eq!(table().most(1).to_text().lines().last(), Some("  ... 2 rows in all (--json shows each)"));
+    }
+
+    #[test]
+    fn columns_without_labels_have_no_header() {
+        let mut table = Table::new("figures", [Column::text("figure", ""), Column::plain("value", "")]);
+        table.push(("length", "46.5 mm"));
+        assert_eq!(table.to_text(), "  length  46.5 mm\n");
     }
 
     #[test]

@@ -134,7 +134,7 @@ impl LensReport {
                 Column::fixed("field_deg", "field deg", 2),
                 Column::fixed("angle_deg", "exit angle deg", 3),
                 focus("image_height_mm", "image height"),
-                Column::text("distortion", "distortion"),
+                Column::plain("distortion", "distortion"),
                 focus("sagittal_focus_mm", "sagittal"),
                 focus("tangential_focus_mm", "tangential"),
                 Column::percent("relative_illuminance", "light", 1),

@@ -202,9 +202,9 @@ impl<S: KernelShape> Surface for Kernel<S> {
     }
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>) -> usize {
         match interface.action {
-            Action::Refract => interact::<S, { loops::REFRACT }>(&self.0, rays, interface),
-            Action::Reflect => interact::<S, { loops::REFLECT }>(&self.0, rays, interface),
-            Action::Pass => interact::<S, { loops::PASS }>(&self.0, rays, interface),
+            Action::Refract => interact::<S, { one_ray::REFRACT }>(&self.0, rays, interface),
+            Action::Reflect => interact::<S, { one_ray::REFLECT }>(&self.0, rays, interface),
+            Action::Pass => interact::<S, { one_ray::PASS }>(&self.0, rays, interface),
         }
     }
 }

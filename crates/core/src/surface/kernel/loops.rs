@@ -1,6 +1,6 @@
 //! The loops of a kernel over a batch. What happens to one ray is in `one_ray`.
 
-use super::one_ray::{self, APPROACH, CORRECT, SETTLE, SETTLE_ON, ends};
+use super::one_ray::{self, APPROACH, CORRECT, PASS, SETTLE, SETTLE_ON, ends};
 use super::{KernelShape, Near, Ray, Real};
 use crate::RayBatch;
 use crate::isa::Vectorized;
@@ -9,11 +9,6 @@ use crate::surface::{Interface, Travel};
 
 /// Largest number of times that [`KernelShape::settle`] runs. A ray that has not arrived by then is searched for.
 const MOST_SETTLING: usize = 4;
-
-/// The action of an interface as a constant, so that each has loops of its own.
-pub(super) const REFRACT: u8 = 0;
-pub(super) const REFLECT: u8 = 1;
-pub(super) const PASS: u8 = 2;
 
 /// Intersects and bends a batch of rays; returns how many ended here.
 pub(super) fn interact<S: KernelShape, const ACTION: u8>(

@@ -1,8 +1,12 @@
 //! What a kernel does to one ray: the bodies of its loops, without branches.
 
-use super::loops::{PASS, REFLECT, REFRACT};
 use super::{Hit, KernelShape, Near, Ray};
 use crate::surface::bend;
+
+/// The action of an interface as a constant, so that each has loops of its own.
+pub(super) const REFRACT: u8 = 0;
+pub(super) const REFLECT: u8 = 1;
+pub(super) const PASS: u8 = 2;
 
 /// The first step toward a surface.
 pub(super) const APPROACH: u8 = 0;
