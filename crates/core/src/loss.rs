@@ -1,4 +1,5 @@
-//! Losses of light: why a ray ended, at which surface, and how many rays did.
+//! Losses of light: why a ray ended, at which surface, and how many rays did. Light lost, in watts, is in the ledgers of the
+//! tracer and of the ghosts.
 
 /// Why a ray ended before it reached the other side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

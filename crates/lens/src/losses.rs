@@ -1,4 +1,4 @@
-//! Describes in words which losses of a lens are counted, as shown beside every T-number.
+//! Describes in words which losses of a lens are counted, as shown beside every T-number. Counts of lost rays are in [`spectra_core::loss`].
 
 use crate::{Coating, LayerKind, Lens};
 use spectra_core::surface::Action;

@@ -1,4 +1,4 @@
-//! The noise of a picture, and the rounds after which it is measured.
+//! How a picture's noise is stated, and the rounds of samples after which it is measured.
 //!
 //! A round ends after 32, 40, 48, ..., 128, 144, 160, ... samples of a half. Only then is it decided which tiles go on, so that a render
 //! that was stopped decides as one without a stop. `block_noise.rs` measures the noise.

@@ -14,6 +14,8 @@
 //! whose integral is the fraction that returns. The emulsion reflects a share of it down again, evenly as before, and so on: [`ReturnedLight`] sums
 //! all trips. The second trip adds a faint ring at twice the distance.
 //!
+//! **Names.** A stock's file calls `entering` `scattered`, and the base's `transmittance` `backing`; the film effects of a scene translate.
+//!
 //! **Layers.** A layer gets a smaller share of the returning light the farther it lies from the base (`halation.layers` of a stock).
 //!
 //! **Energy.** A stock's speed is measured with even light, halation included. So the arriving light is divided by one plus the returned

@@ -1,5 +1,7 @@
 //! Coatings: the light that a refracting surface lets through, for bare glass (Fresnel's equations), thin layers or a measured curve.
 //!
+//! A kind that makes layers or a curve is a file like `v_coat.rs`, which registers itself. Another law is a variant of [`Coating`].
+//!
 //! The formulas are from Born and Wolf, Principles of Optics, sections 1.5.2 and 1.6.4. Let eta = n cos(theta) for the electric field
 //! across the plane of incidence (s) and cos(theta) / n in it (p). A layer of phase thickness delta transmits T = 4 eta eta' / ((eta +
 //! eta')^2 cos^2(delta) + (eta eta' / eta_1 + eta_1)^2 sin^2(delta)). T is the same from both sides. Without a layer (delta = 0) it reduces

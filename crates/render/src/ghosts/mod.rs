@@ -13,8 +13,8 @@
 //! of the channels. Paths get rays in proportion to their noise over the root of their cost (Neyman's allocation). A tenth of each path's
 //! rays goes all over the front, so that no path is biased, whatever the pilot overlooked.
 //!
-//! **Footprints.** A ghost is smooth, so the light of a ray is spread over a square of pixels as it lands (`spreading`, `width`, `net`,
-//! [`crate::footprint`]). A ray's integers are divided into equal shares, and the pixel that the ray meets gets the remainder, so the
+//! **Footprints.** A ghost is smooth, so the light of a ray is spread over a square of pixels as it lands (`ghost_footprints`, `width`,
+//! `probe_grid`, [`crate::footprint`]). A ray's integers are divided into equal shares, and the pixel that the ray meets gets the remainder, so the
 //! shares add up to the ray exactly. On a mosaic each pixel gets its share of what its own channel sees of the ray. With `spread: none`
 //! each ray adds to one pixel; rays and totals of each path are the same to the last bit, except on mosaics. `xtask/ghost_noise.py`
 //! compares the two.
@@ -22,7 +22,7 @@
 //! **Blocks.** A unit of work has some rays of every path, so any number of units is a fair picture. Stepping, saving and stopping need
 //! nothing else.
 //!
-//! **Four reflections** are traced if requested: see `account`, which also books where all light goes.
+//! **Four reflections** are traced if requested: see `ledger`, which also books where all light goes.
 //!
 //! **When.** Unless the scene decides, ghosts are on if lights are rendered apart from the rest and the brightest block has more than 1 %
 //! of the rest's mean. Dimmer ghosts get fewer rays, down to an eighth of a ray per pixel and sample.

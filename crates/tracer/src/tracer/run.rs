@@ -221,6 +221,7 @@ impl Tracer {
         }
     }
 
+    /// Counts the rays that ended at a surface, by cause.
     fn count(&self, rays: &RayBatch, number: u32, losses: &mut LossCounts) {
         let causes = [Loss::Missed, Loss::Vignetted, Loss::TotalReflection, Loss::Absorbed];
         let many = rays.isa().run(Count { states: rays.states(), wanted: causes.map(|cause| cause.state(number)) });

@@ -1,7 +1,7 @@
-//! The desk of one page: a separate session on its own thread, around the [`PageState`] that every page has.
+//! The desk of one page ([`PageSession`]): a separate session on its own thread, around the [`PageState`] that every page has.
 //!
 //! The page leaves changes on the desk and takes frames from it. If several changes of one control arrive while a picture is traced, only
-//! the last one counts; current work is stopped for changes. A desk that receives no requests for 25 s is closed. There are at most four
+//! the last one counts. A draft is traced to its end; preparing and tracing the whole picture stops for changes. A desk that receives no requests for 25 s is closed. There are at most four
 //! desks.
 //!
 //! **Draft and whole** (`draft`, `apply`). The desk holds the scene twice: the whole session, and a draft of it, 120 pixels wide with four
@@ -11,7 +11,7 @@
 //! stars. The whole takes the focused lens of the draft (`Session::change_unprepared`) and is prepared when it is traced.
 //!
 //! **Refused changes** are reported until the control changes again, and leave the scene as it was. If a fault shows only when light is
-//! traced, the session goes back to an earlier state (`Moment`), as for a step back (`history`). `turns_settled` counts the changes that
+//! traced, the session goes back to an earlier state (`Snapshot`), as for a step back (`history`). `turns_settled` counts the changes that
 //! the controls have. A field of the page waits until that count reaches the number of its own change; then it shows the value, or is red.
 //! A control of a swept key chooses a picture.
 //!
