@@ -30,7 +30,7 @@ impl AnalysisLight {
         lens
     }
 
-    /// The wavelength in air, nm; `None` for the stated indices.
+    /// The wavelength in air, nm; `None` for [`AnalysisLight::Stated`], which uses the indices of the prescription.
     #[must_use]
     pub fn wavelength_nm(self) -> Option<f64> {
         match self {

@@ -76,8 +76,8 @@ impl Fan<'_> {
     }
 }
 
-/// Returns the largest field angle in a section at which anything passes, rad, up to `limit_rad`: to 0.01 degrees. `None` if nothing passes
-/// on the axis.
+/// Returns the largest field angle, in rad, at which any light passes in `section`. It is searched from the axis outward up to
+/// `limit_rad`, with an accuracy of 0.01 degrees. `None` if nothing passes on the axis.
 ///
 /// # Errors
 /// A medium has no index at the reference line.

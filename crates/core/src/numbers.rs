@@ -64,7 +64,7 @@ pub(crate) enum Kind {
 /// the error of random vignetted integrands at 16 to 256 points.
 const LATTICE: [u32; 5] = [1, 136_980_787, 1_326_550_667, 3_009_221_399, 872_425_555];
 
-/// A family of sampling numbers in [0, 1).
+/// A generator of sample coordinates in [0, 1): independent random numbers, Sobol points, a shifted lattice or jittered strata.
 #[derive(Clone, Debug)]
 pub struct Numbers {
     kind: Kind,

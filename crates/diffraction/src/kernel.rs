@@ -72,8 +72,11 @@ impl PixelSpread {
         self.weights[((j + r) * (2 * r + 1) + i + r) as usize]
     }
 
-    /// Corrects the weights for a wavefront's aberrations: rays with these aberrations, spread by the result, have the contrast of the
-    /// wavefront.
+    /// Corrects the weights for the aberrations of `wave`: traced rays with these aberrations, spread by the corrected weights,
+    /// have the contrast that the aberrated wavefront gives. Pixels have the size `pitch_mm` (mm).
+    ///
+    /// Leaves the weights unchanged if the correction is negligible, or if the aberrations are so large that rays alone describe
+    /// the light.
     #[must_use]
     pub fn with_wave(mut self, opening: &Polygon, wave: &Wavefront, light: &ChannelLight, pitch_mm: [f64; 2]) -> Self {
         if let Some(Correction { reach, weights }) = correction(opening, wave, light, pitch_mm) {

@@ -79,7 +79,7 @@ impl Polygon {
         self.rings.iter().flatten().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max)
     }
 
-    /// Returns the smallest and the largest value of each coordinate, in the coordinates given to [`Polygon::new`].
+    /// Returns the bounding box `[[min x, min y], [max x, max y]]`, in the coordinates given to [`Polygon::new`].
     #[must_use]
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];

@@ -129,10 +129,10 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// Prepares the effect for planes of the size and pitch of `raster`.
+    /// Prepares the adjacency effect for planes of the size and pitch of `raster`.
     ///
     /// # Panics
-    /// If the pitch or the length is not positive and finite.
+    /// If the pixel pitch or the diffusion length is not positive and finite.
     #[must_use]
     pub fn new(adjacency: &Adjacency, raster: &Raster) -> Self {
         let good = |v: f64| v > 0.0 && v.is_finite();

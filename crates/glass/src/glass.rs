@@ -239,8 +239,8 @@ impl Glass {
         lines.abbe_number(|w| self.index(w))
     }
 
-    /// Returns this glass as a melt sheet has it: its dispersion is shifted and scaled to the measured nd and Vd. `None` unless
-    /// nd > 1, Vd > 0 and the glass disperses.
+    /// Returns this glass with the nd and Vd measured on a melt: its dispersion is shifted and scaled to fit them. `None` unless
+    /// nd > 1, Vd > 0 and the glass has dispersion.
     #[must_use]
     pub fn melt(&self, nd: f64, vd: f64) -> Option<Glass> {
         let formula = Formula::Melt(Melt::new(self.formula.clone(), nd, vd)?.into());

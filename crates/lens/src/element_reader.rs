@@ -225,7 +225,7 @@ impl<'a> ElementReader<'a> {
         let scatterer = scatterer.or(element.onion_rings.map(|_| "onion-rings"));
         if let Some(key) = scatterer.filter(|_| is_bent || !bends) {
             let fault = place.fault(key, format!("`{key}` belongs where glass meets another medium, or on a mirror"));
-            self.faults.push(fault.hint("state it at a surface of glass"));
+            self.faults.push(fault.hint("move it to a glass surface or to a mirror"));
         }
     }
 

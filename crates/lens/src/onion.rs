@@ -39,7 +39,8 @@ impl OnionRingsForm {
     }
 }
 
-/// What rays met at a surface that refracted or reflected them as if it had no rings.
+/// Data about a batch of rays at a surface, needed to correct their directions for onion rings. The surface has refracted or
+/// reflected the rays as if it had no rings.
 pub struct Bent<'a> {
     /// Components of the unit directions in front of the surface.
     pub before: [&'a [f64]; 3],

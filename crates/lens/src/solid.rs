@@ -27,7 +27,7 @@ const ALONG: f64 = 1e-9;
 /// The axis counts as undeviated if the y component of its unit direction is smaller than this; the rest is rounding.
 const STRAIGHT: f64 = 1e-12;
 
-/// A prism with flat faces, extended along x.
+/// A prism with flat faces: a polygon in the y-z plane, extruded along x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     /// Corners in the y-z plane of the prism's frame, mm: y, z. The outline runs so that the inside lies to the left of each face, seen

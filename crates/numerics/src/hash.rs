@@ -2,7 +2,7 @@
 //!
 //! G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with D. Stafford's thirteenth mixer.
 
-/// The step of the SplitMix64 generator: 2^64 over the golden ratio, odd.
+/// The increment of the SplitMix64 generator: 2^64 divided by the golden ratio, rounded to an odd integer.
 pub const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Hashes 64 bits with the SplitMix64 finalizer. Zero stays zero.

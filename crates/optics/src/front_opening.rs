@@ -52,8 +52,9 @@ impl FrontOpening {
         is_outside.then_some(disk)
     }
 
-    /// Returns whether a point, mm in the frame of the lens, lies outside the sphere, and the disk as seen from there. The disk is valid
-    /// only outside. Unlike [`FrontOpening::seen_from`] this has no branch, so loops over rays can be vectorized.
+    /// Returns whether `point` (mm, frame of the lens) lies outside this sphere, and the disk that the sphere covers as seen from
+    /// the point. The disk is valid only if the point lies outside. Unlike [`FrontOpening::seen_from`], this function is
+    /// branch-free, so loops over rays can be vectorized.
     #[must_use]
     #[inline(always)]
     pub fn disk_from(&self, point: DVec3) -> (bool, FrontDisk) {

@@ -83,7 +83,7 @@ impl Done {
 pub struct Units(BTreeMap<u64, u64>);
 
 impl Units {
-    /// Iterates over the ranges in rising order.
+    /// Iterates over the ranges of units in ascending order.
     pub fn ranges(&self) -> impl Iterator<Item = Range<u64>> + '_ {
         self.0.iter().map(|(begin, end)| *begin..*end)
     }

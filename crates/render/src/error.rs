@@ -83,7 +83,7 @@ impl RenderError {
             Self::CannotLaunch | Self::NoRadiance => at("render.direction", &text, "`direction: forward`"),
             Self::NoAperture => at("lens", &text, spectra_scene::size_hint(scene.params.get("lens"))),
             Self::Sampler(fault) => {
-                let hint = fault.hint.as_deref().unwrap_or("leave `wavelengths` out for the usual strategy");
+                let hint = fault.hint.as_deref().unwrap_or("leave `wavelengths` out for the default strategy");
                 at("wavelengths", &fault.message, hint)
             }
             Self::Lens(text) => at("lens", text, "use another glass, or another `wavelengths: {band: ...}`"),

@@ -44,8 +44,9 @@ impl Spreader {
         OwnSteps::new(self.frame, self.channels, self.filters.clone())
     }
 
-    /// Adds the integers of a batch's rays to the sums. `footprint` gives the footprint of each ray by its number in the batch. The light
-    /// is also added to the separate cells that begin at `own_cells`, if there are any.
+    /// Spreads the fixed-point contributions of a batch's rays over their footprints and adds them to the sums. `footprint`
+    /// returns the footprint of the ray with this index in the batch. If `own_cells` is given, the contributions are also added
+    /// to the separate cells that begin there.
     #[inline]
     pub fn add(
         &self,

@@ -86,7 +86,7 @@ impl Tile {
         (self.row + at / self.columns) * self.width + self.column + at % self.columns
     }
 
-    /// Returns the position in the tile of a pixel of the frame.
+    /// Converts the row-major index of a pixel in the frame to its row-major position in the tile.
     pub fn at(&self, pixel: u32) -> u32 {
         (pixel / self.width - self.row) * self.columns + pixel % self.width - self.column
     }

@@ -147,7 +147,7 @@ impl Session {
         self.ready.as_ref().map_or(0, |(_, light)| light.samples())
     }
 
-    /// Traces this many more samples of each pixel, or fewer if `control` says stop.
+    /// Traces this many more samples of each pixel, or fewer if `control` asks to stop.
     ///
     /// # Errors
     /// The errors of [`Session::advance`].
@@ -155,11 +155,11 @@ impl Session {
         self.advance(self.samples() + samples, workers, control)
     }
 
-    /// Traces until each pixel has this many samples, or `control` says stop.
+    /// Traces until each pixel has this many samples, or `control` asks to stop.
     ///
     /// # Errors
-    /// The scene cannot be rendered; the `numbers` cannot go beyond the samples that the scene states; a stage gave a number that
-    /// light cannot have. The light from before remains.
+    /// The scene cannot be rendered; `render.numbers` works only with the number of samples that the scene states; or a stage
+    /// returned NaN or infinity. Light traced before is kept.
     pub fn advance(&mut self, samples: u64, workers: &dyn Workers, control: &Control) -> Result<(), SessionError> {
         self.prepare(workers)?;
         let Some((renderer, light)) = &mut self.ready else { return Ok(()) };

@@ -91,7 +91,7 @@ impl Sheet {
         }
     }
 
-    /// Adds curves. In the data they are arrays of points by the label of the curve, under the key of the chart.
+    /// Adds a chart. In the data, the key of the chart holds an object that maps the label of each curve to its array of points.
     pub fn chart(&mut self, chart: Chart) {
         self.data.insert(chart.key.clone(), chart.to_json());
         self.parts.push(Part::Chart(chart));

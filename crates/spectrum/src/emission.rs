@@ -66,7 +66,7 @@ impl Emission {
     /// Creates light with `value` per nanometer at all wavelengths; 1 is illuminant E.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless it is 0 or more.
+    /// [`SpectrumError::OutOfRange`] unless `value` is finite and 0 or more.
     pub fn constant(value: f64) -> Result<Self, SpectrumError> {
         Self::new(
             Some(SpectralFunction::constant(check("power per nm", "0 or more", value, |v| v >= 0.0)?)?),

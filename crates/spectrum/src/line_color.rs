@@ -19,12 +19,13 @@ pub struct LineColor {
 }
 
 impl LineColor {
-    /// Creates the model from lines of red, green and blue (in any order of wavelength) and secondary lines. `cuts_nm` holds
-    /// the wavelengths in the ultraviolet and the infrared at which values fall to 0. All are in nm. A secondary line beyond a
-    /// cut gets nothing.
+    /// Creates the model from three lines (red, green, blue, at wavelengths in any order) and secondary lines, all in nm. The
+    /// power of a secondary line is interpolated between red, green and blue. It falls to 0 at `cuts_nm`, the ultraviolet and the
+    /// infrared cut (nm), and is 0 beyond them.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless all wavelengths are positive, no line occurs twice, and the three lie between the cuts.
+    /// [`SpectrumError::OutOfRange`] unless all wavelengths are positive, no line occurs twice, and red, green and blue lie
+    /// between the cuts.
     pub fn new(rgb_nm: [f64; 3], secondary_nm: &[f64], cuts_nm: [f64; 2]) -> Result<Self, SpectrumError> {
         let lines_nm: Vec<f64> = rgb_nm.iter().chain(secondary_nm).copied().collect();
         for (i, nm) in lines_nm.iter().enumerate() {

@@ -56,10 +56,10 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads `bytes` of a file; see [`Table::parse`].
+    /// Reads a table from the bytes of a file; see [`Table::parse`].
     ///
     /// # Errors
-    /// [`TableError`], also if they are not UTF-8.
+    /// [`TableError`] as in [`Table::parse`], and if `bytes` is not UTF-8.
     pub fn parse_bytes(file: &str, bytes: &[u8], kind: Option<Kind>) -> Result<Self, TableError> {
         let text = std::str::from_utf8(bytes).map_err(|_| whole(file, TableFault::NotText))?;
         Self::parse(file, text, kind)
@@ -74,7 +74,7 @@ impl Table {
         Reader::new(file, text.strip_prefix('\u{feff}').unwrap_or(text), kind).read()
     }
 
-    /// Reads a table whose kind and scale the caller supplies; they apply to a file that does not state its own.
+    /// Reads a table from the bytes of a file. `kind` and `scale` are defaults for a file that does not state them.
     ///
     /// # Errors
     /// As [`Table::parse_bytes`].

@@ -120,7 +120,7 @@ pub enum TableFault {
     #[error("column name `{0}` is empty or appears twice")]
     ColumnName(String),
     /// A row has too few or too many fields.
-    #[error("number of fields: {found}, but the header has {expected}")]
+    #[error("fields in this row: {found}; fields in the header: {expected}")]
     FieldCount {
         /// Number of fields in this row.
         found: usize,

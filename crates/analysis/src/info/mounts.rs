@@ -46,7 +46,7 @@ const MIRROR_MM: f64 = 37.5;
 /// Thickness of the lens barrel within the throat, mm.
 const BARREL_MM: f64 = 1.5;
 
-/// All known mounts, by falling flange focal distance.
+/// All known camera mounts, in descending order of flange focal distance.
 pub const MOUNTS: [Mount; 36] = [
     flange("Pentax 67", 84.95),
     flange("Hasselblad V", 74.90),

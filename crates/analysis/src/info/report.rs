@@ -237,7 +237,7 @@ impl LensReport {
 }
 
 impl LensReport {
-    /// Replaces the field points by points at the center and at 0.5, 0.7 and 1 of an image height, mm, above 0.
+    /// Replaces the field points by points at 0, 0.5, 0.7 and 1 times the image height `height_mm` (mm), which must be above 0.
     ///
     /// # Errors
     /// No chief ray lands at this height. The error is the largest height at which one lands, mm.

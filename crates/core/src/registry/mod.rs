@@ -109,7 +109,7 @@ pub struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// Creates a context with files and a band, and nothing else.
+    /// Creates a context with access to files and a spectral band; all optional fields are `None`.
     #[must_use]
     pub const fn new(resources: &'a dyn Resources, grid: Grid) -> Self {
         Self { resources, grid, illuminant: None, view: None, landing_mm: None, warnings: None }

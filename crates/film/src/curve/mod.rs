@@ -130,7 +130,8 @@ impl CharacteristicCurve {
         }
     }
 
-    /// Finds the exposure, log10 of lx s, that gives 0.1 above the unexposed film.
+    /// Finds the speed point: the exposure, log10 of lx s, that gives a density 0.1 above that of the unexposed film. `None` if
+    /// no exposure does.
     #[must_use]
     pub fn speed_point(&self) -> Option<f64> {
         self.log10_exposure_at(self.unexposed_density() + SPEED_POINT_DENSITY)

@@ -5,7 +5,8 @@ use crate::stock::Stock;
 use spectra_core::math::log10;
 use spectra_numerics::linear;
 
-/// Amount of dye in unexposed film, in clouds of its own, which makes unexposed film grainy.
+/// Amount of dye in unexposed film (reversal: fully exposed film), in the unit of dye amounts. It has grain of its own, so
+/// unexposed film is grainy.
 pub const FOG: f64 = 0.1;
 
 /// Number of neutral exposures that are sampled.

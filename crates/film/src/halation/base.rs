@@ -59,8 +59,8 @@ impl HalationBase {
         2.0 * self.thickness_mm / (self.index * self.index - 1.0).sqrt()
     }
 
-    /// Returns the light that comes back after one trip at the distance `r_mm` from a point, per mm^2, relative to the light that exposes
-    /// the point. For all trips see [`super::ReturnedLight`].
+    /// Returns the light that comes back after one trip at the distance `r_mm` from an exposed point, relative to the light that
+    /// exposes the point, per mm^2. For all trips see [`super::ReturnedLight`].
     #[must_use]
     pub fn density_per_mm2(&self, r_mm: f64) -> f64 {
         let t2 = 4.0 * self.thickness_mm * self.thickness_mm;
@@ -82,14 +82,14 @@ impl HalationBase {
         through * internal_reflectance(self.index, u)
     }
 
-    /// Returns the light that comes back after one trip, relative to the light that exposes: the integral of
-    /// [`HalationBase::density_per_mm2`].
+    /// Returns the halation of one trip: the light that comes back from the base, relative to the light that exposes the layer.
+    /// It is the integral of [`HalationBase::density_per_mm2`] over the plane.
     #[must_use]
     pub fn returned(&self) -> f64 {
         self.returned_weighted(|_| 1.0)
     }
 
-    /// Returns the light that comes back after one trip within the distance `r_mm`, relative to the light that exposes.
+    /// Returns the part of [`HalationBase::returned`] that comes back within the distance `r_mm` of the exposed point.
     #[must_use]
     pub fn returned_within(&self, r_mm: f64) -> f64 {
         let r2 = r_mm * r_mm;

@@ -92,7 +92,7 @@ impl Viewing {
         (times, self.flare / (1.0 + self.flare) - veil * times)
     }
 
-    /// Weights that turn transmittances into XYZ: one spectrum each for X, Y and Z.
+    /// Weights that turn transmittances into XYZ: one spectrum each for X, Y and Z, sampled at the wavelengths of [`BAND`].
     #[must_use]
     pub fn weights(&self) -> &[Vec<f64>] {
         &self.weights

@@ -31,7 +31,7 @@ const BEYOND: f64 = 1e-9;
 /// Largest radius of a kernel, pixels.
 const LONGEST: usize = 2000;
 
-/// The scatter of one layer on planes of one size.
+/// Light scatter in one emulsion layer, prepared for exposure planes of one size and pixel pitch.
 ///
 /// ```
 /// use spectra_film::raster::Raster;

@@ -100,7 +100,8 @@ fn bad_inhibition(params: &Params, i: usize, j: usize, value: f64) -> Option<Fau
     let at = format!("interlayer.inhibition[{i}][{j}]");
     match value {
         _ if i == j && value != 0.0 => {
-            let fault = params.fault(&at, "the effect of a layer on itself is already in its curve");
+            let fault =
+                params.fault(&at, "the inhibition of a layer by itself must be 0: it is already in the layer's curve");
             Some(fault.hint("write 0 here"))
         }
         v if !(0.0..=2.0).contains(&v) => {

@@ -4,7 +4,7 @@ use super::Catalog;
 use crate::formula::Formula;
 use crate::glass::Glass;
 
-/// A medium whose coefficients give another index or Abbe number than its maker lists.
+/// A medium whose coefficients yield a different nd or Vd from the one that its maker lists.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
     /// The medium.

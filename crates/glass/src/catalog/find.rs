@@ -55,7 +55,7 @@ pub enum FindError {
 }
 
 impl FindError {
-    /// Returns the message that says what is wrong, without the names.
+    /// Returns the message without the list of candidates; [`FindError::hint`] says what to write instead.
     #[must_use]
     pub fn message(&self) -> String {
         match self {

@@ -98,7 +98,7 @@ pub struct AbbeNumber {
     pub curve: AbbeCurve,
 }
 
-/// A curve of dispersion through an index and an Abbe number.
+/// The shape of the dispersion curve that is fitted to an index and an Abbe number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]

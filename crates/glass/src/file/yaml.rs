@@ -120,7 +120,7 @@ pub fn from_params(params: &Params, called: &str, resources: &dyn Resources) -> 
     }
     if let Err(text) = sensible(&glass) {
         let key = ["coefficients", "table", "nd"].into_iter().find(|key| params.get(key).is_some()).unwrap_or("file");
-        let hint = "state coefficients for micrometers, and in `range` the wavelengths for which they hold";
+        let hint = "give coefficients for wavelengths in micrometers, and limit `range` to the wavelengths for which they hold";
         return Err(params.fault(key, text).hint(hint).into());
     }
     faults.take(p.figures.checked(params));

@@ -47,7 +47,7 @@ impl Sides {
         Self { n, n_after, h, u: step - n_after * h, v: step + n * h }
     }
 
-    /// Absolute difference of the two indices.
+    /// Absolute difference of the refractive indices on the two sides of the surface.
     #[inline(always)]
     pub fn step(&self) -> f64 {
         (self.n_after - self.n).abs()

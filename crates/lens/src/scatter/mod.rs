@@ -22,7 +22,7 @@ use crate::{Element, Lens};
 use spectra_core::surface::Action;
 
 impl Lens {
-    /// Whether any layer on the lens scatters light.
+    /// Whether haze, dust or scratches on any surface of the lens scatter light.
     #[must_use]
     pub fn scatters(&self) -> bool {
         self.elements.iter().flat_map(|e| &e.layers).any(|layer| layer.scattered > 0.0)

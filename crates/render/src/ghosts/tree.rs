@@ -118,8 +118,8 @@ impl Tree {
         self.cells.iter().filter(|cell| cell.first == 0).map(|cell| cell.side * cell.side)
     }
 
-    /// Returns the best ray density in each uncut cell, up to a common factor, given the integral of the square over each: the root mean
-    /// square.
+    /// Returns the ray density of least variance in each uncut cell, up to a common factor. It is the root mean square
+    /// contribution of the cell; `squares` holds the integral of the squared contribution over each cell.
     pub fn best(&self, squares: &[f64]) -> Vec<f64> {
         let of = |cell: &Cell| if cell.first == 0 { squares[cell.leaf as usize] } else { 0.0 };
         let mut means: Vec<f64> = self.cells.iter().map(of).collect();

@@ -36,14 +36,14 @@ fn each_fault_has_its_place() {
         ("wavelength_nm,p\n400,0x10\n", "bad.csv: row 2, column 2 (p): `0x10` is not a number"),
         (
             "wavelength_nm,p\n400\n",
-            "bad.csv: row 2, column 1 (wavelength_nm): number of fields: 1, but the header has 2",
+            "bad.csv: row 2, column 1 (wavelength_nm): fields in this row: 1; fields in the header: 2",
         ),
-        ("wavelength_nm,p\n400,1,2\n", "bad.csv: row 2, column 2 (p): number of fields: 3, but the header has 2"),
+        ("wavelength_nm,p\n400,1,2\n", "bad.csv: row 2, column 2 (p): fields in this row: 3; fields in the header: 2"),
         (
             "time,p\n400,1\n",
             "bad.csv: row 1, column 1: a header such as `wavelength_nm,power` is expected here, not `time,p`",
         ),
-        ("400\n410\n", "bad.csv: row 1: number of fields: 1, but the header has 2"),
+        ("400\n410\n", "bad.csv: row 1: fields in this row: 1; fields in the header: 2"),
         ("wavelength_nm;p\n400;1,5,2\n", "bad.csv: row 2, column 2 (p): `1.5,2` is not a number"),
         ("wavelength_nm,p,p\n", "bad.csv: row 1, column 3: column name `p` is empty or appears twice"),
     ] {

@@ -106,9 +106,9 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// Starts at a point of the imager, mm in its plane, and walks against the light to the front. Returns the particle that leaves there;
-    /// `None` if it does not leave. The weight is 1 on average at the start. It represents the part of the irradiance at the point that
-    /// arrives along this walk from a field of uniform radiance, divided by pi times that radiance.
+    /// Traces one random walk backward, from a point of the imager (mm, in its plane) to the front of the lens. Returns the
+    /// particle that leaves through the front, or `None` if it does not. Averaged over walks (`None` counts as 0), its weight is
+    /// E / (pi L): the irradiance E at the point in a field of uniform radiance L. At the start the mean weight is 1.
     pub fn from_imager(&mut self, [x, y]: [f64; 2], chance: &mut WalkNumbers) -> Option<Particle> {
         let position = DVec3::new(x, y, self.interior.imager_z_mm());
         let (direction, weight) = self.off_imager(position, chance);

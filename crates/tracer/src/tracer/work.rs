@@ -1,4 +1,4 @@
-//! Scratch space of one thread that traces.
+//! Scratch space of one tracing thread.
 
 use super::Tracer;
 use super::kernels::Evaluate;
@@ -9,7 +9,8 @@ use spectra_core::surface::IndexColumns;
 use spectra_core::{LossCounts, RayBatch};
 use spectra_glass::Dispersion;
 
-/// Scratch space of one thread that traces: index columns, notes, and lost rays.
+/// Scratch space of one tracing thread: the refractive indices of each ray, records of how rays met surfaces, and counts of lost
+/// rays.
 #[derive(Debug, Default)]
 pub struct Work {
     pub(super) media: Vec<IndexColumnPair>,
@@ -17,7 +18,7 @@ pub struct Work {
     pub losses: LossCounts,
     pub(super) compact: bool,
     pub(super) capacity: usize,
-    /// Notes of how rays met surfaces: for a lens that does not pass all light, and for batches that carry their optical path.
+    /// Records of how rays met surfaces: for a lens that does not pass all light, and for batches that carry their optical path.
     pub(super) before: Option<RaysBefore>,
     /// The ledger of where light goes, if one is kept.
     pub(super) ledger: Option<(Ledger, Booked)>,
