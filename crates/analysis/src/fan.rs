@@ -22,8 +22,8 @@ pub struct Fan<'o> {
     ends_mm: [f64; 2],
 }
 
-/// A point at a field angle, rad, on a plane `object_mm` in front of the first vertex (infinity allowed), and the section in which its rays
-/// are looked at. The angle is positive for light that comes from below (or from -x).
+/// An object point and the section in which its rays are traced. The point lies at a field angle (rad) on a plane `object_mm` in
+/// front of the first vertex (infinity allowed). The angle is positive for light that comes from below (or from -x).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldPoint {
     /// The section of the lens.

@@ -19,8 +19,8 @@ pub struct Ghost {
     pub surfaces: Vec<usize>,
     /// Light that reaches the image plane along this path, divided by that of the straight path.
     pub energy: f64,
-    /// Focus of the ghost: distance of its paraxial image of infinity from the image plane, mm, positive behind the plane. `None` if the
-    /// light leaves parallel.
+    /// Focus of the ghost: distance from the image plane to the ghost's paraxial image of infinity, in mm, positive behind the
+    /// plane. `None` if the light leaves parallel.
     pub focus_mm: Option<f64>,
     /// Paraxial focal length of the path, mm. Its ratio to the focal length of the lens is the size of the ghost image relative to the
     /// regular image. Negative means upside down relative to a positive one.
@@ -163,8 +163,9 @@ fn disk(tracer: &Tracer, route: &Route, wavelength_nm: f64, radius_mm: f64, many
     Disk { energy, size_mm: 2.0 * farthest, ledger: work.take_ledger().unwrap_or_default() }
 }
 
-/// Traces rays of a ghost for a drawing: parallel light at an angle to the axis, rad, evenly over the part of it that reaches the image
-/// plane by these reflections (surfaces counted from 0). Returns fewer than `many` rays if fewer reach the image.
+/// Traces rays of a ghost for a drawing: parallel light at an angle to the axis (rad). The rays are spread evenly over the part
+/// of the light that reaches the image plane by these reflections (surfaces counted from 0). Returns fewer than `many` rays if
+/// fewer reach the image.
 ///
 /// # Errors
 /// A medium has no index at this wavelength.
@@ -201,7 +202,8 @@ pub fn ghost_rays(
     Ok((0..many).map(|k| DrawnRay { path: came[at(k)].clone(), wavelength_nm, strength: 1.0 }).collect())
 }
 
-/// Returns the paraxial focus behind the image plane, mm, and the focal length, mm; both `None` if the light is lost or parallel.
+/// Returns the distance of the paraxial focus behind the image plane and the focal length, both in mm; both `None` if the light
+/// is lost or parallel.
 fn focus(tracer: &Tracer, route: &Route, wavelength_nm: f64) -> (Option<f64>, Option<f64>) {
     let mut rays = RayBatch::new(1);
     rays.restart(1);

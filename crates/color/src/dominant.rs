@@ -14,8 +14,8 @@ pub struct Dominant {
     pub purity: f64,
 }
 
-/// Wavelength range of the locus, nm, in which chromaticity changes. Outside it the color matching functions keep their ratios, and
-/// rounding would give the locus random directions.
+/// Range of wavelengths (nm) over which the chromaticity of the locus changes. Outside it the color matching functions keep their
+/// ratios, and rounding would give the locus random directions.
 const LOCUS_NM: (u32, u32) = (380, 699);
 
 fn locus() -> &'static [(f64, [f64; 2])] {

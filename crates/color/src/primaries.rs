@@ -16,7 +16,7 @@ use spectra_numerics::linear;
 use spectra_spectrum::{Emission, Observer, Outside, Scale, SpectrumError, Tabulated};
 use std::sync::OnceLock;
 
-/// Distance between knots, nm, and number of splines that lie wholly on the band.
+/// Distance between knots (nm) and number of splines that lie wholly on the band.
 const KNOT_NM: f64 = 10.0;
 const SPLINES: usize = 45;
 /// Numbers of unknowns (the coefficients of red, green and blue, in this order) and of equations.

@@ -67,7 +67,7 @@ pub struct GamutPosition {
 /// Directions from white, each with the point of the boundary that it meets.
 #[derive(Clone, Debug)]
 pub struct RealGamut {
-    /// Turn of each direction, rising from 0 to 4.
+    /// Turn of each direction, ascending from 0 to 4.
     turns: Vec<f64>,
     /// Vectors from white to the boundary, in xy.
     rim: Vec<[f64; 2]>,
@@ -93,7 +93,7 @@ impl RealGamut {
         Self::new((0..count).map(|i| 4.0 * i as f64 / count as f64).chain(corners))
     }
 
-    /// Turns of the directions, rising from 0 to 4.
+    /// Turns of the directions, ascending from 0 to 4.
     #[must_use]
     pub fn turns(&self) -> &[f64] {
         &self.turns

@@ -200,7 +200,8 @@ impl RayBatch {
         }
     }
 
-    /// Uses this instruction set for all work on the batch, in place of the best one. The bits are the same; tests compare them.
+    /// Uses this instruction set for all work on the batch, in place of the fastest one that the processor supports. The bits are
+    /// the same; tests compare them.
     #[must_use]
     pub fn on(self, isa: Isa) -> Self {
         Self { isa, ..self }
@@ -409,7 +410,7 @@ impl RayBatch {
         self.state.slice(self.len)
     }
 
-    /// Optical path since [`RayBatch::restart`], mm, if the batch carries it ([`RayBatch::with_optical_path`]).
+    /// Optical path since [`RayBatch::restart`], in mm; `None` unless the batch carries it ([`RayBatch::with_optical_path`]).
     #[must_use]
     pub fn optical_path_mm(&self) -> Option<&[f64]> {
         self.optical_path_mm.as_ref().map(|column| column.slice(self.len))

@@ -29,7 +29,7 @@ impl FrameSize {
         self.width_mm / f64::from(self.width_px) * (self.height_mm / f64::from(self.height_px))
     }
 
-    /// Returns the pixel (row-major, from the top row of the upright picture) at a point on the film, mm, or `None` outside the
+    /// Returns the pixel (row-major, from the top row of the upright picture) at a point on the film (mm); `None` outside the
     /// frame. A lens rotates its image by half a turn, so columns count against x and rows count along y.
     #[inline(always)]
     #[must_use]
@@ -41,7 +41,7 @@ impl FrameSize {
         inside.then(|| row as u32 * self.width_px + column as u32)
     }
 
-    /// Returns the point on the film, mm, at (`u`, `v`) in [0, 1]^2 of a pixel; the inverse of [`FrameSize::pixel_at`].
+    /// Returns the point on the film (mm) at (`u`, `v`) in [0, 1]^2 of a pixel; the inverse of [`FrameSize::pixel_at`].
     #[inline(always)]
     #[must_use]
     pub fn point_of(&self, pixel: u32, u: f64, v: f64) -> (f64, f64) {

@@ -7,12 +7,12 @@ pub struct SightLine {
     pub point: usize,
     /// x and y on the plane z = 0, mm.
     pub start_mm: [f64; 2],
-    /// Sideways shift in x and y, mm, per mm toward the object.
+    /// Sideways shift in x and y per mm toward the object, in mm.
     pub slope: [f64; 2],
 }
 
 impl SightLine {
-    /// Returns x and y, mm, at which this line of sight crosses the plane `distance_mm` in front of the first vertex.
+    /// Returns x and y (mm) at which this line of sight crosses the plane `distance_mm` in front of the first vertex.
     #[must_use]
     pub fn at_mm(&self, distance_mm: f64) -> [f64; 2] {
         [0, 1].map(|k| self.start_mm[k] + self.slope[k] * distance_mm)
@@ -57,7 +57,7 @@ impl FrameView {
         self.beside.is_empty() && !self.sights.is_empty()
     }
 
-    /// Returns half the width and height, mm, of the smallest rectangle around `center_mm` that contains everything the frame
+    /// Returns half the width and height (mm) of the smallest rectangle around `center_mm` that contains everything the frame
     /// sees on the plane `distance_mm` in front of the first vertex. `None` if there is no such rectangle.
     #[must_use]
     pub fn half_size_mm(&self, distance_mm: f64, center_mm: [f64; 2]) -> Option<[f64; 2]> {

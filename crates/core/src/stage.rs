@@ -61,7 +61,7 @@ pub trait Source: Send + Sync {
         1.0
     }
 
-    /// Distance of the source from the first vertex, mm, for messages and focusing; may be infinite.
+    /// Distance of the source from the first vertex, in mm; may be infinite. It is used for messages and focusing.
     fn distance_mm(&self) -> f64;
 
     /// Returns the source as an emitter of rays (forward), if it can be one.
@@ -437,7 +437,7 @@ pub trait Film: Any + Send + Sync {
         None
     }
 
-    /// Exposure time, s, with which the mean of the frame would be a mid gray, if the film knows it.
+    /// Exposure time (s) with which the mean of the frame would be a mid gray; `None` if the film does not know it.
     fn gray_time_s(&self, _exposure: &ExposureFrame) -> Option<f64> {
         None
     }

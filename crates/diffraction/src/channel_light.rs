@@ -52,7 +52,7 @@ impl ChannelLight {
         Self { shares: vec![[nm * 1e-6, 1.0]] }
     }
 
-    /// Wavelengths, mm, with their shares, which sum to 1.
+    /// Wavelengths (mm) with their shares, which sum to 1.
     #[must_use]
     pub fn shares(&self) -> &[[f64; 2]] {
         &self.shares

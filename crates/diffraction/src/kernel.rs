@@ -15,7 +15,7 @@ use std::f64::consts::{PI, TAU};
 const FRINGES: f64 = 16.0;
 /// Number of samples of the pattern in its finest fringe.
 const SAMPLES: f64 = 3.0;
-/// Reach, pixels, of the window that keeps fine patterns sharp.
+/// Reach of the window that keeps fine patterns sharp, in pixels.
 const WINDOW: f64 = 6.0;
 
 /// The weights of the pixels around one, point-symmetric about it.
@@ -168,8 +168,8 @@ pub(crate) fn near_mm(opening: &Polygon, light: &ChannelLight) -> f64 {
     FRINGES * light.range_mm()[1] / (2.0 * opening.reach())
 }
 
-/// Returns the fraction of the light at distance `r` that no longer goes to the pixels around: 0 up to 0.6 of `end`, rising to 1 at `end`
-/// and beyond.
+/// Returns the fraction of the light at distance `r` that no longer goes to the pixels around: 0 up to 0.6 of `end`, from there
+/// increasing to 1 at `end`, and 1 beyond.
 pub(crate) fn fade(r: f64, end: f64) -> f64 {
     let t = ((r / end - 0.6) / 0.4).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)

@@ -18,11 +18,11 @@ use std::f64::consts::TAU;
 
 /// Number of zones across the longer side of the frame.
 const ZONES: usize = 4;
-/// Smallest and largest radius, pixels, within which the light of a pixel is spread pixel by pixel.
+/// Smallest and largest radius (pixels) within which the light of a pixel is spread pixel by pixel.
 const RADIUS: [usize; 2] = [48, 160];
 /// Number of cells per radius for light that is spread smoothly.
 const CELLS: usize = 8;
-/// Side, pixels, of the squares whose bright pixels share the spikes of the middle of the square.
+/// Side (pixels) of the squares whose bright pixels share the spikes of the middle of the square.
 const SQUARE: usize = 48;
 /// Smallest excess of a spike that is drawn, as a fraction of the median pixel.
 const SEEN: f64 = 2e-3;
@@ -99,7 +99,7 @@ fn are_alike(a: &(Polygon, Option<Wavefront>), b: &(Polygon, Option<Wavefront>),
     shapes && places.into_iter().all(|p| (path(wave_a, ca, p) - path(wave_b, cb, p)).abs() < 0.01 * mean_mm)
 }
 
-/// Returns the radius, pixels, within which light is spread pixel by pixel, if the pattern itself reaches `near_mm`.
+/// Returns the radius (pixels) within which light is spread pixel by pixel, if the pattern itself reaches `near_mm`.
 fn radius(near_mm: f64, pitch_mm: f64) -> usize {
     ((near_mm / pitch_mm / 0.6).ceil() as usize + 2).clamp(RADIUS[0], RADIUS[1])
 }

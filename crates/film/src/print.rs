@@ -41,23 +41,23 @@ pub const GRADES: [[f64; 2]; 6] =
 /// 6846).
 pub const RANGE_ENDS: [f64; 2] = [0.04, 0.9];
 
-/// Grade that fits a usual negative.
+/// Paper grade that fits a negative of normal contrast.
 pub const USUAL_GRADE: f64 = 2.0;
 
-/// Exposure range of the usual grade, and width of its toe, log10 of exposure.
+/// Exposure range of grade 2, and width of its toe, in log10 of exposure.
 const USUAL_RANGE: f64 = 1.05;
 const USUAL_TOE: f64 = 0.2;
 
 impl Default for Paper {
-    /// Returns grade 2 with the black of a glossy paper, 2.1. Toe and shoulder give prints of a usual negative the tones of a darkroom
-    /// print.
+    /// Returns grade 2 with the black of a glossy paper, 2.1. Toe and shoulder give prints of a normal negative the tones of a
+    /// darkroom print.
     fn default() -> Self {
         Self { range: USUAL_RANGE, maximum_density: 2.1, toe: USUAL_TOE, shoulder: 6.0 }
     }
 }
 
 impl Paper {
-    /// Returns a usual paper with another exposure range, log10. The toe scales with the range.
+    /// Returns the default paper with a different exposure range, in log10 of exposure. The toe scales with the range.
     #[must_use]
     pub fn of_range(range: f64) -> Self {
         Self { range, toe: USUAL_TOE * range / USUAL_RANGE, ..Self::default() }
@@ -243,7 +243,7 @@ mod tests {
         assert_eq!(curve.density_range(), (0.0, 2.1));
     }
 
-    /// Each grade has the exposure range of ISO 6846, between 0.04 and nine tenths of the black. Grade 2 is the usual one.
+    /// Each grade has the exposure range of ISO 6846, between 0.04 and nine tenths of the black. Grade 2 is the default.
     #[test]
     fn grades_have_their_iso_ranges() {
         for (grade, [least, most]) in GRADES.iter().enumerate() {

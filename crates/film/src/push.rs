@@ -132,7 +132,7 @@ fn assumed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> 
     Ok(Pushed { minutes: None, curves: each.collect::<Result<_, _>>()? })
 }
 
-/// Pushes by `stops` (pulls, if negative) from the development `usual`.
+/// Pushes by `stops` (pulls, if negative) from the stock's development `usual`.
 ///
 /// Finds the development time at which a mid gray metered at 2^stops times the speed has the density above base and fog that a mid gray
 /// metered at the speed has after the usual time.

@@ -118,7 +118,8 @@ pub struct Extinction {
 }
 
 impl Extinction {
-    /// Creates the table from wavelengths (nm, rising) and as many values, none negative. `None` otherwise.
+    /// Creates the table from wavelengths (nm) and as many values. `None` unless the wavelengths are positive and ascending and
+    /// no value is negative.
     #[must_use]
     pub fn new(wavelength_nm: Arc<[f64]>, k: Vec<f64>) -> Option<Extinction> {
         let rising =

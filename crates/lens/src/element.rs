@@ -32,8 +32,8 @@ pub struct Element {
     pub thickness_mm: f64,
     /// Clear semi-diameter, mm; if `None`, the surface clips nothing.
     pub semi_diameter_mm: Option<f64>,
-    /// Semi-diameter of the edge of the glass element, mm, for drawing. A flat annulus lies outside the clear
-    /// semi-diameter. Clips nothing.
+    /// Semi-diameter of the edge of the glass element, in mm. It is used for drawing and clips no light. A flat annulus lies
+    /// outside the clear semi-diameter.
     pub outer_semi_diameter_mm: Option<f64>,
     /// Leg of the 45 degree chamfer at the edge, mm: positive toward +z.
     pub chamfer_mm: f64,

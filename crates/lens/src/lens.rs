@@ -211,7 +211,7 @@ impl Lens {
         self
     }
 
-    /// Refractive index of medium `medium` at a wavelength, nm, by its dispersion formula.
+    /// Refractive index of medium `medium` at a wavelength (nm) by its dispersion formula.
     #[must_use]
     pub fn index(&self, medium: usize, wavelength_nm: f64) -> f64 {
         self.media[medium].medium.index(wavelength_nm)

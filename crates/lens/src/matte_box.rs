@@ -12,7 +12,7 @@ pub const MATTE_BOX: &str = "matte-box";
 /// A matte box: a rectangular opening in front of the lens, centered on the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatteBox {
-    /// Distance of the opening in front of the first vertex, mm, positive.
+    /// Distance of the opening in front of the first vertex, in mm; positive.
     pub distance_mm: f64,
     /// Full width of the opening, mm.
     pub width_mm: f64,

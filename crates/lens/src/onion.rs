@@ -53,7 +53,7 @@ pub struct Bent<'a> {
 }
 
 impl OnionRings {
-    /// Slope of the error at a distance from the axis, mm, in the outward direction.
+    /// Slope of the height error in the outward direction, at a distance `r_mm` from the axis.
     #[must_use]
     pub fn slope(&self, r_mm: f64) -> f64 {
         let turns = r_mm / self.period_mm;

@@ -36,7 +36,8 @@ pub struct SeparationForm {
 pub struct Separation {
     /// Width of the gap, nm; if it has a depth, the width at the clear edge of the surface.
     pub gap_nm: f64,
-    /// How far the gap reaches in from the clear edge, mm, narrowing to nothing; `None` if its width is the same everywhere.
+    /// Depth (mm) from the clear edge inward at which the width of the gap has narrowed to 0. `None` if the width is the same
+    /// everywhere.
     pub depth_mm: Option<f64>,
     /// Where the gap is: all over the surface if empty, otherwise where all of these apertures let light pass.
     pub places: Vec<Aperture>,

@@ -1,10 +1,11 @@
 //! Prisms: solids with flat faces, in which light goes to the nearest face rather than from surface to surface in a fixed order.
 //!
-//! A prism (`kind: prism`) is one element of the lens but not a surface. The outline is a polygon in the y-z plane, extended along x. The
-//! tracer passes rays through it one by one. Light enters at the first face that it meets. Inside it goes from face to face, at most 256
-//! times, and is reflected totally or by silver until a face refracts it out. Light that then meets the prism again enters it again. Each
-//! face weighs light by the prism's own coating or that of the lens. The part that is reflected at a face that light passes is booked as
-//! lost elsewhere and not followed. Light keeps its polarization from face to face, whether or not the batch carries polarization.
+//! A prism (`kind: prism`) is one element of the lens but not a surface. The outline is a polygon in the y-z plane, extruded
+//! along x. The tracer passes rays through it one by one. Light enters at the first face that it meets. Inside it goes from face
+//! to face, at most 256 times, and is reflected totally or by silver until a face refracts it out. Light that then meets the
+//! prism again enters it again. Each face weighs light by the prism's own coating or that of the lens. Where light passes a face,
+//! the part that the face reflects is not followed and is recorded as lost elsewhere. Light keeps its polarization from face to
+//! face, whether or not the batch carries polarization.
 //!
 //! The axis is traced through the prism once, at the reference line. Everything behind the prism is placed on the axis where it leaves.
 //! First-order optics uses the length of the axis inside the prism divided by the index.
@@ -92,9 +93,9 @@ impl Solid {
         }
     }
 
-    /// Creates a prism from its corners (y and z in mm, in either sense of rotation), the silvered faces (numbers from 0), half the width
-    /// along x, mm, and the medium of its glass. `relative_index`, the index of the glass over that of the medium outside, is used to trace
-    /// the axis.
+    /// Creates a prism from its corners (y and z in mm, in either sense of rotation), the silvered faces (numbers from 0), half
+    /// the width along x (mm), and the medium of its glass. `relative_index`, the index of the glass over that of the medium
+    /// outside, is used to trace the axis.
     ///
     /// # Errors
     /// [`SolidError`] if the corners make no valid outline or the axis does not pass the prism.
@@ -193,8 +194,9 @@ impl Solid {
         best
     }
 
-    /// Traces a ray through the prism. The ray is given in the prism's frame by any point of its line, mm, and its unit direction. `index`
-    /// is the index of the glass over that of the medium outside. `face` is called for each face that the ray meets.
+    /// Traces a ray through the prism. The ray is given in the prism's frame by any point of its line (mm) and its unit
+    /// direction. `index` is the index of the glass over that of the medium outside. `face` is called for each face that the ray
+    /// meets.
     ///
     /// # Errors
     /// [`Loss::Missed`] if the ray meets no face, [`Loss::Vignetted`] if it meets a ground side, and [`Loss::Absorbed`] if it cannot get in

@@ -6,7 +6,7 @@ use crate::{Element, Pose};
 const AZIMUTHS: [(f64, f64); 4] = [(1.0, 0.0), (0.0, 1.0), (-0.6, 0.8), (0.28, -0.96)];
 /// Radii at which sags are compared, as fractions of the rim.
 const RADII: [f64; 3] = [0.3, 0.65, 0.95];
-/// Sags that differ by less than this, mm, count as equal.
+/// Sags that differ by less than this (mm) count as equal.
 const SAME_MM: f64 = 1e-12;
 /// Rim radius of a surface that states none, mm.
 const RIM_MM: f64 = 1.0;

@@ -94,7 +94,7 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Divides a page with these half sizes, mm, as finely as its edges need but within the memory limit.
+    /// Divides a page with these half sizes (mm) as finely as its edges need but within the memory limit.
     pub(crate) fn new(half_mm: [f64; 2], edges: &[Edge], paints: &[Paint]) -> Self {
         let mut cut = Cut::new(half_mm, (CELLS_PER_EDGE * edges.len()).clamp(MIN_CELLS, MAX_CELLS));
         while !cut.is_whole() && cut.crossings(edges) > MAX_MEMBERS as f64 {

@@ -44,7 +44,7 @@ struct Edge {
     /// Lower and upper end in y, mm.
     low: f64,
     high: f64,
-    /// x at the lower end, mm, and its change with y.
+    /// x at the lower end (mm), and its change with y.
     x: f64,
     slope: f64,
     /// Direction of the segment: +1 if it rises, -1 if it falls.
@@ -78,7 +78,7 @@ const BESIDE: f64 = 1e-3;
 const LOOKS: usize = 16;
 
 impl Drawing {
-    /// Creates a drawing on a page of this width and height, mm, with shapes from the lowest to the topmost.
+    /// Creates a drawing on a page of this width and height (mm) with shapes from the lowest to the topmost.
     #[must_use]
     pub fn new(width_mm: f64, height_mm: f64, shapes: &[Painted]) -> Self {
         let edges: Vec<Edge> = (0_u32..).zip(shapes).flat_map(|(at, shape)| edges_of(shape, at)).collect();
@@ -142,7 +142,7 @@ impl Drawing {
         passing(&self.paints, below, edges, [x_mm, y_mm])
     }
 
-    /// Radius around the center of the page, mm, outside which no light passes.
+    /// Radius around the center of the page (mm) outside which no light passes.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
         self.reach_mm

@@ -166,7 +166,8 @@ impl Beam {
         lost.then_some([zx, zy])
     }
 
-    /// Finds the plane, mm, on which a function `of` the contrasts in x and y is largest, and that value.
+    /// Finds the plane (mm) on which the function `of` of the contrasts in x and y is largest. Returns the plane and the largest
+    /// value.
     fn highest_contrast(&self, per_mm: f64, of: impl Fn([f64; 2]) -> f64) -> Option<(f64, f64)> {
         let m = self.moments();
         let offsets = (0..self.weight.len())
@@ -231,7 +232,8 @@ impl Vectorized for Grating<'_> {
 
 /// Smallest squared slope relative to the largest: flatter rays do not tell where they cross the middle ray.
 pub(crate) const STEEP2: f64 = 0.01;
-/// Approximate number of rays that are evaluated on every plane; the best planes are evaluated with all rays.
+/// Approximate number of rays that are evaluated on every plane; the planes with the highest contrast are evaluated with all
+/// rays.
 const SCANNED_RAYS: usize = 2000;
 /// Smallest and largest number of planes that are scanned.
 const PLANES: std::ops::RangeInclusive<f64> = 40.0..=400.0;
@@ -240,9 +242,9 @@ const PLANES_A_PERIOD: f64 = 8.0;
 /// Number of peaks of the first scan that are evaluated with all rays.
 const PEAKS: usize = 3;
 
-/// Finds the plane with the highest contrast, mm, and that contrast. It lies between the crossings of rays with the middle ray, plus or
-/// minus half of the depth (`period_mm`) over which the steepest ray moves aside by one period. Contrast has many peaks over depth, so
-/// the planes there are scanned one by one and then the best of them are refined.
+/// Finds the plane (mm) with the highest contrast, and that contrast. The plane lies between the crossings of rays with the
+/// middle ray, plus or minus half of the depth (`period_mm`) over which the steepest ray moves aside by one period. Contrast has
+/// many peaks over depth, so the planes there are scanned one by one. Then those with the highest contrast are refined.
 pub(crate) fn highest(
     crossings: impl Iterator<Item = f64>,
     period_mm: f64,

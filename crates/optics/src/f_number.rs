@@ -115,8 +115,8 @@ fn ray_of_sine(optics: &Optics, sine: f64, highest_mm: f64) -> Result<Option<Mar
     Ok(found.filter(|ray| (ray.sine / sine - 1.0).abs() < NEAR_ENOUGH))
 }
 
-/// Returns the radius of the stop, mm, at which the axial pencil of a lens that is not round has this sine, ignoring the rims; `None` if
-/// there is none.
+/// Returns the radius of the stop (mm) at which the axial pencil of a lens that is not round has this sine. Rims are ignored.
+/// `None` if there is no such radius.
 fn stop_of_sine(lens: &Lens, sine: f64) -> Result<Option<f64>, ApertureError> {
     let mut open = lens.clone();
     open.remove_rims();

@@ -19,7 +19,7 @@ pub struct FieldLimit {
 /// The chief ray of a field point: the ray through the center of the stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChiefRay {
-    /// Field angle, rad, as for [`ObjectPoint::on_plane`].
+    /// Field angle in rad, as for [`ObjectPoint::on_plane`].
     pub field_rad: f64,
     /// Point of the ray in front of the lens, mm in the frame of the lens.
     pub start_mm: DVec3,
@@ -47,11 +47,11 @@ impl ChiefRay {
 const STEP_RAD: f64 = std::f64::consts::PI / 180.0;
 /// Largest shift of the light over the front of the lens, in radii of the front per radian of field.
 const WANDER: f64 = 2.0;
-/// Difference of field angles, rad, at which the search stops: 0.001 degrees.
+/// Difference of field angles (rad) at which the search stops: 0.001 degrees.
 const NEAR_RAD: f64 = 1.7e-5;
 /// Distance of the neighboring rays from the chief ray, in radii of the front of the lens. The error from aberrations goes with its square.
 const CLOSE: f64 = 1e-4;
-/// Rays that meet farther away than this, mm, count as parallel: rounding allows no more.
+/// Rays that meet farther away than this (mm) count as parallel: rounding allows no more.
 const PARALLEL_MM: f64 = 1e7;
 impl Optics {
     /// Returns the largest field angle from which any real ray passes a lens, for objects at this distance (mm; infinity allowed), at the

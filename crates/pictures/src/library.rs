@@ -20,9 +20,9 @@ pub struct PictureLimits {
 /// A picture as stored in its file: code values, not yet linear light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilePicture {
-    /// Width, pixels, before `orientation` is applied.
+    /// Width (pixels) before `orientation` is applied.
     pub width_px: u32,
-    /// Height, pixels, before `orientation` is applied.
+    /// Height (pixels) before `orientation` is applied.
     pub height_px: u32,
     /// Width of a pixel over its height.
     pub pixel_aspect: f64,
@@ -51,7 +51,7 @@ pub struct TiledExr<'a> {
     pub height_px: u32,
     /// Width of a pixel over its height.
     pub pixel_aspect: f32,
-    /// Width and height of a tile, pixels, a multiple of 16.
+    /// Width and height of a tile, in pixels; a multiple of 16.
     pub tile_px: u32,
     /// Name and values of each channel. Values go row by row from the top.
     pub channels: &'a [(&'a str, &'a [f32])],

@@ -10,7 +10,7 @@ pub struct Labels {
     taken: Vec<Rect>,
 }
 
-/// Directions from a point to its label, the best first.
+/// Directions from a point to its label, in descending order of preference.
 const WAYS: [Point; 8] =
     [[1.0, 0.0], [-1.0, 0.0], [0.7, -0.7], [0.7, 0.7], [-0.7, -0.7], [-0.7, 0.7], [0.0, -1.0], [0.0, 1.0]];
 

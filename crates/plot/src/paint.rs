@@ -36,7 +36,7 @@ pub enum Paint {
         from: Point,
         /// End of the gradient, position 1.
         to: Point,
-        /// Colors, at least one, in rising order of position.
+        /// Colors, at least one, in ascending order of position.
         stops: Vec<Stop>,
     },
     /// A picture, clipped to the area.

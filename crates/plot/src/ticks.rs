@@ -3,7 +3,7 @@
 /// The tick values of an axis and their number format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ticks {
-    /// Tick values, rising.
+    /// Tick values, in ascending order.
     pub values: Vec<f64>,
     /// Difference between neighboring ticks.
     pub step: f64,

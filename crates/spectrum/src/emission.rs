@@ -90,11 +90,12 @@ impl Emission {
         Self::new(Some(SpectralFunction::gaussian(center_nm, sigma_nm)?), Vec::new())
     }
 
-    /// Creates light from a signed sum of Gaussian terms, power per nanometer; it is cut off at 0 if it falls a little below.
+    /// Creates light from a signed sum of Gaussian terms, power per nanometer. Where the sum falls a little below 0, it is cut
+    /// off at 0.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] if it is nowhere positive on 350-830 nm, or falls below 0 there by more than a tenth
-    /// of its largest value.
+    /// [`SpectrumError::OutOfRange`] if the sum is nowhere positive on 350-830 nm, or falls below 0 there by more than a tenth of
+    /// its largest value.
     pub fn mixture(terms: GaussianMixture) -> Result<Self, SpectrumError> {
         Self::new(Some(SpectralFunction::positive_mixture(terms)?.0), Vec::new())
     }
@@ -127,8 +128,8 @@ impl Emission {
         Self::new(Some(SpectralFunction::histogram(edges_nm, contents)?), Vec::new())
     }
 
-    /// First and last measured wavelength, nm, of a table that is continued with constant values beyond them; `None` for
-    /// anything else.
+    /// First and last measured wavelength (nm) of a table that is continued with constant values beyond them; `None` for anything
+    /// else.
     #[must_use]
     pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
         self.continuum.as_ref().and_then(SpectralFunction::flat_beyond_nm)
@@ -168,7 +169,7 @@ impl Emission {
     /// Multiplies the light by a number.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless it is finite and 0 or more.
+    /// [`SpectrumError::OutOfRange`] unless `factor` is finite and 0 or more.
     pub fn scaled(&self, factor: f64) -> Result<Self, SpectrumError> {
         check("factor", "0 or more", factor, |f| f >= 0.0)?;
         let continuum = self.continuum.as_ref().map(|c| c.scaled(factor)).transpose()?;

@@ -65,7 +65,7 @@ pub enum SpectrumError {
     Unknown {
         /// Name that was asked for.
         name: String,
-        /// Similar names, best first.
+        /// Similar names, in descending order of similarity.
         candidates: Vec<String>,
     },
     /// An inline spectrum such as `gaussian:550,20` has wrong arguments.

@@ -5,10 +5,10 @@ use crate::spectral_function::SpectralFunction;
 use spectra_core::spectral::BAND;
 
 impl SpectralFunction {
-    /// Returns the two wavelengths, nm, on both sides of the highest value on 350-830 nm at which the function has fallen to
-    /// half of that.
+    /// Returns the two wavelengths (nm), on both sides of the highest value on 350-830 nm, at which the function has fallen to
+    /// half of that value.
     ///
-    /// `None` if it does not fall that far within the band on both sides, or if it is nowhere positive.
+    /// `None` if the function does not fall that far on both sides within the band, or is nowhere positive.
     #[must_use]
     pub fn half_height_nm(&self) -> Option<[f64; 2]> {
         /// Step of the search, nm; narrower dips beside the peak are stepped over.
@@ -44,7 +44,7 @@ impl SpectralFunction {
         Some([side(BAND.start_nm)?, side(BAND.end_nm())?])
     }
 
-    /// Returns the mean wavelength on 350-830 nm, nm, weighted by the values; `None` if their sum is not positive.
+    /// Returns the mean wavelength (nm) on 350-830 nm, weighted by the values; `None` if their sum is not positive.
     #[must_use]
     pub fn centroid_nm(&self) -> Option<f64> {
         let [sum, moment] = self.moments();
@@ -62,7 +62,7 @@ impl SpectralFunction {
 const PANEL_NM: f64 = 2.0;
 
 impl Emission {
-    /// Returns the mean wavelength on 350-830 nm, nm, weighted by power, lines included; `None` for no light.
+    /// Returns the mean wavelength (nm) on 350-830 nm, weighted by power, lines included; `None` for no light.
     #[must_use]
     pub fn centroid_nm(&self) -> Option<f64> {
         let [mut sum, mut moment] = self.continuum().map_or([0.0; 2], SpectralFunction::moments);

@@ -28,7 +28,7 @@ macro_rules! filter {
             /// Creates a spectrum with the same value at all wavelengths.
             ///
             /// # Errors
-            /// [`SpectrumError::OutOfRange`] if it is negative or beyond the bound of its kind.
+            /// [`SpectrumError::OutOfRange`] if `value` is negative or beyond the bound of its kind.
             pub fn constant(value: f64) -> Result<Self, SpectrumError> {
                 Ok(Self(SpectralFunction::constant(check_value($kind, value)?)?))
             }
@@ -49,10 +49,10 @@ macro_rules! filter {
                 Ok(Self(SpectralFunction::gaussian(center_nm, sigma_nm)?.scaled(check_value($kind, peak)?)?))
             }
 
-            /// Creates a signed sum of Gaussian terms; it counts as 0 where it falls a little below.
+            /// Creates a signed sum of Gaussian terms. Where the sum falls a little below 0, it counts as 0.
             ///
             /// # Errors
-            /// [`SpectrumError::OutOfRange`] if it is nowhere positive on 350-830 nm, falls below 0 there by more than a
+            /// [`SpectrumError::OutOfRange`] if the sum is nowhere positive on 350-830 nm, falls below 0 there by more than a
             /// tenth of its largest value, or exceeds the bound of its kind.
             pub fn mixture(terms: GaussianMixture) -> Result<Self, SpectrumError> {
                 let (shape, largest) = SpectralFunction::positive_mixture(terms)?;
@@ -131,7 +131,7 @@ impl Sensitivity {
     /// Multiplies the sensitivity by a number.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless it is finite and 0 or more.
+    /// [`SpectrumError::OutOfRange`] unless `factor` is finite and 0 or more.
     pub fn scaled(&self, factor: f64) -> Result<Self, SpectrumError> {
         Ok(Self(self.0.scaled(check("factor", "0 or more", factor, |f| f >= 0.0)?)?))
     }

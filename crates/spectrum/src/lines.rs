@@ -105,7 +105,7 @@ pub fn line_set(name: &str) -> Option<[&'static NamedLine; 3]> {
     Some(symbols.map(|s| named_line(s).expect("sets are made of named lines")))
 }
 
-/// Returns the wavelength in air, nm, of the Balmer line from level `upper` to 2; `None` below 3.
+/// Returns the wavelength in air (nm) of the Balmer line from level `upper` to 2; `None` below 3.
 ///
 /// It is Rydberg's formula with the reduced mass of hydrogen and a constant index of air of 1.000277. The result is the center
 /// of the fine structure, within 0.003 nm of the measured wavelength.
@@ -123,7 +123,7 @@ pub fn balmer(upper: u32) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Precise wavelengths of the named lines in air, nm, as stated by makers of glass.
+    /// Precise wavelengths of the named lines in air, in nm, as stated by makers of glass.
     #[test]
     fn precise_lines() {
         for (symbol, want) in [

@@ -92,8 +92,8 @@ impl Kind {
 
     /// Returns how a table of this kind is continued beyond its ends unless it states that itself.
     ///
-    /// CIE 15:2004, 7.2.2.1 sets missing values of an illuminant or a material to the nearest given one; a detector is taken as
-    /// blind where it was not measured.
+    /// CIE 15:2004, 7.2.2.1 sets missing values of an illuminant or a material to the nearest given one; the sensitivity of a
+    /// detector is taken as 0 where it was not measured.
     #[must_use]
     pub fn outside(self) -> Outside {
         match self {

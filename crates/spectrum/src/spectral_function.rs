@@ -61,7 +61,7 @@ pub(crate) struct Survey {
     pub low: (f64, f64),
     /// Largest value, and its wavelength, nm.
     pub high: (f64, f64),
-    /// First wavelength, nm, at which the value is not finite; `None` if all are finite.
+    /// First wavelength (nm) at which the value is not finite; `None` if all are finite.
     pub not_finite_nm: Option<f64>,
 }
 
@@ -89,7 +89,7 @@ impl SpectralFunction {
     /// Creates a function with the same `value` everywhere.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] if it is not finite.
+    /// [`SpectrumError::OutOfRange`] if `value` is not finite.
     pub fn constant(value: f64) -> Result<Self, SpectrumError> {
         Ok(Self(Node::Constant(check("value", "finite", value, |_| true)?)))
     }
@@ -107,7 +107,7 @@ impl SpectralFunction {
     /// Creates the Gaussian exp(-(x - center)^2 / (2 sigma^2)), with peak 1 and standard deviation `sigma_nm`.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] unless both are finite and sigma is positive.
+    /// [`SpectrumError::OutOfRange`] unless `center_nm` and `sigma_nm` are finite and `sigma_nm` is positive.
     pub fn gaussian(center_nm: f64, sigma_nm: f64) -> Result<Self, SpectrumError> {
         let center_nm = check("center, nm", "finite", center_nm, |_| true)?;
         let sigma_nm = check("standard deviation, nm", "positive", sigma_nm, |s| s > 0.0)?;
@@ -124,7 +124,7 @@ impl SpectralFunction {
     /// 350-830 nm. Where the sum falls below 0, as a fit does at its edges, it is cut off at 0.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] if it is nowhere positive, falls below 0 by more than a tenth of its largest value (too
+    /// [`SpectrumError::OutOfRange`] if the sum is nowhere positive, falls below 0 by more than a tenth of its largest value (too
     /// much for the error of a fit), or is not finite.
     pub(crate) fn positive_mixture(terms: GaussianMixture) -> Result<(Self, f64), SpectrumError> {
         let centers = terms.terms().iter().map(GaussianTerm::center_nm).filter(|c| BAND.contains(*c));
@@ -138,7 +138,7 @@ impl SpectralFunction {
         Ok((Self(Node::Mixture { terms: Arc::new(terms), at_least_zero: low < 0.0 }), high))
     }
 
-    /// Returns the shape as an exact sum of Gaussian terms; `None` if it is not one, or is cut off at 0.
+    /// Returns the shape as an exact sum of Gaussian terms; `None` if the shape is no such sum, or is cut off at 0.
     ///
     /// Gaussians and mixtures are such sums, and so are sums, products and multiples of them.
     #[must_use]
@@ -171,7 +171,7 @@ impl SpectralFunction {
         Self(Node::Tabulated(table))
     }
 
-    /// First and last wavelength, nm, of a table that is continued with constant values beyond them; `None` for anything else.
+    /// First and last wavelength (nm) of a table that is continued with constant values beyond them; `None` for anything else.
     #[must_use]
     pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
         match &self.0 {
@@ -205,7 +205,7 @@ impl SpectralFunction {
     /// Multiplies the shape by a number.
     ///
     /// # Errors
-    /// [`SpectrumError::OutOfRange`] if it is not finite.
+    /// [`SpectrumError::OutOfRange`] if `factor` is not finite.
     pub fn scaled(&self, factor: f64) -> Result<Self, SpectrumError> {
         check("factor", "finite", factor, |_| true)?;
         Ok(match &self.0 {

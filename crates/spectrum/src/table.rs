@@ -3,10 +3,10 @@
 //! A file has front matter of `# key: value` lines (see [`Meta`]), a header row `wavelength_nm,<columns>`, then one row per
 //! wavelength, in increasing order.
 //!
-//! Without `# spectra: 1` on the first line the table is read in any common format. Lines that begin with `#` are plain
-//! comments, the caller supplies the kind, and [`Table::notes`] says how the rest was interpreted. Columns are separated by
-//! commas, semicolons, tabs or spaces; decimal commas are accepted with all of these except commas. The header may be missing,
-//! and wavelengths may be in micrometers or in falling order.
+//! Without `# spectra: 1` on the first line the table is read in any common format. Lines that begin with `#` are plain comments,
+//! the caller supplies the kind, and [`Table::notes`] says how the rest was interpreted. Columns are separated by commas,
+//! semicolons, tabs or spaces; decimal commas are accepted with all of these except commas. The header may be missing, and
+//! wavelengths may be in micrometers or in descending order.
 //!
 //! ```
 //! use spectra_spectrum::table::Table;
@@ -46,7 +46,7 @@ pub struct Table {
     pub kind: Kind,
     /// Names of the columns after the wavelength column.
     pub columns: Vec<String>,
-    /// Wavelengths in air, nm, increasing.
+    /// Wavelengths in air, in nm, ascending.
     pub wavelengths_nm: Arc<[f64]>,
     /// Notes on how a table that is not in the format of the bundled ones was interpreted: `no column names`,
     /// `falling wavelengths`, `wavelengths in micrometers`.

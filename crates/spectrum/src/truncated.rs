@@ -142,7 +142,8 @@ impl TruncatedGaussian {
         (wavelength_nm - nearest_nm) / self.sigma_nm
     }
 
-    /// Returns the wavelength, nm, below which a share `u` of the draws lies; within the band for every `u`, NaN included.
+    /// Returns the wavelength (nm) below which a share `u` of the draws lies. It lies within the band for every `u`, NaN
+    /// included.
     ///
     /// The share of the result equals u within 1e-13, plus the effect of rounding u, the wavelength and a sigma that is much
     /// wider than the band (2e-16 of it).
@@ -154,7 +155,7 @@ impl TruncatedGaussian {
         }
     }
 
-    /// Draws a wavelength, nm, for each number of `u` in [0, 1): its quantile, with the same bits on every `isa`.
+    /// Draws a wavelength (nm) for each number of `u` in [0, 1): its quantile, with the same bits on every `isa`.
     ///
     /// The shorter of the two slices sets the number of draws.
     pub fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], isa: Isa) {
@@ -302,7 +303,7 @@ impl Quantile for Central {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Tail {
     span: Span,
-    /// End of the band near the center, nm, and the direction away from the center, 1 or -1.
+    /// End of the band near the center (nm), and the direction away from the center, 1 or -1.
     from_nm: f64,
     direction: f64,
     /// Distance of that end from the center, in standard deviations.

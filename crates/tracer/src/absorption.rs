@@ -20,7 +20,8 @@ impl Grid {
         Self { start_nm: min_nm, count: ((max_nm - min_nm) / STEP_NM).ceil() as usize + 1 }
     }
 
-    /// Returns the cell of a wavelength, nm, and the fraction of the cell before it. Outside the band the ends are used.
+    /// Returns the cell that contains a wavelength (nm), and the fraction of the cell below that wavelength. Outside the band the
+    /// ends are used.
     pub(crate) fn place(&self, wavelength_nm: f64) -> (u64, f64) {
         let place = ((wavelength_nm - self.start_nm) * (1.0 / STEP_NM)).clamp(0.0, self.count as f64);
         let cell = place.floor().min((self.count - 1) as f64);

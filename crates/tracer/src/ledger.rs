@@ -55,7 +55,7 @@ impl Ledger {
     }
 }
 
-/// The weights and states of a batch as they were booked last.
+/// The weights and states of a batch when they were last recorded in the ledger.
 #[derive(Debug)]
 pub(crate) struct Booked {
     weight: Column<f64>,

@@ -5,11 +5,11 @@
 //! way, so the direction of travel is stored for each surface (`Element::along`). The tracer ends at the nominal image plane and knows no
 //! plates in front of the frame.
 //!
-//! **Optical path and polarization** are carried by batches on request: the path length, and Stokes numbers relative to the weight with an
-//! axis across the ray. The tracer turns the axis to each plane of incidence and applies the complex amplitudes of the coating. Other
-//! batches take unpolarized light at every surface, by the fast kernels, and pay nothing. Renders ask for polarization where surfaces are
-//! steep ([`Tracer::polarizes`]: prisms, tilted plates). A surface that bends light by another law than Snell's adds its phase to the
-//! optical path (`phase`).
+//! **Optical path and polarization** are carried by batches on request: the path length, and Stokes numbers relative to the
+//! weight with an axis across the ray. The tracer turns the axis to each plane of incidence and applies the complex amplitudes of
+//! the coating. Other batches take unpolarized light at every surface, by the fast kernels, and pay nothing. Renders ask for
+//! polarization where surfaces are steep ([`Tracer::polarizes`]: prisms, tilted plates). A surface that bends light by a law
+//! other than Snell's adds its phase to the optical path (`phase`).
 
 mod compile;
 mod kernels;
@@ -46,7 +46,7 @@ pub enum Indices {
     },
     /// The index that the prescription states for each medium; where it states none, that of the reference line.
     Stated,
-    /// The index of each medium at this wavelength, nm, whatever the wavelength of the ray.
+    /// The index of each medium at this wavelength (nm), whatever the wavelength of the ray.
     At(f64),
 }
 
@@ -175,7 +175,7 @@ impl Tracer {
         if other.scattered { self.scattering() } else { self }
     }
 
-    /// Returns whether behind an element light may go another way than the one that it goes without chance.
+    /// Returns whether a random number may change the direction of light at an element.
     pub fn is_random_at(&self, at: usize) -> bool {
         self.elements[at].surface.draws() || self.scattered && !self.layers[at].is_empty()
     }

@@ -13,7 +13,7 @@ const POINTS: usize = 97;
 /// The cut area of a piece of glass.
 #[derive(Clone, Debug)]
 pub struct Solid {
-    /// Closed outline, mm, frame of the lens.
+    /// Closed outline, in mm, in the frame of the lens.
     pub outline: Vec<DVec3>,
     /// Refractive index at the d line.
     pub nd: f64,

@@ -15,8 +15,9 @@ pub struct AbbeGroup {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Draws nd against Vd, with Vd falling to the right as usual. Each group has its color; `named` glasses (name, [Vd, nd]) are marked and
-/// labeled on top. `axes` are the labels of the Abbe number and of the index, since both may refer to other lines.
+/// Draws nd against Vd, with Vd decreasing to the right as in makers' diagrams. Each group has its color; `named` glasses (name,
+/// [Vd, nd]) are marked and labeled on top. `axes` are the labels of the Abbe number and of the index, since both may refer to
+/// other lines.
 #[must_use]
 pub fn abbe(groups: &[AbbeGroup], named: &[(String, [f64; 2])], axes: &[String; 2]) -> Canvas {
     let [of_v, of_n] = axes;

@@ -11,7 +11,7 @@ const HEIGHT: f64 = 560.0;
 pub struct IndexCurve {
     /// Name for the legend.
     pub name: String,
-    /// Wavelength (nm, rising) and index; an index that is not finite interrupts the curve.
+    /// Wavelength (nm, ascending) and index; an index that is not finite interrupts the curve.
     pub points: Vec<[f64; 2]>,
     /// Range of wavelengths of the data, nm; outside it the curve is dashed. `None` means no limit.
     pub range_nm: Option<(f64, f64)>,

@@ -13,14 +13,14 @@ const MIDDLE: f64 = 430.0;
 pub struct FittedCurve {
     /// Name for the legend.
     pub name: String,
-    /// Points of the curve: wavelength, nm, and index.
+    /// Points of the curve: wavelength (nm) and index.
     pub points: Vec<[f64; 2]>,
     /// Index of the formula minus the measured index, for each measured row.
     pub deviations: Vec<f64>,
 }
 
-/// Draws measured indices (wavelength, nm, and n) as points and formulas as curves through them. A second plot below shows the deviation of
-/// each formula from each row.
+/// Draws measured indices (wavelength in nm, and n) as points and formulas as curves through them. A second plot below shows the
+/// deviation of each formula from each row.
 #[must_use]
 pub fn glass_fit(title: &str, measured: &[[f64; 2]], curves: &[FittedCurve]) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, HEIGHT, title);

@@ -11,7 +11,7 @@ use spectra_tracer::Indices;
 /// The object point that is in focus at an image point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conjugate {
-    /// Point of least RMS distance of the rays, mm, frame of the lens; infinite coordinates if the rays are parallel.
+    /// Point of least RMS distance of the rays, in mm, in the frame of the lens; infinite coordinates if the rays are parallel.
     pub point_mm: DVec3,
     /// Distance of the point in front of the first vertex along the axis, mm. Infinite if the rays are parallel. Negative if the rays
     /// diverge in front of the lens and only seem to meet behind it: the focus is then beyond infinity.

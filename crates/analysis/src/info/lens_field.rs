@@ -45,7 +45,7 @@ impl FieldReport {
     }
 }
 
-/// Field angle, rad, so near the axis that distortion, which grows with its square, is below a millionth.
+/// Field angle (rad) so small that distortion, which grows with its square, is below a millionth.
 pub(super) const NEAR_AXIS_RAD: f64 = 1e-3;
 
 /// Returns image height divided by that of a distortion-free picture, less one. The chief ray `near` the axis sets the scale of that
@@ -90,8 +90,8 @@ const WIDE_DEG: f64 = 80.0;
 /// Distance from the center of 135 film to its corner, mm.
 const CORNER_MM: f64 = 21.633;
 
-/// Returns the largest useful field, rad, of a lens that passes light up to `largest_rad`. This is `largest_rad`, or the field at the
-/// corner of 135 film if no rim limits the field to a useful size.
+/// Returns the largest useful field (rad) of a lens that passes light up to `largest_rad`. This is `largest_rad`, or the field at
+/// the corner of 135 film if no rim limits the field to a useful size.
 #[must_use]
 pub fn useful_field_rad(lens: &Optics, largest_rad: f64) -> f64 {
     if largest_rad < WIDE_DEG.to_radians() {
@@ -132,7 +132,7 @@ pub(super) fn field(lens: &Optics, held: &Optics, indices: Indices) -> LensField
     LensField { largest_deg: reach.map(|r| r.field_rad.to_degrees()), limit, points, is_cut }
 }
 
-/// Computes field points at these fields (rad, rising from 0). Fields without a chief ray are left out.
+/// Computes field points at these field angles (rad, in ascending order from 0). Fields without a chief ray are left out.
 pub(super) fn field_points(lens: &Optics, held: &Optics, indices: Indices, fields_rad: &[f64]) -> Vec<FieldReport> {
     let rays = held.chief_rays(held.focused_mm, fields_rad).unwrap_or_default();
     let rays: Vec<ChiefRay> = rays.into_iter().flatten().collect();

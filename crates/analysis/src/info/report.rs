@@ -36,7 +36,7 @@ pub struct LensReport {
     pub line: Option<&'static str>,
     /// Effective focal length, mm.
     pub efl_mm: f64,
-    /// Effective focal length in the x-z section, mm, if it differs.
+    /// Effective focal length in the x-z section, mm; `None` if it equals that of the y-z section.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub efl_x_mm: Option<f64>,
     /// Back focal length, mm: from the last vertex to the rear focal point.
@@ -134,7 +134,8 @@ pub struct SurfaceReport {
     pub z_mm: f64,
     /// Radius of curvature at the vertex in the y-z plane, mm; `None` if flat.
     pub radius_mm: Option<f64>,
-    /// Radius of curvature at the vertex in the x-z plane, mm, if the surface is curved there with a different radius; `None` otherwise.
+    /// Radius of curvature at the vertex in the x-z plane, mm. `None` if the surface is flat in that plane or has the same radius
+    /// as in the y-z plane.
     pub radius_x_mm: Option<f64>,
     /// Distance to the next vertex, mm; for the last surface, to the image plane.
     pub thickness_mm: f64,

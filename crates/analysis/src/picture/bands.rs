@@ -14,8 +14,8 @@ pub struct Band {
     pub xyz: [f64; 3],
 }
 
-/// Reads the center of the band, nm, from the name of its channel (`S0.550,0nm`): A. Fichet, R. Pacanowski and A. Wilkie, "An OpenEXR
-/// layout for spectral images", J. Computer Graphics Techniques 10 (2021). Only unpolarized light (`S0`) in nm is read.
+/// Reads the center of the band (nm) from the name of its channel (`S0.550,0nm`): A. Fichet, R. Pacanowski and A. Wilkie, "An
+/// OpenEXR layout for spectral images", J. Computer Graphics Techniques 10 (2021). Only unpolarized light (`S0`) in nm is read.
 pub(super) fn middle_nm(name: &str) -> Option<f64> {
     let number = name.strip_prefix("S0.")?.strip_suffix("nm")?.replace(',', ".");
     number.parse().ok().filter(|nm: &f64| nm.is_finite() && *nm > 0.0)
@@ -26,9 +26,9 @@ fn called(middle_nm: f64) -> String {
     format!("{middle_nm:.1}")
 }
 
-/// Returns the edges of bands with these rising centers, nm; `None` for fewer than two bands. Names are rounded to a tenth of a nanometer.
-/// Bands of equal width whose outer edges lie on tenths of a nanometer are therefore found by comparing the names that they would have.
-/// Otherwise an edge lies midway between neighbors.
+/// Returns the edges of bands with these centers, both in nm and in ascending order; `None` for fewer than two bands. Names are
+/// rounded to a tenth of a nanometer. Bands of equal width whose outer edges lie on tenths of a nanometer are therefore found by
+/// comparing the names that they would have. Otherwise an edge lies midway between neighbors.
 pub(super) fn edges_nm(middles_nm: &[f64]) -> Option<Vec<f64>> {
     let [first, .., last] = *middles_nm else { return None };
     let count = middles_nm.len();

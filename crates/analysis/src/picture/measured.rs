@@ -153,7 +153,7 @@ impl Measured {
         Some(bands.iter().map(power).sum())
     }
 
-    /// Bands by rising wavelength; `None` if none were recorded.
+    /// Bands in ascending order of wavelength; `None` if none were recorded.
     #[must_use]
     pub fn bands(&self) -> Option<&[Band]> {
         if let Some(Colors::Bands(bands)) = &self.colors { Some(bands) } else { None }
@@ -236,7 +236,7 @@ fn size_mm(text: &str) -> Option<[f64; 2]> {
     Some([number(width)?, number(height)?])
 }
 
-/// Finds the bands of a spectral picture, by rising wavelength; `None` if there are fewer than two.
+/// Finds the bands of a spectral picture, in ascending order of wavelength; `None` if there are fewer than two.
 fn bands(planes: &PictureChannels) -> Result<Option<Vec<Band>>, FileProblem> {
     let named = planes.channels.iter().enumerate();
     let mut middles: Vec<(f64, usize)> = named.filter_map(|(i, c)| Some((middle_nm(&c.name)?, i))).collect();

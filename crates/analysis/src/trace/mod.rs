@@ -175,8 +175,8 @@ impl<'a> BatchTracer<'a> {
         })
     }
 
-    /// Returns how far a point lies behind the first surface (and behind its vertex), mm, if it is within its rim and more than 1e-6 mm
-    /// behind it.
+    /// Returns how far a point lies behind the first surface and its vertex, in mm. `None` unless the point lies within the rim
+    /// and more than 1e-6 mm behind them, and for a first surface off the axis.
     fn behind_front_mm(&self, [x, y, z]: [f64; 3]) -> Option<f64> {
         let first = self.lens.elements.first()?;
         let pose = if first.reversed { first.pose.reversed() } else { first.pose };
@@ -367,8 +367,8 @@ impl Followed<'_> {
     }
 }
 
-/// Returns the state of ray `i`, whose position is in the frame of `pose`. `on` carries it to the plane z = 0: a distance, mm, and the
-/// index of the medium.
+/// Returns the state of ray `i`, whose position is in the frame of `pose`. `on` holds the distance (mm) to the plane z = 0 and
+/// the index of the medium; if given, the ray is moved to that plane.
 fn left_of(rays: &RayBatch, i: usize, pose: &Pose, on: Option<(f64, f64)>) -> Left {
     let [x, y, z] = rays.positions().map(|column| column[i]);
     let [l, m, n] = rays.directions().map(|column| column[i]);

@@ -29,7 +29,7 @@ impl Params {
         Self::kinded(node, path, KIND)
     }
 
-    /// Creates the parameters of a stage if another key than `kind` names the kind, such as the `shape` of an aperture.
+    /// Creates the parameters of a stage whose kind is named by a key other than `kind`, such as the `shape` of an aperture.
     ///
     /// # Errors
     /// As [`Params::stage`].

@@ -34,7 +34,7 @@ impl NotLight {
     }
 }
 
-/// Returns the wavelength, nm, if it can be that of light.
+/// Returns the wavelength (nm) if it can be that of light.
 ///
 /// # Errors
 /// [`NotLight`] below [`SHORTEST_LIGHT_NM`].

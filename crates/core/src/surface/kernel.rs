@@ -9,8 +9,8 @@
 //! ([`Weighing`](crate::batch::WeightColumns)). That is all that a glass needs to absorb and a coating to reflect. For other surfaces the tracer
 //! computes both from copies of the positions and directions before.
 //!
-//! A ray stays where it has arrived, so its bits do not depend on its neighbors. A ray whose steps do not clearly shrink is passed to a
-//! bracketed search. Every ray therefore lands on its sheet or is booked as missed.
+//! A ray stays where it has arrived, so its bits do not depend on its neighbors. A ray whose steps do not clearly shrink is
+//! passed to a bracketed search. Every ray therefore lands on its sheet or is counted as missed.
 
 mod loops;
 mod one_ray;
@@ -148,7 +148,7 @@ pub trait KernelShape: Send + Sync + std::fmt::Debug + 'static {
     /// Whether [`KernelShape::search`] tries again for rays that [`KernelShape::hit`] calls invalid. The distance of an invalid
     /// hit must then be 0.
     const SEARCHES: bool = false;
-    /// Finds the distance, mm, along a ray that `hit` could not settle, with slower and safer code; `None` if the ray misses.
+    /// Finds the distance (mm) along a ray for which `hit` found none, by a slower and safer search. `None` if the ray misses.
     fn search(&self, _position: [f64; 3], _direction: [f64; 3], _travel: Travel) -> Option<f64> {
         None
     }

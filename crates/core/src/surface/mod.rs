@@ -62,8 +62,8 @@ pub enum Travel {
 pub struct Interface<'a> {
     /// Number of the surface, from 1; losses are counted under it.
     pub number: u32,
-    /// Distance along z, mm, from the vertex of the surface traced before, in whose frame the rays arrive, to the vertex of
-    /// this surface.
+    /// Distance along z (mm) from the vertex of the surface traced before to the vertex of this surface. The rays arrive in the
+    /// frame of the former.
     pub shift_mm: f64,
     /// Square of the clear semi-diameter, mm^2; infinity clips nothing.
     pub clip_radius2_mm2: f64,
@@ -103,9 +103,9 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         false
     }
 
-    /// Returns whether the surface draws random numbers ([`crate::numbers::RayNumbers`]), as one does that scatters or splits a
-    /// share of the light. Light may then leave the surface in another direction than it does without random numbers, so the
-    /// search for rays that pass a lens ends here.
+    /// Returns whether the surface draws random numbers ([`crate::numbers::RayNumbers`]), for example to scatter or split a share
+    /// of the light. The direction in which light leaves may then differ from that without random numbers, so the search for rays
+    /// that pass a lens ends here.
     fn draws(&self) -> bool {
         false
     }
@@ -122,11 +122,11 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         false
     }
 
-    /// Optical path, mm, that the surface adds to a ray in addition to index times distance; the same for light that runs back
-    /// along the ray. Surfaces that refract by Snell's law or reflect add none. A surface that deflects light by another law
-    /// must add some, or wavefronts behind it are wrong: along the surface, n' d' - n d is the gradient of the added path
-    /// (order times wavelength times position across the lines for a grating). Facets and other steps of a shape that refracts
-    /// add none either, because their geometry accounts for the path.
+    /// Optical path (mm) that the surface adds to a ray in addition to index times distance; the same for light that runs back
+    /// along the ray. Surfaces that refract by Snell's law or reflect add none. A surface that deflects light by another law must
+    /// add some, or wavefronts behind it are wrong: along the surface, n' d' - n d is the gradient of the added path (order times
+    /// wavelength times position across the lines for a grating). Facets and other steps of a shape that refracts add none
+    /// either, because their geometry accounts for the path.
     fn phase_mm(&self, _ray: &BentRay) -> f64 {
         0.0
     }

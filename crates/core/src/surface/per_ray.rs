@@ -19,7 +19,7 @@ pub struct Intersection {
 /// A ray at its intersection with a surface, before it is bent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bending {
-    /// Point on the surface, mm, frame of the surface.
+    /// Point on the surface, in mm, in the frame of the surface.
     pub point: DVec3,
     /// Unit direction before the surface.
     pub direction: DVec3,
@@ -54,14 +54,14 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug + 'static {
         let (x, y) = self.vertex_curvature_per_mm();
         ((n_after - n_before) * x, (n_after - n_before) * y)
     }
-    /// Smallest and largest sag within a radius of the axis, mm, or bounds of them. Rays that pass beside that part of space
-    /// end as vignetted, without a search for their intersection. `None` (the default) if no bounds are known.
+    /// Smallest and largest sag (mm) within a radius of the axis, or bounds of them. Rays that pass beside that part of space end
+    /// as vignetted, without a search for their intersection. `None` (the default) if no bounds are known.
     fn extent_mm(&self, _radius_mm: f64) -> Option<[f64; 2]> {
         None
     }
-    /// Returns the unit direction after the surface, or why the ray ends, for surfaces that bend light by another law than
-    /// Snell's, such as an ideal lens or a grating. `None`, the default, refracts or reflects as the action says. A surface
-    /// with its own law also has a [phase](ScalarShape::phase_mm).
+    /// Returns the unit direction after the surface, or why the ray ends, for surfaces that bend light by a law other than
+    /// Snell's, such as an ideal lens or a grating. `None`, the default, refracts or reflects as the action says. A surface with
+    /// its own law also has a [phase](ScalarShape::phase_mm).
     fn redirect(&self, _at: &Bending) -> Option<Result<DVec3, Loss>> {
         None
     }
@@ -69,7 +69,7 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug + 'static {
     fn has_phase(&self) -> bool {
         false
     }
-    /// Optical path, mm, that the surface adds to a ray; see [`Surface::phase_mm`].
+    /// Optical path (mm) that the surface adds to a ray; see [`Surface::phase_mm`].
     fn phase_mm(&self, _ray: &BentRay) -> f64 {
         0.0
     }

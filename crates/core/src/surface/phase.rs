@@ -18,8 +18,8 @@ pub struct BentRay {
     pub n_before: f64,
     /// Refractive index behind the surface; for a mirror the index in front of it.
     pub n_after: f64,
-    /// Distance, mm, against the light, from the vertex to the paraxial image of the axial point that the lens is focused on,
-    /// as formed by what stands before the surface. Negative if light converges to a point behind the surface; infinite if it
-    /// is parallel. Only an ideal lens needs it, since no lens is ideal for all distances at once.
+    /// Distance (mm), measured against the light, from the vertex to the paraxial image that the elements in front form of the
+    /// axial point in focus. Negative if light converges to a point behind the surface; infinite if it is parallel. Only an ideal
+    /// lens needs it, since no lens is ideal for all distances at once.
     pub object_mm: f64,
 }

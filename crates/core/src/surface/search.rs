@@ -9,9 +9,9 @@ const NEWTON_STEPS: usize = 12;
 /// A step counts as converging if it is at most this fraction of the step before. Below one half, no other crossing can lie
 /// between the start and the limit of the steps (the condition of Kantorovich's theorem on Newton's method).
 pub(super) const SHORTER: f64 = 0.4;
-/// Steps below this, mm, may be rounding, or the noise of slopes taken from differences.
+/// Steps below this (mm) may be rounding, or the noise of slopes taken from differences.
 pub(super) const NOISE_MM: f64 = 1e-8;
-/// Once a step is smaller than this, mm, the ray has arrived.
+/// Once a step is smaller than this (mm), the ray has arrived.
 pub(super) const ARRIVED_MM: f64 = 1e-13;
 
 /// First step of the search, as a fraction of the distance between ray and vertex.
@@ -29,9 +29,9 @@ const EXTREMUM_HALVINGS: usize = 30;
 /// Steps within a bracket, each at least a halving.
 const BRACKET_STEPS: usize = 120;
 
-/// Returns the distance, mm, at which the ray crosses z = sag(x, y) in its direction of travel (forward: from smaller z to
-/// larger). If there are several crossings, it is the one nearest to `start_mm` or, if the search has to start elsewhere,
-/// nearest to the point of the ray that is closest to the vertex.
+/// Returns the distance (mm) at which the ray crosses z = sag(x, y) in its direction of travel (forward: from smaller z to
+/// larger). If there are several crossings, it is the one nearest to `start_mm` or, if the search has to start elsewhere, nearest
+/// to the point of the ray that is closest to the vertex.
 ///
 /// `height` returns z - sag at a distance along the ray, and its derivative along the ray; `None` where the surface does not
 /// reach.

@@ -110,7 +110,7 @@ struct TableState {
     zero_radii: Option<(usize, usize)>,
 }
 
-/// Returns the unit, mm, of each column that states one for lengths or their powers.
+/// Returns the unit (in mm) of each column that states a unit for lengths or their powers.
 fn units_mm(source: &Source, heads: &[&str], columns: &[Option<Column>], faults: &mut Faults) -> Vec<(Column, f64)> {
     let mut found = Vec::new();
     let mut silent = Vec::new();

@@ -44,7 +44,7 @@ struct Reader<'a> {
     radius_mode: Option<bool>,
     unit_mm: f64,
     surfaces: Vec<Raw>,
-    /// Wavelengths, nm, of the index tables of the file's own glasses.
+    /// Wavelengths (nm) of the index tables of the file's own glasses.
     private_nm: Vec<f64>,
     private: Vec<Private>,
     in_private: bool,

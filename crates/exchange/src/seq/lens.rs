@@ -8,7 +8,7 @@ use crate::prescription::{
 };
 use std::collections::BTreeMap;
 
-/// Object distances, mm, from which an object counts as at infinity.
+/// Distance (mm) from which on an object counts as at infinity.
 const INFINITY_MM: f64 = 1e10;
 
 /// Role of a surface in the file.
@@ -163,7 +163,7 @@ impl Raw {
     }
 }
 
-/// Returns a radius, mm, from a stated radius or curvature.
+/// Returns the radius (mm) from a stated radius or curvature.
 fn radius(value: f64, is_radius: bool, unit_mm: f64) -> f64 {
     match is_radius {
         _ if value == 0.0 || !value.is_finite() => f64::INFINITY,

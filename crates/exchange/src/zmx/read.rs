@@ -12,7 +12,7 @@ use crate::{MAX_ITEMS, glass};
 use spectra_core::params::Faults;
 use std::collections::BTreeMap;
 
-/// Object distances, mm, from which an object counts as at infinity.
+/// Distance (mm) from which on an object counts as at infinity.
 const INFINITY_MM: f64 = 1e10;
 
 /// Reads the text of a `.zmx` file. `name` is the name of the file in error messages; the catalogs `own` are searched for its glasses

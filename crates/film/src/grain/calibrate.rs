@@ -24,7 +24,7 @@ pub(super) const CRYSTALS: f64 = 0.12;
 /// Width of a clump, in widths of a crystal.
 pub(super) const CLUMP: f64 = 5.0;
 
-/// Side of the cells of clumps, mm, for a Wiener spectrum that falls to half at `half_power` cycles/mm.
+/// Side of the cells of clumps (mm) for a Wiener spectrum that falls to half at `half_power` cycles/mm.
 pub(super) fn clump_mm(half_power: f64) -> Result<f64, GrainError> {
     if !(1.0..=1000.0).contains(&half_power) {
         return Err(GrainError::HalfPower(half_power));
@@ -47,8 +47,8 @@ pub(super) fn wiener(f: f64) -> f64 {
     (1.0 - CRYSTALS) * spline(f) + CRYSTALS * spline(f / CLUMP)
 }
 
-/// Pixel size, mm, at which the aperture is assumed to be read: between the finest and the coarsest that hold a film's grain. Finer pixels
-/// read up to 2 % more, those of 8 um as much less.
+/// Pixel size (mm) at which the aperture is assumed to be read: between the finest and the coarsest that hold a film's grain.
+/// Finer pixels read up to 2 % more, pixels of 8 um up to 2 % less.
 const READ_MM: f64 = 0.005;
 
 /// Variance times area (mm^2) of large areas, divided by the square of the deviation through the 48 um aperture.

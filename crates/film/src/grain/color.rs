@@ -19,8 +19,8 @@ const LEAST: f64 = 0.1;
 /// Granularity of the layers of a color film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorGrain {
-    /// Points of each layer: amount above that of unexposed (reversal: fully exposed) film, rising, and 1000 times its standard deviation through
-    /// 48 um.
+    /// Points of each layer: the amount of dye above that of unexposed (reversal: fully exposed) film, in ascending order, and
+    /// 1000 times its standard deviation through 48 um.
     layers: Vec<Vec<[f64; 2]>>,
 }
 

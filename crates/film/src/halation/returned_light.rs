@@ -17,9 +17,10 @@ const PARTS: usize = 3;
 /// All light that returns from a point, over all trips.
 pub struct ReturnedLight {
     base: HalationBase,
-    /// Light that returns after the first trip, relative to the light that exposes.
+    /// Light that returns after the first trip, relative to the light that exposes the layer.
     once: f64,
-    /// Sampling step of the light of further trips, mm, and its density there, per unit of light that enters; `None` without further trips.
+    /// Light of further trips: the sampling step (mm) and the density at each sample, per unit of light that enters. `None`
+    /// without further trips.
     again: Option<(f64, Vec<f64>)>,
     /// Ratio of further trips to the first one, from the last sample on.
     beyond: f64,
@@ -75,7 +76,8 @@ impl ReturnedLight {
         trips
     }
 
-    /// Returns the light that comes back at the distance `r_mm` from a point, per mm^2, relative to the light that exposes the point.
+    /// Returns the light that comes back at the distance `r_mm` from an exposed point, relative to the light that exposes the
+    /// point, per mm^2.
     #[must_use]
     pub fn density_per_mm2(&self, r_mm: f64) -> f64 {
         self.base.density_per_mm2(r_mm) + self.again(r_mm)
@@ -91,7 +93,8 @@ impl ReturnedLight {
         self.base.entering * (values[k] + (values[k + 1] - values[k]) * (place - k as f64))
     }
 
-    /// Returns the light that comes back, relative to the light that exposes: the integral of [`ReturnedLight::density_per_mm2`].
+    /// Returns the halation of all trips: the light that comes back from the base, relative to the light that exposes the layer.
+    /// It is the integral of [`ReturnedLight::density_per_mm2`] over the plane.
     #[must_use]
     pub fn returned(&self) -> f64 {
         let once = self.once;

@@ -1,9 +1,8 @@
 //! Scatter of light inside the emulsion, described by the modulation transfer function of a film.
 //!
-//! Turbid gelatin spreads the light of each point over some micrometers; a sine target of the frequency f keeps the fraction M(f) of its
-//! contrast.
-//! The spread is a function of the distance from the point, a sum of Gaussians: round, falling and positive for any curve, and independent
-//! of the pixel size. A pixel gets its integral over the pixel.
+//! Turbid gelatin spreads the light of each point over some micrometers; a sine target of the frequency f keeps the fraction M(f)
+//! of its contrast. The spread is a function of the distance from the point, a sum of Gaussians. For any curve it is round,
+//! positive, decreasing with the distance and independent of the pixel size. A pixel gets its integral over the pixel.
 //!
 //! A sheet's curve is measured on the developed film, and exceeds 1 where development enhances edges. Light does not cause that:
 //! [`Modulation`] separates the curve into the spread of light and [`crate::adjacency`].

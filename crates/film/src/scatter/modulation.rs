@@ -11,7 +11,7 @@ use spectra_core::math::{exp, log};
 /// The two factors of a sheet's curve: the spread of light in the emulsion, and adjacency effects in the developer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modulation {
-    /// Response of the light: at most 1, falling.
+    /// Response of the light: at most 1, decreasing with the frequency.
     pub mtf: Mtf,
     /// Adjacency effect of the developer; `None` if the curve needs none.
     pub adjacency: Option<Adjacency>,
@@ -29,8 +29,8 @@ const LENGTHS: (f64, f64) = (0.008, 0.12);
 const MOST_GAIN: f64 = 1.0;
 
 impl Modulation {
-    /// Separates a measured curve into its factors. Each point has a spatial frequency (cycles/mm, rising, from 0 on) and a response (0 to
-    /// 2; 1 is full contrast).
+    /// Separates a measured curve into its factors. Each point has a spatial frequency (cycles/mm, 0 or more, ascending) and a
+    /// response (0 to 2; 1 is full contrast).
     ///
     /// The search finds gain and length of adjacency, and the two Gaussians of light, that fit the curve best. If the best fit has no
     /// adjacency, the light's part is [`Mtf::measured`].

@@ -48,7 +48,7 @@ impl Mtf {
         Ok(Self { spread: PointSpread::bessel(k_mm / (2.0 * LN_10)) })
     }
 
-    /// Fits a measured curve: spatial frequency (cycles/mm, rising, from 0 on) and response (0 to 2; 1 is full contrast).
+    /// Fits a measured curve: spatial frequency (cycles/mm, 0 or more, ascending) and response (0 to 2; 1 is full contrast).
     ///
     /// The result is the closest sum of Gaussians of non-negative weights (least squares at the points). Its point spread is smooth and
     /// positive, unlike that of straight lines between measured points.
@@ -69,7 +69,7 @@ impl Mtf {
         Self { spread }
     }
 
-    /// Returns the response at `frequency` cycles/mm: 1 at 0, falling.
+    /// Returns the response at `frequency` cycles/mm: 1 at 0, decreasing from there.
     #[must_use]
     pub fn response(&self, frequency: f64) -> f64 {
         self.spread.response(frequency)

@@ -5,10 +5,10 @@ use spectra_numerics::convolve::Kernel;
 use spectra_numerics::normal;
 use std::f64::consts::PI;
 
-/// Point spread of light: round, falling with the distance, positive; a sum of Gaussians.
+/// Point spread of light, a sum of Gaussians: round, positive, and decreasing with the distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointSpread {
-    /// Standard deviation along an axis, mm, and weight of each Gaussian; the weights sum to 1.
+    /// Standard deviation along an axis (mm) and weight of each Gaussian; the weights sum to 1.
     terms: Vec<[f64; 2]>,
 }
 
@@ -58,7 +58,7 @@ impl PointSpread {
         self.terms.iter().map(term).sum()
     }
 
-    /// Returns the distance, mm, beyond which less than `share` of the light lies.
+    /// Returns the distance (mm) beyond which less than `share` of the light lies.
     pub(crate) fn reach_mm(&self, share: f64) -> f64 {
         // The part exp(-r^2 / (2 s^2)) of a Gaussian lies beyond r.
         let beyond = |r: f64| self.terms.iter().map(|[s, w]| w * exp(-r * r / (2.0 * s * s))).sum::<f64>();

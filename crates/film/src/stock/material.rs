@@ -175,7 +175,7 @@ pub(super) fn densitometry(params: &Params, file: DensityFile, layers: usize) ->
 pub(super) struct DyeFile {
     /// Color or name of the dye.
     name: String,
-    /// Pairs of wavelength, nm, increasing, and density of the amount 1 of the dye.
+    /// Pairs of wavelength (nm, ascending) and density of the amount 1 of the dye.
     table: Vec<[f64; 2]>,
 }
 
@@ -199,7 +199,7 @@ pub(super) struct MinimumDensityFile {
     assumed: bool,
     /// Remarks for people, for example doubts and choices.
     remark: Option<String>,
-    /// Pairs of wavelength, nm, increasing, and density of unexposed film.
+    /// Pairs of wavelength (nm, ascending) and density of unexposed film.
     table: Vec<[f64; 2]>,
 }
 

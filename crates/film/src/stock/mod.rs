@@ -117,7 +117,7 @@ pub struct Layer {
     /// Granularity of a layer with a dye: density above the minimum, measured through the filter of its dye on neutral film, increasing,
     /// and 1000 times the standard deviation through 48 um. Empty if the sheet states none.
     pub granularity: Vec<[f64; 2]>,
-    /// Curves by development, the usual one first; at least one.
+    /// Curves by development, the default one first; at least one.
     pub developments: Vec<Development>,
 }
 
@@ -185,7 +185,7 @@ impl Stock {
         spectra_data::list(FOLDER).filter_map(stem)
     }
 
-    /// Names of the stock's developments, the usual one first.
+    /// Names of the stock's developments, the default one first.
     pub fn developments(&self) -> impl Iterator<Item = &str> {
         self.layers.first().into_iter().flat_map(|layer| layer.developments.iter().map(|d| d.name.as_str()))
     }

@@ -20,7 +20,7 @@ pub enum Reciprocity {
     Table {
         /// Threshold, s: shorter times count in full.
         above_s: f64,
-        /// Rows (Tm, Ta), s, both increasing, with Tm above the threshold and Ta at least Tm.
+        /// Rows (Tm, Ta) in s, both ascending, with Tm above the threshold and Ta at least Tm.
         rows: Vec<[f64; 2]>,
     },
 }
@@ -58,7 +58,7 @@ impl Reciprocity {
     }
 }
 
-/// Longest exposure, s, that needs no warning if a film's sheet states no reciprocity: makers allow at least this much.
+/// Longest exposure (s) that needs no warning if a film's sheet states no reciprocity: makers allow at least this much.
 const UNDOUBTED_S: f64 = 1.0;
 
 /// Returns a warning for an exposure of `time_s` if the file of the stock `name` has no reciprocity and the time is longer than 1 s.
@@ -79,7 +79,7 @@ pub(super) struct ReciprocityFile {
     /// Exponent p of the law, adjusted time = above x (metered time / above)^p, 1 to 10. Or else `table`.
     #[schemars(range(min = 1, max = 10))]
     exponent: Option<f64>,
-    /// Rows of metered and adjusted time, s, increasing. Or else `exponent`.
+    /// Rows of metered and adjusted time, in s, ascending. Or else `exponent`.
     table: Option<Vec<[f64; 2]>>,
     /// Metered time above which speed is lost, s if bare.
     above: Positive<Time>,

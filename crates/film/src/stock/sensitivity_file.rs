@@ -16,7 +16,7 @@ pub(super) struct SensitivityFile {
     file: Option<String>,
     /// Column of that file; may be left out if there is only one.
     column: Option<String>,
-    /// Pairs of wavelength, nm, increasing, and sensitivity; or else `file`. Zero outside the table.
+    /// Pairs of wavelength (nm, ascending) and sensitivity; or else `file`. Zero outside the table.
     table: Option<Vec<[f64; 2]>>,
     /// Scale of the values: `linear` (proportional to one over the energy that gives a fixed density) or `log10` of that.
     reading: ReadingFile,

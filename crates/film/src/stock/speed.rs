@@ -119,10 +119,9 @@ impl Stock {
 }
 
 impl Stock {
-    /// Computes the speed that the curves of the usual development give, whatever their contrast.
-    /// The standard is ISO 6 for a silver negative, ISO 5800 for a color negative (the green layer and the slowest), and ISO 2240 for a
-    /// reversal film (the mean of its layers).
-    /// `None` for a print stock, and if a curve does not reach these densities.
+    /// Computes the speed that the curves of the default development give, whatever their contrast. The standard is ISO 6 for a
+    /// silver negative, ISO 5800 for a color negative (the green layer and the slowest), and ISO 2240 for a reversal film (the
+    /// mean of its layers). `None` for a print stock, and if a curve does not reach these densities.
     #[must_use]
     pub fn curve_speed(&self) -> Option<f64> {
         let curves: Vec<_> =

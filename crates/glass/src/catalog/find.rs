@@ -41,7 +41,7 @@ pub enum FindError {
     Unknown {
         /// The name asked for.
         name: String,
-        /// The nearest names, best first.
+        /// The nearest names, in descending order of similarity.
         nearest: Vec<Candidate>,
     },
     /// Several media have this name.
@@ -189,9 +189,9 @@ impl Catalog {
         }
     }
 
-    /// Chooses one of several glasses with the same name: the glass with the stated figures, as in [`Catalog::find_with`];
-    /// else that of the lens's maker, if it made glass; else the only one of the lens's time; else that of the usual maker,
-    /// with a note.
+    /// Chooses one of several glasses with the same name: the glass with the stated figures, as in [`Catalog::find_with`]; else
+    /// that of the lens's maker, if it made glass; else the only one of the lens's time; else that of the most common maker, with
+    /// a note.
     ///
     /// # Errors
     /// An unknown name; a name of several glasses of which none has the stated figures; several measurements of a substance.
@@ -285,8 +285,8 @@ impl Catalog {
         (best.0 <= 1.0).then_some(best.1)
     }
 
-    /// Returns the data set that the bare name of a substance means beside stated figures: the usual one if it has that index,
-    /// else the nearest of all.
+    /// Returns the data set that the bare name of a substance means beside stated figures: the default one if it has that index,
+    /// else the one nearest to the figures.
     fn measured(&self, name: &str, usual: RecordIndex, (n, v, lines): (f64, Option<f64>, LineTriple)) -> ChosenGlass {
         let own = |glass: &Glass| glass.index(lines.mid.wavelength_nm);
         let glass = self.glass(usual);
@@ -320,8 +320,8 @@ impl Catalog {
         all.filter(|place| self.glass(*place).temperature_c.is_none_or(|t| (0.0..=40.0).contains(&t))).collect()
     }
 
-    /// Returns the usual data of a substance, which its everyday name stands for, if its name is also that of a maker's short,
-    /// rounded table.
+    /// Returns the default data of a substance, for which its everyday name stands, if a maker's short, rounded table has the
+    /// same name.
     fn usual_data(&self, asked: &str, named: &[RecordIndex]) -> Option<Vec<RecordIndex>> {
         let is_table = |place: &RecordIndex| {
             self.category_of(*place) == Category::Crystal && matches!(self.glass(*place).formula, Formula::Table(_))

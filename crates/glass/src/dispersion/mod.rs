@@ -65,9 +65,9 @@ pub struct Dispersion {
 }
 
 impl Dispersion {
-    /// Fits `medium` from `min_nm` to `max_nm`: the rational function of the smallest degree up to (6, 6) that is within
-    /// 2e-10 of the formula, or else the best one within 1e-9; for tabulated data a uniform table of cubics within 1e-9;
-    /// for data too rough for that, the formula itself.
+    /// Fits `medium` from `min_nm` to `max_nm`: the rational function of the smallest degree up to (6, 6) that is within 2e-10 of
+    /// the formula, or else the most accurate one within 1e-9; for tabulated data a uniform table of cubics within 1e-9; for data
+    /// too rough for that, the formula itself.
     ///
     /// Where the band reaches beyond the medium's data ([`Medium::covers`]) its formula is extrapolated.
     ///

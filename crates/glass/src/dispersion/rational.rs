@@ -232,8 +232,8 @@ fn horner(c: &[f64], x: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// Returns whether a polynomial (rising powers) has no zero in [-1, 1]: its Bernstein coefficients, over ever smaller parts of
-/// the interval, all have one sign. Returns false if it cannot tell.
+/// Returns whether a polynomial (coefficients in ascending order of power) has no zero in [-1, 1]: its Bernstein coefficients,
+/// over ever smaller parts of the interval, all have one sign. Returns false if it cannot tell.
 fn has_no_zero(c: &[f64]) -> bool {
     // Coefficients of c(2 t - 1) by powers of t, by Horner's rule on polynomials; then of Bernstein's basis on [0, 1].
     let degree = c.len() - 1;

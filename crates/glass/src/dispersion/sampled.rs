@@ -12,7 +12,7 @@ pub(super) struct Sampled {
     min_nm: f64,
     inverse_step_nm: f64,
     last: f64,
-    /// Coefficients by rising power of the fraction of the interval.
+    /// Coefficients in ascending order of the power of the fraction of the interval.
     cubics: Box<[[f64; 4]]>,
 }
 

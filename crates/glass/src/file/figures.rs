@@ -16,7 +16,7 @@ const TOLERANCE_V: f64 = 0.01;
 /// Keys of an index and an Abbe number for any lines.
 const ANY_N: &str = "abbe.n";
 const ANY_V: &str = "abbe.v";
-/// Range of the lines, nm, within which ordinary glasses keep to the normal lines of partial dispersion.
+/// Range of wavelengths (nm) within which ordinary glasses keep to the normal lines of partial dispersion.
 const MODEL_NM: std::ops::RangeInclusive<f64> = 300.0..=1100.0;
 
 /// A glass given by its figures. One index alone has no dispersion; with an Abbe number, or with more indices, the dispersion

@@ -38,7 +38,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Creates a table from pairs of wavelength (nm, rising) and value.
+    /// Creates a table from pairs of wavelength (nm, ascending) and value.
     ///
     /// # Errors
     /// Fewer than two points, wavelengths that do not rise, numbers that are not finite.

@@ -17,7 +17,7 @@ pub struct Iris {
     pub blades: u32,
     /// Radius of curvature of each blade's edge, mm; infinite for straight blades. A radius smaller than the opening counts as round.
     pub blade_radius_mm: f64,
-    /// Rotation of the opening, rad, counterclockwise seen with +x right and +y up; at 0 a corner lies on +y.
+    /// Rotation of the opening, in rad, counterclockwise seen with +x right and +y up. At 0 a corner lies on +y.
     pub rotation_rad: f64,
 }
 
@@ -26,8 +26,8 @@ pub struct Iris {
 pub struct Opening {
     /// Unit vectors from the center to the middle of each side.
     sides: Vec<[f64; 2]>,
-    /// Center of each side's arc, as a distance along its unit vector (zero or negative), mm, and its radius, mm. `None` if the sides are
-    /// straight, at `apothem_mm`.
+    /// Center and radius of each side's arc, both in mm. The center is a distance along the side's unit vector, zero or negative.
+    /// `None` if the sides are straight, at `apothem_mm`.
     arc: Option<(f64, f64)>,
     apothem_mm: f64,
     corner_mm: f64,

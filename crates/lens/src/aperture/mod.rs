@@ -95,9 +95,9 @@ impl Aperture {
         self.center_mm == [0.0; 2] && matches!(self.shape, ApertureShape::Ring { .. })
     }
 
-    /// Returns the edge of the aperture in the frame of the surface, mm, as closed rings: outer ones counterclockwise, holes clockwise.
-    /// Each side, or a 24th of a circle, is cut into `pieces`; each side of an iris into twice as many. Returns `None` for a gray mask,
-    /// which has no edge, and for an edge that is not closed or not finite.
+    /// Returns the edge of the aperture as closed rings (mm, frame of the surface): outer rings counterclockwise, holes
+    /// clockwise. Each side, or a 24th of a circle, is cut into `pieces`; each side of an iris into twice as many. Returns `None`
+    /// for a gray mask, which has no edge, and for an edge that is not closed or not finite.
     #[must_use]
     pub fn rings(&self, semi_diameter_mm: Option<f64>, pieces: u32) -> Option<Vec<Vec<[f64; 2]>>> {
         let around = |a: f64, b: f64| -> Vec<[f64; 2]> {

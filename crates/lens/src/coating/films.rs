@@ -70,14 +70,15 @@ impl Sides {
 }
 
 impl<const N: usize> Films<N> {
-    /// Creates a stack from the index and the thickness, nm, of each layer.
+    /// Creates a stack from the index and the thickness (nm) of each layer.
     pub fn new(layers: &[[f64; 2]; N]) -> Self {
         let square = layers.map(|[index, _]| index * index);
         Self { square, per_square: square.map(|s| 1.0 / s), turn_nm: layers.map(|[_, nm]| TAU * nm) }
     }
 
-    /// Returns how often the angle must be halved for the series to hold, for light of this wavelength, nm, or longer, between media
-    /// of which the lower index is `low`. Returns `None` if that takes more than 5 halvings or a value is not a number.
+    /// Returns how often the angle must be halved for the series to hold, for light of the wavelength `shortest_nm` or longer,
+    /// between media of which the lower index is `low`. Returns `None` if that takes more than 5 halvings or a value is not a
+    /// number.
     pub fn halvings(&self, shortest_nm: f64, low: f64) -> Option<u32> {
         let largest = self.square.iter().zip(&self.turn_nm).map(|(square, turn_nm)| {
             let turn = turn_nm / shortest_nm;

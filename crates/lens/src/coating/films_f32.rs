@@ -37,8 +37,8 @@ pub struct FilmsF32<const N: usize> {
 }
 
 impl<const N: usize> FilmsF32<N> {
-    /// Converts layers for light of this wavelength, nm, or longer, between media of which the lower index is `low`. Returns `None` if
-    /// single precision is not accurate enough.
+    /// Converts layers for light of the wavelength `shortest_nm` or longer, between media of which the lower index is `low`.
+    /// Returns `None` if single precision is not accurate enough.
     pub fn of(films: &Films<N>, shortest_nm: f64, low: f64) -> Option<Self> {
         let largest = |h: u32| REACH * f64::from(1_u32 << (2 * h));
         let good = |h: &u32| {

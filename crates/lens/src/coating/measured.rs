@@ -22,7 +22,7 @@ impl MeasuredCoating {
         Self { passes: GRID.wavelengths_nm().map(|nm| passes(nm).clamp(0.0, 1.0)).collect() }
     }
 
-    /// Transmittance at a wavelength, nm, interpolated linearly; the same for s and p light.
+    /// Transmittance at a wavelength (nm), interpolated linearly; the same for s and p light.
     #[must_use]
     pub fn transmittance(&self, wavelength_nm: f64) -> Transmittance {
         let place = (wavelength_nm - GRID.start_nm).clamp(0.0, (GRID.count - 2) as f64 + 1.0);

@@ -78,7 +78,7 @@ impl Transmittance {
 }
 
 impl Coating {
-    /// Returns a layer that is a quarter of a wave thick at a wavelength, nm, at normal incidence.
+    /// Returns a layer that is a quarter of a wave thick at a wavelength (nm) at normal incidence.
     #[must_use]
     pub fn quarter_wave(index: f64, wavelength_nm: f64) -> Self {
         Self::Layer { index, thickness_nm: 0.25 * wavelength_nm / index }

@@ -26,13 +26,13 @@ pub struct StackLayer {
 }
 
 impl StackLayer {
-    /// Creates a layer of this thickness, nm, with the same index n - i k at all wavelengths.
+    /// Creates a layer of this thickness (nm) with the same index n - i k at all wavelengths.
     #[must_use]
     pub fn constant(thickness_nm: f64, n: f64, k: f64) -> Self {
         Self { thickness_nm, index: vec![[n, k]] }
     }
 
-    /// Creates a layer of this thickness, nm, and tabulates its n and k by wavelength, nm.
+    /// Creates a layer of this thickness (nm) and tabulates its n and k by wavelength (nm).
     #[must_use]
     pub fn dispersive(thickness_nm: f64, n_and_k: impl Fn(f64) -> [f64; 2]) -> Self {
         let count = (TO_NM - FROM_NM) as usize + 1;
@@ -74,7 +74,7 @@ impl Stack {
         self.layers.is_empty()
     }
 
-    /// Returns the index and the thickness, nm, of each layer if there are `N` layers and none of them absorbs or disperses.
+    /// Returns the index and the thickness (nm) of each layer if there are `N` layers and none of them absorbs or disperses.
     pub fn clear_layers<const N: usize>(&self) -> Option<[[f64; 2]; N]> {
         let clear = |layer: &StackLayer| match layer.index[..] {
             [[n, 0.0]] => Some([n, layer.thickness_nm]),

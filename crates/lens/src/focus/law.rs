@@ -35,8 +35,8 @@ pub struct FocusTable {
 }
 
 impl FocusTable {
-    /// Creates a table from points: the distance of the object from the first vertex, mm, descending, infinity allowed, and the shift
-    /// toward the object, mm. Returns `None` unless there are two or more points in order.
+    /// Creates a table from pairs of object distance from the first vertex and shift toward the object, both in mm. Distances are
+    /// descending; infinity is allowed. Returns `None` unless there are two or more points in order.
     #[must_use]
     pub fn new(points: &[(f64, f64)]) -> Option<Self> {
         let vergence: Vec<f64> = points.iter().map(|(distance_mm, _)| 1.0 / distance_mm).collect();
@@ -81,7 +81,7 @@ impl FocusTable {
         (1.0 / self.vergence[self.vergence.len() - 1], 1.0 / self.vergence[0])
     }
 
-    /// Shift toward the object, mm, for an object at this distance, mm; `None` outside the range of the table.
+    /// Shift toward the object for an object at this distance, both in mm; `None` outside the range of the table.
     #[must_use]
     pub fn shift_mm(&self, object_mm: f64) -> Option<f64> {
         let v = 1.0 / object_mm;

@@ -61,8 +61,8 @@ pub enum FocusError {
 }
 
 impl Lens {
-    /// Returns the distance from the last vertex to the image plane, mm, that focuses an object by moving the whole lens. The object lies
-    /// `object_mm` in front of the first vertex (infinity allowed).
+    /// Returns the distance (mm) from the last vertex to the image plane with which an object is in focus if the whole lens is
+    /// moved. The object lies `object_mm` in front of the first vertex (infinity allowed).
     ///
     /// # Errors
     /// [`FocusError::TooNear`] if the object lies at or inside the front focal point.

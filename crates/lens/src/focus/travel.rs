@@ -16,8 +16,8 @@ const TURNS: usize = 40;
 const STANDS_MM: f64 = 1e-7;
 
 impl Lens {
-    /// Moves elements toward the object (negative: away) along their own axis, mm, and nothing else. The caller must then call
-    /// [`Lens::arrange`].
+    /// Moves elements toward the object (negative: away) along their own axis, by a distance in mm, and nothing else. The caller
+    /// must then call [`Lens::arrange`].
     pub(crate) fn shift_elements(&mut self, range: Range<usize>, toward_object_mm: f64) {
         if range.is_empty() {
             return;

@@ -77,8 +77,8 @@ impl Shares {
     }
 }
 
-/// Selects the layer that scatters a ray at a point of the surface, mm, by a random number in [0, 1). Returns `None` if no layer scatters
-/// there.
+/// Selects the layer that scatters a ray at a point of the surface (mm) by a random number in [0, 1). Returns `None` if no layer
+/// scatters there.
 pub fn which(layers: &[Layer], [x, y]: [f64; 2], semi_diameter_mm: Option<f64>, number: f64) -> Option<&Layer> {
     let part = |layer: &Layer| layer.scattered * layer.there(x, y, semi_diameter_mm);
     let mut left = number * layers.iter().map(part).sum::<f64>();

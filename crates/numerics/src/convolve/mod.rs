@@ -57,7 +57,7 @@ impl<T: Real> Convolver<T> {
     /// Convolves the plane `source`: each value is given to `write` with its target.
     ///
     /// # Panics
-    /// If a plane has another size than was prepared for.
+    /// If the size of a plane differs from the one that was prepared for.
     pub fn apply(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, T) + Sync) {
         self.apply_at(source, target, |to, v, _| write(to, v));
     }
@@ -65,7 +65,7 @@ impl<T: Real> Convolver<T> {
     /// Convolves the plane `source`: each value is given to `write` with its target, and with the column and the row of the target.
     ///
     /// # Panics
-    /// If a plane has another size than was prepared for.
+    /// If the size of a plane differs from the one that was prepared for.
     pub fn apply_at(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, T, [usize; 2]) + Sync) {
         assert_eq!(source.len(), self.width * self.height, "the plane has the size that was prepared for");
         assert_eq!(target.len(), source.len(), "both planes have the same size");

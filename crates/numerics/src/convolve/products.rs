@@ -66,7 +66,7 @@ impl Products {
     /// are not finite, count as 0.
     ///
     /// # Panics
-    /// If a plane has another size than was prepared for.
+    /// If the size of a plane differs from the one that was prepared for.
     pub fn apply(&self, source: &[f32], target: &mut [f32], write: impl Fn(&mut f32, f32) + Sync) {
         assert_eq!(source.len(), self.width * self.height, "the plane has the size that was prepared for");
         assert_eq!(target.len(), source.len(), "both planes have the same size");

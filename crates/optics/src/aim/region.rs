@@ -62,7 +62,7 @@ impl Sector {
     }
 }
 
-/// An opening and its views. Both are `None` if the lens is round; the views alone are `None` if they are not known.
+/// An opening and its views. For a round lens both are `None`; the views alone are `None` if they are not known.
 pub(super) type OptionalOpening<'a> = (Option<&'a ShapedOpening>, Option<&'a [Vec<Option<OpeningMap>>]>);
 /// An opening together with its views.
 pub(super) type OpeningWithViews<'a> = (&'a ShapedOpening, &'a [Vec<Option<OpeningMap>>]);

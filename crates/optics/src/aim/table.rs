@@ -132,7 +132,7 @@ pub(super) struct Table {
     pub rows: Vec<ZoneRow>,
     /// Sphere around the whole surface that is met first.
     pub bound: Sphere,
-    /// Number of that surface, from 1: light that no zone passes is booked there.
+    /// Number of that surface, from 1: light that no zone passes is recorded as lost there.
     pub surface: u32,
     /// Outlines of what passes in each zone, tighter than its ellipse or rectangle.
     pub outlines: Option<Outlines>,

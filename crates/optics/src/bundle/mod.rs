@@ -128,7 +128,7 @@ impl<'o> Bundle<'o> {
         WindowLine { from: [0.0; 2], way: [0.0, 1.0], length_mm: self.window.reach_mm }
     }
 
-    /// Returns the ray through a point of the window in front of the lens: its start, mm, and its unit direction.
+    /// Returns the ray through a point of the window in front of the lens: its start (mm) and its unit direction.
     #[must_use]
     pub fn ray(&self, place: [f64; 2]) -> (DVec3, DVec3) {
         let (start, direction) = self.window.ray(place);

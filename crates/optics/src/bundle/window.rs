@@ -27,7 +27,7 @@ impl ObjectPoint {
         Self::At(DVec3::new(0.0, -(object_mm + eye_mm) * sin / cos, -object_mm))
     }
 
-    /// Returns the point at a field angle, rad, on a sphere about the paraxial entrance pupil, for fields of any angle.
+    /// Returns the point at a field angle (rad) on a sphere about the paraxial entrance pupil, for fields of any angle.
     #[must_use]
     pub fn on_sphere(lens: &Lens, object_mm: f64, field_rad: f64) -> Self {
         let direction = DVec3::new(0.0, spectra_core::math::sin(field_rad), spectra_core::math::cos(field_rad));
@@ -94,7 +94,7 @@ impl Window {
         Self::around(point, middle, radius_mm, sag_mm)
     }
 
-    /// Returns the window behind a lens for an image point, mm, in the frame of the image plane.
+    /// Returns the window behind a lens for an image point (mm, frame of the image plane).
     pub fn behind(lens: &Lens, point_mm: DVec3) -> Option<Self> {
         let last = lens.elements.last()?;
         let radius_mm = last.semi_diameter_mm.unwrap_or_else(|| far_enough_mm(lens));
@@ -124,7 +124,7 @@ impl Window {
         Extent { min: [-self.reach_mm; 2], max: [self.reach_mm; 2] }
     }
 
-    /// Returns the ray through a point of the window (mm): its start in front of the lens, mm, and its unit direction.
+    /// Returns the ray through a point of the window (mm): its start in front of the lens (mm) and its unit direction.
     pub fn ray(&self, [a, b]: [f64; 2]) -> (DVec3, DVec3) {
         let through = self.middle + a * self.across[0] + b * self.across[1];
         match self.point {
@@ -169,7 +169,7 @@ impl Extent {
         (self.max[0] - self.min[0]) * (self.max[1] - self.min[1])
     }
 
-    /// Returns the size of a cell, mm, if the rectangle is cut into `cells` by `cells`.
+    /// Returns the size of a cell (mm) if the rectangle is cut into `cells` by `cells`.
     pub(crate) fn cell_mm(&self, cells: usize) -> [f64; 2] {
         [0, 1].map(|k| (self.max[k] - self.min[k]) / cells as f64)
     }

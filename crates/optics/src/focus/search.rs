@@ -32,7 +32,7 @@ pub struct FocusSearch {
     pub field_rad: f64,
     /// Criterion of the best focus.
     pub criterion: Criterion,
-    /// Wavelengths of the light, nm, with their weights.
+    /// Wavelengths of the light (nm) with their weights.
     pub light: Vec<(f64, f64)>,
 }
 
@@ -40,7 +40,7 @@ pub struct FocusSearch {
 const CELLS: usize = 96;
 /// Smallest number of rays across the beam.
 const FEWEST_CELLS: usize = 32;
-/// Largest distance of the best focus from the image plane, mm, at which the search with moving groups stops.
+/// Distance (mm) of the best focus from the image plane below which the search with moving groups stops.
 const FOUND_MM: f64 = 2e-5;
 /// Largest number of steps of that search; each is a secant step, so a few suffice.
 const STEPS: usize = 12;
@@ -88,7 +88,7 @@ impl FocusSearch {
         z.ok_or_else(|| self.none())
     }
 
-    /// Returns how far the plane in which lines along x are sharpest lies behind that of lines along y, mm, for a lens with cylinders.
+    /// Returns, for a lens with cylinders, how far the plane of sharpest lines along x lies behind that of lines along y, in mm.
     /// Returns `None` if either plane keeps at least half of the other's contrast, or the criterion is not contrast.
     ///
     /// # Errors

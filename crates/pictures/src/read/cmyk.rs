@@ -61,8 +61,8 @@ pub(super) fn without_profile() -> FileProblem {
 }
 
 impl<R: BufRead + Seek> Cmyk<R> {
-    /// Opens a CMYK decoder; `None` if the file is of another kind, has no profile of inks, or is not sound. In the last case its usual
-    /// decoder reports what is wrong.
+    /// Opens a CMYK decoder; `None` if the file is of another kind, has no profile of inks, or is not sound. In the last case the
+    /// default decoder of the format reports what is wrong.
     pub(super) fn new(mut reader: R, found: &FoundFile, format: ImageFormat) -> Option<Self> {
         if !is_one(found, format) {
             return None;

@@ -33,7 +33,8 @@ pub struct LinearPicture {
 pub struct ReadOptions<'a> {
     /// Name of the file: its extension selects formats that the content does not reveal.
     pub name: &'a str,
-    /// Name of the encoding of the code values. `None` uses the one that the file states, or else the usual one of its format.
+    /// Name of the encoding of the code values. `None` uses the one that the file states, or else the default encoding of its
+    /// format.
     pub transfer: Option<&'a str>,
     /// Whether alpha is requested in addition to light.
     pub alpha: bool,

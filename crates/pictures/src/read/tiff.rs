@@ -128,8 +128,8 @@ pub(super) fn is_multiplied(reader: impl BufRead + Seek) -> Option<bool> {
     }
 }
 
-/// Returns the file with its first picture that is not a preview moved to the front; `None` if it is already there. Scanners and converters
-/// write a small preview first.
+/// Returns the file with the first picture that is no preview moved to the front. `None` if that picture is already the first
+/// one. Scanners and converters write a small preview first.
 ///
 /// # Errors
 /// The file holds only a preview, as camera raw files do, whose picture is stored elsewhere; or one of its pictures exceeds the size

@@ -6,7 +6,7 @@ use spectra_core::frame::ExposureFrame;
 use spectra_core::sink::Out;
 use spectra_files::WriteFault;
 
-/// Side of a tile, pixels, as texture tools use it.
+/// Side of a tile, in pixels: the value that texture tools use.
 const TILE_PX: u32 = 64;
 
 /// Writes the frame as [`super::exr()`] does, but in tiles of 64 x 64 pixels, with the linked picture library. The same frame and

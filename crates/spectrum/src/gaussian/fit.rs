@@ -58,9 +58,9 @@ pub struct GaussianFit {
 /// Fits a sum of `terms` signed Gaussian terms to `values` on `grid` by least squares.
 ///
 /// Terms are added where they lower the error most, in several candidate sums at once, and all terms are refined after each
-/// addition. Then the search restarts many times from the best sums, with terms removed, split or placed elsewhere. No search
-/// of this kind is certain to find the very best sum. It gives the same terms on every machine, in about a second for eight
-/// terms on 401 points. Spectral lines are narrower than any term of a good small sum: remove them first.
+/// addition. Then the search restarts many times from the sums of least error, with terms removed, split or placed elsewhere. No
+/// search of this kind is certain to find the sum of least error. It gives the same terms on every machine, in about a second for
+/// eight terms on 401 points. Spectral lines are narrower than any term of a good small sum: remove them first.
 ///
 /// # Errors
 /// [`SpectrumError::OutOfRange`] unless there is one value for each point of the grid, all are finite and not all are 0. The
@@ -208,7 +208,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Returns the `count` best sums, without duplicates.
+/// Returns the `count` sums of least error, without duplicates.
 fn best_of(mut ways: Vec<Projected>, count: usize) -> Vec<Projected> {
     ways.sort_by(|a, b| a.sum.total_cmp(&b.sum));
     ways.dedup_by(|a, b| (a.sum - b.sum).abs() <= 1e-4 * b.sum);

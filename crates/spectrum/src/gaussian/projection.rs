@@ -1,10 +1,10 @@
 //! Least-squares fit of a sum of Gaussians: heights are solved for, centers and widths are searched.
 //!
-//! Variable projection (G. Golub, V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973): for given centers and widths the best
-//! heights are a linear problem, solved by orthogonalization. Only the two shape parameters of each term are left to the
-//! Levenberg-Marquardt method. Its Jacobian is analytic, in L. Kaufman's form (BIT 15, 49, 1975).
+//! Variable projection (G. Golub, V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973): for given centers and widths, the heights of
+//! least squared error are the solution of a linear problem, solved by orthogonalization. Only the two shape parameters of each
+//! term are left to the Levenberg-Marquardt method. Its Jacobian is analytic, in L. Kaufman's form (BIT 15, 49, 1975).
 
-/// Center, nm, and natural logarithm of the standard deviation in nm.
+/// Center (nm) and natural logarithm of the standard deviation in nm.
 pub(super) type CenterAndWidth = [f64; 2];
 
 /// A function counts as linearly dependent on those before it if less than this share of its length is left after orthogonalization.
@@ -14,12 +14,12 @@ const DEPENDENT: f64 = 1e-11;
 pub(super) struct Problem<'a> {
     pub x: &'a [f64],
     pub y: &'a [f64],
-    /// Bounds of the centers, nm, and of the logarithms of the standard deviations.
+    /// Bounds of the centers (nm) and of the logarithms of the standard deviations.
     pub centers: [f64; 2],
     pub log_sigmas: [f64; 2],
 }
 
-/// Result of a projection: the best heights for given centers and widths.
+/// Result of a projection: the heights of least squared error for given centers and widths.
 #[derive(Clone)]
 pub(super) struct Projected {
     pub places: Vec<CenterAndWidth>,
@@ -75,7 +75,7 @@ impl Problem<'_> {
         self.x.iter().map(value).collect()
     }
 
-    /// Finds the best heights for terms at `places`.
+    /// Finds the heights of least squared error for terms at `places`.
     pub fn project(&self, places: &[CenterAndWidth]) -> Projected {
         let empty = Projected {
             places: Vec::new(),
@@ -88,7 +88,7 @@ impl Problem<'_> {
         self.extend(&empty, places)
     }
 
-    /// Adds terms at further `places` to `start` and finds the best heights of all terms.
+    /// Adds terms at further `places` to `start` and finds the heights of least squared error of all terms.
     pub fn extend(&self, start: &Projected, places: &[CenterAndWidth]) -> Projected {
         let mut p = start.clone();
         let mut triangle: Vec<Vec<f64>> = Vec::new();

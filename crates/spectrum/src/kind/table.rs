@@ -27,8 +27,8 @@ struct Table {
     values: Vec<f64>,
     /// Scale of the values: `linear`, or `log10` if they are logarithms to base 10; `linear` if absent.
     scale: Option<Scale>,
-    /// Values outside of the table: `zero`, `constant` (the nearest value) or `geometric` (falling off as at the end); if
-    /// absent, those usual for the kind of spectrum.
+    /// Values outside of the table: `zero`, `constant` (the nearest value) or `geometric` (falling off as at the end); if absent,
+    /// the default of the kind of spectrum.
     outside: Option<Outside>,
 }
 

@@ -109,7 +109,7 @@ fn algorithms_meet() {
     }
 }
 
-/// Integral of the density by another rule than that of the mass.
+/// Integral of the density by a different rule from that of the mass.
 #[test]
 fn density_has_integral_one() {
     for center in CENTERS {

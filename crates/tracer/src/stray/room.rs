@@ -76,7 +76,7 @@ pub(super) struct Wall {
 }
 
 impl Wall {
-    /// Converts a point of the lens, mm, to x and y in the surface's own frame.
+    /// Converts a point of the lens (mm) to x and y in the surface's own frame.
     pub fn place(&self, at: DVec3) -> [f64; 2] {
         let local = self.pose.local_point(at);
         [local.x, local.y]
@@ -110,7 +110,7 @@ impl Wall {
         self.apertures.iter().map(|a| a.transmittance(at.x, at.y, self.semi_diameter_mm)).product()
     }
 
-    /// Finds the nearest crossing ahead within the outer radius and `most_mm`: the distance, mm, and the local point.
+    /// Finds the nearest crossing ahead within the outer radius and `most_mm`: the distance (mm) and the local point.
     fn meet(&self, p: DVec3, d: DVec3, most_mm: f64) -> Option<(f64, DVec3)> {
         let (p, d) = (self.pose.local_point(p), self.pose.local_direction(d));
         let within = |t: f64| {
@@ -252,7 +252,7 @@ pub struct Interior {
     /// Barrels between each surface and the one before; the last one lies between the last surface and the imager.
     barrels: Vec<Barrel>,
     imager_z_mm: f64,
-    /// Half the width and height of the imager, mm, and its center.
+    /// Half the width and height of the imager (mm), and its center.
     half_mm: [f64; 2],
     center_mm: [f64; 2],
     pub(super) matter: StrayReflectances,
@@ -266,7 +266,8 @@ pub struct Interior {
 }
 
 impl Interior {
-    /// Creates the interior of a lens as it is set, in front of an imager of this width and height, mm, for light of a band, nm.
+    /// Creates the interior of a lens as it is set, in front of an imager of this width and height (mm), for light of a band
+    /// (nm).
     ///
     /// # Errors
     /// [`StrayError`] if the lens has no surfaces or sizes, or its rooms do not lie on a straight axis.
@@ -368,8 +369,8 @@ impl Interior {
         if room == 0 { self.skins[0].media[0] } else { self.skins[room - 1].media[1] }
     }
 
-    /// Finds what light in a room meets next: the wall, the distance, mm, and the wall's unit normal against the light. Returns `None` if
-    /// the light leaves in front of the lens, or passes a gap between rounded rims.
+    /// Finds what light in a room meets next: the wall, the distance (mm) and the wall's unit normal against the light. Returns
+    /// `None` if the light leaves in front of the lens, or passes a gap between rounded rims.
     pub(super) fn next(&self, room: usize, p: DVec3, d: DVec3) -> Option<(NextHit, f64, DVec3)> {
         let mut best: Option<(NextHit, f64, DVec3)> = None;
         let mut most = f64::INFINITY;

@@ -7,7 +7,7 @@ use spectra_core::math;
 use spectra_lens::Coating;
 use spectra_lens::scatter::{Shares, which};
 
-/// Largest number of walls that a particle meets; the light left then is booked as not traced.
+/// Largest number of walls that a particle meets; the light left then is recorded as not traced.
 const MOST_WALLS: usize = 4096;
 
 /// A particle of light, in the frame of the lens.

@@ -22,7 +22,7 @@ impl Vectorized for Evaluate<'_> {
     }
 }
 
-/// Returns the position, mm, and the direction of a ray in the frame that `pose` is given in.
+/// Returns the position (mm) and the direction of a ray in the frame that `pose` is given in.
 #[inline(always)]
 fn reframed(pose: &Pose, [x, y, z]: [f64; 3], [l, m, n]: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     let Pose { origin_mm: o, rotation: r } = pose;

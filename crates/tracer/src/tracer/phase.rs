@@ -39,7 +39,8 @@ impl Tracer {
         rays.weight_columns().optical_path_mm.iter_mut().zip(phases).for_each(|(path, phase)| *path += phase);
     }
 
-    /// Distance, mm, against the light from the vertex of a leg to where the light of a route comes from, in media of these indices.
+    /// Distance (mm), measured against the light, from the vertex of a leg to the point where the light of a route comes from, in
+    /// media of these indices.
     fn object_mm(&self, route: &Route, step: usize, n: &dyn Fn(usize) -> f64) -> f64 {
         let start_mm = match route.enters {
             Travel::Forward => self.focused_mm,

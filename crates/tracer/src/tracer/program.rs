@@ -1,9 +1,9 @@
 //! What is done to a batch on each leg of a route, as a list of operations.
 //!
-//! A surface may move, bend, absorb, coat, scatter and clip light, and a batch may carry its optical path and its polarization, or be booked.
-//! Most surfaces do few of these. So the list for a leg is made once for each kind of batch ([`Mode`]), when the first such batch follows the
-//! route, and a trace runs through it without asking. Each operation is a loop over the batch in `kernels`, `transmission`, `scatter` or in
-//! the surface itself.
+//! A surface may move, bend, absorb, coat, scatter and clip light, and a batch may carry its optical path and its polarization,
+//! or have a ledger. Most surfaces do few of these. So the list for a leg is made once for each kind of batch ([`Mode`]), when
+//! the first such batch follows the route, and a trace runs through it without asking. Each operation is a loop over the batch in
+//! `kernels`, `transmission`, `scatter` or in the surface itself.
 
 use spectra_core::numbers::StageKey;
 use spectra_lens::Pose;
@@ -79,7 +79,7 @@ pub(super) enum Operation {
     Book(LossAccount),
 }
 
-/// Where a loss is booked.
+/// The account in which a loss is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LossAccount {
     /// Light that became heat: at rims, in glass, in mirrors.

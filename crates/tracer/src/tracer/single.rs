@@ -8,7 +8,7 @@ use spectra_core::{Loss, RayBatch};
 /// The path of a single ray, surface by surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayPath {
-    /// The start of the ray, then its point on each surface that it met, mm, frame of the lens.
+    /// The start of the ray, then its point on each surface that it met, in mm, in the frame of the lens.
     pub points: Vec<DVec3>,
     /// Index of the element of each point except the start.
     pub elements: Vec<usize>,

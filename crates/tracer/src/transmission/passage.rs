@@ -20,7 +20,8 @@ pub(crate) enum Kernel {
 }
 
 impl Kernel {
-    /// Chooses the kernel for a coating between media of which the lower index is `low`, for light of this wavelength, nm, or longer.
+    /// Chooses the kernel for a coating between media of which the lower index is `low`, for light of the wavelength
+    /// `shortest_nm` or longer.
     fn of(coating: &Coating, low: f64, shortest_nm: f64) -> Self {
         match coating {
             Coating::Bare => return Self::Bare,
@@ -86,7 +87,7 @@ impl Gap {
 }
 
 impl Passage {
-    /// Returns the passage of an element of a lens, for light of this wavelength, nm, or longer.
+    /// Returns the passage of an element of a lens, for light of the wavelength `shortest_nm` or longer.
     pub(crate) fn of(lens: &Lens, element: &Element, shortest_nm: f64) -> Self {
         match element.action {
             Action::Pass => Self::All,

@@ -88,7 +88,7 @@ impl Term {
 }
 
 impl AuxiliaryData {
-    /// Returns the powers that any asphere has, rising.
+    /// Returns the powers that any asphere has, in ascending order.
     pub(super) fn powers(&self) -> Vec<u32> {
         let all: BTreeSet<u32> = self.aspheres.values().flat_map(|a| a.coefficients.keys().copied()).collect();
         all.into_iter().collect()

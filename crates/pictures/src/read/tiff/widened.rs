@@ -20,7 +20,8 @@ pub(in crate::read) struct Widened<R: BufRead + Seek> {
 }
 
 impl<R: BufRead + Seek> Widened<R> {
-    /// Opens the decoder; `None` if the file is of another kind or not sound. In the last case its usual decoder reports what is wrong.
+    /// Opens the decoder; `None` if the file is of another kind or not sound. In the last case the default decoder of the format
+    /// reports what is wrong.
     pub(in crate::read) fn new(reader: R) -> Option<Self> {
         let mut decoder = Decoder::new(reader).ok()?;
         let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok()?.unwrap_or_else(|| vec![UNSIGNED]);
