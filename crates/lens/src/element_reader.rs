@@ -200,7 +200,8 @@ impl<'a> ElementReader<'a> {
         {
             let text =
                 format!("the surface ends {reach_mm} mm from its axis: it has no point at {semi_diameter_mm} mm");
-            self.faults.push(place.fault("semi-diameter", text).hint("a smaller semi-diameter, or a longer radius"));
+            self.faults
+                .push(place.fault("semi-diameter", text).hint("use a smaller semi-diameter, or a longer radius"));
         }
     }
 

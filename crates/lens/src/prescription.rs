@@ -259,7 +259,7 @@ fn group(node: &StageNode, surfaces: usize) -> Result<Group, Faults> {
     let [first, last] = p.surfaces.map(Whole::size);
     if last < first || last > surfaces {
         let fault = params.fault("surfaces", format!("no surfaces {first} to {last} in this lens"));
-        return Err(fault.hint(format!("two numbers from 1 to {surfaces}, the smaller one first")).into());
+        return Err(fault.hint(format!("write two numbers from 1 to {surfaces}, the smaller one first")).into());
     }
     Ok(Group {
         name: p.name,

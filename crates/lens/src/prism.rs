@@ -94,7 +94,7 @@ impl PrismParams {
         let silvered: Vec<usize> = self.silvered.iter().map(|face| face.size() - 1).collect();
         if let Some(face) = silvered.iter().find(|face| **face >= faces) {
             let fault = params.fault("silvered", format!("the prism has {faces} faces, there is no face {}", face + 1));
-            return Err(fault.hint(format!("numbers from 1 to {faces}")).into());
+            return Err(fault.hint(format!("write numbers from 1 to {faces}")).into());
         }
         let half_width_mm = self.width.map_or(f64::INFINITY, |width| 0.5 * width.mm());
         Solid::new(corners, &silvered, half_width_mm, medium, index).map_err(|error| {

@@ -26,7 +26,7 @@ pub enum MtfError {
     #[error("a modulation transfer function needs at least two points above 0 cycles/mm, not {0}")]
     TooFew(usize),
     /// Frequencies do not rise.
-    #[error("frequencies must rise from point to point; {1} cycles/mm comes after {0}")]
+    #[error("frequencies must increase from point to point; {1} cycles/mm comes after {0}")]
     NotRising(f64, f64),
 }
 

@@ -194,7 +194,7 @@ impl StockFile {
         }
         if self.meter == MeterResponse::Film && self.layers.len() > 1 {
             let fault = params.fault("meter", "a meter with the film's own sensitivity needs a film with one layer");
-            faults.push(fault.hint("`meter: photopic`, or leave it out"));
+            faults.push(fault.hint("write `meter: photopic`, or leave `meter` out"));
         }
         if self.medium == Medium::Paper && process != Process::Print {
             let fault = params.fault("medium", "only a print stock can be on paper");
@@ -221,7 +221,7 @@ impl StockFile {
         let minimum_density = self.minimum_density.as_ref().and_then(|m| faults.take(m.read(params)));
         if self.minimum_density.is_some() && self.dyes() == 0 {
             let fault = params.fault("minimum-density", "curves of silver already include base and fog");
-            faults.push(fault.hint("leave it out"));
+            faults.push(fault.hint("leave `minimum-density` out"));
         }
         minimum_density
     }
@@ -229,7 +229,7 @@ impl StockFile {
     fn interlayer(&self, params: &Params, faults: &mut Faults) -> Option<Interlayer> {
         if self.interlayer.is_some() && self.dyes() == 0 {
             let fault = params.fault("interlayer", "a film of one silver layer has no other layer to act on");
-            faults.push(fault.hint("leave it out"));
+            faults.push(fault.hint("leave `interlayer` out"));
         }
         let interlayer = self.interlayer.as_ref().filter(|_| self.dyes() != 0);
         interlayer.and_then(|i| faults.take(i.read(params, self.layers.len())))
@@ -261,7 +261,7 @@ pub(super) fn read(params: &Params, resources: &dyn Resources) -> Result<Stock, 
     let interlayer = file.interlayer(params, &mut faults);
     if file.aim_density.is_some() && (process != Process::Print || file.dyes() != 3) {
         let fault = params.fault("aim-density", "an aim density belongs to a print stock of three dyes");
-        faults.push(fault.hint("leave it out"));
+        faults.push(fault.hint("leave `aim-density` out"));
     }
     let aim_density = file.aim_density.take().and_then(|aim| faults.take(aim.read(params)));
     let granularity = file.granularity(params, &mut faults);

@@ -190,8 +190,8 @@ impl Catalog {
     }
 
     /// Chooses one of several glasses with the same name: the glass with the stated figures, as in [`Catalog::find_with`]; else
-    /// that of the lens's maker, if it made glass; else the only one of the lens's time; else that of the most common maker, with
-    /// a note.
+    /// that of the lens's maker, if it made glass; else the only one of the lens's time; else that of the maker preferred by
+    /// default, with a note.
     ///
     /// # Errors
     /// An unknown name; a name of several glasses of which none has the stated figures; several measurements of a substance.

@@ -176,7 +176,7 @@ fn formula(kind: &str, data: &str) -> Result<Formula, &'static str> {
                 return Err("a table consists of pairs");
             }
             let points: Vec<_> = c.chunks_exact(2).map(|p| (p[0], p[1])).collect();
-            Table::new(&points).map(|t| Formula::Table(t.into())).map_err(|_| "wavelengths of a table must rise")
+            Table::new(&points).map(|t| Formula::Table(t.into())).map_err(|_| "wavelengths of a table must increase")
         }
         _ => {
             let number = kind.parse().map_err(|_| "unknown type")?;

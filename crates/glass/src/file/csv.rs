@@ -28,7 +28,7 @@ pub(super) fn read(name: &str, bytes: &[u8], material: Option<&str>) -> Result<G
     if let Some(pair) = rows.windows(2).find(|pair| pair[1].wavelength_nm <= pair[0].wavelength_nm) {
         let message = format!("{} nm is not above the wavelength of the row before", pair[1].wavelength_nm);
         let fault = at(Span::of(pair[1].cell, text), message);
-        return Err(fault.hint("wavelengths must rise; a column `material` separates several tables").into());
+        return Err(fault.hint("wavelengths must increase; a column `material` separates several tables").into());
     }
     let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.wavelength_nm, row.n)).collect();
     let table = Table::new(&points).map_err(|e| Fault::new(format!("{name}: {e}")))?;

@@ -199,7 +199,7 @@ fn extinction(params: &Params, p: &GlassFile) -> Result<Option<Extinction>, Faul
         (None, None) => return Ok(None),
         (Some(_), Some(_)) => {
             let fault = params.fault("internal-transmittance", "absorption is given twice");
-            return Err(fault.hint("either `extinction` or `internal-transmittance`"));
+            return Err(fault.hint("give either `extinction` or `internal-transmittance`"));
         }
         (Some(rows), None) => ("extinction", rows.iter().map(|(w, k)| (w.nm(), k.get())).collect()),
         (None, Some(given)) => {
@@ -210,7 +210,7 @@ fn extinction(params: &Params, p: &GlassFile) -> Result<Option<Extinction>, Faul
                     let at = format!("internal-transmittance.table[{i}]");
                     return Err(params
                         .fault(&at, format!("a transmittance of {tau} is out of range"))
-                        .hint("above 0, at most 1"));
+                        .hint("write a number above 0, at most 1"));
                 }
                 // tau = exp(-4 pi k d / lambda); + 0 makes the -0 of a clear row 0.
                 let k = -libm::log(*tau) * w.nm() * 1e-6 / (4.0 * std::f64::consts::PI * mm) + 0.0;
@@ -220,6 +220,6 @@ fn extinction(params: &Params, p: &GlassFile) -> Result<Option<Extinction>, Faul
         }
     };
     let (wavelengths, k): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
-    let fault = || params.fault(key, "wavelengths must rise, and at least one is needed");
+    let fault = || params.fault(key, "wavelengths must increase, and at least one is needed");
     Extinction::new(wavelengths.into(), k).map(Some).ok_or_else(fault)
 }

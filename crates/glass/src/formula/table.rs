@@ -9,7 +9,7 @@ pub enum TableError {
     #[error("a table needs at least two points")]
     TooFewPoints,
     /// Point `row` (from 1) is not after the point before it.
-    #[error("row {row}: wavelengths must rise")]
+    #[error("row {row}: wavelengths must increase")]
     NotRising {
         /// Row, from 1.
         row: usize,

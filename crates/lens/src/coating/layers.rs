@@ -100,7 +100,7 @@ fn layer_of_stack(
     match (&p.material, p.index) {
         (Some(name), None) => {
             if p.k.is_some() {
-                return Err(params.fault(&format!("{at}.k"), "a material has its own k").hint("leave it out").into());
+                return Err(params.fault(&format!("{at}.k"), "a material has its own k").hint("leave `k` out").into());
             }
             let medium = file::medium(name, params, &format!("{at}.material"), resources)?;
             let n_and_k = n_and_k(&medium);
