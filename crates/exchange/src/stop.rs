@@ -134,7 +134,7 @@ fn trace(lens: &Prescription, stop: usize, nm: f64, [mut y, mut slope]: [f64; 2]
     Ok(Ray { at_stop, behind: n * slope, bends_before_stop })
 }
 
-/// Returns the curvature at the vertex in y-z, 1/mm, and the power of an ideal lens, 1/mm.
+/// Returns the curvature at the vertex in y-z and the power of an ideal lens, both in 1/mm.
 fn bend(shape: &SurfaceShape) -> (f64, f64) {
     let square = |coefficients: &[f64], at: usize| 2.0 * coefficients.get(at).copied().unwrap_or(0.0);
     match shape {

@@ -10,8 +10,8 @@ use std::f64::consts::LN_10;
 /// Linear light that shows a mid gray subject exposed as metered: the reflectance of the gray card.
 pub const MID_GRAY: f64 = 0.18;
 
-/// Returns the exposure of a mid gray subject exposed as metered, lx s, on a film of ISO speed `iso`: 10/S, by the definition of exposure
-/// meters (ISO 2720:1974).
+/// Returns the exposure (lx s) of a mid gray subject exposed as metered, on a film of ISO speed `iso`. It is 10/S, by the
+/// definition of exposure meters (ISO 2720:1974).
 #[must_use]
 pub fn metered_exposure_lx_s(iso: f64) -> f64 {
     10.0 / iso
@@ -63,8 +63,8 @@ impl Paper {
         Self { range, toe: USUAL_TOE * range / USUAL_RANGE, ..Self::default() }
     }
 
-    /// Returns the exposure range, log10, of a grade from 0 to 5: the middle of its ISO range over 100, linear between grades as in
-    /// variable-contrast papers. `None` for other grades.
+    /// Returns the exposure range (log10) of a grade from 0 to 5: the middle of its ISO range over 100, linear between grades as
+    /// in variable-contrast papers. `None` for other grades.
     #[must_use]
     pub fn range_of_grade(grade: f64) -> Option<f64> {
         if !(0.0..=5.0).contains(&grade) {

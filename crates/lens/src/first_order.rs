@@ -68,7 +68,7 @@ struct Matrix {
 impl Matrix {
     const UNIT: Self = Self { a: 1.0, b: 0.0, c: 0.0, d: 1.0 };
 
-    /// Appends a surface of this power, 1/mm, between media of these signed indices.
+    /// Appends a surface of this power (1/mm) between media of these signed indices.
     fn bend(self, power: f64, n: f64, after: f64) -> Self {
         let power = power / after;
         let ratio = n / after;

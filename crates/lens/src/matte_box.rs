@@ -21,8 +21,9 @@ pub struct MatteBox {
 }
 
 impl Lens {
-    /// Puts the lens behind a matte box: an element in front of the first one, which clips light in both directions and which every search
-    /// for a pupil sees. Everything else, including the origin, stays where it is; the numbers of all other elements rise by one.
+    /// Puts the lens behind a matte box: an element in front of the first one, which clips light in both directions and which
+    /// every search for a pupil sees. Everything else, including the origin, stays where it is; the numbers of all other elements
+    /// increase by one.
     #[must_use]
     pub fn behind_matte_box(mut self, opening: &MatteBox) -> Self {
         let (half_width_mm, half_height_mm) = (0.5 * opening.width_mm, 0.5 * opening.height_mm);

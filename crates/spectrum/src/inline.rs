@@ -118,7 +118,7 @@ pub(crate) fn line_nm(text: &str) -> Option<f64> {
     named_line(text).map(|l| l.nominal_nm).or_else(|| measure(text, "nm"))
 }
 
-/// Reads the temperature, K, of `5600 K`.
+/// Reads the temperature (in K) of a text such as `5600 K`.
 fn color_temperature(text: &str) -> Option<f64> {
     match Reading::of(text) {
         Reading::Quantity { value, unit } if unit.dimension == Dimension::Temperature => Some(value),

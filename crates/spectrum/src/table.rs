@@ -32,7 +32,7 @@ pub use crate::table_error::{MAX_COLUMNS, MAX_ROWS, TableError, TableFault, Tabl
 
 /// Size of the largest file that is read, bytes.
 pub const MAX_BYTES: u64 = 32 << 20;
-/// Words of which one occurs in the name of a column of wavelengths.
+/// Words that identify a column of wavelengths: the name of such a column contains one of them.
 const WAVELENGTH_WORDS: [&str; 8] = ["wave", "lambda", "\u{3bb}", "nm", "nano", "um", "\u{b5}m", "micro"];
 
 /// Table of spectra as read from a file.

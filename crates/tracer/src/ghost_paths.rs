@@ -3,8 +3,8 @@
 use crate::{Path, Tracer, Travel};
 
 impl Tracer {
-    /// Returns the elements that reflect a part of the light that they should pass: refracting surfaces, except gratings, surfaces that
-    /// scatter, and surfaces whose coating is ideal and whose cement holds.
+    /// Returns the elements that reflect a part of the light that they should pass. These are the refracting surfaces other than
+    /// gratings, scattering surfaces, and surfaces with an ideal coating and sound cement.
     #[must_use]
     pub fn reflecting(&self) -> Vec<usize> {
         (0..self.surfaces()).filter(|at| self.passage(*at).reflects()).collect()

@@ -38,7 +38,8 @@ pub struct Factor {
     pub relative_l2: f64,
     /// Relative error of the integral of the terms; 0 if exact.
     pub integral_error: f64,
-    /// Cancellation of the terms: sum of the sizes of their integrals divided by the size of the sum.
+    /// Cancellation of the terms: the sum of their absolute integrals, divided by the absolute value of the sum of their
+    /// integrals.
     pub kappa: f64,
     /// The Gaussian terms of the factor.
     #[serde(skip)]
@@ -48,7 +49,7 @@ pub struct Factor {
     pub shape: SpectralFunction,
 }
 
-/// Relative errors of estimates of the integral of the product of terms, for one number of samples.
+/// Relative errors of estimates of [`Chain::integral`] with one number of samples.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Scatter {
     /// Number of samples of one estimate.
@@ -72,9 +73,9 @@ pub struct Chain {
     pub band_nm: [f64; 2],
     /// Number of terms of the product.
     pub terms: usize,
-    /// Exact integral of the product of terms over the band: the sum of the integrals of its terms.
+    /// Exact integral of the product of the factors over the band: the sum of the integrals of the product's terms.
     pub integral: f64,
-    /// Integral of the product of the sums of terms by quadrature.
+    /// Integral of the same product by quadrature over the band.
     pub quadrature: f64,
     /// Size of `integral` - `quadrature` divided by the sum of the sizes of all terms' integrals.
     pub difference: f64,
@@ -82,7 +83,8 @@ pub struct Chain {
     pub of_spectra: f64,
     /// Relative error due to the fits: `integral` / `of_spectra` - 1.
     pub fit_error: f64,
-    /// Cancellation of the product: sum of the sizes of the integrals of all terms divided by the size of the integral.
+    /// Cancellation of the product: the sum of the absolute integrals of all its terms, divided by the absolute value of
+    /// `integral`.
     pub kappa: f64,
     /// Mean of one-term estimates over all choices; equal to the integral.
     pub one_term_mean: f64,

@@ -25,7 +25,7 @@ fn index(medium: &Medium, nm: f64) -> f64 {
     }
 }
 
-/// Returns the curvature at the vertex in y-z, 1/mm, and the power of an ideal lens, 1/mm.
+/// Returns the curvature at the vertex in y-z and the power of an ideal lens, both in 1/mm.
 fn bend(shape: &SurfaceShape) -> (f64, f64) {
     match shape {
         SurfaceShape::Plane | SurfaceShape::Stop | SurfaceShape::TiltedPlane { .. } => (0.0, 0.0),

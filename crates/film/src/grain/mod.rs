@@ -64,8 +64,9 @@ const USUAL: [f64; 2] = [17.0, 35.0];
 /// Number of steps of the variance over the amount.
 const STEPS: usize = 1024;
 
-/// Estimates the frequency, cycles/mm, at which the Wiener spectrum of a film of granularity `rms` is at half, if nothing is known of it.
-/// Assumed to be inversely proportional to the granularity, from 35 for Kodak Tri-X 400 (17), and limited to 20 to 100.
+/// Estimates the frequency (cycles/mm) at which the Wiener spectrum of a film of granularity `rms` has fallen to half, for a film
+/// of which this frequency is not known. It is assumed to be inversely proportional to the granularity, from 35 for Kodak Tri-X
+/// 400 (17), and limited to 20 to 100.
 #[must_use]
 pub fn usual_half_power(rms: f64) -> f64 {
     (USUAL[0] * USUAL[1] / rms).clamp(20.0, 100.0)
@@ -87,7 +88,7 @@ pub fn usual_half_power(rms: f64) -> f64 {
 /// # Ok::<(), spectra_film::grain::GrainError>(())
 /// ```
 pub struct Grain {
-    /// Variance times area of large areas, mm^2, divided by the amount, at each of [`STEPS`] steps up to the largest amount.
+    /// Variance times area of large areas (mm^2), divided by the amount, at each of [`STEPS`] steps up to the largest amount.
     per_amount: Vec<f32>,
     steps_a_unit: f32,
     parts: [GrainComponent; 2],
@@ -165,7 +166,7 @@ impl Grain {
         calibrate::wiener(frequency * self.parts[0].cell_mm)
     }
 
-    /// Variance times area of large areas at an amount, mm^2, divided by the amount.
+    /// Variance times area of large areas (mm^2) at an amount, divided by the amount.
     #[inline(always)]
     fn per_amount(&self, amount: f32) -> f32 {
         let place = amount * self.steps_a_unit;

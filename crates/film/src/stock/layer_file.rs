@@ -24,12 +24,12 @@ pub(super) struct LayerFile {
     sensitivity: SensitivityFile,
     /// Dye that forms in the layer; silver if absent.
     pub(super) dye: Option<DyeFile>,
-    /// Modulation transfer of the emulsion: pairs of spatial frequency, cycles/mm, increasing, and response, 0 to 2. Light is not spread if
-    /// absent.
+    /// Modulation transfer of the emulsion: pairs of spatial frequency (cycles/mm, ascending) and response (0 to 2). Light is not
+    /// spread if absent.
     #[serde(default)]
     mtf: Vec<[f64; 2]>,
-    /// Granularity of a layer with a dye: pairs of density above the minimum, measured through the filter of its dye on neutral film,
-    /// increasing, and 1000 times the standard deviation through 48 um. No grain if absent.
+    /// Granularity of a layer with a dye: pairs of density above the minimum (ascending) and 1000 times the standard deviation
+    /// through 48 um. Both are measured on neutral film through the filter of the layer's dye. No grain if absent.
     #[serde(default)]
     granularity: Vec<[f64; 2]>,
     /// Characteristic curves, one for each development.
@@ -48,8 +48,8 @@ struct CurveFile {
     assumed: bool,
     /// Remarks for people: developer, temperature, doubts.
     remark: Option<String>,
-    /// The printed curve: pairs of log10 exposure (lx s of the reference illuminant), increasing, and density. Replaces the four numbers
-    /// below.
+    /// The printed curve: pairs of log10 exposure (lx s of the reference illuminant, ascending) and density. Replaces the four
+    /// numbers below.
     points: Option<Vec<[f64; 2]>>,
     /// Slope of an assumed curve: that of the chord from the speed point, 0.8/S lx s, over 1.5 in log10 exposure.
     average_gradient: Option<f64>,

@@ -114,8 +114,8 @@ pub struct Layer {
     /// Modulation transfer: (spatial frequency in cycles/mm, response), frequencies increasing; empty if the sheet states none. Development
     /// enhances edges, so it may exceed 1.
     pub mtf: Vec<[f64; 2]>,
-    /// Granularity of a layer with a dye: density above the minimum, measured through the filter of its dye on neutral film, increasing,
-    /// and 1000 times the standard deviation through 48 um. Empty if the sheet states none.
+    /// Granularity of a layer with a dye: pairs of density above the minimum (ascending) and 1000 times the standard deviation
+    /// through 48 um. Both are measured on neutral film through the filter of the layer's dye. Empty if the sheet states none.
     pub granularity: Vec<[f64; 2]>,
     /// Curves by development, the default one first; at least one.
     pub developments: Vec<Development>,

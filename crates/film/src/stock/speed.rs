@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use spectra_core::math::{log10, pow};
 
-/// Exposure of the speed point of a film of ISO 1, lx s (ISO 6:1993).
+/// Exposure at the speed point of a film of ISO 1, in lx s (ISO 6:1993).
 const SPEED_POINT_LX_S: f64 = 0.8;
 /// Distance from the speed point at which ISO 6:1993 sets the contrast of the development, log10 of exposure.
 pub const ISO_6_SPAN: f64 = 1.3;

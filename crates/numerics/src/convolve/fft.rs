@@ -17,7 +17,7 @@ pub(super) const LANES: usize = 16;
 /// One number of each column.
 pub(super) type Lane<T> = [T; LANES];
 
-/// Size, bytes, of a part of a transform that is worked on from its beginning to its end: half of the nearest cache.
+/// Size (bytes) of the part of a transform that is computed as a whole before the next part: half of the nearest cache.
 const NEAR_BYTES: usize = 1 << 14;
 
 /// Transforms of one length.

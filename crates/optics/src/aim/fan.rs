@@ -82,7 +82,7 @@ struct Looked {
     inner: [[f64; CHUNK]; 2],
     /// Ends of the outer edge of the triangle, mm.
     edge: [[f32; CHUNK]; 4],
-    /// Middle of the zone: radial, across, axial, mm; normal of its plane: radial, axial; area, mm^2, 0 if nothing passes.
+    /// Middle of the zone: radial, across, axial, in mm; normal of its plane: radial, axial; area in mm^2, 0 if no light passes.
     zone: [[f64; CHUNK]; 6],
     /// Change of outlines over the zone: shift along and across, mm; growth along and across.
     drift: [[f64; CHUNK]; 4],

@@ -92,9 +92,10 @@ impl FrontPupil {
         self
     }
 
-    /// Aims the rays of a batch, which are at their source points, at the pupil. Each ray then starts at the pupil, and its weight is
-    /// multiplied by the solid angle of the region (sr), so that all of it counts alike. `u` and `v`, one value per ray in [0, 1), choose
-    /// the point of the pupil. Rays from points from which nothing passes end, vignetted at the first surface. Returns how many end.
+    /// Aims the rays of a batch, which are at their source points, at the pupil. Each ray then starts at the pupil, and its
+    /// weight is multiplied by the solid angle of the region (sr), so that all of it counts alike. `u` and `v`, one value per ray
+    /// in [0, 1), choose the point of the pupil. Where no light from a source point passes, its rays end as vignetted at the
+    /// first surface. Returns how many end.
     pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], pattern: AimPattern) -> usize {
         self.table.aim::<false>(rays, u, v, (pattern, AimPart::Whole))
     }

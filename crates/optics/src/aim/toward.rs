@@ -1,7 +1,8 @@
 //! Directions from points to the places that rays are aimed at.
 
-/// Returns the direction from a point to a target, a unit vector, and the solid angle, sr, of an area there. The normal of the area is
-/// radial and axial, in the azimuth `out`. Backward, the solid angle is weighted by the cosine with `facing`, the normal of the imager.
+/// Returns the direction from a point to a target, a unit vector, and the solid angle (sr) of an area there. The normal of the
+/// area is radial and axial, in the azimuth `out`. Backward, the solid angle is weighted by the cosine with `facing`, the normal
+/// of the imager.
 #[inline(always)]
 pub(super) fn toward<const BACKWARD: bool>(
     [x, y, z]: [f64; 3],

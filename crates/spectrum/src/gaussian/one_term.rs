@@ -2,8 +2,8 @@
 
 use super::{GaussianMixture, GaussianTerm};
 
-/// Estimator of the integral over a band of a product of signed Gaussian mixtures (a source, filters, a detector) that follows
-/// one term of each factor.
+/// Estimator of the integral of a product of signed Gaussian mixtures (a source, filters, a detector) over a band. It follows one
+/// term of each factor.
 ///
 /// One term of each factor is drawn in proportion to the absolute value of its own integral over the band. The product of the
 /// drawn terms is one term; its exact integral is divided by the probability of the choices. The method needs no wavelength, so

@@ -18,7 +18,7 @@ use spectra_core::params::{Faults, Wavelength};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Histogram {
-    /// Edges of the bins, nm if bare, increasing.
+    /// Edges of the bins, nm if bare, in ascending order.
     #[schemars(length(min = 2))]
     edges: Vec<Wavelength>,
     /// Counts between neighboring edges, one fewer than edges; 0 or more.

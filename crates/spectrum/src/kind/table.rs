@@ -20,7 +20,7 @@ use spectra_core::params::{Faults, Wavelength};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Table {
-    /// Wavelengths, nm if bare, increasing.
+    /// Wavelengths, nm if bare, in ascending order.
     #[schemars(length(min = 1))]
     wavelengths: Vec<Wavelength>,
     /// Values at these wavelengths, as many: fractions of 1 for a transmittance or reflectance, any scale for the others.

@@ -261,7 +261,7 @@ pub struct Interior {
     /// The first rim.
     front: Disk,
     start_nm: f64,
-    /// Index and absorption coefficient, 1/mm, of each medium, by wavelength.
+    /// Index and absorption coefficient (1/mm) of each medium, by wavelength.
     pub(super) media: Vec<Vec<[f64; 2]>>,
 }
 
@@ -355,7 +355,7 @@ impl Interior {
         self.imager_z_mm
     }
 
-    /// Index and absorption coefficient, 1/mm, of a medium at a wavelength, nm.
+    /// Index and absorption coefficient (1/mm) of a medium at a wavelength (nm).
     pub(super) fn medium(&self, medium: usize, wavelength_nm: f64) -> [f64; 2] {
         let table = &self.media[medium];
         let place = ((wavelength_nm - self.start_nm) * (1.0 / STEP_NM)).clamp(0.0, (table.len() - 1) as f64);

@@ -82,7 +82,7 @@ impl StrayLedger {
 pub struct Walker<'a> {
     interior: &'a Interior,
     wavelength_nm: f64,
-    /// Index and absorption coefficient, 1/mm, of each room.
+    /// Index and absorption coefficient (1/mm) of each room.
     rooms: Vec<[f64; 2]>,
     /// Account of where all light so far has ended.
     pub ledger: StrayLedger,
