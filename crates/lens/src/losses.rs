@@ -64,9 +64,9 @@ impl Lens {
         }
     }
 
-    /// Returns the medium whose assumed absorption takes most light on the axis, the glass whose absorption is assumed for it,
-    /// and the total loss of all assumed absorptions at the reference line, in stops. Returns `None` below one stop, or if glass
-    /// does not absorb.
+    /// Returns the medium whose assumed absorption takes most light on the axis, and the glass whose absorption is assumed for
+    /// it. The number is the total loss by all assumed absorptions at the reference line, in stops. Returns `None` below one
+    /// stop, or if glass does not absorb.
     #[must_use]
     pub fn darkened_by_assumption(&self) -> Option<(&str, AbsorptionSubstitute, f64)> {
         let nm = self.reference_nm;

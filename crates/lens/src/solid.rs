@@ -93,9 +93,9 @@ impl Solid {
         }
     }
 
-    /// Creates a prism from its corners (y and z in mm, in either sense of rotation), the silvered faces (numbers from 0), half
-    /// the width along x (mm), and the medium of its glass. `relative_index`, the index of the glass over that of the medium
-    /// outside, is used to trace the axis.
+    /// Creates a prism from its corners, silvered faces (numbers from 0), half the width along x (mm), and the medium of its
+    /// glass. Corners are y and z in mm, in either sense of rotation. `relative_index`, the index of the glass over that of the
+    /// medium outside, is used to trace the axis.
     ///
     /// # Errors
     /// [`SolidError`] if the corners make no valid outline or the axis does not pass the prism.

@@ -3,7 +3,7 @@
 //! A file has front matter of `# key: value` lines (see [`Meta`]), a header row `wavelength_nm,<columns>`, then one row per
 //! wavelength, in increasing order.
 //!
-//! Without `# spectra: 1` on the first line the table is read in any common format. Lines that begin with `#` are plain comments,
+//! If the first line is not `# spectra: 1`, the table is read in any common format. Lines that begin with `#` are plain comments,
 //! the caller supplies the kind, and [`Table::notes`] says how the rest was interpreted. Columns are separated by commas,
 //! semicolons, tabs or spaces; decimal commas are accepted with all of these except commas. The header may be missing, and
 //! wavelengths may be in micrometers or in descending order.

@@ -59,9 +59,9 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug + 'static {
     fn extent_mm(&self, _radius_mm: f64) -> Option<[f64; 2]> {
         None
     }
-    /// Returns the unit direction after the surface, or why the ray ends, for surfaces that bend light by a law other than
-    /// Snell's, such as an ideal lens or a grating. `None`, the default, refracts or reflects as the action says. A surface with
-    /// its own law also has a [phase](ScalarShape::phase_mm).
+    /// Returns the unit direction after the surface, or why the ray ends. This is for surfaces that bend light by a law other
+    /// than Snell's, such as an ideal lens or a grating. `None`, the default, refracts or reflects as the action says. A surface
+    /// with its own law also has a [phase](ScalarShape::phase_mm).
     fn redirect(&self, _at: &Bending) -> Option<Result<DVec3, Loss>> {
         None
     }

@@ -30,7 +30,7 @@ const EXTREMUM_HALVINGS: usize = 30;
 const BRACKET_STEPS: usize = 120;
 
 /// Returns the distance (mm) at which the ray crosses z = sag(x, y) in its direction of travel (forward: from smaller z to
-/// larger). If there are several crossings, it is the one nearest to `start_mm` or, if the search has to start elsewhere, nearest
+/// larger). Of several crossings it is the one nearest to `start_mm`. If the search has to start elsewhere, it is the one nearest
 /// to the point of the ray that is closest to the vertex.
 ///
 /// `height` returns z - sag at a distance along the ray, and its derivative along the ray; `None` where the surface does not

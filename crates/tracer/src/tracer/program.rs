@@ -2,8 +2,8 @@
 //!
 //! A surface may move, bend, absorb, coat, scatter and clip light, and a batch may carry its optical path and its polarization,
 //! or have a ledger. Most surfaces do few of these. So the list for a leg is made once for each kind of batch ([`Mode`]), when
-//! the first such batch follows the route, and a trace runs through it without asking. Each operation is a loop over the batch in
-//! `kernels`, `transmission`, `scatter` or in the surface itself.
+//! the first such batch follows the route. A trace then runs through the list without tests. Each operation is a loop over the
+//! batch in `kernels`, `transmission`, `scatter` or in the surface itself.
 
 use spectra_core::numbers::StageKey;
 use spectra_lens::Pose;
