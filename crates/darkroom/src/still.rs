@@ -108,6 +108,7 @@ pub fn expose_still(scene: &Scene, still: &Still) -> Result<Rendering, Faults> {
         losses: LossCounts::default(),
         detected: 0,
         partial: false,
+        samples: 0,
         noise: None,
         estimators: Vec::new(),
         warnings: Vec::new(),

@@ -40,6 +40,6 @@ pub use channel_light::ChannelLight;
 pub use kernel::PixelSpread;
 pub use polygon::Polygon;
 pub use pupil::{Pupil, Wavefronts};
-pub use spread::{LensView, Spread, SpreadReport, brightest_star};
+pub use spread::{LensView, Spread, SpreadReport, star_of_pixel};
 pub use wavefront::Wavefront;
 pub use wings::{Fan, Wings};

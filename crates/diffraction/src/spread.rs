@@ -62,17 +62,15 @@ pub struct SpreadReport {
     pub stars: usize,
 }
 
-/// Returns the brightness of the brightest star, as a fraction of the frame's median, where the star leaves the pixels around its light.
-/// `None` if the middle of the frame sees no opening, or if there is no light.
+/// Returns the largest fraction of a pixel's light that its star brings to another pixel, where the star leaves the pixels around its
+/// light. `None` if the middle of the frame sees no opening.
 #[must_use]
-pub fn brightest_star(size: FrameSize, light: &ChannelLight, seen: &dyn LensView, plane: &[f32]) -> Option<f64> {
+pub fn star_of_pixel(size: FrameSize, light: &ChannelLight, seen: &dyn LensView) -> Option<f64> {
     let pitch_mm = [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)];
     let middle = seen.opening([0.5 * f64::from(size.width_px), 0.5 * f64::from(size.height_px)])?;
     let pitch = pitch_mm[0].min(pitch_mm[1]);
     let end = radius(near_mm(&middle, light), pitch) as f64 * pitch;
-    let brightest = plane.iter().fold(0.0_f32, |a, b| a.max(*b));
-    let star = f64::from(brightest) * star_peak(&middle, light.mean_mm(), pitch_mm, end);
-    (star > 0.0).then(|| star / f64::from(median(plane)))
+    Some(star_peak(&middle, light.mean_mm(), pitch_mm, end))
 }
 
 /// Whether two openings with their wavefronts spread light alike. Their shapes must agree within a thousandth of their size, wherever they

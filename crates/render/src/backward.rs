@@ -19,7 +19,7 @@ use crate::non_finite::Step;
 use crate::pilot::{self, PILOT_SEED};
 use crate::pipeline::{Pipeline, SCATTER, ThreadState};
 use crate::sums::{ExactSums, PILOT_RAYS};
-use crate::tiles::{Tile, Tiles};
+use crate::tiles::Tiles;
 use crate::{Done, Workers};
 use glam::DVec3;
 use spectra_core::RayBatch;
@@ -33,8 +33,8 @@ use spectra_tracer::Travel;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Samples per pixel in one unit of work.
-pub(crate) const SAMPLES_PER_PASS: u32 = 32;
+/// Largest number of samples per pixel in a unit of work.
+const SAMPLES_A_UNIT: u64 = 32;
 
 /// Estimator name from which the stages derive their own random numbers.
 const ESTIMATOR: &str = "backward";
@@ -136,7 +136,7 @@ impl Backward {
         }
         let start = |rays: &mut RayBatch| {
             let mut from = 0;
-            for &Span { pixel, first, count } in spans {
+            for &Span { pixel, first, count, .. } in spans {
                 rays.columns_mut().tag[from..from + count].fill(pixel);
                 rays.number(from, &self.numbers, name, u64::from(pixel), u64::from(first));
                 from += count;
@@ -180,50 +180,48 @@ impl Backward {
         state.settle(isa);
     }
 
-    /// Adds samples `first .. first + samples` of a tile's pixels to the sums.
+    /// Adds samples of some pixels to the sums.
     ///
     /// # Errors
-    /// Fails if a contribution is not a finite number or does not fit. Nothing of the unit is added then.
+    /// Fails if a contribution is not a finite number or does not fit. The light of its ray is left out then.
     fn unit(
         &self,
         state: &mut ThreadState,
-        tile: &Tile,
-        first: u32,
-        samples: u32,
+        pixels: &[u32],
+        samples: Range<u32>,
         sums: &ExactSums,
     ) -> Result<(), RenderError> {
         let channels = state.integers.len();
-        let mut local = vec![0_i64; tile.len() as usize * channels];
-        let mut spans = Vec::with_capacity(tile.len() as usize);
-        let capacity = state.rays.capacity() as u32;
+        let mut local = vec![0_i64; pixels.len() * channels];
+        let mut spans = Vec::with_capacity(pixels.len());
+        let capacity = state.rays.capacity();
         // A batch takes as many whole pixels as it holds, or part of one pixel if it does not hold a whole one.
-        let at_once = samples.min(capacity);
-        let whole = (capacity / at_once).max(1);
-        for begin in (0..tile.len()).step_by(whole as usize) {
-            let pixels = (begin..tile.len().min(begin + whole)).map(|at| tile.pixel(at));
-            let mut sample = first;
-            while sample < first + samples {
-                let count = at_once.min(first + samples - sample);
+        let at_once = samples.len().min(capacity);
+        let mut result = Ok(());
+        for (begin, pixels) in (0..).step_by(capacity / at_once).zip(pixels.chunks(capacity / at_once)) {
+            for first in samples.clone().step_by(at_once) {
+                let count = at_once.min((samples.end - first) as usize);
                 spans.clear();
-                spans.extend(pixels.clone().map(|pixel| Span { pixel, first: sample, count: count as usize }));
-                self.add(state, tile, &spans, AimPart::Core, &mut local)?;
-                sample += count;
+                spans.extend((begin..).zip(pixels).map(|(at, pixel)| Span { at, pixel: *pixel, first, count }));
+                result = result.and(self.add(state, &spans, AimPart::Core, &mut local));
             }
         }
         if self.rear.has_rim() {
-            self.add_rim(state, tile, first..first + samples, &mut local)?;
+            result = result.and(self.add_rim(state, pixels, samples, &mut local));
         }
-        for (at, values) in (0..).zip(local.chunks_exact(channels)) {
-            let cell = tile.pixel(at) as usize * channels;
+        for (pixel, values) in pixels.iter().zip(local.chunks_exact(channels)) {
+            let cell = *pixel as usize * channels;
             values.iter().enumerate().for_each(|(channel, value)| sums.add(cell + channel, *value));
         }
-        Ok(())
+        result
     }
 }
 
 /// Consecutive samples of one pixel.
 #[derive(Clone, Copy)]
 struct Span {
+    /// Position of the pixel in its unit.
+    at: usize,
     pixel: u32,
     first: u32,
     count: usize,
@@ -232,40 +230,45 @@ struct Span {
 /// Returns [`PILOT_RAYS`] pixels spread evenly over the frame, each with the sample of this number.
 fn spread(pixels: u64, sample: u32) -> Vec<Span> {
     let pixel = |i: u32| (u64::from(i) * pixels / u64::from(PILOT_RAYS)) as u32;
-    (0..PILOT_RAYS).map(|i| Span { pixel: pixel(i), first: sample, count: 1 }).collect()
+    (0..PILOT_RAYS).map(|i| Span { at: i as usize, pixel: pixel(i), first: sample, count: 1 }).collect()
 }
 
 impl Backward {
-    /// Traces samples of a tile's pixels through a part of the pupil and adds them to the local sums of the tile.
+    /// Traces samples of a unit's pixels through a part of the pupil and adds them to the local sums of the unit.
     fn add(
         &self,
         state: &mut ThreadState,
-        tile: &Tile,
         spans: &[Span],
         part: AimPart,
         local: &mut [i64],
     ) -> Result<(), RenderError> {
         self.steps(state, spans, part, &mut |_, _| {});
+        let mut result = Ok(());
         if !state.contributions(&self.pipeline, self.scale) {
+            let (losses, detected) = (state.work.losses.clone(), state.detected);
             let mut blame = FiniteCheck::default();
             self.steps(state, spans, part, &mut |step, rays| blame.look(step, rays));
-            return Err(blame.error(&self.pipeline, state, self.scale));
+            (state.work.losses, state.detected) = (losses, detected);
+            result = Err(blame.error(&self.pipeline, state, self.scale));
+            state.contributions_that_fit(&self.pipeline, self.scale);
         }
-        // The samples of one pixel are adjacent in the batch.
+        // The samples of one pixel are adjacent in the batch, and pixels stand in it in the order of their spans. Rays that saw nothing
+        // are no longer in it.
         let channels = state.integers.len();
-        let mut from = 0;
+        let (mut from, mut spans) = (0, spans.iter());
         for tags in state.rays.tags().chunk_by(|a, b| a == b) {
             let (pixel, only) = pixel_and_channel(tags[0]);
-            let cell = tile.at(pixel) as usize * channels;
             let rays = from..from + tags.len();
+            from = rays.end;
+            let span = spans.find(|span| span.pixel == pixel).expect("rays in the order of their spans");
+            let cell = span.at * channels;
             for (channel, integers) in state.integers.iter().enumerate() {
                 if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                     local[cell + channel] += integers[rays.clone()].iter().sum::<i64>();
                 }
             }
-            from = rays.end;
         }
-        Ok(())
+        result
     }
 
     /// Adds rays through the rim of the pupil. In each block of [`RIM_EVERY`] samples of a pixel, one sample brings such a ray along. Which
@@ -274,48 +277,54 @@ impl Backward {
     fn add_rim(
         &self,
         state: &mut ThreadState,
-        tile: &Tile,
+        pixels: &[u32],
         samples: Range<u32>,
         local: &mut [i64],
     ) -> Result<(), RenderError> {
         let blocks = samples.start / RIM_EVERY..samples.end.div_ceil(RIM_EVERY);
         let shift = |block: u32| self.shifts.one(SHIFT_STREAM, u64::from(block), 0) * f64::from(RIM_EVERY);
         let shifts: Vec<u32> = blocks.clone().map(|block| shift(block) as u32).collect();
+        let width = self.size().width_px;
         let with_ray = |pixel: u32, block: u32| {
-            let (column, row) = (pixel % tile.width, pixel / tile.width);
+            let (column, row) = (pixel % width, pixel / width);
             let shift = shifts[(block - blocks.start) as usize];
             // Neighbors take turns: steps of seven and five reach every sample of a block.
             let own = (7 * (column % RIM_EVERY) + 5 * (row % RIM_EVERY) + shift) % RIM_EVERY;
             samples.contains(&(block * RIM_EVERY + own))
         };
         // Every block except the first and the last lies entirely within the samples.
-        let span = |pixel: u32| {
+        let span = |(at, pixel): (usize, u32)| {
             let count = blocks.clone().filter(|block| with_ray(pixel, *block)).count();
             let first = blocks.start + u32::from(!with_ray(pixel, blocks.start));
-            Span { pixel, first, count }
+            Span { at, pixel, first, count }
         };
         let (losses, detected) = (std::mem::take(&mut state.work.losses), state.detected);
-        let whole = (state.rays.capacity() / blocks.len().max(1)).max(1) as u32;
-        for begin in (0..tile.len()).step_by(whole as usize) {
-            let pixels = begin..tile.len().min(begin + whole);
-            let spans: Vec<Span> = pixels.map(|at| span(tile.pixel(at))).filter(|span| span.count > 0).collect();
-            if !spans.is_empty() {
-                self.add(state, tile, &spans, AimPart::Rim, local)?;
-            }
+        let with_rays = pixels.iter().copied().enumerate().map(span).filter(|span| span.count > 0);
+        let spans: Vec<Span> = with_rays.collect();
+        let mut result = Ok(());
+        for spans in spans.chunks((state.rays.capacity() / blocks.len().max(1)).max(1)) {
+            result = result.and(self.add(state, spans, AimPart::Rim, local));
         }
         (state.work.losses, state.detected) = (losses, detected);
-        Ok(())
+        result
     }
 
     fn size(&self) -> FrameSize {
         self.pipeline.scene.imager.size()
     }
 
-    /// Returns the tile and the samples of a unit.
-    fn piece(samples: &Range<u64>, tiles: &[u32], unit: u64) -> (u32, Range<u64>) {
-        let many = tiles.len() as u64;
-        let first = samples.start + unit / many * u64::from(SAMPLES_PER_PASS);
-        (tiles[(unit % many) as usize], first..samples.end.min(first + u64::from(SAMPLES_PER_PASS)))
+    /// Returns the number of tiles in a unit: one, or more in a span of few samples, so that a unit has enough rays.
+    fn tiles_a_unit(samples: &Range<u64>) -> usize {
+        (SAMPLES_A_UNIT / (samples.end - samples.start).clamp(1, SAMPLES_A_UNIT)) as usize
+    }
+
+    /// Returns the tiles and the samples of a unit.
+    fn piece<'a>(samples: &Range<u64>, tiles: &'a [u32], unit: u64) -> (&'a [u32], Range<u64>) {
+        let each = Self::tiles_a_unit(samples);
+        let many = tiles.len().div_ceil(each) as u64;
+        let first = samples.start + unit / many * SAMPLES_A_UNIT;
+        let tile = (unit % many) as usize * each;
+        (&tiles[tile..tiles.len().min(tile + each)], first..samples.end.min(first + SAMPLES_A_UNIT))
     }
 
     fn tiling(&self) -> Tiles {
@@ -345,7 +354,8 @@ impl Estimator for Backward {
     }
 
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
-        tiles.len() as u64 * (samples.end - samples.start).div_ceil(u64::from(SAMPLES_PER_PASS))
+        let groups = tiles.len().div_ceil(Self::tiles_a_unit(samples)) as u64;
+        groups * (samples.end - samples.start).div_ceil(SAMPLES_A_UNIT)
     }
 
     fn rays(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
@@ -369,29 +379,27 @@ impl Estimator for Backward {
         scratch: &mut Scratch,
         sums: &ExactSums,
     ) -> UnitResult {
-        let (tile, samples) = Self::piece(samples, tiles, unit);
-        let tile = self.tiling().tile(tile);
-        let count = (samples.end - samples.start) as u32;
-        let state = &mut scratch.0;
-        let booked = (state.work.losses.clone(), state.detected);
-        match self.unit(state, &tile, samples.start as u32, count, sums) {
-            Ok(()) => UnitResult { rays: u64::from(tile.len()) * u64::from(count), error: None },
-            Err(error) => {
-                // None of this unit is in the sums, so its losses and detected rays are not counted either.
-                (state.work.losses, state.detected) = booked;
-                UnitResult { rays: 0, error: Some(error) }
-            }
-        }
+        let (tiles, samples) = Self::piece(samples, tiles, unit);
+        let tiling = self.tiling();
+        let pixels_of = |tile: &u32| {
+            let tile = tiling.tile(*tile);
+            (0..tile.len()).map(move |at| tile.pixel(at))
+        };
+        let pixels: Vec<u32> = tiles.iter().flat_map(pixels_of).collect();
+        let result = self.unit(&mut scratch.0, &pixels, samples.start as u32..samples.end as u32, sums);
+        UnitResult { rays: pixels.len() as u64 * (samples.end - samples.start), error: result.err() }
     }
 
-    fn weights(&self, done: &Done, _rays: u64, time_s: f64) -> Vec<f64> {
+    fn weights(&self, done: &[&Done], _rays: u64, time_s: f64) -> Vec<f64> {
         let tiles = self.tiles();
-        let mut of_tile: Vec<u64> = (0..tiles as u32).map(|tile| done.samples_of(tile)).collect();
-        if let Some((samples, units)) = done.open() {
-            let active = done.active(tiles);
+        let mut of_tile = vec![0; tiles];
+        for half in done {
+            (0..).zip(&mut of_tile).for_each(|(tile, samples)| *samples += half.samples_of(tile));
+            let Some((samples, units)) = half.open() else { continue };
+            let active = half.active(tiles);
             for unit in units.ranges().flatten() {
-                let (tile, piece) = Self::piece(samples, &active, unit);
-                of_tile[tile as usize] += piece.end - piece.start;
+                let (tiles, piece) = Self::piece(samples, &active, unit);
+                tiles.iter().for_each(|tile| of_tile[*tile as usize] += piece.end - piece.start);
             }
         }
         let of_tile: Vec<f64> = of_tile.into_iter().map(|n| time_s / self.scale / n.max(1) as f64).collect();

@@ -91,7 +91,7 @@ impl Renderer {
         let (first, second) = light.parts.split_at(kinds);
         let estimators: Vec<&dyn Estimator> = self.estimators().take(kinds).collect();
         let weights = |parts: &[EstimatorSums]| -> Vec<Vec<f64>> {
-            let of = |(e, part): (&&dyn Estimator, &EstimatorSums)| e.weights(&part.done, part.rays, 1.0);
+            let of = |(e, part): (&&dyn Estimator, &EstimatorSums)| e.weights(&[&part.done], part.rays, 1.0);
             estimators.iter().zip(parts).map(of).collect()
         };
         let (of_first, of_second) = (weights(first), weights(second));

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 #[derive(Debug, Default)]
 pub struct Control {
     stop: AtomicBool,
+    pause: AtomicBool,
     rays: AtomicU64,
     total_rays: AtomicU64,
 }
@@ -22,9 +23,25 @@ impl Control {
         self.stop.store(true, Relaxed);
     }
 
-    /// Whether the render should stop now.
+    /// Asks the render to return to its caller, who looks at the light so far and then continues.
+    pub fn pause(&self) {
+        self.pause.store(true, Relaxed);
+    }
+
+    /// Ends a pause. Returns whether one was asked for.
+    pub fn resume(&self) -> bool {
+        self.pause.swap(false, Relaxed)
+    }
+
+    /// Whether the render should stop now, for good or for a pause.
     #[must_use]
     pub fn should_stop(&self) -> bool {
+        self.is_stopped() || self.pause.load(Relaxed)
+    }
+
+    /// Whether the render should stop for good.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
         self.stop.load(Relaxed)
     }
 

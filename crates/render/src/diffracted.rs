@@ -3,18 +3,14 @@
 //! Diffraction comes after the light is summed: exposure is linear, and the sums of rays stay as they are. [`spectra_diffraction`] has the
 //! model; this module shows it the lens from each place of the frame and the light of each channel.
 //!
-//! Unless the scene decides, diffraction is on if lights are rendered apart from the rest and their stars can be seen. The star of the
-//! brightest pixel must exceed 1 % of the frame's median in some channel, at the distance where it leaves the core. This is decided from
-//! the sums at each look, before any kernel is made.
+//! Unless the scene decides, diffraction is on if the stars of lamps can be seen, as [`crate::star_trial`] finds.
 
 use glam::DVec3;
 use spectra_core::RayBatch;
 use spectra_core::frame::ExposureChannel;
 use spectra_core::params::Fault;
 use spectra_core::spectral::{Channel, SpectralPower};
-use spectra_diffraction::{
-    ChannelLight, LensView, Polygon, Pupil, Spread, SpreadReport, Wavefront, Wavefronts, brightest_star,
-};
+use spectra_diffraction::{ChannelLight, LensView, Polygon, Pupil, Spread, SpreadReport, Wavefront, Wavefronts};
 use spectra_scene::Scene;
 
 /// What diffraction did to one channel.
@@ -35,15 +31,15 @@ pub(crate) fn fault(scene: &Scene) -> Option<Fault> {
     if scene.render.diffraction == Some(true) { Pupil::new(&scene.lens).err() } else { None }
 }
 
-/// Returns the brightness of the brightest star, as a fraction of the median of the frame, where the star leaves the pixels around its
-/// light. Takes the channel in which it is largest; `None` if it cannot be computed.
-pub(crate) fn star(scene: &Scene, planes: &[ExposureChannel], recorded: &[usize]) -> Option<f64> {
+/// Returns the largest fraction of a pixel's light that its star brings to another pixel, where the star leaves the core, in the channel
+/// with this number. `None` if it cannot be computed.
+pub(crate) fn star_of_pixel(scene: &Scene, channel: usize) -> Option<f64> {
     let seen = SceneLensView { scene, pupil: &Pupil::new(&scene.lens).ok()?, waves: None };
-    let one = |number: &usize| {
-        let (channel, plane) = (scene.channels.get(*number)?, planes.get(*number)?);
-        brightest_star(scene.imager.size(), &light(scene.source.spectrum(), channel)?, &seen, &plane.values)
-    };
-    recorded.iter().filter_map(one).reduce(f64::max)
+    spectra_diffraction::star_of_pixel(
+        scene.imager.size(),
+        &light(scene.source.spectrum(), scene.channels.get(channel)?)?,
+        &seen,
+    )
 }
 
 /// Spreads the recorded planes of a frame by diffraction, in place, and returns what it did to each channel.

@@ -56,10 +56,10 @@ use std::ops::Range;
 ///         (0..self.pixels * self.channels).for_each(|cell| sums.add(cell, count));
 ///         UnitResult { rays: 0, error: None }
 ///     }
-///     fn weights(&self, done: &Done, _rays: u64, time_s: f64) -> Vec<f64> {
+///     fn weights(&self, done: &[&Done], _rays: u64, time_s: f64) -> Vec<f64> {
 ///         // Each sample has added 1 to each sum.
-///         let samples = done.samples_of(0).max(1) as f64;
-///         vec![self.w_m2 * time_s / samples; self.pixels]
+///         let samples: u64 = done.iter().map(|half| half.samples_of(0)).sum();
+///         vec![self.w_m2 * time_s / samples.max(1) as f64; self.pixels]
 ///     }
 ///     fn metered(&self, _workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
 ///         Ok(Vec::new())
@@ -114,8 +114,9 @@ pub trait Estimator: Send + Sync {
         None
     }
 
-    /// Returns the factor for each pixel that turns its integer sums into W/m2 times the exposure time. `rays` were launched in all.
-    fn weights(&self, done: &Done, rays: u64, time_s: f64) -> Vec<f64>;
+    /// Returns the factor for each pixel that turns its integer sums into W/m2 times the exposure time. The sums are those of one half of the
+    /// samples, or of both halves added up: `done` says for each half what is in them. `rays` were launched for all of them.
+    fn weights(&self, done: &[&Done], rays: u64, time_s: f64) -> Vec<f64>;
 
     /// Computes what the camera's meters see, with rays of its own, traced in the same way as those of the picture. Returns W/m2 at each
     /// pixel for each meter channel of the scene, 0 where no meter looks. The list is empty if the meters see none of the source's light.
@@ -128,9 +129,9 @@ pub trait Estimator: Send + Sync {
 /// The result of one unit of work.
 #[derive(Debug)]
 pub struct UnitResult {
-    /// Number of rays whose light is in the sums.
+    /// Number of rays that were launched.
     pub rays: u64,
-    /// The reason why rays of the unit are missing from the sums, if any are.
+    /// What is wrong with a ray of the unit, if any is. The light of such rays is left out of the sums; the unit counts as done.
     pub error: Option<RenderError>,
 }
 
@@ -138,3 +139,15 @@ pub struct UnitResult {
 /// room for rays; it is for estimators that trace none, or trace in buffers of their own.
 #[derive(Default)]
 pub struct Scratch(pub(crate) ThreadState);
+
+impl Scratch {
+    /// Adds what the thread has summed on its own to the shared sums.
+    pub(crate) fn finish(&mut self, sums: &ExactSums) {
+        if let Some(own) = &mut self.0.own {
+            own.give(sums);
+        }
+        if let Some(own) = &mut self.0.steps {
+            own.give(sums);
+        }
+    }
+}

@@ -274,8 +274,8 @@ impl Forward {
         look(Step::Source, &state.rays);
     }
 
-    /// Adds a unit of paths to the sums. Returns the number of paths added, and an error if a contribution is not finite or does not fit;
-    /// the remaining paths are missing then.
+    /// Adds a unit of paths to the sums. Returns the number of paths, and an error if a contribution is not finite or does not fit; the
+    /// light of such paths is left out.
     pub(crate) fn unit(
         &self,
         state: &mut ThreadState,
@@ -284,7 +284,7 @@ impl Forward {
         sums: &ExactSums,
     ) -> (u64, Option<RenderError>) {
         let batch = state.rays.capacity() as u64;
-        let mut at = first;
+        let (mut at, mut failure) = (first, None);
         while at < first + paths {
             let len = batch.min(first + paths - at);
             let is_good = match (&self.spots, &self.haze) {
@@ -295,29 +295,30 @@ impl Forward {
                     self.add(state, sums)
                 }
             };
-            if !is_good {
+            if !is_good && failure.is_none() {
                 // Trace in a fresh state: positions left over from rays that ended in another batch must not be blamed.
                 let mut blame = FiniteCheck::default();
                 let mut again = ThreadState::new(&self.pipeline, state.rays.capacity());
                 self.steps(&mut again, at, len as usize, &mut |step, rays| blame.look(step, rays));
-                return (at - first, Some(blame.error(&self.pipeline, &mut again, self.scale)));
+                failure = Some(blame.error(&self.pipeline, &mut again, self.scale));
             }
             at += len;
         }
-        (paths, None)
+        (paths, failure)
     }
 
-    /// Adds the contributions of a batch to the sums. Returns false if one is not finite or does not fit; nothing is added then.
+    /// Adds the contributions of a batch to the sums. Returns false if one is not finite or does not fit; its ray adds nothing then.
     fn add(&self, state: &mut ThreadState, sums: &ExactSums) -> bool {
-        if !state.contributions(&self.pipeline, self.scale) {
-            return false;
+        let is_good = state.contributions(&self.pipeline, self.scale);
+        if !is_good {
+            state.contributions_that_fit(&self.pipeline, self.scale);
         }
         let (tags, recorded) = (state.rays.tags(), &self.pipeline.recorded[..]);
         match &mut state.own {
             Some(own) => own.add(tags, &state.integers, recorded, sums),
             None => sums.add_rays(0, tags, &state.integers, recorded),
         }
-        true
+        is_good
     }
 
     /// Traces paths like [`Forward::batch`] and adds the light of each to all the places over which it is spread. Each path is counted
@@ -336,9 +337,6 @@ impl Forward {
             if let Some((losses, detected)) = booked {
                 (state.work.losses, state.detected) = (losses, detected);
             }
-            if !is_good {
-                break;
-            }
         }
         state.before = before;
         is_good
@@ -355,12 +353,13 @@ impl Forward {
         let (left, moved_px) = (state.rays.tags().to_vec(), haze.moved_px(&state.rays, &unscattered));
         let number = |i: usize| first + u64::from(numbers[left[i] as usize]);
         self.arrive(state, &mut |_, _| {});
-        if !state.contributions(&self.pipeline, self.scale) {
-            return false;
+        let is_good = state.contributions(&self.pipeline, self.scale);
+        if !is_good {
+            state.contributions_that_fit(&self.pipeline, self.scale);
         }
         let footprint = |i: usize| haze.footprint(moved_px[i], self.sample_of(number(i)));
         haze.spreader.add(state, footprint, None, sums);
-        true
+        is_good
     }
 
     /// Returns the sample that a path belongs to.
@@ -443,7 +442,7 @@ impl Estimator for Forward {
         UnitResult { rays, error }
     }
 
-    fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
+    fn weights(&self, _done: &[&Done], rays: u64, time_s: f64) -> Vec<f64> {
         let size = self.pipeline.scene.imager.size();
         vec![time_s / self.scale / size.pixel_area_mm2() / rays.max(1) as f64; size.pixels()]
     }

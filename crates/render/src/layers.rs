@@ -73,7 +73,7 @@ impl Renderer {
         let (channels, of_meters) = (recorded.len(), scene.meter_channels());
         let metered = light.metered.as_deref().unwrap_or_default();
         let time_s = scene.exposure_time_s();
-        let own = self.estimators().zip(&light.parts).zip(weights);
+        let own = self.estimators().zip(&light.parts).zip(weights.iter().cycle());
         let own = own.filter(|((e, _), _)| layer.is_none_or(|(kind, _)| kind == e.light()));
         let taken = |e: &dyn Estimator| SumSelection::of(layer.map_or(&GhostPaths::All, |(_, paths)| paths), e.paths());
         let parts: Vec<(&EstimatorSums, &Vec<f64>, SumSelection)> =

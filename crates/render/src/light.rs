@@ -29,7 +29,18 @@ impl Light {
     /// Returns the number of samples of each pixel that are in the sums: with several estimators, the smallest number.
     #[must_use]
     pub fn samples(&self) -> u64 {
-        self.halves * self.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0)
+        self.halves * self.complete()
+    }
+
+    /// Returns the number of samples of each half that all estimators have completed; 0 before the first pass over the frame is complete.
+    pub(crate) fn complete(&self) -> u64 {
+        self.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0)
+    }
+
+    /// Returns whether the first pass over the frame is complete, so that every pixel has a sample of each kind of light.
+    #[must_use]
+    pub fn covers_frame(&self) -> bool {
+        self.complete() > 0 || self.parts.is_empty()
     }
 
     /// Returns the number of rays launched for this light.

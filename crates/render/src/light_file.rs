@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 
 /// First bytes of every light file; the last digit is the version of the format.
-const MAGIC: &[u8; 16] = b"spectra light 5\n";
+const MAGIC: &[u8; 16] = b"spectra light 6\n";
 
 /// A stream of little-endian numbers followed by a checksum (64-bit FNV-1a by G. Fowler, L. C. Noll, K.-P. Vo, over words of eight bytes).
 struct LightStream<T> {

@@ -4,7 +4,7 @@ use crate::error::RenderError;
 use crate::options::RenderOptions;
 use crate::response::Responses;
 use crate::spots::Before;
-use crate::sums::{OwnSteps, OwnSums};
+use crate::sums::{OwnSteps, OwnSums, rounded};
 use spectra_core::batch::Column;
 use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
@@ -305,6 +305,19 @@ impl ThreadState {
     pub(crate) fn contributions(&mut self, pipeline: &Pipeline, scale: f64) -> bool {
         let (nm, weights) = (self.rays.wavelengths_nm(), self.rays.weights());
         pipeline.isa.run(pipeline.responses.count(nm, weights, scale, &mut self.integers))
+    }
+
+    /// Writes the contributions of a batch in which some do not fit. A ray with such a contribution adds nothing to any channel.
+    pub(crate) fn contributions_that_fit(&mut self, pipeline: &Pipeline, scale: f64) {
+        let len = self.rays.len();
+        for channel in 0..pipeline.responses.channels() {
+            let values = &mut self.values[..len];
+            let (nm, weights) = (self.rays.wavelengths_nm(), self.rays.weights());
+            pipeline.isa.run(pipeline.responses.weigh(channel, nm, weights, values));
+            let weights = self.rays.weight_columns().weight.iter_mut().zip(values);
+            weights.filter(|(_, value)| !rounded(**value * scale).1).for_each(|(weight, _)| *weight = 0.0);
+        }
+        self.contributions(pipeline, scale);
     }
 }
 

@@ -1,28 +1,29 @@
 //! The renderer: hands units of work to threads and sums their light exactly.
 
-use crate::diffracted;
 use crate::done::{Done, Units};
 use crate::estimator::Estimator;
 use crate::estimators::Estimators;
 use crate::forward::Forward;
-use crate::ghosts::{LightLedger, MATTERS};
+use crate::ghosts::LightLedger;
 use crate::landing::Landing;
 use crate::light::{EstimatorSums, Light};
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
+use crate::passes::next_pass;
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::rendering::{GhostNoise, Rendering};
 use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, PILOT_RAYS};
 use crate::veil::{self};
-use crate::{Control, RenderError, RenderOptions, SingleThread, Workers};
+use crate::{Control, RenderError, RenderOptions, SingleThread, Workers, diffracted, star_trial};
 use spectra_core::LossCounts;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::numbers::mix64;
 use spectra_core::stage::WavelengthDensity;
+use spectra_optics::Effort;
 use spectra_scene::{Direction, LightKind, NumberFamily, Scene};
 use spectra_tracer::Travel;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A thread takes one part in this many of all units at a time, so that no thread waits long for the others.
 const UNITS_A_RUN: u64 = 1024;
@@ -36,8 +37,10 @@ pub struct Renderer {
     /// The estimators, one for each kind of light and direction; twice, with independent random numbers, if the scene limits the noise.
     halves: Vec<Vec<Box<dyn Estimator>>>,
     ledger: Option<LightLedger>,
-    /// Whether the bright lights of the source are rendered separately from the rest.
+    /// Whether the bright lights of the source are rendered separately: the first estimator is of the rest, the second of the lights.
     has_lights: bool,
+    /// Whether the star of a lamp is bright enough to be seen, once it is known.
+    is_star_seen: OnceLock<bool>,
 }
 
 impl Renderer {
@@ -51,7 +54,13 @@ impl Renderer {
         scene.source.prepare().map_err(RenderError::Source)?;
         let pipeline = Arc::new(Pipeline::new(&scene, options)?);
         let Estimators { all, ledger, has_lights } = Estimators::new(&pipeline, &options.traced, options.workers)?;
-        Ok(Self { halves: halved(&scene, all), scene, pipeline, ledger, has_lights })
+        let halves = halved(&scene, all);
+        let own = Self { halves, scene, pipeline, ledger, has_lights, is_star_seen: OnceLock::new() };
+        // Decided before light is traced, so that a render that is stopped knows it. A draft shows no stars.
+        if own.scene.render.diffraction.is_none() && options.effort == Effort::Full {
+            own.is_star_seen()?;
+        }
+        Ok(own)
     }
 
     /// Ledger of the light of the bright lights, if ghosts are traced.
@@ -76,6 +85,7 @@ impl Renderer {
             pipeline: Arc::new(self.pipeline.of_seed(seed)),
             ledger: self.ledger.clone(),
             has_lights: self.has_lights,
+            is_star_seen: self.is_star_seen.clone(),
         }
     }
 
@@ -134,8 +144,8 @@ impl Renderer {
     /// finished first, even if it is longer.
     ///
     /// # Errors
-    /// Returns [`RenderError::NonFinite`] or [`RenderError::Overflow`] as soon as a ray shows it; `light` then holds the light of all rays
-    /// before. Returns [`RenderError::DoesNotExtend`] if the random numbers are laid out for another number of samples.
+    /// Returns [`RenderError::NonFinite`] or [`RenderError::Overflow`] as soon as a ray shows it, but not before the first pass over the
+    /// frame is complete; `light` then holds the light of all other rays. Returns [`RenderError::DoesNotExtend`] if the random numbers are laid out for another number of samples.
     pub fn advance(
         &self,
         light: &mut Light,
@@ -146,17 +156,16 @@ impl Renderer {
         if samples != u64::from(self.scene.render.samples) && self.scene.render.numbers == NumberFamily::Stratified {
             return Err(RenderError::DoesNotExtend("stratified"));
         }
-        if light.metered.is_none() {
-            match self.metered(workers) {
-                // Nothing is lost: the meters measure again the next time.
-                Err(RenderError::Stopped) => return Ok(()),
-                metered => light.metered = Some(metered?),
-            }
+        if !self.meter(light, workers)? {
+            return Ok(());
         }
-        let Some(asked) = self.scene.render.noise else { return self.trace(light, samples, workers, control) };
+        let Some(asked) = self.scene.render.noise else {
+            self.expect(light, samples, control);
+            return self.trace(light, samples, workers, control);
+        };
         let upto = samples.div_ceil(self.halves());
         loop {
-            let done = light.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0);
+            let done = light.complete();
             if ends_round(done) && light.judged < done {
                 self.end_clean(light, asked, workers);
                 light.judged = done;
@@ -164,8 +173,43 @@ impl Renderer {
             if done >= upto || self.is_clean(light) || control.should_stop() {
                 return Ok(());
             }
-            self.trace(light, next_round(done).min(upto), workers, control)?;
+            let end = next_round(done).min(upto);
+            self.expect(light, end, control);
+            self.trace(light, end, workers, control)?;
         }
+    }
+
+    /// Traces the first pass over the frame, unless it is complete, or until `control` asks to stop. [`Renderer::advance`] continues it.
+    ///
+    /// # Errors
+    /// Returns the same errors as [`Renderer::advance`].
+    pub fn first_pass(&self, light: &mut Light, workers: &dyn Workers, control: &Control) -> Result<(), RenderError> {
+        if light.covers_frame() || !self.meter(light, workers)? {
+            return Ok(());
+        }
+        self.expect(light, u64::from(self.scene.render.samples).div_ceil(self.halves()), control);
+        self.trace(light, 1, workers, control)
+    }
+
+    /// Measures what the meters see, unless it is known. Returns false if the workers were told to stop; the meters then measure again
+    /// the next time.
+    fn meter(&self, light: &mut Light, workers: &dyn Workers) -> Result<bool, RenderError> {
+        if light.metered.is_none() {
+            match self.metered(workers) {
+                Err(RenderError::Stopped) => return Ok(false),
+                metered => light.metered = Some(metered?),
+            }
+        }
+        Ok(true)
+    }
+
+    /// Tells the caller how many rays there will be when each estimator has `samples` samples.
+    fn expect(&self, light: &Light, samples: u64, control: &Control) {
+        let rays = self.estimators().zip(&light.parts).map(|(e, part)| {
+            let tiles = part.done.active(e.tiles());
+            e.rays(&(part.done.complete()..samples.max(part.done.end())), &tiles)
+        });
+        control.expect(control.rays() + rays.sum::<u64>());
     }
 
     /// Allocates the light of a render that has not begun.
@@ -199,7 +243,8 @@ impl Renderer {
         self.halves() == 2 && self.estimators().zip(&light.parts).all(ended)
     }
 
-    /// Continues until each estimator has `samples` samples.
+    /// Continues until each estimator has `samples` samples, in passes over the whole frame. A faulty ray ends the work, but not before
+    /// the first pass is complete.
     fn trace(
         &self,
         light: &mut Light,
@@ -207,24 +252,28 @@ impl Renderer {
         workers: &dyn Workers,
         control: &Control,
     ) -> Result<(), RenderError> {
-        let spans: Vec<_> = light.parts.iter_mut().map(|part| part.done.next(samples)).collect();
-        // A span that was begun is one piece of work; what lies beyond it is another.
-        let more = light.parts.iter().any(|part| part.done.end() < samples);
-        let rays = self.estimators().zip(&light.parts).map(|(e, part)| {
-            let tiles = part.done.active(e.tiles());
-            e.rays(&(part.done.complete()..samples.max(part.done.end())), &tiles)
-        });
-        let rays = rays.sum::<u64>();
-        // With rounds, the rays of all earlier rounds count, too.
-        control.expect(if self.halves() == 2 { control.rays() + rays } else { rays });
-        for (at, span) in spans.into_iter().enumerate() {
-            let Some(span) = span else { continue };
-            self.span(at, &span, light, workers, control)?;
-            if control.should_stop() {
+        let mut failure = None;
+        loop {
+            let done = light.complete();
+            if done >= samples || light.parts.is_empty() {
                 return Ok(());
             }
+            let upto = next_pass(done).min(samples);
+            for at in 0..light.parts.len() {
+                let Some(span) = light.parts[at].done.next(upto) else { continue };
+                if let Err(error) = self.span(at, &span, light, workers, control) {
+                    failure.get_or_insert(error);
+                }
+                if control.should_stop() || failure.is_some() && done > 0 {
+                    break;
+                }
+            }
+            match failure {
+                Some(error) => return Err(error),
+                None if control.should_stop() => return Ok(()),
+                None => {}
+            }
         }
-        if more { self.trace(light, samples, workers, control) } else { Ok(()) }
     }
 
     /// Measures what the meters see of the light of all estimators.
@@ -281,9 +330,11 @@ impl Renderer {
         let tiles = part.done.active(estimator.tiles());
         let units = estimator.units(samples, &tiles);
         let known = part.done.open().map(|(_, units)| units.clone()).unwrap_or_default();
+        let is_first_pass = light.complete() == 0;
         // A thread that takes several units at a time gets neighbors, whose light comes from nearby places.
         let run = (units / UNITS_A_RUN).clamp(1, LONGEST_RUN);
         let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
+        let ends = || control.should_stop() || failed.load(Relaxed) && !is_first_pass;
         let failure: Mutex<Option<RenderError>> = Mutex::new(None);
         let counted = Mutex::new((LossCounts::default(), 0, Units::default(), 0));
         let fail = |error: RenderError| {
@@ -293,34 +344,27 @@ impl Renderer {
         workers.run_on_all(&|| {
             let mut scratch = estimator.scratch();
             let (mut done, mut rays) = (Units::default(), 0);
-            while !control.should_stop() && !failed.load(Relaxed) {
+            while !ends() {
                 let first = next.fetch_add(run, Relaxed);
                 if first >= units {
                     break;
                 }
                 for unit in (first..units.min(first + run)).filter(|unit| !known.contains(*unit)) {
-                    if control.should_stop() || failed.load(Relaxed) {
+                    if ends() {
                         break;
                     }
                     let came = estimator.run(samples, &tiles, unit, &mut scratch, &part.sums);
                     rays += came.rays;
                     control.launched(came.rays);
-                    match came.error {
-                        None => done.insert(unit..unit + 1),
-                        Some(error) => fail(error),
-                    }
+                    done.insert(unit..unit + 1);
+                    came.error.into_iter().for_each(fail);
                     if part.sums.overflowed() {
                         // The sum of a pixel overflowed: there are so many contributions that none of them is to blame.
                         fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
                     }
                 }
             }
-            if let Some(own) = &mut scratch.0.own {
-                own.give(&part.sums);
-            }
-            if let Some(own) = &mut scratch.0.steps {
-                own.give(&part.sums);
-            }
+            scratch.finish(&part.sums);
             if part.sums.overflowed() {
                 fail(RenderError::Overflow { times: LARGEST_CONTRIBUTION / LARGEST_EXPECTED });
             }
@@ -347,14 +391,11 @@ impl Renderer {
     pub fn rendering(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
         let recorded = &self.pipeline.recorded;
         let time_s = scene.exposure_time_s();
-        let parts = self.estimators().zip(&light.parts);
-        // The halves are added up, and each stands for all the light.
-        let share_s = time_s / self.halves() as f64;
-        let weights: Vec<Vec<f64>> = parts.map(|(e, part)| e.weights(&part.done, part.rays, share_s)).collect();
+        let weights: Vec<Vec<f64>> = (0..self.kinds().len()).map(|kind| self.weights(kind, light, time_s)).collect();
         let mut planes = self.planes(scene, light, &weights, None)?;
         let mut layers = self.layers(scene, light, &weights)?;
         let star = layers.iter_mut().find(|layer| layer.kind == LightKind::Star);
-        let diffraction = if scene.render.diffraction.unwrap_or_else(|| self.has_seen_star(scene, &planes)) {
+        let diffraction = if scene.render.diffraction.map_or_else(|| self.is_star_seen(), Ok)? {
             let before = if star.is_some() { planes.clone() } else { Vec::new() };
             let done = diffracted::spread(scene, &mut planes, recorded);
             let done = done.map_err(|fault| RenderError::Diffraction(Box::new(fault)))?;
@@ -376,6 +417,7 @@ impl Renderer {
             losses: light.losses.clone(),
             detected: light.detected(),
             estimators: self.kinds().iter().map(|estimator| estimator.name()).collect(),
+            samples: light.samples(),
             partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
             noise: self.noise(light),
             ledger: self.ledger.clone(),
@@ -384,6 +426,13 @@ impl Renderer {
             diffraction,
             warnings: Vec::new(),
         })
+    }
+
+    /// Returns the factors that turn the sums of both halves of a kind of light, added up, into exposures.
+    fn weights(&self, kind: usize, light: &Light, time_s: f64) -> Vec<f64> {
+        let halves = || light.parts.iter().skip(kind).step_by(self.kinds().len());
+        let done: Vec<&Done> = halves().map(|part| &part.done).collect();
+        self.kinds()[kind].weights(&done, halves().map(|part| part.rays).sum(), time_s)
     }
 
     /// Estimates the noise of ghosts after this many samples.
@@ -402,10 +451,21 @@ impl Renderer {
         Some(GhostNoise { noise, clean_samples })
     }
 
-    /// Whether a star is bright enough for diffraction to matter without being requested.
-    fn has_seen_star(&self, scene: &Scene, planes: &[ExposureChannel]) -> bool {
-        let star = || diffracted::star(scene, planes, &self.pipeline.recorded);
-        self.has_lights && star().is_some_and(|star| star > MATTERS)
+    /// Whether diffraction matters without being requested: if the star of a lamp is bright enough to be seen. Found once.
+    fn is_star_seen(&self) -> Result<bool, RenderError> {
+        if let Some(seen) = self.is_star_seen.get() {
+            return Ok(*seen);
+        }
+        let seen = match self.kinds() {
+            [rest, lights, ..] if self.has_lights => star_trial::is_star_seen(self, &**rest, &**lights)?,
+            _ => false,
+        };
+        Ok(*self.is_star_seen.get_or_init(|| seen))
+    }
+
+    /// Allocates sums for all the light of one estimator.
+    pub(crate) fn new_sums(&self) -> Result<ExactSums, RenderError> {
+        ExactSums::new(self.cells()).ok_or_else(|| self.too_large())
     }
 
     /// Returns the fraction of all light that is veiling glare; `weights` are those of the estimators.
@@ -413,7 +473,7 @@ impl Renderer {
         self.scene.render.glare?;
         let channels = self.pipeline.recorded.len();
         let (mut glare, mut all) = (0.0, 0.0);
-        for ((estimator, part), weights) in self.estimators().zip(&light.parts).zip(weights) {
+        for ((estimator, part), weights) in self.estimators().zip(&light.parts).zip(weights.iter().cycle()) {
             let of_pixel = |p: usize| (0..channels).map(|at| part.sums.get(p * channels + at) as f64).sum::<f64>();
             let own: f64 = weights.iter().enumerate().map(|(p, weight)| weight * of_pixel(p)).sum();
             all += own;

@@ -26,6 +26,8 @@ pub struct Rendering {
     pub detected: u64,
     /// Whether the render was stopped before its end.
     pub partial: bool,
+    /// Number of samples that every pixel got, except in places that were clean earlier.
+    pub samples: u64,
     /// Noise of the picture, if the scene limits it.
     pub noise: Option<Noise>,
     /// Names of the estimators whose light this is, such as `forward` and `backward`.

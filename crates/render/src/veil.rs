@@ -473,7 +473,7 @@ impl Estimator for Veil {
         UnitResult { rays, error: None }
     }
 
-    fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
+    fn weights(&self, _done: &[&Done], rays: u64, time_s: f64) -> Vec<f64> {
         let one = self.worth(rays, time_s);
         self.plan.gains.iter().map(|pixel| one * f64::from(pixel.gain)).collect()
     }

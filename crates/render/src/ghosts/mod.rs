@@ -452,15 +452,18 @@ impl Ghosts {
 
     /// Traces a block of rays of all paths and adds it to the sums.
     fn block(&self, state: &mut ThreadState, block: u64, sums: &ExactSums) -> UnitResult {
-        let mut rays = 0;
+        let (mut rays, mut error) = (0, None);
         for (at, way) in self.plan.ways.iter().enumerate() {
             let all = block * way.rays..(block + 1) * way.rays;
             for (first, len) in spans(all, state.rays.capacity()) {
                 let landed = self.batch(state, at, (first, len), |_, _| {});
                 if !state.contributions(&self.pipeline, self.scale) {
-                    let (mut blame, mut again) = (FiniteCheck::default(), self.state(state.rays.capacity()));
-                    self.batch(&mut again, at, (first, len), |step, rays| blame.look(step, rays));
-                    return UnitResult { rays, error: Some(blame.error(&self.pipeline, &mut again, self.scale)) };
+                    state.contributions_that_fit(&self.pipeline, self.scale);
+                    if error.is_none() {
+                        let (mut blame, mut again) = (FiniteCheck::default(), self.state(state.rays.capacity()));
+                        self.batch(&mut again, at, (first, len), |step, rays| blame.look(step, rays));
+                        error = Some(blame.error(&self.pipeline, &mut again, self.scale));
+                    }
                 }
                 rays += len as u64;
                 if let Some(spreading) = &self.spreading {
@@ -477,7 +480,7 @@ impl Ghosts {
                 }
             }
         }
-        UnitResult { rays, error: None }
+        UnitResult { rays, error }
     }
 }
 
@@ -560,7 +563,7 @@ impl Estimator for Ghosts {
         self.spreading.as_ref().map(|spreading| spreading.width.noise(samples, spreading.spreader.most_half))
     }
 
-    fn weights(&self, _done: &Done, rays: u64, time_s: f64) -> Vec<f64> {
+    fn weights(&self, _done: &[&Done], rays: u64, time_s: f64) -> Vec<f64> {
         let size = self.pipeline.scene.imager.size();
         vec![self.worth(rays, time_s); size.pixels()]
     }

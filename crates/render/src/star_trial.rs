@@ -1,0 +1,129 @@
+//! Decides before light is traced whether the stars of lamps are bright enough to be seen.
+//!
+//! Diffraction at the edge of the aperture takes seconds. Unless the scene decides, it is on if lights are rendered apart from the rest and
+//! the star of the brightest pixel exceeds 1 % of the frame's median in some channel, at the distance where it leaves the core. The sums of
+//! a render that was stopped cannot tell that, so a trial does: 64 tiles of the rest with 16 samples give the median, and up to 262 144 rays
+//! of the lights give the brightest pixel. Where these are few for each pixel, a square of pixels around it takes its place, large enough to
+//! hold 64 rays. The trial draws from the random numbers of the pilot, so every seed of the picture decides alike.
+
+use crate::estimator::Estimator;
+use crate::pilot::PILOT_SEED;
+use crate::{Done, RenderError, Renderer, diffracted};
+use spectra_core::frame::FrameSize;
+use std::collections::BTreeMap;
+
+/// Fraction of the median of the frame above which a star is seen.
+const SEEN: f64 = crate::ghosts::MATTERS;
+/// Tiles of the frame whose median stands for that of the frame.
+const TILES: usize = 64;
+/// Samples of each pixel of these tiles.
+const SAMPLES: u64 = 16;
+/// Largest number of rays of the lights, unless one unit of work has more.
+const LIGHT_RAYS: u64 = 1 << 18;
+/// Smallest number of rays from which the brightest place is known: to an eighth.
+const ENOUGH: f64 = 64.0;
+/// Largest side of the square that takes the place of the brightest pixel.
+const LARGEST_SQUARE: usize = 64;
+
+/// Returns whether the star of the brightest pixel can be seen, from the estimators of the rest and of the lights.
+pub(crate) fn is_star_seen(
+    renderer: &Renderer,
+    rest: &dyn Estimator,
+    lights: &dyn Estimator,
+) -> Result<bool, RenderError> {
+    let scene = renderer.scene();
+    let (medians, peaks) = (medians(renderer, rest)?, peaks(renderer, lights)?);
+    let star = |(channel, (median, peak)): (&usize, (f64, f64))| {
+        Some(diffracted::star_of_pixel(scene, *channel)? * (median + peak) / median)
+    };
+    let stars = renderer.recorded().iter().zip(medians.into_iter().zip(peaks)).filter_map(star);
+    // Without any light around it, a star is always seen.
+    Ok(stars.filter(|star| !star.is_nan()).fold(0.0, f64::max) > SEEN)
+}
+
+/// Returns the median of the frame in each channel, W/m2, from some of its tiles.
+fn medians(renderer: &Renderer, rest: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
+    let (all, channels) = (rest.tiles(), renderer.recorded().len());
+    let tiles: Vec<u32> = (0..all.min(TILES)).map(|i| (i * all / all.min(TILES)) as u32).collect();
+    let (trial, samples) = (rest.reseeded(PILOT_SEED, PILOT_SEED), 0..SAMPLES);
+    let (sums, mut scratch) = (renderer.new_sums()?, trial.scratch());
+    for unit in 0..trial.units(&samples, &tiles) {
+        trial.run(&samples, &tiles, unit, &mut scratch, &sums);
+    }
+    let weights = trial.weights(&[&Done::of(SAMPLES, None, BTreeMap::new())], 0, 1.0);
+    let pixels: Vec<usize> =
+        (0..weights.len()).filter(|pixel| tiles.binary_search(&(trial.tile_of(*pixel) as u32)).is_ok()).collect();
+    let median = |channel: usize| {
+        let value = |pixel: &usize| sums.get(pixel * channels + channel) as f64 * weights[*pixel];
+        let mut values: Vec<f64> = pixels.iter().map(value).collect();
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    Ok((0..channels).map(median).collect())
+}
+
+/// Returns the light of the brightest pixel in each channel, W/m2.
+fn peaks(renderer: &Renderer, lights: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
+    let trial = lights.reseeded(PILOT_SEED, PILOT_SEED);
+    let most = u64::from(renderer.scene().render.samples);
+    let mut samples = 0..1;
+    while trial.rays(&samples, &[0]) < LIGHT_RAYS && samples.end < most {
+        samples.end *= 2;
+    }
+    let (sums, mut scratch) = (renderer.new_sums()?, trial.scratch());
+    let mut rays = 0;
+    for unit in 0..trial.units(&samples, &[0]) {
+        if rays >= LIGHT_RAYS {
+            break;
+        }
+        rays += trial.run(&samples, &[0], unit, &mut scratch, &sums).rays;
+    }
+    scratch.finish(&sums);
+    let (size, channels) = (renderer.scene().imager.size(), renderer.recorded().len());
+    let (weights, landed) = (trial.weights(&[&Done::default()], rays, 1.0), scratch.0.detected);
+    let peak = |channel| {
+        let plane: Vec<f64> =
+            weights.iter().enumerate().map(|(pixel, w)| sums.get(pixel * channels + channel) as f64 * w).collect();
+        peak(size, plane, landed)
+    };
+    Ok((0..channels).map(peak).collect())
+}
+
+/// Returns the value of the brightest pixel of a plane to which this many rays contributed, or the mean of the brightest square around it.
+fn peak(size: FrameSize, mut plane: Vec<f64>, rays: u64) -> f64 {
+    let a_ray = plane.iter().sum::<f64>() / rays.max(1) as f64;
+    let (mut width, mut height) = (size.width_px as usize, size.height_px as usize);
+    let mut side = 1;
+    loop {
+        let brightest = plane.iter().copied().fold(0.0, f64::max);
+        if brightest >= ENOUGH * a_ray || side >= LARGEST_SQUARE || width * height == 1 {
+            return brightest / (side * side) as f64;
+        }
+        // Each square becomes one of four.
+        let (across, down) = (width.div_ceil(2), height.div_ceil(2));
+        let mut coarse = vec![0.0; across * down];
+        for (at, value) in plane.iter().enumerate() {
+            coarse[at / width / 2 * across + at % width / 2] += value;
+        }
+        (plane, width, height, side) = (coarse, across, down, 2 * side);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: FrameSize = FrameSize { width_px: 64, height_px: 48, width_mm: 36.0, height_mm: 24.0 };
+
+    /// A pixel that all rays reach is known at once; a plane with a ray in every tenth pixel is as bright as its mean over a square.
+    #[test]
+    fn brightest_place_holds_enough_rays() {
+        let mut plane = vec![0.0; 64 * 48];
+        plane[100] = 3.0;
+        assert_eq!(peak(SIZE, plane, 1000), 3.0);
+        let sparse: Vec<f64> = (0..64 * 48).map(|at| f64::from(u8::from((at * 7 + at / 64) % 10 == 0))).collect();
+        let rays = sparse.iter().sum::<f64>() as u64;
+        let found = peak(SIZE, sparse, rays);
+        assert!((0.09..0.14).contains(&found), "{found}");
+    }
+}
