@@ -155,7 +155,7 @@ impl DevelopSettings {
             let fault = set.node.fault(format!("without a lens `{}` does nothing", set.path));
             return Err(fault
                 .path(&set.path)
-                .hint("name a lens, such as `--lens helios-44-58-f2`, or leave it out")
+                .hint("name a lens, such as `--lens helios-44-58-f2`, or leave this setting out")
                 .into());
         }
         let made = self.generated_values(plate, metered, &overrides, has_lens, &files)?;

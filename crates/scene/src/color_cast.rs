@@ -75,15 +75,15 @@ pub(crate) fn casts(
         );
         let hint = if left < 0.5 * stops && !filters.is_empty() {
             format!(
-                "add `{{mired: {mired}}}` to `lens.filters`, or take a film for this light; ignore this if the cast is intended"
+                "add `{{mired: {mired}}}` to `lens.filters`, or use a film balanced for this light; ignore this if the cast is intended"
             )
         } else if left < 0.5 * stops {
             format!(
-                "write `lens.filters: [{{mired: {mired}}}]` for the conversion filter that a photographer would use, or take a film for this \
-                 light; ignore this if the cast is intended"
+                "write `lens.filters: [{{mired: {mired}}}]`, which is a conversion filter, or use a film balanced for this light; ignore \
+                 this if the cast is intended"
             )
         } else {
-            "take a film for this light; ignore this if the cast is intended".to_owned()
+            "use a film balanced for this light; ignore this if the cast is intended".to_owned()
         };
         Some(Warning(params.fault(&at, text).hint(hint)))
     };

@@ -314,15 +314,17 @@ fn at_focal_length(lens: &Lens, wanted_mm: f64, params: &Params) -> Result<Lens,
     if !(own_mm.is_finite() && own_mm > 0.0 && own_mm < MOST_FOCAL_MM) {
         let fault =
             params.fault("focal-length", format!("{} has no focal length, so it cannot be scaled to one", lens.name));
-        return Err(fault.hint("leave it out; `spectra lens scale FILE --by 2` scales a file by a factor"));
+        return Err(fault.hint("leave `focal-length` out; `spectra lens scale FILE --by 2` scales a file by a factor"));
     }
     let factor = wanted_mm / own_mm;
     let scaled = lens.clone().scaled(factor);
     let mut scaled = scaled.map_err(|error| {
         let fault = params.fault("focal-length", format!("the lens cannot be scaled: {error}"));
         fault.hint(match error {
-            ScaleError::Surface(..) => "leave it out, or let the plugin implement `scaled` for this surface",
-            ScaleError::Drawing(_) => "leave it out, or draw the aperture at the final size",
+            ScaleError::Surface(..) => {
+                "leave `focal-length` out, or let the plugin implement `scaled` for this surface"
+            }
+            ScaleError::Drawing(_) => "leave `focal-length` out, or draw the aperture at the final size",
         })
     })?;
     scaled
@@ -357,7 +359,7 @@ fn with_build_options(
         lens = apart;
         if many == 0 {
             let fault = params.fault("separation", format!("the lens {} has no cemented glasses", lens.name));
-            faults.push(fault.hint("leave it out, or take a lens with cemented glasses"));
+            faults.push(fault.hint("leave `separation` out, or use a lens with cemented glasses"));
         }
     }
     let soils = [section.haze.as_deref(), section.dust.as_deref(), section.scratches.as_deref()];
@@ -419,7 +421,7 @@ fn file_of(section: Option<&Node>) -> Option<&str> {
 fn aperture_fault(params: &Params, error: &ApertureError) -> Fault {
     let hint = match error {
         ApertureError::TooFast { widest, .. } => {
-            format!("f/{:.2} or slower; leave `f-number` out for wide open", (widest * 100.0).ceil() / 100.0)
+            format!("write f/{:.2} or slower, or leave `f-number` out for wide open", (widest * 100.0).ceil() / 100.0)
         }
         ApertureError::NoStop => file_of(Some(params.node())).map_or(STOP_HINT, stop_hint_of).to_owned(),
         ApertureError::Unlimited => size_hint(Some(params.node())).to_owned(),
@@ -437,12 +439,14 @@ fn focus_fault(params: &Params, error: &FocusError) -> Fault {
             Some(Value::Number(number)) => {
                 format!("a number without a unit is in mm: did you mean `{} m`?", number.value)
             }
-            _ => format!("farther than {nearest_mm:.1} mm, or `infinity`"),
+            _ => format!("write a distance of more than {nearest_mm:.1} mm, or `infinity`"),
         },
         FocusError::BeyondTable { nearest_mm, farthest_mm, .. } => {
-            format!("from {nearest_mm} to {farthest_mm} mm; or extend the table in the lens file")
+            format!(
+                "write a distance from {nearest_mm} to {farthest_mm} mm, or extend the focusing table in the lens file"
+            )
         }
-        _ => "another distance, or `infinity`".to_owned(),
+        _ => "write a different distance, or `infinity`".to_owned(),
     };
     params.fault(key, error.to_string()).hint(hint)
 }

@@ -169,7 +169,7 @@ impl Scene {
             .collect()
     }
 
-    /// Returns the number of ghost paths, the strongest ones, for which an output holds layers.
+    /// Returns how many of the strongest ghost paths get layers of their own: the largest number that any output asks for.
     #[must_use]
     pub fn ghost_paths(&self) -> usize {
         self.output.iter().map(|output| output.ghost_paths()).max().unwrap_or(0)

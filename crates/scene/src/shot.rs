@@ -58,7 +58,7 @@ impl<'a> Shot<'a> {
         Self { scene, exposure, times, attributes, isa, layers: &[], tell, report, kept: None, pictures }
     }
 
-    /// Sets the function that makes the report. It is called when the report is first needed.
+    /// Sets the function that creates the report, the content of `SCENE.json`. It is called when the report is first needed.
     #[must_use]
     pub fn with_report(self, tell: &'a (dyn Fn() -> Value + Sync)) -> Self {
         Self { tell, ..self }
@@ -70,7 +70,7 @@ impl<'a> Shot<'a> {
         self.report.get_or_init(self.tell)
     }
 
-    /// Adds the light separated by kinds.
+    /// Adds layers that hold the light of one [`LightKind`](crate::LightKind) each.
     #[must_use]
     pub fn with_layers(self, layers: &'a [LightLayer]) -> Self {
         Self { layers, ..self }
@@ -175,9 +175,7 @@ impl<'a> Shot<'a> {
             };
             if let Some([x, y]) = no_number(&finished.display) {
                 let film = film.film.name();
-                return Err(Fault::new(format!(
-                    "{film}: the color of pixel {x}, {y} is not a number: its `develop` computed a NaN"
-                )));
+                return Err(Fault::new(format!("{film}: `develop` returned NaN for the color of pixel {x}, {y}")));
             }
             let FinishedPicture { display: shown, extra: beside } = finished;
             Ok(((film.name.clone(), shown), beside))

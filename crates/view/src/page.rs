@@ -73,7 +73,7 @@ impl AspectRatio {
     }
 }
 
-/// Controls of a scene, with the values of the pictures of its series.
+/// The controls of a scene and, for a series, the values that each of its pictures was rendered with.
 #[derive(Default)]
 pub struct SceneControls {
     all: Vec<Control>,

@@ -142,7 +142,7 @@ pub(crate) fn effects(
     if p.scatter == Some(true) && !(counts && stock.layers.iter().any(|l| !l.mtf.is_empty())) {
         let measured = if counts { "" } else { "measured " };
         let text = format!("{} has no {measured}modulation transfer in its file", stock.name);
-        faults.push(params.fault("scatter", text).hint("leave it out, or give the stock's layers an `mtf`"));
+        faults.push(params.fault("scatter", text).hint("leave `scatter` out, or give the stock's layers an `mtf`"));
     }
     let (mut mtf, mut adjacency) = (Vec::new(), Vec::new());
     for layer in &stock.layers {
@@ -155,7 +155,11 @@ pub(crate) fn effects(
     }
     if p.adjacency == Some(true) && adjacency.iter().all(Option::is_none) {
         let text = format!("{} has no modulation transfer above 1 in its file", stock.name);
-        faults.push(params.fault("adjacency", text).hint("leave it out, or give the stock's layers an `mtf`"));
+        faults.push(
+            params
+                .fault("adjacency", text)
+                .hint("leave `adjacency` out, or give the stock's layers an `mtf` that exceeds 1"),
+        );
     }
     let granularity = granularity(p, params, stock, emulsion, &mut faults);
     let halation = halation(p, params, stock, &mut faults);
@@ -208,7 +212,7 @@ fn granularity(
     };
     if p.grain == Some(true) && known.is_none() {
         let text = format!("{} has no granularity in its file", stock.name);
-        faults.push(params.fault("grain", text).hint("leave it out, or give the stock a `granularity`"));
+        faults.push(params.fault("grain", text).hint("leave `grain` out, or give the stock a `granularity`"));
     }
     let left_out = p.assumed == Assumed::Off && granularity_is_assumed(stock);
     let known = known.filter(|_| p.grain.unwrap_or(true) && !left_out)?;

@@ -254,7 +254,7 @@ impl StockFilm {
             }
             // `build` makes paper prints of one layer only.
             (Picture::Paper(_), _) => {
-                return Err(Fault::new(format!("{} is not a film with one layer", self.stock.name)));
+                return Err(Fault::new(format!("{}: a print on paper needs a single-layer film", self.stock.name)));
             }
         };
         if let Some(laid) = laid {

@@ -197,7 +197,8 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
             None => {
                 let fault = params
                     .fault(&format!("layers[{at}]"), "this layer belongs to the finished picture, not to the exposure");
-                faults.push(fault.hint("write `holds: picture`, or use `direct`, `ghosts`, `glare`, `star`"));
+                faults
+                    .push(fault.hint("write `holds: picture`, or choose from `direct`, `ghosts`, `glare` and `star`"));
             }
         }
     }

@@ -16,8 +16,9 @@ pub struct Lines;
 impl WavelengthSampler for Lines {
     fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         if system.source.continuum.iter().any(|v| *v != 0.0) {
-            return Err(Fault::new("the source has a continuum, which sampling only lines would miss")
-                .hint("use `source-times-response`, or give the source a color model of lines"));
+            return Err(Fault::new("the source has a continuum, which sampling only lines would miss").hint(
+                "use `source-times-response`, or a source whose color model has only lines: `color: fraunhofer`",
+            ));
         }
         let weights: Vec<f64> = system.source.lines.iter().map(|l| l.power.abs()).collect();
         Mixture::<Quantiles>::new(&system.source.lines, &weights, Shares::Proportional, 1.0, None)

@@ -1,8 +1,8 @@
 //! The strategy `truncated-gaussian`: the density is one Gaussian, cut off at the ends of the band.
 //!
-//! Wavelengths are drawn by the inverse of the normal distribution ([`TruncatedGaussian`]), which is safe however far outside the
-//! band the center lies. Far from the center the Gaussian is practically zero, so a fraction of the samples (see [`Floor`]) follows
-//! the response of the channels. All samples are weighted by the density of both together.
+//! Wavelengths are drawn by the inverse of the normal distribution ([`TruncatedGaussian`]). The inverse stays accurate if the
+//! center lies far outside the band. Far from the center the Gaussian is practically zero, so a fraction of the samples (see
+//! [`Floor`]) follows the response of the channels. All samples are weighted by the density of both together.
 
 use crate::mixture::CHUNK;
 use crate::recorded_spectrum::RecordedSpectrum;
@@ -18,10 +18,9 @@ use spectra_spectrum::{SpectrumError, TruncatedGaussian};
 
 /// Wavelengths are drawn from one Gaussian, cut off at the ends of the band.
 ///
-/// Use it for a narrow source or detector, and as a yardstick. The draw inverts the normal distribution, which is safe
-/// however far outside the band the center lies. Far from the center the Gaussian is practically zero. `floor` ensures
-/// that wavelengths there are drawn if a channel is sensitive to them; without a floor, a Gaussian that does not reach
-/// all of them is refused. A Gaussian that reaches none of them is refused even with a floor.
+/// Use it for a narrow source or detector, or as a reference. The center may lie far outside the band. Where the Gaussian
+/// is practically zero, wavelengths to which a channel is sensitive are drawn only with a `floor`. Without one, a Gaussian
+/// that does not cover every such wavelength is an error. A Gaussian that covers none of them is always an error.
 ///
 /// # Example
 /// ```yaml

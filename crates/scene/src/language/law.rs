@@ -187,7 +187,7 @@ fn quantity(node: &Node, law: Law) -> Result<(f64, Option<&'static Unit>), Fault
                 || "this value".to_owned(),
                 |text| format!("the text `{}`", text.chars().take(48).collect::<String>()),
             );
-            Err(node.fault(format!("{found} cannot be interpolated")).hint("numbers, quantities such as `2 m` and lists of them can; other values need `hold`, or a list in a sweep"))
+            Err(node.fault(format!("{found} cannot be interpolated")).hint("only numbers, quantities such as `2 m` and lists of them can be interpolated; for other values, write `interpolation: hold` in an animation, or a list in a sweep"))
         }
     }
 }

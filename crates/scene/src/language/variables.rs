@@ -158,7 +158,7 @@ pub(super) fn open(root: &mut Node, path: &str) {
 }
 
 impl Variables {
-    /// Reads the `variables` section; there are no variables without a section.
+    /// Reads the section `variables`. If there is none, there are no variables.
     ///
     /// # Errors
     /// The section is not a map, or a name cannot follow `$`.
@@ -168,8 +168,8 @@ impl Variables {
             Value::Map(entries) => entries.clone(),
             Value::Null => Vec::new(),
             _ => {
-                let fault = section.fault("`variables` is a map of names and values").path(VARIABLES);
-                return Err(fault.hint("such as `variables: {aperture: f/2, distance: 2 m}`").into());
+                let fault = section.fault("`variables` must be a map from names to values").path(VARIABLES);
+                return Err(fault.hint("for example `variables: {aperture: f/2, distance: 2 m}`").into());
             }
         };
         let mut faults = Faults::new();
@@ -330,7 +330,8 @@ impl Filler<'_> {
                         }
                     }
                     if out.len() > MAX_TEXT {
-                        faults.push(node.fault("with its variables, this text is too long").path(path));
+                        let fault = format!("with its variables filled in, this text is longer than {MAX_TEXT} bytes");
+                        faults.push(node.fault(fault).path(path));
                         return nothing(node);
                     }
                 }
@@ -521,7 +522,7 @@ mod tests {
             ("{a: 1}", "'${a'", "`${` is never closed"),
             ("{a: 1}", "'${a b}'", "`${a b}` names no variable"),
             ("{2a: 1}", "1", "t.yaml:1:13: `2a` is not a valid name of a variable"),
-            ("[1]", "1", "`variables` is a map of names and values"),
+            ("[1]", "1", "`variables` must be a map from names to values"),
         ] {
             let text = format!("variables: {variables}\nx: {body}\n");
             let error = filled(&text).expect_err(said);

@@ -19,7 +19,8 @@ use spectra_core::frame::FrameSize;
 use spectra_core::params::{Length, Positive};
 use spectra_film::raster::Raster;
 
-/// The map `frame` as written in a scene; every effect is off unless it is written.
+/// The map `frame` of a film, as written in a scene: gate weave, flicker, dust, scratches and border. An effect that is left out
+/// is off.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct FrameParams {

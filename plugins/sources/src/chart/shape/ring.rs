@@ -31,7 +31,8 @@ impl Ring {
         r2 <= self.outer_mm * self.outer_mm && r2 >= self.inner_mm * self.inner_mm
     }
 
-    /// Returns how much of `cell` the ring covers; exact.
+    /// Returns whether the ring covers none, part or all of `cell`. The answer is exact: `Partial` means that the ring covers
+    /// only part of it.
     #[must_use]
     pub fn coverage(&self, cell: &Cell) -> Coverage {
         let [near, far] = cell.distance_squared(self.center_mm);
