@@ -30,8 +30,8 @@ pub struct GhostSettings {
     pub threads: usize,
     /// Instruction set to use.
     pub isa: Isa,
-    /// Returns the processor time that this program has used so far, s, over all threads; `None` if the system does not report it. Unlike
-    /// the clock, it does not count other programs that run at the same time.
+    /// Returns the processor time in seconds that all threads of this program have used so far. `None` if the system does not
+    /// report it. Unlike the clock, it does not count other programs that run at the same time.
     pub processor_s: fn() -> Option<f64>,
 }
 

@@ -80,7 +80,8 @@ pub struct Point {
     /// Relative RMS error of linear exposure: root of the mean over seeds and channels of the squared error. For a scene the squared error
     /// summed over pixels is divided by the squared exposure summed over pixels.
     pub error: Interval,
-    /// Time for these samples, s, from [`Series::ns_a_sample`]; for a scene, for the samples of all pixels.
+    /// Time for these samples in seconds, computed from [`Series::ns_a_sample`]. For a scene, the time for the samples of all
+    /// pixels.
     pub seconds: f64,
     /// Bias of each channel; for a scene, bias of the light of the whole frame.
     pub bias: Vec<ChannelBias>,
@@ -123,7 +124,7 @@ pub struct Series {
     pub ratio_at_equal_samples: Option<f64>,
     /// Error divided by that of the first strategy at equal time, extrapolated along this strategy's slope.
     pub ratio_at_equal_time: Option<f64>,
-    /// Results for each number of samples, rising.
+    /// Results for each number of samples, in ascending order.
     pub points: Vec<Point>,
 }
 

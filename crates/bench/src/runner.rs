@@ -92,7 +92,7 @@ pub fn bench(
     })
 }
 
-/// Returns the numbers of samples in rising order without duplicates, and checks them and the seeds.
+/// Returns the numbers of samples in ascending order without duplicates. Checks these numbers and the number of seeds.
 fn checked(settings: &Settings) -> Result<Vec<u32>, BenchError> {
     let mut samples = settings.samples.clone();
     samples.sort_unstable();

@@ -153,8 +153,8 @@ impl SceneDefaults {
     }
 }
 
-/// Returns the strategy with the keys that it needs, and the override that puts it into the scene; `None` if it is the scene's own
-/// strategy.
+/// Returns the strategy with the keys that it needs, and the override that puts it into the scene. The override is `None` for the
+/// scene's own strategy.
 pub(crate) fn resolve(
     strategy: &Strategy,
     said: &SceneDefaults,
@@ -193,7 +193,7 @@ fn needed(kind: &str, said: &SceneDefaults, system: &SystemResponse) -> Option<S
     }
 }
 
-/// Mean and standard deviation, nm, of the wavelength of the light that the channels see together.
+/// Returns the mean and the standard deviation, in nm, of the wavelength of the light that all channels see together.
 fn moments(system: &SystemResponse) -> Option<(f64, f64)> {
     let seen = system.summed_response();
     let weighted = |f: &dyn Fn(f64) -> f64| {

@@ -255,8 +255,8 @@ fn header_of(file: &str, layer: Option<&str>, files: &dyn Resources) -> Result<H
         .map_err(|trouble| Fault::new(format!("picture `{file}`: {}", trouble.text)).hint(trouble.advice()).into())
 }
 
-/// Returns the width and height, mm, of the largest frame of the picture's shape that a format holds, turned upright for an
-/// upright picture.
+/// Returns the width and height, in mm, of the largest frame with the picture's shape that fits a format. The format is turned
+/// upright for an upright picture.
 fn frame_mm(format: Option<&Setting>, header: &Header, files: &dyn Resources) -> Result<[f64; 2], Faults> {
     let mut node = yaml::parse(SourceFile::new(MADE, "{kind: film, format: 135, resolution: 1}"))?;
     if let Some(setting) = format {

@@ -20,7 +20,8 @@ const WAVELENGTHS: usize = 12;
 pub(crate) struct FocusLight {
     /// Spatial frequency at which the contrast is maximized, line pairs per mm.
     pub(crate) per_mm: f64,
-    /// Wavelengths, nm, with their weights: source times summed response. Empty if nothing responds to the light.
+    /// Wavelengths (nm) and their weights. A weight is the source times the summed response. Empty if no channel responds to the
+    /// light.
     pub(crate) light: Vec<(f64, f64)>,
 }
 
@@ -39,7 +40,8 @@ impl FocusLight {
 }
 
 impl FocusLight {
-    /// Returns the wavelength, nm, at a fraction of the light, 0 to 1; `None` if nothing responds to the light.
+    /// Returns the wavelength, in nm, below which the fraction `share` of the light lies, from 0 to 1. `None` if no channel
+    /// responds to the light.
     pub(crate) fn wavelength_nm(&self, share: f64) -> Option<f64> {
         let total: f64 = self.light.iter().map(|(_, weight)| weight).sum();
         let mut before = 0.0;

@@ -43,7 +43,7 @@ impl FileIs {
     }
 }
 
-/// Returns a fault, without a place, if the file is of another kind than the wanted one.
+/// Returns a fault without a place if the file is of a different kind from the one wanted.
 pub(crate) fn other_file(node: &Node, wanted: FileIs) -> Option<Fault> {
     let found = FileIs::of(node).filter(|found| *found != wanted)?;
     let name = &node.file.name;

@@ -22,9 +22,9 @@ pub(crate) fn is_wanted(imager: &Params) -> bool {
     matches!(imager.get("around").map(|node| &node.value), Some(Value::String(text)) if text == "source")
 }
 
-/// Returns the median landing point of the light of `source` in the image plane, mm, in x and in y. Rays start all over the
-/// source, fill everything that passes the lens, and have the wavelengths of source and channels. `size_hint` is the hint for a
-/// lens without sizes: see [`crate::size_hint`].
+/// Returns the point in the image plane where the light of `source` lands: the median of x and that of y, in mm. Rays start all
+/// over the source, fill everything that passes the lens, and have the wavelengths of source and channels. `size_hint` is the
+/// hint for a lens without sizes: see [`crate::size_hint`].
 ///
 /// # Errors
 /// The message, and a hint for the user.

@@ -38,18 +38,18 @@ pub trait Output: Send + Sync {
         Ok(())
     }
 
-    /// Returns what it needs of a picture in addition to what a screen shows.
+    /// Returns what this output needs of a picture in addition to what a screen shows.
     fn extra_request(&self) -> ExtraRequest {
         ExtraRequest::default()
     }
 
-    /// Returns the kinds of light for which it holds separate layers.
+    /// Returns the kinds of light for which this output holds separate layers.
     fn lights(&self) -> &[LightKind] {
         &[]
     }
 
-    /// Returns the number of ghost paths, the strongest ones, that get layers of their own, besides one layer for all others; 0
-    /// for none. If outputs ask for different numbers, all get the layers of the largest.
+    /// Returns how many of the strongest ghost paths get layers of their own; 0 for none. One more layer holds all others. If
+    /// outputs ask for different numbers, all get the layers of the largest number.
     fn ghost_paths(&self) -> usize {
         0
     }
@@ -60,7 +60,7 @@ pub trait Output: Send + Sync {
     /// Errors of `out`; [`WriteFault::Format`] if the picture has nothing to write.
     fn write(&self, shot: &Shot<'_>, film: usize, out: &mut dyn Out) -> Result<(), WriteFault>;
 
-    /// Returns whether it also makes one file of a whole sweep or animation, `SCENE-series` with its extension.
+    /// Returns whether this output also writes one file for a whole sweep or animation: `SCENE-series` with its extension.
     fn is_of_series(&self) -> bool {
         false
     }
@@ -111,7 +111,7 @@ fn of_kind(kind: &str, params: &Params, context: &Context<'_>) -> Result<Arc<dyn
     registry::build::<dyn Output>(&Params::stage(name, "output")?, context).map(Arc::from)
 }
 
-/// Reads the `output` section; EXR and PNG if it is absent.
+/// Reads the section `output`. If it is absent, the outputs are EXR and PNG.
 pub(crate) fn read(
     items: Option<&[Deferred<StageOf<dyn Output>>]>,
     params: &Params,

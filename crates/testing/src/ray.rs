@@ -7,7 +7,7 @@ use spectra_core::numbers::{Numbers, StageKey};
 use spectra_core::surface::{Action, IndexColumns, Interface, Surface, Travel};
 use spectra_core::{Isa, Loss, RayBatch};
 
-/// A ray, as a point, mm, and a unit direction.
+/// A ray: a point on it, in mm, and its unit direction.
 pub type Ray = (DVec3, DVec3);
 
 /// Traces a ray of 550 nm through a surface whose vertex is the origin, and returns the ray behind the surface. The media have the

@@ -87,8 +87,8 @@ fn fault_json(fault: &Fault) -> Value {
     json!({"message": fault.message, "place": fault.place_text(), "hint": fault.hint})
 }
 
-/// Returns the spectrum of a scene's light and the response of each channel of its picture as JSON: values over wavelength, nm, each scaled
-/// to a largest value of 1.
+/// Returns the spectrum of a scene's light and the response of each channel of its picture as JSON. Values are over wavelength in
+/// nm. Each curve is scaled to a largest value of 1.
 #[must_use]
 pub fn spectra(scene: &Scene) -> Value {
     let unit = |values: &[f64]| -> Vec<f64> {

@@ -17,13 +17,14 @@ use spectra_film::stock::{Backing, Stock};
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct HalationParams {
-    /// Ratio of the light that enters the base to the light that exposes the layer, 0 to 10; the stock's value if left out.
+    /// Light that enters the base, relative to the light that exposes the layer, 0 to 10; the stock's value if left out.
     #[schemars(range(min = 0, max = 10))]
     pub entering: Option<f64>,
     /// Backing that keeps light from coming back, instead of the stock's: `rem-jet` absorbs nearly all of it, `silver` most, `dye` some.
     /// `removed` leaves the clear base, as on cinema film whose rem-jet was washed off before it was shot.
     pub backing: Option<Backing>,
-    /// Transmittance of base and backing in one pass, 0 to 1, instead of `backing`; the stock's value if both are left out.
+    /// Transmittance of base and backing in one pass, 0 to 1. Write either this or `backing`; the stock's value if both are left
+    /// out.
     #[schemars(range(min = 0, max = 1))]
     pub transmittance: Option<f64>,
     /// Thickness of the base, 0.001 to 10 mm, mm if bare; that of the stock's first base if left out.

@@ -22,8 +22,7 @@ pub enum FrameShape {
 }
 
 impl FrameShape {
-    /// Returns the smallest radius, mm, regardless of sign, at which a frame of this size spans no more than 60 degrees to each
-    /// side.
+    /// Returns the smallest absolute radius, in mm, at which a frame of this size spans no more than 60 degrees to each side.
     pub(crate) fn least_radius_mm(self, width_mm: f64, height_mm: f64) -> f64 {
         match self {
             Self::Flat => 0.0,
@@ -32,7 +31,8 @@ impl FrameShape {
         }
     }
 
-    /// Returns the point, mm, and the unit normal toward the lens at (x, y) on the frame, mm.
+    /// Returns the point of the surface at (`x`, `y`) on the frame, and the unit normal there toward the lens. Coordinates are in
+    /// mm.
     fn at(self, x: f64, y: f64) -> (DVec3, DVec3) {
         match self {
             Self::Flat => (DVec3::new(x, y, 0.0), DVec3::NEG_Z),

@@ -22,7 +22,7 @@ pub struct Plate {
     /// Refractive index on the grid of the band; of the ordinary ray in a crystal.
     index: Vec<f64>,
     transmittance: Vec<f64>,
-    /// Sideways shift of the extraordinary ray, mm, on the grid; empty for glass.
+    /// Sideways shift of the extraordinary ray, in mm, at each wavelength of the grid. Empty for glass.
     separation_mm: Vec<f64>,
     azimuth: DVec2,
 }
@@ -93,7 +93,7 @@ impl Plates {
         self.plates.iter().any(|plate| !plate.separation_mm.is_empty())
     }
 
-    /// Apparent shift of the frame toward the lens, mm, near the axis and in the middle of the band.
+    /// Returns the apparent shift of the frame toward the lens, in mm, near the axis and in the middle of the band.
     #[must_use]
     pub fn lift_mm(&self) -> f64 {
         self.plates.iter().map(|p| p.thickness_mm * (1.0 - 1.0 / p.index[p.index.len() / 2])).sum()
@@ -107,9 +107,9 @@ impl Plates {
         CoverStack::new(&self.grid, self.plates.iter().map(plate).collect())
     }
 
-    /// Passes light of direction `way` (unit, in the axes of the frame, z away from the lens) through the stack. Returns how
-    /// far from its straight continuation it lands, mm, and the fraction that passes. `numbers` choose between the ordinary
-    /// and the extraordinary ray of each crystal; without them it is the ordinary one.
+    /// Passes light through the stack. Its unit direction `way` is in the axes of the frame, with z away from the lens. Returns
+    /// how far the light lands from its straight continuation (mm), and the fraction that passes. `numbers` choose between the
+    /// ordinary and the extraordinary ray of each crystal; without them, the ordinary ray is followed.
     #[must_use]
     pub fn pass(&self, way: DVec3, wavelength_nm: f64, numbers: Option<RayNumbers>) -> (DVec2, f64) {
         let sideways = DVec2::new(way.x, way.y);

@@ -116,8 +116,8 @@ impl Response for XyzResponse {
 pub type XyzPlane = DetectorPlane<XyzResponse>;
 
 impl XyzPlane {
-    /// Creates an imager on the frame `plane` with channels on `grid`. They are in lx s if there is an exposure time, s, and
-    /// otherwise in lx.
+    /// Creates an imager on the frame `plane` with channels on `grid`. If an exposure time is given, in seconds, the channels are
+    /// in lx s; otherwise they are in lx.
     #[must_use]
     pub fn new(plane: Plane, grid: &Grid, exposure_time_s: Option<f64>, white: White) -> Self {
         Self::of(plane, XyzResponse::new(grid, white), exposure_time_s)

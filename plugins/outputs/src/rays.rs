@@ -30,7 +30,7 @@ use spectra_tracer::Indices;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RaysParams {
-    /// Width and height of the figure, pixels, each 64 to 8192.
+    /// Width and height of the figure in pixels, each 64 to 8192.
     #[serde(default = "size")]
     size: [Whole<64, 8192>; 2],
     /// Width of the region shown, mm if bare; fitted to the lens if absent.

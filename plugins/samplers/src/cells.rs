@@ -39,7 +39,7 @@ impl Cells {
         Some(Self { grid, per_step: 1.0 / grid.step_nm, upper: upper.collect(), density_per_nm })
     }
 
-    /// Returns the wavelength, nm, below which the probability of a draw is `u`, in [0, 1).
+    /// Returns the wavelength (nm) below which a draw falls with the probability `u`, from 0 to below 1.
     #[must_use]
     pub fn quantile(&self, u: f64) -> f64 {
         // A last cell of zero density is never drawn: the search ends at the first cell that reaches the whole sum.

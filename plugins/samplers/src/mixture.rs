@@ -8,8 +8,8 @@ use spectra_core::stage::WavelengthDensity;
 
 /// A density of wavelengths in a continuum, without lines, that can be drawn.
 pub trait Continuum: Send + Sync {
-    /// Draws one wavelength for each number of `u` in [0, 1): writes the wavelength, nm, and multiplies the weight by one over the
-    /// density, nm. All slices have the same length.
+    /// Draws one wavelength for each number of `u` in [0, 1). Writes the wavelength (nm), and multiplies the weight by the
+    /// reciprocal of the density (nm). All slices have the same length.
     fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64], isa: Isa);
 
     /// Density at a wavelength, 1/nm; its integral is 1.

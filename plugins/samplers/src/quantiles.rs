@@ -72,7 +72,8 @@ impl Quantiles {
         Some(Self { start_nm, end_nm, unit_nm: (end_nm - start_nm) / f64::from(UNITS), intervals, edges })
     }
 
-    /// Draws the wavelength for the number `u` in [0, 1); returns it, nm, and one over the density there, nm.
+    /// Draws the wavelength for the number `u` in [0, 1). Returns the wavelength and the reciprocal of the density there, both in
+    /// nm.
     #[inline(always)]
     #[must_use]
     pub fn draw(&self, u: f64) -> (f64, f64) {
@@ -91,8 +92,8 @@ impl Quantiles {
         (nm, width * self.unit_nm * (INTERVALS as f64 * f64::from(parts)))
     }
 
-    /// Draws like [`Quantiles::draw`] for up to [`CHUNK`] numbers: writes wavelengths, nm, and multiplies weights by one over the density.
-    /// Steps that need no table run in vectors.
+    /// Draws like [`Quantiles::draw`] for up to [`CHUNK`] numbers. Writes the wavelengths (nm), and multiplies the weights by the
+    /// reciprocals of the densities. Steps that need no table run in vectors.
     #[inline(always)]
     pub(crate) fn draw_chunk(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64]) {
         let len = u.len().min(CHUNK);
@@ -170,7 +171,7 @@ impl Cumulative {
         Some(Self { start_nm, step_nm, at })
     }
 
-    /// Returns the wavelengths, nm, below which the fractions `shares` of the integral lie; `shares` increase from 0 to 1.
+    /// Returns the wavelengths (nm) below which the fractions `shares` of the integral lie. `shares` increase from 0 to 1.
     fn quantiles(&self, shares: &[f64]) -> Vec<f64> {
         let steps = self.at.len() - 1;
         let nm = |step: f64| self.start_nm + self.step_nm * step;

@@ -80,7 +80,7 @@ impl RecordedSpectrum {
             .ok_or_else(|| Fault::new("the imager sees none of the source's light"))
     }
 
-    /// Returns wavelengths, nm, at which a channel is sensitive: sixteen in the interior of each cell of the grid.
+    /// Returns wavelengths (nm) at which a channel is sensitive: sixteen in the interior of each cell of the grid.
     pub fn wavelengths_nm<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = f64> + 'a {
         const IN_CELL: u32 = 16;
         let cells = (0..grid.count - 1).filter(|i| self.response[*i] > 0.0 || self.response[*i + 1] > 0.0);

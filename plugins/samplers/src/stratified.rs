@@ -4,7 +4,8 @@
 //! numbers as there are strata put one draw into each, at independent places: the textbook's jittered sampling. `uniform` also
 //! takes the place in the stratum from the number, and so keeps all the evenness of Sobol points. With as many samples as strata
 //! both are alike. With more samples `uniform` continues to fill the strata evenly, while the draws in a stratum here stay
-//! independent. The strategy is a yardstick for others, not one to render with. With independent numbers it equals `uniform`.
+//! independent. The strategy is a reference for comparisons, not one to render with. With independent numbers it equals
+//! `uniform`.
 //!
 //! A Sobol number has 32 bits, so one of 64 strata has 2^26 places. Their mean is off the stratum's middle by about 1e-4 of the
 //! stratum's own spread, and the mean of all strata together by 2e-5.
@@ -21,9 +22,9 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 
 /// The band is divided into strata of equal width, each jittered independently.
 ///
-/// This is the textbook's jittered sampling, as a yardstick: the number of a sample chooses the stratum, and a hash of
-/// the number the place in it. `kind: uniform` keeps all the evenness of Sobol points and is better with more samples
-/// than strata. If the source has both lines and a continuum, the lines get half of the samples.
+/// This is the textbook's jittered sampling, as a reference for comparisons. The number of a sample chooses the stratum,
+/// and a hash of the number chooses the place in it. `kind: uniform` keeps all the evenness of Sobol points and is better
+/// with more samples than strata. If the source has both lines and a continuum, the lines get half of the samples.
 ///
 /// # Example
 /// ```yaml

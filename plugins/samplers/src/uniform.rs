@@ -28,7 +28,7 @@ impl WavelengthSampler for Uniform {
 
 /// Every wavelength of the band is drawn alike.
 ///
-/// It is a yardstick for the other strategies, and the choice if you want the spectrum itself at every wavelength. If the
+/// It is a reference for the other strategies, and the choice if you want the spectrum itself at every wavelength. If the
 /// source has both lines and a continuum, the lines get half of the samples; if it has only lines, they get all.
 ///
 /// # Example

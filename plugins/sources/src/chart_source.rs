@@ -28,7 +28,7 @@ use spectra_spectrum::{Observer, Reflectance, SpectrumError, find_reflectance_in
 /// - `slanted-edge`: 7 x 5 squares of 4:1 contrast, turned by 5 degrees, for the MTF over the field;
 /// - `star-field`: stars as tiny disks on black, placed by `seed`;
 /// - `step-wedge`: 21 gray steps of density 0.15, in both directions;
-/// - `text`: lines of text in falling sizes, black on white and white on black.
+/// - `text`: lines of text in decreasing sizes, black on white and white on black.
 ///
 /// `luminance` sets how bright a perfect white on the chart would be, and `illuminant` in what light.
 ///

@@ -34,10 +34,10 @@ pub(crate) enum FillWord {
 }
 
 impl Width {
-    /// Returns the width, mm, of a picture whose width is `aspect` times its height and whose center is at `center_mm` on the
-    /// plane `distance_mm` in front of the first vertex. A picture that fills the frame covers all that the frame sees on that
-    /// plane, found with real rays through the whole opening of the lens, and 2 % more. Without a lens it is as wide as it is
-    /// distant. Fails if no plane fills the frame.
+    /// Returns the width, in mm, of a picture whose width is `aspect` times its height. The center of the picture is at
+    /// `center_mm` on the plane `distance_mm` in front of the first vertex. A picture that fills the frame covers 2 % more than
+    /// the frame sees on that plane. What the frame sees is found with real rays through the whole opening of the lens. Without a
+    /// lens, the picture is as wide as it is distant. Fails if no plane fills the frame.
     pub(crate) fn mm(
         &self,
         aspect: f64,

@@ -11,8 +11,8 @@ pub(crate) trait Texture: Send + Sync {
     /// W m^-2 sr^-1 on a line; 0 outside the picture.
     fn shine(&self, at: Places<'_>, weight: &mut [f64], isa: Isa);
 
-    /// Draws a point on the picture from (`u`, `v`) in [0, 1)^2. Returns x, y, mm, and the area that the sample represents
-    /// (the inverse of its density), mm^2.
+    /// Draws a point on the picture from (`u`, `v`) in [0, 1)^2. Returns its x and y in mm, and the area that the sample
+    /// represents, in mm^2: the reciprocal of the density.
     fn draw(&self, u: f64, v: f64) -> (f64, f64, f64);
 
     /// Half the width and height of the spots that the picture consists of, mm; `None` if it does not consist of spots. See

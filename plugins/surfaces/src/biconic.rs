@@ -18,7 +18,7 @@ pub struct Biconic {
 }
 
 impl Biconic {
-    /// Creates a biconic from the radii, mm, and the conic constants, each in the x-z and in the y-z section.
+    /// Creates a biconic from its radii (mm) and conic constants, each in the x-z and in the y-z section.
     #[must_use]
     pub fn new(radius_mm: (f64, f64), conic: (f64, f64)) -> Self {
         Self {

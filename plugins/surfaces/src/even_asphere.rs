@@ -34,7 +34,8 @@ pub struct EvenAsphere<const TERMS: usize> {
 const SIZES: [usize; 3] = [4, 8, MOST_COEFFICIENTS];
 
 impl<const TERMS: usize> EvenAsphere<TERMS> {
-    /// Creates an asphere of this radius of curvature, mm, conic constant, and coefficients a2, a4, ... in mm^(1 - power).
+    /// Creates an asphere from its radius of curvature (mm), its conic constant, and its coefficients a2, a4, ... in mm^(1 -
+    /// power).
     ///
     /// # Panics
     /// Panics if there are more coefficients than `TERMS`.
@@ -84,7 +85,7 @@ impl<const TERMS: usize> EvenAsphere<TERMS> {
         (value, sheet * n - across * (x * l + y * m), [across, sheet])
     }
 
-    /// Returns the sag, mm, and its derivative with respect to the squared radius, 1/mm; `None` beyond the rim.
+    /// Returns the sag (mm) and its derivative with respect to the squared radius (1/mm). `None` beyond the rim.
     fn sag_and_slope(&self, radius2: f64) -> Option<(f64, f64)> {
         let (sag, slope) = self.section.sag_and_slope(radius2)?;
         let (p, dp) = self.polynomial(radius2);
@@ -108,14 +109,15 @@ fn sum<R: Real, const TERMS: usize>(a: &[f64; TERMS], x: R) -> R {
 
 /// Largest ratio of a step to the one before it that still counts as converging: see [`nearest_crossing`].
 const SHORTER: f64 = 0.4;
-/// Steps below this, mm, may be rounding.
+/// Steps shorter than this, in mm, may be rounding errors.
 const NOISE_MM: f64 = 1e-11;
-/// A ray has arrived once a step is at most this, mm, plus [`ROUNDINGS`] times its distance. The normal is then right, too.
+/// A ray has arrived once a step, in mm, is at most this plus [`ROUNDINGS`] times the distance along the ray. The normal is then
+/// right, too.
 const ARRIVED_MM: f64 = 1e-13;
 /// Rounding error that is allowed in a step, as a fraction of the distance along the ray.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
-/// The second step is Ostrowski's only if the first one was longer than this, mm. Otherwise its divisor may be pure rounding, and the
-/// step uses the slope of the first one.
+/// The second step is Ostrowski's only if the first one was longer than this, in mm. Otherwise its divisor may be pure rounding
+/// error, so the step uses the slope of the first one.
 const PLAIN_MM: f64 = 1e-6;
 /// The second step is Ostrowski's only if the first one left at most this fraction of the height. Otherwise its divisor may be a poor
 /// estimate of the slope, and the step uses the slope of the first one.

@@ -19,7 +19,8 @@ pub struct OddAsphere {
 }
 
 impl OddAsphere {
-    /// Creates an asphere of this radius of curvature, mm, conic constant, and coefficients a1, a2, ... in mm^(1 - power).
+    /// Creates an asphere from its radius of curvature (mm), its conic constant, and its coefficients a1, a2, ... in mm^(1 -
+    /// power).
     #[must_use]
     pub fn new(radius_mm: f64, conic: f64, coefficients: &[f64]) -> Self {
         let coefficients = std::iter::once(0.0).chain(coefficients.iter().copied()).collect();

@@ -31,7 +31,8 @@ pub struct SagTable {
 }
 
 impl SagTable {
-    /// Creates the surface through these sags, mm: rows of equal length in order of rising y, each in order of rising x.
+    /// Creates the surface through these sags, in mm. The rows have equal lengths and are in order of ascending y; the sags of a
+    /// row are in order of ascending x.
     /// `step_mm` is the distance between neighboring points, mm. `None` if a side has fewer than 4 or more than 1024 points,
     /// rows differ in length, or a number is not finite.
     #[must_use]
@@ -53,7 +54,7 @@ impl SagTable {
         Some(Self { step_mm, columns, rows, nodes })
     }
 
-    /// Returns the sag, mm, and the slopes along x and y at a point; `None` outside the grid.
+    /// Returns the sag (mm) and the slopes along x and y at a point. `None` outside the grid.
     fn at(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64, f64)> {
         let place = |v: f64, count: usize| {
             let last = (count - 1) as f64;
@@ -170,7 +171,8 @@ impl SagShape for SagTable {
 struct SagTableParams {
     /// Distance between neighboring points, along x and along y, mm if bare, more than 0.
     step: Positive<Length>,
-    /// Rows of sags, mm, in order of rising y, each in order of rising x; 4 to 1024 per side. Write either this or `file`.
+    /// Rows of sags in mm: rows in order of ascending y, the sags of a row in order of ascending x; 4 to 1024 per side. Write
+    /// either this or `file`.
     #[serde(default)]
     #[schemars(length(min = FEWEST, max = MOST), inner(length(min = FEWEST, max = MOST)))]
     sag: Option<Vec<Vec<f64>>>,
@@ -220,7 +222,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Surface>, Fau
     }
 }
 
-/// Reads the rows of sags, mm, from a CSV file.
+/// Reads the rows of sags (mm) from a CSV file.
 fn read(params: &Params, context: &Context<'_>, file: &str) -> Result<Vec<Vec<f64>>, Faults> {
     let fault = |text: String| Faults::from(params.fault("file", text));
     let found = context.resources.read(file, &[], &[], MAX_BYTES).map_err(|e| fault(format!("{file}: {e}")))?;

@@ -36,7 +36,7 @@ impl ConicSection {
         Self { curvature_per_mm: self.curvature_per_mm / factor, ..self }
     }
 
-    /// Returns the sag, mm, and its derivative with respect to r^2, 1/mm. `radius2` is r^2, mm^2. `None` beyond the rim.
+    /// Returns the sag (mm) and its derivative with respect to r^2 (1/mm). `radius2` is r^2 (mm^2). `None` beyond the rim.
     pub(crate) fn sag_and_slope(&self, radius2: f64) -> Option<(f64, f64)> {
         let c = self.curvature_per_mm;
         if c == 0.0 {
@@ -50,7 +50,7 @@ impl ConicSection {
         Some((c * radius2 / (1.0 + root), c / (2.0 * root)))
     }
 
-    /// Returns the sag, mm, at the squared radius `radius2`, mm^2; `None` beyond the rim.
+    /// Returns the sag (mm) at the squared radius `radius2` (mm^2). `None` beyond the rim.
     pub(crate) fn sag_mm(&self, radius2: f64) -> Option<f64> {
         self.sag_and_slope(radius2).map(|(sag, _)| sag)
     }

@@ -18,7 +18,7 @@ pub struct TiltedPlane {
 }
 
 impl TiltedPlane {
-    /// Creates a plane with these tilts about x and y, rad, each of less than a right angle.
+    /// Creates a plane with tilts about x and y, in rad. Each must be less than a right angle.
     #[must_use]
     pub fn new(tilt_x_rad: f64, tilt_y_rad: f64) -> Self {
         let (sx, cx, sy, cy) = (sin(tilt_x_rad), cos(tilt_x_rad), sin(tilt_y_rad), cos(tilt_y_rad));

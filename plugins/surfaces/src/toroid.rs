@@ -21,8 +21,9 @@ pub struct Toroid {
 }
 
 impl Toroid {
-    /// Creates a toroid from its curve (radius, mm, conic constant, and coefficients a2, a4, ... in mm^(1 - power)) and the
-    /// distance of the axis of rotation from the vertex, mm, positive if the axis lies at larger z.
+    /// Creates a toroid from its curve and its axis of rotation. The curve is given by its radius in mm, its conic constant, and
+    /// its coefficients a2, a4, ... in mm^(1 - power). The distance of the axis from the vertex, in mm, is positive if the axis
+    /// lies at larger z.
     #[must_use]
     pub fn new(radius_mm: f64, conic: f64, coefficients: &[f64], rotation_radius_mm: f64) -> Self {
         Self {
@@ -32,7 +33,7 @@ impl Toroid {
         }
     }
 
-    /// Returns the sag of the curve at y, mm, and its derivative; `None` beyond the rim of the conic part.
+    /// Returns the sag of the curve at `y` (both in mm) and its derivative. `None` beyond the rim of the conic part.
     fn curve(&self, y: f64) -> Option<(f64, f64)> {
         let (sag, slope) = self.section.sag_and_slope(y * y)?;
         let (p, dp) = polynomial(&self.coefficients, y * y);

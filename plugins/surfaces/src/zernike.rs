@@ -78,8 +78,8 @@ fn radial(n: u32, m: u32) -> Vec<f64> {
 }
 
 impl Zernike {
-    /// Creates a surface from the radius, mm, and conic constant of the conic part, the normalization radius, mm, and the
-    /// coefficients, mm of sag, from j = 1 on.
+    /// Creates a surface from the radius and conic constant of the conic part, the normalization radius, and the coefficients
+    /// from j = 1 on. The radii are in mm, and the coefficients in mm of sag.
     #[must_use]
     pub fn new(
         radius_mm: f64,
@@ -109,7 +109,8 @@ impl Zernike {
         Self { section: ConicSection::new(1.0 / radius_mm, conic), per_mm: 1.0 / normalization_radius_mm, orders }
     }
 
-    /// Returns the sum of the polynomials, mm, and its derivatives at (x, y), which are in units of the normalization radius.
+    /// Returns the sum of the polynomials (mm) and its derivatives at the point (`x`, `y`), whose unit is the normalization
+    /// radius.
     fn sum(&self, x: f64, y: f64) -> (f64, f64, f64) {
         let radius2 = x * x + y * y;
         let (mut value, mut by_x, mut by_y) = (0.0, 0.0, 0.0);

@@ -108,7 +108,7 @@ pub(crate) struct FilmLamp {
 /// Options for the way from the developed film to a picture.
 #[derive(Debug, Args)]
 pub(crate) struct Viewing {
-    /// How the film is viewed: print, negative, scan, projection; the usual way for the stock if not given.
+    /// How the film is viewed: print, negative, scan, projection; the default of the stock if not given.
     #[arg(long, value_name = "VIEW")]
     pub view: Option<String>,
     /// The print stock or color paper; the one by the stock's maker if not given.

@@ -227,9 +227,9 @@ fn to_d65(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     Adaptation::Cat16.adapt(unit(xyz), unit(white), RgbSpace::srgb().white_xyz())
 }
 
-/// Fits the matrix from the layers' exposures relative to white to XYZ under D65, best for the chart in the reference light with white
-/// kept. It stands for a laboratory's timing and masks, so that only the changes due to the lamp are left. Fails if the layers do not
-/// separate colors.
+/// Fits the matrix that converts the layers' exposures, relative to white, to XYZ under D65. The fit minimizes the error of the
+/// chart in the reference light, and keeps white. The matrix stands for a laboratory's timing and masks, so that only the changes
+/// due to the lamp are left. Fails if the layers do not separate colors.
 fn layers_matrix(stock: &Stock, reference: &Named<'_>, chart: &[&Reflectance]) -> Result<[[f64; 3]; 3], Failure> {
     let white = white_exposures(stock, reference)?;
     let (mut squares, mut products) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);

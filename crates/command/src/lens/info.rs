@@ -55,7 +55,8 @@ pub(crate) fn info(arguments: &LensInfo) -> Outcome {
     Ok(DONE)
 }
 
-/// Range between the lines h and r, nm, in which a glass with a known index and Abbe number is close to other glasses with the same values.
+/// Range of wavelengths in nm, from the line h to the line r. Within it, glasses with the same index and Abbe number have nearly
+/// the same dispersion.
 const MODEL_NM: std::ops::RangeInclusive<f64> = 404.0..=707.0;
 
 /// Returns a note for each medium whose index at a wavelength (nm) is extrapolated.

@@ -26,7 +26,7 @@ use std::path::PathBuf;
 pub struct ViewerSettings {
     /// Scene file, name of a bundled scene, or photograph: a picture file that is developed on a film.
     pub scene: PathBuf,
-    /// Film of a photograph, by its whole name or its file; the usual one if `None`.
+    /// Film of a photograph, by its whole name or its file; the default film if `None`.
     pub stock: Option<String>,
     /// Texts `path=value` that override values of the scene.
     pub overrides: Vec<String>,

@@ -7,10 +7,11 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Writes changes, pairs of a path and a text `path=value`, into a scene's file, whose text was `before`. Returns the new text.
+/// Writes `changes` into a scene's file and returns the new text. A change is a pair of a path and a text `path=value`. `before`
+/// is the text of the file when it was read.
 ///
-/// The text is changed only where the values are; everything else stays, comments included. The file is written only if it is still as it
-/// was read, and if the new text describes the scene that is shown.
+/// The text is changed only where the values are; everything else stays, comments included. The file is written only if its text
+/// is still `before`, and if the new text describes the scene that is shown.
 ///
 /// # Errors
 /// The reason why the file is not written.

@@ -133,8 +133,8 @@ impl Prism {
         find_emission(&self.light).map_err(|error| error.to_string())
     }
 
-    /// Returns the wavelengths, nm, and the brightness of each, 1 for the brightest. Any first part of the list is spread over the whole
-    /// spectrum.
+    /// Returns the wavelengths, in nm, and the brightness of each, relative to the brightest. Any first part of the list is
+    /// spread over the whole spectrum.
     fn rays(&self) -> Result<Vec<(f64, f64)>, String> {
         let light = self.light()?;
         let is_visible = |nm: f64| (VISIBLE_NM[0]..=VISIBLE_NM[1]).contains(&nm);

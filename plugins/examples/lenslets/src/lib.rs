@@ -62,7 +62,7 @@ struct Lenslets {
 }
 
 impl Lenslets {
-    /// Returns whether light leaves a point of the panel, mm, along the slopes dx/dz and dy/dz.
+    /// Returns whether light leaves a point of the panel (mm) along the slopes dx/dz and dy/dz.
     fn shines(&self, [x, y]: [f64; 2], [along_x, along_y]: [f64; 2]) -> bool {
         let half = 0.5 * self.width_mm;
         if x.abs() > half || y.abs() > half {

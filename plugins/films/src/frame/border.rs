@@ -30,7 +30,7 @@ pub(super) struct Border {
     words: [String; 2],
 }
 
-/// Checks that a frame of this size, mm, fits between the perforations of the film. The error is a message and a hint.
+/// Checks that a frame of the size `size_mm` fits between the perforations of the film. The error is a message and a hint.
 pub(super) fn check(kind: BorderKind, size_mm: [f64; 2]) -> Result<(), [String; 2]> {
     let (across, word) = match kind {
         BorderKind::Plain => return Ok(()),
@@ -53,7 +53,7 @@ impl Border {
         Self { kind, size_mm, words: [name.to_owned(), number] }
     }
 
-    /// Returns the width of the border on either side of the frame, mm, across and down the picture.
+    /// Returns the width of the border on either side of the frame: across and down the picture, in mm.
     pub(super) fn margin_mm(&self) -> [f64; 2] {
         let [width, height] = self.size_mm;
         let whole = |side: f64| (side / PITCH_MM + 0.05).ceil() * PITCH_MM;

@@ -72,7 +72,7 @@ pub(crate) struct Laid {
     /// Position of the pixels on the film; the frame begins at pixel 0, and the border lies around it.
     pub raster: Raster,
     border: Option<Border>,
-    /// Shift of the picture, pixels, across and down.
+    /// Shift of the picture across and down, in pixels.
     shift_px: [f64; 2],
 }
 

@@ -13,7 +13,7 @@ fn wandering(chance: RandomSeed, frame: u64) -> f64 {
     (0..).zip(NEIGHBORS).map(|(k, weight)| weight * chance.normal(frame.wrapping_add(k))).sum::<f64>() / norm
 }
 
-/// Returns the shift of the picture by gate weave, mm, across and down.
+/// Returns the shift of the picture by gate weave: across and down, in mm.
 pub(super) fn weave(chance: RandomSeed, frame: u64, rms_mm: f64) -> [f64; 2] {
     [0, 1].map(|axis| rms_mm * wandering(chance.with(axis), frame))
 }

@@ -15,7 +15,7 @@ pub(super) struct Scratch {
     width: f64,
     /// Density that the scratch adds where it is deepest.
     depth: f64,
-    /// Length of film before this frame, mm, so that variation along a scratch continues from frame to frame.
+    /// Length of film before this frame, in mm. It lets variation along a scratch continue from frame to frame.
     way: f64,
 }
 

@@ -38,7 +38,7 @@ struct Silicon {
 }
 
 impl Photosite {
-    /// Creates pixels of this pitch, mm, without stack, microlens and well. `silicon` gives index and absorption.
+    /// Creates pixels without stack, microlens and well. The pixel pitch is in mm. `silicon` gives index and absorption.
     #[must_use]
     pub fn new(pitch_mm: f64, silicon: &Medium, grid: &Grid) -> Self {
         const THIN_MM: f64 = 1e-4;
@@ -63,7 +63,7 @@ impl Photosite {
         }
     }
 
-    /// Returns the sideways shift, mm, from filter to charge for light of direction `way` (unit, axes of the surface).
+    /// Returns the sideways shift (mm) from filter to charge for light of the unit direction `way`, in the axes of the surface.
     /// `number` in [0, 1) chooses the depth.
     fn aside_mm(&self, way: DVec3, wavelength_nm: f64, number: f64) -> DVec2 {
         let sideways = DVec2::new(way.x, way.y);
@@ -81,7 +81,7 @@ impl Photosite {
         aside
     }
 
-    /// Returns the sideways shift, mm, for which the microlens at (x, y) on the frame compensates.
+    /// Returns the sideways shift (mm) for which the microlens at (`x_mm`, `y_mm`) on the frame compensates.
     fn made_for_mm(&self, x_mm: f64, y_mm: f64) -> DVec2 {
         if self.exit_pupil_mm.is_infinite() {
             return DVec2::ZERO;

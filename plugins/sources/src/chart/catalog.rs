@@ -79,7 +79,7 @@ pub const CHARTS: &[ChartEntry] = &[
     },
     ChartEntry {
         name: "text",
-        summary: "Lines of text in falling sizes, black on white and white on black",
+        summary: "Lines of text in decreasing sizes, black on white and white on black",
         draw: designs::text,
     },
     ChartEntry {

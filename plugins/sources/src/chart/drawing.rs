@@ -94,7 +94,7 @@ impl Drawing {
     }
 }
 
-/// Returns the width of a line of text from edge to edge, mm, with capitals of `height_mm`.
+/// Returns the width in mm, from edge to edge, of a line of text whose capitals are `height_mm` high.
 #[must_use]
 pub fn text_width_mm(text: &str, height_mm: f64) -> f64 {
     let unit_mm = height_mm / font::CAPITAL_HEIGHT;

@@ -25,7 +25,7 @@ impl Backdrop {
         Self { cells: mixed.cells, opacity, colors, field }
     }
 
-    /// Returns the mixed pixels, in rising order.
+    /// Returns the mixed pixels, in ascending order.
     pub(super) fn cells(&self) -> impl Iterator<Item = usize> {
         self.cells.cells()
     }

@@ -213,7 +213,7 @@ struct Through {
 }
 
 impl Through {
-    /// Adds the light from behind to the weights.
+    /// Adds to the weights of the rays the light that passes through the mixed pixels from behind.
     fn shine(&mut self, deep: &DeepPicture, wavelength_nm: &[f64], line: &[u32], weight: &mut [f64]) {
         if self.len == 0 {
             return;

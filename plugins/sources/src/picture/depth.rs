@@ -134,8 +134,9 @@ impl Depth {
         self.p.channel.as_deref().unwrap_or("Z")
     }
 
-    /// Computes the depth of each pixel, mm, along the axis from the center of projection. `plane_mm` is the distance from there to the
-    /// plane on which the picture with its `overscan` is `width_mm` wide. Fails for depths that are not positive and finite.
+    /// Computes the depth of each pixel along the axis, in mm from the center of projection. `plane_mm` is the distance from
+    /// there to the plane on which the picture with its `overscan` is `width_mm` wide. Fails for depths that are not positive and
+    /// finite.
     pub(super) fn of(
         &self,
         picture: &LinearPicture,
@@ -298,9 +299,9 @@ impl Depth {
         Some(self.params.fault(if self.p.kind.is_some() { "kind" } else { "channel" }, text).hint(hint).into())
     }
 
-    /// Returns a warning if the depths, mm, were probably read wrongly. It is raised if most depths lie far from the plane, while another
-    /// unit or kind would bring them near, or if they run from 0 to 1. It is also raised if the nearest one is less than two focal lengths
-    /// from the lens, while the plane is not that close.
+    /// Returns a warning if the depths (mm) were probably read wrongly. It is given if most depths lie far from the plane but a
+    /// different unit or kind would bring them near, or if the depths run from 0 to 1. It is also given if the nearest depth is
+    /// less than two focal lengths from the lens and the plane is not.
     pub(super) fn scale_warning(&self, depth: &[f32], plane_mm: f64, focal_length_mm: Option<f64>) -> Option<Warning> {
         let farthest = self.p.far.map_or(f64::INFINITY, |l| l.mm());
         let mut all: Vec<f32> = depth.iter().copied().filter(|mm| f64::from(*mm) < farthest && *mm < 1e10).collect();

@@ -129,8 +129,8 @@ impl Groups {
         }
     }
 
-    /// Removes the groups that contain some `pixels` (in rising order) and returns them, ordered by their first pixel. The pixels of a
-    /// group are ordered row by row.
+    /// Removes and returns the groups that contain any of `pixels`, which are in ascending order. The groups are ordered by their
+    /// first pixel, and the pixels of a group row by row.
     fn ordered(&mut self, pixels: impl Iterator<Item = usize>) -> Vec<Vec<usize>> {
         let mut groups = Vec::new();
         for first in pixels {

@@ -212,7 +212,7 @@ impl Texture for PictureTexture {
 }
 
 impl PictureTexture {
-    /// Converts a drawn point: returns its position on the plane, mm, and the area that it represents, mm^2.
+    /// Converts a drawn point: returns its position on the plane (mm) and the area that it represents (mm^2).
     fn drawn(&self, (column, row, inverse): (f64, f64, f64)) -> (f64, f64, f64) {
         let x = (column / self.width_px as f64 - 0.5) * self.width_mm;
         let y = (0.5 - row / self.height_px as f64) * self.height_mm;

@@ -27,7 +27,7 @@ const TIMES: usize = 10;
 /// Fraction of all points that must be straighter with the other kind.
 const PART: f64 = 0.1;
 
-/// Depth, mm, from which on there is no object: renderers write such a number where a ray hits nothing.
+/// Depth, in mm, from which on there is no object: renderers write such a number where a ray hits nothing.
 const BACKDROP_MM: f64 = 1e9;
 
 /// Returns whether surfaces are straighter at far more points with the other kind of depth. `depth` is along the axis, mm. If `ray` is

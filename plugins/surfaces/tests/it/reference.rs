@@ -7,7 +7,7 @@ use spectra_plugin_surfaces::{
     Biconic, Cylinder, CylinderAxis, EvenAsphere, OddAsphere, Toroid, Zernike, ZernikeOrdering,
 };
 
-/// Returns the largest errors of position, mm, and of direction over the rays of a kind, and the number of rays.
+/// Returns the largest errors of position (mm) and of direction over the rays of a kind, and the number of rays.
 fn errors(kind: &str, make: impl Fn(&[f64]) -> Box<dyn Surface>) -> (f64, f64, usize) {
     let path = format!("{}/../../tests/data/surfaces/{kind}.csv", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).expect("the reference rays are in the repository");

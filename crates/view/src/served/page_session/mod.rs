@@ -81,7 +81,7 @@ struct State {
     turns_settled: u64,
     /// Value of `turns_settled` that the page was told last.
     turns_told: u64,
-    /// Whether a large picture is being developed on another thread than the desk's.
+    /// Whether a large picture is being developed on a different thread from the desk's.
     is_developing: bool,
     stop: Arc<Stop>,
     is_closed: bool,
@@ -246,7 +246,7 @@ impl PageSession {
         Some(made)
     }
 
-    /// Returns the spectrum of the light and the responses of the layers of the current scene; `None` without a scene.
+    /// Returns the spectrum of the current scene's light and the responses of its layers. `None` without a scene.
     pub(crate) fn spectra(&self) -> Option<Value> {
         let scene = lock(&self.state).page.scene.clone()?;
         Some(spectra(&scene))

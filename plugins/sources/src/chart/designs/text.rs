@@ -13,7 +13,7 @@ const READING: &str = "SPECTRA 1234567890 Sphinx of black quartz, judge my vow. 
 /// Largest length of a line, mm.
 const MEASURE_MM: f64 = 645.0;
 
-/// Draws lines of text in falling sizes: black on white in the left half of the sheet, white on black in the right half.
+/// Draws lines of text in decreasing sizes: black on white in the left half of the sheet, white on black in the right half.
 pub fn text(_seed: u64) -> Drawing {
     let mut drawing = Drawing::new(1500.0, 1000.0, WHITE);
     drawing.add(Rectangle::between([0.0, -500.0], [750.0, 500.0]), BLACK);

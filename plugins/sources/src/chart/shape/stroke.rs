@@ -12,7 +12,7 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Creates a stroke of a pen `width_mm` wide between two points, mm; a dot if they are the same.
+    /// Creates a stroke of a pen `width_mm` wide between two points (mm). If the points are equal, the stroke is a dot.
     #[must_use]
     pub fn new(from_mm: [f64; 2], to_mm: [f64; 2], width_mm: f64) -> Self {
         let along_mm = [to_mm[0] - from_mm[0], to_mm[1] - from_mm[1]];

@@ -3,9 +3,9 @@
 use super::parted::Parted;
 use super::steps::Steps;
 
-/// Distance, pixels, within which clean pixels are searched for.
+/// Distance in pixels within which clean pixels are searched for.
 const REACH: usize = 4;
-/// Distance, pixels, within which the pixel is searched for that differs most from the other side, if there is no clean one.
+/// Distance in pixels within which, if there is no clean pixel, the one is searched for that differs most from the other side.
 const NEARBY: usize = 4;
 /// Smallest difference between the colors of two sides that can be distinguished, as a fraction of the brighter one.
 const DIFFER: f64 = 0.02;

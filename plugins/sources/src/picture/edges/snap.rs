@@ -11,10 +11,11 @@ use super::steps::{Steps, WAYS};
 const REACH: isize = 2;
 /// Smallest fraction of averaged edges from which the depths of a picture count as averaged.
 const IS_AVERAGED: f64 = 0.25;
-/// Distance along a thread, pixels, within which its depth is searched for.
+/// Distance along a thread, in pixels, within which its depth is searched for.
 const ALONG: usize = 6;
 
-/// Returns the depths, mm, with averaged ones moved to the side to which they are closer; `None` if the picture's depths are not averaged.
+/// Returns the depths (mm), with each averaged one replaced by that of the side to which it is closer. `None` if the picture's
+/// depths are not averaged.
 pub(super) fn averaged(steps: &Steps, depth_mm: &[f32]) -> Option<Vec<f32>> {
     let (mut sharp, mut smeared) = (0_usize, 0_usize);
     let mut moved: Vec<(usize, f32)> = Vec::new();

@@ -8,7 +8,7 @@ pub(in super::super) struct Sparse {
 }
 
 impl Sparse {
-    /// Creates the set of `cells` (in rising order) among `len` pixels.
+    /// Creates the set of `cells`, in ascending order, among `len` pixels.
     pub(super) fn new(len: usize, cells: impl Iterator<Item = usize>) -> Self {
         let mut bits = vec![0_u64; len.div_ceil(64)];
         cells.for_each(|cell| bits[cell / 64] |= 1 << (cell % 64));
@@ -36,7 +36,7 @@ impl Sparse {
         (word & bit != 0).then(|| self.before[cell / 64] as usize + (word & (bit - 1)).count_ones() as usize)
     }
 
-    /// Returns all pixels of the set, in rising order.
+    /// Returns all pixels of the set, in ascending order.
     pub(in super::super) fn cells(&self) -> impl Iterator<Item = usize> {
         (0..64 * self.bits.len()).filter(|cell| self.has(*cell))
     }

@@ -49,7 +49,7 @@ impl Steps {
         (a - b).abs() <= (self.edge * a.max(b)).max(self.least)
     }
 
-    /// Returns whether two depths, mm, belong to the same object.
+    /// Returns whether two depths (mm) belong to the same object.
     pub(super) fn are_together(&self, a_mm: f32, b_mm: f32) -> bool {
         self.alike(1.0 / a_mm, 1.0 / b_mm)
     }

@@ -9,7 +9,7 @@ use super::steps::{Steps, WAYS};
 const FOLLOWED: usize = 24;
 /// Number of pixels for which a thread is followed even among other threads. Beyond them it must be thin.
 const AMONG_OTHERS: usize = 4;
-/// Distance from a thread, pixels, at which pixels on both sides must contain less than half as much of it.
+/// Distance from a thread, in pixels, at which the pixels on both sides must contain less than half as much of the thread.
 const BESIDE: isize = 3;
 /// Smallest coverage of a pixel with which a thread continues.
 const LEAST: f32 = 0.05;

@@ -6,7 +6,7 @@ use spectra_core::batch::Column;
 use spectra_core::surface::{Action, IndexColumns, Interface, Surface, Travel};
 use spectra_core::{Isa, Loss, RayBatch};
 
-/// A ray: point, mm, and unit direction.
+/// A ray: a point on it, in mm, and its unit direction.
 pub type Line = (DVec3, DVec3);
 
 /// Traces rays of one wavelength to a surface whose vertex is the origin.
