@@ -509,7 +509,7 @@ fn slips_are_told_with_what_to_write() {
         (&["photo.png", "--stock", "tri-x", "--f-number", "f/4"], &["--lens"]),
         (&["photo.png", "--stock", "tri-x", "--set", "film.stok=a"], &["--set film.stok=a", "did you mean `stock`?"]),
         (&["photo.png", "--stock", "tri-x", "--view", "projection"], &["--view projection", "is a negative"]),
-        (&["photo.png", "--stock", "tri-x", "--side", "60"], &["or fewer"]),
+        (&["photo.png", "--stock", "tri-x", "--side", "60"], &["or a smaller one"]),
         (&["photo.png", "--stock", "tri-x", "-o", "photo.png"], &["is an input picture and would be overwritten"]),
         (&["photo.png", "--stock", "tri-x", "-o", "photo.gif"], &[".png, .jpg, .tiff or .exr"]),
         (&["photo.png", "photo.png", "--stock", "tri-x", "-o", "a.png"], &["names one picture"]),

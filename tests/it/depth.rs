@@ -224,7 +224,7 @@ fn faults_of_depth_say_where_and_what_to_do() {
         ("sky.exr", "{unit: m}", ["infinite at column 1, row 1", "far: 1 km"]),
         ("sky.exr", "{unit: yard}", ["unknown value `yard` for `unit`", "known: mm"]),
         ("sky.exr", "{scale: 0}", ["all depths would be 0", "-1 if depth is negative in front of the camera"]),
-        ("flat.exr", "{file: small.exr}", ["2 x 1 pixels, the picture 2 x 2", "same size"]),
+        ("flat.exr", "{file: small.exr}", ["2 x 1 pixels, the picture 2 x 2", "the picture's size"]),
         ("sky.exr", "{kind: radial}", ["unknown value `radial` for `kind`", "known: z, ray, inverse"]),
         ("sky.exr", "{far: 1 m, near: 2 m}", ["farther than `near`", "2:80"]),
     ] {

@@ -365,7 +365,7 @@ fn slips_are_said() {
     let path = folder.path().join("s.yaml");
     for (scene, output, wanted) in [
         ("film: {stock: kodak-tri-x-400, metering: average}", "{kind: exr, space: acescg}", "holds: picture"),
-        ("film: {stock: kodak-tri-x-400, metering: average}", "{kind: png, bits: 12}", "8 or 16"),
+        ("film: {stock: kodak-tri-x-400, metering: average}", "{kind: png, bits: 12}", "`bits: 16`"),
         ("film: {stock: kodak-tri-x-400, metering: average}", "{kind: png, space: acescct}", "bits: 16"),
         (
             "film: {stock: kodak-tri-x-400, metering: average, view: scan, scan: log}",

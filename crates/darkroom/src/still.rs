@@ -79,7 +79,7 @@ pub fn expose_still(scene: &Scene, still: &Still) -> Result<Rendering, Faults> {
             size.width_px, size.height_px, across, down, still.width_px, still.height_px
         );
         let fault = scene.params.fault("imager.resolution", text);
-        return Err(fault.hint("as many pixels as the picture has, or fewer in the same shape").into());
+        return Err(fault.hint("write the resolution of the picture, or a smaller one of the same shape").into());
     }
     let factor = still.scale * PI / (4.0 * F_NUMBER * F_NUMBER) * scene.exposure_time_s();
     let mut colors = Colors::new(&*still.model, &scene.channels, factor);

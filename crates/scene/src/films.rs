@@ -83,7 +83,7 @@ fn name(named: &Params, own: &Params, others: &[SceneFilm]) -> Result<String, Fa
             .into());
     }
     if taken(&name) {
-        return Err(fault(format!("two films are called `{name}`")).hint("each needs a name of its own").into());
+        return Err(fault(format!("two films are called `{name}`")).hint("give each film a name of its own").into());
     }
     Ok(name)
 }

@@ -36,7 +36,7 @@ pub(crate) fn middle_mm(
     size_hint: &str,
 ) -> Result<[f64; 2], [String; 2]> {
     let Some(emit) = source.emit() else {
-        let hint = "leave `around` out, or take a source that emits light, such as `{kind: point, ...}`";
+        let hint = "leave `around` out, or use a source that emits light, such as `{kind: point, ...}`";
         return Err(["the source has no light that could be followed to the imager".to_owned(), hint.to_owned()]);
     };
     let isa = Isa::Baseline;

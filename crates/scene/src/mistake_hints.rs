@@ -31,18 +31,18 @@ pub(crate) fn hint(fault: &Fault, scene: &Params) -> Option<String> {
     }
     if key == "grain" && fault.message.starts_with("found ") {
         let how = "the stock says how strong it is: `granularity: {rms: 11}` in a file with `like: kodak-tri-x-400`";
-        return Some(format!("`grain: false` or `grain: true`; {how}"));
+        return Some(format!("write `grain: false` or `grain: true`; {how}"));
     }
     if key == "halation" && fault.message.starts_with("unknown value") {
         let stronger = "{entering: 0.3, transmittance: 0.35}";
         return Some(format!(
-            "`halation: off`, or leave it out for that of the stock; stronger or weaker: `halation: {stronger}`"
+            "write `halation: off` for none, or a map such as `halation: {stronger}`; without `halation`, the stock's values hold"
         ));
     }
     let is_text_wanted = fault.hint.is_none() && fault.message.ends_with("expected a text");
     if is_text_wanted && ["illuminant", "spectrum"].contains(&key) {
         return Some(format!(
-            "the name of a light (`{key}: D55`), an expression (`{key}: \"blackbody:3200\"`), or a file of two columns, \
+            "write the name of a light (`{key}: D55`), an expression (`{key}: \"blackbody:3200\"`), or a file of two columns, \
              wavelength and value (`{key}: lamp.csv`)"
         ));
     }

@@ -241,15 +241,15 @@ impl RenderSection {
         };
         if lights == Lights::Forward && can_backward && !lights_forward {
             let fault = params.fault("direction", "this source cannot be rendered forward");
-            faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
+            faults.push(fault.hint("write `direction: backward` or `direction: auto`"));
         }
         if direction == Direction::Backward && !can_backward {
             let fault = params.fault("direction", "this source cannot be rendered backward");
-            faults.push(fault.hint("write `direction: forward`, or leave it to `auto`"));
+            faults.push(fault.hint("write `direction: forward` or `direction: auto`"));
         }
         if direction == Direction::Forward && !can_forward {
             let fault = params.fault("direction", "this source cannot be rendered forward");
-            faults.push(fault.hint("write `direction: backward`, or leave it to `auto`"));
+            faults.push(fault.hint("write `direction: backward` or `direction: auto`"));
         }
         (direction, lights)
     }

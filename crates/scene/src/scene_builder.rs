@@ -253,7 +253,7 @@ impl<'a> SceneBuilder<'a> {
             }
             (None, None) => {
                 let fault = self.params.fault("imager", "a film imager needs a `film`");
-                fault.hint("such as `film: {stock: ilford-ortho-plus, exposure: 1/60 s}`")
+                fault.hint("add a film, such as `film: {stock: ilford-ortho-plus, exposure: 1/60 s}`")
             }
         };
         self.rear_faults.push(fault);
@@ -304,7 +304,7 @@ impl<'a> SceneBuilder<'a> {
             && lens.elements.first().is_some_and(|e| e.kind == MATTE_BOX && e.vertex_z_mm() <= -source.distance_mm())
         {
             let text = "the source stands between the matte box and the lens";
-            let hint = format!("closer to the lens than {} mm", source.distance_mm());
+            let hint = format!("write a distance of less than {} mm", source.distance_mm());
             self.faults.push(section.fault("matte-box.distance", text).hint(hint));
         }
         self.faults.extend(std::mem::take(&mut self.rear_faults));

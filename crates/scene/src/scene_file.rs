@@ -91,7 +91,9 @@ impl BandSection {
         let (first, last) = (first.nm(), last.nm());
         if last - first < 1.0 {
             let fault = params.fault("band", format!("not a band of wavelengths: {first} to {last} nm"));
-            return Err(fault.hint("the shorter one first, as in `[380, 780]`, at least 1 nm apart").into());
+            return Err(fault
+                .hint("write the shorter wavelength first, at least 1 nm below the longer one, as in `[380, 780]`")
+                .into());
         }
         let count = (last - first).ceil() as usize + 1;
         Ok(Grid { start_nm: first, step_nm: (last - first) / (count - 1) as f64, count })

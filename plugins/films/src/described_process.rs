@@ -36,9 +36,9 @@ pub(crate) fn build_process(
     if p.paper.is_some() && (film.layers() != 1 || stock.process == Process::Reversal) {
         let text = format!("`paper` is for black-and-white negatives, which {} is not", stock.name);
         let hint = if stock.process == Process::Reversal {
-            "leave it out"
+            "leave `paper` out"
         } else {
-            "leave it out; `print: kodak-endura-premier` is a paper for color negatives"
+            "leave `paper` out; `print: kodak-endura-premier` is a paper for color negatives"
         };
         return Err(params.fault("paper", text).hint(hint).into());
     }
@@ -49,15 +49,21 @@ pub(crate) fn build_process(
         ("lamp", p.lamp.is_some()),
     ] {
         if given && !printed {
-            faults.push(params.fault(key, "this applies to prints only").hint("`view: print`"));
+            faults.push(
+                params
+                    .fault(key, "this applies to prints only")
+                    .hint(format!("write `view: print`, or leave `{key}` out")),
+            );
         }
     }
     if p.scan.is_some() && view != View::Scan {
-        faults.push(params.fault("scan", "this applies to scans only").hint("`view: scan`"));
+        faults.push(params.fault("scan", "this applies to scans only").hint("write `view: scan`, or leave `scan` out"));
     }
     for (key, given) in [("surround", p.surround.is_some()), ("black", p.black.is_some())] {
         if given && matches!(view, View::Scan | View::Negative) {
-            faults.push(params.fault(key, "this applies to prints and projections only").hint("leave it out"));
+            faults.push(
+                params.fault(key, "this applies to prints and projections only").hint(format!("leave `{key}` out")),
+            );
         }
     }
     let look = ViewingOptions {
@@ -73,11 +79,11 @@ pub(crate) fn build_process(
     match (view, stock.process) {
         (View::Print | View::Negative | View::Scan, Process::Reversal) => {
             let fault = params.fault("view", format!("{} is already a positive", stock.name));
-            faults.push(fault.hint("`view: projection`"));
+            faults.push(fault.hint("write `view: projection`"));
         }
         (View::Projection, Process::Negative) => {
             let fault = params.fault("view", format!("{} is a negative, and would be projected as one", stock.name));
-            faults.push(fault.hint("`view: print`, `view: scan`, or `view: negative`"));
+            faults.push(fault.hint("write `view: print`, `view: scan` or `view: negative`"));
         }
         _ => {}
     }
@@ -141,7 +147,7 @@ fn print(
     let Some(on) = on else {
         if film.layers() != 1 {
             let fault = params.fault("stock", format!("{} needs a print stock for its colors", stock.name));
-            return Err(fault.hint("`print: kodak-vision-2383`, or `view: scan`").into());
+            return Err(fault.hint("write `print: kodak-vision-2383`, or `view: scan`").into());
         }
         return on_paper(p, params, stock, film, gray_lx_s, lights.look);
     };
@@ -167,7 +173,7 @@ fn print(
         let fault = params.fault(key, text);
         match error {
             PositiveError::Unbalanced { .. } => {
-                fault.hint("`view: scan` shows the film without a print; or name another print stock at `print`")
+                fault.hint("write `view: scan` to see the film without a print, or name another print stock at `print`")
             }
             PositiveError::NoPrintStock { .. } => fault.hint("`spectra list stock` lists the print stocks separately"),
             PositiveError::DarkLight | PositiveError::NoGray => fault,
@@ -185,7 +191,7 @@ fn no_surround(p: &StockParams, params: &Params) -> Result<(), Faults> {
         return Ok(());
     }
     let fault = params.fault("surround", "a print on paper is viewed in a lit room");
-    Err(fault.hint("leave it out, or print on film: `print: kodak-vision-2383`").into())
+    Err(fault.hint("leave `surround` out, or print on film: `print: kodak-vision-2383`").into())
 }
 
 fn on_paper(
@@ -204,7 +210,10 @@ fn on_paper(
     };
     let Some(range) = Paper::range_of_grade(stated.unwrap_or(USUAL_GRADE)) else {
         let text = format!("there is no paper of grade {}", stated.unwrap_or_default());
-        return Err(params.fault("paper.grade", text).hint("0 (soft) to 5 (hard), or `auto`").into());
+        return Err(params
+            .fault("paper.grade", text)
+            .hint("write a grade from 0 (soft) to 5 (hard), or `auto`")
+            .into());
     };
     if grade.is_some() && p.paper.is_some_and(|p| p.range.is_some()) {
         let fault = params.fault("paper.range", "a grade has its own range");
@@ -212,7 +221,7 @@ fn on_paper(
     }
     if p.white.is_some() {
         let fault = params.fault("white", "the white of a print on paper is the paper");
-        return Err(fault.hint("leave it out, or print on film: `print: kodak-2302`").into());
+        return Err(fault.hint("leave `white` out, or print on film: `print: kodak-2302`").into());
     }
     let usual = Paper::of_range(p.paper.and_then(|p| p.range).map_or(range, AboveZero::get));
     let given = |value: Option<Option<AboveZero<f64>>>, usual: f64| value.flatten().map_or(usual, AboveZero::get);

@@ -23,7 +23,7 @@ pub(crate) fn develop_as(p: &StockParams, params: &Params, stock: &Stock) -> Res
     let developed = pushed_or_assumed(stock, chosen, stops).map_err(|e| {
         let other = "set another `iso` to expose the same film differently";
         let hint = match &e {
-            PushError::Beyond { .. } | PushError::BeyondAssumed { .. } => format!("a smaller `push`, or {other}"),
+            PushError::Beyond { .. } | PushError::BeyondAssumed { .. } => format!("write a smaller `push`, or {other}"),
             _ => format!("leave `push` out, or {other}"),
         };
         params.fault("push", e.to_string()).hint(hint)

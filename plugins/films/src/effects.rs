@@ -265,7 +265,9 @@ fn halation(p: &Switches<'_>, params: &Params, stock: &Stock, faults: &mut Fault
     let (Some(thickness_mm), Some(index)) = (thickness_mm, index) else {
         let missing = if thickness_mm.is_none() { "thickness" } else { "index" };
         let fault = params.fault("halation", format!("the {missing} of the base of {} is not known", stock.name));
-        faults.push(fault.hint("`halation: {entering: 0.2, transmittance: 0.5, thickness: 0.125 mm, index: 1.48}`"));
+        faults.push(fault.hint(
+            "write, for example, `halation: {entering: 0.2, transmittance: 0.5, thickness: 0.125 mm, index: 1.48}`",
+        ));
         return none;
     };
     let reflected = own.and_then(|h| h.reflected).or_else(|| of_stock.map(|h| h.reflected)).unwrap_or(0.0);

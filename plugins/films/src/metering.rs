@@ -155,7 +155,7 @@ impl Meter {
         let spot = spot.unwrap_or(SpotParams { center: center(), diameter: diameter() });
         if compensation.is_some() && metering == Metering::Manual {
             let fault = params.fault("compensation", "without a meter there is nothing to compensate");
-            faults.push(fault.hint("`metering: average`, or another `exposure`"));
+            faults.push(fault.hint("write `metering: average`, or a different `exposure`"));
         }
         let stops = compensation.unwrap_or(0.0);
         if !faults.is_empty() {

@@ -258,7 +258,7 @@ impl Frame {
             format!("pixels are not square, but {aspect:.2} times as wide as high: the picture will look squeezed");
         let common = gcd(across, down);
         let hint = format!(
-            "`resolution: [{across}, {}]`, or `crop: {}:{}` for a frame of that shape",
+            "write `resolution: [{across}, {}]`, or `crop: {}:{}` for a frame of that shape",
             square_px(across, ratio),
             across / common,
             down / common
@@ -341,10 +341,14 @@ fn resolution_faults([width, height]: [u32; 2], params: &Params) -> Vec<Fault> {
     let pixels = u64::from(width) * u64::from(height);
     let fault = if height > MAX_SIDE_PX {
         let text = format!("a side of {height} pixels is out of range");
-        Some(params.fault("resolution", text).hint(format!("at most {MAX_SIDE_PX}")))
+        Some(params.fault("resolution", text).hint(format!("write at most {MAX_SIDE_PX} pixels per side")))
     } else {
         let text = format!("{width} x {height} pixels are {} megapixels", pixels / 1_000_000);
-        let fault = || params.fault("resolution", text).hint(format!("at most {} megapixels", MAX_PIXELS / 1_000_000));
+        let fault = || {
+            params
+                .fault("resolution", text)
+                .hint(format!("write a resolution of at most {} megapixels", MAX_PIXELS / 1_000_000))
+        };
         (pixels > MAX_PIXELS).then(fault)
     };
     fault.into_iter().collect()
@@ -361,7 +365,9 @@ fn frame_shape(curvature: &Curvature, params: &Params, size: Option<FrameSize>) 
     let least_mm = bend.least_radius_mm(size.width_mm, size.height_mm);
     if !(radius_mm.abs() >= least_mm && radius_mm.is_finite()) {
         let text = format!("a radius of {radius_mm} mm bends the frame by more than 60 degrees");
-        return Err(params.fault("curvature.radius", text).hint(format!("at least {least_mm:.4} mm, either sign")));
+        return Err(params
+            .fault("curvature.radius", text)
+            .hint(format!("write at least {least_mm:.4} mm, positive or negative")));
     }
     Ok(bend)
 }

@@ -59,7 +59,10 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Output>, Faults> {
     let PngParams { bits, space, desqueeze } = params.parse()?;
     let bits = bits.get();
     if !matches!(bits, 8 | 16) {
-        return Err(params.fault("bits", format!("a PNG cannot have {bits} bits per channel")).hint("8 or 16").into());
+        return Err(params
+            .fault("bits", format!("a PNG cannot have {bits} bits per channel"))
+            .hint("write `bits: 8` or `bits: 16`")
+            .into());
     }
     if space == Space::AcesCct && bits == 8 {
         let fault = params.fault("space", "8 bits are too few for a logarithmic space");

@@ -99,11 +99,11 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Response>, Fa
 fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<Vec<Channel>, Faults> {
     let Value::Map(entries) = &node.node().value else {
         let fault = node.fault("a map of channels is expected here");
-        return Err(fault.hint("{red: my-red.csv, green: \"gaussian:540,40\"}").into());
+        return Err(fault.hint("write, for example, `{red: my-red.csv, green: \"gaussian:540,40\"}`").into());
     };
     if !(1..=MAX_CHANNELS).contains(&entries.len()) {
         let fault = node.fault(format!("{} channels", entries.len()));
-        return Err(fault.hint(format!("1 to {MAX_CHANNELS}")).into());
+        return Err(fault.hint(format!("write 1 to {MAX_CHANNELS} channels")).into());
     }
     let mut faults = Faults::new();
     let mut channels = Vec::new();
@@ -113,11 +113,15 @@ fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<
         // The name becomes part of the channel's name in an EXR file, where a dot separates layers.
         let letter = |c: char| c.is_alphanumeric() || "-_".contains(c);
         if name.is_empty() || name.len() > 64 || !name.chars().all(letter) {
-            faults.push(fault(format!("`{name}` is not a valid name of a channel")).hint("letters, digits, - and _"));
+            faults
+                .push(fault(format!("`{name}` is not a valid name of a channel")).hint("use letters, digits, - and _"));
             continue;
         }
         let Some(text) = value.as_str() else {
-            faults.push(fault("a spectrum's name is expected here".into()).hint("my-red.csv, or \"gaussian:540,40\""));
+            faults.push(
+                fault("a spectrum's name is expected here".into())
+                    .hint("write, for example, my-red.csv or \"gaussian:540,40\""),
+            );
             continue;
         };
         let found = find_sensitivity_in(text, context.resources).map_err(|e| e.faults(fault));
@@ -141,18 +145,20 @@ fn rows(params: &Params, p: &SensitivitiesParams, channels: &[Channel]) -> Resul
             3 => Ok([unit(0), unit(1), unit(2)]),
             _ => {
                 let fault = params.fault("channels", format!("{count} channels need a `matrix` to make a picture"));
-                Err(fault.hint("give it three rows for red, green and blue, each with one factor per channel").into())
+                Err(fault
+                    .hint("give `matrix` three rows for red, green and blue, each with one factor per channel")
+                    .into())
             }
         };
     };
     let [red, green, blue] = &matrix[..] else {
         let fault = params.fault("matrix", format!("{} rows", matrix.len()));
-        return Err(fault.hint("three: for red, green and blue").into());
+        return Err(fault.hint("write three rows, for red, green and blue").into());
     };
     for (i, row) in matrix.iter().enumerate() {
         if row.len() != count || row.iter().any(|v| !v.is_finite()) {
             let fault = params.fault(&format!("matrix[{i}]"), format!("{} factors for {count} channels", row.len()));
-            return Err(fault.hint("one finite factor per channel, in the order of `channels`").into());
+            return Err(fault.hint("write one finite factor per channel, in the order of `channels`").into());
         }
     }
     Ok([red.clone(), green.clone(), blue.clone()])

@@ -73,7 +73,7 @@ impl<'de> Deserialize<'de> for Floor {
         let share: Ratio = quantity::deserialize(deserializer)?;
         Self::new(share.bare()).ok_or_else(|| {
             let fault = Fault::new("a floor takes a share of the samples");
-            serde::de::Error::custom(fault.hint("0 or more and below 1, such as 5 %"))
+            serde::de::Error::custom(fault.hint("write 0 or more and less than 1, such as `5 %`"))
         })
     }
 }

@@ -97,7 +97,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn WavelengthSam
         None => match find_in(&name, context.resources).map_err(|e| e.faults(fault))? {
             AnySpectrum::Emission(light) if light.continuum().is_none() => {
                 let text = format!("`{name}` has lines only, and so no density over wavelengths");
-                return Err(fault(text).hint("`kind: lines` draws the source's lines").into());
+                return Err(fault(text).hint("write `kind: lines`, which draws the source's lines").into());
             }
             AnySpectrum::Emission(light) => light.on_grid(&grid),
             AnySpectrum::Transmittance(filter) => filter.on_grid(&grid),

@@ -69,7 +69,7 @@ impl TruncatedGaussianSampler {
             "truncated-gaussian: centered at {} nm with a `sigma` of {} nm, it does not reach what the channels see, {low:.0} to {high:.0} nm",
             self.center_nm, self.sigma_nm
         ))
-        .hint("set `center` within that"))
+        .hint("set `center` to a wavelength in this range"))
     }
 }
 

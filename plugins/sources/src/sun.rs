@@ -73,7 +73,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let radius_rad = 0.5 * p.diameter.rad();
     if 2.0 * radius_rad > LARGEST {
         let fault = params.fault("diameter", "the disk is larger than 20 degrees");
-        faults.push(fault.hint("the sun has 0.53 degrees; for a larger light use a picture"));
+        faults.push(fault.hint("the sun is 0.53 degrees wide; for a larger light, use a picture"));
     }
     let named = faults.take(white::light("spectrum", &p.spectrum, params, context));
     let over = match p.over {

@@ -176,9 +176,9 @@ fn quantity(node: &Node, law: Law) -> Result<(f64, Option<&'static Unit>), Fault
         Reading::Infinity(negative) if law == Law::Reciprocal => {
             Ok((if negative { f64::NEG_INFINITY } else { f64::INFINITY }, None))
         }
-        Reading::Infinity(_) => {
-            Err(node.fault("this law cannot interpolate to infinity").hint("`reciprocal` can: it is linear in 1/value"))
-        }
+        Reading::Infinity(_) => Err(node
+            .fault("this law cannot interpolate to infinity")
+            .hint("use the law `reciprocal`, which interpolates 1/value")),
         Reading::UnknownUnit(unit) => Err(node.fault(format!("unknown unit `{unit}`"))),
         Reading::DecimalComma => Err(node.fault("a number with a comma").hint("write a decimal point")),
         Reading::TooLarge | Reading::NotANumber => Err(node.fault("found a number that is not finite")),

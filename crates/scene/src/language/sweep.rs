@@ -126,7 +126,7 @@ fn product(section: &Node, entries: &[(Key, Node)], variables: &Variables) -> Re
 fn too_many(section: &Node, pictures: &str) -> Fault {
     let fault =
         section.fault(format!("the sweep has {pictures} pictures, but at most {MAX_PICTURES} can be made")).path(SWEEP);
-    fault.hint("fewer values; or values that go together, as a list of maps: `sweep: [{a: 1, b: 2}, ...]`")
+    fault.hint("write fewer values, or list values that go together in one map: `sweep: [{a: 1, b: 2}, ...]`")
 }
 
 /// Returns the values of one path.
@@ -146,7 +146,7 @@ fn axis(key: &Key, node: &Node, variables: &Variables) -> Result<Vec<Node>, Faul
         Value::Map(entries) if entries.first().is_some_and(|(key, _)| !keys_of::<Range>().contains(&key.text)) => {
             let fault = node.fault("a swept path has a list of values, or a range").path(path);
             let joined = entries.first().map_or_else(String::new, |(inner, _)| format!("{}.{}", key.text, inner.text));
-            Err(fault.hint(format!("keys within keys are joined by dots: `{SWEEP}: {{{joined}: ...}}`")).into())
+            Err(fault.hint(format!("join the keys of a path by dots: `{SWEEP}: {{{joined}: ...}}`")).into())
         }
         Value::Map(entries) if !entries.is_empty() => {
             let range = variables.put_into_part(&opened)?;

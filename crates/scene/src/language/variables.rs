@@ -169,7 +169,7 @@ impl Variables {
             Value::Null => Vec::new(),
             _ => {
                 let fault = section.fault("`variables` must be a map from names to values").path(VARIABLES);
-                return Err(fault.hint("for example `variables: {aperture: f/2, distance: 2 m}`").into());
+                return Err(fault.hint("such as `variables: {aperture: f/2, distance: 2 m}`").into());
             }
         };
         let mut faults = Faults::new();
@@ -177,7 +177,7 @@ impl Variables {
             if !is_name(&key.text) {
                 let message = format!("`{}` is not a valid name of a variable", shorten(&key.text));
                 let fault = Fault::new(message).at(Arc::clone(&node.file), key.span).path(VARIABLES);
-                faults.push(fault.hint("letters, digits, `-` and `_`; it begins with a letter"));
+                faults.push(fault.hint("a name has letters, digits, `-` and `_`, and begins with a letter"));
             }
         }
         faults.into_result(Self { entries })
@@ -545,7 +545,7 @@ mod tests {
         let lists = filled(&doubled(&|i| format!("[$v{i}, $v{i}]"))).expect_err("too many");
         assert!(lists.contains("more than 200000 values"), "{lists}");
         let texts = filled(&doubled(&|i| format!("'${{v{i}}}${{v{i}}}'"))).expect_err("too long");
-        assert!(texts.contains("too long"), "{texts}");
+        assert!(texts.contains("longer than 65536 bytes"), "{texts}");
         let mut deep = String::from("variables:\n  v0: 1\n");
         for i in 1..100 {
             let _ = writeln!(deep, "  v{i}: [$v{}]", i - 1);

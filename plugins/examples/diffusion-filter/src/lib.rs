@@ -52,12 +52,13 @@ fn build(params: &Params, _: &Context<'_>) -> Result<Box<dyn Surface>, Faults> {
     let veil_share = p.veil_share.map_or(0.5, |share| share.number());
     for (key, share) in [("share", p.share.number()), ("veil-share", veil_share)] {
         if share > 1.0 {
-            faults.push(params.fault(key, format!("a share of {share} is more than all the light")).hint("0 to 1"));
+            faults
+                .push(params.fault(key, format!("a share of {share} is more than all the light")).hint("write 0 to 1"));
         }
     }
     for (key, width) in [("glow", p.glow), ("veil", p.veil)] {
         if width.rad() > WIDEST_DEG.to_radians() {
-            faults.push(params.fault(key, "this lobe is too wide").hint(format!("at most {WIDEST_DEG} degrees")));
+            faults.push(params.fault(key, "this lobe is too wide").hint(format!("write at most {WIDEST_DEG} degrees")));
         }
     }
     let widths = [p.glow, p.veil].map(|width| sin(width.rad()));

@@ -39,7 +39,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let (distance_mm, width_mm, pitch_mm) = (p.distance.mm(), p.width.mm(), p.pitch.mm());
     let mut faults = Faults::new();
     if pitch_mm > width_mm {
-        faults.push(params.fault("pitch", "one lenslet is wider than the panel").hint("at most `width`"));
+        faults.push(params.fault("pitch", "one lenslet is wider than the panel").hint("write at most `width`"));
     }
     if p.depth.mm() <= -distance_mm {
         let fault = params.fault("depth", "the wheel would float inside the lens or behind it");

@@ -111,7 +111,7 @@ fn a_gaussian_far_from_what_is_seen_is_refused() {
     };
     for (center, sigma) in [(540e6, 60.0), (5400.0, 60.0), (780.0, 5.0)] {
         let text = refused(center, sigma).expect("refused").to_string();
-        assert!(text.contains("set `center` within") && text.contains(&format!("{center} nm")), "{text}");
+        assert!(text.contains("set `center` to") && text.contains(&format!("{center} nm")), "{text}");
     }
     // A Gaussian that just reaches the sensitive range, one narrower than a cell, and a distant but wide one are accepted.
     for (center, sigma) in [(780.0, 60.0), (540.3, 0.01), (2000.0, 10_000.0)] {

@@ -152,7 +152,7 @@ impl Depth {
                 if (read.width, read.height) != (picture.width, picture.height) {
                     let [a, b] = [(read.width, read.height), (picture.width, picture.height)];
                     let text = format!("the depth has {} x {} pixels, the picture {} x {}", a.0, a.1, b.0, b.1);
-                    return Err(self.params.fault("file", text).hint("both must have the same size").into());
+                    return Err(self.params.fault("file", text).hint("name a depth file of the picture's size").into());
                 }
                 read.depth
             }
@@ -215,7 +215,7 @@ impl Depth {
         let nearest = depth.iter().fold(f32::INFINITY, |a, b| a.min(*b));
         if faults.is_empty() && f64::from(nearest) <= self.eye_mm {
             let text = format!("the nearest depth, {nearest} mm, lies inside the lens");
-            faults.push(self.params.fault("unit", text).hint("is the depth in another unit, such as `unit: m`?"));
+            faults.push(self.params.fault("unit", text).hint("is the depth in a different unit, such as `unit: m`?"));
         }
         faults.into_result(depth)
     }
@@ -331,7 +331,7 @@ impl Depth {
                 // A little beyond two focal lengths, in whole centimeters.
                 let near_cm = (0.22 * f).ceil();
                 let hint = format!(
-                    "is the depth in another unit, or are a few values wrong? `near: {near_cm} cm` moves nearer pixels to that distance"
+                    "is the depth in a different unit, or are a few values wrong? `near: {near_cm} cm` moves nearer pixels to that distance"
                 );
                 self.params.fault("unit", text).hint(hint).into()
             });

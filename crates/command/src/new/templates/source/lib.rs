@@ -38,7 +38,7 @@ fn build(params: &Params, context: &Context<'_>) -> Result<Box<dyn Source>, Faul
     let inner_mm = outer_mm - p.width.mm();
     if inner_mm < 0.0 {
         let fault = params.fault("width", "the ring is wider than half of its diameter");
-        return Err(fault.hint("half of the diameter makes a disk").into());
+        return Err(fault.hint("write at most half of the diameter, which makes a disk").into());
     }
     let kelvin = p.temperature.kelvin();
     let grid = context.grid;
