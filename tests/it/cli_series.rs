@@ -363,7 +363,7 @@ fn limits_and_what_does_not_go_together_are_told() {
     let sweep = "sweep: {render.seed: {from: 0, to: 50, steps: 51}, lens.f-number: {from: 2, to: 4, steps: 20}}\n";
     for (more, arguments, said) in [
         (sweep, &[][..], "the sweep has 1020 pictures, but at most 1000 can be made"),
-        ("sweep: {a: [1]}\nanimation: {frames: 2}\n", &[], "a scene has a sweep or an animation, not both"),
+        ("sweep: {a: [1]}\nanimation: {frames: 2}\n", &[], "a scene can have a sweep or an animation, not both"),
         ("animation: {frames: 100000}\n", &[], "found 100000, which is out of range"),
         ("animation: {frames: 3}\n", &["--frames", "2-9"], "there is no frame 9; the animation has the frames 1 to 3"),
         ("sweep: {render.seed: [1]}\n", &["--frames", "1"], "this scene has a `sweep`, not an `animation`"),

@@ -223,7 +223,7 @@ fn casts_are_mended_by_the_filter_that_is_named() {
     let said = |filters: &str| {
         let film = "film={stock: kodak-vision3-500t-5219, metering: average}";
         let scene = load("biotar-trix.yaml", &[film, "source.illuminant=D55", &format!("lens.filters={filters}")]);
-        scene.warnings.iter().map(ToString::to_string).find(|text| text.contains("is balanced for another light"))
+        scene.warnings.iter().map(ToString::to_string).find(|text| text.contains("is balanced for a different light"))
     };
     let alone = said("[]").expect("a cast");
     let mired: f64 = alone

@@ -66,7 +66,7 @@ pub(crate) fn casts(
         let at = place(film, index, params);
         let layer = |i: usize| own[i].name.rsplit('.').next().unwrap_or_default().to_owned();
         let text = format!(
-            "{} is balanced for another light than this one of {:.0} K: on a gray card its {} layer gets {stops:.1} stops more than its {} \
+            "{} is balanced for a different light from this one of {:.0} K: on a gray card its {} layer gets {stops:.1} stops more than its {} \
              layer, so the picture has a cast",
             film.film.name(),
             white.kelvin,

@@ -46,7 +46,7 @@ pub(crate) fn one(film: Box<dyn Film>) -> Vec<SceneFilm> {
 pub(crate) fn several(items: &[Node], params: &Params, context: &Context<'_>) -> Result<Vec<SceneFilm>, Faults> {
     let mut faults = Faults::new();
     if items.is_empty() || items.len() > MAX_FILMS {
-        let fault = params.fault("film", format!("{} films side by side", items.len()));
+        let fault = params.fault("film", format!("`film` lists {} films", items.len()));
         return Err(fault.hint(format!("write 1 to {MAX_FILMS} films")).into());
     }
     let mut films: Vec<SceneFilm> = Vec::new();

@@ -500,7 +500,7 @@ fn focus_of(node: &Deferred<FocusForm>, reference_nm: f64, light: Option<&FocusL
             spectrum.iter().map(|Weighed(wavelength, weight)| (wavelength.nm(), *weight)).collect()
         }
         (Some(_), Some(_)) => {
-            faults.push(params.fault("spectrum", "either `wavelength` or `spectrum`"));
+            faults.push(params.fault("spectrum", "`wavelength` and `spectrum` exclude each other"));
             Vec::new()
         }
     };

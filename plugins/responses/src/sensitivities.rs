@@ -102,7 +102,7 @@ fn channels(params: &Params, node: &StageNode, context: &Context<'_>) -> Result<
         return Err(fault.hint("write, for example, `{red: my-red.csv, green: \"gaussian:540,40\"}`").into());
     };
     if !(1..=MAX_CHANNELS).contains(&entries.len()) {
-        let fault = node.fault(format!("{} channels", entries.len()));
+        let fault = node.fault(format!("`channels` has {} entries", entries.len()));
         return Err(fault.hint(format!("write 1 to {MAX_CHANNELS} channels")).into());
     }
     let mut faults = Faults::new();
@@ -152,7 +152,7 @@ fn rows(params: &Params, p: &SensitivitiesParams, channels: &[Channel]) -> Resul
         };
     };
     let [red, green, blue] = &matrix[..] else {
-        let fault = params.fault("matrix", format!("{} rows", matrix.len()));
+        let fault = params.fault("matrix", format!("`matrix` has {} rows", matrix.len()));
         return Err(fault.hint("write three rows, for red, green and blue").into());
     };
     for (i, row) in matrix.iter().enumerate() {

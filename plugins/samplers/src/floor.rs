@@ -72,7 +72,7 @@ impl<'de> Deserialize<'de> for Floor {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let share: Ratio = quantity::deserialize(deserializer)?;
         Self::new(share.bare()).ok_or_else(|| {
-            let fault = Fault::new("a floor takes a share of the samples");
+            let fault = Fault::new("a floor must be a share of the samples");
             serde::de::Error::custom(fault.hint("write 0 or more and less than 1, such as `5 %`"))
         })
     }

@@ -81,7 +81,7 @@ impl Animation {
         let last = f64::from(first) + f64::from(frames) - 1.0;
         if let Some(animate) = &read.animate {
             let Value::Map(entries) = &animate.node().value else {
-                let fault = animate.fault("`animate` is a map of paths and keyframes");
+                let fault = animate.fault("`animate` must be a map from paths to keyframes");
                 faults.push(fault.hint("such as `animate: {lens.focus: {1: 2 m, 48: 0.6 m}}`"));
                 return Err(faults);
             };
@@ -109,7 +109,7 @@ fn track(key: &Key, node: &Node) -> Result<(Track, Vec<f64>), Faults> {
     let path = format!("{ANIMATION}.animate.{}", key.text);
     let example = "such as `{1: 2 m, 48: 0.6 m, interpolation: smooth}`";
     let Value::Map(entries) = &node.value else {
-        return Err(node.fault("keyframes are frame numbers with values").path(path).hint(example).into());
+        return Err(node.fault("keyframes must be a map from frame numbers to values").path(path).hint(example).into());
     };
     let mut faults = Faults::new();
     let mut law = Law::default();
@@ -201,8 +201,8 @@ mod tests {
             ("{frames: 2, first: -1}", "found -1, which is out of range (a whole number from 0"),
             ("{frames: 2, rate: 0}", "found 0, which is out of range"),
             ("{frames: 2, seed: 3}", "unknown value `3` for `seed`"),
-            ("{frames: 2, animate: [1]}", "`animate` is a map"),
-            ("{frames: 2, animate: {a: 3}}", "keyframes are frame numbers"),
+            ("{frames: 2, animate: [1]}", "`animate` must be a map"),
+            ("{frames: 2, animate: {a: 3}}", "keyframes must be a map"),
             ("{frames: 2, animate: {a: {}}}", "there is no keyframe"),
             ("{frames: 2, animate: {a: {x: 3}}}", "t.yaml:1:38: `x` is not a frame number"),
             ("{frames: 2, animate: {a: {1: 3, 01: 4}}}", "frame 1 comes twice"),

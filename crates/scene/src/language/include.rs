@@ -98,7 +98,7 @@ impl Reader {
     /// Reads one file and merges it with its includes.
     fn file(&mut self, item: &Node) -> Result<Node, Faults> {
         let Some(name) = item.as_str() else {
-            let fault = item.fault("an include names a file").path(INCLUDE);
+            let fault = item.fault("`include` must name a file").path(INCLUDE);
             return Err(fault
                 .hint("such as `include: base.yaml`, or a list: `include: [camera.yaml, light.yaml]`")
                 .into());
@@ -285,7 +285,7 @@ mod tests {
                 "/s.yaml:2:11: `b`: no scene or file of this name",
             ),
             (vec![("s.yaml", "include: basi.yaml"), ("basis.yaml", "x: 1")], "did you mean `basis.yaml`?"),
-            (vec![("s.yaml", "include: {a: 1}")], "/s.yaml:1:10: an include names a file"),
+            (vec![("s.yaml", "include: {a: 1}")], "/s.yaml:1:10: `include` must name a file"),
             (vec![("s.yaml", "include: s.yaml")], "`s.yaml` includes itself (the chain is s.yaml -> s.yaml)"),
             (
                 vec![("s.yaml", "include: t.yaml"), ("t.yaml", "x: 1\ninclude: ./s.yaml")],

@@ -266,7 +266,7 @@ impl Series {
         let Some(variables) = variables else { return Err(faults) };
         if let (Some((_, sweep)), Some((key, node))) = (&sweep, &animation) {
             let fault =
-                Fault::new("a scene has a sweep or an animation, not both").at(Arc::clone(&node.file), key.span);
+                Fault::new("a scene can have a sweep or an animation, not both").at(Arc::clone(&node.file), key.span);
             let place = sweep.fault("").place_text().unwrap_or_default();
             faults.push(fault.path(ANIMATION).hint(format!(
                 "the sweep is at {place}; render the animation once for each value, with `--set sweep=null --set lens.f-number=f/4`"

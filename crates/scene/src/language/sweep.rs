@@ -86,7 +86,7 @@ impl Sweep {
             Value::Map(entries) if !entries.is_empty() => product(section, entries, variables),
             Value::Seq(items) if !items.is_empty() => together(section, items),
             _ => {
-                let fault = section.fault("a sweep lists the values to try").path(SWEEP);
+                let fault = section.fault("a sweep must list the values to try").path(SWEEP);
                 Err(fault.hint("such as `sweep: {lens.f-number: [f/2, f/4, f/8]}`").into())
             }
         }
@@ -144,7 +144,7 @@ fn axis(key: &Key, node: &Node, variables: &Variables) -> Result<Vec<Node>, Faul
         }
         // A path written as nested maps instead of with dots.
         Value::Map(entries) if entries.first().is_some_and(|(key, _)| !keys_of::<Range>().contains(&key.text)) => {
-            let fault = node.fault("a swept path has a list of values, or a range").path(path);
+            let fault = node.fault("a swept path must have a list of values, or a range").path(path);
             let joined = entries.first().map_or_else(String::new, |(inner, _)| format!("{}.{}", key.text, inner.text));
             Err(fault.hint(format!("join the keys of a path by dots: `{SWEEP}: {{{joined}: ...}}`")).into())
         }
@@ -153,7 +153,7 @@ fn axis(key: &Key, node: &Node, variables: &Variables) -> Result<Vec<Node>, Faul
             steps_of(&StageNode::new(range, path))
         }
         _ => {
-            let fault = node.fault("a swept path has a list of values, or a range").path(path);
+            let fault = node.fault("a swept path must have a list of values, or a range").path(path);
             Err(fault.hint("such as `[f/2, f/4]` or `{from: f/2, to: f/8, steps: 5, spacing: logarithmic}`").into())
         }
     }
@@ -180,8 +180,9 @@ fn together(section: &Node, items: &[Node]) -> Result<Sweep, Faults> {
     let mut settings = Vec::new();
     for (at, item) in items.iter().enumerate() {
         let Value::Map(entries) = &item.value else {
-            let fault =
-                item.fault("each entry of such a sweep is a map of paths and values").path(format!("{SWEEP}[{at}]"));
+            let fault = item
+                .fault("each entry of such a sweep must be a map from paths to values")
+                .path(format!("{SWEEP}[{at}]"));
             faults.push(
                 fault.hint("such as `[{film.stock: a, lens.f-number: f/2}, {film.stock: b, lens.f-number: f/4}]`"),
             );
@@ -244,10 +245,10 @@ mod tests {
     fn what_is_wrong_is_told_at_its_place() {
         let many = format!("{{a: [{}], b: {{from: 1, to: 2, steps: 51}}}}", "1, ".repeat(20));
         for (sweep, said) in [
-            ("{}", "a sweep lists the values to try"),
+            ("{}", "a sweep must list the values to try"),
             ("3", "t.yaml:1:8: a sweep lists"),
-            ("{a: 3}", "t.yaml:1:12: a swept path has a list of values"),
-            ("{a: []}", "a swept path has a list of values"),
+            ("{a: 3}", "t.yaml:1:12: a swept path must have a list of values"),
+            ("{a: []}", "a swept path must have a list of values"),
             ("{a..b: [1]}", "t.yaml:1:9: `a..b` is not a path: a key is empty"),
             ("{animation.frames: [1]}", "`animation` cannot change from picture to picture"),
             ("{a: {b: [1, 2]}}", "joined by dots: `sweep: {a.b: ...}`"),
