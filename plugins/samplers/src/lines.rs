@@ -17,7 +17,7 @@ impl WavelengthSampler for Lines {
     fn prepare(&self, system: &SystemResponse) -> Result<Box<dyn WavelengthDensity>, Fault> {
         if system.source.continuum.iter().any(|v| *v != 0.0) {
             return Err(Fault::new("the source has a continuum, which sampling only lines would miss").hint(
-                "use `source-times-response`, or a source whose color model has only lines: `color: fraunhofer`",
+                "use `source-times-response`, or a source whose color model has only lines, such as `fraunhofer`",
             ));
         }
         let weights: Vec<f64> = system.source.lines.iter().map(|l| l.power.abs()).collect();

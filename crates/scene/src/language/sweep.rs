@@ -246,7 +246,7 @@ mod tests {
         let many = format!("{{a: [{}], b: {{from: 1, to: 2, steps: 51}}}}", "1, ".repeat(20));
         for (sweep, said) in [
             ("{}", "a sweep must list the values to try"),
-            ("3", "t.yaml:1:8: a sweep lists"),
+            ("3", "t.yaml:1:8: a sweep must list"),
             ("{a: 3}", "t.yaml:1:12: a swept path must have a list of values"),
             ("{a: []}", "a swept path must have a list of values"),
             ("{a..b: [1]}", "t.yaml:1:9: `a..b` is not a path: a key is empty"),
