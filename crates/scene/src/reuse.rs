@@ -1,9 +1,9 @@
 //! Reuse of stages from a scene that was assembled before.
 //!
-//! A section that has the same values keeps its stage. What has to be made again shows by what is no longer the same stage: if source,
-//! lens, imager, wavelength density and channels are the same, the light is kept, whatever the film does with it. A density depends only on
-//! spectra, so it stays if another chart fills the frame or another lens is used. A lens depends on its section, the light that it is
-//! focused in and the plates in front of the frame, so it stays if the frame turns.
+//! A section whose values are unchanged keeps its stage. Stages that were replaced show what has to be computed again. If source,
+//! lens, imager, wavelength density and channels are unchanged, the light is kept, whatever the film does with it. A wavelength
+//! density depends only on spectra, so it is kept if the chart or the lens changes. A lens depends on its section, on the light
+//! that it is focused in and on the plates in front of the frame, so it is kept if the frame turns.
 
 use crate::build_messages::BuildMessages;
 use crate::focus::FocusLight;

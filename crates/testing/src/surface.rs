@@ -163,7 +163,7 @@ impl SurfaceLaws {
     /// Checks that the phase bends parallel light, whose object is at infinity: the phase difference of neighboring rays must match their
     /// change of direction.
     fn is_bent_by_its_phase(&self, surface: &dyn Surface, rays: &[Ray]) {
-        /// Distance between neighbors, mm; differences are good to its square.
+        /// Distance between neighbors in mm. The error of the differences is proportional to its square.
         const STEP_MM: f64 = 1e-3;
         let mut compared = 0;
         for indices in INDICES {

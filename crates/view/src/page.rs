@@ -14,7 +14,7 @@ use spectra_scene::{FilmTime, Negatives, Scene, Shot};
 use spectra_session::{Session, SessionError};
 use std::sync::Arc;
 
-/// Widths of the picture that a page may choose, pixels; the second is the initial one.
+/// Widths of the picture, in pixels, that a page may choose. The second is the initial width.
 pub const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
 
 /// A change of the scene that a page asks for.
@@ -134,7 +134,7 @@ pub(crate) struct Frame {
     pub(crate) bytes: Vec<u8>,
     exposure: Arc<ExposureFrame>,
     times: Vec<FilmTime>,
-    /// Width of the whole picture, pixels; for a draft it is more than the width of the numbers in `bytes`.
+    /// Width of the whole picture in pixels. For a draft it exceeds the width of the picture in `bytes`.
     whole_px: u32,
 }
 
@@ -147,12 +147,12 @@ impl Frame {
     }
 }
 
-/// What a page knows of its session.
+/// The state that a page keeps of its session.
 #[derive(Default)]
 pub struct PageState {
     controls: SceneControls,
     pub(crate) scene: Option<Arc<Scene>>,
-    /// Width of the whole picture, pixels; `widths_px` are the widths to choose from.
+    /// Width of the whole picture in pixels; `widths_px` are the widths to choose from.
     pub(crate) width_px: u32,
     pub(crate) widths_px: Vec<u32>,
     /// The last picture made for the page.
@@ -213,8 +213,8 @@ impl PageState {
         is_other
     }
 
-    /// Makes a picture the page's last one, and returns it packed. `whole_px` is the width and height that the page shows it with, pixels;
-    /// `head` holds further facts, and `fault` is the error that the page shows, or null.
+    /// Makes a picture the page's last one, and returns it packed. `whole_px` is the width and height in pixels at which the page
+    /// shows it. `head` holds further facts, and `fault` is the error that the page shows, or null.
     pub fn show(&mut self, picture: PagePicture, whole_px: [u32; 2], head: Value, fault: Option<&Value>) -> &[u8] {
         let PagePicture { light, exposure, times, .. } = picture;
         self.number += 1;

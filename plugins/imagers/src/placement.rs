@@ -51,8 +51,8 @@ impl FrameShape {
         }
     }
 
-    /// Intersects the front of the frame with a ray toward larger z. Returns the point and (x, y) on the frame, mm; `None` if
-    /// the ray misses.
+    /// Intersects the front of the frame with a ray toward larger z. Returns the point and its position (x, y) on the frame, both
+    /// in mm. `None` if the ray misses.
     fn meet(self, from: DVec3, way: DVec3) -> Option<(DVec3, f64, f64)> {
         // Start in the tangent plane, so that the near crossing is the small root.
         let on_plane = from - way * (from.z / way.z);
@@ -123,9 +123,9 @@ impl Placement {
         (self.center_mm + self.rotation * point, self.rotation * normal)
     }
 
-    /// Intersects the front of the frame with a ray through `from_mm` that travels along `way` (unit, toward the imager).
-    /// Returns the point (mm, coordinates of the nominal image plane) and its position (x, y) on the frame, mm; `None` if the
-    /// ray misses.
+    /// Intersects the front of the frame with a ray through `from_mm` that travels along the unit direction `way`, toward the
+    /// imager. Returns the point, in coordinates of the nominal image plane, and its position (x, y) on the frame, all in mm.
+    /// `None` if the ray misses.
     #[must_use]
     pub fn meet(&self, from_mm: DVec3, way: DVec3) -> Option<(DVec3, f64, f64)> {
         let back = self.rotation.transpose();

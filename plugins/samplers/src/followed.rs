@@ -1,9 +1,9 @@
 //! Sampling that follows one Gaussian term of the source: the sample carries the light of that term alone.
 //!
 //! A term is drawn in proportion to the absolute value of its integral over the band, and then a wavelength from the term. The
-//! sample is the term's own light, not the source's: its weight is the ratio of the term's emission to the source's, so that the
-//! radiance that a renderer multiplies in becomes that of the term. The residual of the fit, source minus terms, is followed as
-//! one more term, a table of either sign. Without it the estimate would be that of the fit, not of the scene.
+//! sample carries the light of the term, not that of the source. Its weight is the ratio of the term's emission to the source's,
+//! so that multiplying the source's radiance by it gives the term's radiance. The residual of the fit, source minus terms, is
+//! followed as one more term: a table of either sign. Without it, the estimate would be that of the fit, not of the scene.
 //!
 //! Only a term of the source is followed. Following one term of every factor (filters, glass, detector) and integrating their
 //! product exactly needs no wavelength; but then there is no single index of refraction, and so no path through a lens. See

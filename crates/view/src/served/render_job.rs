@@ -19,7 +19,7 @@ pub(crate) struct RenderJob {
 }
 
 impl RenderJob {
-    /// Creates the order for a scene, or for a photograph on a stock; the usual stock if none is named.
+    /// Creates the job for a scene, or for a photograph on a stock; the default stock if none is named.
     ///
     /// # Errors
     /// A stock that cannot be read.

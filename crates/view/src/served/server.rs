@@ -141,8 +141,9 @@ impl Server {
         self.silent.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns whether there is room for one more connection. If there is none, closes the connection that has been silent for longest
-    /// and waits until it has ended: a connection whose request has just come is read in the meantime, however fast others come.
+    /// Returns whether there is room for one more connection. If there is none, closes the connection that has been silent for
+    /// longest and waits until it has ended. The wait gives the threads of other connections time to read a request that has just
+    /// come, however fast further connections arrive.
     fn makes_room(&self) -> bool {
         if *self.connections.count() < MAX_CONNECTIONS {
             return true;

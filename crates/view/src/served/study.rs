@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 const VISIBLE_NM: [f64; 2] = [390.0, 710.0];
 /// Number of wavelengths by which a continuous spectrum is sampled.
 const WAVELENGTHS: usize = 320;
-/// Distance in front of the prism at which the beam starts, mm; `BEHIND_MM` is the length of its path behind the prism.
+/// Distance in mm in front of the prism at which the beam starts. `BEHIND_MM` is the length of its path behind the prism.
 const BEFORE_MM: f64 = 60.0;
 const BEHIND_MM: f64 = 150.0;
 /// Largest number of rays in an answer.

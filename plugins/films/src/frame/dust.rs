@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 /// Side of the square cells for which dust is drawn, mm.
 const CELL_MM: f64 = 2.0;
 const MM2_PER_CM2: f64 = 100.0;
-/// Median radius of a speck, mm; spread of its natural logarithm; largest radius, mm. Assumed: what passes the filter of a clean room is
-/// smaller, and what hands leave is larger.
+/// Median radius of a speck in mm, standard deviation of its natural logarithm, and largest radius in mm. Assumed: particles that
+/// pass the filter of a clean room are smaller, and particles that hands leave are larger.
 const SPECK: (f64, f64, f64) = (0.008, 0.7, 0.08);
 /// Fraction of the dust particles that are fibers.
 const FIBERS: f64 = 0.1;

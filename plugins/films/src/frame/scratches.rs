@@ -23,7 +23,7 @@ pub(super) struct Scratch {
 const SLOTS: f64 = 3.0;
 /// Least and largest number of frames for which a scratch lasts.
 const FRAMES: (f64, f64) = (12.0, 240.0);
-/// Least and largest width of a scratch, mm; `DEPTH` holds the least and largest density.
+/// Smallest and largest width of a scratch, in mm. `DEPTH` holds the smallest and largest density.
 const WIDTH_MM: (f64, f64) = (0.004, 0.02);
 const DEPTH: (f64, f64) = (0.15, 0.7);
 

@@ -10,10 +10,11 @@
 //!
 //! Two directions pay if a pixel of the frame that sees all of the picture would have at most an eighth of the variance ([`PAYS`]).
 //!
-//! **Limits.** A window of many pixels is not a light, however bright it is. Rays from the source would land at random and leave 4 to 5 %
-//! of noise, in colors, in each pixel of it, while rays from the imager are clean except at its blurred edges. With a window of a seventh
-//! of the picture, the noise only moved from its edges to its middle, for six times the time. The remaining noise is that each ray has one
-//! wavelength: behind the last surface that disperses light (seen from the imager), each wavelength takes a path of its own.
+//! **Limits.** A window of many pixels is not a light, however bright it is. Rays from the source would land at random and leave
+//! 4 to 5 % of color noise in each pixel of the window. Rays from the imager leave noise only at its blurred edges. For a window
+//! of a seventh of the picture, the noise only moved from its edges to its middle, and rendering took six times as long. Noise
+//! remains because each ray has one wavelength: behind the last surface that disperses light (seen from the imager), each
+//! wavelength takes a path of its own.
 
 use super::light_sampler::LightSampler;
 use spectra_core::spectral::SpectralPower;

@@ -39,7 +39,7 @@ pub(crate) struct PictureTexture {
 }
 
 impl PictureTexture {
-    /// Returns the column and row of a point, pixels from the upper left, as if the picture continued without end.
+    /// Returns the column and row of a point, in pixels from the upper left, as if the picture continued without end.
     #[inline(always)]
     fn unfolded(&self, x_mm: f64, y_mm: f64) -> [f64; 2] {
         let column = (x_mm / self.width_mm + 0.5) * self.width_px as f64;
@@ -47,13 +47,14 @@ impl PictureTexture {
         [column, row]
     }
 
-    /// Maps such a position into the picture according to its edge; `None` if there is no light at it.
+    /// Maps a column and row, which may lie outside the picture, into it according to the picture's edge. `None` if there is no
+    /// light there.
     #[inline]
     fn folded(&self, [column, row]: [f64; 2]) -> Option<[f64; 2]> {
         Some([self.edge.place(column, self.width_px as f64)?, self.edge.place(row, self.height_px as f64)?])
     }
 
-    /// Returns the column and row of a point (mm on the plane), pixels from the upper left; `None` if there is no light at it.
+    /// Returns the column and row of a point of the plane (mm), in pixels from the upper left. `None` if there is no light there.
     pub(crate) fn place(&self, x_mm: f64, y_mm: f64) -> Option<[f64; 2]> {
         self.folded(self.unfolded(x_mm, y_mm))
     }

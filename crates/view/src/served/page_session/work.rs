@@ -27,9 +27,9 @@ const REST: Duration = Duration::from_millis(60);
 const GLANCE: Duration = Duration::from_millis(300);
 /// Time without work after which free memory is returned to the system.
 const TIDY: Duration = Duration::from_secs(1);
-/// Width of the first picture of a photograph, pixels; it needs no rays.
+/// Width in pixels of the first picture of a photograph. This picture needs no rays.
 const PHOTOGRAPH_PX: u32 = 960;
-/// Largest width at which a photograph is shown, pixels.
+/// Largest width, in pixels, at which a photograph is shown.
 const LARGEST_PX: u32 = 8192;
 
 /// What the desk's thread does next.

@@ -12,10 +12,10 @@ use spectra_session::{Control as Stop, Rendering, Session, SessionError};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Width of a draft, the first picture after a change, pixels; `DRAFT_SAMPLES` is its number of samples per pixel.
+/// Width in pixels of a draft, the first picture after a change. `DRAFT_SAMPLES` is its number of samples per pixel.
 const DRAFT_PX: u32 = 120;
 const DRAFT_SAMPLES: u32 = 4;
-/// Width at which a larger picture is developed first, pixels.
+/// Width, in pixels, at which a larger picture is developed first.
 const QUICK_PX: u32 = 480;
 
 /// A changed value that the whole picture does not have yet.

@@ -1,9 +1,9 @@
 //! Separates the edges of a rendered picture with depth into foreground and background.
 //!
-//! A renderer averages color over a pixel, so a pixel at the edge of an object contains a mixture, `C = a N + (1 - a) F`, of the near
-//! color `N` and the far color `F`. Depth cannot be averaged: it is that of one sample, so the whole mixture would lie at one distance,
-//! as a bright rim in the blur behind, or a sharp hair in front of a blurred wall. The share `a` is therefore used as the fraction of the
-//! pixel that the near object covers.
+//! A renderer averages color over a pixel. A pixel at the edge of an object therefore contains a mixture of the near color `N`
+//! and the far color `F`: `C = a N + (1 - a) F`. Depth cannot be averaged: it is the depth of one sample. The whole mixture would
+//! therefore lie at one distance, as a bright rim in the blur behind, or as a sharp hair in front of a blurred wall. To avoid
+//! this, the share `a` is used as the fraction of the pixel that the near object covers.
 //!
 //! The data flow, with one file per step:
 //! 1. [`steps`]: finds which depths belong together, and where neighbors do not.
