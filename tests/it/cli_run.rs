@@ -144,7 +144,9 @@ fn begun(command: &mut Command) -> Option<(Child, BufReader<std::process::ChildS
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
     let mut events = BufReader::new(child.stdout.take().expect("piped"));
     let mut line = String::new();
-    while !line.contains("\"progress\"") {
+    // The first pass has a ray for each of 960 x 640 pixels.
+    let rays = |line: &str| serde_json::from_str::<Value>(line).ok().and_then(|event| event["rays"].as_u64());
+    while !(line.contains("\"progress\"") && rays(&line).is_some_and(|rays| rays > 2 * 960 * 640)) {
         line.clear();
         if events.read_line(&mut line).expect("UTF-8") == 0 {
             child.wait().expect("it ends");
@@ -161,7 +163,7 @@ fn hours(output: &Path) -> Command {
     command
 }
 
-/// Starts a render that would take hours and waits until it traces light.
+/// Starts a render that would take hours and waits until the first pass over its frame is surely complete.
 fn endless(output: &Path, more: &[&str]) -> (Child, BufReader<std::process::ChildStdout>) {
     begun(hours(output).args(more)).expect("progress is told before it ends")
 }
@@ -284,15 +286,70 @@ fn a_time_limit_ends_in_a_partial_picture_and_no_error() {
     assert!((0.2..limit_s + 0.1).contains(&seconds), "{seconds}");
 }
 
-/// Before light is traced there is nothing to write: the program says so and leaves no folder behind.
+/// Before the first pass over the frame there is nothing to write: the program says so, fails and leaves no folder behind.
 #[test]
-fn a_time_limit_that_is_over_before_light_says_so() {
+fn a_time_limit_that_is_too_short_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
     let output = spectra().args(tiny(&out, &["--time-limit", "1 us"])).output().expect("the program starts");
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert!(text(&output.stderr).contains("ended before rendering began"), "{}", text(&output.stderr));
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("is too short for a picture: preparation takes longer than that; nothing was written"),
+        "{said}"
+    );
     assert!(!out.exists());
+    // Of a series, nothing is finished either.
+    let series = ["run", "focus-pull", "--output", shown(&out), "--time-limit", "1 us"];
+    let output = spectra().args(series).output().expect("the program starts");
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    assert!(!out.exists());
+}
+
+/// A picture that a time limit ends takes the place of one that an earlier limit ended, but not of a finished one.
+#[test]
+fn a_time_limit_replaces_partial_pictures_only() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let limit = |limit_s: f64| {
+        let mut command = hours(folder.path());
+        command.args(["--time-limit", &format!("{limit_s} s")]).output().expect("the program starts")
+    };
+    // The shortest limit of a few within which this machine has a picture.
+    let found = [3.0, 20.0, 200.0].into_iter().find(|limit_s| limit(*limit_s).status.code() == Some(0));
+    let limit_s = found.expect("a picture within minutes");
+    let first = std::fs::metadata(at("biotar-ortho.png")).expect("a picture").modified().expect("a time");
+    assert_eq!(limit(limit_s).status.code(), Some(0));
+    assert!(std::fs::metadata(at("biotar-ortho.png")).expect("a picture").modified().expect("a time") > first);
+    good(&tiny(folder.path(), &[]).iter().map(String::as_str).collect::<Vec<_>>());
+    let finished = std::fs::read(at("biotar-ortho.png")).expect("a picture");
+    let output = limit(limit_s);
+    assert!(text(&output.stdout).contains("was not overwritten"), "{}", text(&output.stdout));
+    assert_eq!(std::fs::read(at("biotar-ortho.png")).expect("there"), finished);
+    assert!(at("biotar-ortho.partial.png").is_file() && at("biotar-ortho.partial.json").is_file());
+}
+
+/// A snapshot shows the whole frame while it is traced, and is gone when the picture is written.
+#[cfg(unix)]
+#[test]
+fn snapshots_are_written_and_removed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let (mut child, mut events) = endless(folder.path(), &["--snapshot", "300 ms"]);
+    let mut line = String::new();
+    while !line.contains("\"snapshot\"") {
+        line.clear();
+        assert!(events.read_line(&mut line).expect("UTF-8") > 0, "it ended without a snapshot");
+    }
+    let names = ["biotar-ortho.partial.exr", "biotar-ortho.partial.png", "biotar-ortho.partial.json"];
+    assert!(names.iter().all(|name| at(name).is_file() && line.contains(name)), "{line}");
+    assert!(attributes(&at(names[0])).contains_key("spectra:partial"));
+    signal(&child, "INT");
+    let mut rest = String::new();
+    events.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    assert!(at("biotar-ortho.png").is_file());
+    assert!(names.iter().all(|name| !at(name).exists()), "{rest}");
 }
 
 /// A folder that is removed while light is traced is created again.

@@ -4,7 +4,7 @@
 use crate::common::statistics::{self, Estimate, bits, estimates, over_seeds, ready, rendered};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use spectra_core::Isa;
-use spectra_render::{Control, RenderOptions, Renderer, Rendering, Threads};
+use spectra_render::{Control, RenderOptions, Renderer, Rendering, SingleThread, Threads};
 use std::path::Path;
 
 const COLUMNS: usize = 5;
@@ -190,6 +190,61 @@ fn bits_are_the_same_however_it_runs() {
     let want = run(1, Isa::detect(), "256");
     for isa in Isa::available() {
         assert_eq!(run(2, isa, "100"), want);
+    }
+}
+
+/// A frame that is stopped has the light of all of it, with lamps and ghosts: after the first pass, and in the middle of a later one.
+#[test]
+fn a_stopped_frame_is_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), DEEP);
+    let whole = estimate(&path, &["render.direction=backward", "render.samples=400"]);
+    let renderer = made(&path, &["render.direction=both", "render.samples=64"]);
+    let stopped = |seed: u64, rays: Option<u64>| {
+        let own = renderer.reseeded(seed);
+        let mut light = own.begin().expect("memory");
+        let control = rays.map_or_else(Control::new, Control::stopping_after);
+        own.first_pass(&mut light, &SingleThread, &control).expect("traced");
+        assert!(light.covers_frame());
+        if rays.is_some() {
+            own.advance(&mut light, 64, &SingleThread, &control).expect("traced");
+        }
+        own.rendering(own.scene(), &light).expect("a picture")
+    };
+    for rays in [None, Some(20_000), Some(130_000)] {
+        let runs: Vec<Vec<f64>> = (5..5 + SEEDS)
+            .map(|seed| {
+                let rendering = stopped(seed, rays);
+                assert!(rendering.partial, "{rays:?}");
+                regions(&rendering)
+            })
+            .collect();
+        for (at, (part, whole)) in estimates(&runs).into_iter().zip(&whole).enumerate() {
+            assert!(part.apart(*whole) < ERRORS, "{rays:?} rays, region {at}: {part:?} {whole:?}");
+        }
+    }
+}
+
+/// Pauses do not change a bit, wherever they fall.
+#[test]
+fn pauses_change_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(folder.path(), DEEP);
+    for set in ["render.noise=null", "render.noise=20 %"] {
+        let renderer = made(&path, &["render.direction=both", "render.samples=24", set]);
+        let mut light = renderer.begin().expect("memory");
+        let mut pauses = 0;
+        loop {
+            let control = Control::stopping_after(7_000 * (1 + pauses));
+            renderer.advance(&mut light, 24, &Threads(2), &control).expect("traced");
+            if !control.is_stopped() {
+                break;
+            }
+            pauses += 1;
+        }
+        assert!(pauses > 3, "{pauses} pauses");
+        let paused = renderer.rendering(renderer.scene(), &light).expect("a picture");
+        assert_eq!(bits(&paused), bits(&rendered(&renderer)), "{set}");
     }
 }
 

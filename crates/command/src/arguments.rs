@@ -104,8 +104,9 @@ pub(crate) struct Completions {
         imager or film, 32-bit float) and SCENE.png or SCENE.tiff (the picture for viewing), named after the scene \
         file. SCENE.json holds the time, rays, light losses and versions. --output x.png (.tiff, .exr, .dng, .html) writes \
         only that picture. A file appears under its final name only once it is complete.\n\n\
-        Ctrl-C stops within a second and writes the picture so far, marked as partial (exit code 130). If a complete file \
-        exists, it is kept and the partial one is named NAME.partial.png. A second Ctrl-C quits immediately.\n\n\
+        Light is traced in passes over the whole frame. Ctrl-C stops within a second and writes the whole frame, noisier, \
+        marked as partial (exit code 130). If a complete file exists, it is kept and the partial one is named \
+        NAME.partial.png. A second Ctrl-C quits immediately.\n\n\
         A scene with a `sweep` produces numbered pictures SCENE-001.png ... and a contact sheet SCENE-contact.png; a \
         scene with an `animation` produces frames SCENE.0001.exr ...; SCENE-series.json describes each of them. All \
         are checked before rendering starts. In a sweep or an animation only complete pictures are written, even if \
@@ -141,10 +142,13 @@ pub(crate) struct Run {
     /// --samples override these.
     #[arg(long, value_name = "QUALITY")]
     pub quality: Option<Quality>,
-    /// Stop tracing light after this time (30s, 5min) from the start of the program, then develop and write the picture so far,
-    /// which takes some seconds more. Nothing is written if the scene is not ready to render by then.
+    /// Be done this long (30s, 5min) after the start of the program: write the whole frame as it is by then, noisier. A time that
+    /// does not suffice for a first pass over the frame ends with exit code 1. In a series, finished pictures are kept.
     #[arg(long, value_name = "TIME", value_parser = Positive::<Time>::from_text)]
     pub time_limit: Option<Positive<Time>>,
+    /// Write the picture as it stands this often (10s, 5min), as SCENE.partial.png and so on; removed at the end.
+    #[arg(long, value_name = "TIME", value_parser = Positive::<Time>::from_text)]
+    pub snapshot: Option<Positive<Time>>,
     /// Render only these frames of an animation: 17, 10-20, 10-, or several of these separated by commas.
     #[arg(long, value_name = "FRAMES", value_parser = <Frames as std::str::FromStr>::from_str)]
     pub frames: Option<Frames>,

@@ -87,6 +87,11 @@ impl Folder for Target {
         is_same(&self.folder.join(file), path)
     }
 
+    fn remove(&self, file: &str) {
+        // A file that cannot be removed stays, marked as partial.
+        let _ = std::fs::remove_file(self.folder.join(file));
+    }
+
     fn read(&self, file: &str, most: u64) -> Option<Vec<u8>> {
         let path = self.folder.join(file);
         let fits = std::fs::metadata(&path).is_ok_and(|data| data.len() <= most);

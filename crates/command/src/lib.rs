@@ -1,6 +1,6 @@
 //! The `spectra` command: arguments in, pictures and figures out.
 //!
-//! Exit codes: 0 done (or stopped by `--time-limit`); 1 something failed on the way, such as a full disk;
+//! Exit codes: 0 done (or a picture that `--time-limit` ended); 1 something failed on the way, such as a full disk;
 //! 2 the input is wrong; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP. Requested results go to standard output;
 //! progress, warnings and errors go to standard error.
 
@@ -76,7 +76,7 @@ pub struct CommandOutput {
 }
 
 /// Runs a command line in this process; `arguments` excludes the name of the program. The result is that of a separate process,
-/// with three exceptions. Signals are left to the caller, `--time-limit` does not end the process before the first ray, and no
+/// with three exceptions. Signals are left to the caller, a `--time-limit` that is too short is noticed later, and no
 /// stream counts as a terminal.
 pub fn call(arguments: impl IntoIterator<Item = OsString>, unpack: Unpack) -> CommandOutput {
     let line = std::iter::once(OsString::from("spectra")).chain(arguments);

@@ -253,15 +253,17 @@ impl Backward {
             state.contributions_that_fit(&self.pipeline, self.scale);
         }
         // The samples of one pixel are adjacent in the batch, and pixels stand in it in the order of their spans. Rays that saw nothing
-        // are no longer in it.
+        // are no longer in it. On a mosaic, rays of one pixel may be of different channels.
         let channels = state.integers.len();
-        let (mut from, mut spans) = (0, spans.iter());
+        let (mut from, mut at) = (0, 0);
         for tags in state.rays.tags().chunk_by(|a, b| a == b) {
             let (pixel, only) = pixel_and_channel(tags[0]);
             let rays = from..from + tags.len();
             from = rays.end;
-            let span = spans.find(|span| span.pixel == pixel).expect("rays in the order of their spans");
-            let cell = span.at * channels;
+            while spans[at].pixel != pixel {
+                at += 1;
+            }
+            let cell = spans[at].at * channels;
             for (channel, integers) in state.integers.iter().enumerate() {
                 if only.is_none_or(|only| only as usize == self.pipeline.recorded[channel]) {
                     local[cell + channel] += integers[rays.clone()].iter().sum::<i64>();

@@ -9,6 +9,8 @@ pub struct Control {
     pause: AtomicBool,
     rays: AtomicU64,
     total_rays: AtomicU64,
+    /// Number of rays after which the render stops; 0 for no such number.
+    last_ray: u64,
 }
 
 impl Control {
@@ -16,6 +18,12 @@ impl Control {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Creates a state that asks to stop once this many rays are launched, at least 1.
+    #[must_use]
+    pub fn stopping_after(rays: u64) -> Self {
+        Self { last_ray: rays.max(1), ..Self::default() }
     }
 
     /// Asks the render to stop. It stops within one unit of work.
@@ -58,7 +66,10 @@ impl Control {
     }
 
     pub(crate) fn launched(&self, rays: u64) {
-        self.rays.fetch_add(rays, Relaxed);
+        let launched = self.rays.fetch_add(rays, Relaxed) + rays;
+        if self.last_ray > 0 && launched >= self.last_ray {
+            self.stop();
+        }
     }
 
     pub(crate) fn expect(&self, rays: u64) {

@@ -14,6 +14,8 @@ pub struct Light {
     pub(crate) judged: u64,
     /// Number of halves that the samples are divided into: two if noise is limited, else one.
     pub(crate) halves: u64,
+    /// Whether the first pass over the frame is complete.
+    pub(crate) covers_frame: bool,
 }
 
 /// The sums and counters of one estimator.
@@ -32,15 +34,15 @@ impl Light {
         self.halves * self.complete()
     }
 
-    /// Returns the number of samples of each half that all estimators have completed; 0 before the first pass over the frame is complete.
+    /// Returns the number of samples of each half that all estimators have completed.
     pub(crate) fn complete(&self) -> u64 {
         self.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0)
     }
 
-    /// Returns whether the first pass over the frame is complete, so that every pixel has a sample of each kind of light.
+    /// Returns whether the first pass over the frame is complete, so that every pixel has light of each kind.
     #[must_use]
     pub fn covers_frame(&self) -> bool {
-        self.complete() > 0 || self.parts.is_empty()
+        self.covers_frame
     }
 
     /// Returns the number of rays launched for this light.

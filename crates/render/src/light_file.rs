@@ -74,6 +74,7 @@ impl Light {
             form.number(value.to_bits())?;
         }
         form.number(self.judged)?;
+        form.number(u64::from(self.covers_frame))?;
         form.number(self.parts.len() as u64)?;
         for EstimatorSums { sums, done, rays, detected } in &self.parts {
             form.number(*rays)?;
@@ -139,6 +140,7 @@ impl Light {
             light.metered = Some((0..planes).map(|_| plane()).collect::<io::Result<_>>()?);
         }
         light.judged = form.next()?;
+        light.covers_frame = form.next()? != 0;
         if form.next()? != light.parts.len() as u64 {
             return Err(other());
         }

@@ -9,7 +9,7 @@ use crate::landing::Landing;
 use crate::light::{EstimatorSums, Light};
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
-use crate::passes::next_pass;
+use crate::passes::{FIRST_PARTS, next_pass};
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::rendering::{GhostNoise, Rendering};
 use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, PILOT_RAYS};
@@ -188,7 +188,7 @@ impl Renderer {
             return Ok(());
         }
         self.expect(light, u64::from(self.scene.render.samples).div_ceil(self.halves()), control);
-        self.trace(light, 1, workers, control)
+        self.cover_frame(light, workers, control)
     }
 
     /// Measures what the meters see, unless it is known. Returns false if the workers were told to stop; the meters then measure again
@@ -224,7 +224,7 @@ impl Renderer {
         };
         let parts = self.estimators().map(part).collect::<Result<_, RenderError>>()?;
         let halves = self.halves();
-        Ok(Light { parts, losses: LossCounts::default(), metered: None, judged: 0, halves })
+        Ok(Light { parts, losses: LossCounts::default(), metered: None, judged: 0, halves, covers_frame: false })
     }
 
     /// Number of halves of the samples, each with its own random numbers: two if the scene limits the noise, else one.
@@ -243,8 +243,26 @@ impl Renderer {
         self.halves() == 2 && self.estimators().zip(&light.parts).all(ended)
     }
 
-    /// Continues until each estimator has `samples` samples, in passes over the whole frame. A faulty ray ends the work, but not before
-    /// the first pass is complete.
+    /// Traces the first pass over the frame, unless it is complete. A faulty ray does not end it.
+    fn cover_frame(&self, light: &mut Light, workers: &dyn Workers, control: &Control) -> Result<(), RenderError> {
+        if light.covers_frame {
+            return Ok(());
+        }
+        let mut failure = None;
+        for at in 0..light.parts.len() {
+            let Some(span) = light.parts[at].done.next(1) else { continue };
+            if let Err(error) = self.span(at, &span, light, workers, control) {
+                failure.get_or_insert(error);
+            }
+            if control.should_stop() {
+                return failure.map_or(Ok(()), Err);
+            }
+        }
+        light.covers_frame = true;
+        failure.map_or(Ok(()), Err)
+    }
+
+    /// Continues until each estimator has `samples` samples, in passes over the whole frame.
     fn trace(
         &self,
         light: &mut Light,
@@ -252,28 +270,19 @@ impl Renderer {
         workers: &dyn Workers,
         control: &Control,
     ) -> Result<(), RenderError> {
-        let mut failure = None;
-        loop {
-            let done = light.complete();
-            if done >= samples || light.parts.is_empty() {
-                return Ok(());
-            }
-            let upto = next_pass(done).min(samples);
+        self.cover_frame(light, workers, control)?;
+        while light.complete() < samples && !light.parts.is_empty() {
+            let upto = next_pass(light.complete()).min(samples);
             for at in 0..light.parts.len() {
-                let Some(span) = light.parts[at].done.next(upto) else { continue };
-                if let Err(error) = self.span(at, &span, light, workers, control) {
-                    failure.get_or_insert(error);
+                if control.should_stop() {
+                    return Ok(());
                 }
-                if control.should_stop() || failure.is_some() && done > 0 {
-                    break;
+                if let Some(span) = light.parts[at].done.next(upto) {
+                    self.span(at, &span, light, workers, control)?;
                 }
-            }
-            match failure {
-                Some(error) => return Err(error),
-                None if control.should_stop() => return Ok(()),
-                None => {}
             }
         }
+        Ok(())
     }
 
     /// Measures what the meters see of the light of all estimators.
@@ -329,8 +338,11 @@ impl Renderer {
         let part = &light.parts[at];
         let tiles = part.done.active(estimator.tiles());
         let units = estimator.units(samples, &tiles);
+        let is_first_pass = !light.covers_frame;
+        // Beside a backward sample, lights and their ghosts take long for theirs.
+        let is_short = is_first_pass && self.has_lights && estimator.tiles() == 1;
+        let end = if is_short { units.div_ceil(FIRST_PARTS) } else { units };
         let known = part.done.open().map(|(_, units)| units.clone()).unwrap_or_default();
-        let is_first_pass = light.complete() == 0;
         // A thread that takes several units at a time gets neighbors, whose light comes from nearby places.
         let run = (units / UNITS_A_RUN).clamp(1, LONGEST_RUN);
         let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
@@ -346,10 +358,10 @@ impl Renderer {
             let (mut done, mut rays) = (Units::default(), 0);
             while !ends() {
                 let first = next.fetch_add(run, Relaxed);
-                if first >= units {
+                if first >= end {
                     break;
                 }
-                for unit in (first..units.min(first + run)).filter(|unit| !known.contains(*unit)) {
+                for unit in (first..end.min(first + run)).filter(|unit| !known.contains(*unit)) {
                     if ends() {
                         break;
                     }

@@ -208,9 +208,8 @@ fn meter(job: &Develop<'_>, plate: &PictureJob, host: &dyn Host) -> Option<FilmT
         LightFrom::Rays => {
             fits(&session, host).ok()?;
             host.hear(Event::Note(&format!("`{}` is traced once more, to expose the others like it", plate.file)));
-            let control = host.control();
             session.prepare(host.workers()).ok()?;
-            TracedPicture::of(&mut session, host, &control, IncompletePolicy::IsLeftOut).ok()?.rendering
+            TracedPicture::of(&mut session, host, IncompletePolicy::IsLeftOut).ok()??.rendering
         }
     };
     let exposure = (!rendering.partial).then_some(rendering.exposure)?;

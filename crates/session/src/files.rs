@@ -93,9 +93,13 @@ impl File {
     }
 }
 
-/// Writes a report on a render as JSON.
-pub(crate) fn write_report(folder: &dyn Folder, file: &str, report: &serde_json::Value) -> Result<(), SessionError> {
+/// Writes a report on a render as JSON to a file that is shown to the user under another name.
+pub(crate) fn write_report(
+    sink: &dyn Sink,
+    (file, shown): (&str, &str),
+    report: &serde_json::Value,
+) -> Result<(), SessionError> {
     let text = format!("{report:#}\n");
-    let written = folder.file(file, &mut |out| Ok(out.write_all(text.as_bytes())?));
-    written.map_err(|fault| SessionError::Unwritten { file: folder.shown(file), fault, kept: String::new() })
+    let written = sink.file(file, &mut |out| Ok(out.write_all(text.as_bytes())?));
+    written.map_err(|fault| SessionError::Unwritten { file: shown.to_owned(), fault, kept: String::new() })
 }

@@ -48,6 +48,16 @@ pub enum Event<'a> {
     Picture(Option<SeriesPosition>),
     /// Tracing of a scene has begun.
     Start(&'a Scene),
+    /// Every pixel has its first sample of all light.
+    FirstPass,
+    /// There is a time limit, and the picture after its first pass is developed. From now on there is a picture to write, and another one
+    /// will take about as many seconds.
+    DevelopedOnce {
+        /// Time of the development, s.
+        seconds: f64,
+    },
+    /// These files hold the picture so far.
+    Snapshot(&'a [String]),
     /// Tracing of the scene has ended.
     Traced,
     /// These files are complete.
@@ -77,6 +87,9 @@ pub trait Folder: Sink {
         false
     }
 
+    /// Removes a file if it exists.
+    fn remove(&self, _file: &str) {}
+
     /// Returns the content of a file if it exists and has at most `most` bytes.
     fn read(&self, file: &str, most: u64) -> Option<Vec<u8>>;
 
@@ -101,8 +114,14 @@ pub trait Host: Sync {
     /// Returns whether no further picture may begin: the user asked to stop, or the time limit is reached.
     fn is_stopped(&self) -> bool;
 
-    /// Returns the time in seconds since an arbitrary moment.
+    /// Returns the time in seconds since the program started.
     fn now_s(&self) -> f64;
+
+    /// Returns the time, as [`Host::now_s`] counts it, at which everything should be done, if the user limits it. The host stops the
+    /// control of a picture early enough for development.
+    fn time_limit_s(&self) -> Option<f64> {
+        None
+    }
 
     /// Bytes of memory that are still available, if known.
     fn memory_bytes(&self) -> Option<u64>;

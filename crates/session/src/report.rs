@@ -44,6 +44,7 @@ impl Report<'_> {
             "overrides": self.job.overrides,
             "files": files,
             "partial": rendering.partial,
+            "samples_reached": rendering.samples,
             "seconds": self.seconds,
             "rays": rendering.rays,
             "rays_per_second": self.rays_per_second(),

@@ -4,7 +4,8 @@ use crate::check::{CheckSettings, checked, each_once};
 use crate::contact::Contact;
 use crate::exposure_warnings::exposure_warnings;
 use crate::files::Files;
-use crate::traced_picture::{IncompletePolicy, TracedPicture, prepare};
+use crate::picture_files::Snapshots;
+use crate::traced_picture::{IncompletePolicy, TracedPicture, Tracing, prepare};
 use crate::{
     Event, Host, Job, JobEnd, Report, SeriesPosition, Session, SessionError, SessionOptions, first_frame, formatting,
     header,
@@ -89,6 +90,14 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<JobEnd, SessionError
         }
     }
     host.hear(Event::Picture(None));
+    if let (false, false, Some(limit_s)) = (!matches!(result, Ok(false)), host.is_interrupted(), host.time_limit_s())
+        && work.done.is_empty()
+    {
+        let limit = formatting::duration(limit_s);
+        let text =
+            format!("the time limit of {limit} ended before the first of {} pictures was finished", planned.len());
+        return Err(SessionError::Failed(text));
+    }
     // Finished pictures are kept and reported even if the next one failed.
     let files = work.finish(result.as_ref().is_ok_and(|whole| *whole));
     let whole = result?;
@@ -210,7 +219,6 @@ impl SeriesRun<'_> {
         // The scenes of the check are not kept: a thousand of them would not fit into memory.
         let options = SessionOptions { isa: job.isa, picture: picture.index, ..SessionOptions::default() };
         let mut session = Session::sharing(self.series.clone(), self.other.take(), options)?;
-        let control = host.control();
         session.prepare(host.workers())?;
         for doubt in session.scene().source.warnings() {
             if !self.doubts.contains(doubt) {
@@ -218,8 +226,12 @@ impl SeriesRun<'_> {
                 self.doubts.push(doubt.clone());
             }
         }
-        let TracedPicture { rendering, seconds, failure } =
-            TracedPicture::of(&mut session, host, &control, IncompletePolicy::IsLeftOut)?;
+        let mut snapshots = Snapshots::new(job, host);
+        let mut tracing = Tracing::new(&mut session, host);
+        tracing.all(|session, seconds| snapshots.take(session, seconds))?;
+        let traced = tracing.end(IncompletePolicy::IsLeftOut)?;
+        snapshots.remove(&[]);
+        let Some(TracedPicture { rendering, seconds, failure }) = traced else { return Ok(false) };
         if let Some(text) = failure {
             return Err(SessionError::Failed(text));
         }

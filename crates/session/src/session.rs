@@ -167,6 +167,22 @@ impl Session {
         traced.map_err(|error| SessionError::of(&error, &self.scene))
     }
 
+    /// Traces the first pass over the frame, unless it is complete, or until `control` asks to stop.
+    ///
+    /// # Errors
+    /// The errors of [`Session::advance`].
+    pub(crate) fn first_pass(&mut self, workers: &dyn Workers, control: &Control) -> Result<(), SessionError> {
+        self.prepare(workers)?;
+        let Some((renderer, light)) = &mut self.ready else { return Ok(()) };
+        let traced = renderer.first_pass(light, workers, control);
+        traced.map_err(|error| SessionError::of(&error, &self.scene))
+    }
+
+    /// Returns whether the first pass over the frame is complete.
+    pub(crate) fn covers_frame(&self) -> bool {
+        self.ready.as_ref().is_some_and(|(_, light)| light.covers_frame())
+    }
+
     /// Returns the light so far, as the current scene shows it.
     ///
     /// # Errors

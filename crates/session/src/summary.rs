@@ -106,7 +106,12 @@ fn of(report: &Report<'_>) -> String {
         text.push_str(&format!("; {meaning}"));
     }
     if rendering.partial {
-        text.push_str("\npartial: stopped before all samples were taken");
+        let (samples, all) = (rendering.samples, u64::from(scene.render.samples));
+        text.push_str(&match rendering.noise {
+            Some(_) => "\npartial: stopped before it was clean".to_owned(),
+            None if samples == 0 => "\npartial: stopped in the first sample of each pixel".to_owned(),
+            None => format!("\npartial: stopped after {samples} of {all} samples per pixel"),
+        });
     }
     text
 }

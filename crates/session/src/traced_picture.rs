@@ -1,8 +1,9 @@
 //! Tracing of one picture, and the check of its output files before that.
 
 use crate::job::Job;
-use crate::{Event, Host, Session, SessionError};
+use crate::{Control, Event, Host, Rendering, Session, SessionError};
 use spectra_core::params::{Fault, Warning};
+use std::sync::Arc;
 
 /// Checks that files of these names can be written, and that none would overwrite a file that the scene is read from.
 pub(crate) fn prepare(job: &Job<'_>, host: &dyn Host, names: &[String]) -> Result<(), SessionError> {
@@ -19,7 +20,7 @@ pub(crate) fn prepare(job: &Job<'_>, host: &dyn Host, names: &[String]) -> Resul
 /// Treatment of a picture that is stopped before it is complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum IncompletePolicy {
-    /// The picture is written; if files of its name exist, it is written beside them.
+    /// The picture is written; if finished files of its name exist, it is written beside them.
     IsKept,
     /// The picture is not written at all, because every file of a series must be complete.
     IsLeftOut,
@@ -27,42 +28,123 @@ pub(crate) enum IncompletePolicy {
 
 /// Traced light of one picture.
 pub(crate) struct TracedPicture {
-    pub rendering: spectra_render::Rendering,
+    pub rendering: Rendering,
+    /// Time spent on tracing, s.
     pub seconds: f64,
     /// Cause of an incomplete picture, unless it was stopped on purpose.
     pub failure: Option<String>,
 }
 
 impl TracedPicture {
-    /// Traces all samples that the scene states. A picture that was stopped and will be left out gets no remarks.
+    /// Traces all samples that the scene states, or until the host asks to stop. `None` if it did before the first pass over the frame was
+    /// complete.
     pub(crate) fn of(
         session: &mut Session,
         host: &dyn Host,
-        control: &spectra_render::Control,
         unfinished: IncompletePolicy,
-    ) -> Result<Self, SessionError> {
+    ) -> Result<Option<Self>, SessionError> {
+        let mut tracing = Tracing::new(session, host);
+        tracing.all(|_, _| ())?;
+        tracing.end(unfinished)
+    }
+}
+
+/// The tracing of one picture.
+pub(crate) struct Tracing<'a> {
+    session: &'a mut Session,
+    host: &'a dyn Host,
+    control: Arc<Control>,
+    seconds: f64,
+    failure: Option<String>,
+}
+
+impl<'a> Tracing<'a> {
+    /// Begins to trace the picture of a session that is prepared.
+    pub fn new(session: &'a mut Session, host: &'a dyn Host) -> Self {
+        let control = host.control();
         host.hear(Event::Start(session.scene()));
-        let begun = host.now_s();
-        let traced = session.advance(u64::from(session.scene().render.samples), host.workers(), control);
-        let seconds = host.now_s() - begun;
-        host.hear(Event::Traced);
-        // Light traced before the failure is worth keeping: it may have taken hours.
-        let failure = match traced {
-            Err(SessionError::Failed(text)) if session.has_light() => {
-                Some(format!("{text}; the files hold the light traced so far, without that ray"))
+        Self { session, host, control, seconds: 0.0, failure: None }
+    }
+
+    /// Traces the first pass over the frame. Returns whether it is complete.
+    pub fn first_pass(&mut self) -> Result<bool, SessionError> {
+        self.timed(|session, host, control| session.first_pass(host.workers(), control))?;
+        Ok(self.session.covers_frame())
+    }
+
+    /// Traces all samples that the scene states, or until the control asks to stop. At each pause, `snapshot` takes the light so far.
+    pub fn all(&mut self, mut snapshot: impl FnMut(&mut Session, f64)) -> Result<(), SessionError> {
+        let samples = u64::from(self.session.scene().render.samples);
+        while self.failure.is_none() {
+            self.timed(|session, host, control| session.advance(samples, host.workers(), control))?;
+            if !self.control.resume() || self.control.is_stopped() {
+                break;
             }
-            traced => traced.map(|()| None)?,
-        };
-        let mut rendering = session.rendering()?;
-        rendering.partial |= failure.is_some();
-        if !rendering.partial || unfinished == IncompletePolicy::IsKept {
-            rendering.warnings = session.rendering_warnings(&rendering);
+            if self.session.covers_frame() {
+                snapshot(self.session, self.seconds);
+            }
         }
+        Ok(())
+    }
+
+    /// Traces, counts the time and keeps the cause of a failure. Light traced before a failure is worth keeping: it may have taken hours.
+    fn timed(
+        &mut self,
+        trace: impl FnOnce(&mut Session, &dyn Host, &Control) -> Result<(), SessionError>,
+    ) -> Result<(), SessionError> {
+        let begun = self.host.now_s();
+        let traced = trace(self.session, self.host, &self.control);
+        self.seconds += self.host.now_s() - begun;
+        match traced {
+            Err(SessionError::Failed(text)) if self.session.has_light() => {
+                self.failure = Some(format!("{text}; the files hold the light traced so far, without that ray"));
+                Ok(())
+            }
+            traced => traced,
+        }
+    }
+
+    /// Returns the picture so far, without remarks.
+    pub fn so_far(&mut self) -> Result<Rendering, SessionError> {
+        let mut rendering = self.session.rendering()?;
+        rendering.partial |= self.failure.is_some();
+        Ok(rendering)
+    }
+
+    /// Time spent on tracing, s.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// Ends tracing with a picture that was computed from all of its light, and says its remarks.
+    pub fn end_with(self, mut rendering: Rendering) -> TracedPicture {
+        self.host.hear(Event::Traced);
+        rendering.warnings = self.session.rendering_warnings(&rendering);
         for warning in &rendering.warnings {
-            host.hear(Event::Warning(&Warning::from(warning.clone())));
+            self.host.hear(Event::Warning(&Warning::from(warning.clone())));
         }
         // Frees the light, because development needs memory of its own.
-        session.forget_light();
-        Ok(Self { rendering, seconds, failure })
+        self.session.forget_light();
+        TracedPicture { rendering, seconds: self.seconds, failure: self.failure }
+    }
+
+    /// The session whose picture is traced.
+    pub fn session(&self) -> &Session {
+        self.session
+    }
+
+    /// Ends tracing and returns the picture, or `None` if it was stopped before the first pass over the frame was complete. A picture that
+    /// was stopped and will be left out gets no remarks.
+    pub fn end(mut self, unfinished: IncompletePolicy) -> Result<Option<TracedPicture>, SessionError> {
+        if !self.session.covers_frame() {
+            self.host.hear(Event::Traced);
+            return self.failure.map_or(Ok(None), |text| Err(SessionError::Failed(text)));
+        }
+        let rendering = self.so_far()?;
+        if rendering.partial && unfinished == IncompletePolicy::IsLeftOut {
+            self.host.hear(Event::Traced);
+            return Ok(Some(TracedPicture { rendering, seconds: self.seconds, failure: self.failure }));
+        }
+        Ok(Some(self.end_with(rendering)))
     }
 }

@@ -6,7 +6,7 @@ use crate::arguments::{Quality, Run};
 use crate::folder::{Target, Temporary};
 use crate::interrupt::{self, Interrupt};
 use crate::outcome::{DONE, Failure, Outcome};
-use crate::time_limit::SetUp;
+use crate::time_limit::{Watch, deadline};
 use crate::{console, frames, limits, memory, version};
 use progress::Progress;
 use serde_json::json;
@@ -17,6 +17,9 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
+
+/// Time that a time limit leaves beside that for development, s: the last units of work, and writing files.
+const LEEWAY_S: f64 = 0.1;
 
 /// Interval between updates of the progress and checks for Ctrl-C.
 const TICK: Duration = Duration::from_millis(50);
@@ -44,8 +47,7 @@ pub(crate) fn with_json_error(outcome: Outcome, is_json: bool) -> Outcome {
 
 fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     let limit_s = arguments.time_limit.map(f64::from);
-    let deadline = limit_s.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?));
-    let set_up = SetUp::watched(deadline, limit_s.unwrap_or_default(), arguments.json, arguments.quiet);
+    let watch = Watch::new(started, limit_s, arguments.json);
     let target = Target::of(&arguments.output)?;
     let overrides = overrides(arguments);
     let series = spectra_scene::load_series(&arguments.scene, &overrides)?;
@@ -62,7 +64,13 @@ fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
         versions: version::to_json(),
     };
     let speaks = OutputMode { json: arguments.json, quiet: arguments.quiet };
-    let face = CliHost { deadline, set_up, ..CliHost::new(target, arguments.threads, isa, started, speaks, deadline) };
+    let snapshot_every = arguments.snapshot.and_then(|time| Duration::try_from_secs_f64(f64::from(time)).ok());
+    let host = CliHost::new(target, arguments.threads, isa, started, speaks, deadline(started, limit_s));
+    if job.light == LightFrom::Pixels {
+        // Without a lens there is nothing that a limit could shorten.
+        watch.done();
+    }
+    let face = CliHost { limit_s, watch, snapshot_every, ..host };
     let ended = spectra_session::run(&job, &face)?;
     Ok(face.code(ended))
 }
@@ -92,8 +100,13 @@ pub(crate) struct CliHost {
     threads: usize,
     isa: Isa,
     started: Instant,
-    deadline: Option<Instant>,
-    set_up: SetUp,
+    limit_s: Option<f64>,
+    /// End of tracing, so that the time limit leaves time for development.
+    deadline: Mutex<Option<Instant>>,
+    watch: Watch,
+    snapshot_every: Option<Duration>,
+    /// When tracing began or the last snapshot was written.
+    snapshot: Mutex<Instant>,
     progress: Mutex<Progress>,
     /// Control of the current picture.
     control: Mutex<Arc<Control>>,
@@ -117,8 +130,11 @@ impl CliHost {
             threads: threads.map_or_else(limits::processors, usize::from),
             isa,
             started,
-            deadline: None,
-            set_up: SetUp::watched(None, 0.0, speaks.json, speaks.quiet),
+            limit_s: None,
+            deadline: Mutex::new(deadline),
+            watch: Watch::new(started, None, speaks.json),
+            snapshot_every: None,
+            snapshot: Mutex::new(started),
             progress: Mutex::new(Progress::new(speaks.json, speaks.quiet, deadline)),
             control: Mutex::default(),
             is_tracing: AtomicBool::new(false),
@@ -132,7 +148,25 @@ impl CliHost {
     }
 
     fn is_late(&self) -> bool {
-        self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        let deadline = self.deadline.lock().unwrap_or_else(PoisonError::into_inner);
+        deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    /// Moves the end of tracing forward by the time that development takes, and a quarter for safety.
+    fn leave_time_for(&self, development_s: f64) {
+        let before = Duration::try_from_secs_f64(1.25 * development_s + LEEWAY_S).unwrap_or_default();
+        let mut deadline = self.deadline.lock().unwrap_or_else(PoisonError::into_inner);
+        *deadline = deadline.map(|deadline| deadline.checked_sub(before).unwrap_or(self.started));
+    }
+
+    /// Restarts the time until the next snapshot.
+    fn begin_snapshot(&self) {
+        *self.snapshot.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+    }
+
+    fn is_snapshot_due(&self) -> bool {
+        let begun = *self.snapshot.lock().unwrap_or_else(PoisonError::into_inner);
+        self.snapshot_every.is_some_and(|every| begun.elapsed() >= every)
     }
 
     fn tick(&self) {
@@ -141,6 +175,11 @@ impl CliHost {
             control.stop();
         }
         if self.is_tracing.load(Relaxed) {
+            if self.is_snapshot_due() {
+                // Until the first pass is complete there is no snapshot; then the next one is due after a whole interval.
+                self.begin_snapshot();
+                control.pause();
+            }
             self.progress.lock().unwrap_or_else(PoisonError::into_inner).tick(&control, self.is_interrupted());
         }
     }
@@ -166,6 +205,10 @@ impl Workers for CliHost {
             }
             worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         });
+    }
+
+    fn should_stop(&self) -> bool {
+        self.is_stopped()
     }
 }
 
@@ -200,6 +243,10 @@ impl Host for CliHost {
         self.started.elapsed().as_secs_f64()
     }
 
+    fn time_limit_s(&self) -> Option<f64> {
+        self.limit_s
+    }
+
     fn memory_bytes(&self) -> Option<u64> {
         memory::available()
     }
@@ -214,9 +261,22 @@ impl Host for CliHost {
 
     fn hear(&self, event: Event<'_>) {
         match event {
-            Event::Ready => self.set_up.done(),
-            Event::Start(_) => self.is_tracing.store(true, Relaxed),
-            Event::Traced => self.is_tracing.store(false, Relaxed),
+            Event::Start(_) => {
+                self.watch.prepared();
+                self.begin_snapshot();
+                self.is_tracing.store(true, Relaxed);
+            }
+            Event::FirstPass => self.watch.passed(),
+            Event::DevelopedOnce { seconds } => {
+                self.watch.done();
+                self.leave_time_for(seconds);
+            }
+            Event::Snapshot(_) => self.begin_snapshot(),
+            Event::Picture(Some(place)) if place.index > 0 => self.watch.done(),
+            Event::Traced => {
+                self.watch.done();
+                self.is_tracing.store(false, Relaxed);
+            }
             _ => {}
         }
         self.progress.lock().unwrap_or_else(PoisonError::into_inner).hear(event, self.threads, self.isa);

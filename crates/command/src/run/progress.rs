@@ -60,7 +60,8 @@ impl Progress {
         match event {
             Event::Checked { done, of } => self.checking(done, of),
             Event::Preparing => self.preparing(),
-            Event::Ready => {}
+            Event::Ready | Event::FirstPass | Event::DevelopedOnce { .. } => {}
+            Event::Snapshot(files) => self.snapshot(files),
             Event::Warning(warning) => self.warning(warning),
             Event::Note(text) => self.note(text),
             Event::Series(text, event) => self.series(text, event.clone()),
@@ -108,6 +109,13 @@ impl Progress {
             }
             Listener::Quiet => {}
             Listener::Bar(_) | Listener::Lines => console::scene_warning(warning, None),
+        }
+    }
+
+    /// Tells a program that files hold the picture so far.
+    fn snapshot(&self, files: &[String]) {
+        if let Listener::Json = &self.listener {
+            self.event(json!({ "event": "snapshot", "files": files }));
         }
     }
 
