@@ -211,7 +211,7 @@ fn a_stopped_frame_is_whole() {
         }
         own.rendering(own.scene(), &light).expect("a picture")
     };
-    for rays in [None, Some(20_000), Some(130_000)] {
+    for rays in [None, Some(12_000), Some(70_000)] {
         let runs: Vec<Vec<f64>> = (5..5 + SEEDS)
             .map(|seed| {
                 let rendering = stopped(seed, rays);
@@ -235,7 +235,7 @@ fn pauses_change_nothing() {
         let mut light = renderer.begin().expect("memory");
         let mut pauses = 0;
         loop {
-            let control = Control::stopping_after(7_000 * (1 + pauses));
+            let control = Control::stopping_after(2_000 + 500 * pauses);
             renderer.advance(&mut light, 24, &Threads(2), &control).expect("traced");
             if !control.is_stopped() {
                 break;

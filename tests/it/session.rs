@@ -79,7 +79,8 @@ fn light_is_saved_and_taken_up() {
         let mut whole = session(scene, &set);
         go(&mut whole, 96);
         let mut first = session(scene, &set);
-        stopped(&mut first, 96);
+        let third = whole.rendering().expect("a picture").rays / 3;
+        stopped(&mut first, 96, third);
         let mut file = Vec::new();
         first.save(&mut file).expect("saved");
         let mut second = session(scene, &set);
@@ -96,7 +97,7 @@ fn light_is_saved_and_taken_up() {
         assert_eq!(bits(&mut second), bits(&mut whole));
         // A surface number that the lens does not have is rejected before memory is allocated for all surfaces up to it.
         file[last] ^= 1;
-        let magic = b"spectra light 5\n";
+        let magic = b"spectra light 6\n";
         let state = file.windows(16).position(|w| w == magic).expect("light") + 16 + 8;
         if file[state - 8..state] != [0; 8] {
             file[state + 3] = 0xf0;
@@ -106,24 +107,11 @@ fn light_is_saved_and_taken_up() {
     }
 }
 
-/// Renders until about a third of the work is done.
-fn stopped(session: &mut Session, samples: u64) {
-    struct Tired<'a>(&'a Control);
-    impl Workers for Tired<'_> {
-        fn run_on_all(&self, work: &(dyn Fn() + Sync)) {
-            std::thread::scope(|scope| {
-                scope.spawn(work);
-                while self.0.total_rays() == 0 || 3 * self.0.rays() < self.0.total_rays() {
-                    std::hint::spin_loop();
-                }
-                self.0.stop();
-            });
-        }
-    }
-    // The wait for rays would never end while pupils are searched and no ray is traced, so the search is done first.
-    session.prepare(&SingleThread).expect("ready");
-    let control = Control::new();
-    session.advance(samples, &Tired(&control), &control).expect("stopped");
+/// Renders until about this many rays are traced.
+fn stopped(session: &mut Session, samples: u64, rays: u64) {
+    let control = Control::stopping_after(rays);
+    session.advance(samples, &Threads(2), &control).expect("stopped");
+    assert!(control.is_stopped());
 }
 
 /// Two estimators of unequal work in one scene add up to one picture, whenever they were stopped.

@@ -1,9 +1,11 @@
 //! Exit codes and errors of commands.
 
 use crate::console;
+use serde_json::json;
 use spectra_core::params::{Fault, Faults};
 use spectra_files::WriteError;
 use spectra_plot::PlotError;
+use spectra_scene::diagnostics;
 use spectra_session::SessionError;
 use std::io;
 
@@ -54,6 +56,22 @@ impl Failure {
             Self::ReaderGone => DONE,
         }
     }
+}
+
+/// Writes a failure as a JSON event if `is_json`; returns the outcome unchanged.
+pub(crate) fn with_json_error(outcome: Outcome, is_json: bool) -> Outcome {
+    if let (true, Err(failure)) = (is_json, &outcome) {
+        let event = match failure {
+            Failure::Faults(faults) => {
+                json!({ "event": "error", "message": faults.to_string(), "faults": diagnostics::to_json(faults) })
+            }
+            Failure::Input(text) | Failure::Failed(text) => json!({ "event": "error", "message": text, "faults": [] }),
+            Failure::ReaderGone => return outcome,
+        };
+        // If the reader has gone away, only the event is lost.
+        let _ = console::json(&event);
+    }
+    outcome
 }
 
 impl From<Faults> for Failure {

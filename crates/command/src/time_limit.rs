@@ -1,8 +1,7 @@
 //! Enforces `--time-limit` until there is a picture to write.
 
 use crate::console;
-use crate::outcome::{FAILED, Failure};
-use crate::run::with_json_error;
+use crate::outcome::{FAILED, Failure, with_json_error};
 use spectra_session::TimeSpent;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;

@@ -469,15 +469,10 @@ impl Renderer {
             return Ok(*seen);
         }
         let seen = match self.kinds() {
-            [rest, lights, ..] if self.has_lights => star_trial::is_star_seen(self, &**rest, &**lights)?,
+            [rest, lights, ..] if self.has_lights => star_trial::is_star_seen(&self.pipeline, &**rest, &**lights)?,
             _ => false,
         };
         Ok(*self.is_star_seen.get_or_init(|| seen))
-    }
-
-    /// Allocates sums for all the light of one estimator.
-    pub(crate) fn new_sums(&self) -> Result<ExactSums, RenderError> {
-        ExactSums::new(self.cells()).ok_or_else(|| self.too_large())
     }
 
     /// Returns the fraction of all light that is veiling glare; `weights` are those of the estimators.

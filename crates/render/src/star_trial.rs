@@ -7,8 +7,11 @@
 //! hold 64 rays. The trial draws from the random numbers of the pilot, so every seed of the picture decides alike.
 
 use crate::estimator::Estimator;
+use crate::memory::memory_needed;
 use crate::pilot::PILOT_SEED;
-use crate::{Done, RenderError, Renderer, diffracted};
+use crate::pipeline::Pipeline;
+use crate::sums::ExactSums;
+use crate::{Done, RenderError, diffracted};
 use spectra_core::frame::FrameSize;
 use std::collections::BTreeMap;
 
@@ -27,26 +30,31 @@ const LARGEST_SQUARE: usize = 64;
 
 /// Returns whether the star of the brightest pixel can be seen, from the estimators of the rest and of the lights.
 pub(crate) fn is_star_seen(
-    renderer: &Renderer,
+    pipeline: &Pipeline,
     rest: &dyn Estimator,
     lights: &dyn Estimator,
 ) -> Result<bool, RenderError> {
-    let scene = renderer.scene();
-    let (medians, peaks) = (medians(renderer, rest)?, peaks(renderer, lights)?);
+    let (medians, peaks) = (medians(pipeline, rest)?, peaks(pipeline, lights)?);
     let star = |(channel, (median, peak)): (&usize, (f64, f64))| {
-        Some(diffracted::star_of_pixel(scene, *channel)? * (median + peak) / median)
+        Some(diffracted::star_of_pixel(&pipeline.scene, *channel)? * (median + peak) / median)
     };
-    let stars = renderer.recorded().iter().zip(medians.into_iter().zip(peaks)).filter_map(star);
+    let stars = pipeline.recorded.iter().zip(medians.into_iter().zip(peaks)).filter_map(star);
     // Without any light around it, a star is always seen.
     Ok(stars.filter(|star| !star.is_nan()).fold(0.0, f64::max) > SEEN)
 }
 
+/// Allocates sums for all the light of one estimator.
+fn new_sums(pipeline: &Pipeline) -> Result<ExactSums, RenderError> {
+    let cells = pipeline.scene.imager.size().pixels() * pipeline.recorded.len();
+    ExactSums::new(cells).ok_or_else(|| RenderError::Memory(memory_needed(&pipeline.scene)))
+}
+
 /// Returns the median of the frame in each channel, W/m2, from some of its tiles.
-fn medians(renderer: &Renderer, rest: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
-    let (all, channels) = (rest.tiles(), renderer.recorded().len());
+fn medians(pipeline: &Pipeline, rest: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
+    let (all, channels) = (rest.tiles(), pipeline.recorded.len());
     let tiles: Vec<u32> = (0..all.min(TILES)).map(|i| (i * all / all.min(TILES)) as u32).collect();
     let (trial, samples) = (rest.reseeded(PILOT_SEED, PILOT_SEED), 0..SAMPLES);
-    let (sums, mut scratch) = (renderer.new_sums()?, trial.scratch());
+    let (sums, mut scratch) = (new_sums(pipeline)?, trial.scratch());
     for unit in 0..trial.units(&samples, &tiles) {
         trial.run(&samples, &tiles, unit, &mut scratch, &sums);
     }
@@ -63,14 +71,14 @@ fn medians(renderer: &Renderer, rest: &dyn Estimator) -> Result<Vec<f64>, Render
 }
 
 /// Returns the light of the brightest pixel in each channel, W/m2.
-fn peaks(renderer: &Renderer, lights: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
+fn peaks(pipeline: &Pipeline, lights: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
     let trial = lights.reseeded(PILOT_SEED, PILOT_SEED);
-    let most = u64::from(renderer.scene().render.samples);
+    let most = u64::from(pipeline.scene.render.samples);
     let mut samples = 0..1;
     while trial.rays(&samples, &[0]) < LIGHT_RAYS && samples.end < most {
         samples.end *= 2;
     }
-    let (sums, mut scratch) = (renderer.new_sums()?, trial.scratch());
+    let (sums, mut scratch) = (new_sums(pipeline)?, trial.scratch());
     let mut rays = 0;
     for unit in 0..trial.units(&samples, &[0]) {
         if rays >= LIGHT_RAYS {
@@ -79,7 +87,7 @@ fn peaks(renderer: &Renderer, lights: &dyn Estimator) -> Result<Vec<f64>, Render
         rays += trial.run(&samples, &[0], unit, &mut scratch, &sums).rays;
     }
     scratch.finish(&sums);
-    let (size, channels) = (renderer.scene().imager.size(), renderer.recorded().len());
+    let (size, channels) = (pipeline.scene.imager.size(), pipeline.recorded.len());
     let (weights, landed) = (trial.weights(&[&Done::default()], rays, 1.0), scratch.0.detected);
     let peak = |channel| {
         let plane: Vec<f64> =

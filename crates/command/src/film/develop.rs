@@ -3,8 +3,9 @@
 use super::arguments::{FilmDevelop, MeterWhich, Switch};
 use super::keys::{self, set};
 use super::{called, pictures};
+use crate::outcome::with_json_error;
 use crate::outcome::{Failure, Outcome};
-use crate::run::{CliHost, OutputMode, with_json_error};
+use crate::run::{CliHost, OutputMode};
 use crate::version;
 use spectra_core::Isa;
 use spectra_darkroom::{DevelopSettings, Setting};

@@ -5,13 +5,11 @@ mod progress;
 use crate::arguments::{Quality, Run};
 use crate::folder::{Target, Temporary};
 use crate::interrupt::{self, Interrupt};
-use crate::outcome::{DONE, Failure, Outcome};
+use crate::outcome::{DONE, Outcome, with_json_error};
 use crate::time_limit::{Watch, deadline};
-use crate::{console, frames, limits, memory, version};
+use crate::{frames, limits, memory, version};
 use progress::Progress;
-use serde_json::json;
 use spectra_core::Isa;
-use spectra_scene::diagnostics;
 use spectra_session::{Control, Event, Folder, Host, Job, JobEnd, LightFrom, Threads, Workers};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -27,22 +25,6 @@ const TICK: Duration = Duration::from_millis(50);
 /// Renders a scene. With `--json`, a failure is also written as an event.
 pub(crate) fn run(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
     with_json_error(render_scene(arguments, isa, started), arguments.json)
-}
-
-/// Writes a failure as a JSON event if `is_json`; returns the outcome unchanged.
-pub(crate) fn with_json_error(outcome: Outcome, is_json: bool) -> Outcome {
-    if let (true, Err(failure)) = (is_json, &outcome) {
-        let event = match failure {
-            Failure::Faults(faults) => {
-                json!({ "event": "error", "message": faults.to_string(), "faults": diagnostics::to_json(faults) })
-            }
-            Failure::Input(text) | Failure::Failed(text) => json!({ "event": "error", "message": text, "faults": [] }),
-            Failure::ReaderGone => return outcome,
-        };
-        // If the reader has gone away, only the event is lost.
-        let _ = console::json(&event);
-    }
-    outcome
 }
 
 fn render_scene(arguments: &Run, isa: Isa, started: Instant) -> Outcome {
