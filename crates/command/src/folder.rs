@@ -57,7 +57,7 @@ impl Sink for Target {
 }
 
 impl Folder for Target {
-    fn prepare(&self, _: &str, files: &[&str]) -> Result<(), String> {
+    fn prepare(&self, _: &str, files: &[&str]) -> Result<(), Fault> {
         std::fs::create_dir_all(&self.folder).map_err(|error| refused(&self.folder, &error))?;
         if let Some(path) = files.iter().map(|file| self.folder.join(file)).find(|path| path.is_dir()) {
             return Err(refused(&path, &"a folder of that name exists"));
@@ -126,9 +126,9 @@ pub(crate) fn apart(output: &Path, read: &[&Path]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn refused(path: &Path, reason: &dyn Display) -> String {
-    let path = path.display();
-    format!("cannot write to `{path}`: {reason} (nothing was rendered; choose another folder with --output)")
+fn refused(path: &Path, reason: &dyn Display) -> Fault {
+    let fault = Fault::new(format!("cannot write to `{}`: {reason}", path.display()));
+    fault.hint("nothing was rendered; choose another folder with --output")
 }
 
 /// The system's folder for temporary files. File names there contain the ID of this process.
@@ -150,7 +150,7 @@ impl Sink for Temporary {
 }
 
 impl Folder for Temporary {
-    fn prepare(&self, _: &str, _: &[&str]) -> Result<(), String> {
+    fn prepare(&self, _: &str, _: &[&str]) -> Result<(), Fault> {
         Ok(())
     }
 

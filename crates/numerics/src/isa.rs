@@ -34,6 +34,33 @@ pub trait Vectorized {
 static LIMIT: AtomicU8 = AtomicU8::new(UNLIMITED);
 const UNLIMITED: u8 = u8::MAX;
 
+/// The reason why a tier of instructions cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum IsaError {
+    /// No tier has this name.
+    Unknown(String),
+    /// This machine lacks the tier.
+    Missing {
+        /// The tier that was asked for.
+        asked: Isa,
+        /// The widest tier of this machine.
+        widest: Isa,
+    },
+}
+
+impl std::fmt::Display for IsaError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Unknown(name) => write!(f, "`{name}` is not an instruction set; known: baseline, avx2, avx512"),
+            Self::Missing { asked, widest } => {
+                write!(f, "this machine does not have `{}`; its widest is {}", asked.name(), widest.name())
+            }
+        }
+    }
+}
+
+impl std::error::Error for IsaError {}
+
 impl Isa {
     /// Returns the widest tier that this machine has and this process may use; see [`Isa::limit`].
     #[must_use]
@@ -81,17 +108,17 @@ impl Isa {
     /// Returns the tier of this name: `baseline`, `avx2` or `avx512`, as in `SPECTRA_ISA`.
     ///
     /// # Errors
-    /// The name is unknown, or this machine lacks that tier.
-    pub fn by_name(name: &str) -> Result<Self, String> {
+    /// Returns [`IsaError`] if the name is unknown, or if this machine lacks that tier.
+    pub fn by_name(name: &str) -> Result<Self, IsaError> {
         let isa = match name {
             "baseline" => Self::Baseline,
             "avx2" => Self::Avx2,
             "avx512" => Self::Avx512,
-            _ => return Err(format!("`{name}` is not an instruction set; known: baseline, avx2, avx512")),
+            _ => return Err(IsaError::Unknown(name.to_owned())),
         };
         let widest = Self::of_machine();
         if isa > widest {
-            return Err(format!("this machine does not have `{name}`; its widest is {}", widest.name()));
+            return Err(IsaError::Missing { asked: isa, widest });
         }
         Ok(isa)
     }

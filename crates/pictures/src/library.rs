@@ -2,8 +2,9 @@
 //!
 //! A plain build has no such library. Code that needs one tells the user how to get it ([`WITHOUT`]).
 
+use spectra_core::params::Fault;
 use spectra_core::resources::FoundFile;
-use spectra_core::sink::Out;
+use spectra_core::sink::{Out, WriteFault};
 
 /// Message for the user if no picture library is linked.
 pub const WITHOUT: &str = "this program was built without OpenImageIO: `cargo build --release --features oiio`";
@@ -69,19 +70,19 @@ pub trait PictureLibrary: Sync {
     ///
     /// # Errors
     /// What is wrong with the file, without a full stop: another format, broken, or larger than `limits`.
-    fn read(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, String>;
+    fn read(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, Fault>;
 
     /// Reads the header of the first picture: the result of [`PictureLibrary::read`] without pixels and alpha.
     ///
     /// # Errors
     /// The errors of [`PictureLibrary::read`].
-    fn header(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, String>;
+    fn header(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, Fault>;
 
     /// Writes a tiled OpenEXR file: 32-bit floats, lossless. The same picture gives the same bytes.
     ///
     /// # Errors
     /// The error of the system or the library.
-    fn write_tiled_exr(&self, to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String>;
+    fn write_tiled_exr(&self, to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), WriteFault>;
 }
 
 /// Registration of a picture library with `inventory::submit!`.

@@ -6,7 +6,7 @@
 
 use crate::{Control, Report, Workers};
 use serde_json::Value;
-use spectra_core::params::Warning;
+use spectra_core::params::{Fault, Warning};
 use spectra_core::sink::Sink;
 use spectra_scene::Scene;
 use std::path::Path;
@@ -76,8 +76,8 @@ pub trait Folder: Sink {
     /// Makes sure that files of these names can be written. `name` is the name of the scene.
     ///
     /// # Errors
-    /// The reason why they cannot, as text.
-    fn prepare(&self, name: &str, files: &[&str]) -> Result<(), String>;
+    /// The reason why they cannot.
+    fn prepare(&self, name: &str, files: &[&str]) -> Result<(), Fault>;
 
     /// Returns whether a file exists and is not empty.
     fn has(&self, file: &str) -> bool;

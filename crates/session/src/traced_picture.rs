@@ -14,7 +14,7 @@ pub(crate) fn prepare(job: &Job<'_>, host: &dyn Host, names: &[String]) -> Resul
         let text = format!("`{}` is a file that the scene is read from and would be overwritten", folder.shown(file));
         return Err(Fault::new(text).hint("choose another folder or name with `--output`").into());
     }
-    folder.prepare(job.series.name(), &names).map_err(SessionError::Failed)
+    folder.prepare(job.series.name(), &names).map_err(|fault| SessionError::Failed(fault.to_string()))
 }
 
 /// Treatment of a picture that is stopped before it is complete.

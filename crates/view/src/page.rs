@@ -10,6 +10,7 @@ use crate::series_values::SeriesValues;
 use serde_json::{Value, json};
 use spectra_core::Isa;
 use spectra_core::frame::{DisplayPicture, ExposureFrame};
+use spectra_core::params::Fault;
 use spectra_scene::{FilmTime, Negatives, Scene, Shot};
 use spectra_session::{Session, SessionError};
 use std::sync::Arc;
@@ -180,18 +181,19 @@ impl PageState {
     ///
     /// # Errors
     /// The reason why the scene cannot have such a value.
-    pub fn change(&self, path: &str, value: &Value, from: Option<usize>) -> Result<ChangeKind, String> {
+    pub fn change(&self, path: &str, value: &Value, from: Option<usize>) -> Result<ChangeKind, Fault> {
         if path == "width" {
             let width = value.as_u64().and_then(|width| u32::try_from(width).ok());
             let width = width.filter(|width| self.widths_px.contains(width));
-            return Ok(ChangeKind::Width(width.ok_or("not one of the widths")?));
+            return width.map(ChangeKind::Width).ok_or_else(|| Fault::new("not one of the widths"));
         }
-        let control = self.controls.all.iter().find(|control| control.path() == path).ok_or("no such control")?;
-        let text = control.text(value)?;
+        let control = self.controls.all.iter().find(|control| control.path() == path);
+        let control = control.ok_or_else(|| Fault::new("no such control"))?;
+        let text = control.text(value).map_err(Fault::new)?;
         match control.picked(value) {
             Some(word) => {
                 let picture = self.controls.picks.with(from, path, &word);
-                Ok(ChangeKind::Picture(picture.ok_or("no picture of the series has this value")?))
+                picture.map(ChangeKind::Picture).ok_or_else(|| Fault::new("no picture of the series has this value"))
             }
             None => Ok(ChangeKind::Set(vec![text])),
         }

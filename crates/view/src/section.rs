@@ -2,6 +2,7 @@
 
 use spectra_analysis::draw::{DrawingBackground, Fans, SectionView, Sheet};
 use spectra_analysis::fan::largest_field_rad;
+use spectra_glass::DispersionError;
 use spectra_lens::Section;
 use spectra_scene::Scene;
 
@@ -15,17 +16,16 @@ const COLORS_NM: [f64; 3] = [450.0, 550.0, 640.0];
 /// Draws the cross-section of the scene's lens as SVG, on a dark or light ground.
 ///
 /// # Errors
-/// The reason why the lens cannot be drawn.
-pub fn svg(scene: &Scene, is_dark: bool) -> Result<String, String> {
+/// A medium of the lens has no refractive index at a wavelength of the drawing.
+pub fn svg(scene: &Scene, is_dark: bool) -> Result<String, DispersionError> {
     let lens = &scene.lens;
     let object_mm = scene.focus.distance_mm.unwrap_or(f64::INFINITY);
-    let said = |error: spectra_glass::DispersionError| error.to_string();
-    let largest = largest_field_rad(lens, Section::Y, object_mm, WIDEST_DEG.to_radians()).map_err(said)?;
+    let largest = largest_field_rad(lens, Section::Y, object_mm, WIDEST_DEG.to_radians())?;
     let largest = largest.unwrap_or(0.0).to_degrees();
     let mut fields_deg: Vec<f64> = PARTS.map(|part| part * largest).into();
     fields_deg.dedup();
     let fans = Fans { fields_deg, object_mm, rays: 7, wavelengths_nm: COLORS_NM.into() };
-    let rays = fans.trace(lens, Section::Y).map_err(said)?;
+    let rays = fans.trace(lens, Section::Y)?;
     let sheet = Sheet {
         width: 720.0,
         height: None,

@@ -62,7 +62,7 @@ impl RequestHandler {
             }
             "section" => {
                 let drawn = svg(self.open()?.session.scene(), word("ground") == "dark");
-                drawn.map(String::into_bytes).map_err(|why| wrong(&why))
+                drawn.map(String::into_bytes).map_err(|why| wrong(&why.to_string()))
             }
             "spectra" => self.open().map(|open| json(&spectra(open.session.scene()))),
             "fingerprint" => self.open()?.fingerprint(),
@@ -115,7 +115,7 @@ impl OpenScene {
     }
 
     fn turn(&mut self, path: &str, value: &Value) -> Answer {
-        let change = self.page.change(path, value, None).map_err(|why| wrong(&why))?;
+        let change = self.page.change(path, value, None).map_err(|why| wrong(&why.to_string()))?;
         let changed = match change.texts(&self.shape).first() {
             Some(text) => self.session.change(text),
             // Another picture of the series.

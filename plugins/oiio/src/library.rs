@@ -2,8 +2,9 @@
 
 use crate::bridge::ffi;
 use crate::{reading, writing};
+use spectra_core::params::Fault;
 use spectra_core::resources::FoundFile;
-use spectra_core::sink::Out;
+use spectra_core::sink::{Out, WriteFault};
 use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLibraryEntry, PictureLimits, TiledExr};
 
 /// The picture library OpenImageIO (Larry Gritz and others, <https://openimageio.org>).
@@ -23,15 +24,15 @@ impl PictureLibrary for OpenImageIo {
         format!("OpenImageIO {}", ffi::version())
     }
 
-    fn read(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, String> {
-        reading::read(ending, file, limits, true)
+    fn read(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, Fault> {
+        reading::read(ending, file, limits, true).map_err(Fault::new)
     }
 
-    fn header(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, String> {
-        reading::read(ending, file, limits, false)
+    fn header(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, Fault> {
+        reading::read(ending, file, limits, false).map_err(Fault::new)
     }
 
-    fn write_tiled_exr(&self, to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String> {
+    fn write_tiled_exr(&self, to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), WriteFault> {
         writing::tiled_exr(to, picture)
     }
 }

@@ -1,7 +1,7 @@
 //! Writes pictures in any format that OpenImageIO writes, and textures.
 
 use crate::bridge::ffi::{self, Plan};
-use spectra_core::sink::Out;
+use spectra_core::sink::{Out, WriteFault};
 use spectra_pictures::library::TiledExr;
 use std::io::{self, SeekFrom};
 use std::path::Path;
@@ -88,14 +88,14 @@ impl Written<'_> {
 ///
 /// # Errors
 /// The message of the system or of the library.
-pub fn write(to: &mut dyn Out, picture: &Written<'_>) -> Result<(), String> {
-    let plan = picture.plan()?;
+pub fn write(to: &mut dyn Out, picture: &Written<'_>) -> Result<(), WriteFault> {
+    let plan = picture.plan().map_err(WriteFault::Format)?;
     let mut sink = Sink { file: to, size: 0, fault: None };
     let written = ffi::write(&plan, &Pixels::new(picture), &mut sink);
     match (sink.fault, written) {
         // An error of the system is the cause of the library's error.
-        (Some(fault), _) => Err(fault.to_string()),
-        (None, written) => written.map_err(|e| e.what().trim().to_owned()),
+        (Some(fault), _) => Err(WriteFault::Io(fault)),
+        (None, written) => written.map_err(|e| WriteFault::Format(e.what().trim().to_owned())),
     }
 }
 
@@ -104,14 +104,15 @@ pub fn write(to: &mut dyn Out, picture: &Written<'_>) -> Result<(), String> {
 ///
 /// # Errors
 /// The message of the library, or a path that is not valid UTF-8.
-pub fn make_texture(path: &Path, picture: &Written<'_>) -> Result<(), String> {
-    let plan = picture.plan()?;
-    let path = path.to_str().ok_or("the path is not valid UTF-8")?;
-    ffi::make_texture(&plan, &Pixels::new(picture), path).map_err(|e| e.what().trim().to_owned())
+pub fn make_texture(path: &Path, picture: &Written<'_>) -> Result<(), WriteFault> {
+    let plan = picture.plan().map_err(WriteFault::Format)?;
+    let path = path.to_str().ok_or_else(|| WriteFault::Format("the path is not valid UTF-8".to_owned()))?;
+    let made = ffi::make_texture(&plan, &Pixels::new(picture), path);
+    made.map_err(|e| WriteFault::Format(e.what().trim().to_owned()))
 }
 
 /// Implements `spectra_pictures::library::PictureLibrary::write_tiled_exr`.
-pub(crate) fn tiled_exr(to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), String> {
+pub(crate) fn tiled_exr(to: &mut dyn Out, picture: &TiledExr<'_>) -> Result<(), WriteFault> {
     let mut texts = picture.attributes.to_vec();
     let said = |name: &str, text: &str| (name.to_owned(), text.to_owned());
     // The order of lines is fixed so that the file does not depend on threads. The empty `DateTime` keeps the library from writing the time

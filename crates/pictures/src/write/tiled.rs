@@ -43,5 +43,5 @@ pub fn tiled_exr(
         channels: &channels,
         attributes: &attributes,
     };
-    own.write_tiled_exr(out, &picture).map_err(WriteFault::Format)
+    own.write_tiled_exr(out, &picture)
 }

@@ -5,6 +5,7 @@
 mod stated;
 
 use spectra_core::resources::FoundFile;
+use spectra_core::sink::WriteFault;
 use spectra_pictures::library::{FilePicture, PictureLibrary, PictureLimits, TiledExr, library};
 use spectra_plugin_oiio::{OpenImageIo, Samples, Written, write};
 use std::fs::File;
@@ -20,7 +21,7 @@ fn ramp(pixels: u32) -> Vec<f32> {
     (0..pixels).map(|i| (i * 7919 % 1013) as f32 / 1013.0).collect()
 }
 
-fn tiled(to: &mut File, size: [u32; 2], values: &[f32]) -> Result<(), String> {
+fn tiled(to: &mut File, size: [u32; 2], values: &[f32]) -> Result<(), WriteFault> {
     let attributes = [("spectra:scene".to_owned(), "a: \"\u{3bb}\"\n  b: [1, 2]\n".to_owned())];
     let picture = TiledExr {
         width_px: size[0],
@@ -66,7 +67,7 @@ fn the_same_picture_gives_the_same_bytes() {
 #[cfg(target_os = "linux")]
 fn a_full_disk_is_the_systems_word() {
     let mut full = File::options().write(true).open("/dev/full").expect("a device");
-    let cause = tiled(&mut full, [700, 333], &ramp(700 * 333)).expect_err("no room");
+    let cause = tiled(&mut full, [700, 333], &ramp(700 * 333)).expect_err("no room").to_string();
     assert!(cause.contains("No space left"), "{cause}");
 }
 

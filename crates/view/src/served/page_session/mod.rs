@@ -153,7 +153,7 @@ impl PageSession {
     pub(crate) fn turn(&self, path: &str, value: &Value) -> Result<u64, String> {
         let mut state = lock(&self.state);
         let from = state.pending.iter().rev().find_map(|change| change.what.picture());
-        let mut what = state.page.change(path, value, from)?;
+        let mut what = state.page.change(path, value, from).map_err(|fault| fault.to_string())?;
         if let ChangeKind::Set(texts) = &mut what {
             self.complete(path, texts)?;
         }
