@@ -35,8 +35,9 @@ pub fn csv(report: &Report) -> String {
     text
 }
 
-/// Formats each seed as a CSV row: one for each strategy, measure, kind of numbers, number of samples and seed. A row has the relative RMS
-/// error, and the signed relative error of each channel's light, which is empty for channels that record none.
+/// Formats the results of each seed as CSV: one row for each strategy, measure, kind of sample numbers (Sobol, random, ...),
+/// number of samples and seed. A row has the relative RMS error and, for each channel, the signed relative error of its light.
+/// This second error is empty for channels that record none.
 #[must_use]
 pub fn seeds_csv(report: &Report) -> String {
     let channels: Vec<String> = report.channels.iter().map(|name| quoted(&format!("relative_error {name}"))).collect();

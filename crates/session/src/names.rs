@@ -6,7 +6,7 @@ use spectra_scene::{Member, Output, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Naming of a scene's files: after the scene, or as one given file.
+/// How the files of a scene are named: after the scene, or one picture by a given file name.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     only: Option<[String; 2]>,
@@ -22,13 +22,15 @@ const ENDINGS: [&str; 29] = [
 ];
 
 impl Names {
-    /// Names all files of the scene's `output` after the scene.
+    /// Creates the naming for a whole scene: every output listed under its `output` is written, and its file is named after the
+    /// scene.
     #[must_use]
     pub fn of_scene() -> Self {
         Self::default()
     }
 
-    /// Names one picture alone: `file` itself. `None` if `file` has no known extension.
+    /// Creates the naming for one picture alone, which is written to a file with the name of `file`. `None` if `file` has no
+    /// known extension.
     #[must_use]
     pub fn of_picture(file: &Path) -> Option<Self> {
         let [stem, ending] = [file.file_stem()?, file.extension()?].map(|part| part.to_string_lossy().into_owned());

@@ -7,9 +7,9 @@ use spectra_core::stage::Response;
 /// The laws of responses, with the facts about a response that are needed to check them.
 ///
 /// - Each channel has a unique name, a unit, and a response over the band that is finite, not negative and not zero everywhere.
-/// - A picture has the size of the frame and finite values. The same frame gives the same picture, and no light gives a darker
-///   picture than much light.
-/// - A frame without the channels gives no picture and no panic.
+/// - A picture has the size of the frame and finite values. The same frame gives the same picture. A frame without any light
+///   gives a darker picture than one with much light.
+/// - A frame that lacks the response's channels gives no picture and no panic.
 #[derive(Clone, Copy, Debug)]
 pub struct ResponseLaws {
     /// Whether the response makes pictures.

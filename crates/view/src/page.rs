@@ -176,11 +176,14 @@ impl PageState {
         page
     }
 
-    /// Returns the change that a value of a control means, or that a width means for the path `width`. A control of a series selects the
-    /// picture that shares most values with picture `from`, or with the current one if `None`.
+    /// Converts a setting made on the page to the change it asks for. `path` is that of a control, or `width` for the width of
+    /// the picture in pixels; `value` is the new value.
+    ///
+    /// If the control varies over a series, the change selects a picture with this value. If several pictures have it, the change
+    /// selects the one that shares most other values with picture `from` (index from 0). `None` stands for the current picture.
     ///
     /// # Errors
-    /// The reason why the scene cannot have such a value.
+    /// The reason why there is no such control, value or picture.
     pub fn change(&self, path: &str, value: &Value, from: Option<usize>) -> Result<ChangeKind, Fault> {
         if path == "width" {
             let width = value.as_u64().and_then(|width| u32::try_from(width).ok());

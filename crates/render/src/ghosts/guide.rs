@@ -54,14 +54,16 @@ impl FrontRect {
         at.iter().all(|at| (0.0..1.0).contains(at)).then_some(at)
     }
 
-    /// Converts coordinates of the tree, from 0 to 1, to a place.
+    /// Converts coordinates in this rectangle (0 at `low`, 1 at `high`) to a place on the front, in the square [-1, 1]^2. The
+    /// inverse of [`Self::inside`].
     #[inline(always)]
     pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ([low_x, low_y], [high_x, high_y]) = (self.low, self.high);
         [low_x + (high_x - low_x) * x, low_y + (high_y - low_y) * y]
     }
 
-    /// Returns the part extended to hold more places.
+    /// Returns the smallest rectangle that contains this one and all `places`, points of the square [-1, 1]^2 around the front
+    /// disk of the lens.
     pub fn with(mut self, places: impl Iterator<Item = [f64; 2]>) -> Self {
         for place in places {
             for axis in 0..2 {
