@@ -25,13 +25,13 @@ pub struct Cube {
     pub stops: f64,
 }
 
-/// Errors of a table against the film that it was computed from, CIEDE2000 between the pictures.
+/// Color errors of a table, as CIEDE2000 differences between its pictures and those of the film that it was computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeErrors {
     /// Errors for [`RANDOM_COLORS`] random screen colors, read as picture files are: mean, 95th percentile, largest.
     pub colors: [f64; 3],
-    /// Errors for the 24 patches of a ColorChecker, mean and largest: the film sees their measured reflectances, the table their
-    /// colors.
+    /// Errors for the 24 patches of a ColorChecker: mean, largest. The film is exposed to their measured reflectances, and the
+    /// table gets their colors.
     pub reflectances: [f64; 2],
 }
 

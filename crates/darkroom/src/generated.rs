@@ -5,13 +5,13 @@ use spectra_core::params::{Fault, Faults, Warning};
 /// Name of the generated scene, as the place of values that the user did not write.
 pub(crate) const MADE: &str = "--made";
 
-/// Returns the faults without the places of values that the user did not write.
+/// Returns the faults without their places, where the place is a value that the user did not write.
 #[must_use]
 pub fn without_generated_places(faults: Faults) -> Faults {
     faults.into_iter().map(without_made).collect::<Vec<_>>().into()
 }
 
-/// Returns a warning as it is shown: without the place if the user did not write the value.
+/// Returns a warning as it is shown: without its place if the user did not write the value there.
 #[must_use]
 pub fn without_generated_place(warning: &Warning) -> Warning {
     Warning(without_made(warning.0.clone()))

@@ -7,12 +7,12 @@ use spectra_core::params::{Fault, Faults};
 use spectra_core::spectral::BAND;
 use spectra_spectrum::{Emission, Reflectance};
 
-/// A film whose development and print, scan or projection stay the same, whatever light its pictures are taken in.
+/// A film whose development and whose print, scan or projection stay the same, whatever light its pictures are taken in.
 pub struct FilmInLight(FilmPipeline);
 
 impl FilmInLight {
-    /// Builds the film of these settings (`film.stock` and any other key of a scene's film). `made_for` names the light that the
-    /// film is made for.
+    /// Builds the film that `settings` describe (`film.stock` and any other key of a scene's film). `made_for` names the light
+    /// that the film is made for.
     ///
     /// # Errors
     /// Faults of the settings.
@@ -20,9 +20,9 @@ impl FilmInLight {
         Ok(Self(FilmPipeline::of(settings, made_for)?))
     }
 
-    /// Returns the color of each surface in the picture taken in `light`: XYZ under D65, where Y of a screen's white is 1.
-    /// Filters on the camera remove the color cast of the light: a mid gray exposes each layer as in the light that the film is
-    /// made for.
+    /// Returns the color of each of `surfaces` in the picture taken in `light`: XYZ under D65, where Y of a screen's white is 1.
+    /// Filters on the camera remove the color cast of the light. With them, a mid gray exposes each layer as in the light that
+    /// the film is made for.
     ///
     /// Returns `None` if a layer does not respond to the light.
     ///

@@ -33,7 +33,7 @@ pub struct Setting {
 pub struct PictureJob {
     /// Picture file to develop.
     pub file: String,
-    /// File to write, in the folder of the host.
+    /// Name of the file to write, in the folder of the host.
     pub output: String,
     /// Number of the picture in a sequence or in its file name, if it has one. Each number has grain of its own.
     pub number: Option<u64>,
@@ -55,7 +55,7 @@ pub struct DevelopSettings {
     pub meter_each: bool,
 }
 
-/// A photograph on a film, for use as a session instead of only being written. Its scene is that in which it is developed.
+/// A photograph developed on a film, opened as a session instead of only being written to a file.
 #[derive(Clone, Debug)]
 pub struct Photograph {
     /// The picture; its output names the scene.
@@ -83,7 +83,8 @@ impl Photograph {
     }
 }
 
-/// Returns the number at the end of a file name without its extension, or before a version at its end, as in `plate.0007.v2`.
+/// Returns the number at the end of `stem`, a file name without its extension, or before a version at the end: 7 for
+/// `plate.0007.v2`.
 #[must_use]
 pub fn last_number(stem: &str) -> Option<u64> {
     let version = stem.rfind(['.', '_', '-']).filter(|at| {
@@ -135,7 +136,8 @@ fn path_of(text: &str) -> &str {
 }
 
 impl DevelopSettings {
-    /// Returns the scene of a picture, and where its light comes from. `metered` is the exposure of another picture that this one gets.
+    /// Returns the scene in which `plate` is developed, and where its light comes from. With `metered`, the picture gets that
+    /// exposure, which was metered on another picture; `None` meters this picture or uses the stated exposure.
     ///
     /// # Errors
     /// Every fault of the picture's file or of the settings, without the places of values that the user did not write.

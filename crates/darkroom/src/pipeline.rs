@@ -17,7 +17,7 @@ use std::path::Path;
 /// Fraction of the light that a mid gray reflects.
 pub(crate) const GRAY: f64 = 0.18;
 
-/// The film, and the color model that exposes it.
+/// Pictures of single colors on a film: the film, and the color model that gives the exposure by a color.
 pub struct FilmPipeline {
     pub(crate) film: Box<dyn Film>,
     pub(crate) model: Box<dyn ColorModel>,
@@ -29,8 +29,8 @@ pub struct FilmPipeline {
 }
 
 impl FilmPipeline {
-    /// Builds the film of these settings, metered for a mid gray in the light `illuminant`. Effects that need a pixel's neighbors
-    /// are off.
+    /// Builds the film that `settings` describe, metered for a mid gray in the light named by `illuminant`. Effects that need a
+    /// pixel's neighbors are off.
     ///
     /// # Errors
     /// Faults of the settings.

@@ -41,7 +41,8 @@ impl Deposit {
         self.per_unit.len()
     }
 
-    /// Returns the transmittance of layer `layer` alone at an amount, without the base, at each wavelength of the band.
+    /// Returns the transmittance of layer `layer` alone, without the base, if it holds `amount`; one value at each wavelength of
+    /// the band.
     #[must_use]
     pub fn layer_transmittance(&self, layer: usize, amount: f64) -> Vec<f64> {
         self.per_unit[layer].iter().map(|d| exp(-LN_10 * amount * d)).collect()
@@ -60,15 +61,17 @@ impl Deposit {
         (0..self.base.len()).map(|i| exp(-LN_10 * density(i))).collect()
     }
 
-    /// Returns the light that reaches each of several receivers: the sum over the band of weight times transmittance.
+    /// Returns the light that each of several receivers measures behind a film with `amounts` in its layers. `weights` has one
+    /// spectrum on the band per receiver. The light is the sum over the band of weight times transmittance.
     #[must_use]
     pub fn receiver_sums(&self, amounts: &[f64], weights: &[Vec<f64>]) -> Vec<f64> {
         let passes = self.transmittance(amounts);
         weights.iter().map(|w| w.iter().zip(&passes).map(|(w, t)| w * t).sum()).collect()
     }
 
-    /// Finds the amounts for which each receiver measures the density in `wanted` (-log10 of its light), by Newton's method from `start`.
-    /// There are as many receivers as layers. Returns `None` if there are no such amounts.
+    /// Finds the amounts for which each receiver measures its density in `wanted` (-log10 of its light in
+    /// [`Deposit::receiver_sums`]). Newton's method starts at the amounts `start`. There are as many receivers as layers. Returns
+    /// `None` if there are no such amounts.
     #[must_use]
     pub fn amounts_for(&self, wanted: &[f64], weights: &[Vec<f64>], start: &[f64]) -> Option<Vec<f64>> {
         const STEPS: usize = 60;

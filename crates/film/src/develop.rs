@@ -134,9 +134,11 @@ impl Effects {
 
 /// Develops a film and returns one plane of amounts per layer (see [`crate::deposit::Deposit`]), in the order of the emulsion.
 ///
-/// `light` has the exposure of each layer on the raster `gate`. The effect of an exposure is `factor` times it, in lx s; that includes
-/// the camera's meter and reciprocity. After scatter and halation, `lay` places the plane of a layer on the raster `film`, which exceeds
-/// the gate if the picture has a border. Last, `soil` adds dirt and damage to the amounts of a layer.
+/// `light` has a plane of exposure per layer on the raster `gate`, the camera's frame. `factor` converts it to the exposure in lx
+/// s that takes effect; it includes the exposure time and reciprocity failure.
+///
+/// After scatter and halation, `lay` receives the index and plane of a layer, and places the plane on the raster `film`. That
+/// raster is larger than the gate if the picture has a border. Last, `soil` adds dirt and damage to the amounts of a layer.
 ///
 /// # Errors
 /// A message: an effect cannot be computed at this size of pixels.

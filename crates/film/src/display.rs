@@ -17,9 +17,10 @@ use spectra_core::frame::{
 /// Rule that finds the exposure shown as white, from the frame alone. The same frame always gives the same exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AutoExposure {
-    /// Fraction of the lit pixels (Y above 0) that are no brighter than the anchor, in (0, 1].
+    /// Quantile that defines the anchor: the fraction of the lit pixels (Y above 0) that are no brighter than the anchor, in (0,
+    /// 1].
     pub quantile: f64,
-    /// Linear light that shows the anchor, in (0, 1].
+    /// Linear light as which the anchor is shown, in (0, 1].
     pub shown_as: f64,
 }
 
@@ -83,8 +84,8 @@ pub fn show_xyz(frame: &ExposureFrame, white: White, gamut: Gamut) -> Result<Dis
     finish_xyz(frame, white, gamut, None, ExtraRequest::default()).map(|finished| finished.display)
 }
 
-/// Converts a frame as [`show_xyz`] does, with the additional results in `wanted`. `adapted` converts XYZ under the light of the scene to
-/// D65 first, and does not change Y of a gray.
+/// Converts a frame as [`show_xyz`] does, and adds the results that `wanted` asks for. `adapted` is a matrix that first converts
+/// XYZ under the light of the scene to XYZ under D65; it must keep Y of a gray. `None` adapts nothing.
 ///
 /// # Errors
 /// [`MissingChannel`].

@@ -210,7 +210,8 @@ impl Emulsion {
         }
     }
 
-    /// Finds log10 of the exposure (lx s) that gives `amount` in a layer, by bisection; `None` if there is none.
+    /// Finds the log10 exposure (lx s) of a neutral subject that gives `amount` in a layer, by bisection; `None` if there is
+    /// none.
     #[must_use]
     pub fn log10_exposure_at(&self, layer: usize, amount: f64) -> Option<f64> {
         let at = |x: f64| self.amount(layer, x) - amount;

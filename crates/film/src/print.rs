@@ -108,7 +108,8 @@ impl Print {
         }
     }
 
-    /// Prints negatives whose unexposed density is `unexposed_density`, and whose mid gray has `gray_density`, on `paper`.
+    /// Prints negatives on `paper`. Their unexposed density is `unexposed_density`, and the density of a mid gray subject is
+    /// `gray_density`.
     ///
     /// # Errors
     /// [`CurveError`]: the paper is impossible, or no printing light shows that gray as [`MID_GRAY`], because it is not denser than
@@ -150,11 +151,12 @@ impl Print {
         Ok(print)
     }
 
-    /// Prints a whole negative as a printer does by eye: on a paper of grade 5 to 0 whose exposure range matches the contrast of the
-    /// negative.
+    /// Prints a whole negative as a printer does by eye: on a paper of grade 5 to 0 whose exposure range matches the contrast of
+    /// the negative.
     ///
-    /// The lightest hundredth of `densities` is printed at one of [`RANGE_ENDS`] and the darkest at the other. Returns `None` for a
-    /// negative with too little contrast even for grade 5. If the contrast is too high for any paper, the highlights are kept.
+    /// `densities` are those of the negative's pixels. The lightest hundredth of them is printed at one of [`RANGE_ENDS`] and the
+    /// darkest hundredth at the other. Returns `None` for a negative with too little contrast even for grade 5. If the contrast
+    /// is too high for any paper, the highlights are kept.
     ///
     /// # Errors
     /// [`CurveError`] for values that do not describe a paper.

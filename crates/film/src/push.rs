@@ -64,16 +64,18 @@ const POINTS: usize = 256;
 
 /// Largest push or pull, in stops, of a film without a series of development times.
 pub const MOST_ASSUMED: f64 = 2.0;
-/// Factor of contrast (ISO 6's average gradient) for each stop of push, and divisor for each stop of pull: the median over the times in the
-/// series of Tri-X and Double-X.
+/// Factor by which each stop of push raises the contrast (ISO 6's average gradient), and each stop of pull lowers it. It is the
+/// median over the development times in the series of Tri-X and Double-X.
 pub const CONTRAST_PER_STOP: f64 = 1.24;
 /// Fog density added by each stop of push: the median of the same films. A pull leaves the fog unchanged.
 pub const FOG_PER_STOP: f64 = 0.036;
 
-/// Pushes as [`pushed`] if the sheet has a series of development times. Otherwise, scales densities above base and fog by the median of
-/// other films, and shifts the curves until a mid gray has the density required by the definition.
+/// Pushes by `stops` from the development `usual`, as [`pushed`] does if the sheet has a series of development times. If the
+/// sheet has only one, scales densities above base and fog by [`CONTRAST_PER_STOP`]. Then shifts the curves until a mid gray
+/// metered at the pushed speed has its usual density above fog.
 ///
-/// For a reversal film, this is the density of its first developer, which the positive lacks.
+/// For a reversal film, the scaled densities are those of its first developer: what the positive lacks of its maximum density.
+/// Its mid gray keeps the density of the positive.
 ///
 /// # Errors
 /// [`PushError`].
@@ -132,11 +134,11 @@ fn assumed(stock: &Stock, usual: &str, stops: f64) -> Result<Pushed, PushError> 
     Ok(Pushed { minutes: None, curves: each.collect::<Result<_, _>>()? })
 }
 
-/// Pushes by `stops` (pulls, if negative) from the stock's development `usual`.
+/// Pushes by `stops` (pulls, if negative) from the stock's development named `usual`.
 ///
-/// Finds the development time at which a mid gray metered at 2^stops times the speed has the density above base and fog that a mid gray
-/// metered at the speed has after the usual time.
-/// Between two times of the sheet, densities are interpolated linearly in the logarithm of the time.
+/// Metering at 2^stops times the speed gives a mid gray less exposure. The result is the development time at which this gray
+/// still gets its usual density above base and fog. Between two times of the sheet, densities are interpolated linearly in the
+/// logarithm of the time.
 ///
 /// # Errors
 /// [`PushError`].

@@ -65,14 +65,15 @@ pub trait PictureLibrary: Sync {
     /// Returns name and version of the library, for display.
     fn name(&self) -> String;
 
-    /// Reads the first picture of a file, given its extension (`dpx`, without the dot). Apart from the pixels that it returns, it uses only
-    /// a fraction of their memory.
+    /// Reads the first picture of `file`. `ending` is the extension of its name without the dot, such as `dpx`. Besides the
+    /// pixels that it returns, the implementation needs only a fraction of their memory.
     ///
     /// # Errors
     /// What is wrong with the file, without a full stop: another format, broken, or larger than `limits`.
     fn read(&self, ending: &str, file: &FoundFile, limits: PictureLimits) -> Result<FilePicture, Fault>;
 
-    /// Reads the header of the first picture: the result of [`PictureLibrary::read`] without pixels and alpha.
+    /// Reads the header of the first picture. The result is that of [`PictureLibrary::read`], but `rgb` is empty and `alpha` is
+    /// `None`.
     ///
     /// # Errors
     /// The errors of [`PictureLibrary::read`].

@@ -18,7 +18,7 @@ pub struct Axis {
     pub to: f64,
     /// Approximate number of ticks.
     pub ticks: usize,
-    /// Number of intervals between neighboring ticks that minor ticks divide.
+    /// Number of parts into which minor ticks divide the interval between neighboring ticks.
     pub parts: usize,
 }
 

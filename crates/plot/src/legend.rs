@@ -9,7 +9,7 @@ use crate::text::{TextStyle, text_width};
 /// Longest name in a legend, in characters; a longer one would push the others off the sheet.
 pub const LONGEST_NAME: usize = 48;
 
-/// Cuts a name that is too long for a legend.
+/// Shortens a name to [`LONGEST_NAME`] characters, with `...` at its end if it is cut.
 #[must_use]
 pub fn shortened(name: &str) -> String {
     if name.chars().count() <= LONGEST_NAME {
@@ -19,8 +19,8 @@ pub fn shortened(name: &str) -> String {
     format!("{start}...")
 }
 
-/// Lays out the entries of a legend in rows from the left, each with a piece of its line. Returns the baseline start of each entry and the
-/// number of rows.
+/// Lays out the entries of a legend in rows between `start`, the first baseline start, and the right edge `right`. Each entry has
+/// a piece of its line before its name. Returns the baseline start of each entry and the number of rows.
 #[must_use]
 pub fn rows(names: &[String], start: Point, right: f64, style: &TextStyle) -> (Vec<Point>, usize) {
     const GAP: f64 = 24.0;
@@ -40,10 +40,10 @@ pub fn rows(names: &[String], start: Point, right: f64, style: &TextStyle) -> (V
     (places, rows)
 }
 
-/// Length of the piece of line in a legend entry, with the gap to the name, canvas units.
+/// Distance from the start of a legend entry to its name: the piece of line and the gap after it, canvas units.
 pub const SAMPLE: f64 = 30.0;
 
-/// Draws an entry of a legend: a piece of its line, then the name. `at` is the start of the baseline.
+/// Draws an entry of a legend: a piece of the curve's line, then its name. `at` is the start of the baseline.
 pub fn entry(canvas: &mut Canvas, at: Point, name: &str, stroke: &Stroke, style: &TextStyle) {
     let y = at[1] - style.half_cap();
     canvas.line([at[0], y], [at[0] + SAMPLE - 7.0, y], stroke);
@@ -56,8 +56,8 @@ pub fn entry_disc(canvas: &mut Canvas, at: Point, name: &str, color: Color, styl
     canvas.text([at[0] + SAMPLE, at[1]], name, style);
 }
 
-/// Returns the palette index of each curve. Three columns or channels for long, middle and short waves become reddish, green and blue.
-/// `names` are like `cie-1931#x`, `exposure.X` or `X / lx s`.
+/// Returns the palette index of each curve. If the curves are three columns or channels for long, middle and short waves, their
+/// colors are reddish, green and blue. `names` are like `cie-1931#x`, `exposure.X` or `X / lx s`.
 #[must_use]
 pub fn order(names: &[String]) -> Vec<usize> {
     const THREES: [[&str; 3]; 4] = [["r", "g", "b"], ["red", "green", "blue"], ["x", "y", "z"], ["l", "m", "s"]];

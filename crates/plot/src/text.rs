@@ -4,7 +4,7 @@ use crate::color::Color;
 use crate::font::{self, UNITS_PER_EM};
 use crate::geometry::{Point, Rect};
 
-/// The part of a line of text that lies at its point.
+/// The part of a line of text that is placed at the given point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The start of the text.
@@ -22,13 +22,13 @@ pub struct TextStyle {
     pub size: f64,
     /// Color of the strokes.
     pub color: Color,
-    /// Part of the text that lies at its point, along the line. Across the line the point is on the baseline.
+    /// Part of the text that is placed at the given point, along the line. Across the line, the baseline goes through the point.
     pub anchor: Anchor,
     /// Rotation counterclockwise, degrees: 90 reads upward.
     pub turn_deg: f64,
     /// Width of the strokes relative to the regular one: 1.4 is bold.
     pub weight: f64,
-    /// Color of a halo around the strokes that sets them off from what lies below.
+    /// Color of a halo around the strokes that sets them off from what lies below; `None` for no halo.
     pub halo: Option<Color>,
 }
 

@@ -107,8 +107,9 @@ pub fn camera_films() -> Vec<String> {
     Stock::bundled().filter(|name| !is_print(name)).map(str::to_owned).collect()
 }
 
-/// Returns the names that `typed` stands for, as a whole or as a part of only one name of its kind, the likeliest first. Whole
-/// names come before parts, and scenes come last, because they are named after their contents.
+/// Returns the names of bundled data that `typed` stands for, each with its kind, the likeliest first. `typed` is a whole name,
+/// or a part of only one name of a kind. Whole names come before parts. Scenes come last, because they are named after their
+/// contents.
 #[must_use]
 pub fn meanings(typed: &str) -> Vec<(Bundled, String)> {
     let mut found: Vec<(Bundled, String)> =

@@ -90,7 +90,8 @@ pub(crate) fn casts(
     films.iter().enumerate().filter_map(of).collect()
 }
 
-/// Returns the path at which messages about a film are placed: its stock, or the film section if it names none.
+/// Returns the path in a scene at which messages about a film are placed: its stock, or the film section if the section names no
+/// stock. `index` is the film's place in the list of films.
 #[must_use]
 pub fn place(film: &SceneFilm, index: usize, params: &Params) -> String {
     let section = params.get("film").map(|node| if film.name.is_some() { node.element(index) } else { Some(node) });

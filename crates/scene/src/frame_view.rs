@@ -31,8 +31,8 @@ const HALVINGS: usize = 7;
 pub struct ViewSearch<'a> {
     /// Effort of the search. A draft has a view that differs slightly from that of the picture.
     pub effort: Effort,
-    /// Threads that trace; any give the same bits. If they are told to stop, the scene is not assembled, and the error does not
-    /// matter.
+    /// Threads that trace. The result has the same bits for any number of threads. If they are told to stop, the assembly of the
+    /// scene fails, and its error means nothing.
     pub workers: &'a dyn Workers,
 }
 

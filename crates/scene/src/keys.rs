@@ -17,7 +17,7 @@ pub struct KeyPage {
     pub parameters: Vec<Parameter>,
 }
 
-/// Keys of a name or path, page by page.
+/// The keys that were found for a name or path, page by page.
 #[derive(Clone, Debug)]
 pub struct FoundKeys {
     /// Name or path that was looked up, in lower case and without the marks of kinds and lists.
@@ -83,8 +83,11 @@ fn plain_path(path: &str) -> String {
     out
 }
 
-/// Finds a key on all pages. Tries the whole path first, then a name or the end of a path, then a part of a key's name.
-/// A part of a key's name does not count if `is_named_elsewhere`: the name is one of a bundled file or a word of the glossary.
+/// Finds the keys that `name` means, on all pages. Tries it as a whole path, then as a key's name or the end of a path, then as a
+/// part of a key's name.
+///
+/// `is_named_elsewhere` tells that `name` is also a bundled file or a word of the glossary. It then does not count as a part of a
+/// key's name.
 ///
 /// # Errors
 /// The keys that come nearest, if any.
@@ -139,7 +142,7 @@ pub fn find_keys(name: &str, is_named_elsewhere: bool) -> Result<FoundKeys, Vec<
     }
 }
 
-/// Returns the unit of a bare number at a path of a scene, if all pages agree on it.
+/// Returns the unit that a number without a unit has at a path of a scene; `None` unless all pages agree on it.
 #[must_use]
 pub fn unit_of(path: &str) -> Option<String> {
     let wanted = plain_path(path);

@@ -390,20 +390,21 @@ fn f_number_in(text: &str) -> Option<f64> {
     }
 }
 
-/// Returns the hint for a lens with no surface that states its size. A file of another program has keywords of its own. `section`
-/// is the `lens` section.
+/// Returns advice for a lens whose surfaces state no size: which key to write. For a lens file of another program, the advice
+/// names that program's keyword. `section` is the scene's `lens` section.
 #[must_use]
 pub fn size_hint(section: Option<&Node>) -> &'static str {
     file_of(section).map_or(SIZE_HINT, size_hint_of)
 }
 
-/// Returns the hint of [`size_hint`] for a lens given by the name of its file.
+/// Returns the advice of [`size_hint`] for the lens file named `file`.
 #[must_use]
 pub fn size_hint_of(file: &str) -> &'static str {
     Format::of_name(file).map_or(SIZE_HINT, Format::how_to_clip)
 }
 
-/// Returns the hint for a lens without a stop, by the name of its file. A file of another program has keywords of its own.
+/// Returns advice for a lens without an aperture stop: which key to write. `file` is the name of the lens file. For a file of
+/// another program, the advice names that program's keyword.
 #[must_use]
 pub fn stop_hint_of(file: &str) -> &'static str {
     Format::of_name(file).map_or(STOP_HINT, Format::how_to_stop)

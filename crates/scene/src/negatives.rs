@@ -6,8 +6,8 @@ use spectra_core::stage::{Film, Negative};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Developed films of one exposure. A change of how they are printed, scanned or viewed needs nothing else; a film that develops
-/// differently is developed again. They take as much memory as the exposure.
+/// Developed films of one exposure. If only the way in which a film is printed, scanned or viewed changes, its kept negative is
+/// used again. A film that develops differently is developed again. The negatives take as much memory as the exposure.
 #[derive(Default)]
 pub struct Negatives(Mutex<Vec<Option<Developed>>>);
 

@@ -54,7 +54,8 @@ pub trait Output: Send + Sync {
         0
     }
 
-    /// Writes a file; for films side by side, that of the film at index `film`.
+    /// Writes the file of this output to `out`. `film` is the index of the film whose picture is written if several films lie
+    /// side by side.
     ///
     /// # Errors
     /// Errors of `out`; [`WriteFault::Format`] if the picture has nothing to write.

@@ -39,8 +39,8 @@ impl FileResources {
         Self { folder: folder.to_owned(), others: Vec::new() }
     }
 
-    /// Adds `folders` to search, in this order, for files that are not in the first folder: those of the files that a scene
-    /// includes.
+    /// Adds `folders` to search, in this order, for files that are not in the first folder. They are the folders of the files
+    /// that a scene includes.
     #[must_use]
     pub fn and_beside(mut self, folders: &[PathBuf]) -> Self {
         for folder in folders {

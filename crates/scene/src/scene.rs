@@ -37,7 +37,7 @@ impl Direction {
     }
 }
 
-/// Whether the lights of a source are rendered forward while the rest of it is rendered backward.
+/// How the bright lights of a source are rendered while the rest of the source is rendered backward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lights {
     /// All of the source is rendered in one direction.
@@ -64,7 +64,7 @@ pub struct Reflections {
     pub spread: GhostSpread,
 }
 
-/// Area of the frame on which the light of a reflected ray lands.
+/// Area of the frame over which the light of one reflected ray is spread.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
@@ -109,7 +109,7 @@ pub enum NumberFamily {
 /// Resolved values of the `render` section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
-    /// Direction in which light is traced, decided for all light except perhaps that of [`RenderSettings::lights`].
+    /// Direction in which light is traced. [`RenderSettings::lights`] may make an exception for the bright lights of the source.
     pub direction: Direction,
     /// Backward: whether the bright lights of the source are rendered forward.
     pub lights: Lights,
@@ -135,8 +135,7 @@ pub struct RenderSettings {
     pub reflections: Reflections,
     /// Causes of veiling glare, if glare is asked for.
     pub glare: Option<StrayReflectances>,
-    /// Whether diffraction at the edge of the aperture spreads the light. `None` means only if stars around lights would be
-    /// visible.
+    /// Whether diffraction at the edge of the aperture spreads the light. `None`: only if stars around lights would be visible.
     pub diffraction: Option<bool>,
 }
 
@@ -288,9 +287,11 @@ impl Scene {
         film.film.keeps_exposure() && self.source.is_exposed()
     }
 
-    /// Returns how many stops more a film is exposed than for the source picture as it is. `gray` is the exposure of each channel
-    /// of the scene by the picture's mid gray, lx s, for the time of the recording. `None` if no meter decides, or if the gray is
-    /// not known.
+    /// Returns how many stops more light a film gets than if the source picture were used with the exposure that it was taken
+    /// with. `time` is the metered time. `gray` is the exposure of each channel of the scene by the picture's mid gray, lx s, for
+    /// the time of the recording.
+    ///
+    /// `None` if no meter decides the exposure, or if the gray is not known.
     #[must_use]
     pub fn stops_over_file(&self, film: usize, time: &FilmTime, gray: &[f32]) -> Option<f64> {
         let SceneFilm { film, channels, .. } = self.films.get(film)?;
@@ -306,8 +307,8 @@ impl Scene {
         Some(log10(time.time_s / as_it_is_s) / log10(2.0)).filter(|stops| stops.is_finite())
     }
 
-    /// Returns the exposure time of each film for the recorded frame `exposure` of the scene. The exposure of a film is that of
-    /// the frame times its gain.
+    /// Returns the exposure time of each film for the recorded frame `exposure` of the scene. To get the exposure of a film,
+    /// multiply its channels of the frame by [`FilmTime::gain`].
     #[must_use]
     pub fn film_times(&self, exposure: &ExposureFrame) -> Vec<FilmTime> {
         let time = |film: &SceneFilm| {

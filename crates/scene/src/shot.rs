@@ -76,14 +76,15 @@ impl<'a> Shot<'a> {
         Self { layers, ..self }
     }
 
-    /// Uses a cache of negatives, for pictures without additional data. Prints films again that were already developed from this
-    /// exposure; develops the others and keeps them.
+    /// Uses the cache `kept` for pictures without additional data. A film that was already developed from this exposure is only
+    /// printed again. Other films are developed, and their negatives are kept.
     #[must_use]
     pub fn with_negatives(self, kept: &'a Negatives) -> Self {
         Self { kept: Some(kept), ..self }
     }
 
-    /// Returns the factor for the values of each channel that gives the exposure of the films.
+    /// Returns the factor for each channel of the recorded exposure that gives the exposure of its film; 1 for channels of no
+    /// film.
     #[must_use]
     pub fn gains(&self) -> Vec<f64> {
         let mut gains = vec![1.0; self.exposure.channels.len()];
@@ -121,8 +122,8 @@ impl<'a> Shot<'a> {
         beside.get(film).ok_or_else(no_film)
     }
 
-    /// Returns the picture at an index without gamut mapping, as far as it is known: see [`ExtraData::unclamped`]. Otherwise returns the
-    /// ordinary picture.
+    /// Returns the picture at an index without gamut mapping ([`ExtraData::unclamped`]) if it is known, otherwise the ordinary
+    /// picture.
     ///
     /// # Errors
     /// [`WriteFault::Format`] with the reason why there is no picture.
@@ -184,7 +185,7 @@ impl<'a> Shot<'a> {
         Ok(all.into_iter().unzip())
     }
 
-    /// Returns the width over height of a pixel for viewing: that on the film times the squeeze of the lens.
+    /// Returns the width of a pixel over its height for viewing: its aspect on the film times the squeeze of an anamorphic lens.
     #[must_use]
     pub fn pixel_aspect(&self) -> f64 {
         let size = self.exposure.size;

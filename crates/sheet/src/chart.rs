@@ -30,7 +30,8 @@ impl Chart {
         Self { key, title, x, is_log: false, labels: Vec::new(), curves: Vec::new() }
     }
 
-    /// Shows the decimal logarithm of the values, down to a millionth of the largest. Values that are not above 0 interrupt their curve.
+    /// Sets whether values are shown as their decimal logarithms, down to a millionth of the largest value. Values that are not
+    /// above 0 then interrupt their curve.
     #[must_use]
     pub fn logarithmic(self, is_log: bool) -> Self {
         Self { is_log, ..self }

@@ -26,25 +26,26 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Creates an empty sheet. The title is shown to readers and is not in the data.
+    /// Creates an empty sheet. The title is shown in text and on pages, but is not in the data.
     #[must_use]
     pub fn new(title: &str) -> Self {
         Self { title: title.to_owned(), data: Map::new(), parts: Vec::new() }
     }
 
-    /// Adds a value to the data that readers do not see. A value without a JSON form, such as infinity, is `null`.
+    /// Adds a value to the data only: JSON has it under `key`, text and pages do not show it. A value without a JSON form, such
+    /// as infinity, is `null`.
     pub fn data(&mut self, key: &str, value: impl Serialize) {
         self.data.insert(key.to_owned(), serde_json::to_value(value).unwrap_or(Value::Null));
     }
 
-    /// Adds every field of a struct to the data.
+    /// Adds every field of a struct to the data, as [`Sheet::data`] does for one value.
     pub fn fields(&mut self, value: impl Serialize) {
         if let Ok(Value::Object(fields)) = serde_json::to_value(value) {
             self.data.extend(fields);
         }
     }
 
-    /// Adds a line for readers that is not in the data: a label and a text. Nothing is shown without a text.
+    /// Adds a line, a label and a text, that is shown but is not in the data. Without a text, no line is shown.
     pub fn line(&mut self, label: &str, text: Option<String>) {
         let Some(text) = text else { return };
         let fact = (label.to_owned(), text);
@@ -54,13 +55,15 @@ impl Sheet {
         }
     }
 
-    /// Adds a figure: to the data under `key`, `null` if there is no value, and as a line for readers, formatted by `text`, if there is one.
+    /// Adds a figure to the data, under `key`, and as a shown line with `label`, where `text` formats it. Without a value, the
+    /// data has `null` and no line is shown.
     pub fn fact<T: Serialize>(&mut self, key: &str, label: &str, value: Option<T>, text: impl FnOnce(&T) -> String) {
         self.line(label, value.as_ref().map(text));
         self.data(key, value);
     }
 
-    /// Adds a text with its own line; `null` in the data if there is none.
+    /// Adds a text to the data, under `key`, and as a shown line with `label`. Without a text, the data has `null` and no line is
+    /// shown.
     pub fn text(&mut self, key: &str, label: &str, value: Option<&str>) {
         self.fact(key, label, value, |text| (*text).to_owned());
     }
@@ -70,7 +73,7 @@ impl Sheet {
         self.parts.push(Part::Heading(text.to_owned()));
     }
 
-    /// Adds a sentence for readers, on a line of its own.
+    /// Adds a sentence on a line of its own that is shown but is not in the data.
     pub fn note(&mut self, text: &str) {
         match self.parts.last_mut() {
             Some(Part::Notes(notes)) => notes.push(text.to_owned()),
@@ -78,13 +81,14 @@ impl Sheet {
         }
     }
 
-    /// Adds a table. In the data it is an array of objects under the key of the table; without rows, readers do not see it.
+    /// Adds a table. In the data it is an array of objects under the key of the table. A table without rows is not shown.
     pub fn table(&mut self, table: Table) {
         self.data.insert(table.key.clone(), table.to_json());
         self.show(table);
     }
 
-    /// Adds a table for readers whose values are in the data already, in another form. Without rows it is left out.
+    /// Adds a table that is only shown, because the data already has its values in another form. A table without rows is left
+    /// out.
     pub fn show(&mut self, table: Table) {
         if !table.is_empty() {
             self.parts.push(Part::Table(table));

@@ -137,8 +137,9 @@ impl CharacteristicCurve {
         self.log10_exposure_at(self.unexposed_density() + SPEED_POINT_DENSITY)
     }
 
-    /// Returns the slope of the straight line from the speed point to the point `span` further to the right in log10 exposure. With
-    /// [`AVERAGE_GRADIENT_SPAN`] this is Ilford's average gradient; ISO 6 uses 1.3.
+    /// Returns the slope of the straight line from the speed point to the point of the curve `span` further to the right in log10
+    /// exposure. With [`AVERAGE_GRADIENT_SPAN`] this is Ilford's average gradient; ISO 6 uses 1.3. `None` if the curve has no
+    /// speed point.
     #[must_use]
     pub fn average_gradient(&self, span: f64) -> Option<f64> {
         let from = self.speed_point()?;

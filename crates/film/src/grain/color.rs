@@ -81,7 +81,7 @@ impl ColorGrain {
         part * between(&self.layers[layer], amount - FOG)
     }
 
-    /// Largest known amount of a layer, including [`FOG`].
+    /// Returns the largest amount of dye in a layer for which the granularity is known, including [`FOG`].
     #[must_use]
     pub fn most(&self, layer: usize) -> f64 {
         self.layers[layer].last().map_or(FOG, |p| p[0] + FOG)

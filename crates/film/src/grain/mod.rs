@@ -118,8 +118,11 @@ impl Grain {
         Self::by_density(|density| rms_granularity * density.sqrt(), 1.0, half_power, seed, layer)
     }
 
-    /// Builds grain whose standard deviation through 48 um, times 1000, is `rms(amount)` at an amount of silver or dye above zero, up to
-    /// the amount `most`. Beyond that, the deviation grows with the square root of the amount.
+    /// Builds grain whose standard deviation through a circular aperture of 48 um, times 1000, is `rms(amount)`. `amount` is
+    /// silver or dye above zero, up to `most`. Beyond `most`, the deviation grows with the square root of the amount.
+    ///
+    /// `half_power` is the frequency in cycles/mm at which the Wiener spectrum falls to half. Layers of a film share the `seed`
+    /// and differ in `layer`.
     ///
     /// # Errors
     /// [`GrainError`] for a granularity outside 0 to 200, or a frequency outside 1 to 1000.

@@ -15,7 +15,8 @@ pub struct HalationBase {
     /// Transmittance of base and backing together, for one pass along the normal, 0 to 1. Light passes them twice. At the angle theta each
     /// pass has the transmittance to the power 1/cos(theta).
     pub transmittance: f64,
-    /// Share of the light arriving at the emulsion from below that the emulsion reflects down again, 0 to 0.95. It starts a further trip.
+    /// Share of the light arriving at the emulsion from the base that the emulsion reflects back down, 0 to 0.95. This share
+    /// starts a further trip through the base.
     pub reflected: f64,
 }
 

@@ -183,7 +183,7 @@ impl Positive {
         }
     }
 
-    /// The viewing eye and its light; `None` for a scan.
+    /// Viewing conditions of the film or its print; `None` for a scan, which no eye views.
     #[must_use]
     pub fn viewing(&self) -> Option<&Viewing> {
         match &self.way {

@@ -59,8 +59,8 @@ impl Viewing {
         Some(Self { weights, white, to_rgb: to_rgb(white), black: 0.0, flare: 0.0, surround: Surround::Average })
     }
 
-    /// Returns these viewing conditions with another black and white. The eye takes a film of the XYZ `white` for white and is adapted to
-    /// it (CAT16), as for a slide in the dark or a print. The luminance `black` and darker ones are shown as black.
+    /// Returns these viewing conditions with another black and white. The eye takes a film whose XYZ is `white` for white and is
+    /// adapted to it (CAT16), as for a slide in the dark or a print. Luminances up to `black` are shown as black.
     #[must_use]
     pub fn between(self, black: f64, white: [f64; 3]) -> Self {
         Self { black, white, to_rgb: to_rgb(white), ..self }
@@ -78,7 +78,8 @@ impl Viewing {
         Self { flare: FLARE, ..self }
     }
 
-    /// Returns the luminance, as a share of white above black, that is shown as `shown`; both in linear light.
+    /// Finds the luminance that is shown as `shown` (linear light; white is 1). The result is 0 at the black of these viewing
+    /// conditions and 1 at their white.
     #[must_use]
     pub fn share_shown_as(&self, shown: f64) -> f64 {
         pow(shown, 1.0 / self.surround.exponent()) * (1.0 + self.flare) - self.flare

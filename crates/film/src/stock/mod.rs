@@ -64,7 +64,8 @@ pub struct Stock {
     pub iso: Option<f64>,
     /// Kind of the stated speed.
     pub speed_kind: SpeedKind,
-    /// Shift of the curves to the stated speed, log10 of exposure, for a file with relative exposures; `None` for any other.
+    /// Shift along log10 of exposure that was applied to the curves so that they give the stated speed. `None` unless the file
+    /// has relative exposures.
     pub slid: Option<f64>,
     /// Spectral response of a meter for this stock.
     pub meter: MeterResponse,
@@ -111,8 +112,8 @@ pub struct Layer {
     pub remark: Option<String>,
     /// Dye that forms in the layer; `None` for silver.
     pub dye: Option<Dye>,
-    /// Modulation transfer: (spatial frequency in cycles/mm, response), frequencies increasing; empty if the sheet states none. Development
-    /// enhances edges, so it may exceed 1.
+    /// Measured modulation transfer: (spatial frequency in cycles/mm, response), frequencies increasing. Empty if the sheet
+    /// states none. The response may exceed 1, because development enhances edges.
     pub mtf: Vec<[f64; 2]>,
     /// Granularity of a layer with a dye: pairs of density above the minimum (ascending) and 1000 times the standard deviation
     /// through 48 um. Both are measured on neutral film through the filter of the layer's dye. Empty if the sheet states none.

@@ -83,7 +83,8 @@ pub struct Halation {
     pub kind: Option<Backing>,
     /// Share of the returning light that the emulsion reflects down again, 0 to 0.95.
     pub reflected: f64,
-    /// Light that returns to each layer, in the order of the stock, relative to the light that returns to the layer next to the base.
+    /// Light that returns to each layer, relative to the light that returns to the layer next to the base; in the order of the
+    /// stock.
     pub layers: Vec<f64>,
     /// Whether the figures are assumed: sheets hardly ever state them.
     pub assumed: bool,

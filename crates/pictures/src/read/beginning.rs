@@ -9,8 +9,8 @@ use spectra_core::resources::{FoundFile, ResourceError};
 /// Number of bytes at the start of a JPEG that its decoder receives: it reads all that it is given, and the size comes before the pixels.
 const BEGINNING_BYTES: u64 = 4 << 20;
 
-/// Reads the header of a file without its pixels. Some formats of the linked library are still unpacked when they are opened.
-/// A JPEG is scanned to its end, because its decoder does not report a missing end.
+/// Reads the size and shape of a picture file without its pixels. The linked library still unpacks the pixels of some formats. A
+/// JPEG is scanned to its end, because its decoder does not report a missing end.
 ///
 /// # Errors
 /// What is wrong with the file.

@@ -6,7 +6,8 @@ use super::linear_picture::{FileProblem, ReadOptions};
 use super::picture_channels::{ChannelData, PictureChannels};
 use spectra_core::resources::{FoundFile, ResourceError};
 
-/// Reads all channels of an OpenEXR file. From any other format that [`decode()`](super::decode()) supports, reads the linear light.
+/// Reads all channels of an OpenEXR file with the values that it stores. A file of any other format that
+/// [`decode()`](super::decode()) supports is read as linear light in `R`, `G` and `B`.
 ///
 /// # Errors
 /// What is wrong with the file.

@@ -211,8 +211,8 @@ pub fn depth(found: &FoundFile, choice: ReadOptions<'_>) -> Result<LinearPicture
     exr::decode(found.open().map_err(io)?, found.size_bytes().map_err(io)?, choice, false)
 }
 
-/// Returns how many pixels the chosen depth channel has beyond the picture on each side, horizontally and vertically; 0 if the file cannot
-/// be read.
+/// Returns the overscan of the depth channel that `choice` names: how many pixels it has beyond the picture on each side,
+/// horizontally and vertically. 0 if the file cannot be read.
 pub fn depth_overscan(found: &FoundFile, choice: ReadOptions<'_>) -> [u32; 2] {
     let read = || -> Result<[u32; 2], FileProblem> {
         if !is_exr(found)? {

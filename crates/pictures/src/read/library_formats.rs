@@ -14,7 +14,7 @@ use crate::library::{self, FilePicture, PictureLimits};
 use spectra_color::Transfer;
 use spectra_core::resources::FoundFile;
 
-/// File extensions that the library reads, in addition to those that are read without it.
+/// File extensions, separated by spaces, that the library reads in addition to those that are read without it.
 pub const ENDINGS: &str = "tx env sm vsm cin dds dcm dpx fits gif heic heif heics avif ico iff z jp2 j2k \
     j2c ppm pgm pbm pnm pfm psd pdd psb bay bmq cr2 cr3 crw cs1 dc2 dcr dng erf fff k25 kdc mdc mos mrw nef orf pef pxn \
     raf raw rdc sr2 srf x3f arw 3fr cine ia kc2 mef nrw qtk rw2 sti rwl srw drf dsc ptx cap iiq rwz rla sgi rgb rgba bw \

@@ -7,7 +7,8 @@ use super::linear_picture::FileProblem;
 pub struct ChannelData {
     /// Name of the channel, preceded by the name of its part if the part has one.
     pub name: String,
-    /// Unit of the channel, as this program writes it (`unit NAME`); empty if the file states none.
+    /// Unit of the values, from the header attribute `unit NAME` that this program writes for the channel `NAME`. Empty if the
+    /// file has no such attribute.
     pub unit: String,
     /// Values, row by row from the top, as stored: possibly negative, infinite or NaN.
     pub values: Vec<f32>,

@@ -10,8 +10,8 @@ const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
 const HEADER: usize = 128;
 const ENTRY: usize = 12;
 
-/// Builds a display profile of this space under this name, adapted to D50 by Bradford. It names no date of creation and no machine: the
-/// same space gives the same bytes.
+/// Builds the ICC display profile of the color space `space` with the curve `transfer`, adapted to D50 by Bradford. `name` is its
+/// description. The profile holds no date and no name of a machine: equal arguments give equal bytes.
 #[must_use]
 pub fn display_profile(space: &RgbSpace, name: &str, transfer: Transfer) -> Vec<u8> {
     let adaptation = Adaptation::Bradford.matrix(space.white_xyz(), D50);

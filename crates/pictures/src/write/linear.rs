@@ -27,7 +27,8 @@ pub enum LinearSpace {
 }
 
 impl LinearSpace {
-    /// Name of the space in configurations of OpenColorIO (OpenColorIO-Config-ACES, `cg-config-v1.0.0` and later).
+    /// Returns the name of the space in configurations of OpenColorIO (OpenColorIO-Config-ACES, `cg-config-v1.0.0` and later).
+    /// For some spaces the name depends on `state`, which tells light of the scene from light of a display.
     #[must_use]
     pub fn ocio_name(self, state: ImageState) -> &'static str {
         match (self, state) {
@@ -41,8 +42,8 @@ impl LinearSpace {
         }
     }
 
-    /// Identifier of the space by the Color Interop Forum (recommendations for texture assets, 2024, and display color spaces, 2026).
-    /// OpenEXR 3.4 has an attribute for it. `None` if there is no identifier.
+    /// Returns the identifier of the space by the Color Interop Forum (recommendations for texture assets, 2024, and display
+    /// color spaces, 2026). OpenEXR 3.4 has an attribute for it. `None` if the forum has none for this space and `state`.
     #[must_use]
     pub fn interop_id(self, state: ImageState) -> Option<&'static str> {
         Some(match (self, state) {

@@ -63,7 +63,8 @@ pub fn write_png16(path: &Path, picture: &DisplayPicture) -> Result<(), WriteErr
     write_atomically(path, |file| png16(file, picture, PictureSpace::Srgb, 1.0))
 }
 
-/// Writes an uncompressed 16-bit TIFF: 1 becomes 65535, values outside [0, 1] are clipped. Includes a color profile if the space has one.
+/// Writes an uncompressed 16-bit TIFF in the color space `space`: 1 becomes 65535, values outside [0, 1] are clipped. Includes a
+/// color profile if there is one for the space.
 ///
 /// # Errors
 /// [`WriteFault`]: the system refuses, or the number of pixels does not match the size.
@@ -80,7 +81,8 @@ pub fn tiff16(out: &mut dyn Out, picture: &DisplayPicture, space: PictureSpace) 
     Ok(to.flush()?)
 }
 
-/// Writes an 8-bit JPEG, each channel at full resolution, with a color profile if the space has one. `quality` is 1 to 100.
+/// Writes an 8-bit JPEG in the color space `space`, each channel at full resolution, with a color profile if there is one for the
+/// space. `quality` is 1 to 100.
 ///
 /// # Errors
 /// [`WriteFault`]: the system refuses, or the number of pixels does not match the size.

@@ -31,7 +31,7 @@ impl PictureSpace {
         }
     }
 
-    /// Name of the space in a file.
+    /// Name of the space, as a color profile states it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -26,7 +26,8 @@ pub enum SeriesKind {
     Single,
     /// A sweep: pictures that differ in named values.
     Sweep {
-        /// Paths of a product, each with its values, in order; empty if values are set together.
+        /// The swept paths, each with its values, in order: the pictures are all combinations. Empty if the sweep sets its values
+        /// together.
         axes: Vec<SweptAxis>,
     },
     /// An animation: a sequence of frames.
@@ -334,8 +335,8 @@ impl Series {
         self.written.clone().set(&overrides)
     }
 
-    /// Returns the series with stated exposure times instead of metered ones. `times` holds indices of films in the list, and
-    /// seconds.
+    /// Returns the series with fixed exposure times instead of metered ones. Each of `times` is the index of a film in the
+    /// scene's list, and its time in s.
     ///
     /// # Errors
     /// A film that is not a section of the scene.
@@ -494,9 +495,10 @@ impl Series {
         self.assembled(index, ReusableStages::default())
     }
 
-    /// Assembles a picture, and takes over what it can from scenes that were assembled before. `other` gives the stages whose
-    /// sections are unchanged, and is used up. `lens_of` gives its lens if both scenes focus it alike. `search` controls the
-    /// search for what the frame sees.
+    /// Assembles a picture by its index, and takes over what it can from scenes that were assembled before.
+    ///
+    /// Stages of `other` whose sections are unchanged are reused; `other` is consumed. The lens of `lens_of` is reused if both
+    /// scenes focus it alike. `search` controls the search for what the frame sees.
     ///
     /// # Errors
     /// The errors of [`Series::scene`]; an error if the workers are told to stop.
@@ -510,8 +512,8 @@ impl Series {
         self.assembled(index, ReusableStages::of(other, false).and_lens_of(lens_of).by(search))
     }
 
-    /// Assembles a picture only to check it: noise and grain need not be those of its frame. All stages of `other`, another such
-    /// picture, can therefore be reused if their sections are unchanged.
+    /// Assembles a picture by its index only to check it: its noise and grain may be those of another picture. All stages of
+    /// `other`, another picture assembled for a check, can therefore be reused if their sections are unchanged.
     ///
     /// # Errors
     /// The errors of [`Series::scene`].
