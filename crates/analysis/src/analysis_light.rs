@@ -3,7 +3,7 @@
 use spectra_glass::{Medium, lines};
 use spectra_lens::Lens;
 
-/// The light of a whole analysis: one wavelength, or the stated indices.
+/// The light of a whole analysis: one wavelength, or the indices that the prescription states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnalysisLight {
     /// A wavelength in air, nm. Every medium has the index of its formula there.

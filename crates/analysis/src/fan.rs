@@ -22,8 +22,8 @@ pub struct Fan<'o> {
     ends_mm: [f64; 2],
 }
 
-/// An object point and the section in which its rays are traced. The point lies at a field angle (rad) on a plane `object_mm` in
-/// front of the first vertex (infinity allowed). The angle is positive for light that comes from below (or from -x).
+/// An object point, and the section in which its rays are traced. The point lies at a field angle on a plane `object_mm` in front
+/// of the first vertex. The angle is positive for light that comes from below (or from -x).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldPoint {
     /// The section of the lens.
@@ -68,7 +68,7 @@ impl FieldPoint {
 }
 
 impl Fan<'_> {
-    /// Follows the ray at a part of the way from the lowest (0) to the highest (1) through the lens.
+    /// Traces one ray of the fan through the lens. `part` places it in the fan, from the lowest ray (0) to the highest (1).
     #[must_use]
     pub fn path(&self, part: f64) -> RayPath {
         let [low, high] = self.ends_mm;
@@ -76,8 +76,9 @@ impl Fan<'_> {
     }
 }
 
-/// Returns the largest field angle, in rad, at which any light passes in `section`. It is searched from the axis outward up to
-/// `limit_rad`, with an accuracy of 0.01 degrees. `None` if nothing passes on the axis.
+/// Returns the largest field angle, in rad, up to which light passes without a gap in `section`. `object_mm` is the distance of
+/// the object from the first vertex (infinity allowed). Angles are tried from the axis outward up to `limit_rad`, with an
+/// accuracy of 0.01 degrees. `None` if no light passes on the axis.
 ///
 /// # Errors
 /// A medium has no index at the reference line.

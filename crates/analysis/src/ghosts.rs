@@ -32,7 +32,8 @@ pub struct Ghost {
 }
 
 impl Ghost {
-    /// Returns the relative brightness on the image plane: energy over the area of the disk, whose diameter counts as at least 0.1 mm.
+    /// Returns the brightness on the image plane relative to other ghosts: `energy` divided by the area of the disk. The diameter
+    /// of the disk counts as at least 0.1 mm.
     #[must_use]
     pub fn density(&self) -> f64 {
         let size = self.size_mm.max(0.1);
@@ -45,7 +46,8 @@ impl Ghost {
 pub struct Ghosts {
     /// The ghosts, brightest first (by energy).
     pub paths: Vec<Ghost>,
-    /// Light that is reflected more often, or starts a path with too little to follow, as a part of the light that enters the lens.
+    /// Fraction of the light entering the lens that is not followed: it is reflected more often, or starts a path with too little
+    /// light.
     pub not_traced: f64,
 }
 
@@ -56,7 +58,7 @@ pub struct GhostSearch {
     pub wavelength_nm: f64,
     /// Largest number of reflections: 2 or 4.
     pub order: usize,
-    /// Paths of four reflections are skipped if they start with less than this part of the straight light.
+    /// Fraction of the straight light below which a path of four reflections is skipped.
     pub share: f64,
 }
 
@@ -163,9 +165,9 @@ fn disk(tracer: &Tracer, route: &Route, wavelength_nm: f64, radius_mm: f64, many
     Disk { energy, size_mm: 2.0 * farthest, ledger: work.take_ledger().unwrap_or_default() }
 }
 
-/// Traces rays of a ghost for a drawing: parallel light at an angle to the axis (rad). The rays are spread evenly over the part
-/// of the light that reaches the image plane by these reflections (surfaces counted from 0). Returns fewer than `many` rays if
-/// fewer reach the image.
+/// Traces rays of a ghost for a drawing: parallel light at the angle `field_rad` to the axis, in `section`. `reflections` are the
+/// reflecting surfaces in the order of the light, counted from 0. The `many` rays are spread evenly over the part of the beam
+/// that reaches the image plane by these reflections. Fewer are returned if fewer reach it.
 ///
 /// # Errors
 /// A medium has no index at this wavelength.

@@ -108,7 +108,8 @@ pub struct BlackDisk {
 }
 
 impl BlackDisk {
-    /// Returns the disk whose paraxial image has this diameter, mm. `None` if the lens forms no image.
+    /// Returns the disk in the plane of focus whose paraxial image has the diameter `image_mm`. `None` if the lens forms no
+    /// image.
     #[must_use]
     pub fn of(lens: &Lens, image_mm: f64) -> Option<Self> {
         let distance_mm = lens.focused_mm;
@@ -121,7 +122,7 @@ impl BlackDisk {
         (radius.is_finite() && radius > 0.0).then_some(Self { distance_mm, radius })
     }
 
-    /// Whether a ray along this line, in either direction, meets the disk.
+    /// Whether the straight line of a ray, continued both ways, meets the disk.
     #[must_use]
     pub fn holds(&self, ray: &Particle) -> bool {
         let (p, d) = (ray.position, ray.direction);

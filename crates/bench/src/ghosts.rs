@@ -30,8 +30,8 @@ pub struct GhostSettings {
     pub threads: usize,
     /// Instruction set to use.
     pub isa: Isa,
-    /// Returns the processor time in seconds that all threads of this program have used so far. `None` if the system does not
-    /// report it. Unlike the clock, it does not count other programs that run at the same time.
+    /// Function that returns the processor time in seconds that all threads of this program have used so far. `None` if the
+    /// system does not report it. Unlike the clock, this time does not count other programs that run at the same time.
     pub processor_s: fn() -> Option<f64>,
 }
 
@@ -75,7 +75,8 @@ pub struct GhostRow {
     pub found: GhostNoise,
     /// Noise with the same number of rays for each path, spread over the whole front.
     pub even: GhostNoise,
-    /// Factor by which `even` takes longer than `found` to the same noise (root mean square over the blocks), without preparation.
+    /// Time that `even` needs, divided by the time that `found` needs, to reach the same noise (root mean square over the
+    /// blocks), without preparation.
     pub gain: f64,
     /// Time to reach 2 % noise in 95 % of the blocks with `found`, including preparation, s.
     pub clean_s: f64,

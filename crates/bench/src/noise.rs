@@ -59,14 +59,14 @@ pub struct NoiseRow {
     pub rays_per_s: f64,
     /// Relative noise at these samples: the median and the 95th percentile over the squares.
     pub noise: [f64; 2],
-    /// Relative noise after the requested time: the median and the 95th percentile over the squares.
+    /// Relative noise after the requested time (extrapolated): the median and the 95th percentile over the squares.
     pub noise_then: [f64; 2],
     /// Time to reach 1 % noise, s: for the median and for 95 % of the squares.
     pub clean_s: [f64; 2],
 }
 
-/// Measures a scene file with `overrides` (texts `path=value`) for each direction. Directions in which it cannot be rendered are left out.
-/// `tell` receives a line about the current measurement.
+/// Measures the noise of a scene file with `overrides` (texts `path=value`) for each direction of `settings`. Directions in which
+/// the scene cannot be rendered are left out. `tell` receives a line about the current measurement.
 ///
 /// # Errors
 /// [`BenchError`]: fewer than 2 seeds, an invalid scene, no recorded light, or a failed render.

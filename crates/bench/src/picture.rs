@@ -15,8 +15,8 @@ const LEGEND_LINE: f64 = 20.0;
 /// Dash patterns: once the colors are used up they repeat with the next pattern, so that all strategies differ.
 const DASHES: [&[f64]; 3] = [&[], &[7.0, 4.0], &[2.0, 3.0]];
 
-/// Draws the errors with their 95 % intervals. The upper row shows the integral (with the scene's numbers), the lower one the scene; errors
-/// are plotted against samples on the left and against time on the right.
+/// Draws the errors with their 95 % intervals, against samples on the left and against time on the right. The upper row shows the
+/// spectral integral (with the kind of numbers that the scene uses), the lower row the rendered scene.
 #[must_use]
 pub fn picture(report: &Report) -> Canvas {
     let own = report.series.first().map(|s| s.numbers);

@@ -25,12 +25,12 @@ pub struct Settings {
     pub seed: Option<u64>,
     /// Numbers of samples, each from 1 to 2^20. Powers of two keep Sobol points evenly distributed.
     pub samples: Vec<u32>,
-    /// Strategies to compare; the others are compared with the first one. All registered ones if empty.
+    /// Strategies to measure. The first is the one that the others are compared with. All registered strategies if empty.
     pub strategies: Vec<Strategy>,
     /// Whether to render the scene as well; otherwise only the integral is measured.
     pub render: bool,
-    /// Channels recorded instead of the scene's, on its grid. If given, only the integral is measured, because no imager of the scene has
-    /// these channels.
+    /// Channels to record instead of those of the scene's imager or films, on the scene's grid. If given, only the integral is
+    /// measured, because no imager of the scene has these channels.
     pub response: Option<Vec<Channel>>,
     /// Number of threads for rendering.
     pub threads: usize,

@@ -11,7 +11,8 @@ use spectra_scene::{Scene, yaml};
 pub struct Strategy {
     /// Registered name of the strategy.
     pub kind: String,
-    /// The other keys, written as between the braces of a YAML map; `None` for those of the scene, or the defaults.
+    /// The other keys, written as between the braces of a YAML map. `None` takes the keys of the scene if it uses this strategy,
+    /// otherwise the defaults.
     pub keys: Option<String>,
 }
 

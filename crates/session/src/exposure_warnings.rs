@@ -41,8 +41,8 @@ pub(crate) fn exposure_warnings(scene: &Scene, exposure: &ExposureFrame) -> Vec<
         let text = film.film.long_exposure_warning(time_s)?;
         let fault = scene.params.fault(&place_of_film(film, index, &scene.params), text);
         Some(Warning(fault.hint(
-            "open the aperture or add light until 1 s or less is enough; or write a stock file of your own with `like: NAME`, the name of \
-             this stock, and its loss, such as `reciprocity: {exponent: 1.3, above: 1 s}`",
+            "open the aperture or add light until 1 s or less is enough; or write a stock file of your own with `like: NAME`, \
+             the name of this stock, and its loss, such as `reciprocity: {exponent: 1.3, above: 1 s}`",
         )))
     };
     let films = || scene.films.iter().enumerate();

@@ -10,8 +10,8 @@ use spectra_core::{Isa, Loss, RayBatch};
 /// A ray: a point on it, in mm, and its unit direction.
 pub type Ray = (DVec3, DVec3);
 
-/// Traces a ray of 550 nm through a surface whose vertex is the origin, and returns the ray behind the surface. The media have the
-/// refractive indices `(before, after)`, in the sense of travel, which is that of the ray's direction.
+/// Traces a ray of 550 nm through a surface whose vertex is the origin, and returns the ray behind the surface. `indices` are the
+/// refractive indices of the media (before, after), in the order in which the ray passes them.
 ///
 /// # Errors
 /// The cause of the loss, if the ray ends at the surface.
@@ -22,7 +22,7 @@ pub fn ray(surface: &dyn Surface, ray: Ray, indices: (f64, f64), action: Action)
 /// Conditions under which rays meet a surface, in a coordinate frame whose origin is the surface's vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Rays {
-    /// Refractive indices before and after, in the sense of travel.
+    /// Refractive indices of the media before and after the surface, in the order in which the rays pass them.
     pub indices: (f64, f64),
     /// Interaction at the surface: refraction, reflection or passage.
     pub action: Action,

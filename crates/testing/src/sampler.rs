@@ -24,7 +24,7 @@ use spectra_core::stage::{WavelengthDensity, WavelengthSampler};
 pub struct SamplerLaws {
     /// Whether each weight is one over the density; false for a signed mixture, whose samples also carry a sign.
     pub weight_is_inverse_density: bool,
-    /// Whether samples follow the density, with one number per sample; false if a term is followed.
+    /// Whether samples follow the density, with one number per sample. False for a sampler that follows one term of the source.
     pub follows_density: bool,
     /// Tolerance for the integral of the density, at least 1e-5.
     pub tolerance: f64,

@@ -21,7 +21,7 @@ pub const WIDTHS_PX: [u32; 4] = [240, 480, 960, 1920];
 /// A change of the scene that a page asks for.
 #[derive(Clone, Debug)]
 pub enum ChangeKind {
-    /// Sets texts `path=value` together; the first one is that of the control.
+    /// Sets values in the scene together, each by a text `path=value`; the first text is that of the control.
     Set(Vec<String>),
     /// Sets the width of the picture, pixels.
     Width(u32),
@@ -39,7 +39,8 @@ impl ChangeKind {
         }
     }
 
-    /// Returns the texts `path=value` that the change sets on a scene of this aspect ratio.
+    /// Returns the texts `path=value` that the change sets in a scene. `shape` is the aspect ratio of its picture, which gives
+    /// the height for a width.
     #[must_use]
     pub fn texts(&self, shape: &AspectRatio) -> Vec<String> {
         match self {
@@ -100,8 +101,8 @@ pub struct PagePicture {
 }
 
 impl PagePicture {
-    /// Develops an exposure of a scene; `times` are the exposure times of its films. Films of which `negatives` holds the negative are only
-    /// printed again. Returns `None` if the imager gives no picture.
+    /// Develops an exposure of a scene; `times` are the exposure times of its films. A film whose negative is in `negatives` is
+    /// only printed again. Returns `None` if the imager gives no picture.
     ///
     /// # Errors
     /// The reason why there is no picture.
@@ -167,7 +168,7 @@ pub struct PageState {
 }
 
 impl PageState {
-    /// Creates the state for a session of which the page has no picture yet.
+    /// Creates the state of a page that has no picture of the session yet.
     #[must_use]
     pub fn of(session: &Session) -> Self {
         let mut page = Self { widths_px: WIDTHS_PX.to_vec(), ..Self::default() };
@@ -202,14 +203,15 @@ impl PageState {
         }
     }
 
-    /// Takes over the controls and the width of a session's scene after it changed.
+    /// Takes over `controls` and the width of the session's scene after the scene changed.
     pub fn adopt(&mut self, session: &Session, controls: SceneControls) {
         self.controls = controls;
         self.width_px = session.scene().imager.size().width_px;
         self.scenes += 1;
     }
 
-    /// Takes over a scene. Its lens counts as changed unless `is_drawn` or it is the same one. Returns whether it counts as changed.
+    /// Takes over a scene, and returns whether its lens counts as changed, so that the page requests the drawing again. The lens
+    /// counts as unchanged if `is_drawn`, or if it is the one before.
     pub fn draw(&mut self, scene: &Arc<Scene>, is_drawn: bool) -> bool {
         let is_same = |before: &Arc<Scene>| Arc::ptr_eq(&before.lens, &scene.lens);
         let is_other = !is_drawn && !self.scene.as_ref().is_some_and(is_same);
@@ -218,8 +220,9 @@ impl PageState {
         is_other
     }
 
-    /// Makes a picture the page's last one, and returns it packed. `whole_px` is the width and height in pixels at which the page
-    /// shows it. `head` holds further facts, and `fault` is the error that the page shows, or null.
+    /// Makes `picture` the last picture of the page, and returns it packed for the page. `whole_px` is the width and height in
+    /// pixels at which the page shows it. `head` holds facts to add to its head. `fault` is the error that the page shows; `None`
+    /// for no error.
     pub fn show(&mut self, picture: PagePicture, whole_px: [u32; 2], head: Value, fault: Option<&Value>) -> &[u8] {
         let PagePicture { light, exposure, times, .. } = picture;
         self.number += 1;
@@ -236,14 +239,16 @@ impl PageState {
         &self.frame.insert(Arc::new(frame)).bytes
     }
 
-    /// Returns the controls of the scene called `name` with their current values as JSON, together with the entries of `own`.
+    /// Returns the controls of the scene with their current values as JSON, together with the entries of `own`. `name` is the
+    /// name of the scene for the page, if it has one.
     #[must_use]
     pub fn controls(&self, name: Option<&str>, own: Value) -> Value {
         let controls: Vec<Value> = self.controls.all.iter().map(Control::to_json).collect();
         joined(own, json!({"name": name, "controls": controls, "widths": self.widths_px, "width": self.width_px}))
     }
 
-    /// Returns the exposure of a pixel of the last picture in each channel as JSON; `None` if there is no such pixel.
+    /// Returns the exposure at a pixel of the last picture in each channel as JSON. `at` is the column and row in the picture as
+    /// the page shows it. `None` if there is no such pixel.
     #[must_use]
     pub fn pixel(&self, at: [u32; 2]) -> Option<Value> {
         self.frame.as_ref()?.pixel(at)

@@ -37,8 +37,8 @@ pub(crate) fn joined(mut one: Value, other: Value) -> Value {
     one
 }
 
-/// Returns facts about a session's picture for its head: samples so far, rays, exposure time, lens, film, focus and warnings. `times` are
-/// the exposure times of the films.
+/// Returns facts about a session's picture for the head that a page gets with it: samples so far, `rays`, exposure time, lens,
+/// film, focus and warnings. `times` are the exposure times of the films.
 #[must_use]
 pub fn head(session: &Session, times: &[FilmTime], rays: u64) -> Value {
     let scene = session.scene();
@@ -70,7 +70,7 @@ pub(crate) fn pixel(exposure: &ExposureFrame, times: &[FilmTime], frame: u64, [x
     Some(json!({"frame": frame, "channels": exposure.channels.iter().enumerate().map(of).collect::<Vec<_>>()}))
 }
 
-/// Returns an error as JSON, with the path of the control that it concerns.
+/// Returns an error as JSON. `path` is that of the control that caused it; empty if there is none.
 #[must_use]
 pub fn error_json(error: &SessionError, path: &str) -> Value {
     match error {
@@ -87,8 +87,8 @@ fn fault_json(fault: &Fault) -> Value {
     json!({"message": fault.message, "place": fault.place_text(), "hint": fault.hint})
 }
 
-/// Returns the spectrum of a scene's light and the response of each channel of its picture as JSON. Values are over wavelength in
-/// nm. Each curve is scaled to a largest value of 1.
+/// Returns the spectrum of a scene's light and the response of each channel of its picture as JSON, over wavelength in nm. Each
+/// curve is scaled so that its largest value is 1.
 #[must_use]
 pub fn spectra(scene: &Scene) -> Value {
     let unit = |values: &[f64]| -> Vec<f64> {

@@ -31,7 +31,7 @@ pub extern "C" fn start() {
     }
 }
 
-/// Clears the inbox and returns a pointer to room for a request of this many bytes.
+/// Clears the inbox, makes room for a request of `bytes` bytes, and returns a pointer to that room.
 #[unsafe(no_mangle)]
 pub extern "C" fn inbox(bytes: usize) -> *mut u8 {
     let mut module = module();
@@ -40,7 +40,7 @@ pub extern "C" fn inbox(bytes: usize) -> *mut u8 {
     module.inbox.as_mut_ptr()
 }
 
-/// Answers the request in the inbox, and returns the length of the answer, bytes.
+/// Answers the request in the inbox, puts the answer into the outbox, and returns its length in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn call() -> usize {
     let module = &mut *module();
@@ -48,7 +48,7 @@ pub extern "C" fn call() -> usize {
     module.outbox.len()
 }
 
-/// Returns a pointer to the last answer.
+/// Returns a pointer to the outbox, which holds the answer to the last [`call`].
 #[unsafe(no_mangle)]
 pub extern "C" fn outbox() -> *const u8 {
     module().outbox.as_ptr()

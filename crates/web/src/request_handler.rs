@@ -8,7 +8,7 @@ use spectra_view::page::{AspectRatio, PagePicture, PageState, SceneControls};
 use spectra_view::parts::{error_json, head, spectra, svg};
 use std::path::Path;
 
-/// A service that answers the requests of a page.
+/// The session behind a page, which answers the page's requests.
 #[derive(Default)]
 pub struct RequestHandler {
     open: Option<OpenScene>,
@@ -26,8 +26,8 @@ struct OpenScene {
 type Answer = Result<Vec<u8>, Value>;
 
 impl RequestHandler {
-    /// Answers a request with JSON, which has `faults` if it failed. The answer to `look` is a picture in the format of
-    /// `spectra view`.
+    /// Answers `request`, which is JSON, with JSON; the answer has `faults` if the request failed. The answer to a request `look`
+    /// is a picture in the format of `spectra view` instead.
     #[must_use]
     pub fn answer(&mut self, request: &[u8]) -> Vec<u8> {
         let answer = match serde_json::from_slice::<Value>(request) {

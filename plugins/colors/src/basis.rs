@@ -40,8 +40,8 @@ impl Basis {
         Self { grid: spectra[0].grid, continua, powers, lines_nm, line_powers }
     }
 
-    /// Builds a basis from three spectra on the same grid, each scaled so that (1, 1, 1) has the chromaticity of `white`. `None` if
-    /// no positive mixture of the three has it.
+    /// Builds a basis from three spectra on the same grid, each scaled so that the color (1, 1, 1) has the chromaticity of
+    /// `white`. `None` if no positive mixture of the three spectra has this chromaticity.
     #[must_use]
     pub fn balanced(spectra: [SpectralPower; 3], white: &SpectralPower) -> Option<Self> {
         let observer = Observer::cie_1931_2deg();

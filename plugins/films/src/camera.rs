@@ -6,7 +6,7 @@ use spectra_core::spectral::Channel;
 /// A camera with its exposure settings and its meter.
 #[derive(Clone, Debug)]
 pub(crate) struct Camera {
-    /// Channels of the film, followed by that of the meter if it is on.
+    /// Channels of the film, followed by the meter's channel if the meter is on.
     pub channels: Vec<Channel>,
     /// How the scene sets the exposure.
     pub settings: ExposureSettings,

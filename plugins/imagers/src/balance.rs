@@ -31,7 +31,7 @@ pub(crate) struct OfTemperature {
     temperature: Temperature,
 }
 
-/// The white that the viewer of the picture is adapted to.
+/// The light that the picture shows as white. Colors are adapted from it to the white of the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Balance {
     /// The screen's white: colors are not balanced.

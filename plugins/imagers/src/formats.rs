@@ -94,7 +94,7 @@ impl JsonSchema for FormatName {
     }
 }
 
-/// Lists all formats for the schema of an imager, which programs read: name, size in mm, source.
+/// Returns all formats as JSON for the schema of an imager: name, size in mm, source.
 pub fn listed() -> serde_json::Value {
     let of = |f: &Format| serde_json::json!({ "name": f.name, "width_mm": f.width_mm, "height_mm": f.height_mm, "source": f.source });
     FORMATS.iter().map(of).collect()

@@ -103,8 +103,8 @@ impl Placement {
     /// A flat frame in the nominal image plane with its center on the axis.
     pub const NOMINAL: Self = Self { center_mm: DVec3::ZERO, rotation: DMat3::IDENTITY, bend: FrameShape::Flat };
 
-    /// Creates a frame whose center is shifted along x and y (mm). It is turned about its center: first about x, then about
-    /// the y axis that was turned with it (rad, right-handed).
+    /// Creates a frame whose center is shifted by `shift_mm` along x and y. It is turned about its center by the angles
+    /// `tilt_rad`, right-handed: first about x, then about the y axis that was turned with it. `bend` is its shape.
     #[must_use]
     pub fn new(shift_mm: [f64; 2], tilt_rad: [f64; 2], bend: FrameShape) -> Self {
         let [(sx, cx), (sy, cy)] = tilt_rad.map(|t| (math::sin(t), math::cos(t)));
@@ -123,9 +123,9 @@ impl Placement {
         (self.center_mm + self.rotation * point, self.rotation * normal)
     }
 
-    /// Intersects the front of the frame with a ray through `from_mm` that travels along the unit direction `way`, toward the
-    /// imager. Returns the point, in coordinates of the nominal image plane, and its position (x, y) on the frame, all in mm.
-    /// `None` if the ray misses.
+    /// Intersects a ray toward the imager with the front of the frame. The ray passes through `from_mm` along the unit direction
+    /// `way`. Returns the point, in coordinates of the nominal image plane, and its position (x, y) on the frame, all in mm.
+    /// `None` if the ray misses the frame's surface.
     #[must_use]
     pub fn meet(&self, from_mm: DVec3, way: DVec3) -> Option<(DVec3, f64, f64)> {
         let back = self.rotation.transpose();
@@ -133,8 +133,8 @@ impl Placement {
         Some((self.center_mm + self.rotation * point, x, y))
     }
 
-    /// Returns the unit axes of the frame's surface at (x, y) on it, mm: along x, along y, and away from the lens, in the
-    /// coordinates of the nominal image plane.
+    /// Returns three unit vectors at the point (x, y) of the frame: along x and along y on its surface, and away from the lens.
+    /// They are in coordinates of the nominal image plane.
     #[must_use]
     pub fn axes(&self, x_mm: f64, y_mm: f64) -> DMat3 {
         let away = -self.bend.at(x_mm, y_mm).1;

@@ -93,7 +93,8 @@ impl Plates {
         self.plates.iter().any(|plate| !plate.separation_mm.is_empty())
     }
 
-    /// Returns the apparent shift of the frame toward the lens, in mm, near the axis and in the middle of the band.
+    /// Returns how far the plates make the frame appear shifted toward the lens, in mm, near the axis and in the middle of the
+    /// band.
     #[must_use]
     pub fn lift_mm(&self) -> f64 {
         self.plates.iter().map(|p| p.thickness_mm * (1.0 - 1.0 / p.index[p.index.len() / 2])).sum()
@@ -107,9 +108,11 @@ impl Plates {
         CoverStack::new(&self.grid, self.plates.iter().map(plate).collect())
     }
 
-    /// Passes light through the stack. Its unit direction `way` is in the axes of the frame, with z away from the lens. Returns
-    /// how far the light lands from its straight continuation (mm), and the fraction that passes. `numbers` choose between the
-    /// ordinary and the extraordinary ray of each crystal; without them, the ordinary ray is followed.
+    /// Passes a ray through the stack. `way` is its unit direction in the axes of the frame, with z away from the lens.
+    ///
+    /// Returns the vector (mm) from the point that the ray would reach without plates to the point where it lands, and the
+    /// fraction of its light that passes. `numbers` choose between the ordinary and the extraordinary ray of each crystal;
+    /// without them, the ordinary ray is followed.
     #[must_use]
     pub fn pass(&self, way: DVec3, wavelength_nm: f64, numbers: Option<RayNumbers>) -> (DVec2, f64) {
         let sideways = DVec2::new(way.x, way.y);

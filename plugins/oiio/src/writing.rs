@@ -45,7 +45,7 @@ pub struct Written<'a> {
     pub pixel_aspect: Option<f32>,
     /// Data type of the samples.
     pub samples: Samples,
-    /// Side of a tile, pixels; `None` writes rows.
+    /// Side of a square tile, pixels; `None` writes rows without tiles.
     pub tile_px: Option<u32>,
     /// Name and values of each channel, in the order of the file. Values go row by row from the top.
     pub channels: &'a [(&'a str, &'a [f32])],
@@ -99,8 +99,8 @@ pub fn write(to: &mut dyn Out, picture: &Written<'_>) -> Result<(), WriteFault> 
     }
 }
 
-/// Writes a texture as `maketx` does: tiled, with all levels down to one pixel. The extension of the path, `tx` or `exr`, selects the
-/// format.
+/// Writes a texture to the file `path`, as the program `maketx` does: tiled, with all mipmap levels down to one pixel. The
+/// extension of the path, `tx` or `exr`, selects the format.
 ///
 /// # Errors
 /// The message of the library, or a path that is not valid UTF-8.

@@ -3,7 +3,7 @@
 use spectra_core::spectral::Grid;
 
 /// A density of wavelengths that is constant between neighboring points of a grid. One look-up gives the density at any
-/// wavelength; [`crate::Quantiles`] need a search for that.
+/// wavelength, whereas [`crate::Quantiles`] have to search for it.
 #[derive(Clone, Debug)]
 pub struct Cells {
     grid: Grid,
@@ -18,8 +18,8 @@ pub struct Cells {
 const INSIDE: f64 = 1e-9;
 
 impl Cells {
-    /// Builds the density from the values `density` at the points of a grid, in any scale, by their mean over each cell. `None` if they
-    /// are zero everywhere, or if one is negative or not finite.
+    /// Builds the density from values at the points of a grid, in any scale: each cell gets the mean of the values at its two
+    /// ends. `None` if the values are zero everywhere, or if one is negative or not finite.
     #[must_use]
     pub fn of(grid: Grid, density: &[f64]) -> Option<Self> {
         if density.iter().any(|d| !(d.is_finite() && *d >= 0.0)) {
@@ -39,7 +39,7 @@ impl Cells {
         Some(Self { grid, per_step: 1.0 / grid.step_nm, upper: upper.collect(), density_per_nm })
     }
 
-    /// Returns the wavelength (nm) below which a draw falls with the probability `u`, from 0 to below 1.
+    /// Returns the wavelength (nm) at which the cumulative probability is `u`, from 0 to below 1.
     #[must_use]
     pub fn quantile(&self, u: f64) -> f64 {
         // A last cell of zero density is never drawn: the search ends at the first cell that reaches the whole sum.

@@ -18,7 +18,7 @@ use spectra_core::spectral::Grid;
 pub struct Floor(f64);
 
 impl Floor {
-    /// No floor: the strategy's own density must be positive wherever a channel is sensitive.
+    /// No floor. The strategy's own density must then be positive wherever a channel is sensitive.
     pub const NONE: Self = Self(0.0);
 
     /// Creates a floor of `share` of the samples; `None` unless it is 0 or more and below 1.

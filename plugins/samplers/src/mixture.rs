@@ -6,17 +6,17 @@ use spectra_core::isa::{Isa, Vectorized};
 use spectra_core::spectral::Line;
 use spectra_core::stage::WavelengthDensity;
 
-/// A density of wavelengths in a continuum, without lines, that can be drawn.
+/// A continuous density of wavelengths, without spectral lines, from which wavelengths can be drawn.
 pub trait Continuum: Send + Sync {
-    /// Draws one wavelength for each number of `u` in [0, 1). Writes the wavelength (nm), and multiplies the weight by the
-    /// reciprocal of the density (nm). All slices have the same length.
+    /// Draws one wavelength for each number of `u` in [0, 1). Writes it to `wavelength_nm`, and multiplies the element of
+    /// `weight` by the reciprocal of the density there (nm). All slices have the same length.
     fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], weight: &mut [f64], isa: Isa);
 
     /// Density at a wavelength, 1/nm; its integral is 1.
     fn density_per_nm(&self, wavelength_nm: f64) -> f64;
 }
 
-/// The way in which lines share their part of the samples.
+/// How the probabilities of the lines follow from their weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shares {
     /// Probabilities are proportional to the weights. With a single channel, and weights that are power times its response, each
@@ -50,8 +50,9 @@ pub struct Mixture<C = Quantiles> {
 }
 
 impl<C> Mixture<C> {
-    /// Creates a mixture of the source's `lines`, whose probabilities follow from `weights` and `shares`, and a continuum. The lines
-    /// together get the fraction `line_share` of the samples, rounded to whole strata. `None` if nothing can be drawn.
+    /// Creates a mixture of the source's `lines` and a continuum. The probabilities of the lines follow from `weights` and
+    /// `shares`. If there is a continuum, the lines together get the fraction `line_share` of the samples, rounded to whole
+    /// strata. `None` if nothing can be drawn.
     #[must_use]
     pub fn new(lines: &[Line], weights: &[f64], shares: Shares, line_share: f64, continuum: Option<C>) -> Option<Self> {
         let seen: Vec<usize> = (0..lines.len().min(weights.len())).filter(|i| weights[*i] > 0.0).collect();

@@ -41,8 +41,8 @@ pub(crate) const CHUNK: usize = 64;
 const STEPS: usize = 16;
 
 impl Quantiles {
-    /// Computes the quantiles of a density given on a grid, linear between points, in any scale. Zeros at either end are cut off. `None`
-    /// if the density is zero everywhere, or if a value is negative or not finite.
+    /// Computes the quantiles of a density given at the points of `grid`, in any scale, and linear between points. Zeros at
+    /// either end are cut off. `None` if the density is zero everywhere, or if a value is negative or not finite.
     #[must_use]
     pub fn of(grid: Grid, density: &[f64]) -> Option<Self> {
         let cumulative = Cumulative::of(grid, density)?;

@@ -64,8 +64,8 @@ impl RecordedSpectrum {
         if all > 0.0 { (self.of_lines / all).clamp(LEAST, 1.0 - LEAST) } else { 0.5 }
     }
 
-    /// Returns a density of integral 1 that is a mixture: the fraction `floor` is the summed response, the rest is `shape`, given in any
-    /// scale with its integral `of_shape`.
+    /// Returns a density of integral 1 at the points of the grid that mixes two shapes. The fraction `floor` of it is the summed
+    /// response, and the rest is `shape`, given in any scale with its integral `of_shape`.
     pub fn with_floor(&self, shape: &[f64], of_shape: f64, floor: f64) -> Vec<f64> {
         let scale = if of_shape > 0.0 { (1.0 - floor) / of_shape } else { 0.0 };
         let floor = floor / self.of_response;
@@ -80,7 +80,8 @@ impl RecordedSpectrum {
             .ok_or_else(|| Fault::new("the imager sees none of the source's light"))
     }
 
-    /// Returns wavelengths (nm) at which a channel is sensitive: sixteen in the interior of each cell of the grid.
+    /// Returns closely spaced wavelengths (nm) within the cells of the grid in which a channel is sensitive, sixteen for each
+    /// cell.
     pub fn wavelengths_nm<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = f64> + 'a {
         const IN_CELL: u32 = 16;
         let cells = (0..grid.count - 1).filter(|i| self.response[*i] > 0.0 || self.response[*i + 1] > 0.0);

@@ -9,16 +9,17 @@ use spectra_core::params::{Faults, LengthOrInfinity, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Near, Ray, Real, Surface, Travel, nearest_crossing};
 
-/// An even asphere, with the sag z = conic sag + a2 r^2 + a4 r^4 + ... and up to `TERMS` coefficients. Each size is
-/// compiled separately, so that the polynomial is code without a loop.
+/// An even asphere, with the sag z = conic sag + a2 r^2 + a4 r^4 + ... and at most `TERMS` coefficients. The code is compiled for
+/// each value of `TERMS`, so that the polynomial needs no loop.
 ///
 /// In a lens file: `{kind: even-asphere, radius: 12.3, conic: -0.8, coefficients: [0, 1.2e-5, -3e-8], glass: SCHOTT/N-BK7}`.
 ///
-/// With u = z - polynomial(r^2) the surface is c (r^2 + (1 + k) u^2) - 2 u = 0, without a square root. The iteration starts where the
-/// ray meets a conic that fits at the vertex. The first two steps are those of Ostrowski's method, which reaches fourth order with one
-/// slope and two heights (A. M. Ostrowski, Solution of Equations and Systems of Equations, 1966, chapter 11). Newton steps follow;
-/// mostly one is enough, and the last one also yields the normal. A ray for which these steps do not clearly converge is passed to
-/// [`nearest_crossing`].
+/// With u = z - polynomial(r^2) the surface is c (r^2 + (1 + k) u^2) - 2 u = 0, without a square root. The iteration starts where
+/// the ray meets a conic that fits at the vertex.
+///
+/// The first two steps are those of Ostrowski's method, which reaches fourth order with one slope and two heights (A. M.
+/// Ostrowski, Solution of Equations and Systems of Equations, 1966, chapter 11). Newton steps follow; mostly one is enough, and
+/// the last one also yields the normal. A ray for which these steps do not clearly converge is passed to [`nearest_crossing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvenAsphere<const TERMS: usize> {
     section: ConicSection,

@@ -19,7 +19,7 @@ pub struct ThinLens {
 }
 
 impl ThinLens {
-    /// Creates a lens of this focal length in air, mm: a positive one converges light, an infinite one has no effect.
+    /// Creates an ideal lens of this focal length in air, mm. A positive one converges light, and an infinite one has no effect.
     #[must_use]
     pub fn new(focal_length_mm: f64) -> Self {
         Self { power_per_mm: 1.0 / focal_length_mm }

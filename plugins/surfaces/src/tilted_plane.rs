@@ -7,8 +7,8 @@ use spectra_core::params::{Angle, Faults, Params};
 use spectra_core::registry::Context;
 use spectra_core::surface::{Hit, Kernel, KernelShape, Ray, Real, Surface};
 
-/// A plane through the vertex, turned by right-handed rotations, first about x, then about the new y axis. Its sag is
-/// z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x): a positive tilt about x moves the upper part to larger z.
+/// A plane through the vertex, turned by two right-handed rotations: by `tilt-x` about x, then by `tilt-y` about the new y axis.
+/// Its sag is z = y tan(tilt-x) - x tan(tilt-y) / cos(tilt-x). A positive tilt about x moves the upper part to larger z.
 ///
 /// In a lens file, `{kind: tilted-plane, tilt-x: 30, thickness: 20, glass: SCHOTT/N-SF11}` is the face of a prism.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,9 +21,9 @@ pub struct Toroid {
 }
 
 impl Toroid {
-    /// Creates a toroid from its curve and its axis of rotation. The curve is given by its radius in mm, its conic constant, and
-    /// its coefficients a2, a4, ... in mm^(1 - power). The distance of the axis from the vertex, in mm, is positive if the axis
-    /// lies at larger z.
+    /// Creates a toroid from its curve in the y-z plane and its axis of rotation. The curve has the radius `radius_mm`, the conic
+    /// constant `conic`, and `coefficients` a2, a4, ... in mm^(1 - power). `rotation_radius_mm` is the distance of the axis from
+    /// the vertex, positive if the axis lies at larger z.
     #[must_use]
     pub fn new(radius_mm: f64, conic: f64, coefficients: &[f64], rotation_radius_mm: f64) -> Self {
         Self {

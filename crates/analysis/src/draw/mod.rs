@@ -25,7 +25,7 @@ pub struct DrawnRay {
 }
 
 impl DrawnRay {
-    /// Whether the ray continues behind its last point: it left the lens, or met no further surface.
+    /// Whether the drawing continues the ray straight beyond its last point: the ray left the lens, or met no further surface.
     #[must_use]
     pub fn goes_on(&self) -> bool {
         matches!(self.path.end, None | Some((Loss::Missed, _)))
@@ -40,7 +40,8 @@ pub struct SectionView {
 }
 
 impl SectionView {
-    /// Returns the point at this height in the section, in the frame of a surface, mm.
+    /// Returns the point of the section at the height `height_mm` and the position `z_mm` along the axis, in the frame of a
+    /// surface.
     #[must_use]
     pub fn across(&self, height_mm: f64, z_mm: f64) -> DVec3 {
         match self.section {
@@ -49,7 +50,7 @@ impl SectionView {
         }
     }
 
-    /// Returns the height of a point in the figure, mm.
+    /// Returns the height of a point above the axis as the figure shows it, mm.
     #[must_use]
     pub fn vertical(&self, point: DVec3) -> f64 {
         match self.section {
@@ -65,7 +66,7 @@ impl SectionView {
     }
 }
 
-/// Returns for each element the largest distance from its vertex, across its axis, at which a ray meets it, mm.
+/// Returns for each element of the lens how far from its vertex, measured across its axis, the outermost of `rays` meets it, mm.
 #[must_use]
 pub fn reach_mm(lens: &Lens, rays: &[DrawnRay]) -> Vec<f64> {
     let mut reach = vec![0.0_f64; lens.elements.len()];

@@ -34,7 +34,8 @@ pub struct Outlines {
     pub stops: Vec<[DVec3; 2]>,
 }
 
-/// Cuts a lens in a section. `reach_mm` is the height of the light at each element; it sizes elements without a stated size.
+/// Cuts a lens in the section of `view`. `reach_mm` holds for each element the height up to which rays meet it
+/// ([`super::reach_mm`]). It sizes elements without a stated size.
 pub fn outlines(lens: &Lens, view: &SectionView, reach_mm: &[f64]) -> Outlines {
     let mut all = Outlines::default();
     let sizes: Vec<f64> = (0..lens.elements.len()).map(|at| size_mm(lens, at, reach_mm)).collect();

@@ -13,14 +13,14 @@ pub struct Fans {
     pub fields_deg: Vec<f64>,
     /// Distance of the object from the first vertex, mm; infinity allowed.
     pub object_mm: f64,
-    /// Number of rays per fan and wavelength, evenly spaced over what passes; an odd number includes the middle.
+    /// Number of rays per fan and wavelength, evenly spaced over the rays that pass; an odd number includes the middle.
     pub rays: usize,
     /// Wavelengths, nm.
     pub wavelengths_nm: Vec<f64>,
 }
 
 impl Fans {
-    /// Traces the fans. A field at which no ray passes gives none.
+    /// Traces the fans in `section`. A field at which no ray passes adds no rays to the result.
     ///
     /// # Errors
     /// A medium has no index at one of the wavelengths.

@@ -27,8 +27,8 @@ pub struct Patch {
     pub apart: [f64; 3],
 }
 
-/// Draws objects in rows: their colors in a reference light and in a lamp side by side, for the eye and on film, and bars of the color
-/// difference.
+/// Draws objects in rows. A row shows the object's colors in a reference light and in a lamp side by side, for the eye and on
+/// film, and bars of the color difference. `below` are two lines of text under the title.
 #[must_use]
 pub fn lamp(title: &str, below: [&str; 2], patches: &[Patch]) -> Canvas {
     let bottom = TOP + ROW * patches.len() as f64;

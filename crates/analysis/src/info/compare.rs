@@ -41,7 +41,8 @@ const PART: f64 = 0.7;
 const CELLS: usize = 96;
 
 impl Comparison {
-    /// Computes the figures of several lenses, as they are focused and stopped, all in one light or each at its own reference line.
+    /// Computes the figures of several lenses as they are focused and stopped down. `light` applies to all lenses; with `None`,
+    /// each is analyzed at its own reference line.
     #[must_use]
     pub fn of(lenses: &[Optics], light: Option<AnalysisLight>) -> Self {
         let light = |lens: &Optics| light.unwrap_or(AnalysisLight::Wavelength(lens.reference_nm));

@@ -90,8 +90,9 @@ const WIDE_DEG: f64 = 80.0;
 /// Distance from the center of 135 film to its corner, mm.
 const CORNER_MM: f64 = 21.633;
 
-/// Returns the largest useful field (rad) of a lens that passes light up to `largest_rad`. This is `largest_rad`, or the field at
-/// the corner of 135 film if no rim limits the field to a useful size.
+/// Returns the field angle, in rad, up to which field points of a lens are useful to list. `largest_rad` is the largest field at
+/// which it passes light. The result is that field, or the field at the corner of 135 film if no rim limits the field to a useful
+/// size.
 #[must_use]
 pub fn useful_field_rad(lens: &Optics, largest_rad: f64) -> f64 {
     if largest_rad < WIDE_DEG.to_radians() {

@@ -18,7 +18,7 @@ fn mm(value: Option<f64>) -> String {
 }
 
 impl LensReport {
-    /// Returns the sheet of the lens: the fields of this report as data, and its figures, field points and surfaces for readers.
+    /// Returns the sheet of the lens: all fields of this report as data; its figures, field points and surfaces are also shown.
     #[must_use]
     pub fn sheet(&self) -> Sheet {
         let year = self.year.map_or(String::new(), |year| format!(" ({year})"));

@@ -125,7 +125,7 @@ impl MountReport {
     }
 }
 
-/// Position and size of one glass surface, for the test against mounts.
+/// Position and size of one glass surface, for the test which mounts a lens fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glass {
     /// Distance from the rearmost point of the surface, vertex or rim, to the image plane, mm.
@@ -134,8 +134,8 @@ pub struct Glass {
     pub semi_diameter_mm: f64,
 }
 
-/// Returns the mounts that a lens with these surfaces fits. No glass may be closer to the image than the mirror (or the flange) allows, and
-/// glass behind the flange must pass the throat with its barrel.
+/// Returns the mounts that a lens with the surfaces `glass` fits. No glass may be closer to the image than the mirror (or the
+/// flange) allows, and glass behind the flange must pass the throat with its barrel.
 #[must_use]
 pub fn cleared(glass: &[Glass]) -> Vec<MountReport> {
     let nearest_mm = glass.iter().map(|g| g.nearest_mm).fold(f64::INFINITY, f64::min);

@@ -12,8 +12,9 @@ use spectra_lens::{Element, FirstOrder, Lens, Rims, Section};
 use spectra_optics::{Criterion, MarginalRay, Optics};
 use spectra_tracer::Indices;
 
-/// Report of a lens in one light. Positions along the axis (`..._z_mm`) are measured from the first vertex, +z toward the image. What a
-/// lens does not have (a pupil without a stop, a focal length without power) is `None`, or infinite, which JSON writes as `null`.
+/// Report of a lens in one light. Positions along the axis (`..._z_mm`) are measured from the first vertex, +z toward the image.
+/// A figure that the lens does not have is `None` or infinite, which JSON writes as `null`. Examples are a pupil without a stop,
+/// and a focal length without power.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LensReport {
     /// Name of the lens.
@@ -60,8 +61,8 @@ pub struct LensReport {
     pub entrance_pupil_diameter_mm: Option<f64>,
     /// Position of the paraxial exit pupil, mm from the first vertex.
     pub exit_pupil_z_mm: Option<f64>,
-    /// Diameter of the same beam in the plane of the exit pupil, mm: from the real marginal ray, or from the pupil magnification if the
-    /// lens is not rotationally symmetric about one axis.
+    /// Diameter, in the plane of the exit pupil, of the beam that the lens accepts from an axial object at infinity, mm. It comes
+    /// from the real marginal ray, or from the pupil magnification if the lens is not rotationally symmetric about one axis.
     pub exit_pupil_diameter_mm: Option<f64>,
     /// Paraxial pupil magnification: exit pupil over entrance pupil.
     pub pupil_magnification: Option<f64>,

@@ -49,7 +49,8 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Returns mean, median, 95th percentile and maximum of CIEDE2000, and the column and row of the maximum. `None` without colors.
+    /// Returns the mean, median, 95th percentile and maximum of CIEDE2000, and the column and row of the maximum. `width` is that
+    /// of the pictures in pixels. `None` without colors.
     #[must_use]
     pub fn delta_e_figures(&self, width: u32) -> Option<([f64; 4], [u32; 2])> {
         let all = self.delta_e.as_ref()?;
@@ -66,7 +67,7 @@ impl Difference {
         Some(([mean, at(0.5).0, at(0.95).0, most], place))
     }
 
-    /// Returns CIEDE2000 of each pixel as a field to view; `None` without colors.
+    /// Returns CIEDE2000 of each pixel as a map that [`super::view()`] can draw; `None` without colors.
     #[must_use]
     pub fn field(&self) -> Option<QuantityMap> {
         let values = self.delta_e.clone()?;

@@ -5,7 +5,8 @@ use super::measured::NotMeasured;
 use spectra_plot::Canvas;
 use spectra_sheet::Chart;
 
-/// Draws the curves of a cut against millimeters on the film if known, else against pixels. With `is_log` the scale is logarithmic.
+/// Draws the curves of a cut against the distance along it, in mm on the film if that is known, otherwise in pixels. `is_log`
+/// makes the scale of the values logarithmic.
 ///
 /// # Errors
 /// No value along the cut is defined, or none is above 0 on a logarithmic scale.

@@ -36,8 +36,9 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// Samples quantities along `way`. A row or column has one point per pixel. A line has about one point per pixel of its length,
-    /// interpolated between the four nearest pixels; a hue takes the value of the nearest.
+    /// Samples the quantities `fields` along the line `way` through `picture`. A row or column has one point per pixel. A
+    /// straight line has about one point per pixel of its length, interpolated between the four nearest pixels; a hue takes the
+    /// value of the nearest.
     ///
     /// # Errors
     /// The line leaves the picture, or has no length.

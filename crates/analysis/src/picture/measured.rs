@@ -217,7 +217,7 @@ impl Measured {
         Some(*anchor / SHOWN_AS)
     }
 
-    /// Returns the error that says why the picture has no colors.
+    /// Returns the error for a measurement that needs colors, which the channels of this picture do not define.
     #[must_use]
     pub fn without_colors(&self) -> NotMeasured {
         let names: Vec<_> = self.planes.channels.iter().take(8).map(|c| format!("`{}`", c.name)).collect();

@@ -36,8 +36,8 @@ impl Quantity {
         ("hue", Self::Hue),
     ];
 
-    /// Returns the quantity of this name, or the channel of this name, which takes precedence; `L*` means lightness. `None` if there is no
-    /// such quantity.
+    /// Returns the quantity called `name`: a channel of the picture with this name, or else one of [`Self::NAMED`]; `L*` means
+    /// lightness. `None` if there is no such quantity.
     #[must_use]
     pub fn named(name: &str, picture: &Measured) -> Option<Self> {
         if picture.planes.channel(name).is_some() {
@@ -47,8 +47,8 @@ impl Quantity {
         Self::NAMED.into_iter().find(|(own, _)| *own == name).map(|(_, quantity)| quantity)
     }
 
-    /// Returns the default quantity: illuminance or exposure if the picture knows its light in absolute units, else luminance. A picture
-    /// without colors shows its first channel.
+    /// Returns the quantity to show by default. It is illuminance or exposure if the picture knows its light in absolute units,
+    /// otherwise luminance. For a picture without colors it is the first channel.
     #[must_use]
     pub fn usual(picture: &Measured) -> Self {
         match picture.unit {

@@ -14,9 +14,11 @@ const POINTS: u32 = 961;
 const POSITIVE: Color = Color::PALETTE[2];
 const NEGATIVE: Color = Color::PALETTE[1];
 
-/// Draws a chain. The left plot shows the product of the spectra, that of the terms, and the largest of its terms by sign. The right plot
-/// shows the relative error of estimates against the number of samples: one term of every factor as measured (dots) and as computed, and
-/// sampled wavelengths.
+/// Draws a chain. The left plot shows the product of the spectra, the product of their Gaussian sums, and the largest of its
+/// terms by sign.
+///
+/// The right plot shows the relative error of estimates against the number of samples: with one term of every factor, as measured
+/// (dots) and as computed, and with sampled wavelengths.
 #[must_use]
 pub fn figure(chain: &Chain) -> Canvas {
     let names: Vec<&str> = chain.factors.iter().map(|f| f.name.as_str()).collect();

@@ -54,9 +54,9 @@ pub struct Factor {
 pub struct Scatter {
     /// Number of samples of one estimate.
     pub samples: usize,
-    /// Error with one term of every factor: measured root mean square over the seeds.
+    /// Error with one term of every factor: root mean square over the seeds, as measured.
     pub one_term_measured: f64,
-    /// Error with one term of every factor, computed from all choices.
+    /// Error with one term of every factor, as computed from all possible choices of terms.
     pub one_term: f64,
     /// Error with wavelengths drawn evenly over the band, as computed.
     pub even: f64,
@@ -77,7 +77,7 @@ pub struct Chain {
     pub integral: f64,
     /// Integral of the same product by quadrature over the band.
     pub quadrature: f64,
-    /// Size of `integral` - `quadrature` divided by the sum of the sizes of all terms' integrals.
+    /// Absolute value of `integral` - `quadrature`, divided by the sum of the absolute integrals of all terms.
     pub difference: f64,
     /// Integral of the product of the spectra themselves, by quadrature.
     pub of_spectra: f64,
@@ -86,9 +86,9 @@ pub struct Chain {
     /// Cancellation of the product: the sum of the absolute integrals of all its terms, divided by the absolute value of
     /// `integral`.
     pub kappa: f64,
-    /// Mean of one-term estimates over all choices; equal to the integral.
+    /// Mean of the estimates with one term of every factor, over all choices of terms; equal to the integral.
     pub one_term_mean: f64,
-    /// Relative standard deviation of one such estimate, from all choices.
+    /// Relative standard deviation of one such estimate, computed from all choices of terms.
     pub one_term_deviation: f64,
     /// Number of estimates from which each error is measured.
     pub seeds: u64,
@@ -135,8 +135,8 @@ pub enum ChainError {
 }
 
 impl Chain {
-    /// Builds the product of `factors` (name and spectrum) over the band of `grid`. A factor not defined by Gaussians is fitted by `terms`
-    /// of them on that grid.
+    /// Builds the product of `factors` (name and spectrum) over the band of `grid`. A factor that is not defined by Gaussians is
+    /// fitted by `terms` Gaussians on that grid.
     ///
     /// # Errors
     /// [`ChainError`]. At most [`MOST_TERMS`] terms, one light and one detector are allowed.

@@ -35,13 +35,14 @@ impl Aims {
         Self { zones: vec![0; len], places: [axis(0), axis(1)], densities: vec![0.25; len], azimuths: Vec::new() }
     }
 
-    /// Returns where a ray enters the lens: its zone, its position, and the direction of its source around the axis, if that was noted.
+    /// Returns where a ray enters the lens: its zone, its position, and the direction of its source point around the axis, if
+    /// that was noted.
     pub fn landed(&self, ray: usize) -> Entrance {
         let azimuth = self.azimuths.get(ray).copied().unwrap_or([0.0, 1.0]);
         Entrance { zone: self.zones[ray], place: [self.places[0][ray], self.places[1][ray]], azimuth }
     }
 
-    /// Notes the directions around the axis from which rays start.
+    /// Notes for each ray the direction around the axis, a unit vector, of the point from which it starts.
     pub fn note_azimuths(&mut self, rays: &RayBatch) {
         let [x, y, _] = rays.positions();
         self.azimuths = x.iter().zip(y).map(|(x, y)| azimuth(*x, *y)).collect();

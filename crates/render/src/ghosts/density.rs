@@ -30,8 +30,9 @@ impl Density {
         Self { cells: vec![Cell { first: 0, lower: 0.5, left: [0.5; 2] }] }
     }
 
-    /// Builds a density from cells, each listed after the cell that it is a part of. Each gives the index of the first of its four parts,
-    /// or 0 if it is not cut. An uncut cell also gives its ray density, up to a common factor.
+    /// Builds a density from cells, each listed after the cell that it is a part of. A cell is given by the index of the first of
+    /// its four parts, or 0 if it is not cut, and by its ray density. Ray densities are read only for uncut cells, and are known
+    /// up to a common factor.
     pub fn of(cells: &[(u32, f64)]) -> Self {
         let mut own = vec![Cell { first: 0, lower: 0.5, left: [0.5; 2] }; cells.len()];
         let mut means: Vec<f64> = cells.iter().map(|(_, density)| *density).collect();

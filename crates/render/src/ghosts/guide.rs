@@ -46,7 +46,8 @@ impl FrontRect {
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
     }
 
-    /// Converts a place to coordinates of the tree, from 0 to 1; `None` if it lies outside.
+    /// Converts a place on the front, in the square [-1, 1]^2, to coordinates in this rectangle (0 at `low`, 1 at `high`). `None`
+    /// if the place lies outside the rectangle.
     #[inline]
     pub fn inside(&self, place: [f64; 2]) -> Option<[f64; 2]> {
         let at = |axis: usize| (place[axis] - self.low[axis]) / (self.high[axis] - self.low[axis]);
@@ -76,17 +77,18 @@ impl FrontRect {
 }
 
 impl Guide {
-    /// Creates a guide that is uniform over the square.
+    /// Creates the guide of a search that has not found any light yet: its part is the whole square, with a uniform density.
     pub fn everywhere() -> Self {
         Self::of(FrontRect::ALL, Density::even())
     }
 
-    /// Creates a guide that sends all rays uniformly over the square.
+    /// Creates a guide that ignores its cells and sends all rays uniformly over the square.
     pub fn blind() -> Self {
         Self { even: 1.0, ..Self::everywhere() }
     }
 
-    /// Creates a guide from the cells of a part.
+    /// Creates a guide that sends rays into the rectangle `part` with the density `cells`, and the fraction `EVEN` of them all
+    /// over the square.
     pub fn of(part: FrontRect, cells: Density) -> Self {
         Self { part, even: EVEN, cells }
     }

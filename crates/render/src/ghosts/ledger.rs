@@ -142,7 +142,7 @@ pub(super) fn of(
 }
 
 impl LightLedger {
-    /// Books a ghost path, to which the light `came` came at its last reflection.
+    /// Books a ghost path. `came` is the light that the path's last reflection sends along it.
     fn book(&mut self, path: &Path, came: f64, account: &PathAccount, imager: usize) {
         // Light that neither passed nor was reflected there: metal coatings absorb it, and there is no imager outside the frame.
         let kept = came - account.entered;

@@ -114,7 +114,7 @@ struct PathPlan {
     guides: Vec<Guide>,
     /// Number of rays in a block.
     rays: u64,
-    /// Factor for the weight of each ray that makes it stand for the rays of all paths.
+    /// Factor for the weight of each ray: the number of rays of all paths in a block, divided by the number of this path.
     boost: f64,
     /// First cell of the separate sums of this path, if it has any.
     own_cells: Option<usize>,
@@ -420,7 +420,7 @@ impl Ghosts {
         Plan { opening: old.opening, zones: old.zones.clone(), ways, rays, blocks_a_sample, ledger, apart }
     }
 
-    /// Returns the value of one unit of the sums of this many rays, J/m2 in the given time.
+    /// Returns the exposure, J/m2 in the time `time_s`, that one unit of the sums stands for after `rays` rays.
     fn worth(&self, rays: u64, time_s: f64) -> f64 {
         time_s / self.scale / self.pipeline.scene.imager.size().pixel_area_mm2() / rays.max(1) as f64
     }

@@ -18,7 +18,8 @@ pub struct CameraColor {
     pub neutral: DVec3,
     /// XYZ of white, with Y = 1.
     pub white_xyz: DVec3,
-    /// Matrix to XYZ adapted to D50 (Bradford) from the camera's red, green and blue, each divided by its value for white.
+    /// Matrix from balanced camera values to XYZ adapted to D50 (Bradford). Balanced means that red, green and blue are each
+    /// divided by their value for white.
     pub d50_from_balanced: DMat3,
     /// Signal that 1 lx s of white light gives in the channel with the largest signal, in the unit of the channels.
     pub largest_per_lx_s: f64,

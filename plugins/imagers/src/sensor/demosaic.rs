@@ -3,8 +3,8 @@
 
 use super::pattern::Pattern;
 
-/// Interpolates the missing colors of a Bayer mosaic. `values` are row-major; returns red, green and blue of each pixel. Without
-/// filters all three equal the value of the pixel.
+/// Interpolates the missing colors of a Bayer mosaic. `values` holds one value per pixel, row by row; the result is red, green
+/// and blue of each pixel. Without filters, all three equal the value of the pixel.
 #[must_use]
 pub fn demosaic(values: &[f32], width: usize, height: usize, pattern: Pattern) -> Vec<[f32; 3]> {
     if pattern == Pattern::Monochrome {

@@ -41,7 +41,7 @@ impl PatternName {
 }
 
 impl Pattern {
-    /// Index of the channel that a pixel records: 0 red, 1 green, 2 blue; always 0 without filters.
+    /// Returns the channel that the pixel in this column and row records: 0 red, 1 green, 2 blue; always 0 without filters.
     #[inline(always)]
     #[must_use]
     pub fn channel(self, column: u32, row: u32) -> u32 {

@@ -38,7 +38,8 @@ struct Silicon {
 }
 
 impl Photosite {
-    /// Creates pixels without stack, microlens and well. The pixel pitch is in mm. `silicon` gives index and absorption.
+    /// Creates pixels without stack, microlens and well. `silicon` gives the refractive index and the absorption of the detector
+    /// material.
     #[must_use]
     pub fn new(pitch_mm: f64, silicon: &Medium, grid: &Grid) -> Self {
         const THIN_MM: f64 = 1e-4;
@@ -91,10 +92,11 @@ impl Photosite {
         sideways / (self.stack_index * self.stack_index - sideways.length_squared()).sqrt() * self.stack_mm
     }
 
-    /// Returns the number of columns and rows from the pixel that light enters to the one whose well collects it.
+    /// Returns the offset, in columns and rows, from the pixel that light enters to the pixel whose well collects it.
     ///
-    /// `entry` is the point of entry, in pixels from the center along columns and rows, and `place_mm` the same point on the
-    /// frame. `axes` are the surface's axes there, and `way` is the direction of travel toward the silicon.
+    /// `entry` is the point of entry relative to the center of the pixel, in pixels along columns and rows. `place_mm` is this
+    /// point on the frame. `axes` are the axes of the frame's surface there, and `way` is the direction of travel toward the
+    /// silicon.
     #[must_use]
     pub fn landing(
         &self,

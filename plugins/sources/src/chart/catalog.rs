@@ -19,8 +19,8 @@ pub struct ChartEntry {
 }
 
 impl ChartEntry {
-    /// Draws the chart `width_mm` wide, or in the size of its design if that is `None`. Only charts with random parts use
-    /// `seed`.
+    /// Draws the chart `width_mm` wide, or in the size of its design if `width_mm` is `None`. `seed` matters only for charts with
+    /// random parts.
     ///
     /// # Errors
     /// [`ChartError::Width`] if the width is not positive and finite.
@@ -122,7 +122,8 @@ fn cached(key: Key, draw: impl FnOnce() -> Chart) -> Arc<Chart> {
     })
 }
 
-/// Draws the chart `name`, `width_mm` wide or in the size of its design.
+/// Draws the chart `name`, `width_mm` wide, or in the size of its design if `width_mm` is `None`. `seed` matters only for charts
+/// with random parts.
 ///
 /// ```
 /// use spectra_plugin_sources::chart::{NO_INK, chart};

@@ -24,7 +24,8 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Returns half the extent of the cell along the axis (`cos`, `sin`) and along its normal, mm.
+    /// Returns how far the cell extends from its center along the direction (`cos`, `sin`) and along the normal of this
+    /// direction, mm.
     #[must_use]
     pub fn half_along(&self, cos: f64, sin: f64) -> [f64; 2] {
         let [hx, hy] = self.half_mm;

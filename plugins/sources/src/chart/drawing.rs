@@ -47,7 +47,7 @@ impl Drawing {
         self.shapes.push((shape.into(), index));
     }
 
-    /// Adds a landmark with its center and the radius within which nothing else is drawn.
+    /// Adds a landmark called `name` with its center, and the radius around it within which nothing else is drawn.
     pub fn mark(&mut self, name: impl Into<String>, center_mm: [f64; 2], radius_mm: f64) {
         self.landmarks.push(Landmark { name: name.into(), center_mm, radius_mm });
     }

@@ -114,8 +114,8 @@ impl Grid {
         if entry & HAS_LIST == 0 || entry == NO_INK { entry } else { self.top_of_list(entry, shapes, x_mm, y_mm) }
     }
 
-    /// Computes [`Grid::ink_at`] for many points, chunk by chunk. For each chunk it finds the cells with vector code, looks them
-    /// all up without a branch, and then decides the points whose cells have a list.
+    /// Computes [`Grid::ink_at`] for many points and writes the indices to `ink`. For each chunk of points, vector code finds the
+    /// cells, and one pass without branches looks them up. Points whose cells have a list of shapes are decided afterwards.
     pub fn ink_at_batch(&self, shapes: &[(Shape, u16)], x_mm: &[f64], y_mm: &[f64], ink: &mut [u16], isa: Isa) {
         let chunks = x_mm.chunks(CHUNK).zip(y_mm.chunks(CHUNK)).zip(ink.chunks_mut(CHUNK));
         let (mut block, mut within) = ([0; CHUNK], [0; CHUNK]);

@@ -105,8 +105,8 @@ impl Chart {
         &self.inks
     }
 
-    /// Fraction of the chart that each ink covers, counted at 512 x 512 points. The sum is 1, and the values do not depend on the
-    /// width.
+    /// Fraction of the chart that each ink covers, in the order of [`Chart::inks`], counted at 512 x 512 points. The sum is 1,
+    /// and the values do not depend on the width.
     #[must_use]
     pub fn areas(&self) -> &[f64] {
         &self.areas

@@ -34,7 +34,8 @@ pub fn slanted_square(drawing: &mut Drawing, center: [f64; 2], side: f64, degree
     drawing.mark(format!("slanted edge {degrees:+}"), center, 0.75 * side);
 }
 
-/// Returns the frequency, cycles per mm, for `hundreds` x 100 line widths per picture height.
+/// Converts a resolution of `hundreds` x 100 line widths per picture height to cycles per mm on a chart. The picture height is
+/// `height`, mm.
 pub fn frequency(hundreds: f64, height: f64) -> f64 {
     50.0 * hundreds / height
 }
@@ -77,8 +78,9 @@ pub enum Narrowing {
     Left,
 }
 
-/// Draws a hyperbolic wedge of 9 lines, `length` mm long, with its wide end at `start`. It runs from the first to the last of
-/// `figures` (hundreds of line widths per picture `height`), with a tick and a number for each.
+/// Draws a hyperbolic wedge of 9 lines, `length` mm long, with its wide end at `start`. Its resolution runs from the first to the
+/// last of `figures`, in hundreds of line widths per picture height. The picture height is `height`, mm. Each figure gets a tick
+/// and a number.
 pub fn wedge(drawing: &mut Drawing, start: [f64; 2], length: f64, narrowing: Narrowing, figures: &[u32], height: f64) {
     let [first, last] = [figures[0], figures[figures.len() - 1]].map(f64::from);
     let direction = match narrowing {
@@ -104,9 +106,10 @@ pub fn wedge(drawing: &mut Drawing, start: [f64; 2], length: f64, narrowing: Nar
     }
 }
 
-/// Draws two square groups of five lines, vertical and horizontal, with `hundreds` x 100 line widths per picture `height` and
-/// their tops at `top`. The outer sides of the groups, at `x` and at `x + pitch`, face away from the center of the chart if
-/// `pitch` points toward it.
+/// Draws two square groups of five lines, one vertical and one horizontal, with their tops at `top`. Their resolution is
+/// `hundreds` x 100 line widths per picture height `height`, mm.
+///
+/// The outer sides of the groups, at `x` and at `x + pitch`, face away from the center of the chart if `pitch` points toward it.
 pub fn line_pair(drawing: &mut Drawing, [x, top]: [f64; 2], pitch: f64, hundreds: f64, height: f64) {
     let period = 1.0 / frequency(hundreds, height);
     let side = 4.5 * period;
