@@ -17,8 +17,8 @@ use spectra_core::frame::{
 /// Rule that finds the exposure shown as white, from the frame alone. The same frame always gives the same exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AutoExposure {
-    /// Quantile that defines the anchor: the fraction of the lit pixels (Y above 0) that are no brighter than the anchor, in (0,
-    /// 1].
+    /// Quantile in (0, 1] that defines the anchor: the fraction of the lit pixels (Y above 0) that are no brighter than the
+    /// anchor.
     pub quantile: f64,
     /// Linear light as which the anchor is shown, in (0, 1].
     pub shown_as: f64,

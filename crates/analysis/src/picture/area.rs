@@ -68,8 +68,8 @@ impl Area {
     }
 
     /// Returns the text of a spectrum file of the area, `kind: histogram`, whose counts are W m^-2 in each band. The spectrum is
-    /// a light, which can be used as any `spectrum`, `illuminant` or filter factor. Values below 0, which noise may cause, become
-    /// 0. `said` describes where the area was measured and becomes the name of the spectrum.
+    /// a light, which can be used as any `spectrum`, `illuminant` or filter factor. Negative values, which noise may cause, are
+    /// replaced by 0. `said` describes where the area was measured and becomes the name of the spectrum.
     ///
     /// # Errors
     /// The picture has no bands, or no light falls on the area.

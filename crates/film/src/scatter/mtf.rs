@@ -35,8 +35,8 @@ fn in_range(what: &'static str, value: f64, low: f64, high: f64, range: &'static
 }
 
 impl Mtf {
-    /// Builds H. Frieser's one-constant model. It spreads a line of light as 10^(-2 |x| / k), so that M(f) = 1 / (1 + (pi k f /
-    /// ln 10)^2).
+    /// Builds H. Frieser's one-constant model. It spreads a line of light as 10^(-2 |x| / k), so that
+    /// M(f) = 1 / (1 + (pi k f / ln 10)^2).
     ///
     /// `k_mm` is k, the full width over which the spread falls to a tenth of its peak, 0.0001 to 1 mm; films have 0.005 to 0.04.
     /// Source: H. Frieser, "Spread function and contrast transfer function of photographic layers", Photographic Science and

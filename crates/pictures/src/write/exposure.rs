@@ -42,8 +42,8 @@ pub fn exr(
     write(out, frame, attributes, &colors, &|at, values| FlatSamples::F32(times(values, gain(gains, at))))
 }
 
-/// Writes the frame as [`exr()`] does, but with 16-bit floats, which take half the space. They hold about three digits, up to 65
-/// 504 (larger values become infinite).
+/// Writes the frame as [`exr()`] does, but with 16-bit floats, which take half the space. They hold about three digits, up to
+/// 65 504 (larger values become infinite).
 ///
 /// # Errors
 /// The errors of [`exr()`].
