@@ -23,9 +23,10 @@ pub enum Granularity {
 }
 
 impl Granularity {
-    /// Builds the grain of a layer, which is number `first_layer + layer` among all layers of the picture.
+    /// Builds the grain of layer number `layer` of the film, which is number `first_layer + layer` among all layers of the
+    /// picture. `seed` selects the grains.
     ///
-    /// The half-power frequency of the spectrum of a dye layer follows from its granularity in the middle of its range.
+    /// The grain of a dye layer gets the half-power frequency that is usual for its granularity in the middle of its range.
     ///
     /// # Errors
     /// [`GrainError`]: no grain has this granularity.
@@ -78,7 +79,7 @@ impl Effects {
             || self.mtf.iter().any(Option::is_some)
     }
 
-    /// Returns a plane of exposure after scatter in the emulsion of a layer.
+    /// Returns what `plane`, the exposure of layer number `layer` on `raster`, becomes by scatter in the emulsion.
     ///
     /// # Errors
     /// A message: the scatter cannot be computed at this size of pixels.
@@ -89,8 +90,8 @@ impl Effects {
         }
     }
 
-    /// Returns the plane of exposure that a layer receives: scattered in its emulsion, with halation added. `spare` is a work buffer
-    /// that successive layers share.
+    /// Returns the exposure that layer number `layer` receives if `plane` falls on it, on `raster`: scattered in its emulsion,
+    /// with halation added. `spare` is a work buffer that successive layers share.
     ///
     /// # Errors
     /// A message: scatter or halation cannot be computed at this size of pixels.

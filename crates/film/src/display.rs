@@ -76,7 +76,8 @@ pub fn channel<'a>(frame: &'a ExposureFrame, name: &str) -> Result<&'a ExposureC
     frame.channel(name).ok_or_else(|| MissingChannel(name.into()))
 }
 
-/// Converts a frame with the channels `X`, `Y` and `Z` (CIE 1931) to a picture for a screen.
+/// Converts a frame with the channels `X`, `Y` and `Z` (CIE 1931) to a picture for a screen. `white` is the exposure shown as
+/// white, and `gamut` treats colors that the screen cannot show.
 ///
 /// # Errors
 /// [`MissingChannel`].

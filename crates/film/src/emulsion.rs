@@ -257,8 +257,8 @@ impl Emulsion {
         });
     }
 
-    /// Converts the exposures of one layer (lx s) to amounts, in place, as [`Emulsion::develop_all`] does if the other layers have the
-    /// amounts of a neutral subject.
+    /// Converts `plane`, the exposures of layer number `layer` (lx s), to amounts, in place. The other layers are taken to have
+    /// the amounts of a neutral subject. `effect` multiplies the exposures first, as in [`Emulsion::develop_all`].
     pub fn develop(&self, layer: usize, plane: &mut [f32], effect: f64) {
         let curve = &self.curves[layer];
         let made = || per_octave(|log10_exposure| curve.at(log10_exposure), effect);

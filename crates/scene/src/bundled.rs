@@ -119,8 +119,8 @@ pub fn meanings(typed: &str) -> Vec<(Bundled, String)> {
     found
 }
 
-/// Returns a hint for a name that belongs to another kind than the wanted one: "`kodak-tri-x-400` is a film stock; for a lens,
-/// take a name from `spectra list lens`".
+/// Returns a hint if `typed` is a name of another kind than `wanted`, such as "`kodak-tri-x-400` is a film stock; for a lens,
+/// take a name from `spectra list lens`". `None` if it is not.
 #[must_use]
 pub fn other_kind(typed: &str, wanted: Bundled) -> Option<String> {
     let (kind, name) = meanings(typed).into_iter().find(|(kind, _)| *kind != wanted)?;

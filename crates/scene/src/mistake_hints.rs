@@ -140,8 +140,8 @@ fn aperture(typed: &str) -> Option<String> {
     }
 }
 
-/// Returns a hint for a film that is not bundled. It lists camera films only, the most similar ones (by a word, or by the speed)
-/// first.
+/// Returns a hint for a film `typed` that is not bundled. It lists the most similar names of `camera`, the camera films, those
+/// with the same words or speed first.
 #[must_use]
 pub fn other_films(typed: &str, camera: &[String]) -> String {
     let words = |name: &str| -> Vec<String> {

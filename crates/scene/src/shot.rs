@@ -44,7 +44,8 @@ pub struct Shot<'a> {
 }
 
 impl<'a> Shot<'a> {
-    /// Wraps recorded light; nothing is developed yet.
+    /// Wraps the light that a scene recorded, with the exposure times of its films, attributes for the headers of files, and the
+    /// instruction set to compute with. No film is developed yet.
     #[must_use]
     pub fn new(
         scene: &'a Scene,

@@ -45,8 +45,8 @@ pub struct DetectorPlane<R> {
 }
 
 impl<R: Response> DetectorPlane<R> {
-    /// Creates detectors with this response on the frame `plane`. If an exposure time is given, in seconds, they integrate light
-    /// over it.
+    /// Creates an imager on the frame `plane` whose pixels have the response `response`. With an exposure time, in s, they
+    /// integrate light over it; with `None` they record irradiance itself.
     #[must_use]
     pub fn of(plane: Plane, response: R, exposure_time_s: Option<f64>) -> Self {
         Self { plane, response, exposure_time_s }

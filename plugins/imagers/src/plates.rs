@@ -28,8 +28,8 @@ pub struct Plate {
 }
 
 impl Plate {
-    /// Creates a glass plate of the thickness `thickness_mm`, with the absorption of its glass. `filter` is a further
-    /// transmittance as a function of the wavelength in nm.
+    /// Creates a plate of the glass `medium`, `thickness_mm` thick, with the absorption of this glass. `filter` is a further
+    /// transmittance as a function of the wavelength in nm. `grid` holds the wavelengths at which the plate is tabulated.
     #[must_use]
     pub fn glass(medium: &Medium, thickness_mm: f64, filter: impl Fn(f64) -> f64, grid: &Grid) -> Self {
         let passed = |w: f64| medium.internal_transmittance(w, thickness_mm).unwrap_or(1.0) * filter(w);
@@ -42,8 +42,8 @@ impl Plate {
         }
     }
 
-    /// Creates a plate of a uniaxial crystal whose optic axis is at 45 degrees to the plate. The extraordinary ray is shifted
-    /// toward `azimuth_rad`, measured from the frame's +x.
+    /// Creates a plate of a uniaxial crystal whose optic axis is at 45 degrees to the plate. `ordinary` and `extraordinary` are
+    /// media with its two indices. The extraordinary ray is shifted toward `azimuth_rad`, measured from the frame's +x.
     #[must_use]
     pub fn crystal(
         ordinary: &Medium,

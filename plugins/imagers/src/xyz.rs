@@ -83,7 +83,7 @@ pub struct XyzResponse {
 }
 
 impl XyzResponse {
-    /// Creates the channels on `grid`, with `white` for the picture.
+    /// Creates the channels X, Y and Z on `grid`. `white` is the exposure that the picture shows as white.
     #[must_use]
     pub fn new(grid: &Grid, white: White) -> Self {
         let functions = Observer::cie_1931_2deg().on_grid(grid);
@@ -116,8 +116,8 @@ impl Response for XyzResponse {
 pub type XyzPlane = DetectorPlane<XyzResponse>;
 
 impl XyzPlane {
-    /// Creates an imager on the frame `plane` with channels on `grid`. If an exposure time is given, in seconds, the channels are
-    /// in lx s; otherwise they are in lx.
+    /// Creates an imager on the frame `plane` with channels on `grid`. With an exposure time, in s, the channels are in lx s;
+    /// with `None`, in lx. `white` is the exposure that the picture shows as white.
     #[must_use]
     pub fn new(plane: Plane, grid: &Grid, exposure_time_s: Option<f64>, white: White) -> Self {
         Self::of(plane, XyzResponse::new(grid, white), exposure_time_s)

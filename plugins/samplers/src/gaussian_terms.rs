@@ -90,13 +90,14 @@ enum Terms {
 }
 
 impl GaussianTerms {
-    /// Creates the strategy with `terms` terms, which are fitted once the source is known; `None` unless there are 1 to 32.
+    /// Creates the strategy with `terms` Gaussian terms, which are fitted once the source is known. `follow` is the way to draw
+    /// from the terms. `None` unless there are 1 to 32 terms.
     #[must_use]
     pub fn fitted(terms: usize, follow: Follow, floor: Floor) -> Option<Self> {
         (1..=MOST_TERMS as usize).contains(&terms).then_some(Self { terms: Terms::Fitted(terms), follow, floor })
     }
 
-    /// Creates the strategy with the given terms, without fitting.
+    /// Creates the strategy with the terms of `mixture` instead of fitted ones. `follow` is the way to draw from the terms.
     #[must_use]
     pub fn given(mixture: GaussianMixture, follow: Follow, floor: Floor) -> Self {
         Self { terms: Terms::Given(mixture), follow, floor }

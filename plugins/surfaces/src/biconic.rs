@@ -18,7 +18,8 @@ pub struct Biconic {
 }
 
 impl Biconic {
-    /// Creates a biconic from its radii (mm) and conic constants, each in the x-z and in the y-z section.
+    /// Creates a biconic from its two radii at the vertex (mm) and its two conic constants, each in the order x-z section, y-z
+    /// section.
     #[must_use]
     pub fn new(radius_mm: (f64, f64), conic: (f64, f64)) -> Self {
         Self {

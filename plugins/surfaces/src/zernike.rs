@@ -78,8 +78,9 @@ fn radial(n: u32, m: u32) -> Vec<f64> {
 }
 
 impl Zernike {
-    /// Creates a surface from the radius and conic constant of the conic part, the normalization radius, and the coefficients
-    /// from j = 1 on. The radii are in mm, and the coefficients in mm of sag.
+    /// Creates a surface from its conic part and its Zernike part. The conic part has the radius at the vertex `radius_mm` and
+    /// the conic constant `conic`. The Zernike part has `coefficients` from j = 1 on, in mm of sag, and its own normalization
+    /// radius. `ordering` says which polynomial each j means.
     #[must_use]
     pub fn new(
         radius_mm: f64,

@@ -74,8 +74,8 @@ pub fn chromaticity(points: &[(String, [f64; 2])]) -> Canvas {
     chromaticity_diagram(points, Diagram::Xy, Observer::cie_1931_2deg())
 }
 
-/// Draws a chromaticity diagram in other coordinates or for another observer. Points are x, y for that observer. The gamuts are defined for
-/// the 1931 observer and shown only for it.
+/// Draws a chromaticity diagram with the coordinates `diagram` for any observer. `points` are names with the x, y that `observer`
+/// sees. The gamuts are defined for the 1931 observer and shown only for it.
 #[must_use]
 pub fn chromaticity_diagram(points: &[(String, [f64; 2])], diagram: Diagram, observer: &Observer) -> Canvas {
     let (left, top) = (76.0, 22.0);

@@ -15,12 +15,12 @@ pub struct FittedCurve {
     pub name: String,
     /// Points of the curve: wavelength (nm) and index.
     pub points: Vec<[f64; 2]>,
-    /// Index of the formula minus the measured index, for each measured row.
+    /// Index of the formula minus the measured index, for each measured point in order.
     pub deviations: Vec<f64>,
 }
 
-/// Draws measured indices (wavelength in nm, and n) as points and formulas as curves through them. A second plot below shows the
-/// deviation of each formula from each row.
+/// Draws the measured indices (wavelength in nm, n) as points, and dispersion formulas as curves through them. A second plot
+/// below shows the deviation of each formula at each measured point.
 #[must_use]
 pub fn glass_fit(title: &str, measured: &[[f64; 2]], curves: &[FittedCurve]) -> Canvas {
     let mut canvas = Canvas::new(WIDTH, HEIGHT, title);

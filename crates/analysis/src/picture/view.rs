@@ -164,7 +164,8 @@ pub fn view(picture: &Measured, field: &QuantityMap, scale: Scale, title: &str) 
     Ok(canvas)
 }
 
-/// Draws what a screen cannot show: brightness in gray, with pixels marked in color that are beyond white, outside sRGB, or not a number.
+/// Draws what a screen cannot show. Brightness is gray; pixels are marked in color if they are beyond white, outside sRGB, or not
+/// a number. `white` is the Y of full white in the picture's unit; if `None`, [`Measured::white`] is used.
 ///
 /// # Errors
 /// The picture has no colors, or no pixel of it is lit.

@@ -68,7 +68,8 @@ enum PositiveKind {
 }
 
 impl Positive {
-    /// Prepares the film itself in transmitted light: a negative on a light table (the bare light is white), or a slide, projected.
+    /// Prepares the film itself in transmitted light: a negative on a light table (the bare light is white), or a slide,
+    /// projected. `film` is the developed `stock`, and `light` shines through it. `look` sets white, black and surround.
     ///
     /// # Errors
     /// [`PositiveError::DarkLight`] if the light is invisible.

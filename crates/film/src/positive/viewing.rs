@@ -118,13 +118,14 @@ impl Viewing {
         self.black
     }
 
-    /// Converts XYZ to what the screen shows: linear light, sRGB primaries, within its gamut.
+    /// Converts XYZ, relative to the bare light, to what the screen shows: linear light, sRGB primaries, within its gamut.
     #[must_use]
     pub fn to_screen(&self, xyz: [f64; 3]) -> [f64; 3] {
         self.shown_in(xyz, GamutLimit::Screen)
     }
 
-    /// Converts XYZ to linear light in sRGB primaries, within the gamut of the screen or without limits.
+    /// Converts XYZ, relative to the bare light, to linear light in sRGB primaries. `reach` limits the result to the gamut of the
+    /// screen or leaves it open.
     #[must_use]
     pub fn shown_in(&self, xyz: [f64; 3], reach: GamutLimit) -> [f64; 3] {
         let rgb = apply(&self.to_rgb, self.corrected_for_surround(xyz));

@@ -113,7 +113,8 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, Faults> {
     series.scene(0)
 }
 
-/// Reads a scene file with its includes, and determines the pictures that it stands for.
+/// Reads a scene file with its includes, and determines the pictures that it stands for. `overrides` are texts `path=value`, as
+/// given by `--set`.
 ///
 /// # Errors
 /// Every fault of files, `--set`, `include`, `sweep` and `animation`. Faults of a picture are reported by [`Series::scene`].
@@ -131,7 +132,8 @@ pub fn load_series(path: &Path, overrides: &[String]) -> Result<Series, Faults> 
     ParsedScene::read(name, root, overrides, beside)?.set(overrides)
 }
 
-/// Reads a series from the text of a scene file. Its stages get their files from `resources`.
+/// Reads a series from the text of a scene file called `name`. `overrides` are texts `path=value`. The stages of the scene get
+/// their files from `resources`.
 ///
 /// # Errors
 /// The errors of [`load_series`].
@@ -145,7 +147,8 @@ pub fn series_of_text(
     series_of_tree(name, root, overrides, resources)
 }
 
-/// Reads a series from a tree, for example one made by a program. Its stages get their files from `resources`.
+/// Reads a series from the tree `root` of a scene called `name`, for example one made by a program. `overrides` are texts
+/// `path=value`. The stages of the scene get their files from `resources`.
 ///
 /// # Errors
 /// The errors of [`load_series`].

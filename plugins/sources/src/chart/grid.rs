@@ -56,7 +56,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Builds the grid for `shapes`, later ones on top, each with its ink, on a ground of ink 0.
+    /// Builds the grid of a chart `width_mm` x `height_mm`. Each of `shapes`, later ones on top, has the index of its ink. The
+    /// ground has the ink 0.
     #[must_use]
     pub fn new(width_mm: f64, height_mm: f64, shapes: &[(Shape, u16)]) -> Self {
         let mut depth = DEPTH;

@@ -22,7 +22,7 @@ pub fn patch_block(drawing: &mut Drawing, center: [f64; 2], side: f64, pitch: f6
     }
 }
 
-/// Draws a Siemens star on the existing ground.
+/// Draws a black Siemens star with `cycles` filled sectors on the existing ground.
 pub fn star(drawing: &mut Drawing, center: [f64; 2], radius: f64, cycles: u32) {
     drawing.add(SiemensStar::new(center, radius, cycles, 0.0), BLACK);
     drawing.mark("siemens star", center, radius);
