@@ -19,11 +19,12 @@ pub struct Ghost {
     pub surfaces: Vec<usize>,
     /// Light that reaches the image plane along this path, divided by that of the straight path.
     pub energy: f64,
-    /// Focus of the ghost: distance from the image plane to the ghost's paraxial image of infinity, in mm, positive behind the
-    /// plane. `None` if the light leaves parallel.
+    /// Focus of the ghost, mm: distance from the image plane to the paraxial image of infinity along this path, positive behind
+    /// the plane. `None` if the light leaves parallel.
     pub focus_mm: Option<f64>,
-    /// Paraxial focal length of the path, mm. Its ratio to the focal length of the lens is the size of the ghost image relative to the
-    /// regular image. Negative means upside down relative to a positive one.
+    /// Paraxial focal length of the path, mm; `None` if the light leaves parallel. Divided by the focal length of the lens, it is
+    /// the size of the ghost image relative to the regular image. A negative ratio means a ghost that is upside down relative to
+    /// the regular image.
     pub focal_length_mm: Option<f64>,
     /// Diameter of the disk that a point at infinity makes on the image plane, mm.
     pub size_mm: f64,

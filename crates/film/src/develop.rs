@@ -135,8 +135,8 @@ impl Effects {
 
 /// Develops a film and returns one plane of amounts per layer (see [`crate::deposit::Deposit`]), in the order of the emulsion.
 ///
-/// `light` has a plane of exposure per layer on the raster `gate`, the camera's frame. `factor` converts it to the exposure, lx s,
-/// that takes effect; it includes the exposure time and reciprocity failure.
+/// `light` has a plane of exposure per layer on the raster `gate`, the camera's frame. `factor` converts it to the exposure,
+/// lx s, that takes effect; it includes the exposure time and reciprocity failure.
 ///
 /// After scatter and halation, `lay` receives the index and plane of a layer, and places the plane on the raster `film`. That
 /// raster is larger than the gate if the picture has a border. Last, `soil` adds dirt and damage to the amounts of a layer.

@@ -45,7 +45,7 @@ impl Optics {
         Self { weights: pitch_mm.map(|pitch| weights(deviation_mm / pitch)), isa: Isa::detect() }
     }
 
-    /// Returns whether pixels are fine enough for the lens to matter.
+    /// Returns whether the pixels are fine enough for the blur of the lens to show.
     #[must_use]
     pub fn is_felt(&self) -> bool {
         self.weights.iter().any(|w| w.len() > 1)

@@ -37,8 +37,8 @@ pub enum GhostPaths {
     /// All paths; also used for every other kind of light.
     #[default]
     All,
-    /// The path reflected by these surfaces, in the order of the light, counted from 1. One more than the number of surfaces is
-    /// the imager.
+    /// The path that these surfaces reflect, in the order of the light, counted from 1. The number after that of the last surface
+    /// stands for the imager.
     One(Vec<usize>),
     /// All paths that have no layer of their own.
     Others,

@@ -15,8 +15,8 @@ pub trait Output: Send + Sync {
     /// Returns the name of this output in a scene.
     fn kind(&self) -> &'static str;
 
-    /// Returns the parts of its file names after the name of the picture (and of the film, if there are several). These are a
-    /// middle part, mostly empty, and the extension, such as `["-rays", ".svg"]`.
+    /// Returns the two parts of its file names that follow the name of the picture (and of the film, if there are several). They
+    /// are a middle part, mostly empty, and the extension, such as `["-rays", ".svg"]`.
     fn ending(&self) -> [&'static str; 2];
 
     /// Returns what its files hold.

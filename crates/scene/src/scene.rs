@@ -140,7 +140,9 @@ pub struct RenderSettings {
 }
 
 impl RenderSettings {
-    /// Returns whether both settings trace the same rays, apart from how many.
+    /// Returns whether renders with these settings and with `other` trace the same rays, so that one is the other with more
+    /// samples. Batch size and diffraction may differ. For rays traced forward, the numbers of rays must be in proportion to the
+    /// samples.
     #[must_use]
     pub fn traces_as(&self, other: &Self) -> bool {
         let free = |settings: &Self| Self { batch: 0, samples: 0, rays: 0, diffraction: None, ..*settings };

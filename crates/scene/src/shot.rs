@@ -113,7 +113,7 @@ impl<'a> Shot<'a> {
         pictures.get(film).map(|(_, picture)| picture).ok_or_else(no_film)
     }
 
-    /// Returns the additional data of the picture at an index, as far as an output of the scene wants them
+    /// Returns the additional data of the picture at the index `film`. They hold only what some output of the scene asks for
     /// ([`crate::Output::extra_request`]).
     ///
     /// # Errors

@@ -127,8 +127,8 @@ pub(crate) fn checked<T: Send>(
     Err(SessionError::Faults(Faults(told.collect())))
 }
 
-/// Returns the fault with a hint that names the first of `members`, the pictures that have it, and counts the others. The fault is
-/// unchanged if all `all` pictures have it.
+/// Returns the fault with a hint that names the first of `members`, the pictures that have it, and counts the others. The fault
+/// is unchanged if all `all` pictures have it.
 fn with_affected_pictures(series: &Series, fault: Fault, members: &[usize], all: usize) -> Fault {
     let Some(first) = members.first().filter(|_| members.len() < all) else { return fault };
     let member = series.member(*first);

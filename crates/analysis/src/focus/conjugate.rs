@@ -27,9 +27,11 @@ const CELLS: [usize; 2] = [64, 96];
 /// Rays whose slopes have an RMS spread below this are parallel.
 const PARALLEL: f64 = 1e-14;
 
-/// Finds the object point in best focus (least RMS distance of real rays) at an image point, in the direction that belongs to it.
-/// `image_mm` is in the frame of the image plane; its z is not 0 on an imager that is tilted or shifted. Cover plates in front of the frame
-/// are included; they are parallel to the image plane. Returns `None` if no light reaches the image point.
+/// Finds the object point that a lens images best (least RMS distance of real rays) at the image point `image_mm`, and the
+/// direction from the lens toward it.
+///
+/// `image_mm` is in the frame of the image plane; its z is not 0 on an imager that is tilted or shifted. Cover plates in front of
+/// the frame are included; they are parallel to the image plane. Returns `None` if no light reaches the image point.
 ///
 /// # Errors
 /// A medium has no usable index in this light.

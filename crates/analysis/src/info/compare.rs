@@ -30,8 +30,8 @@ pub struct Compared {
     pub axial_contrast: Option<f64>,
     /// Geometrical contrast at the field angle, in the same plane.
     pub field_contrast: Option<f64>,
-    /// Distortion at the field angle: image height divided by that of a distortion-free picture with the central scale of this one, less
-    /// one.
+    /// Distortion at the field angle: image height divided by the height without distortion, less one. The height without
+    /// distortion has the image scale of the center everywhere.
     pub distortion: Option<f64>,
 }
 

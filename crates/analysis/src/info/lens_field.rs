@@ -16,8 +16,8 @@ pub struct FieldReport {
     pub angle_deg: f64,
     /// Distance from the center at which the chief ray meets the image plane, mm.
     pub image_height_mm: f64,
-    /// Distortion: image height divided by that of a distortion-free picture with the central scale of this one, less one. `None` on the
-    /// axis, and at 90 degrees and beyond.
+    /// Distortion: image height divided by the height without distortion, less one. The height without distortion has the image
+    /// scale of the center everywhere. `None` on the axis, and at 90 degrees and beyond.
     pub distortion: Option<f64>,
     /// Sagittal focus: distance behind the image plane at which rays close to the chief ray meet in the x-z section, mm. `None` if they are
     /// parallel.

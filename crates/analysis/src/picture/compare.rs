@@ -30,8 +30,8 @@ pub struct Differs {
     pub largest: f64,
     /// Column and row of the largest difference.
     pub largest_at: [u32; 2],
-    /// Share of the blocks of 16 x 16 pixels whose means differ by more than 3 standard errors, estimated from the differences within each
-    /// block. Noise alone gives about 0.3 %. `None` if there is no whole block.
+    /// Share of the blocks of 16 x 16 pixels whose means differ by more than 3 standard errors. The standard error is estimated
+    /// from the differences within each block. Noise alone gives a share of about 0.3 %. `None` if there is no whole block.
     pub blocks_beyond_3: Option<f64>,
     /// Number of pixels left out because the value of one picture is not finite.
     pub not_finite: usize,

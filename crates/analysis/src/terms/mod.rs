@@ -58,7 +58,7 @@ pub struct Scatter {
     pub one_term_measured: f64,
     /// Error with one term of every factor, as computed from all possible choices of terms.
     pub one_term: f64,
-    /// Error with wavelengths drawn evenly over the band, as computed.
+    /// Error with wavelengths drawn uniformly over the band, as computed.
     pub even: f64,
     /// Error with wavelengths drawn in proportion to the first factor, as computed.
     pub first_factor: f64,

@@ -5,8 +5,8 @@ use crate::stock::Stock;
 use spectra_core::math::log10;
 use spectra_numerics::linear;
 
-/// Amount of dye in unexposed film (reversal: fully exposed film), in the unit of dye amounts. It has grain of its own, so
-/// unexposed film is grainy.
+/// Amount of fog dye that is assumed in unexposed film (reversal: in fully exposed film), in the unit of dye amounts. It makes
+/// such film grainy.
 pub const FOG: f64 = 0.1;
 
 /// Number of neutral exposures that are sampled.

@@ -64,9 +64,9 @@ const USUAL: [f64; 2] = [17.0, 35.0];
 /// Number of steps of the variance over the amount.
 const STEPS: usize = 1024;
 
-/// Estimates the frequency (cycles/mm) at which the Wiener spectrum of a film of granularity `rms` has fallen to half, for a film
-/// of which this frequency is not known. It is assumed to be inversely proportional to the granularity, from 35 for Kodak Tri-X
-/// 400 (17), and limited to 20 to 100.
+/// Estimates the half-power frequency of the grain, in cycles/mm, for a film of which it is not known: the frequency at which the
+/// Wiener spectrum has fallen to half. It is assumed to be inversely proportional to the RMS granularity `rms`. The scale is that
+/// of Kodak Tri-X 400, with 35 cycles/mm at a granularity of 17; results are limited to 20 to 100.
 #[must_use]
 pub fn usual_half_power(rms: f64) -> f64 {
     (USUAL[0] * USUAL[1] / rms).clamp(20.0, 100.0)

@@ -17,12 +17,12 @@ pub enum Medium {
 
 /// Inhibition of one layer's development by the development of the others.
 ///
-/// Nothing changes if all layers have the densities of a neutral subject, because the sheet's curves already include their interaction. If
-/// the other layers have less dye than for a neutral subject of its exposure, a layer develops more, as if it were exposed more.
+/// A layer whose neighbors hold less dye than they would for a neutral subject of its exposure develops more, as if it were
+/// exposed more. A neutral subject does not change, because the sheet's curves already include the interaction of the layers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interlayer {
-    /// Rows: the inhibited layer; columns: the inhibiting layer, both in the order of the stock. Log10 of exposure per unit of dye that
-    /// develops in the inhibiting layer.
+    /// Element `[i][j]` is how strongly layer j inhibits layer i, both in the order of the stock: log10 of exposure per unit of dye
+    /// in layer j.
     pub inhibition: Vec<Vec<f64>>,
     /// Whether the values are assumed, not measured.
     pub assumed: bool,

@@ -5,8 +5,8 @@ use serde::Deserialize;
 use spectra_core::math::{exp, log, pow};
 use spectra_core::params::{Fault, Params, Positive, Time};
 
-/// Reciprocity failure as the exposure time Ta that replaces the metered time Tm. An exposure of Ta then has the effect that Tm would have
-/// without the failure.
+/// Reciprocity failure, stated by two exposure times. An exposure of the time Ta has the effect that the metered time Tm would
+/// have without the failure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reciprocity {
     /// A power law: Ta = Tm^exponent, in units of the threshold (K. Schwarzschild, 1900).
@@ -34,8 +34,8 @@ impl Reciprocity {
         }
     }
 
-    /// Returns how much an exposure of `time_s` counts, relative to a short one of the same lx s: Tm / Ta at Ta = `time_s`. 1 up to the
-    /// threshold, less beyond.
+    /// Returns the fraction of an exposure of `time_s` that takes effect, relative to a short exposure with as many lx s. This is
+    /// Tm / Ta at Ta = `time_s`: 1 up to the threshold, less beyond.
     #[must_use]
     pub fn effect(&self, time_s: f64) -> f64 {
         if !(time_s > self.above_s()) {

@@ -97,8 +97,9 @@ impl Stock {
         })
     }
 
-    /// Computes the speed of the curves at the contrast of ISO 6 (0.80 above the speed point, 1.30 to its right), between the two
-    /// developments with contrasts around it. `None` for a stock that is not a silver negative, and if there are no two such developments.
+    /// Computes the speed of a silver negative at the contrast that ISO 6 requires: 0.80 above the speed point at 1.30 to its
+    /// right. Interpolates between the two developments whose contrasts lie on either side. `None` for any other stock, and if
+    /// there are no two such developments.
     #[must_use]
     pub fn iso_6(&self) -> Option<Iso6> {
         let [layer] = &self.layers[..] else { return None };

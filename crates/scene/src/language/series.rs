@@ -63,8 +63,9 @@ pub struct Member {
 }
 
 impl Member {
-    /// Returns the name of the picture's files without extension. `part` distinguishes several files of one picture, such as by
-    /// the name of a film. The number comes last for a frame, and before `part` for a picture of a sweep.
+    /// Returns the name of the picture's files without extension: the name of the scene, the number of the picture, and `part`.
+    /// `part` distinguishes several files of one picture, such as by the name of a film. For a frame of an animation, the number
+    /// comes last.
     #[must_use]
     pub fn stem(&self, part: &str) -> String {
         let Self { base, mark, .. } = self;
@@ -360,8 +361,8 @@ impl Series {
         Ok(series)
     }
 
-    /// Returns whether the series sets something for each picture that affects the exposure of its films. Each picture is then
-    /// metered by itself.
+    /// Returns whether the series changes something from picture to picture that affects the exposure of its films. Each picture
+    /// is then metered by itself.
     #[must_use]
     pub fn sets_exposures(&self) -> bool {
         let used = |path: &str| match path.strip_prefix("variables.") {
