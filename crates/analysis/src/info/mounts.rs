@@ -125,7 +125,7 @@ impl MountReport {
     }
 }
 
-/// Position and size of one glass surface, for the test which mounts a lens fits.
+/// Position and size of one glass surface, for the test of which mounts a lens fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glass {
     /// Distance from the rearmost point of the surface, vertex or rim, to the image plane, mm.
