@@ -64,7 +64,7 @@ pub struct Reflections {
     pub spread: GhostSpread,
 }
 
-/// Area of the frame over which the light of one reflected ray is spread.
+/// Area of the frame on which the light of a reflected ray lands.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(inline)]
