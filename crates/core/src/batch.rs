@@ -19,8 +19,8 @@ pub const CONTINUUM: u32 = u32::MAX;
 /// counted from 1; 0 means all channels.
 pub const PIXEL_BITS: u32 = 28;
 
-/// Returns the tag of a ray that adds only to channel `only_channel` (from 0) of a pixel, because its light passed that
-/// channel's filter of a mosaic.
+/// Returns the tag of a ray that adds only to channel `only_channel` (from 0) of `pixel`. Such a ray has passed the filter of
+/// that channel, in a mosaic of color filters.
 #[inline(always)]
 #[must_use]
 pub fn tag_of(pixel: u32, only_channel: u32) -> u32 {
@@ -80,7 +80,7 @@ pub struct RayBatch {
 /// Columns that the two loops of a surface pass to each other.
 #[derive(Clone, Debug)]
 struct Scratch {
-    /// x^2 + y^2, mm^2. Stays valid from surface to surface until other code writes positions.
+    /// The squares x^2 + y^2 of the positions, mm^2. They stay valid from surface to surface until other code writes positions.
     radius2: Column<f64>,
     radius2_is_true: bool,
     /// Cosine of incidence between the loops; afterwards the margin by which the ray passes, negative or NaN if it ends.
@@ -200,8 +200,8 @@ impl RayBatch {
         }
     }
 
-    /// Uses this instruction set for all work on the batch, in place of the fastest one that the processor supports. The bits are
-    /// the same; tests compare them.
+    /// Sets the instruction set for all work on the batch, in place of the fastest one that the processor supports. The results
+    /// are the same to the bit; tests compare them.
     #[must_use]
     pub fn on(self, isa: Isa) -> Self {
         Self { isa, ..self }
@@ -241,16 +241,17 @@ impl RayBatch {
         Self { numbers: Some(RayColumns::new(self.capacity)), ..self }
     }
 
-    /// Assigns rays `from ..` to samples `first`, `first + 1`, ... of `stream`, for the estimator of this name. From then on,
-    /// stages draw from `numbers` at that place, whatever happens to the batch. Does nothing if the batch was made without
-    /// [`RayBatch::with_numbers`].
+    /// Assigns sample numbers to the rays from index `from` on: ray `from` becomes sample `first` of `stream`, the next ray
+    /// sample `first + 1`, and so on. `estimator` is the name of the estimator that traces the rays. From then on, stages draw
+    /// each ray's numbers from `numbers` at its sample, even if rays are removed or reordered. Does nothing if the batch was made
+    /// without [`RayBatch::with_numbers`].
     pub fn number(&mut self, from: usize, numbers: &Numbers, estimator: &str, stream: u64, first: u64) {
         if let Some(columns) = &mut self.numbers {
             columns.number(from..self.len, numbers, estimator, stream, first);
         }
     }
 
-    /// Sets the stage that draws random numbers from now on.
+    /// Sets the stage that draws random numbers from the rays from now on.
     pub fn set_stage(&mut self, stage: StageKey) {
         if let Some(columns) = &mut self.numbers {
             columns.stage = stage;
@@ -291,7 +292,7 @@ impl RayBatch {
         self.len == 0
     }
 
-    /// Largest number of rays that the batch can hold.
+    /// Largest number of rays that the batch has room for.
     #[must_use]
     pub fn capacity(&self) -> usize {
         self.capacity

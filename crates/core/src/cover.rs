@@ -7,16 +7,16 @@ use crate::spectral::Grid;
 pub struct CoverPlate {
     /// Thickness, mm.
     pub thickness_mm: f64,
-    /// Refractive index at each point of the stack's grid.
+    /// Refractive index at each wavelength of the stack's grid.
     pub index: Vec<f64>,
 }
 
-/// Cover glass, filters, low-pass plates: everything parallel to the frame and in front of it. The gaps between plates and their
-/// order make no difference.
+/// A stack of plane-parallel plates in front of a frame, such as cover glass, filters and low-pass plates. The gaps between the
+/// plates and their order make no difference.
 ///
-/// A ray leaves a plate of thickness t and index n in the direction in which it entered. It lands t (tan i - tan i') short of
-/// where it was heading, toward where it came from (i' from Snell's law). Near the axis the image moves t (1 - 1/n) away from
-/// the lens.
+/// A plate of thickness t and index n leaves the direction of a ray unchanged. On the frame, the ray lands t (tan i - tan i')
+/// away from the point that it would reach without the plate, on the side that it comes from. Here i is the angle of incidence,
+/// and i' the angle in the plate by Snell's law. Near the axis the image moves t (1 - 1/n) away from the lens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoverStack {
     grid: Grid,
@@ -24,28 +24,28 @@ pub struct CoverStack {
 }
 
 impl CoverStack {
-    /// Creates a stack of plates with their indices on a grid.
+    /// Creates a stack of plates, whose indices are given at the wavelengths of `grid`.
     #[must_use]
     pub fn new(grid: &Grid, plates: Vec<CoverPlate>) -> Self {
         Self { grid: *grid, plates }
     }
 
-    /// Returns the same plates with every index fixed at its value at one wavelength, nm.
+    /// Returns a stack of the same plates whose index no longer varies: it is the index at `wavelength_nm` everywhere.
     #[must_use]
     pub fn at_wavelength(&self, wavelength_nm: f64) -> Self {
         let held = |p: &CoverPlate| CoverPlate { index: vec![self.index(p, wavelength_nm); self.grid.count], ..*p };
         Self { grid: self.grid, plates: self.plates.iter().map(held).collect() }
     }
 
-    /// Distance by which the plates move the image near the axis, mm away from the lens, at a wavelength, nm.
+    /// Returns how far (mm) the plates move the image near the axis away from the lens, at `wavelength_nm`.
     #[must_use]
     pub fn shift_mm(&self, wavelength_nm: f64) -> f64 {
         self.depth_mm(0.0, wavelength_nm)
     }
 
-    /// Distance by which the plates move the point where light meets the frame, mm along the normal and away from the lens.
-    /// `slope` is the tangent of the angle between light and normal; the wavelength is in nm. On the frame the light lands
-    /// `slope` times this distance to the side, toward where it came from.
+    /// Returns how far (mm) the plates move the point at which light of a given slope meets the frame, along the normal and away
+    /// from the lens. `slope` is the tangent of the angle between the light and the normal. On the frame, the light lands `slope`
+    /// times this distance to the side, toward where it came from.
     #[must_use]
     pub fn depth_mm(&self, slope: f64, wavelength_nm: f64) -> f64 {
         let cos2 = 1.0 / (1.0 + slope * slope);

@@ -29,8 +29,8 @@ impl FrameSize {
         self.width_mm / f64::from(self.width_px) * (self.height_mm / f64::from(self.height_px))
     }
 
-    /// Returns the pixel (row-major, from the top row of the upright picture) at a point on the film (mm); `None` outside the
-    /// frame. A lens rotates its image by half a turn, so columns count against x and rows count along y.
+    /// Returns the index of the pixel at a point on the film (mm), row by row from the top of the upright picture; `None` outside
+    /// the frame. A lens rotates its image by half a turn: columns count toward -x and rows toward +y.
     #[inline(always)]
     #[must_use]
     pub fn pixel_at(&self, x_mm: f64, y_mm: f64) -> Option<u32> {
@@ -41,7 +41,8 @@ impl FrameSize {
         inside.then(|| row as u32 * self.width_px + column as u32)
     }
 
-    /// Returns the point on the film (mm) at (`u`, `v`) in [0, 1]^2 of a pixel; the inverse of [`FrameSize::pixel_at`].
+    /// Returns the point on the film (x and y, mm) at the position (`u`, `v`) within a pixel. In the upright picture `u` runs
+    /// from 0 to 1 to the right, `v` downward. The inverse of [`FrameSize::pixel_at`].
     #[inline(always)]
     #[must_use]
     pub fn point_of(&self, pixel: u32, u: f64, v: f64) -> (f64, f64) {
@@ -81,7 +82,8 @@ impl ExposureFrame {
         self.channels.iter().find(|c| c.name == name)
     }
 
-    /// Returns the values of these channels, in this order; `None` if one is missing.
+    /// Returns the values of the frame's planes for `channels`, found by name, in the order of `channels`; `None` if one is
+    /// missing.
     #[must_use]
     pub fn planes(&self, channels: &[Channel]) -> Option<Vec<&[f32]>> {
         channels.iter().map(|c| self.channel(&c.name).map(|plane| &plane.values[..])).collect()
@@ -129,7 +131,8 @@ pub struct DisplayPicture {
 }
 
 impl DisplayPicture {
-    /// Makes a picture from one channel of a frame: `color` turns each value into linear light in sRGB primaries.
+    /// Makes a picture from the values of one channel of a frame, one per pixel. `color` turns each value into linear light in
+    /// sRGB primaries.
     #[must_use]
     pub fn of(size: FrameSize, values: &[f32], color: impl FnMut(&f32) -> [f32; 3]) -> Self {
         Self { width_px: size.width_px, height_px: size.height_px, rgb: values.iter().map(color).collect() }
@@ -149,7 +152,7 @@ pub enum ImageState {
 }
 
 impl ImageState {
-    /// Name of the state, for the header of a file.
+    /// Name of the image state, as written to the header of a file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -163,9 +166,9 @@ impl ImageState {
 /// Data requested of a picture in addition to what a screen shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExtraRequest {
-    /// The picture without conversion to a gamut; see [`ExtraData::unclamped`].
+    /// Whether to return the picture without conversion to a gamut; see [`ExtraData::unclamped`].
     pub unclamped: bool,
-    /// Exposure and density, layer by layer.
+    /// Whether to return the exposure and density of each layer; see [`ExtraData::layers`].
     pub layers: bool,
 }
 
@@ -186,12 +189,12 @@ pub struct ExtraData {
     pub unclamped: Option<DisplayPicture>,
     /// Layers by their names (`exposure.red`, `density.red`), of the picture's size; empty if unknown or not wanted.
     pub layers: Vec<ExposureChannel>,
-    /// Amount of light that the value 1 stands for, such as `0.4 lx s`, if it stands for one.
+    /// Amount of light that the value 1 stands for, such as `0.4 lx s`; `None` if it stands for no fixed amount.
     pub white: Option<String>,
 }
 
 impl FinishedPicture {
-    /// Wraps a picture for a screen, without additional data.
+    /// Creates a finished picture from a picture for a screen, without additional data.
     #[must_use]
     pub fn of(shown: DisplayPicture) -> Self {
         Self { display: shown, extra: ExtraData::default() }
@@ -201,30 +204,31 @@ impl FinishedPicture {
 /// The output of a sensor's analog-to-digital converter: one number per pixel, and what a raw converter needs to develop them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RawFrame {
-    /// Pixels across.
+    /// Number of pixels across the frame.
     pub width_px: u32,
-    /// Pixels down.
+    /// Number of pixels down the frame.
     pub height_px: u32,
     /// Values, row-major, upright.
     pub values: Vec<u16>,
     /// Colors of the filters, 2 x 2 in rows from the upper left: 0 red, 1 green, 2 blue. `None`: no filters.
     pub pattern: Option<[u8; 4]>,
-    /// Value without light.
+    /// Value of a pixel that received no light.
     pub black_level: u16,
     /// Value at which the converter saturates.
     pub white_level: u16,
-    /// Meaning of the filters' colors, for one light or for two, the one of lower color temperature first; empty without filters.
+    /// Matrices between the camera's colors and XYZ, for one illuminant or for two, the one of lower color temperature first.
+    /// Empty without filters.
     pub colors: Vec<RawColor>,
-    /// The camera's red, green and blue of white; the largest is 1.
+    /// The camera's response to white in red, green and blue, scaled so that the largest is 1.
     pub neutral: [f64; 3],
-    /// Illuminant of white, as an EXIF number (`LightSource`), such as 21 for D65; 255 is any other.
+    /// Illuminant under which `neutral` is white, as an EXIF number (`LightSource`), such as 21 for D65; 255 is any other.
     pub illuminant: u16,
-    /// Noise of the values; `None` where there is none.
+    /// Noise of the values; `None` if they have none.
     pub noise: Option<RawNoise>,
-    /// Stops by which a converter should brighten (above 0) or darken the picture, so that an exposure by the meter at
-    /// [`RawFrame::iso`] looks as it should.
+    /// Exposure compensation, in stops, that a raw converter should apply (above 0 brightens). A picture exposed by the meter at
+    /// [`RawFrame::iso`] then has its intended brightness.
     pub baseline_exposure_stops: f64,
-    /// Width and height of a pixel, mm.
+    /// Width and height of one pixel, mm.
     pub pixel_mm: [f64; 2],
     /// Name of the maker, for the file.
     pub maker: String,
@@ -238,24 +242,25 @@ pub struct RawFrame {
     pub iso: f64,
 }
 
-/// The meaning of a camera's colors in one light.
+/// Matrices between a camera's colors and XYZ, for one illuminant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RawColor {
-    /// The light, as an EXIF number (`LightSource`), such as 17 for A and 21 for D65.
+    /// Illuminant as an EXIF number (`LightSource`), such as 17 for A and 21 for D65.
     pub illuminant: u16,
-    /// Matrix whose rows give the camera's red, green and blue from XYZ of the scene.
+    /// Matrix from XYZ of the scene to the camera's red, green and blue.
     pub camera_from_xyz: [[f64; 3]; 3],
-    /// Matrix whose rows give XYZ adapted to D50, white (0.9643, 1, 0.8251), from the camera's red, green and blue, each
-    /// divided by that of white.
+    /// Matrix from balanced camera colors to XYZ adapted to D50, with white at (0.9643, 1, 0.8251). Balanced means that red,
+    /// green and blue are each divided by their value for white.
     pub d50_from_balanced: [[f64; 3]; 3],
 }
 
-/// Noise of a raw value. With x = (value - black) / (white - black) on average, x has the variance scale x + offset.
+/// Noise of a raw value. In relative units x = (value - black level) / (white level - black level), a pixel of mean x has the
+/// variance `scale` x + `offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RawNoise {
-    /// Variance per x that photons add.
+    /// Variance per unit of x, from the statistics of photons.
     pub scale: f64,
-    /// Variance that reading and rounding add.
+    /// Variance without light, from reading and rounding.
     pub offset: f64,
 }
 

@@ -1,13 +1,13 @@
 //! Lines of sight: what a camera's frame sees in front of the lens.
 
-/// A line of sight, in the frame of the lens: where it crosses the plane z = 0, and its slope in front of that plane.
+/// A line of sight in front of the lens, in the frame of the lens: where it crosses the plane z = 0, and its slope there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SightLine {
     /// Number of the point of the frame that this line of sight comes from.
     pub point: usize,
     /// x and y on the plane z = 0, mm.
     pub start_mm: [f64; 2],
-    /// Sideways shift in x and y per mm toward the object, in mm.
+    /// Sideways shift of the line in x and y for each mm toward the object, mm.
     pub slope: [f64; 2],
 }
 
@@ -31,14 +31,14 @@ pub struct FrameView {
 }
 
 impl FrameView {
-    /// Creates a view from lines of sight, in which those of one point are adjacent. `beside` lists the points with a line of
-    /// sight at 90 degrees to the axis or more.
+    /// Creates a view from lines of sight; lines from the same point of the frame must be adjacent. `beside` lists the points
+    /// that have a line of sight at 90 degrees or more to the axis.
     #[must_use]
     pub fn new(sights: Vec<SightLine>, beside: Vec<usize>) -> Self {
         Self { sights, beside, focal_length_mm: None }
     }
 
-    /// Sets the focal length of the lens, mm. The sign is dropped, and a value that is not finite counts as unknown.
+    /// Sets the focal length of the lens, mm. Its sign is dropped, and a value that is not finite means that it is unknown.
     #[must_use]
     pub fn with_focal_length(self, mm: f64) -> Self {
         Self { focal_length_mm: Some(mm.abs()).filter(|mm| mm.is_finite()), ..self }
@@ -74,8 +74,8 @@ impl FrameView {
         half.iter().all(|h| h.is_finite()).then_some(half)
     }
 
-    /// Returns the share of frame points that get half of their light or more from places where `is_seen` is false. Only points
-    /// that see anything through the lens count; `None` if there are none.
+    /// Returns the fraction of the frame's points that get half of their light or more from places where `is_seen` is false. Only
+    /// points that see anything through the lens count; `None` if there are none.
     #[must_use]
     pub fn share_missed(&self, is_seen: impl Fn(&SightLine) -> bool) -> Option<f64> {
         let (mut points, mut missed) = (0_usize, 0_usize);

@@ -214,9 +214,9 @@ impl Numbers {
         Self::new(Kind::Sobol, seed)
     }
 
-    /// Creates a rank-1 lattice in the five [`Dimension`]s. Its points come in the order of the radical inverse, so that every
-    /// power of two of them is a lattice, too. Each stream and dimension has its own shift. More even than Sobol points if the
-    /// light is smooth.
+    /// Creates a rank-1 lattice in the five [`Dimension`]s, with a random shift of its own for each stream and dimension. Its
+    /// points come in the order of the radical inverse, so that the first 2^n of them also form a lattice. For smooth light the
+    /// points are more even than Sobol points.
     #[must_use]
     pub fn lattice(seed: u64) -> Self {
         Self::new(Kind::Lattice, seed)
@@ -228,8 +228,8 @@ impl Numbers {
         Self::new(Kind::Random, seed)
     }
 
-    /// Creates jittered strata. Of every `strata` consecutive samples (starting at a multiple of `strata`), one lies in each of
-    /// that many equal parts of [0, 1), at an independent position. The order differs between dimensions and streams.
+    /// Creates jittered strata: of every `strata` consecutive samples (starting at a multiple of `strata`), one lies in each of
+    /// that many equal parts of [0, 1), at a random position. The order of the parts differs between dimensions and streams.
     ///
     /// A number depends on (seed, stream, sample, dimension) and on the number of strata. The best number of strata is the
     /// number of samples in a stream. 0 counts as 1, which gives independent numbers.
@@ -248,7 +248,7 @@ impl Numbers {
         mix64(self.seed ^ mix64(stream.wrapping_mul(GOLDEN).wrapping_add(u64::from(dimension))))
     }
 
-    /// Writes the numbers of samples `first`, `first + 1`, ... of `stream` in `dimension`.
+    /// Writes to `out` the numbers of the samples `first`, `first + 1`, and so on, of `stream` in `dimension`.
     pub fn fill(&self, isa: Isa, stream: u64, first: u64, dimension: u32, out: &mut [f64]) {
         if let Kind::Stratified(strata) = self.kind {
             return fill_strata(self.key(stream, dimension), first, strata, out);
@@ -344,7 +344,7 @@ impl Numbers {
         }
     }
 
-    /// Returns one number, equal to the one that [`Numbers::fill`] writes.
+    /// Returns the number of one sample, equal to the one that [`Numbers::fill`] writes.
     #[must_use]
     pub fn one(&self, stream: u64, sample: u64, dimension: u32) -> f64 {
         let mut out = [0.0];

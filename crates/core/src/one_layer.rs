@@ -36,9 +36,9 @@ pub struct OneLayer<T> {
 }
 
 impl<T: Fn(f64, Pixel) -> [f64; 3] + Send + Sync> OneLayer<T> {
-    /// Creates a film called `name`. `sees` is its response to spectral irradiance (W m^-2 nm^-1) at a wavelength (nm): the
-    /// integral of irradiance times response, times `exposure_time_s`, is the exposure in `unit`. `tone` turns the exposure of
-    /// a pixel into linear light (sRGB primaries; 1 is the screen's white).
+    /// Creates a film called `name`. `sees` is its response to spectral irradiance (W m^-2 nm^-1) at a wavelength (nm). Its
+    /// exposure, in `unit`, is the integral of irradiance times response, times `exposure_time_s`. `tone` turns the exposure of a
+    /// pixel into linear light (sRGB primaries; 1 is the screen's white).
     #[must_use]
     pub fn new(
         name: &str,

@@ -102,7 +102,7 @@ impl FoundFile {
         })
     }
 
-    /// Reads the file, or its first `at_most_bytes` bytes if it is larger.
+    /// Reads the file from its start, at most `at_most_bytes` bytes of it.
     ///
     /// # Errors
     /// [`ResourceError::Io`].
@@ -119,8 +119,8 @@ fn io(error: std::io::Error) -> ResourceError {
 
 /// Access to the files that stages ask for.
 pub trait Resources: Send + Sync {
-    /// Reads `path`: as given relative to the scene's folder, else bundled under one of `folders` (such as `lenses`). Each of
-    /// `endings` (such as `.yaml`) is tried, too.
+    /// Reads the file `path`, which is relative to the scene's folder. If there is none, looks for a bundled file under each of
+    /// `folders` (such as `lenses`). The name is tried as given and with each of `endings` (such as `.yaml`).
     ///
     /// # Errors
     /// [`ResourceError`].

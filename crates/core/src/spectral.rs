@@ -45,7 +45,8 @@ impl Grid {
         wavelength_nm >= self.start_nm && wavelength_nm <= self.end_nm()
     }
 
-    /// Returns the value of a table on this grid at `wavelength_nm`: linear between points, 0 outside the band.
+    /// Returns the value at `wavelength_nm` of `table`, which has one value per point of this grid: linear between points, 0
+    /// outside the band.
     #[inline(always)]
     #[must_use]
     pub fn interpolate(&self, table: &[f64], wavelength_nm: f64) -> f64 {
@@ -57,7 +58,7 @@ impl Grid {
         table::linear(&table[..self.count], p)
     }
 
-    /// Integrates the product of two tables over the band, exactly. Each table is linear between points.
+    /// Integrates the product of two tables over the band. Each table is linear between points; the result is exact.
     #[must_use]
     pub fn integrate_product(&self, a: &[f64], b: &[f64]) -> f64 {
         let mut sum = 0.0;
@@ -69,7 +70,7 @@ impl Grid {
         sum * self.step_nm / 6.0
     }
 
-    /// Integrates a table over the band, exactly. The table is linear between points.
+    /// Integrates a table over the band. The table is linear between points; the result is exact.
     #[must_use]
     pub fn integrate(&self, a: &[f64]) -> f64 {
         let inner: f64 = a[1..self.count - 1].iter().sum();
@@ -114,7 +115,7 @@ impl SpectralPower {
         }
     }
 
-    /// Returns the power seen through a response on the same grid: the integral of the product, lines included.
+    /// Returns the integral of the spectrum times `response`, a table on the same grid, lines included.
     #[must_use]
     pub fn seen_by(&self, response: &[f64]) -> f64 {
         let lines: f64 = self.lines.iter().map(|l| l.power * self.grid.interpolate(response, l.wavelength_nm)).sum();
@@ -131,7 +132,7 @@ impl SpectralPower {
 /// One recorded channel, such as X of XYZ or a layer of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Short name, also that of the channel in the EXR.
+    /// Short name of the channel, also its name in the EXR.
     pub name: String,
     /// Unit of the recorded exposure, such as `lx s`.
     pub unit: String,
@@ -145,7 +146,7 @@ pub struct Channel {
 pub struct SystemResponse {
     /// The band and its grid.
     pub grid: Grid,
-    /// Light that the source emits into the lens, on any scale.
+    /// Light that the source emits into the lens, on an arbitrary scale.
     pub source: SpectralPower,
     /// The recorded channels.
     pub channels: Arc<[Channel]>,

@@ -40,8 +40,8 @@ pub trait Source: Send + Sync {
         &[]
     }
 
-    /// Spectrum of the light that enters the lens, summed over the source, in any scale; the wavelength sampler uses it as a
-    /// weight. [`RayBatch::lines`] holds the numbers of its lines.
+    /// Spectrum of the light that enters the lens, summed over the source, on an arbitrary scale. The wavelength sampler weights
+    /// wavelengths by it. [`RayBatch::lines`] refers to its lines.
     fn spectrum(&self) -> &SpectralPower;
 
     /// Spectrum of the light in which a lens is focused. It must be the same before and after [`Source::prepare`]; otherwise a
@@ -50,13 +50,14 @@ pub trait Source: Send + Sync {
         self.spectrum()
     }
 
-    /// Spectrum of the light from the white parts of the source, in any scale; color film may be balanced for it. Known before
-    /// [`Source::prepare`].
+    /// Spectrum of the light from the white parts of the source, on an arbitrary scale, for which a color film may be balanced.
+    /// It is known before [`Source::prepare`].
     fn white(&self) -> &SpectralPower {
         self.focus_light()
     }
 
-    /// Peak brightness of the source divided by its mean brightness; used to keep highlights within the range of the exact sums.
+    /// Peak brightness of the source divided by its mean brightness. It is used to keep highlights within the range of the exact
+    /// sums of light.
     fn peak_over_mean(&self) -> f64 {
         1.0
     }
@@ -86,8 +87,8 @@ pub trait Source: Send + Sync {
         None
     }
 
-    /// Ratio of what `response` sees of a picture's mid gray, 18 % of white, to what it sees of the picture on average.
-    /// `response` is that of a channel, on the grid of the scene. `None` if the source has no white, and before
+    /// Returns the light that `response` sees of a mid gray (18 % of white) of this picture, over the mean that it sees of the
+    /// picture. `response` is the response of a channel on the grid of the scene. `None` if the source has no white, and before
     /// [`Source::prepare`].
     fn gray_over_mean(&self, _response: &[f64]) -> Option<f64> {
         None
@@ -99,8 +100,8 @@ pub trait Source: Send + Sync {
         false
     }
 
-    /// Tells how numbers in the files of this source were interpreted, in a few words for the summary, such as the unit of a
-    /// depth; `None` if there is nothing to tell.
+    /// Returns a few words for the summary: how numbers in the files of this source were interpreted, such as the unit of a
+    /// depth. `None` if there is nothing to say.
     fn meaning(&self) -> Option<String> {
         None
     }
@@ -112,9 +113,9 @@ pub trait Source: Send + Sync {
 /// A flat picture, pixel by pixel. A pixel's radiance, W m^-2 sr^-1 nm^-1, is `scale` times the spectrum that `model` gives its
 /// color.
 pub struct Still {
-    /// Pixels across.
+    /// Number of pixels across the picture.
     pub width_px: u32,
-    /// Pixels down.
+    /// Number of pixels down the picture.
     pub height_px: u32,
     /// Width over height of a pixel.
     pub pixel_aspect: f64,
@@ -130,25 +131,25 @@ pub struct Still {
 /// direction that finds it.
 #[derive(Clone, Copy)]
 pub struct Split<'a> {
-    /// The bright part, an emitter: it is rendered forward.
+    /// The bright part, which emits rays and is rendered forward.
     pub lights: &'a dyn Source,
-    /// The rest, which is asked for radiance: it is rendered backward.
+    /// The rest of the source, whose radiance is asked for along rays: it is rendered backward.
     pub rest: &'a dyn Source,
-    /// Whether the split is expected to give less noise in the same time than asking the whole source for radiance.
+    /// Whether the split is expected to give less noise in the same time than backward rendering of the whole source.
     pub pays: bool,
 }
 
 /// A source that emits rays, for forward rendering.
 pub trait Emit: Send + Sync {
     /// Writes where each ray starts (mm, frame of the lens). Multiplies its weight by the emission there at its wavelength,
-    /// divided by the density with which the position was drawn. Emission is radiance times area (W m^-2 sr^-1 nm^-1 mm^2,
-    /// without the nm^-1 on a line), or a point's intensity (W sr^-1 nm^-1) times 1e6. `u` and `v` are the random numbers to
-    /// use, one per ray.
+    /// divided by the probability density of the position. Emission is radiance times area (W m^-2 sr^-1 nm^-1 mm^2; W m^-2 sr^-1
+    /// mm^2 on a line). For a point source it is intensity (W sr^-1 nm^-1) times 1e6. `u` and `v` are the random numbers to use,
+    /// one per ray.
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]);
 
-    /// Half the width and height of the spots that all light of this source comes from, mm across the axis; `None` if it is not
-    /// made of spots. Each spot fades linearly from its middle along both sides, and a ray from the middle carries as much as
-    /// one from anywhere in the spot.
+    /// Half the width and half the height (mm) of the spots that emit all light of this source, perpendicular to the axis; `None`
+    /// if it is not made of spots. Each spot fades linearly from its middle along both sides. A ray that starts in the middle
+    /// carries as much light as one from anywhere in the spot.
     fn spots_mm(&self) -> Option<[f64; 2]> {
         None
     }
@@ -165,8 +166,8 @@ pub trait Emit: Send + Sync {
         false
     }
 
-    /// Multiplies the weight by the emission in the direction of the ray relative to that of [`Emit::place`], including the
-    /// cosine for an emitting plane. Called once the directions are set.
+    /// Multiplies each ray's weight by the emission in its direction, relative to the emission that [`Emit::place`] has applied.
+    /// For an emitting plane this includes the cosine. It is called once the directions are set.
     fn radiate(&self, rays: &mut RayBatch);
 
     /// Returns whether the source draws random numbers beyond `u` and `v` ([`crate::numbers::RayNumbers`]).
@@ -177,9 +178,9 @@ pub trait Emit: Send + Sync {
 
 /// A source that returns the radiance along given rays, for backward rendering.
 pub trait Radiance: Send + Sync {
-    /// Multiplies the weight of each living ray by the radiance that arrives along it. The ray travels from the lens toward the
-    /// object, with its position in the frame of the lens. Radiance is in W m^-2 sr^-1 nm^-1, or in W m^-2 sr^-1 if the
-    /// wavelength is that of a line.
+    /// Multiplies the weight of each living ray by the radiance that arrives along it. Rays run from the lens toward the object;
+    /// their positions are in the frame of the lens. Radiance is in W m^-2 sr^-1 nm^-1, or in W m^-2 sr^-1 if the wavelength is
+    /// that of a line.
     fn radiance(&self, rays: &mut RayBatch);
 
     /// Returns whether the source draws random numbers from the rays ([`crate::numbers::RayNumbers`]).
@@ -191,7 +192,7 @@ pub trait Radiance: Send + Sync {
 /// The range of colors from which a color model can make spectra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorGamut {
-    /// Colors of sRGB: no value of linear sRGB is negative.
+    /// Colors inside sRGB: no value of linear sRGB is negative.
     Srgb,
     /// All colors that light can have, except the last 0.001 in xy before the spectral locus and the line of purples.
     Real,
@@ -205,21 +206,22 @@ pub trait ColorModel: Send + Sync {
         ColorGamut::Srgb
     }
 
-    /// The spectral lines of the model, nm; for a ray on line `i`, only that line is evaluated.
+    /// Wavelengths of the model's spectral lines, nm. For a ray on line `i`, only that line is evaluated.
     fn lines_nm(&self) -> &[f64];
 
-    /// Returns the coefficients of one color that [`ColorModel::evaluate`] needs. The color is given in linear light with sRGB
-    /// primaries.
+    /// Returns the coefficients from which [`ColorModel::evaluate`] computes the spectrum of one color. The color is linear light
+    /// in sRGB primaries.
     fn coefficients(&self, linear_srgb: [f64; 3]) -> [f32; 3];
 
-    /// Returns the spectrum of one color, in a scale that all colors share; (1, 1, 1) is white.
+    /// Returns the spectrum of one color, linear light in sRGB primaries, on a scale that all colors share; (1, 1, 1) is white.
     fn spectrum(&self, linear_srgb: [f64; 3]) -> SpectralPower;
 
-    /// Multiplies each weight by the spectrum of its color: per nm, or by a line's power for a ray on a line.
+    /// Multiplies each ray's weight by the spectrum of its color at its wavelength, per nm. On a spectral line (`line`) the
+    /// factor is the power of that line. All slices have one element per ray.
     fn evaluate(&self, coefficients: &[[f32; 3]], wavelength_nm: &[f64], line: &[u32], weight: &mut [f64]);
 }
 
-/// A strategy for drawing wavelengths, not yet fitted to a system.
+/// A strategy for drawing wavelengths, before it is fitted to a system.
 pub trait WavelengthSampler: Send + Sync {
     /// Fits the strategy to a system.
     ///
@@ -240,8 +242,8 @@ pub trait WavelengthDensity: Send + Sync {
     /// Probability of drawing line `i` of the source.
     fn line_probability(&self, line: usize) -> f64;
 
-    /// Number of consecutive samples that share one number, rotated among them (see [`crate::numbers::Numbers::fill_rotated`]);
-    /// 1 if each sample has its own number.
+    /// Number of consecutive samples that share one random number, rotated among them (see
+    /// [`crate::numbers::Numbers::fill_rotated`]); 1 if each sample has its own number.
     fn group(&self) -> u32 {
         1
     }
@@ -286,7 +288,7 @@ pub trait Response: Send + Sync {
         None
     }
 
-    /// Returns a picture of what these channels recorded, or `None` if there is none.
+    /// Returns a picture of the recorded exposure, or `None` if this response makes none.
     fn display(&self, exposure: &ExposureFrame) -> Option<DisplayPicture>;
 
     /// Returns the picture of [`Response::display`] with the extra data that are `wanted`, as far as they are known.
@@ -352,13 +354,13 @@ pub trait Receive: Send + Sync {
 
 /// An imager that launches rays, for backward rendering.
 pub trait Launch: Send + Sync {
-    /// Writes the starting point of each ray (mm; nominal image plane z = 0) at (`u`, `v`) in [0, 1)^2 within the pixel in its
-    /// tag. Writes the imager's unit normal (toward the lens) as the direction.
+    /// Writes the starting point of each ray (mm): the position (`u`, `v`) in [0, 1)^2 within the pixel of its tag. The frame has
+    /// its nominal image plane at z = 0. Writes the imager's unit normal, toward the lens, as the direction.
     fn place(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]);
 
-    /// Applies what lies in front of the pixels to each ray. Called once the directions are set (toward the lens; positions
-    /// anywhere along the rays). It may shift a ray sideways by less than matters at the pupil, change its weight, end it, or
-    /// name the only channel that it adds to ([`crate::batch::tag_of`]).
+    /// Applies what lies in front of the pixels to each ray, once the directions (toward the lens) are set. Positions may lie
+    /// anywhere along the rays. It may shift a ray sideways by less than matters at the pupil, change its weight, end it, or
+    /// restrict it to one channel ([`crate::batch::tag_of`]).
     fn admit(&self, _rays: &mut RayBatch) {}
 
     /// Returns whether the imager draws random numbers beyond `u` and `v` ([`crate::numbers::RayNumbers`]).
@@ -381,10 +383,12 @@ pub enum Misexposure {
 
 /// The film: which light it responds to, and how it is developed.
 pub trait Film: Any + Send + Sync {
-    /// Channels of the film: responses to spectral irradiance, in lux (times seconds of exposure).
+    /// Channels of the film: responses to spectral irradiance that give lux, or lux seconds after multiplication by the exposure
+    /// time.
     fn channels(&self) -> Vec<Channel>;
 
-    /// Number of channels, counted from the first, that make the picture. The others only inform the camera, as a light meter does.
+    /// Number of channels, counted from the first, that make the picture. Further channels are only for the camera, such as for
+    /// its light meter.
     fn picture_channels(&self) -> usize {
         self.channels().len()
     }
@@ -404,7 +408,7 @@ pub trait Film: Any + Send + Sync {
     }
 
     /// Returns whether the camera keeps the exposure of a picture that was already exposed ([`Source::is_exposed`]). Its meter
-    /// then reads a mid gray of the picture instead of the frame.
+    /// then measures a mid gray of that picture instead of the frame.
     fn keeps_exposure(&self) -> bool {
         false
     }
@@ -431,8 +435,9 @@ pub trait Film: Any + Send + Sync {
         Vec::new()
     }
 
-    /// Tells whether nearly all of a frame is too dark or too bright for the film to distinguish tones. Its exposure is that of
-    /// [`Film::develop`]. `None` if neither is so, or if the film does not know.
+    /// Returns [`Misexposure::Dark`] or [`Misexposure::Bright`] if nearly all of a frame is beyond the range in which the film
+    /// distinguishes tones. The frame's exposure is as for [`Film::develop`]. `None` if the frame is within the range, or if the
+    /// film does not know.
     fn misexposure(&self, _exposure: &ExposureFrame) -> Option<Misexposure> {
         None
     }
@@ -442,8 +447,8 @@ pub trait Film: Any + Send + Sync {
         None
     }
 
-    /// Number of channels, counted from the first, that see a gray card alike in the light that the film is balanced for; 0 if
-    /// it is balanced for none.
+    /// Number of channels, counted from the first, that respond equally to a gray card in the light for which the film is
+    /// balanced; 0 if it is balanced for none.
     fn balanced_channels(&self) -> usize {
         0
     }
@@ -467,8 +472,8 @@ pub trait Film: Any + Send + Sync {
         self.describe()
     }
 
-    /// Develops the frame into a picture. The exposure of the frame, in lx s per channel, is that of [`Film::exposure_time_s`];
-    /// the film itself applies the exposure time chosen by a meter.
+    /// Develops the frame into a picture. The frame's exposure, in lx s per channel, is for [`Film::exposure_time_s`]; the film
+    /// itself applies the exposure time chosen by a meter.
     ///
     /// # Errors
     /// A sentence that names the missing channel.

@@ -25,8 +25,8 @@ impl Workers for SingleThread {
     }
 }
 
-/// Runs `work` for each of `pieces` pieces on the workers, and returns the results in order. Each worker makes its own state
-/// with `fresh` and passes it to `work`.
+/// Runs `work` for each piece, numbered from 0 to `pieces` - 1, on the workers, and returns the results in order. Each worker
+/// creates its own state by `fresh` and passes it to `work`.
 ///
 /// # Errors
 /// The first error, in the order of the pieces, among those that occurred before the work stopped.

@@ -35,8 +35,8 @@ impl PolarizationColumns {
 /// The states of polarization of a batch, ray by ray.
 ///
 /// `q`, `u` and `v` are Q / I, U / I and V / I. They are 0 for unpolarized light; their squares sum to 1 for fully polarized
-/// light. The `axis` is a unit vector perpendicular to the ray, in the frame of its direction. It is (0, 0, 0) if no axis was
-/// needed yet, which only unpolarized light may have.
+/// light. The `axis` is a unit vector perpendicular to the ray, in the frame in which the ray's direction is given. It is (0, 0,
+/// 0) as long as no surface has needed an axis, which only happens to unpolarized light.
 #[derive(Debug, Default)]
 pub struct Polarization<'a> {
     /// Q / I: 1 for light polarized along the axis, -1 for light polarized across it.
@@ -72,8 +72,8 @@ impl Polarization<'_> {
         }
     }
 
-    /// Rotates the axis of ray `i` about its `direction` until it lies along the unit vector `onto`, which is also
-    /// perpendicular to the ray. The state of polarization stays the same.
+    /// Changes the axis of ray `i` to the unit vector `onto`, and converts Q and U to it, so that the ray's polarization stays
+    /// the same. `direction` is the ray's unit direction; both axes are perpendicular to it.
     pub fn turn(&mut self, i: usize, direction: [f64; 3], onto: [f64; 3]) {
         let a: [f64; 3] = std::array::from_fn(|k| self.axis[k][i]);
         if a != [0.0; 3] {

@@ -31,7 +31,7 @@ pub enum Match<'a> {
     Nothing,
 }
 
-/// Converts a name to lower case without spaces, hyphens and underscores; names that differ only in these are the same.
+/// Converts a name to the form in which names are compared: lower case, without spaces, hyphens and underscores.
 #[must_use]
 pub fn normalized(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, ' ' | '-' | '_')).flat_map(char::to_lowercase).collect()

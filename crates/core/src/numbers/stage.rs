@@ -49,7 +49,7 @@ impl StageKey {
     /// Key of the imager, including what lies in front of its pixels.
     pub const IMAGER: Self = Self::new("imager", 0);
 
-    /// Returns the key of a stage of this `kind`; `which` counts the stages of the same kind that draw.
+    /// Returns the key of a stage of this `kind`. `which` is its number, from 0, among the stages of that kind that draw numbers.
     #[must_use]
     pub const fn new(kind: &str, which: u64) -> Self {
         Self(hash(kind, mix64(which.wrapping_add(GOLDEN))))
@@ -158,7 +158,7 @@ impl StageNumbers<'_> {
 /// The columns that a batch carries for [`StageNumbers`].
 #[derive(Clone, Debug)]
 pub(crate) struct RayColumns {
-    /// Kind of numbers; `None` until the rays have their places.
+    /// Kind of the numbers; `None` until [`crate::RayBatch::number`] has assigned samples to the rays.
     pub kind: Option<Kind>,
     pub stage: StageKey,
     /// Hash of seed, estimator and stream.

@@ -13,7 +13,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Deref;
 
-/// A part of a scene as it was written, with its places.
+/// A part of a scene or lens file as it was written, with the place of each value.
 #[derive(Clone, Debug)]
 pub struct StageNode {
     node: Node,
@@ -21,7 +21,7 @@ pub struct StageNode {
 }
 
 impl StageNode {
-    /// Creates a part from a node and its path in the file.
+    /// Creates a part of a scene or lens file from its node and the node's path in the file, such as `source.color`.
     #[must_use]
     pub fn new(node: Node, path: impl Into<String>) -> Self {
         Self { node, path: path.into() }
@@ -68,8 +68,8 @@ impl<'de> Deserialize<'de> for StageNode {
     }
 }
 
-/// A part of the form `T` that is kept as written and read later. Its schema is that of `T`, and a fault in it is found when it
-/// is read. A nested stage is a `Part<StageOf<dyn ColorModel>>`; see [`crate::registry::StageOf`].
+/// A part of a file that is kept as written, and read later in the form `T`. Its schema is the schema of `T`, and a fault in it
+/// is found when it is read. A nested stage is a `Deferred<StageOf<dyn ColorModel>>`; see [`crate::registry::StageOf`].
 ///
 /// A part does not work inside serde's untagged or flattened types, which buffer values without their places.
 pub struct Deferred<T>(StageNode, PhantomData<fn() -> T>);

@@ -9,9 +9,9 @@ use std::sync::Arc;
 pub struct Fault {
     /// Message that says what is wrong, on one line.
     pub message: String,
-    /// Place of the fault; `None` if it has none, as for a missing file.
+    /// Place of the fault; `None` if it has no place in a file, such as the fault of a missing file.
     pub place: Option<(Arc<SourceFile>, Span)>,
-    /// Path of the key, such as `source.color.R` or `surfaces[3].radius`; may be empty.
+    /// Path of the key that is at fault, such as `source.color.R` or `surfaces[3].radius`; may be empty.
     pub path: String,
     /// Hint: what to write instead, or what to do.
     pub hint: Option<String>,
@@ -42,9 +42,8 @@ impl Fault {
         Self { path: path.into(), ..self }
     }
 
-    /// Narrows the fault to a part of the text that it is about: `len` characters from character `at` (from 0) of `text`, which
-    /// stands where the fault is. If that text cannot be found in the file, as on the command line, the message states the
-    /// character.
+    /// Narrows the fault to a part of `text`, the text at the place of the fault: `len` characters from character `at` (from 0).
+    /// If `text` cannot be found in the file, as on the command line, the message states the number of the character.
     #[must_use]
     pub fn within(mut self, text: &str, at: usize, len: usize) -> Self {
         let offset_of = |character: usize| text.char_indices().nth(character).map_or(text.len(), |(offset, _)| offset);
@@ -66,7 +65,7 @@ impl Fault {
         self
     }
 
-    /// Formats the place for display: `file:line:column`, or the command-line argument.
+    /// Formats the place for display as `file:line:column`, or as the command-line argument; `None` if the fault has no place.
     #[must_use]
     pub fn place_text(&self) -> Option<String> {
         self.place.as_ref().map(|(file, span)| {
@@ -103,7 +102,7 @@ impl From<&str> for Fault {
     }
 }
 
-/// All faults, in the order in which they were found.
+/// All faults that were found, in order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Faults(pub Vec<Fault>);
 
@@ -136,7 +135,8 @@ impl Faults {
         self.0.iter()
     }
 
-    /// Returns the value of a result, if it has one. Its faults are kept here, so that the next part can be checked too.
+    /// Returns the value of `result`, if it has one; otherwise adds its faults to this list and returns `None`. The next part can
+    /// then be checked, too.
     pub fn take<T>(&mut self, result: Result<T, impl Into<Self>>) -> Option<T> {
         result.map_err(|faults| self.0.extend(faults.into().0)).ok()
     }

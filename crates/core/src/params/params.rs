@@ -88,7 +88,7 @@ impl Params {
         Self { kind: None, ..self }
     }
 
-    /// Returns these parameters without the keys whose value is null.
+    /// Returns these parameters without the keys that have the value null.
     #[must_use]
     pub fn without_nulls(&self) -> Self {
         let mut node = self.node.clone();

@@ -6,7 +6,7 @@ use super::params::Params;
 use std::sync::Arc;
 
 impl Params {
-    /// Returns the stage under a key, if the key is there.
+    /// Returns the parameters of the stage under `key`; `None` if the key is absent.
     ///
     /// # Errors
     /// A fault if the value cannot be a stage.
@@ -14,15 +14,15 @@ impl Params {
         self.get(key).map(|node| Self::stage(node.clone(), &self.path_of(key))).transpose()
     }
 
-    /// Returns the parameters of a stage that the scene does not mention: the registry's default kind with its default
-    /// parameters. Its faults are placed at this map.
+    /// Returns parameters for a stage that the scene does not mention: they stand for the registry's default kind with its
+    /// default parameters. `key` is the key under which the stage could be written. Faults are placed at this map.
     #[must_use]
     pub fn default_stage(&self, key: &str) -> Self {
         let map = Node::new(Value::Map(Vec::new()), self.node().span, Arc::clone(&self.node().file));
         self.with_node(map, &self.path_of(key)).without_kind()
     }
 
-    /// Splits the map into the parameters under `keys` and the rest. Both keep the kind.
+    /// Splits the map into the parameters under `keys` and the other ones, in this order. Both keep the kind.
     #[must_use]
     pub fn split(&self, keys: &[impl AsRef<str>]) -> (Self, Self) {
         let (mut inside, mut outside) = (Vec::new(), Vec::new());
@@ -39,7 +39,7 @@ impl Params {
         (with(inside), with(outside))
     }
 
-    /// Places the faults that have no place yet, such as a missing file, at the value of a key.
+    /// Returns `faults`, in which faults without a place, such as that of a missing file, are placed at the value of `key`.
     #[must_use]
     pub fn place_at(&self, key: &str, faults: Faults) -> Faults {
         Faults(faults.0.into_iter().map(|fault| self.placed(key, fault)).collect())

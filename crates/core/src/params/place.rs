@@ -24,8 +24,8 @@ impl Default for Span {
 }
 
 impl Span {
-    /// Returns the span of a part of a text, which must be a slice of it; otherwise the start of the file. A byte order mark does not
-    /// count as a character.
+    /// Returns the span of `part`, which must be a slice of `text`; otherwise the span is the start of the file. A byte order
+    /// mark does not count as a character.
     #[must_use]
     pub fn of(part: &str, text: &str) -> Self {
         let offset = (part.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize);
@@ -60,7 +60,7 @@ pub struct SourceFile {
 }
 
 impl SourceFile {
-    /// Creates a text with its name.
+    /// Creates a text that is named in messages.
     #[must_use]
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self { name: name.into(), text: text.into() }

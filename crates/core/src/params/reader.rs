@@ -40,7 +40,7 @@ fn schema<T: Readable>() -> Arc<serde_json::Value> {
     Arc::clone(SCHEMAS.write().unwrap_or_else(PoisonError::into_inner).entry(of).or_insert(made))
 }
 
-/// Returns the keys of the map of a type, for [`super::Params::split`].
+/// Returns the keys that the map of type `T` may have, for [`super::Params::split`].
 #[must_use]
 pub fn keys_of<T: Readable>() -> Vec<String> {
     let properties = schema::<T>().get("properties").and_then(serde_json::Value::as_object).cloned();
@@ -75,7 +75,9 @@ pub(super) fn node<'de, D: Deserializer<'de>>(deserializer: D) -> Result<StageNo
     }
 
     let Err(error) = deserializer.deserialize_newtype_struct(NODE, Refused) else {
-        return Err(D::Error::custom("a stage cannot be read from here"));
+        return Err(D::Error::custom(
+            "a stage can be read only through `Params::parse`, not with another deserializer",
+        ));
     };
     let handed = std::error::Error::source(&error).and_then(|source| source.downcast_ref::<Handed>());
     handed.map(|Handed(node)| node.clone()).ok_or(error)

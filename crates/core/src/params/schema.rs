@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 /// Keyword of a schema at which a check stops, because the value there is read later.
 pub(super) const PART: &str = "x-part";
 
-/// A map of one of several kinds, each with its own schema.
+/// A map of one of several kinds, chosen by a key; each kind has its own schema.
 pub struct Kinds<'a> {
     /// Key that names the kind.
     pub key: &'a str,
@@ -16,12 +16,13 @@ pub struct Kinds<'a> {
     pub default: Option<&'a str>,
     /// Keys that every kind takes in addition to its own: the schema of a map.
     pub shared: Option<&'a Schema>,
-    /// Whether the name of a kind alone, as a text, stands for it.
+    /// Whether a text with just the name of a kind stands for a map of that kind.
     pub by_name: bool,
 }
 
 impl Kinds<'_> {
-    /// Returns the schema. It is made of `if` and `then`, not of alternatives, so that faults refer to the kind that was meant.
+    /// Returns the schema of the map. It uses `if` and `then` instead of alternatives, so that faults refer to the kind that was
+    /// meant.
     #[must_use]
     pub fn schema(&self) -> Schema {
         let names: Vec<&str> = self.kinds.iter().map(|(name, _)| *name).collect();

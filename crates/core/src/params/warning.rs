@@ -36,11 +36,11 @@ pub struct Warnings {
     ends: RefCell<Vec<DataEnd>>,
 }
 
-/// A table of light that is extended at a constant value beyond its rows. Whether that matters is known only once the film or
-/// sensor is.
+/// A table of light that is extended at a constant value beyond its rows. Whether the extension matters is known only once the
+/// film or sensor is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataEnd {
-    /// Place where the table is named; the message is its name.
+    /// Place at which the table is named in the scene; the message of this fault is the table's name.
     pub place: Fault,
     /// First and last wavelength of its rows, nm.
     pub measured_nm: [f64; 2],
@@ -68,12 +68,12 @@ impl Warnings {
         self.all.borrow().clone()
     }
 
-    /// Adds a table that may need a warning about its ends.
+    /// Adds a table that ends within the band; see [`DataEnd`].
     pub fn push_end(&self, end: DataEnd) {
         self.ends.borrow_mut().push(end);
     }
 
-    /// Returns the tables added so far.
+    /// Returns the tables that were added so far by [`Warnings::push_end`].
     #[must_use]
     pub fn ends(&self) -> Vec<DataEnd> {
         self.ends.borrow().clone()

@@ -12,7 +12,7 @@ use std::borrow::Cow;
 pub struct Whole<const MIN: u64, const MAX: u64>(u64);
 
 impl<const MIN: u64, const MAX: u64> Whole<MIN, MAX> {
-    /// Returns the number, if it is within the range.
+    /// Returns the number, or `None` outside the range.
     #[must_use]
     pub const fn new(value: u64) -> Option<Self> {
         if MIN <= value && value <= MAX { Some(Self(value)) } else { None }

@@ -159,7 +159,7 @@ pub struct NonNegative<Q>(Q);
 macro_rules! bounded {
     ($name:ident) => {
         impl<Q: Quantity> $name<Q> {
-            /// Wraps the quantity if it obeys the bound.
+            /// Returns the quantity in this wrapper, or `None` if it violates the bound.
             #[must_use]
             pub fn new(quantity: Q) -> Option<Self> {
                 Bound::$name.limits().allow(quantity.bare()).then_some(Self(quantity))
@@ -225,7 +225,7 @@ pub enum OrInfinity<Q> {
 pub type LengthOrInfinity = OrInfinity<Length>;
 
 impl<Q> OrInfinity<Q> {
-    /// Returns the quantity if it is finite.
+    /// Returns the quantity, or `None` if it is infinite.
     #[must_use]
     pub fn finite(self) -> Option<Q> {
         match self {

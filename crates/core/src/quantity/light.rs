@@ -2,13 +2,13 @@
 
 use std::fmt;
 
-/// Shortest wavelength that is accepted as light, nm. Glass passes none that is shorter, and no spectrum begins there. A
+/// Shortest wavelength that is accepted as light, nm. No glass passes shorter wavelengths, and no spectrum begins there. A
 /// smaller number was meant in another unit.
 pub const SHORTEST_LIGHT_NM: f64 = 50.0;
 /// Longest wavelength that a hint proposes, nm.
 const LONGEST_NM: f64 = 50_000.0;
 
-/// A wavelength too short for light, nm.
+/// Error of a wavelength that is too short for light, nm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotLight(pub f64);
 
@@ -34,7 +34,7 @@ impl NotLight {
     }
 }
 
-/// Returns the wavelength (nm) if it can be that of light.
+/// Returns the wavelength (nm) unchanged, if it is long enough for light.
 ///
 /// # Errors
 /// [`NotLight`] below [`SHORTEST_LIGHT_NM`].

@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// The signs that a quantity may have.
+/// Bound on the sign of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
     /// Any sign.
@@ -50,7 +50,7 @@ pub trait Quantity: Copy {
     const BARE_UNIT: &'static str;
     /// An example of how to write the quantity.
     const EXAMPLE: &'static str;
-    /// Signs that the quantity may have.
+    /// Bound on the sign of the quantity.
     const BOUND: Bound = Bound::Any;
     /// Whether the quantity may be infinite (`inf`).
     const INFINITY: bool = false;

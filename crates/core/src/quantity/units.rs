@@ -180,9 +180,9 @@ pub enum Reading<'a> {
     Bare(f64),
     /// A number with a unit.
     Quantity {
-        /// The number, in that unit.
+        /// Number in the unit that was written.
         value: f64,
-        /// The unit.
+        /// Unit that was written after the number.
         unit: &'static Unit,
     },
     /// A number with an unknown unit.

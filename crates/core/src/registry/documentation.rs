@@ -24,7 +24,7 @@ pub struct Documentation {
 /// Documentation of one parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Key of the parameter; `.` goes into a map, `[]` into a list.
+    /// Path of the key within the stage's map, such as `a.b` for key `b` of map `a`; `[]` stands for the elements of a list.
     pub key: String,
     /// Form of the value.
     #[serde(rename = "type")]
@@ -33,7 +33,7 @@ pub struct Parameter {
     pub unit: String,
     /// Allowed values.
     pub range: ValueRange,
-    /// Default value; `None` if the parameter must be given, or if leaving it out has a meaning of its own.
+    /// Default value; `None` if the parameter must be given, or if its absence has a meaning of its own.
     pub default: Option<Value>,
     /// Whether the parameter must be given.
     pub required: bool,

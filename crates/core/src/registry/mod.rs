@@ -98,7 +98,7 @@ pub struct Context<'a> {
     pub resources: &'a dyn Resources,
     /// Band on which light is computed.
     pub grid: Grid,
-    /// Light under which the colors of the source are seen, for a color model.
+    /// Light under which the colors of the source are seen, for a color model; `None` for other stages.
     pub illuminant: Option<&'a SpectralPower>,
     /// View of the frame in front of the lens, for a source; `None` if the scene has no valid lens.
     pub view: Option<&'a FrameView>,
@@ -141,7 +141,7 @@ pub struct Entry<S: ?Sized + 'static> {
     pub default: bool,
     /// Schema of the stage's parameters, with their documentation.
     pub schema: SchemaOf,
-    /// Function that builds the stage.
+    /// Function that builds the stage from its parameters.
     pub build: Build<S>,
 }
 
@@ -265,7 +265,7 @@ macro_rules! declare {
 pub struct Declared(fn() -> Vec<Listed>);
 
 impl Declared {
-    /// Declares the kind of stage that `S` stands for.
+    /// Declares the kind of stage `S`, for the list of all registries.
     #[must_use]
     pub const fn of<S: Stage + ?Sized>() -> Self {
         Self(|| S::entries().into_iter().map(Listed::of).collect())
@@ -322,7 +322,7 @@ impl Listed {
         }
     }
 
-    /// Documentation of the stage, as `spectra doc` shows it.
+    /// Returns the documentation of the stage, as `spectra doc` shows it.
     #[must_use]
     pub fn documentation(&self) -> Documentation {
         Documentation::of(self.schema)
@@ -363,7 +363,7 @@ fn check_list(all: &[Listed]) -> Result<(), Vec<String>> {
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
-/// Builds the stage that `params` name by their `kind` (or the default stage).
+/// Builds the stage whose kind `params` name, or the default stage if they name none.
 ///
 /// # Errors
 /// The kind is unknown (the nearest known ones are named), or the stage's own parameters are wrong.

@@ -69,8 +69,8 @@ impl<S: Stage + ?Sized> JsonSchema for NameOf<S> {
     }
 }
 
-/// Returns the schema of a map with one of the registered stages of a kind. `shared` holds keys that all of them take in
-/// addition to their own; `by_name` says whether a stage's name alone stands for it.
+/// Returns the schema of a map that holds one of the registered stages of the kind `S`. `shared` is the schema of the keys that
+/// all of them take in addition to their own; `by_name` says whether a stage's name alone stands for it.
 pub fn kinds<S: Stage + ?Sized>(generator: &mut SchemaGenerator, shared: Option<&Schema>, by_name: bool) -> Schema {
     let all: Vec<Listed> = super::list().into_iter().filter(|l| l.stage == S::NAME).collect();
     of_listed(&all, generator, shared, by_name)
@@ -87,8 +87,8 @@ fn of_listed(all: &[Listed], generator: &mut SchemaGenerator, shared: Option<&Sc
     kinds.schema()
 }
 
-/// Writes one definition per kind of stage (`source`, `surface`, ...) into a generator, with everything that is registered.
-/// `shared` holds keys that all stages of a kind take in addition to their own: a schema of a map, by kind.
+/// Adds one definition per kind of stage (`source`, `surface`, ...) to `generator`, with everything that is registered. `shared`
+/// pairs a kind of stage with the schema of the keys that all its stages take in addition to their own.
 pub fn definitions(generator: &mut SchemaGenerator, shared: &[(&str, Schema)]) {
     for all in super::list().chunk_by(|a, b| a.stage == b.stage) {
         let stage = all[0].stage;

@@ -6,8 +6,8 @@ use super::{Interface, Intersection, SagShape, ScalarShape, Travel, by_batch};
 use crate::RayBatch;
 use glam::DVec3;
 
-/// Turns a [`SagShape`] into a [`ScalarShape`]: a ray hits it where it crosses the sag in its direction of travel. In
-/// [`PerRay`](super::PerRay), the rays of a batch step toward it side by side.
+/// Turns a [`SagShape`] into a [`ScalarShape`]: a ray hits the surface where it crosses the sag in its direction of travel. In
+/// [`PerRay`](super::PerRay), the rays of a batch step toward the surface side by side.
 #[derive(Clone, Debug)]
 pub struct FromSag<S>(pub S);
 

@@ -72,8 +72,8 @@ pub struct Ray<R, const FORWARD: bool> {
 }
 
 impl<R: Real, const FORWARD: bool> Ray<R, FORWARD> {
-    /// Gives `size` the sign of the direction of travel: positive forward. Most intersections are solved by a square root of
-    /// either sign; this picks the one on the side that the light comes from.
+    /// Returns `size` (0 or more) with the sign of the direction of travel: positive forward. Most intersections follow from a
+    /// square root of either sign; this one picks the intersection on the side that the light comes from.
     #[inline(always)]
     pub fn along(&self, size: R) -> R {
         if FORWARD { size } else { -size }
@@ -85,17 +85,17 @@ impl<R: Real, const FORWARD: bool> Ray<R, FORWARD> {
 pub struct Hit<R> {
     /// Distance along the ray, mm; may be negative.
     pub distance: R,
-    /// Direction . normal, with the normal that points toward +z at the vertex: positive forward, negative backward.
-    /// Read only for shapes whose normal has unit length.
+    /// Dot product of direction and normal, where the normal points toward +z at the vertex: positive forward, negative backward.
+    /// It is read only for shapes whose normal has unit length.
     pub cosine: R,
-    /// Negative or NaN where the ray misses the surface or runs against the direction of travel.
+    /// Sign of validity: negative or NaN if the ray misses the surface or runs against the direction of travel.
     pub valid: R,
 }
 
 /// State of a ray on its steps toward a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Near<R> {
-    /// Distance along the ray, mm.
+    /// Distance along the ray that is reached so far, mm.
     pub distance: R,
     /// Values that the shape keeps for the next step.
     pub kept: [R; 2],
@@ -130,23 +130,24 @@ pub trait KernelShape: Send + Sync + std::fmt::Debug + 'static {
     fn settle<R: Real, const FORWARD: bool>(&self, _ray: Ray<R, FORWARD>, near: Near<R>) -> Near<R> {
         near
     }
-    /// Returns what [`KernelShape::settle`] keeps, for a point of the surface.
+    /// Returns the values that [`KernelShape::settle`] would keep for a ray that arrives at `point` of the surface.
     #[inline(always)]
     fn keep<R: Real>(&self, _point: [R; 3]) -> [R; 2] {
         [R::constant(0.0); 2]
     }
-    /// Computes the normal from the values that were kept.
+    /// Returns the normal at `point`, from the values that [`KernelShape::settle`] kept.
     #[inline(always)]
     fn normal_kept<R: Real>(&self, point: [R; 3], _kept: [R; 2]) -> [R; 3] {
         self.normal(point)
     }
-    /// Normal at a point of the surface, toward +z at the vertex; of unit length if [`KernelShape::UNIT_NORMAL`] says so.
+    /// Returns the normal at a point of the surface, toward +z at the vertex; of unit length if [`KernelShape::UNIT_NORMAL`] is
+    /// true.
     fn normal<R: Real>(&self, point: [R; 3]) -> [R; 3];
     /// Whether the normal has unit length. Set this to false if unit length would cost a square root: Snell's law works with
     /// any length, at the price of a division.
     const UNIT_NORMAL: bool = true;
-    /// Whether [`KernelShape::search`] tries again for rays that [`KernelShape::hit`] calls invalid. The distance of an invalid
-    /// hit must then be 0.
+    /// Whether [`KernelShape::search`] tries again for rays whose [`KernelShape::hit`] is invalid. The distance of an invalid hit
+    /// must then be 0.
     const SEARCHES: bool = false;
     /// Finds the distance (mm) along a ray for which `hit` found none, by a slower and safer search. `None` if the ray misses.
     fn search(&self, _position: [f64; 3], _direction: [f64; 3], _travel: Travel) -> Option<f64> {

@@ -63,7 +63,7 @@ pub struct Interface<'a> {
     /// Number of the surface, from 1; losses are counted under it.
     pub number: u32,
     /// Distance along z (mm) from the vertex of the surface traced before to the vertex of this surface. The rays arrive in the
-    /// frame of the former.
+    /// frame of the surface traced before.
     pub shift_mm: f64,
     /// Square of the clear semi-diameter, mm^2; infinity clips nothing.
     pub clip_radius2_mm2: f64,
@@ -71,9 +71,9 @@ pub struct Interface<'a> {
     pub action: Action,
     /// Direction in which the batch travels.
     pub travel: Travel,
-    /// Medium that the rays come from.
+    /// Medium from which the rays come.
     pub before: IndexColumns<'a>,
-    /// Medium that they enter.
+    /// Medium which the rays enter.
     pub after: IndexColumns<'a>,
 }
 
@@ -85,9 +85,9 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
     /// Curvature at the vertex along x and y, 1/mm, for paraxial optics.
     fn vertex_curvature_per_mm(&self) -> (f64, f64);
 
-    /// Power for paraxial optics, 1/mm (in the x-z and the y-z section), between media of these refractive indices:
-    /// n' u' = n u - power h. A mirror has `n_after = -n_before`, as usual in lens design. The default follows from Snell's
-    /// law and the curvature at the vertex.
+    /// Power for paraxial optics, 1/mm, in the x-z and in the y-z section, between media of these refractive indices: n' u' = n u
+    /// - power h. For a mirror `n_after` is `-n_before`, as usual in lens design. The default follows from Snell's law and the
+    /// curvature at the vertex.
     fn paraxial_power_per_mm(&self, n_before: f64, n_after: f64) -> (f64, f64) {
         let (x, y) = self.vertex_curvature_per_mm();
         ((n_after - n_before) * x, (n_after - n_before) * y)
@@ -98,14 +98,14 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         false
     }
 
-    /// Returns whether the surface acts differently by azimuth although its sag is round, as a ruled grating does.
+    /// Returns whether the surface acts differently at different azimuths although its sag is round, as a ruled grating does.
     fn is_directional(&self) -> bool {
         false
     }
 
     /// Returns whether the surface draws random numbers ([`crate::numbers::RayNumbers`]), for example to scatter or split a share
-    /// of the light. The direction in which light leaves may then differ from that without random numbers, so the search for rays
-    /// that pass a lens ends here.
+    /// of the light. Light may then leave in another direction than it does without random numbers. The search for rays that pass
+    /// a lens therefore ends at this surface.
     fn draws(&self) -> bool {
         false
     }
@@ -131,15 +131,15 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
         0.0
     }
 
-    /// Returns this surface with all lengths times `factor`, so that rays are deflected alike at points that lie `factor` times
-    /// as far out; `None` if the surface cannot be scaled. What depends on wavelengths, such as the lines of a grating, stays
-    /// as it is.
+    /// Returns this surface with all lengths multiplied by `factor`: a ray that meets it `factor` times as far out is deflected
+    /// by the same angle. `None` if the surface cannot be scaled. What depends on wavelengths, such as the line spacing of a
+    /// grating, stays as it is.
     fn scaled(&self, _factor: f64) -> Option<Arc<dyn Surface>> {
         None
     }
 
-    /// Moves the living rays of the batch, given in the frame of the surface before, onto this surface in its own frame, and
-    /// bends them. Rays that end get their cause and the number of this surface. Works in either direction of travel. Returns
-    /// how many rays ended here.
+    /// Moves the living rays of the batch onto this surface and bends them. Rays arrive in the frame of the surface traced before
+    /// and leave in the frame of this one. A ray that ends gets the cause and the number of this surface. Works in either
+    /// direction of travel. Returns how many rays ended here.
     fn interact(&self, rays: &mut RayBatch, interface: &Interface<'_>) -> usize;
 }

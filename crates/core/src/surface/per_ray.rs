@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub struct Intersection {
     /// Distance along the ray, mm; may be negative.
     pub distance_mm: f64,
-    /// Normal: any length but zero, pointing either way.
+    /// Normal of the surface, of any length but zero, pointing either way.
     pub normal: DVec3,
 }
 
@@ -54,14 +54,15 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug + 'static {
         let (x, y) = self.vertex_curvature_per_mm();
         ((n_after - n_before) * x, (n_after - n_before) * y)
     }
-    /// Smallest and largest sag (mm) within a radius of the axis, or bounds of them. Rays that pass beside that part of space end
-    /// as vignetted, without a search for their intersection. `None` (the default) if no bounds are known.
+    /// Returns the smallest and largest sag (mm) within `radius_mm` of the axis, or bounds of them. Rays that do not cross this
+    /// slab within the radius end as vignetted, without a search for their intersection. `None` (the default) if no bounds are
+    /// known.
     fn extent_mm(&self, _radius_mm: f64) -> Option<[f64; 2]> {
         None
     }
-    /// Returns the unit direction after the surface, or why the ray ends. This is for surfaces that bend light by a law other
-    /// than Snell's, such as an ideal lens or a grating. `None`, the default, refracts or reflects as the action says. A surface
-    /// with its own law also has a [phase](ScalarShape::phase_mm).
+    /// Returns the unit direction behind the surface, or why the ray ends. It is for surfaces that bend light by a law other than
+    /// Snell's, such as an ideal lens or a grating. The default, `None`, means that the ray is refracted or reflected as the
+    /// action says. A surface with its own law also has a [phase](ScalarShape::phase_mm).
     fn redirect(&self, _at: &Bending) -> Option<Result<DVec3, Loss>> {
         None
     }
@@ -92,8 +93,8 @@ pub trait ScalarShape: Send + Sync + std::fmt::Debug + 'static {
     {
         None
     }
-    /// Does the work of [`Surface::interact`] for shapes that can handle a batch better than ray by ray; `None`, the default,
-    /// if there is nothing better.
+    /// Does the work of [`Surface::interact`] on a whole batch, for shapes that can do it faster than ray by ray, and returns how
+    /// many rays ended. The default, `None`, means that rays are handled one by one.
     #[doc(hidden)]
     fn by_batch(&self, _rays: &mut RayBatch, _interface: &Interface<'_>) -> Option<usize> {
         None

@@ -5,8 +5,8 @@ pub trait SagShape: Send + Sync + std::fmt::Debug + 'static {
     /// Sag at a point, mm from the vertex plane; `None` where the surface does not reach.
     fn sag_mm(&self, x_mm: f64, y_mm: f64) -> Option<f64>;
 
-    /// Slopes dz/dx and dz/dy. The default takes differences of the sag. Implement it if you know the slopes: tracing is then
-    /// faster and exact.
+    /// Returns the slopes dz/dx and dz/dy; `None` where the surface does not reach. The default takes differences of the sag.
+    /// Implement it if you know the slopes: tracing is then faster and exact.
     fn slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, f64)> {
         // At this step the rounding of the sag and the error of the differences are both near 1e-11.
         let h = 1e-3;
@@ -20,7 +20,7 @@ pub trait SagShape: Send + Sync + std::fmt::Debug + 'static {
         Some((along(h, 0.0)?, along(0.0, h)?))
     }
 
-    /// Sag and slopes at once. Implement it if both cost less together than apart.
+    /// Returns the sag and the slopes at once. Implement it if both together cost less than one after the other.
     fn sag_and_slope(&self, x_mm: f64, y_mm: f64) -> Option<(f64, (f64, f64))> {
         Some((self.sag_mm(x_mm, y_mm)?, self.slope(x_mm, y_mm)?))
     }

@@ -33,8 +33,8 @@ const BRACKET_STEPS: usize = 120;
 /// larger). Of several crossings it is the one nearest to `start_mm`. If the search has to start elsewhere, it is the one nearest
 /// to the point of the ray that is closest to the vertex.
 ///
-/// `height` returns z - sag at a distance along the ray, and its derivative along the ray; `None` where the surface does not
-/// reach.
+/// `height` returns z - sag at a distance along the ray and the derivative of this along the ray; `None` where the surface does
+/// not reach.
 pub fn nearest_crossing(
     height: impl Fn(f64) -> Option<(f64, f64)>,
     position: DVec3,
