@@ -50,7 +50,7 @@ fn locus() -> &'static [[f64; 2]] {
 /// Computes the correlated color temperature of the chromaticity `xy` by its definition.
 /// This is the temperature at the nearest point of the Planckian locus on the CIE 1960 diagram, with the exact radiation constants.
 ///
-/// Returns `None` farther than 0.05 from the locus and outside 800 K to 1 000 000 K.
+/// Returns `None` if the distance from the locus exceeds 0.05, or if the temperature is outside 800 K to 1 000 000 K.
 #[must_use]
 pub fn cct(xy: [f64; 2]) -> Option<Cct> {
     let [u, v] = uv_1960(xy);

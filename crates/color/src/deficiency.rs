@@ -29,13 +29,14 @@ impl Deficiency {
         }
     }
 
-    /// Converts a color in linear sRGB to the one that this eye sees, in linear sRGB. Results may lie slightly outside 0 to 1.
+    /// Converts a color in linear sRGB to the color that shows a normal eye what this eye sees, in linear sRGB. Results may lie
+    /// slightly outside 0 to 1.
     #[must_use]
     pub fn simulate(self, linear_srgb: [f64; 3]) -> [f64; 3] {
         crate::matrix::apply(&self.matrix(), linear_srgb)
     }
 
-    /// Converts 8-bit sRGB code values to the code values of what this eye sees, clipped to the gamut.
+    /// Converts 8-bit sRGB code values as [`Deficiency::simulate`] does, clipped to the gamut.
     #[must_use]
     pub fn simulate_srgb8(self, code: [u8; 3]) -> [u8; 3] {
         let srgb = crate::RgbSpace::srgb();

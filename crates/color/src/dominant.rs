@@ -3,7 +3,7 @@
 use spectra_spectrum::Observer;
 use std::sync::OnceLock;
 
-/// The spectral color that, mixed with white, gives a certain color.
+/// The wavelength of the spectral color that yields a given color when mixed with white, and the color's purity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dominant {
     /// Dominant wavelength, nm; for a purple, the complementary wavelength.
@@ -50,7 +50,7 @@ fn on_locus(from: [f64; 2], along: [f64; 2]) -> Option<(f64, f64)> {
 
 /// Computes the dominant wavelength of the chromaticity `xy` seen against `white_xy`, on the CIE 1931 locus between 380 and 699 nm.
 ///
-/// Returns `None` if both coordinates agree within 1e-6, or if the white lies outside the diagram.
+/// Returns `None` if `xy` and `white_xy` agree within 1e-6, or if the white lies outside the diagram.
 #[must_use]
 pub fn dominant_wavelength(xy: [f64; 2], white_xy: [f64; 2]) -> Option<Dominant> {
     let along = [xy[0] - white_xy[0], xy[1] - white_xy[1]];

@@ -7,17 +7,19 @@ use crate::rgb::RgbSpace;
 /// Methods of bringing linear RGB into the range 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Gamut {
-    /// Clips each channel separately: fast, but changes hue and lightness.
+    /// Clips each channel separately. It is fast, but changes hue and lightness.
     #[default]
     Clip,
-    /// Moves toward the gray of the same luminance until the color fits. Keeps luminance; changes hue as mixing with white does.
+    /// Moves the color toward the gray of the same luminance until it fits. Luminance stays the same; hue shifts as in mixing
+    /// with white.
     Desaturate,
-    /// Moves toward the gray of the same lightness at constant lightness and hue in Oklab: keeps the perceived hue.
+    /// Moves the color toward the gray of the same lightness, at constant lightness and hue in Oklab. The perceived hue stays the
+    /// same.
     ///
     /// B. Ottosson, "A perceptual color space for image processing" (2020).
     Perceptual,
-    /// Adds as much white as the most negative channel lacks, at the same luminance, and darkens colors with a channel above 1.
-    /// Colors that all lie outside the gamut, for example those of a spectrum, remain distinct from each other.
+    /// Adds white at the same luminance until the most negative channel is 0, then darkens colors with a channel above 1. Colors
+    /// that all lie outside the gamut, such as the colors of a spectrum, remain distinct.
     Compress,
 }
 
@@ -54,8 +56,8 @@ fn clip(rgb: [f64; 3]) -> [f64; 3] {
     rgb.map(|v| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1.0) })
 }
 
-/// Brings linear RGB of `space` into the range 0 to 1 by `method`. Colors inside do not change; NaN becomes 0. Colors with a value that is
-/// not finite are clipped.
+/// Brings linear RGB of `space` into the range 0 to 1 by `method`. Colors in this range do not change. A color with a value that
+/// is not finite is clipped, and NaN becomes 0.
 #[must_use]
 pub fn into_gamut(rgb: [f64; 3], space: &RgbSpace, method: Gamut) -> [f64; 3] {
     if fits(rgb) || method == Gamut::Clip || rgb.iter().any(|v| !v.is_finite()) {

@@ -54,9 +54,9 @@ pub fn fit_to_gamut(rgb: [f64; 3], gamut: ColorGamut) -> GamutFit {
 /// Position of a color outside sRGB, relative to the triangle of sRGB and the boundary of the real colors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GamutPosition {
-    /// Index of the direction before the color, from 0. [`GamutPosition::fraction`] says how far the color lies toward the next direction.
+    /// Index of the direction before the color's direction, from 0, in [`RealGamut::turns`].
     pub direction: usize,
-    /// How far the color lies from [`GamutPosition::direction`] toward the next direction, 0 to 1.
+    /// Position of the color's direction between this direction (0) and the next (1).
     pub fraction: f64,
     /// Depth of the color: 0 on the sRGB triangle, 1 on the boundary.
     pub depth: f64,
@@ -64,7 +64,7 @@ pub struct GamutPosition {
     pub peak: f64,
 }
 
-/// Directions from white, each with the point of the boundary that it meets.
+/// The boundary of the real colors, sampled in directions from white.
 #[derive(Clone, Debug)]
 pub struct RealGamut {
     /// Turn of each direction, ascending from 0 to 4.
@@ -74,7 +74,8 @@ pub struct RealGamut {
 }
 
 impl RealGamut {
-    /// Samples the boundary in the directions with these turns (see [`RealGamut::turn`]). Adds 0 and 4, which are the same direction.
+    /// Samples the boundary in the directions with these turns (see [`RealGamut::turn`]). The turns 0 and 4, which are the same
+    /// direction, are added.
     #[must_use]
     pub fn new(turns: impl IntoIterator<Item = f64>) -> Self {
         let mut turns: Vec<f64> =
@@ -85,7 +86,8 @@ impl RealGamut {
         Self { turns, rim }
     }
 
-    /// Samples the boundary in `count` evenly spaced turns and in the directions of the sRGB corners, where the depth has a kink.
+    /// Samples the boundary in `count` evenly spaced turns, and in the directions of the corners of the sRGB triangle, where the
+    /// depth has a kink.
     #[must_use]
     pub fn even(count: usize) -> Self {
         let white = RgbSpace::srgb().white_xy;
@@ -138,7 +140,8 @@ impl RealGamut {
         ONE.get_or_init(|| Self::even(360))
     }
 
-    /// Returns the color in the direction `turn` at `depth`, in linear sRGB, scaled so that its largest value is 1.
+    /// Returns the color in the direction `turn` (0 to 4) from white at `depth` (0 to 1), in linear sRGB, scaled so that its
+    /// largest value is 1.
     #[must_use]
     pub fn color(turn: f64, depth: f64) -> [f64; 3] {
         let srgb = RgbSpace::srgb();
@@ -152,7 +155,8 @@ impl RealGamut {
         rgb.map(|v| v / largest)
     }
 
-    /// Converts a direction in xy to a turn: a number that rises from 0 (+x) through 1 (+y), 2 (-x) and 3 (-y) to 4.
+    /// Converts a direction in xy to a turn, a measure of angle that rises counterclockwise from 0 (+x) through 1 (+y), 2 (-x)
+    /// and 3 (-y) to 4.
     #[must_use]
     pub fn turn([x, y]: [f64; 2]) -> f64 {
         let part = x / (x.abs() + y.abs());

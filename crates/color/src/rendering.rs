@@ -149,7 +149,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// Computes J', a', b' of CAM02-UCS for `xyz` seen against `white`, where white has Y = 100.
+/// Computes J', a', b' of CAM02-UCS for `xyz` seen against `white`, where the white has Y = 100.
 /// The viewing conditions are those of CIE 224:2017: adapting luminance 100 cd/m2, background 20, average surround, complete adaptation.
 /// Sources: CIE 159:2004; M. R. Luo, G. Cui, C. Li, Color Research & Application 31, 320 (2006).
 #[must_use]

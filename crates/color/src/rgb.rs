@@ -19,7 +19,8 @@ const REC2020_ALPHA: f64 = 1.099_296_826_809_442_9;
 const REC2020_BETA: f64 = 0.018_053_968_510_807_807;
 
 impl Transfer {
-    /// Encodes `linear` light as a code value. The curve is odd: negative values keep their magnitude.
+    /// Encodes `linear` light as a code value. The curve is odd: a negative value yields the negative code value of its
+    /// magnitude.
     #[must_use]
     pub fn encode(self, linear: f64) -> f64 {
         let x = linear.abs();
@@ -33,7 +34,8 @@ impl Transfer {
         y.copysign(linear)
     }
 
-    /// Decodes the code value `encoded` to linear light. The curve is odd: negative values keep their magnitude.
+    /// Decodes the code value `encoded` to linear light. The curve is odd: a negative value yields the negative light of its
+    /// magnitude.
     #[must_use]
     pub fn decode(self, encoded: f64) -> f64 {
         let y = encoded.abs();
@@ -160,14 +162,14 @@ pub fn xyz_of_xy(xy: [f64; 2], y: f64) -> [f64; 3] {
     [xy[0] / xy[1] * y, y, (1.0 - xy[0] - xy[1]) / xy[1] * y]
 }
 
-/// Converts a value of 0 to 1 to 8 bits: 1 becomes 255; rounds to nearest and clips. NaN becomes 0.
+/// Converts a value of 0 to 1 to 8 bits, where 1 becomes 255. It rounds to nearest and clips; NaN becomes 0.
 #[must_use]
 pub fn to_u8(value: f64) -> u8 {
     // The cast saturates and converts NaN to 0.
     (value * 255.0 + 0.5).floor() as u8
 }
 
-/// Converts an 8-bit value to 0 to 1: 255 becomes 1.
+/// Converts an 8-bit value to the range 0 to 1, where 255 becomes 1.
 #[must_use]
 pub fn from_u8(value: u8) -> f64 {
     f64::from(value) / 255.0

@@ -4,7 +4,8 @@ use crate::rgb::{RgbSpace, from_u8};
 use spectra_core::stage::ColorModel;
 use spectra_spectrum::Observer;
 
-/// Shows the colors of a model: the CIE 1931 observer sees its spectra, and the result is sRGB in which the model's white has luminance 1.
+/// Converts colors to the spectra of a model and back: the CIE 1931 observer sees the spectra, and the result is sRGB in which
+/// the model's white has luminance 1.
 pub struct RoundTrip<'a> {
     model: &'a dyn ColorModel,
     /// Luminance Y of the model's white.
@@ -20,9 +21,9 @@ pub struct RoundTripErrors {
     pub mean: f64,
     /// The color with the largest error, 8 bits per channel.
     pub worst: [u8; 3],
-    /// What the color in `worst` comes back as: code values of 0 to 255, clipped.
+    /// Result of the round trip of `worst`: code values of 0 to 255, clipped.
     pub worst_back: [f64; 3],
-    /// Phantom green: the largest green code value, 0 to 255, that comes back from a pure red without green and blue.
+    /// Phantom green: the largest green code value, 0 to 255, in the result for a pure red.
     pub phantom_green: f64,
 }
 
@@ -34,14 +35,14 @@ impl<'a> RoundTrip<'a> {
         (white > 0.0 && white.is_finite()).then_some(Self { model, white })
     }
 
-    /// Returns the linear sRGB that `linear_srgb` comes back as; values are negative outside the gamut.
+    /// Returns the result of the round trip of `linear_srgb`, in linear sRGB; values are negative outside the gamut.
     #[must_use]
     pub fn linear(&self, linear_srgb: [f64; 3]) -> [f64; 3] {
         let xyz = Observer::cie_1931_2deg().xyz_of_power(&self.model.spectrum(linear_srgb));
         RgbSpace::srgb().from_xyz(xyz.map(|v| v / self.white))
     }
 
-    /// Returns the code values, 0 to 255, that an 8-bit color comes back as: clipped as a screen clips, not rounded.
+    /// Returns the result of the round trip of an 8-bit color as code values, 0 to 255: clipped as a screen clips, not rounded.
     #[must_use]
     pub fn code(&self, rgb: [u8; 3]) -> [f64; 3] {
         let srgb = RgbSpace::srgb();

@@ -3,8 +3,8 @@
 use crate::rgb::{RgbSpace, to_u8};
 use spectra_spectrum::Observer;
 
-/// Computes linear RGB of monochromatic light: the CIE 1931 color matching functions in `space`, with negative channels set to 0, scaled so
-/// that the brightest is 1. Black if the observer sees nothing.
+/// Computes linear RGB of monochromatic light: the CIE 1931 color matching functions in `space`, scaled so that the largest
+/// channel is 1. Negative channels are 0. The result is black if the observer sees no light.
 ///
 /// The color keeps the hue but not the true intensity. Multiply by the luminous efficiency if that matters.
 #[must_use]

@@ -2,7 +2,7 @@
 
 use crate::{FILES, text};
 
-/// A source and its terms, with the files that come from it.
+/// A license and a source, with the bundled files that state both.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct License {
     /// Terms as the file states them, such as `CC0-1.0`.
@@ -31,10 +31,9 @@ fn catalogue_source(line: &str) -> Option<(&str, &str)> {
     Some((terms, source.trim()))
 }
 
-/// Returns license and source of every bundled file that states them, one entry for each pair, sorted.
+/// Returns the licenses and sources that bundled files state: one entry for each pair of license and source, sorted.
 ///
-/// Counts the first `license` and the first `source` among the first 60 lines of a file, and every line `!source MARK TEXT`
-/// there.
+/// In the first 60 lines of a file, the first `license` and the first `source` count, and every line `!source MARK TEXT`.
 #[must_use]
 pub fn licenses() -> Vec<License> {
     let mut all: Vec<License> = Vec::new();

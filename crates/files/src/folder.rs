@@ -5,8 +5,8 @@ use crate::temporary::create_beside;
 use std::io;
 use std::path::Path;
 
-/// Creates the folder `path` with `files` in it: names, with `/` between folders, and texts. The parent of `path` must exist, and
-/// `path` itself must not.
+/// Creates the folder `path` and fills it with `files`: pairs of a name, with `/` between folders, and a text. The parent of
+/// `path` must exist, and `path` itself must not.
 ///
 /// # Errors
 /// [`WriteError::Io`], which names `path`; nothing of the folder remains then.

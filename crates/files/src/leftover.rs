@@ -7,13 +7,13 @@ use std::time::{Duration, SystemTime};
 /// Age from which nobody is expected to write a file any more.
 const OLD: Duration = Duration::from_secs(600);
 
-/// Removes the files that this process was writing in `folder`.
+/// Removes the temporary files that this process was writing in `folder`.
 pub fn remove_own(folder: &Path) {
     remove(folder, |name, _| process_of(name) == Some(std::process::id()));
 }
 
-/// Removes temporary files in `folder`, known by their names, that killed runs have left: their process is gone, and nobody holds
-/// them.
+/// Removes temporary files that killed runs have left in `folder`. A file is removed if its name is that of a temporary file, its
+/// process no longer runs, and nobody has it locked.
 pub fn remove_stale_temporaries(folder: &Path) {
     remove(folder, |name, modified| {
         if process_of(name).is_none_or(is_alive) {

@@ -25,7 +25,7 @@ pub enum FillRule {
     EvenOdd,
 }
 
-/// A painted shape. Later shapes lie on top of earlier ones.
+/// A painted shape of a drawing. Later shapes lie on top of earlier ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Painted {
     /// Closed outlines: corners in order, mm from the center of the drawing, +y up.
@@ -62,7 +62,8 @@ impl Edge {
 /// Fill rule, transmittance and opacity of a shape.
 type Paint = (FillRule, f64, f64);
 
-/// An aperture made of painted shapes on a page. The page is opaque where nothing is painted, and no light passes outside the page.
+/// An aperture made of painted shapes on a page. The page is opaque where no shape is painted, and no light passes outside the
+/// page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     half_mm: [f64; 2],

@@ -3,7 +3,7 @@
 //! Numbers, the variable, `pi`, `+ - * / ^` with the usual order (`^` first and from the right, so that `-x^2` is -(x^2)),
 //! parentheses, and the functions of [`FUNCTIONS`]. All of them give the same bits on every machine.
 
-/// The functions that may be written, for messages.
+/// List of the functions that a formula may contain, for messages.
 pub const FUNCTIONS: &str =
     "abs, cos, erf, exp, ln, log10, max(a, b), min(a, b), sin, sqrt, step (1 from 0 on, else 0), tan, tanh";
 
@@ -23,7 +23,7 @@ pub struct Formula {
 /// An error in a formula, and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormulaFault {
-    /// Character at which the error is, from 0.
+    /// Number of the character at which the error is, from 0.
     pub at: usize,
     /// Message that says what is wrong.
     pub message: String,
@@ -77,7 +77,7 @@ impl Formula {
         &self.text
     }
 
-    /// Evaluates the formula; not a number or infinite where it has no value.
+    /// Evaluates the formula at `variable`; NaN or infinite where the formula has no value.
     #[must_use]
     pub fn at(&self, variable: f64) -> f64 {
         let mut stack: Vec<f64> = Vec::with_capacity(16);

@@ -14,14 +14,14 @@ pub const fn mix64(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// Returns the upper 53 bits as a number in [0, 1).
+/// Converts the upper 53 bits of `bits` to a number in [0, 1).
 #[inline(always)]
 #[must_use]
 pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Returns the upper 52 bits as the center of their cell in (0, 1).
+/// Converts the upper 52 bits of `bits` to a number in (0, 1), the center of their cell.
 #[inline(always)]
 #[must_use]
 pub fn open_unit(bits: u64) -> f64 {
@@ -35,7 +35,7 @@ pub struct SplitMix64 {
 }
 
 impl SplitMix64 {
-    /// Starts the stream of a key.
+    /// Starts the stream of random numbers of a key.
     #[must_use]
     pub const fn new(key: u64) -> Self {
         Self { state: key }

@@ -15,9 +15,9 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 pub enum Isa {
     /// Instructions that every machine of the target architecture has (x86-64: SSE2).
     Baseline,
-    /// 256-bit vectors.
+    /// Vectors of 256 bits (x86-64: AVX2).
     Avx2,
-    /// 512-bit vectors.
+    /// Vectors of 512 bits (x86-64: AVX-512).
     Avx512,
 }
 

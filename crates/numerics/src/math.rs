@@ -7,11 +7,10 @@ pub use libm::{
     acos, asin, atan, atan2, cbrt, cos, erf, erfc, exp, expm1, j0, j1, lgamma, log, log1p, log2, log10, pow, sin, tan,
 };
 
-/// Returns the whole part of `at`, as an index and as a number. `at` is held between 0 and `last` (a whole number below 2^32);
-/// what is not a number counts as 0. Branch-free.
+/// Splits off the whole part of `at`, and returns it as an index and as a number. `at` is first clamped to 0 to `last`, a whole
+/// number below 2^32; NaN counts as 0. Branch-free.
 ///
-/// A cast would be done number by number. Near 2^52 there is room for whole numbers only, in the last bits, which takes nothing
-/// but additions.
+/// A cast to an integer would be done number by number. Adding 2^52 instead leaves a whole number in the last bits of the f64.
 #[inline(always)]
 #[must_use]
 pub fn floor_index(at: f64, last: f64) -> (u32, f64) {
@@ -118,7 +117,7 @@ pub fn log2_single(x: f32) -> f32 {
     whole as f32 + series * (2.0 * std::f32::consts::LOG2_E)
 }
 
-/// Maps the unit square onto the unit disk, area for area, neighbors to neighbors.
+/// Maps the unit square onto the unit disk: equal areas stay equal, and neighbors stay neighbors. Returns x and y.
 ///
 /// P. Shirley and K. Chiu, "A low distortion map between disk and square", J. Graphics Tools 2
 /// (1997); branch-free.
@@ -134,7 +133,7 @@ pub fn concentric_disk(u: f64, v: f64) -> (f64, f64) {
     if wide { (r * c, r * s) } else { (r * s, r * c) }
 }
 
-/// Maps the unit square onto the unit disk in equal-area rings: radius from `u`, angle from `v`.
+/// Maps the unit square onto the unit disk with equal areas: the radius is sqrt(`u`), the angle `v` turns. Returns x and y.
 #[inline(always)]
 #[must_use]
 pub fn polar_disk(u: f64, v: f64) -> (f64, f64) {

@@ -2,23 +2,24 @@
 
 use crate::math::erfc;
 
-/// Distance, in standard deviations, beyond which [`far_mills`] holds; shares of the distribution out there are about to underflow.
+/// Distance from the mean, in standard deviations, beyond which [`far_mills`] holds. The tails beyond it are about to underflow.
 pub const FAR: f64 = 25.0;
 
-/// Returns the share of the distribution below `z` standard deviations.
+/// Returns the cumulative probability of the standard normal distribution at `z`.
 #[must_use]
 pub fn cdf(z: f64) -> f64 {
     0.5 * erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// Returns the point below which a share `u` of the distribution lies, in standard deviations, for `u` from 1e-300 to 1 -
-/// 1e-16; relative error about 1e-15.
+/// Returns the quantile of the standard normal distribution: the point below which the probability is `u`, for `u` from 1e-300 to
+/// 1 - 1e-16. The relative error is about 1e-15.
 #[must_use]
 pub fn quantile(u: f64) -> f64 {
     if u < 0.5 { -inverse_survival(u) } else { inverse_survival(1.0 - u) }
 }
 
-/// Returns Mills' ratio for `z` beyond [`FAR`], to the last digits: the eighth convergent of its continued fraction.
+/// Returns Mills' ratio (tail probability over density) for `z` beyond [`FAR`], to the last digits: the eighth convergent of its
+/// continued fraction.
 #[inline(always)]
 #[must_use]
 pub fn far_mills(z: f64) -> f64 {
@@ -86,8 +87,8 @@ pub fn exp_of_negative(x: f64) -> f64 {
     if x > LOWEST { (even + r * odd) * power } else { 0.0 }
 }
 
-/// Returns the point beyond which a share from 1e-300 to 1/2 of the normal distribution lies, in standard deviations; relative
-/// error about 1e-15.
+/// Returns the point of the standard normal distribution beyond which the probability is `share`, for shares from 1e-300 to 1/2.
+/// The relative error is about 1e-15.
 ///
 /// PPND16 of AS 241; all three rational approximations are evaluated side by side.
 #[inline(always)]

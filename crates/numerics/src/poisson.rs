@@ -7,8 +7,8 @@ use crate::normal;
 /// 10^4 of the standard deviation.
 const MANY: f64 = 500.0;
 
-/// Returns the quantile `u`, in [0, 1), of the Poisson distribution of mean `mean`: the smallest count whose cumulative
-/// probability exceeds `u`. 0 if the mean is not a positive number.
+/// Returns the quantile `u`, in [0, 1), of the Poisson distribution with this `mean`: the smallest count whose cumulative
+/// probability exceeds `u`. Returns 0 if the mean is not positive.
 ///
 /// Above a mean of 500 it uses the expansion of E. A. Cornish and R. A. Fisher (1938) to the third order.
 #[must_use]
@@ -33,9 +33,9 @@ pub fn quantile(mean: f64, u: f64) -> f64 {
     count
 }
 
-/// Draws a Poisson count of mean `mean`, exact for any mean; 0 if the mean is not a positive number. Uses [`quantile`] below a
-/// mean of 10, else W. Hörmann's transformed rejection (PTRS, Insurance: Mathematics and Economics 12, 39 (1993)). `uniform`
-/// gives independent numbers in (0, 1).
+/// Draws a Poisson count with this `mean`, exact for any mean; 0 if the mean is not positive. `uniform` returns independent
+/// numbers in (0, 1). Below a mean of 10 it uses [`quantile`], else transformed rejection (PTRS; W. Hörmann, Insurance:
+/// Mathematics and Economics 12, 39 (1993)).
 pub fn draw(mean: f64, mut uniform: impl FnMut() -> f64) -> f64 {
     if !(mean >= 10.0) {
         return if mean > 0.0 { quantile(mean, uniform()) } else { 0.0 };

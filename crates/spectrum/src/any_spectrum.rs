@@ -9,11 +9,11 @@ use crate::meta::Kind;
 pub enum AnySpectrum {
     /// Emitted light.
     Emission(Emission),
-    /// A filter.
+    /// The transmittance of a filter or another medium.
     Transmittance(Transmittance),
-    /// A surface.
+    /// The reflectance of a surface.
     Reflectance(Reflectance),
-    /// A detector.
+    /// The sensitivity of a detector.
     Sensitivity(Sensitivity),
 }
 

@@ -84,7 +84,7 @@ pub fn find(name: &str) -> Result<AnySpectrum, SpectrumError> {
     Loader { by_header: true, ..Loader::new(None) }.piece(name, Kind::Emission)?.into_any(Kind::Emission)
 }
 
-/// Finds the spectrum `name`; files are looked up by `files`, next to the scene.
+/// Finds the spectrum `name`; files are looked up by `files`: next to the scene, then among the bundled data.
 ///
 /// # Errors
 /// As [`find`].
@@ -92,7 +92,7 @@ pub fn find_in(name: &str, files: &dyn Resources) -> Result<AnySpectrum, Spectru
     Loader { by_header: true, ..Loader::new(Some(files)) }.piece(name, Kind::Emission)?.into_any(Kind::Emission)
 }
 
-/// Finds the spectrum `name` as one of the given kind, which also holds for a file that does not state its kind.
+/// Finds the spectrum `name` as a spectrum of the given kind. A file that states no kind is read as this kind.
 ///
 /// # Errors
 /// As [`find`], and [`SpectrumError::WrongKind`] for a spectrum of another kind.

@@ -81,8 +81,8 @@ impl Observer {
         [0, 1, 2].map(|i| grid.wavelengths_nm().map(|w| self.functions[i].at(w)).collect())
     }
 
-    /// Computes XYZ of light on a grid: the sum over its points times the step, as the CIE prescribes at 1 nm (CIE 15:2004,
-    /// 7.1), and the lines, each at its own wavelength.
+    /// Computes XYZ of a light on a grid: the sum over the grid's points times the step, as the CIE prescribes at 1 nm (CIE
+    /// 15:2004, 7.1). Lines are added at their own wavelengths. No factor is applied.
     ///
     /// The integral of the piecewise linear functions ([`SpectralPower::seen_by`]) differs by 5e-5 for a smooth surface.
     #[must_use]

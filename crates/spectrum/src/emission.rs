@@ -12,10 +12,10 @@ use crate::gaussian::GaussianMixture;
 use crate::spectral_function::SpectralFunction;
 use crate::tabulated::Tabulated;
 
-/// Emitted power (or radiance) by wavelength: a continuum per nanometer, and lines stored separately.
+/// Emitted power (or radiance) by wavelength: a continuum per nanometer, and spectral lines stored separately.
 ///
-/// A line of power p holds as much as a continuum of p per nanometer does over one nanometer. The unit is that of the source:
-/// relative for an illuminant, W m^-2 sr^-1 nm^-1 for a black body. [`Emission::scaled_to_luminance`] and
+/// A line of power p holds as much power as a continuum of p per nanometer that is one nanometer wide. The unit depends on the
+/// source: relative for an illuminant, W m^-2 sr^-1 nm^-1 for a black body. [`Emission::scaled_to_luminance`] and
 /// [`Emission::scaled_to_power`] make it absolute.
 ///
 /// Light passes through matter and falls on detectors, but two lights have no product:
@@ -43,7 +43,7 @@ pub struct Emission {
 }
 
 impl Emission {
-    /// Creates light from a continuum per nanometer and lines.
+    /// Creates light from a continuum per nanometer (`None`: lines only) and spectral lines.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] unless wavelengths of lines are positive and their powers 0 or more.
@@ -55,7 +55,7 @@ impl Emission {
         Ok(Self { continuum, lines })
     }
 
-    /// Creates monochromatic light: one line.
+    /// Creates monochromatic light: one line of this wavelength and power.
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`]; see [`Emission::new`].
@@ -128,8 +128,8 @@ impl Emission {
         Self::new(Some(SpectralFunction::histogram(edges_nm, contents)?), Vec::new())
     }
 
-    /// First and last measured wavelength (nm) of a table that is continued with constant values beyond them; `None` for anything
-    /// else.
+    /// Returns the first and last measured wavelength (nm) if the continuum is a table that continues with constant values beyond
+    /// its ends; otherwise `None`.
     #[must_use]
     pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
         self.continuum.as_ref().and_then(SpectralFunction::flat_beyond_nm)
@@ -200,7 +200,8 @@ impl Emission {
         LUMINOUS_EFFICACY_LM_PER_W * Observer::cie_1931_2deg().xyz(self)[1]
     }
 
-    /// Scales the light to a luminance of `cd_per_m2`, so that it is a radiance in W m^-2 sr^-1 nm^-1 (lines W m^-2 sr^-1).
+    /// Scales the light to a luminance of `cd_per_m2`. The continuum is then a radiance in W m^-2 sr^-1 nm^-1, and lines are in W
+    /// m^-2 sr^-1.
     ///
     /// # Errors
     /// [`SpectrumError::NothingToScale`] if none of the light is visible, [`SpectrumError::OutOfRange`] for a luminance that is
@@ -214,7 +215,8 @@ impl Emission {
         self.scaled(cd_per_m2 / now)
     }
 
-    /// Scales the light to a power of `power` (W, or the unit wanted) over 350-830 nm: W/nm, lines W.
+    /// Scales the light so that its power over 350-830 nm is `power`, in W or any other unit. The continuum is then in W/nm, and
+    /// lines are in W.
     ///
     /// # Errors
     /// [`SpectrumError::NothingToScale`] if there is no power in that band, [`SpectrumError::OutOfRange`] for a power
@@ -228,8 +230,8 @@ impl Emission {
         self.scaled(power / now)
     }
 
-    /// Scales the light to a peak of 1: the peak of the continuum on the 1 nm grid, or of the strongest line if there is no
-    /// continuum.
+    /// Scales the light to a peak of 1. The peak is that of the continuum on the 1 nm grid; if there is no continuum, it is the
+    /// power of the strongest line.
     ///
     /// # Errors
     /// [`SpectrumError::NothingToScale`] if there is no light.

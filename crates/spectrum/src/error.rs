@@ -128,7 +128,7 @@ pub enum SpectrumError {
         /// Error message of the operating system or of the loader.
         cause: String,
     },
-    /// A wavelength is not one of light, such as one given in micrometers.
+    /// A wavelength is too short for light, for example because it was given in micrometers.
     #[error(transparent)]
     NotLight(#[from] NotLight),
     /// A table has an error.

@@ -105,7 +105,7 @@ macro_rules! filter {
                 self.0.on_grid(grid)
             }
 
-            /// Returns the bare function of wavelength.
+            /// Returns the function of wavelength that this spectrum wraps.
             #[must_use]
             pub fn shape(&self) -> &SpectralFunction {
                 &self.0

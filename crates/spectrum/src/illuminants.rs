@@ -15,7 +15,7 @@ pub fn illuminant_names() -> impl Iterator<Item = &'static str> {
     spectra_data::list(FOLDER).filter_map(|p| p.strip_prefix(FOLDER)?.strip_suffix(".csv"))
 }
 
-/// Returns the bundled illuminant `name`: `A`, `D65`, `FL11` (or `F11`), `LED-B3`, `ISO 7589 Photographic Daylight` ...
+/// Returns the bundled illuminant `name`, such as `A`, `D65`, `FL11` (or `F11`), `LED-B3` or `ISO 7589 Photographic Daylight`.
 ///
 /// Case, spaces, hyphens and underscores do not matter. Values are relative, per nanometer.
 ///
@@ -50,9 +50,9 @@ pub fn daylight_xy(cct_k: f64) -> Result<[f64; 2], SpectrumError> {
 
 /// Returns CIE daylight of correlated color temperature `cct_k`, 100 at 560 nm, every 5 nm from 300 to 830 nm.
 ///
-/// The weights of the characteristic vectors are not rounded, so the chromaticity is that of [`daylight_xy`]. The temperature
-/// is on the scale of the exact c2. The named illuminants were defined on an older scale: D65 has 6503.6 K, which is 6500 K
-/// times 1.438777 / 1.438.
+/// The weights of the characteristic vectors are not rounded, so the chromaticity equals [`daylight_xy`]. The temperature is on
+/// the scale of the exact second radiation constant, c2. The named illuminants were defined on an older scale: D65 has 6503.6 K,
+/// which is 6500 K times 1.438777 / 1.438.
 ///
 /// # Errors
 /// [`SpectrumError::OutOfRange`] outside of 4000-25000 K.

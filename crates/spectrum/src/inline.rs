@@ -38,7 +38,7 @@ impl Expression {
         Self { example, wanted, read: Read::Plain(read) }
     }
 
-    /// Creates a form that is one spectrum where a light is wanted and another where a surface is wanted: a color.
+    /// Creates a form that means one spectrum as a light and another as a surface, as a color does.
     #[must_use]
     pub const fn of_wanted(
         example: &'static str,
@@ -55,9 +55,9 @@ impl Expression {
 
 inventory::collect!(Expression);
 
-/// Registers a form in which a spectrum is written out in one line. The arguments are an example such as `gaussian:550,20`,
-/// which also names the form, a hint that says how to write it, and a function that reads the part after the `:` (`None` if it
-/// is not understood).
+/// Registers a form in which a spectrum is written out in one line. The first argument is an example such as `gaussian:550,20`,
+/// whose first word names the form. The second is a hint that says how to write it. The third is a function that reads the part
+/// after the `:` and returns `None` if it does not understand it.
 #[macro_export]
 macro_rules! expression {
     ($example:literal, $wanted:literal, $read:expr $(,)?) => {
@@ -65,9 +65,9 @@ macro_rules! expression {
     };
 }
 
-/// Registers a form like [`expression!`](crate::expression), whose function is also told which [`Kind`](crate::Kind) is wanted:
-/// a color is one spectrum as a light and another as a surface. An example without `:` is a name, and the part to read is
-/// empty.
+/// Registers a form like [`expression!`](crate::expression), whose function is also told which [`Kind`](crate::Kind) is wanted: a
+/// color is one spectrum as a light and another as a surface. An example without `:` is a name; the function then gets an empty
+/// text.
 #[macro_export]
 macro_rules! expression_of_wanted {
     ($example:literal, $wanted:literal, $read:expr $(,)?) => {

@@ -50,13 +50,14 @@ impl LineColor {
         &self.lines_nm
     }
 
-    /// Returns the value of each line for linear RGB, in the order of [`LineColor::lines_nm`]; 1 is full (255 of 8 bits).
+    /// Returns the value of each line for linear RGB, in the order of [`LineColor::lines_nm`]; 1 is full intensity (255 of 8
+    /// bits).
     #[must_use]
     pub fn values(&self, linear_rgb: [f64; 3]) -> Vec<f64> {
         self.shares.iter().map(|share| share.iter().zip(linear_rgb).map(|(s, v)| s * v).sum()).collect()
     }
 
-    /// Returns the light of linear RGB: each line with its value as power.
+    /// Returns the light of linear RGB: lines whose powers are [`LineColor::values`].
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] if a value is negative or not finite.
@@ -65,8 +66,8 @@ impl LineColor {
         Emission::new(None, lines.map(|(nm, power)| Line { wavelength_nm: *nm, power }).collect())
     }
 
-    /// Converts line values, in the order of [`LineColor::lines_nm`], to linear RGB. Each value is split between its neighbors
-    /// by distance, and white stays white.
+    /// Converts line values, in the order of [`LineColor::lines_nm`], to linear RGB. The value of each secondary line is split
+    /// between its neighbors by distance, and white stays white.
     ///
     /// Missing values count as 0.
     #[must_use]

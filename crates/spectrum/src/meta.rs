@@ -11,9 +11,9 @@ pub enum Kind {
     Emission,
     /// Power of spectral lines.
     Lines,
-    /// Share of power that is transmitted.
+    /// Fraction of power that is transmitted.
     Transmittance,
-    /// Share of power that is reflected.
+    /// Fraction of power that is reflected.
     Reflectance,
     /// Response of a detector per power.
     Sensitivity,
@@ -55,7 +55,8 @@ impl Kind {
         Self::ALL.into_iter().find(|k| k.word() == word)
     }
 
-    /// Guesses the kind from the name of a column: `transmittance`, `Spectral response`, `power [W]`.
+    /// Guesses the kind from the name of a column, such as `transmittance`, `Spectral response` or `power [W]`; `None` if it
+    /// suggests no kind.
     #[must_use]
     pub fn of_header(name: &str) -> Option<Self> {
         // Power comes last, because it also occurs together with the others: `power reflectance`.
@@ -70,13 +71,14 @@ impl Kind {
         WORDS.into_iter().find(|(_, words)| has(words)).map(|(kind, _)| kind)
     }
 
-    /// Returns whether negative values make sense.
+    /// Returns whether negative values make sense for this kind.
     #[must_use]
     pub fn may_be_negative(self) -> bool {
         matches!(self, Self::ColorMatching | Self::Components)
     }
 
-    /// Returns the largest plausible value; a larger one is a percentage or a mistake.
+    /// Returns the largest plausible value of this kind, above which a value is a percentage or a mistake; `None` if there is no
+    /// limit.
     ///
     /// The limit for a transmittance is 0.02 above 1, to allow for measurement noise. A reflectance factor may exceed 1,
     /// because a glossy or fluorescent patch can be brighter than the perfect diffuser in one direction.
@@ -90,7 +92,7 @@ impl Kind {
         }
     }
 
-    /// Returns how a table of this kind is continued beyond its ends unless it states that itself.
+    /// Returns how a table of this kind is continued beyond its ends, unless its file states a continuation.
     ///
     /// CIE 15:2004, 7.2.2.1 sets missing values of an illuminant or a material to the nearest given one; the sensitivity of a
     /// detector is taken as 0 where it was not measured.
@@ -217,7 +219,7 @@ pub struct Meta {
     pub kind: Option<Kind>,
     /// Quantity in words.
     pub quantity: Option<String>,
-    /// Unit of the values: `1`, `1/nm`, `W/nm`, `log10` ...
+    /// Unit of the values, such as `1`, `1/nm`, `W/nm` or `log10`.
     pub unit: Option<String>,
     /// Publication, manufacturer's data sheet or measurement from which the figures come.
     pub source: Option<String>,
@@ -229,7 +231,7 @@ pub struct Meta {
     pub strengths: Option<Strengths>,
     /// First and last wavelength of the table, nm.
     pub range_nm: Option<(f64, f64)>,
-    /// Continuation of the table beyond its ends; `None` for that of its kind.
+    /// Continuation of the table beyond its ends; `None` for the usual one of its kind ([`Kind::outside`]).
     pub outside: Option<Outside>,
     /// Interpolation between the points; linear unless stated.
     pub interpolation: Interpolation,
@@ -272,7 +274,7 @@ impl Meta {
         present.into_iter().filter(|(_, has)| !has).map(|(key, _)| key).collect()
     }
 
-    /// Returns the scale that `unit` names.
+    /// Returns the scale that `unit` implies: [`Scale::Log10`] for `log10`, otherwise linear.
     #[must_use]
     pub fn scale(&self) -> Scale {
         if self.unit.as_deref() == Some("log10") { Scale::Log10 } else { Scale::Linear }

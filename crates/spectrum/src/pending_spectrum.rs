@@ -8,10 +8,10 @@ use crate::meta::Kind;
 use crate::signed_spectrum::{SignedSpectrum, joined, positive};
 use crate::spectral_function::SpectralFunction;
 
-/// Spectrum of known kind, or a shape (a Gaussian, a constant) that can be of any kind.
+/// A spectrum of known kind, or a function (a Gaussian, a constant) that can become any kind.
 #[derive(Clone, Debug)]
 pub enum PendingSpectrum {
-    /// Light, matter or a detector.
+    /// A spectrum of known kind: light, matter or a detector.
     Typed(AnySpectrum),
     /// A function of wavelength without a kind.
     Bare(SpectralFunction),

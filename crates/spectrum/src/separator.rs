@@ -3,7 +3,7 @@
 /// Separator between the fields of a table row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Separator {
-    /// `,`: numbers have a decimal point.
+    /// A comma, `,`; numbers then have a decimal point.
     #[default]
     Comma,
     /// A semicolon, `;`.

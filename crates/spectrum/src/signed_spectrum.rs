@@ -5,7 +5,7 @@ use crate::meta::Kind;
 use crate::spectral_function::SpectralFunction;
 use spectra_core::spectral::Line;
 
-/// A spectrum that may be negative, as a part of a sum or a difference is; only light has lines.
+/// A spectrum that may be negative, such as a part of a sum or of a difference. Only light has lines.
 #[derive(Clone, Debug)]
 pub struct SignedSpectrum {
     /// Kind; `None` for a bare function of wavelength, which becomes whatever is wanted.

@@ -171,7 +171,8 @@ impl SpectralFunction {
         Self(Node::Tabulated(table))
     }
 
-    /// First and last wavelength (nm) of a table that is continued with constant values beyond them; `None` for anything else.
+    /// Returns the first and last wavelength (nm) of a table that continues with constant values beyond its ends; `None` if the
+    /// function is anything else.
     #[must_use]
     pub fn flat_beyond_nm(&self) -> Option<(f64, f64)> {
         match &self.0 {
@@ -181,7 +182,7 @@ impl SpectralFunction {
         }
     }
 
-    /// Creates a histogram as a detector measures it: `contents[i]` of power between `edges_nm[i]` and `edges_nm[i + 1]`.
+    /// Creates a histogram as a detector measures it: `contents[i]` is the power between `edges_nm[i]` and `edges_nm[i + 1]`.
     ///
     /// The value of the function is the content divided by the width of the bin: power per nanometer.
     ///
@@ -232,7 +233,7 @@ impl SpectralFunction {
         Self(Node::Quotient(Arc::new([self.clone(), other.clone()])))
     }
 
-    /// Raises this shape to the power of the other at each wavelength; NaN where the power is not defined.
+    /// Raises this shape to the power `exponent`, wavelength by wavelength; NaN where the power is not defined.
     #[must_use]
     pub fn to_the_power(&self, exponent: &Self) -> Self {
         Self(Node::Power(Arc::new([self.clone(), exponent.clone()])))
@@ -335,9 +336,9 @@ impl SpectralFunction {
 
     /// Returns the values on `grid`.
     ///
-    /// Normally this is the value at each point of the grid. It is the mean over the cell from half a step below to half a step
-    /// above if the shape has edges or is finer than the grid. That is so for a rectangle, a histogram, a Gaussian of under two
-    /// steps and a table of closer points. No power is then lost or doubled between the points.
+    /// Normally these are the values at the points of the grid. If the shape has edges or is finer than the grid, each is the
+    /// mean over a cell, from half a step below to half a step above the point. That is so for a rectangle, a histogram, a
+    /// Gaussian of under two steps and a table of closer points. No power is then lost or counted twice.
     #[must_use]
     pub fn on_grid(&self, grid: &Grid) -> Vec<f64> {
         if !self.is_finer_than(grid.step_nm) {
@@ -347,7 +348,7 @@ impl SpectralFunction {
         grid.wavelengths_nm().map(|w| self.mean(w - half, w + half)).collect()
     }
 
-    /// Returns the mean over the wavelengths from `low_nm` to `high_nm`.
+    /// Returns the mean of the function over the wavelengths from `low_nm` to `high_nm`.
     #[must_use]
     pub fn mean(&self, low_nm: f64, high_nm: f64) -> f64 {
         let mut breaks = vec![low_nm, high_nm];
@@ -375,7 +376,8 @@ impl SpectralFunction {
         cell::integral(|w| weight(w) * self.at(w), &breaks)
     }
 
-    /// Returns the widest spacing of the points of its tables, nm; 0 if it is known at every wavelength.
+    /// Returns the finest step between the points of a table in the function, nm: the largest of these steps if it has several
+    /// tables, 0 if it has none.
     #[must_use]
     pub fn spacing_nm(&self) -> f64 {
         match &self.0 {

@@ -51,7 +51,7 @@ pub struct Table {
     /// Notes on how a table that is not in the format of the bundled ones was interpreted: `no column names`,
     /// `falling wavelengths`, `wavelengths in micrometers`.
     pub notes: Vec<&'static str>,
-    /// Values by column, then by row, in the unit of the front matter.
+    /// Values by column, then by row, in the unit that the front matter states.
     pub values: Vec<Arc<[f64]>>,
 }
 
@@ -65,7 +65,7 @@ impl Table {
         Self::parse(file, text, kind)
     }
 
-    /// Reads a table from text. `kind` is used if the file does not state one; `file` is for messages.
+    /// Reads a table from text. `kind` is used if the file does not state a kind; `file` is the file's name in messages.
     ///
     /// # Errors
     /// [`TableError`] with row and column: no data, more than [`MAX_ROWS`], a bad front matter or header, a wrong number of
@@ -74,7 +74,7 @@ impl Table {
         Reader::new(file, text.strip_prefix('\u{feff}').unwrap_or(text), kind).read()
     }
 
-    /// Reads a table from the bytes of a file. `kind` and `scale` are defaults for a file that does not state them.
+    /// Reads a table from the bytes of a file. `kind` and `scale` are used if the file does not state its kind and its unit.
     ///
     /// # Errors
     /// As [`Table::parse_bytes`].
@@ -84,8 +84,9 @@ impl Table {
         Reader { scale, ..reader }.read()
     }
 
-    /// Reads a table when no kind is requested. The kind is that of the file. If it has none, it is that of the name of
-    /// `column` or, without one, of all columns whose names suggest one, else `kind`.
+    /// Reads a table for which the caller requires no kind. The kind is, in this order: the kind that the file states; the kind
+    /// that the name of `column` suggests; `kind`. If `column` is `None`, all column names that suggest a kind count, if they
+    /// agree.
     ///
     /// # Errors
     /// As [`Table::parse_bytes`].
@@ -95,14 +96,14 @@ impl Table {
         Reader { by_header: Some(column.unwrap_or_default()), ..reader }.read()
     }
 
-    /// Returns the column `name`, ready to be evaluated; `None` if there is none.
+    /// Returns the column `name` as a function of wavelength; `None` if there is no such column.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<Tabulated> {
         let at = self.columns.iter().position(|c| c == name)?;
         Some(self.column_at(at))
     }
 
-    /// Returns column `index` (from 0), ready to be evaluated.
+    /// Returns column `index` (from 0, without the wavelengths) as a function of wavelength.
     ///
     /// # Panics
     /// If there is no such column.

@@ -24,7 +24,7 @@ pub struct TableError {
 }
 
 impl TableError {
-    /// Converts the error to a fault of the table's file, at its line and field.
+    /// Converts the error to a fault that is placed at its line and field in the table's file.
     #[must_use]
     pub fn fault(&self) -> Fault {
         let fault = Fault::new(self.cause.to_string()).path(self.place.column_name.clone()).hint(self.cause.hint());
@@ -57,7 +57,7 @@ pub struct TablePosition {
 }
 
 impl TablePosition {
-    /// Returns the span of the field in the text, or that of the row.
+    /// Returns the span of the field in the text, or the span of the row if no field is known.
     #[must_use]
     pub fn span(&self) -> Span {
         let text = &self.text.text;

@@ -9,8 +9,8 @@ use crate::sprague;
 /// Width over which the rate of a geometric extension is taken, nm.
 const RATE_NM: f64 = 10.0;
 
-/// Values at increasing wavelengths, interpolated between them (in log10 where they are given so), with a stated
-/// extension beyond the ends.
+/// Values at increasing wavelengths, interpolated between them, with a stated extension beyond the ends. Values given as log10
+/// are interpolated as logarithms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
     wavelengths_nm: Arc<[f64]>,
@@ -28,7 +28,7 @@ pub(crate) struct TableInterpretation {
 }
 
 impl Tabulated {
-    /// Creates a table from memory, linear between its points; a table of a file comes from [`crate::table::Table::column`].
+    /// Creates a table from memory, linear between its points. For a table of a file, use [`crate::table::Table::column`].
     ///
     /// # Errors
     /// [`SpectrumError::OutOfRange`] for no points, unequal numbers of wavelengths and values, wavelengths that are
@@ -60,7 +60,7 @@ impl Tabulated {
         &self.wavelengths_nm
     }
 
-    /// Values of the points, on their own scale.
+    /// Values of the points on the scale in which they were given, linear or log10.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values

@@ -100,7 +100,7 @@ impl TruncatedGaussian {
         self.mass.value() / SQRT_TAU
     }
 
-    /// Returns the density at `wavelength_nm`, 1/nm; 0 outside of the band, and for NaN.
+    /// Returns the probability density at `wavelength_nm`, 1/nm; 0 outside of the band, and for NaN.
     #[must_use]
     pub fn density(&self, wavelength_nm: f64) -> f64 {
         if !(self.min_nm..=self.max_nm).contains(&wavelength_nm) {
@@ -112,7 +112,7 @@ impl TruncatedGaussian {
         libm::exp(exponent) / (self.sigma_nm * self.mass.scaled)
     }
 
-    /// Returns the share of the draws at or below `wavelength_nm`; 0 for NaN.
+    /// Returns the probability of a draw at or below `wavelength_nm`; 0 for NaN.
     #[must_use]
     pub fn cumulative(&self, wavelength_nm: f64) -> f64 {
         if wavelength_nm.is_nan() || wavelength_nm <= self.min_nm {
@@ -142,11 +142,11 @@ impl TruncatedGaussian {
         (wavelength_nm - nearest_nm) / self.sigma_nm
     }
 
-    /// Returns the wavelength (nm) below which a share `u` of the draws lies. It lies within the band for every `u`, NaN
+    /// Returns the wavelength (nm) below which the share `u` of all draws lies. It lies within the band for every `u`, NaN
     /// included.
     ///
-    /// The share of the result equals u within 1e-13, plus the effect of rounding u, the wavelength and a sigma that is much
-    /// wider than the band (2e-16 of it).
+    /// The cumulative probability at the result equals `u` within 1e-13, apart from the rounding of `u` and the wavelength. A
+    /// sigma that is much wider than the band adds 2e-16 of it.
     #[must_use]
     pub fn quantile(&self, u: f64) -> f64 {
         match &self.draw {
@@ -155,7 +155,7 @@ impl TruncatedGaussian {
         }
     }
 
-    /// Draws a wavelength (nm) for each number of `u` in [0, 1): its quantile, with the same bits on every `isa`.
+    /// Draws a wavelength (nm) for each number of `u` in [0, 1): the quantile of that number, with the same bits on every `isa`.
     ///
     /// The shorter of the two slices sets the number of draws.
     pub fn draw(&self, u: &[f64], wavelength_nm: &mut [f64], isa: Isa) {

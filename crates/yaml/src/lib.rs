@@ -95,12 +95,12 @@ fn behind(place: Span, skipped: &str) -> Span {
     at
 }
 
-/// An argument `--set path=value` of the command line.
+/// A setting of the command line, `--set path=value`.
 #[derive(Clone, Debug)]
 pub struct Override {
     /// Path of the key to set, such as `film.exposure`.
     pub path: String,
-    /// Value to set. Messages give its place as `--set film.exposure=...`.
+    /// Value to set. Messages state its place as the argument, such as `--set film.exposure=2 s`.
     pub node: Node,
 }
 

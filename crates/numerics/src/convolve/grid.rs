@@ -4,7 +4,7 @@ use super::block::{Scratch, Transform};
 use super::kernel::Kernel;
 use crate::isa::Isa;
 
-/// A square grid that wraps around.
+/// A square grid of pixels that wraps around, for transforms of kernels.
 pub struct Grid {
     transform: Transform<f64>,
     scratch: Scratch<f64>,
@@ -14,7 +14,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Creates a grid of `side` by `side` points, a power of two of at least 16.
+    /// Creates a grid of `side` by `side` points, where `side` is a power of two of at least 16.
     pub fn new(side: usize) -> Self {
         let transform = Transform::new(side, side);
         let scratch = Scratch::new(&transform);
@@ -23,8 +23,9 @@ impl Grid {
         Self { transform, scratch, place, isa: Isa::detect() }
     }
 
-    /// Computes the sum over the grid of the weights times exp(-2 pi i (u x + v y) / side), for u and v up to half a side. The
-    /// weights are symmetric, so this is real, and its own inverse except for a factor, the number of points.
+    /// Computes the Fourier transform of `weights` for u and v from 0 to half a side: the sum over the grid of the weights times
+    /// exp(-2 pi i (u x + v y) / side). It is real because the weights are symmetric. Applied twice it returns the weights, times
+    /// the number of points.
     pub fn transform(&mut self, weights: &Kernel) -> Kernel {
         let side = self.transform.width();
         let spectrum =

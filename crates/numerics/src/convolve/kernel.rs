@@ -1,6 +1,6 @@
 //! Kernels: how a unit of light in one pixel is spread over its neighbors.
 
-/// Weights of the pixels around one pixel, unchanged by a rotation of 90 degrees and by reflection.
+/// Weights of the pixels around one pixel, symmetric under rotation by 90 degrees and under reflection.
 #[derive(Clone, Debug)]
 pub struct Kernel {
     radius: usize,
@@ -10,7 +10,8 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Creates the kernel whose pixel `i` across and `j` down (at least `i`) has the weight `weight(i, j)`.
+    /// Creates a kernel. `weight(i, j)` is the weight of the pixels `i` across and `j` down from the center; it is called only
+    /// for `j` of at least `i`.
     pub fn new(radius: usize, weight: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         use rayon::prelude::*;
         let side = radius + 1;
@@ -23,12 +24,12 @@ impl Kernel {
         Self { radius, quarter: quarter.collect() }
     }
 
-    /// Radius of the kernel, pixels.
+    /// Radius of the kernel in pixels: the largest offset across or down.
     pub fn radius(&self) -> usize {
         self.radius
     }
 
-    /// Weight of the pixel `i` across and `j` down.
+    /// Weight of the pixels `i` across and `j` down from the center.
     pub fn weight(&self, i: usize, j: usize) -> f64 {
         self.quarter[j * (self.radius + 1) + i]
     }
@@ -52,8 +53,8 @@ impl Kernel {
         self
     }
 
-    /// Subtracts the Laplacian of the kernel times `by`. The result is narrower by the variance `2 by` along each axis, in
-    /// squared pixels, and has the same sum.
+    /// Subtracts `by` times the Laplacian of the kernel. The result has the same sum. Its variance along each axis is smaller by
+    /// 2 `by`, in squared pixels.
     #[must_use]
     pub fn sharpened(&self, by: f64) -> Self {
         let at = |i: usize, j: usize| if i.max(j) > self.radius { 0.0 } else { self.weight(i, j) };
@@ -63,7 +64,7 @@ impl Kernel {
         })
     }
 
-    /// Crops the kernel to `radius`.
+    /// Removes all weights beyond `radius` pixels across or down.
     #[must_use]
     pub fn cropped(self, radius: usize) -> Self {
         if radius >= self.radius { self } else { Self::new(radius, |i, j| self.weight(i, j)) }

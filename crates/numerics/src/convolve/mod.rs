@@ -28,7 +28,7 @@ use rayon::prelude::*;
 /// Longest side of a block, unless the kernel asks for more.
 const LONGEST_SIDE: usize = 512;
 
-/// A kernel that is prepared for planes of one size.
+/// A kernel that is prepared for the convolution of planes of one size.
 pub struct Convolver<T: Real = f64> {
     width: usize,
     height: usize,
@@ -45,8 +45,8 @@ impl<T: Real> Convolver<T> {
         Self::of(kernel.radius(), kernel.signed(), width, height)
     }
 
-    /// Prepares weights that depend on how far a pixel lies to the right and down, up to `radius`. They must be the same at
-    /// opposite places.
+    /// Prepares a kernel given as a function of how far a pixel lies to the right and down, up to `radius` pixels. The function
+    /// must have the same value at opposite offsets.
     pub fn of(radius: usize, weight: impl Fn(isize, isize) -> f64, width: usize, height: usize) -> Self {
         let isa = Isa::detect();
         let transform = Transform::new(side(width, radius), side(height, radius));
@@ -54,7 +54,7 @@ impl<T: Real> Convolver<T> {
         Self { width, height, radius, transform, spectrum, isa }
     }
 
-    /// Convolves the plane `source`: each value is given to `write` with its target.
+    /// Convolves the plane `source`. For each pixel, `write` gets the element of `target` and the convolved value.
     ///
     /// # Panics
     /// If the size of a plane differs from the one that was prepared for.
@@ -62,7 +62,8 @@ impl<T: Real> Convolver<T> {
         self.apply_at(source, target, |to, v, _| write(to, v));
     }
 
-    /// Convolves the plane `source`: each value is given to `write` with its target, and with the column and the row of the target.
+    /// Convolves the plane `source`. For each pixel, `write` gets the element of `target`, the convolved value, and the pixel's
+    /// column and row.
     ///
     /// # Panics
     /// If the size of a plane differs from the one that was prepared for.
@@ -84,8 +85,8 @@ impl<T: Real> Convolver<T> {
 }
 
 impl Convolver {
-    /// Estimates the operations per pixel for a kernel of `radius` on planes of `width` by `height`: those of the transforms of
-    /// two tiles, divided by the pixels that they give.
+    /// Estimates the arithmetic operations per pixel of a convolution with a kernel of `radius` on planes of `width` by `height`.
+    /// It counts the forward and inverse transforms of a tile, divided by the pixels that the tile yields.
     #[must_use]
     pub fn operations(radius: usize, width: usize, height: usize) -> usize {
         let sides = [side(width, radius), side(height, radius)];

@@ -13,7 +13,7 @@ const COLUMNS: usize = 512;
 /// Number of columns that are summed at once.
 const LANES: usize = 32;
 
-/// A sum of products of profiles, prepared for planes of one size.
+/// A sum of separable kernels, prepared for the convolution of planes of one size.
 pub struct Products {
     width: usize,
     height: usize,
@@ -30,8 +30,9 @@ struct Term {
 }
 
 impl Products {
-    /// Prepares terms for planes of `width` by `height` pixels. Each term is a weight and a profile from the middle on, of at
-    /// least one pixel. A profile is cut off where less than `beyond` of it, times its weight, is left.
+    /// Prepares `terms` for planes of `width` by `height` pixels. Each term is a weight and a profile: the values from the middle
+    /// outward, the same across and down. A profile is cut off where its weight times the rest of the profile is less than
+    /// `beyond`.
     ///
     /// # Panics
     /// If a profile is empty.
@@ -57,13 +58,14 @@ impl Products {
         Self { width, height, radius, terms, isa: Isa::detect() }
     }
 
-    /// Number of pairs of weights that a pixel costs.
+    /// Number of multiplications for each pixel. A weight counts once for the two pixels at opposite offsets, which are added
+    /// first.
     pub fn pairs(&self) -> usize {
         self.terms.iter().map(|t| 2 * t.down.len()).sum()
     }
 
-    /// Convolves the plane `source`: each value is given to `write` with its target. Values outside the plane, and values that
-    /// are not finite, count as 0.
+    /// Convolves the plane `source`. For each pixel, `write` gets the element of `target` and the convolved value. Values outside
+    /// the plane, and values that are not finite, count as 0.
     ///
     /// # Panics
     /// If the size of a plane differs from the one that was prepared for.

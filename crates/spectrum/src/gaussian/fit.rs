@@ -13,14 +13,15 @@ const MAX_TERMS: usize = 32;
 /// Differences between a mixture and the spectrum that it approximates, on a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussianFitReport {
-    /// Relative L2 error: root of the sum of squared differences over that of squared values.
+    /// Relative L2 error: the square root of the ratio of the sum of squared differences to the sum of squared values.
     pub relative_l2: f64,
     /// Largest absolute difference, over the largest absolute value.
     pub maximum: f64,
-    /// Relative error of the integral: that of the mixture over that of the values, less 1. The values are taken as linear
+    /// Relative error of the integral: the integral of the mixture over the integral of the values, less 1. Values are linear
     /// between the points.
     pub integral: f64,
-    /// Smallest value of the mixture on the grid, over the largest absolute value of the spectrum; shows how far it falls below 0.
+    /// Smallest value of the mixture on the grid, over the largest absolute value of the spectrum. If negative, it shows how far
+    /// the mixture falls below 0.
     pub smallest: f64,
     /// Cancellation of the terms over the band; see [`GaussianMixture::kappa`].
     pub kappa: f64,

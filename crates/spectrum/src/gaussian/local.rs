@@ -21,10 +21,11 @@ pub enum NoGaussian {
 }
 
 impl GaussianTerm {
-    /// Returns the Gaussian that has the value, slope and curvature of a function at `wavelength_nm`.
+    /// Returns the Gaussian that has the given value, slope and second derivative at `wavelength_nm`, as a function has them
+    /// there.
     ///
-    /// It follows from ln |f|: with g = f'/f and h = f''/f - g^2, sigma^2 = -1/h and the center lies sigma^2 g away. No such
-    /// Gaussian exists where h is 0 or more, which holds for large parts of D65's band.
+    /// The Gaussian follows from ln |f| of the function f: with g = f'/f and h = f''/f - g^2, sigma^2 is -1/h and the center lies
+    /// sigma^2 g away. No such Gaussian exists where h is 0 or more, which is so in large parts of D65's band.
     ///
     /// # Errors
     /// [`NoGaussian`] says that there is none, and why.
@@ -48,8 +49,8 @@ impl GaussianTerm {
         Ok(Self::of_log(value < 0.0, log_amplitude, center, variance.sqrt()))
     }
 
-    /// Returns the Gaussian that touches `shape` at `wavelength_nm`. Slope and curvature are central differences over `step_nm`
-    /// either way.
+    /// Returns the Gaussian that touches `shape` at `wavelength_nm`. Slope and curvature come from central differences over
+    /// `step_nm` to both sides.
     ///
     /// A table that is linear between its points has curvature only over steps of its own spacing or more.
     ///

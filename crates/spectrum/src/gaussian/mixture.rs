@@ -64,14 +64,15 @@ impl GaussianMixture {
         Self::new(self.terms.iter().map(|t| t.scaled(factor)).collect())
     }
 
-    /// Returns the mixture of the same terms without their signs; nowhere is it below the absolute value of this mixture.
+    /// Returns the mixture of the same terms with positive signs. At every wavelength it is at least the absolute value of this
+    /// mixture.
     #[must_use]
     pub fn absolute(&self) -> Self {
         Self::new(self.terms.iter().map(GaussianTerm::absolute).collect())
     }
 
-    /// Returns the cancellation of the terms over a band: sum |w| / |sum w| of their band integrals w. It is 1 for terms of one
-    /// sign, infinite if the terms cancel completely, and NaN without terms.
+    /// Returns how much the terms cancel over a band: sum |w| / |sum w|, where w are the integrals of the terms over the band.
+    /// The result is 1 for terms of one sign, infinite if the terms cancel completely, and NaN without terms.
     ///
     /// An estimate that draws one term in proportion to |w| and takes its integral has the relative standard deviation
     /// sqrt(kappa^2 - 1).

@@ -84,14 +84,14 @@ impl GaussianTerm {
         self.sign() * libm::exp(self.log_amplitude - 0.5 * t * t)
     }
 
-    /// Returns the integral over all wavelengths, negative ones too. For a center at an end of the band it is up to twice the
-    /// integral over the band.
+    /// Returns the integral over all wavelengths, including negative ones. If the center lies at an end of a band, this is up to
+    /// twice the integral over the band.
     #[must_use]
     pub fn line_integral(&self) -> f64 {
         SQRT_TAU * self.sigma_nm * self.peak()
     }
 
-    /// Returns the integral from `min_nm` to `max_nm`, either of which may be infinite; 0 if they do not increase.
+    /// Returns the integral from `min_nm` to `max_nm`, either of which may be infinite; 0 unless `min_nm` < `max_nm`.
     ///
     /// It uses erf and, in the tails, erfc; the relative error is below 1e-12.
     #[must_use]

@@ -106,7 +106,7 @@ impl SpectrumContext<'_> {
         self.wanted
     }
 
-    /// Places an error at a key.
+    /// Returns a conversion of an error to faults that are placed at `key`.
     pub fn at(&self, key: &'static str) -> impl Fn(SpectrumError) -> Faults {
         move |error| match error {
             SpectrumError::NotLight(_) => error.faults(|text| self.params.fault(key, text)),
@@ -120,7 +120,8 @@ impl SpectrumContext<'_> {
         self.is_part
     }
 
-    /// Makes another spectrum that this one is made of, from a name, an expression, or a map with its kind.
+    /// Makes another spectrum, from which this one is made. `node` is a name, an expression, or a map with a kind; `wanted` is
+    /// the kind of spectrum that is wanted.
     ///
     /// # Errors
     /// The faults of that spectrum, placed.
