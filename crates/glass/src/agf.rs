@@ -18,7 +18,7 @@ use crate::glass::{Category, Extinction, Glass, Status, Thermal};
 pub struct AgfProblem {
     /// Line, from 1.
     pub line: usize,
-    /// Message that says what is wrong, and what was done about it.
+    /// Message that says what is wrong, and how the line was treated.
     pub message: String,
 }
 
@@ -27,7 +27,7 @@ pub struct AgfProblem {
 pub struct Agf {
     /// The glasses, in the order of the file.
     pub glasses: Vec<Glass>,
-    /// Lines that were not understood; a glass without coefficients is one of them, and is left out.
+    /// Problems of lines that were not understood. A glass without coefficients is such a problem, and is left out.
     pub problems: Vec<AgfProblem>,
 }
 

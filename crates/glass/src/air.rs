@@ -19,7 +19,7 @@ pub const CATALOGUE_AIR: AirConditions = AirConditions { temperature_c: 20.0, pr
 /// Standard air of spectroscopy: 15 C, 101 325 Pa.
 pub const STANDARD_AIR: AirConditions = AirConditions { temperature_c: 15.0, pressure_pa: 101_325.0 };
 
-/// Absolute refractive index of dry air at a wavelength (nm, in that air), 230 to 1690 nm.
+/// Absolute refractive index of dry air at a wavelength (nm in this air, 230 to 1690).
 ///
 /// P. E. Ciddor, "Refractive index of air: new equations for the visible and near infrared", Applied Optics 35, 1566
 /// (1996), equations 1 to 5 and 12, dry part; uncertainty 2e-8 to 5e-8.
@@ -30,7 +30,7 @@ pub fn index(wavelength_nm: f64, air: AirConditions) -> f64 {
     index_at_vacuum_wavelength(wavelength_nm * first, air)
 }
 
-/// Absolute refractive index of dry air at a wavelength in vacuum, nm; see [`index`].
+/// Absolute refractive index of dry air at a wavelength in vacuum (nm); see [`index`].
 #[must_use]
 pub fn index_at_vacuum_wavelength(vacuum_nm: f64, air: AirConditions) -> f64 {
     let sigma2 = 1e6 / (vacuum_nm * vacuum_nm);
@@ -38,7 +38,8 @@ pub fn index_at_vacuum_wavelength(vacuum_nm: f64, air: AirConditions) -> f64 {
     1.0 + standard * density(air) / density(STANDARD_AIR)
 }
 
-/// Converts an index relative to air (a catalogue's) to an absolute index, at a wavelength in nm.
+/// Converts an index relative to air, as in a catalogue, to an absolute index, at a wavelength in nm. `air` is the air to which
+/// the index is relative.
 #[must_use]
 pub fn absolute(relative_index: f64, wavelength_nm: f64, air: AirConditions) -> f64 {
     relative_index * index(wavelength_nm, air)

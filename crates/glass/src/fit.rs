@@ -32,16 +32,16 @@ pub struct Sample {
     pub n: f64,
 }
 
-/// A formula and how well it meets the samples.
+/// A fitted formula, and how far it deviates from the samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// The formula.
     pub formula: Formula,
-    /// Square root of the mean squared difference.
+    /// Root mean square of the differences in index.
     pub rms_deviation: f64,
-    /// Mean of the absolute differences.
+    /// Mean of the absolute differences in index.
     pub mean_deviation: f64,
-    /// Largest absolute difference.
+    /// Largest absolute difference in index.
     pub max_deviation: f64,
 }
 
@@ -58,7 +58,7 @@ impl Fit {
     }
 }
 
-/// Reason why samples give no formula.
+/// Reason why no formula can be fitted to samples.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum FitError {
     /// Too few samples for the number of coefficients.
@@ -72,10 +72,10 @@ pub enum FitError {
     /// A wavelength or index that is not valid.
     #[error("row {row}: the wavelength must be positive and the index at least 1")]
     BadSample {
-        /// Row, from 1.
+        /// Row of the sample, from 1.
         row: usize,
     },
-    /// Two samples at one wavelength, or a number of terms that is not offered.
+    /// Two samples have the same wavelength, or the number of terms is not supported.
     #[error("the samples do not determine the coefficients")]
     Undetermined,
 }

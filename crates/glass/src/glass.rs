@@ -9,25 +9,25 @@ use crate::lines::{D, LineTriple};
 /// The category of a medium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Category {
-    /// Optical glass of a maker's catalogue.
+    /// Optical glass from a maker's catalogue.
     OpticalGlass,
     /// Window, display and laboratory glass, fused silica, glass ceramics.
     TechnicalGlass,
     /// Chalcogenide and other infrared glass.
     InfraredGlass,
-    /// Colored and absorbing glass.
+    /// Colored or absorbing glass, as for filters.
     FilterGlass,
-    /// Optical crystal.
+    /// Crystal for optical use.
     Crystal,
-    /// Polymer.
+    /// Polymer, such as PMMA.
     Plastic,
     /// Organic liquid or solid.
     Organic,
     /// Element or simple compound: crystals, metals, water, gases.
     Inorganic,
-    /// Mixture, alloy, tissue, air.
+    /// Mixture, alloy, tissue or air.
     Mixed,
-    /// From a user's catalogue file.
+    /// Glass of a user's catalogue file.
     User,
 }
 
@@ -49,7 +49,7 @@ impl Category {
         }
     }
 
-    /// Returns whether media of this category have names of glass types, not of substances and measurements.
+    /// Returns whether media of this category are named by glass types, not by substances and measurements.
     #[must_use]
     pub fn is_glass(self) -> bool {
         use Category::*;
@@ -73,7 +73,7 @@ pub enum Status {
     Preferred,
     /// In regular production.
     Standard,
-    /// Made on inquiry.
+    /// Made on request.
     Special,
     /// No longer made, or in historical catalogues only.
     Obsolete,
@@ -98,15 +98,16 @@ impl Status {
     }
 }
 
-/// Schott's equation for the change of the absolute index with temperature (Schott TIE-19):
-/// dn = (n^2 - 1) / (2 n) (D0 t + D1 t^2 + D2 t^3 + (E0 t + E1 t^2) / (L^2 - L_tk^2)), t from the reference temperature.
+/// Schott's equation for the change of the absolute index n with temperature (Schott TIE-19). It is dn = (n^2 - 1) / (2 n) (D0 t
+/// + D1 t^2 + D2 t^3 + (E0 t + E1 t^2) / (L^2 - L_tk^2)). Here t is the temperature difference from the reference temperature,
+/// and L the wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thermal {
-    /// D0 (1/K), D1 (1/K^2), D2 (1/K^3).
+    /// Coefficients D0 (1/K), D1 (1/K^2) and D2 (1/K^3).
     pub d: [f64; 3],
-    /// E0 (um^2/K), E1 (um^2/K^2).
+    /// Coefficients E0 (um^2/K) and E1 (um^2/K^2).
     pub e: [f64; 2],
-    /// L_tk, um.
+    /// Wavelength L_tk of the resonance, um.
     pub lambda_tk_um: f64,
 }
 
@@ -118,8 +119,8 @@ pub struct Extinction {
 }
 
 impl Extinction {
-    /// Creates the table from wavelengths (nm) and as many values. `None` unless the wavelengths are positive and ascending and
-    /// no value is negative.
+    /// Creates the table from wavelengths (nm) and the extinction coefficients at them. `None` unless both have the same length,
+    /// the wavelengths are positive and ascending, and no coefficient is negative.
     #[must_use]
     pub fn new(wavelength_nm: Arc<[f64]>, k: Vec<f64>) -> Option<Extinction> {
         let rising =
@@ -129,8 +130,8 @@ impl Extinction {
             .then(|| Extinction { wavelength_nm, k: k.into() })
     }
 
-    /// Returns k at `wavelength_nm`. Between two positive values its logarithm is linear, otherwise k itself is; `None` outside
-    /// the data.
+    /// Returns the extinction coefficient k at `wavelength_nm`, interpolated between the points of the table: ln k linearly if k
+    /// is positive at both, otherwise k linearly. `None` outside the table.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> Option<f64> {
         let (min, max) = self.range_nm();
@@ -146,13 +147,13 @@ impl Extinction {
         Some(if a > 0.0 && b > 0.0 { a * libm::pow(b / a, t) } else { a + (b - a) * t })
     }
 
-    /// First and last wavelength, nm.
+    /// First and last wavelength of the table, nm.
     #[must_use]
     pub fn range_nm(&self) -> (f64, f64) {
         (self.wavelength_nm[0], self.wavelength_nm[self.wavelength_nm.len() - 1])
     }
 
-    /// Iterates over the points: wavelength (nm) and k.
+    /// Iterates over the points of the table: wavelength (nm) and k.
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.wavelength_nm.iter().copied().zip(self.k.iter().copied())
     }
@@ -163,7 +164,7 @@ impl Extinction {
 pub struct Glass {
     /// Maker's short name (`SCHOTT`), or the substance of research data (`H2O`).
     pub maker: Arc<str>,
-    /// Name within the maker's catalogue (`N-BK7`), or of the measurement (`Daimon-20.0C`).
+    /// Name within the maker's catalogue (`N-BK7`), or name of the measurement (`Daimon-20.0C`).
     pub name: String,
     /// Category of the medium.
     pub category: Category,
@@ -171,9 +172,9 @@ pub struct Glass {
     pub formula: Formula,
     /// Shortest and longest wavelength of the data, nm.
     pub range_nm: (f64, f64),
-    /// nd as the maker lists it.
+    /// Index at the d line as the maker lists it.
     pub listed_nd: Option<f64>,
-    /// Vd as the maker lists it.
+    /// Abbe number (d, F, C) as the maker lists it.
     pub listed_vd: Option<f64>,
     /// Availability of the glass.
     pub status: Status,
@@ -181,16 +182,16 @@ pub struct Glass {
     pub years: Option<(u16, u16)>,
     /// Temperature of the data, degrees Celsius.
     pub temperature_c: Option<f64>,
-    /// Change of the index with temperature.
+    /// Change of the index with temperature; `None` if it is not known.
     pub thermal: Option<Thermal>,
-    /// Absorption.
+    /// Extinction coefficient by wavelength; `None` if it is not known.
     pub extinction: Option<Extinction>,
-    /// Source of the numbers.
+    /// Source of the data.
     pub source: Arc<str>,
 }
 
 impl Glass {
-    /// Creates a glass with a name and a formula, with nothing else known.
+    /// Creates a glass with a maker, a name, a category, a formula and the range of its data (nm); all else is unknown.
     #[must_use]
     pub fn new(maker: &str, name: &str, category: Category, formula: Formula, range_nm: (f64, f64)) -> Glass {
         Glass {
@@ -210,13 +211,13 @@ impl Glass {
         }
     }
 
-    /// Returns `MAKER/NAME`, as [`crate::Catalog::find`] reads it.
+    /// Returns the full name `MAKER/NAME`, as [`crate::Catalog::find`] reads it.
     #[must_use]
     pub fn full_name(&self) -> String {
         format!("{}/{}", self.maker, self.name)
     }
 
-    /// Refractive index at a wavelength in nm, relative to air; extrapolates outside of [`Glass::range_nm`].
+    /// Refractive index at a wavelength in nm, relative to air. It is extrapolated outside of [`Glass::range_nm`].
     #[must_use]
     pub fn index(&self, wavelength_nm: f64) -> f64 {
         self.formula.index(wavelength_nm)
@@ -261,8 +262,9 @@ impl Glass {
         Some(libm::exp(-4.0 * std::f64::consts::PI * k * thickness_mm * 1e6 / wavelength_nm))
     }
 
-    /// Absolute index (relative to vacuum) at a wavelength in nm (in air) and a temperature of glass and air in degrees
-    /// Celsius, at 101 325 Pa. Without thermal data it uses the index at the reference temperature.
+    /// Absolute index (relative to vacuum) at a wavelength in nm (in air), at 101 325 Pa. `temperature_c` is the temperature of
+    /// the glass and of the air, degrees Celsius. If the glass has no thermal data, its index is that at the reference
+    /// temperature.
     #[must_use]
     pub fn absolute_index(&self, wavelength_nm: f64, temperature_c: f64) -> f64 {
         let relative = self.index(wavelength_nm);
@@ -279,14 +281,14 @@ impl Glass {
         air::absolute(relative, wavelength_nm, air_at(reference)) + change
     }
 
-    /// Index relative to air of the same temperature (degrees Celsius), at 101 325 Pa.
+    /// Index relative to air of the same temperature as the glass (degrees Celsius), at 101 325 Pa.
     #[must_use]
     pub fn index_at(&self, wavelength_nm: f64, temperature_c: f64) -> f64 {
         let air = AirConditions { temperature_c, ..air::CATALOGUE_AIR };
         self.absolute_index(wavelength_nm, temperature_c) / air::index(wavelength_nm, air)
     }
 
-    /// Returns the maker's table of points, if the data are a table.
+    /// Returns the maker's table of points; `None` if the data are not a table.
     #[must_use]
     pub fn table(&self) -> Option<&Table> {
         match &self.formula {

@@ -5,9 +5,9 @@
 /// Fractions of the power that are reflected, by polarization.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflectance {
-    /// Electric field perpendicular to the plane of incidence.
+    /// Reflectance for an electric field perpendicular to the plane of incidence.
     pub s: f64,
-    /// Electric field in the plane of incidence.
+    /// Reflectance for an electric field in the plane of incidence.
     pub p: f64,
 }
 
@@ -19,27 +19,27 @@ impl Reflectance {
     }
 }
 
-/// Angle after refraction from index `n1` into `n2`; `None` on total reflection.
+/// Returns the angle of refraction (radians) from index `n1` into `n2`; `None` on total reflection.
 #[must_use]
 pub fn refraction_angle(n1: f64, n2: f64, incidence_rad: f64) -> Option<f64> {
     let sine = n1 * libm::sin(incidence_rad) / n2;
     (sine.abs() <= 1.0).then(|| libm::asin(sine))
 }
 
-/// Smallest angle of incidence in `n1` that is totally reflected at `n2`; `None` unless `n1` is the denser.
+/// Returns the critical angle in `n1`, above which light is totally reflected at `n2`; `None` unless `n1` is larger than `n2`.
 #[must_use]
 pub fn critical_angle(n1: f64, n2: f64) -> Option<f64> {
     (n1 > n2 && n2 > 0.0).then(|| libm::asin(n2 / n1))
 }
 
-/// Angle of incidence in `n1` at which no p-polarized light is reflected at `n2` (Brewster).
+/// Returns Brewster's angle in `n1`, at which no p-polarized light is reflected at `n2`.
 #[must_use]
 pub fn brewster_angle(n1: f64, n2: f64) -> f64 {
     libm::atan2(n2, n1)
 }
 
-/// Fresnel reflectance between `n1` and `n2` from the cosine of the angle of incidence (0 to 1); 1 for both on total
-/// reflection. Born and Wolf, Principles of Optics, section 1.5.
+/// Returns the Fresnel reflectance between `n1` and `n2`, from the cosine of the angle of incidence in `n1` (0 to 1). Both values
+/// are 1 on total reflection. Born and Wolf, Principles of Optics, section 1.5.
 #[must_use]
 pub fn fresnel(n1: f64, n2: f64, cos_incidence: f64) -> Reflectance {
     let ratio = n1 / n2;
@@ -54,8 +54,8 @@ pub fn fresnel(n1: f64, n2: f64, cos_incidence: f64) -> Reflectance {
     Reflectance { s: s * s, p: p * p }
 }
 
-/// Reflectance at normal incidence of a layer of index `n_layer` and `thickness_nm` between `n1` and `n2`, at
-/// `wavelength_nm` in air. Airy's sum; Born and Wolf, section 1.6.4.
+/// Returns the reflectance at normal incidence of a layer of index `n_layer` and `thickness_nm` between media of index `n1` and
+/// `n2`, at `wavelength_nm` in air. Airy's sum; Born and Wolf, section 1.6.4.
 #[must_use]
 pub fn single_layer_reflectance(n1: f64, n_layer: f64, n2: f64, thickness_nm: f64, wavelength_nm: f64) -> f64 {
     let front = (n1 - n_layer) / (n1 + n_layer);

@@ -7,7 +7,7 @@ use spectra_core::params::{Dimension, Reading, Unit};
 /// A spectral line by its Fraunhofer name, or any wavelength taken as one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Fraunhofer's letter, with a prime where a second line bears it; empty for a wavelength that has none.
+    /// Fraunhofer's letter, with a prime for the second line of that letter; empty for a wavelength without a name.
     pub name: &'static str,
     /// Wavelength in air, nm.
     pub wavelength_nm: f64,
@@ -72,13 +72,13 @@ impl Line {
         })
     }
 
-    /// Returns the name or the wavelength: `F'`, `450 nm`.
+    /// Returns the name or, for a line without one, the wavelength: `F'`, `450 nm`.
     #[must_use]
     pub fn label(&self) -> String {
         if self.name.is_empty() { format!("{} nm", self.wavelength_nm) } else { self.name.to_owned() }
     }
 
-    /// Returns the name of an index (`n`) or an Abbe number (`V`) at the line: `nd`, `n(450 nm)`.
+    /// Returns the usual name of an index (`symbol` is `n`) or an Abbe number (`V`) at the line: `nd`, `n(450 nm)`.
     #[must_use]
     pub fn indexed(&self, symbol: &str) -> String {
         if self.name.is_empty() { format!("{symbol}({})", self.label()) } else { format!("{symbol}{}", self.name) }
@@ -104,13 +104,13 @@ pub struct LineTriple {
 }
 
 impl LineTriple {
-    /// F, d, C: Vd, the Abbe number of modern catalogues.
+    /// Lines F, d, C: Vd, the Abbe number of modern catalogues.
     pub const FDC: LineTriple = LineTriple { mid: D, short: F, long: C };
-    /// F, D, C: the sodium line's Abbe number of old catalogues and patents.
+    /// Lines F, D, C: VD, the Abbe number of old catalogues and patents, for the sodium line.
     pub const F_SODIUM_C: LineTriple = LineTriple { mid: SODIUM_D, short: F, long: C };
-    /// F, e, C: reference line e with the hydrogen lines.
+    /// Lines F, e, C: reference line e with the hydrogen lines.
     pub const FEC: LineTriple = LineTriple { mid: E, short: F, long: C };
-    /// F', e, C': Ve, with reference line e and the cadmium lines.
+    /// Lines F', e, C': Ve, with reference line e and the cadmium lines.
     pub const F_PRIME_E_C_PRIME: LineTriple = LineTriple { mid: E, short: F_PRIME, long: C_PRIME };
 
     /// Returns the triple that belongs to a reference line: d and D go with F and C, e with F' and C'; `None` for other lines.
@@ -124,15 +124,16 @@ impl LineTriple {
         }
     }
 
-    /// Combines three lines that go from short to long wavelengths; `None` in any other order.
+    /// Combines three lines into a triple; `None` unless their wavelengths rise from `short` to `long`.
     #[must_use]
     pub fn rising(short: Line, mid: Line, long: Line) -> Option<LineTriple> {
         let rising = short.wavelength_nm < mid.wavelength_nm && mid.wavelength_nm < long.wavelength_nm;
         rising.then_some(LineTriple { mid, short, long })
     }
 
-    /// Reads the lines at which figures are stated, as a person writes them: a reference line with the lines that belong to it
-    /// (`d`, `e`), or three lines from blue to red, by name or wavelength in nm (`F',e,C'`, `450,580,680`).
+    /// Reads the lines at which figures are stated, as a person writes them; `None` if it cannot. The text is a reference line
+    /// (`d`, `e`), to which two other lines belong, or three lines from blue to red. Each line is a name or a wavelength in nm
+    /// (`F',e,C'`, `450,580,680`).
     #[must_use]
     pub fn read(text: &str) -> Option<LineTriple> {
         let lines: Option<Vec<Line>> = text.split(',').map(Line::read).collect();

@@ -7,14 +7,14 @@ use crate::formula::ModelGlass;
 use crate::glass::Glass;
 use crate::lines::{D, LineTriple};
 
-/// A medium, with its index relative to air.
+/// A medium between two surfaces, with its index relative to air.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Medium {
-    /// Air: 1 by definition.
+    /// Air, whose index is 1 by definition.
     Air,
-    /// Vacuum: 1 / n_air of air at 20 C and 101 325 Pa.
+    /// Vacuum, whose index is 1 / n_air, with n_air for air at 20 C and 101 325 Pa.
     Vacuum,
-    /// A constant index at every wavelength; also a medium held at its stated index.
+    /// A medium with the same index at every wavelength; also a medium that is held at its stated index.
     Constant(f64),
     /// A glass known by an index and an Abbe number.
     Model(ModelGlass),
@@ -23,13 +23,13 @@ pub enum Medium {
 }
 
 impl Medium {
-    /// Creates a model glass from nd and Vd; `None` unless nd >= 1 and Vd >= 0 (0: no dispersion).
+    /// Creates a model glass from nd and Vd; `None` unless nd >= 1 and Vd >= 0. A Vd of 0 means no dispersion.
     #[must_use]
     pub fn from_nd_vd(nd: f64, vd: f64) -> Option<Medium> {
         ModelGlass::new(nd, vd, LineTriple::FDC).map(Medium::Model)
     }
 
-    /// Refractive index at a wavelength in nm, relative to air, by the formula itself.
+    /// Refractive index at a wavelength in nm, relative to air, computed by the medium's formula.
     #[must_use]
     pub fn index(&self, wavelength_nm: f64) -> f64 {
         match self {
@@ -50,14 +50,14 @@ impl Medium {
         }
     }
 
-    /// Returns whether nothing between `min_nm` and `max_nm` is extrapolated.
+    /// Returns whether the medium has data from `min_nm` to `max_nm`, so that no index is extrapolated.
     #[must_use]
     pub fn covers(&self, min_nm: f64, max_nm: f64) -> bool {
         self.range_nm().is_none_or(|(min, max)| min <= min_nm && max_nm <= max)
     }
 
-    /// Returns this medium held at one index for all wavelengths: `stated_nd` if the prescription states it, otherwise its own
-    /// index at the d line. Air stays air.
+    /// Returns this medium with one index for all wavelengths: `stated_nd` if the prescription states it, otherwise its own index
+    /// at the d line. Air stays air.
     #[must_use]
     pub fn at_stated_nd(&self, stated_nd: Option<f64>) -> Medium {
         match self {
@@ -72,8 +72,8 @@ impl Medium {
         lines.abbe_number(|w| self.index(w))
     }
 
-    /// Internal transmittance of `thickness_mm`; `None` if it is not known. Air, vacuum and media known by an index alone
-    /// absorb nothing.
+    /// Internal transmittance of `thickness_mm` at a wavelength in nm; `None` if it is not known. Air, vacuum and media known by
+    /// an index alone absorb no light.
     #[must_use]
     pub fn internal_transmittance(&self, wavelength_nm: f64, thickness_mm: f64) -> Option<f64> {
         match self {

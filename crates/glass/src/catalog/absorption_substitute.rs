@@ -30,16 +30,16 @@ const OLD_LIST: u16 = 1983;
 /// Year until which, roughly, lenses were made of these glasses.
 const OLD_UNTIL: i32 = 1990;
 
-/// A glass whose absorption stands in for that of another.
+/// A glass whose absorption is used for another glass that has no data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AbsorptionSubstitute {
-    /// Full name of the lender: `MAKER/NAME`.
+    /// Full name of the glass that lends its absorption: `MAKER/NAME`.
     pub full_name: String,
-    /// Index of the lender less that of the borrower, d line.
+    /// Index of the lending glass less the index of the borrowing one, at the d line.
     pub delta_nd: f64,
-    /// Abbe number of the lender less that of the borrower, lines d, F and C.
+    /// Abbe number of the lending glass less that of the borrowing one, for the lines d, F and C.
     pub delta_vd: f64,
-    /// Both differences in one number; see [`Medium::absorption`].
+    /// Distance of both glasses in index and Abbe number; see [`Medium::absorption`].
     pub distance: f64,
 }
 
@@ -52,9 +52,9 @@ impl fmt::Display for AbsorptionSubstitute {
 /// The absorption of a medium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Absorption {
-    /// The extinction coefficient.
+    /// Extinction coefficient of the medium by wavelength.
     pub extinction: Extinction,
-    /// Glass that the data are borrowed from; `None` if they are the medium's own.
+    /// Glass from which the data are borrowed; `None` if they are the medium's own.
     pub lender: Option<AbsorptionSubstitute>,
 }
 
@@ -77,16 +77,17 @@ struct Candidate {
 }
 
 impl Medium {
-    /// Returns the absorption of the medium, by its own data or by those of the nearest medium of the bundled catalogue that
-    /// has any. `year` is that of the lens, if known; it counts for media of no catalogue.
+    /// Returns the absorption of the medium, from its own data or from the nearest medium of the bundled catalogue that has data.
+    /// `year` is the year of the lens, if known; it matters only for media of no catalogue.
     ///
-    /// The nearest medium has the smallest hypot(dnd / 0.01, dVd / 1), to which another maker adds 1 and another time adds 1.
-    /// Two glasses are of different times if only one was listed by 1983 (or is of a lens built by 1990), when flints held
-    /// lead. Glasses borrow from optical and technical glasses, plastics from plastics. A plate of 3 mm of the lender passes at
-    /// least 80 % from 420 to 700 nm.
+    /// The nearest medium has the smallest hypot(dnd / 0.01, dVd / 1), where another maker adds 1 and another time adds 1. Glass
+    /// that was listed by 1983, when flints contained lead, or belongs to a lens built by 1990, is of one time; all other glass
+    /// is of another. Glasses borrow from optical and technical glasses, plastics from plastics. The lending medium passes at
+    /// least 80 % from 420 to 700 nm through 3 mm.
     ///
-    /// `None`, which means clear, for air, vacuum, media known by an index alone, and if nothing lies within a distance of 10.
-    /// Crystals, liquids and filter glasses borrow nothing either: a neighbor in index says nothing of their absorption.
+    /// `None` means clear: for air, vacuum, media known by an index alone, and if no medium lies within a distance of 10.
+    /// Crystals, liquids and filter glasses borrow no data either, because a neighbor in index tells nothing about their
+    /// absorption.
     #[must_use]
     pub fn absorption(&self, year: Option<i32>) -> Option<Absorption> {
         let of_year = year.map(|year| year <= OLD_UNTIL);

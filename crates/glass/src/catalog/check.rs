@@ -4,33 +4,33 @@ use super::Catalog;
 use crate::formula::Formula;
 use crate::glass::Glass;
 
-/// A medium whose coefficients yield a different nd or Vd from the one that its maker lists.
+/// A medium whose computed nd or Vd differs from the value that its maker lists.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
     /// The medium.
     pub glass: Glass,
-    /// nd as listed.
+    /// Index at the d line as the maker lists it.
     pub listed_nd: f64,
-    /// Vd as listed.
+    /// Abbe number (d, F, C) as the maker lists it.
     pub listed_vd: f64,
-    /// nd as computed.
+    /// Index at the d line, computed from the coefficients.
     pub nd: f64,
-    /// Vd as computed.
+    /// Abbe number (d, F, C), computed from the coefficients.
     pub vd: f64,
 }
 
-/// The result of checking all listed values.
+/// Result of comparing computed with listed values, for a whole catalogue.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ListedCheck {
-    /// Media with listed nd and Vd and coefficients of their own.
+    /// Number of media that have listed nd and Vd and coefficients of their own.
     pub listed: usize,
-    /// Media that deviate, by full name.
+    /// Media whose values deviate by more than the tolerances, sorted by full name.
     pub deviating: Vec<Deviation>,
 }
 
-/// Largest difference of computed values from listed ones: nd.
+/// Largest difference between computed and listed nd that does not count as a deviation.
 pub const LISTED_TOLERANCE_ND: f64 = 1e-4;
-/// Largest difference of computed values from listed ones: Vd.
+/// Largest difference between computed and listed Vd that does not count as a deviation.
 pub const LISTED_TOLERANCE_VD: f64 = 0.1;
 
 impl Catalog {

@@ -5,11 +5,11 @@ use std::str::FromStr;
 use crate::glass::{Glass, Status};
 use crate::lines::LineTriple;
 
-/// A time, as far as the bundled catalogues can tell.
+/// A time for which glasses are chosen, as far as the bundled catalogues can tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Era {
-    /// Glasses that were listed by that year. The oldest bundled list is of 1983; for earlier years, all glasses in it. For
-    /// years before 1940, only those without rare earths and without fluor phosphates (see [`Era::admits`]).
+    /// Glasses that were listed by that year. The oldest bundled list is of 1983; for earlier years it is used as a whole. For
+    /// years before 1940, glasses with rare earths and fluor phosphates are left out (see [`Era::admits`]).
     Year(u16),
     /// Glasses listed by 1983.
     Historical,
@@ -24,7 +24,7 @@ pub(super) const TODAY: u16 = 2017;
 /// Rare-earth glasses came into lenses after the patent of G. W. Morey (US 2150694, filed 1936, granted 1939).
 const RARE_EARTH: u16 = 1940;
 
-/// A text that is not an era.
+/// Error of a text that is not an era.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is not an era: use historical, modern, or a year from 1880 to 2100")]
 pub struct EraError(String);
@@ -45,7 +45,7 @@ impl FromStr for Era {
 }
 
 impl Era {
-    /// Returns whether a glass fits the era by its type, apart from its years.
+    /// Returns whether a glass fits the era by its type; its years are not looked at.
     ///
     /// Before 1940 this is a rule of thumb, drawn through Schott's list of 1983. The old glasses (fluor, phosphate and boron
     /// crowns, crowns and flints, barium crowns and flints) stay below nd + 0.0066 Vd = 2.02 and Vd = 71. Most lanthanum

@@ -19,7 +19,7 @@ pub struct Candidate {
     pub full_name: String,
     /// Index at the d line.
     pub nd: f64,
-    /// Abbe number at d, F and C.
+    /// Abbe number for the lines d, F and C.
     pub vd: f64,
 }
 
@@ -39,7 +39,7 @@ pub enum FindError {
     /// No medium has this name.
     #[error("no glass `{name}`{}", if nearest.is_empty() { String::new() } else { format!("; nearest names: {}", list(nearest)) })]
     Unknown {
-        /// The name asked for.
+        /// Name that was asked for.
         name: String,
         /// The nearest names, in descending order of similarity.
         nearest: Vec<Candidate>,
@@ -47,7 +47,7 @@ pub enum FindError {
     /// Several media have this name.
     #[error("`{name}` is the name of {} glasses; write one of: {}", candidates.len(), list(candidates))]
     Ambiguous {
-        /// The name asked for.
+        /// Name that was asked for.
         name: String,
         /// All media that have the name.
         candidates: Vec<Candidate>,
@@ -118,7 +118,7 @@ const USUAL: [&str; 9] = ["SCHOTT", "OHARA", "HOYA", "HIKARI", "CDGM", "SUMITA",
 /// Year of the oldest list of the catalogue; the glasses in it existed before, too.
 const OLDEST_LIST: u16 = 1983;
 
-/// Facts known beside the name of a glass.
+/// Facts that are known about a glass in addition to its name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GlassFacts<'a> {
     /// Index and perhaps Abbe number, with the lines that belong to them.
@@ -139,14 +139,14 @@ pub struct ChosenGlass {
 }
 
 impl Catalog {
-    /// Finds the medium of this name: `SCHOTT/N-BK7`, or `N-BK7` if only one maker has it; an everyday name such as `water` or
-    /// `PC`; or the substance alone if there is one measurement. Case does not count unless it tells two media apart (`BaF2` is
-    /// the crystal, `BAF2` a flint; `LaF3` may be either). The name of a crystal means the formula that its everyday name
-    /// stands for, and not a maker's rounded table (`CRYSTRAN/CaF2`). If nothing else fits, hyphens, underscores, blanks and
-    /// dots do not count. `LZ_LF5` is `LZOS/LF5`.
+    /// Finds the medium `name`: `SCHOTT/N-BK7`; `N-BK7` if only one maker has it; an everyday name such as `water` or `PC`; or a
+    /// substance of which there is one measurement. Case does not matter unless it tells two media apart (`BaF2` is the crystal,
+    /// `BAF2` a flint; `LaF3` may be either). The name of a crystal means the formula that its everyday name stands for, not a
+    /// maker's rounded table (`CRYSTRAN/CaF2`). If no name matches, hyphens, underscores, blanks and dots are ignored: `LZ_LF5`
+    /// is `LZOS/LF5`.
     ///
     /// # Errors
-    /// A name that no medium, or more than one, has; with the candidates.
+    /// No medium or several media have the name; the error lists candidates.
     pub fn find(&self, name: &str) -> Result<Glass, FindError> {
         let places = self.places(name);
         match places[..] {
@@ -162,7 +162,8 @@ impl Catalog {
         !self.places(name).is_empty()
     }
 
-    /// Finds a medium like [`Catalog::find`], and also `air` and `vacuum` as the media that they are in a lens (air is 1).
+    /// Finds a medium like [`Catalog::find`]. The names `air` and `vacuum` mean these media as a lens uses them (air has index
+    /// 1).
     ///
     /// # Errors
     /// As [`Catalog::find`].
@@ -174,12 +175,12 @@ impl Catalog {
         }
     }
 
-    /// Finds a medium by its name if an index, and perhaps an Abbe number, are known beside it (from a patent or a lens file).
-    /// Of several media of the name it takes the nearest one, if that is within 0.002 in nd and, if `vd` is given, within 2 %
-    /// in Vd.
+    /// Finds a medium by its name and its index `nd`, and its Abbe number `vd` if known, as a patent or a lens file states them.
+    /// If several media have the name, it takes the nearest. That must be within 0.002 in nd and, if `vd` is given, within 2 % in
+    /// Vd.
     ///
     /// # Errors
-    /// As [`Catalog::find`]; also ambiguous if none of several media is that near.
+    /// As [`Catalog::find`]; also if none of several media with the name is that near.
     pub fn find_with(&self, name: &str, nd: f64, vd: Option<f64>) -> Result<Glass, FindError> {
         let places = self.places(name);
         match places[..] {
@@ -189,9 +190,9 @@ impl Catalog {
         }
     }
 
-    /// Chooses one of several glasses with the same name: the glass with the stated figures, as in [`Catalog::find_with`]; else
-    /// that of the lens's maker, if it made glass; else the only one of the lens's time; else that of the maker preferred by
-    /// default, with a note.
+    /// Chooses one of several glasses with the same name by the facts `beside` it. First choice is the glass that has the stated
+    /// figures, as in [`Catalog::find_with`], then the glass of the lens's maker, if that maker made glass. Next is the only
+    /// glass of the lens's time, then, with a note, the glass of the maker preferred by default.
     ///
     /// # Errors
     /// An unknown name; a name of several glasses of which none has the stated figures; several measurements of a substance.
@@ -246,7 +247,8 @@ impl Catalog {
         Ok(ChosenGlass { glass: glass.clone(), note: Some(note) })
     }
 
-    /// Lists all media whose name, maker or everyday name has this fragment, by name. Case, hyphens and blanks do not count.
+    /// Lists all media whose name, maker or everyday name contains `fragment`, sorted by name. Case, hyphens and blanks are
+    /// ignored.
     #[must_use]
     pub fn search(&self, fragment: &str) -> Vec<Glass> {
         let (maker, fragment) = fragment.split_once('/').map_or((None, fragment), |(maker, rest)| (Some(maker), rest));

@@ -66,7 +66,7 @@ impl Catalog {
         })
     }
 
-    /// Reads a catalogue in the format of `spectra/glass/README.md`.
+    /// Reads a catalogue from text in the format of `spectra/glass/README.md`.
     ///
     /// # Errors
     /// The first line whose head cannot be read. Records are parsed when they are asked for, and a record that cannot be read
@@ -85,7 +85,7 @@ impl Catalog {
         Catalog { bundle: Arc::default(), own: Vec::new(), index: Vec::new(), squeezed: OnceLock::new() }
     }
 
-    /// Adds glasses (of a user's AGF file, say). A glass with the same maker and name as an earlier one replaces it.
+    /// Adds glasses, such as those of a user's AGF file. A glass replaces an earlier one with the same maker and name.
     pub fn add(&mut self, glasses: impl IntoIterator<Item = Glass>) {
         self.squeezed = OnceLock::new();
         for glass in glasses {
@@ -116,12 +116,12 @@ impl Catalog {
         self.index.is_empty()
     }
 
-    /// Iterates over all media, by name.
+    /// Iterates over all media, sorted by name.
     pub fn glasses(&self) -> impl Iterator<Item = Glass> + '_ {
         self.index.iter().map(|(_, place)| self.glass(*place))
     }
 
-    /// Iterates over all names as `MAKER/NAME`, without reading the data.
+    /// Iterates over all names as `MAKER/NAME`, without reading the media's data.
     pub fn full_names(&self) -> impl Iterator<Item = String> + '_ {
         self.index.iter().map(|(_, place)| format!("{}/{}", self.maker_of(*place), self.name_of(*place)))
     }

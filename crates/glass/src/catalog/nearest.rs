@@ -8,11 +8,11 @@ use crate::lines::LineTriple;
 /// A search for glasses. [`Query::new`] asks for the ten nearest optical glasses of all makers and eras.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Query {
-    /// Index at the middle line.
+    /// Index at the middle line of `lines`.
     pub n: f64,
-    /// Abbe number; without it the index alone decides.
+    /// Abbe number; if `None`, the index alone decides.
     pub v: Option<f64>,
-    /// Lines of index and Abbe number: [`LineTriple::FDC`] for nd and Vd, and so on.
+    /// Lines of the index and the Abbe number, such as [`LineTriple::FDC`] for nd and Vd.
     pub lines: LineTriple,
     /// Makers allowed, any case; all if empty.
     pub makers: Vec<String>,
@@ -22,7 +22,7 @@ pub struct Query {
     pub known_by: Option<u16>,
     /// Only glasses still found in a catalogue of this year or later.
     pub still_in: Option<u16>,
-    /// Only what a designer of that time could have had; see [`Era::narrow`].
+    /// Only glasses that a designer of that time could have had; see [`Era::narrow`].
     pub era: Option<Era>,
     /// Whether obsolete glasses count.
     pub obsolete: bool,
@@ -31,7 +31,8 @@ pub struct Query {
 }
 
 impl Query {
-    /// Creates a search for the ten optical glasses nearest to index `n` and Abbe number `v` at `lines`.
+    /// Creates a search for the ten optical glasses nearest to the index `n` and the Abbe number `v` at `lines`; `v` of `None`
+    /// leaves the index alone to decide.
     #[must_use]
     pub fn new(n: f64, v: Option<f64>, lines: LineTriple) -> Query {
         Query {
@@ -75,7 +76,7 @@ impl Era {
     }
 }
 
-/// A glass, and how far it is from the query.
+/// A glass that was found, and its distance from the query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Match {
     /// The glass.
@@ -88,7 +89,8 @@ pub struct Match {
     pub delta_n: f64,
     /// Abbe number of the glass less the one asked for; 0 if none was asked for.
     pub delta_v: f64,
-    /// Both differences in one number: 1 is a catalogue's usual tolerance (0.0005 in n, or 0.5 % in V; ISO 12123, NP050 and AN5).
+    /// Distance in index and Abbe number: 1 is the usual tolerance of a catalogue (0.0005 in n, or 0.5 % in V; ISO 12123, NP050
+    /// and AN5).
     pub distance: f64,
 }
 
@@ -102,7 +104,7 @@ const TOLERANCE_V: f64 = 5e-3;
 const SAME: f64 = 0.02;
 
 impl Catalog {
-    /// Returns whether a glass or a plastic is within 0.0005 of an index and 0.5 of an Abbe number, both for the lines d, F and C.
+    /// Returns whether the catalogue has a glass or a plastic within 0.0005 of `nd` and 0.5 of `vd`, for the lines d, F and C.
     #[must_use]
     pub fn has_near(&self, nd: f64, vd: f64) -> bool {
         let (of_n, of_v) = NEAR;
@@ -115,7 +117,7 @@ impl Catalog {
             .any(|glass| (glass.nd() - nd).abs() <= of_n && (glass.vd() - vd).abs() <= of_v)
     }
 
-    /// Lists the glasses nearest to an index and an Abbe number, nearest first; equals by name.
+    /// Lists the glasses nearest to an index and an Abbe number, nearest first; glasses of equal distance are sorted by name.
     #[must_use]
     pub fn nearest(&self, query: &Query) -> Vec<Match> {
         let mut matches: Vec<Match> = (self.glasses())

@@ -29,7 +29,7 @@ const HOPE: f64 = 50.0;
 /// Number of wavelengths at which a fit is checked.
 const CHECKS: usize = 4000;
 
-/// Reason why a medium has no fit.
+/// Reason why no dispersion can be fitted to a medium.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum DispersionError {
     /// The band is empty, reversed or not positive.
@@ -40,7 +40,7 @@ pub enum DispersionError {
         /// Longest wavelength, nm.
         max_nm: f64,
     },
-    /// The formula has no positive real index somewhere in the band.
+    /// The formula has no positive real index at some wavelength of the band.
     #[error("no refractive index at {wavelength_nm} nm")]
     NoIndex {
         /// Wavelength without an index, nm.
@@ -56,7 +56,7 @@ enum FittedForm {
     Exact(Medium),
 }
 
-/// A fast and nearly exact n(lambda) over a band, and 1/n with it.
+/// A fast and nearly exact approximation of n(lambda) and 1/n over a band of light.
 #[derive(Clone, Debug)]
 pub struct Dispersion {
     form: FittedForm,
@@ -65,9 +65,9 @@ pub struct Dispersion {
 }
 
 impl Dispersion {
-    /// Fits `medium` from `min_nm` to `max_nm`: the rational function of the smallest degree up to (6, 6) that is within 2e-10 of
-    /// the formula, or else the most accurate one within 1e-9; for tabulated data a uniform table of cubics within 1e-9; for data
-    /// too rough for that, the formula itself.
+    /// Fits `medium` from `min_nm` to `max_nm`. The result is the rational function of the smallest degree up to (6, 6) that is
+    /// within 2e-10 of the formula, or else the most accurate one within 1e-9. Tabulated data become a uniform table of cubics
+    /// within 1e-9. If data are too rough for that, the formula itself is kept.
     ///
     /// Where the band reaches beyond the medium's data ([`Medium::covers`]) its formula is extrapolated.
     ///
@@ -114,7 +114,7 @@ impl Dispersion {
         Ok(Dispersion { form: FittedForm::Exact(medium.clone()), band_nm, max_error: 0.0 })
     }
 
-    /// Largest difference from the medium's formula found on 4 000 wavelengths of the band.
+    /// Largest difference from the medium's formula that was found at 4 000 wavelengths of the band.
     #[must_use]
     pub fn max_error(&self) -> f64 {
         self.max_error
@@ -126,7 +126,7 @@ impl Dispersion {
         self.band_nm
     }
 
-    /// Returns the rational function, if that is the form of the fit, for kernels that evaluate it themselves.
+    /// Returns the rational function, for kernels that evaluate it themselves; `None` if the fit has another form.
     #[must_use]
     pub fn rational(&self) -> Option<&Rational> {
         match &self.form {
@@ -135,7 +135,7 @@ impl Dispersion {
         }
     }
 
-    /// Returns the index if it is the same at all wavelengths.
+    /// Returns the index if it is the same at all wavelengths; otherwise `None`.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
         self.rational().filter(|r| r.degree() == 0).map(|r| r.evaluate(self.band_nm.0))
@@ -152,8 +152,8 @@ impl Dispersion {
         }
     }
 
-    /// Computes n and 1/n of a batch of wavelengths in nm. n has the same bits as from [`Dispersion::evaluate`], whatever the
-    /// length of the slices. All forms but the rational one are evaluated wavelength by wavelength.
+    /// Computes n and 1/n for each wavelength (nm) of a batch. n has the same bits as from [`Dispersion::evaluate`], whatever the
+    /// length of the slices. All forms except the rational one are evaluated wavelength by wavelength.
     ///
     /// # Panics
     /// If the slices differ in length.

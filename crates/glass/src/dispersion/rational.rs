@@ -3,7 +3,7 @@
 use crate::medium::Medium;
 use spectra_numerics::linear;
 
-/// n = P(x) / Q(x), where x = s0 + s1 lambda + s2 lambda^2 runs from -1 to 1 over a band of light.
+/// The index as n = P(x) / Q(x), where x = s0 + s1 lambda + s2 lambda^2 runs from -1 to 1 over a band of light.
 ///
 /// x is the scaled square of the wavelength (s1 = 0), in which the formulas of glasses are written; or the wavelength itself
 /// (s2 = 0), in which Buchdahl's model is exactly a quotient of degree 2. P and Q have the same degree, and neither has a zero
@@ -165,7 +165,7 @@ impl Rational {
         self.scale[0] + wavelength_nm * (self.scale[1] + wavelength_nm * self.scale[2])
     }
 
-    /// Degree of P and of Q; 0 is a constant.
+    /// Degree of P and of Q; 0 means a constant index.
     #[must_use]
     pub fn degree(&self) -> usize {
         self.degree
@@ -192,7 +192,7 @@ impl Rational {
         }
     }
 
-    /// Computes n and 1/n of a batch. The degree is tested once, and each loop is free of branches.
+    /// Computes n and 1/n for each wavelength (nm) of a batch. The degree is tested once, and each loop is free of branches.
     #[inline(always)]
     pub fn index_and_inverse(&self, wavelength_nm: &[f64], n: &mut [f64], inverse_n: &mut [f64]) {
         match self.degree {

@@ -176,7 +176,7 @@ impl Figures {
         }
     }
 
-    /// Returns the index stated at a line, if there is one.
+    /// Returns the index that is stated at the line of this wavelength; `None` if none is stated there.
     #[must_use]
     pub fn index_at(&self, wavelength_nm: f64) -> Option<f64> {
         self.indices().into_iter().find(|(_, line, _)| line.wavelength_nm == wavelength_nm).map(|(_, _, n)| n)
@@ -196,7 +196,7 @@ impl Figures {
         indices.chain(abbe).collect()
     }
 
-    /// Makes the medium of these figures, and the name that reports use for it. `params` places faults.
+    /// Creates the medium with these figures, and the name that reports use for it. Faults are placed in `params`.
     ///
     /// # Errors
     /// No index; a figure that no glass has; figures that contradict each other.

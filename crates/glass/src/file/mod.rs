@@ -24,7 +24,7 @@ use spectra_core::resources::{ResourceError, Resources, beside};
 /// Largest table or catalogue file that is read, bytes.
 const MAX_BYTES: u64 = 16 << 20;
 
-/// Returns whether a name is that of a file, not of a catalogue glass.
+/// Returns whether a name is the name of a file, not of a catalogue glass.
 #[must_use]
 pub fn is_file(name: &str) -> bool {
     let (file, _) = parts(name);
@@ -43,8 +43,8 @@ fn has_ending(file: &str, ending: &str) -> bool {
     file.rsplit_once('.').is_some_and(|(_, e)| e.eq_ignore_ascii_case(ending))
 }
 
-/// Finds the medium that the value of a key names: a file of the user (first beside the file in which the key is written), or a
-/// medium of the bundled catalogue.
+/// Finds the medium that the value of `key` names: a user's file, or a medium of the bundled catalogue. A file is first looked up
+/// beside the file in which the key is written. `params` is the map that has the key.
 ///
 /// # Errors
 /// The faults of the glass's file, placed there; an unknown or ambiguous name, placed at the key.
@@ -58,7 +58,7 @@ pub fn medium(name: &str, params: &Params, key: &str, resources: &dyn Resources)
     Catalog::bundled().medium(name).map_err(|e| params.fault(key, e.message()).hint(e.hint()).into())
 }
 
-/// Reads the glass of a file; see [`is_file`].
+/// Reads the glass of the file that `name` names; see [`is_file`].
 ///
 /// # Errors
 /// All faults of the file, with places; a fault without a place if the file itself is not found.

@@ -49,8 +49,8 @@ pub enum StatedLines {
 pub type ThreeLines = [StatedLine; 3];
 
 impl StatedLines {
-    /// Returns the three lines, with faults placed at the key `key` of `params`. A line that defines no Abbe number by itself
-    /// goes with F and C.
+    /// Returns the three lines, with faults placed at the key `key` of `params`. A single line that is neither d, D nor e is
+    /// combined with F and C.
     ///
     /// # Errors
     /// An unknown line; three lines that do not rise.
@@ -65,7 +65,7 @@ impl StatedLines {
     }
 }
 
-/// Reads three lines, with faults placed at the key `key` of `params`.
+/// Converts three stated lines, with faults placed at the key `key` of `params`.
 ///
 /// # Errors
 /// An unknown line; lines that do not rise.

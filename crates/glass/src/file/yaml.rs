@@ -90,7 +90,7 @@ pub(super) fn from_file(params: &Params, resources: &dyn Resources) -> Result<Gl
     from_params(params, &stem, resources)
 }
 
-/// Reads the glass of a map with the keys of a glass file. It is called `called` if it states no name.
+/// Reads a glass from a map with the keys of a glass file. Its name is `called` if the map states none.
 ///
 /// # Errors
 /// All faults of the map, with places.

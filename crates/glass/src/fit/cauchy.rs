@@ -4,25 +4,25 @@ use super::{Fit, FitError, Sample, check};
 use crate::formula::CAUCHY;
 use spectra_numerics::linear;
 
-/// Cauchy's A and B from each pair of neighboring rows, and their means.
+/// Coefficients A and B of Cauchy's formula for each pair of neighboring rows, and their means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CauchyRows {
-    /// Mean of A.
+    /// Mean of A over the rows.
     pub a: f64,
-    /// Mean of B, nm^2.
+    /// Mean of B over the rows, nm^2.
     pub b_nm2: f64,
-    /// A_i = n_i - B / lambda_i^2, with the mean B.
+    /// A for each row i: A_i = n_i - B / lambda_i^2, with the mean B.
     pub a_rows: Vec<f64>,
-    /// B_i, nm^2, from rows i and i + 1; the last from the last row and the first.
+    /// B for each row i, nm^2, from rows i and i + 1; the last from the last row and the first.
     pub b_rows_nm2: Vec<f64>,
-    /// The formula of the means, and how well it meets the rows.
+    /// Formula with the mean A and B, and its deviation from the rows.
     pub fit: Fit,
 }
 
-/// Fits Cauchy's n = A + B / lambda^2 by neighboring rows and means, the method of laboratory courses.
+/// Fits Cauchy's n = A + B / lambda^2 from neighboring rows and their means, as in laboratory courses.
 ///
 /// # Errors
-/// Fewer than two rows, a row that is no measurement, two neighbors at one wavelength.
+/// Fewer than two rows, a row with an invalid wavelength or index, two neighbors at one wavelength.
 pub fn cauchy_by_rows(samples: &[Sample]) -> Result<CauchyRows, FitError> {
     check(samples, 2)?;
     let count = samples.len();
@@ -47,7 +47,7 @@ pub fn cauchy_by_rows(samples: &[Sample]) -> Result<CauchyRows, FitError> {
 /// Fits Cauchy's formula with `terms` coefficients (1 to 6) by least squares: n = A + B L^-2 + C L^-4 + ...
 ///
 /// # Errors
-/// Fewer samples than terms, a sample that is no measurement, terms out of range or not determined.
+/// Fewer samples than terms, an invalid wavelength or index, terms out of range or not determined.
 pub fn cauchy_least_squares(samples: &[Sample], terms: usize) -> Result<Fit, FitError> {
     check(samples, terms)?;
     if !(1..=6).contains(&terms) {

@@ -7,7 +7,7 @@ use spectra_numerics::linear;
 /// Fits Conrady's n = c0 + c1 / L + c2 / L^3.5 by least squares; needs three samples or more.
 ///
 /// # Errors
-/// Too few samples, a sample that is no measurement, coefficients that are not determined.
+/// Too few samples, an invalid wavelength or index, coefficients that are not determined.
 pub fn conrady_least_squares(samples: &[Sample]) -> Result<Fit, FitError> {
     let basis = |um: f64| [1.0, 1.0 / um, 1.0 / (um * um * um * um.sqrt())];
     let c = solve(samples, basis, |n| (n, 1.0))?;
@@ -15,7 +15,7 @@ pub fn conrady_least_squares(samples: &[Sample]) -> Result<Fit, FitError> {
 }
 
 /// Fits Schott's n^2 = c0 + c1 L^2 + c2 L^-2 + c3 L^-4 + c4 L^-6 + c5 L^-8 by least squares; needs six samples or more. The
-/// squared index is fitted with the weight 1 / (2 n), so that deviations of n count alike.
+/// squared index is fitted with the weight 1 / (2 n), so that the deviations of n are weighted equally.
 ///
 /// # Errors
 /// As [`conrady_least_squares`].

@@ -10,11 +10,11 @@ const START_POLES: [[f64; 3]; 3] = [[0.012, 0.0, 0.0], [0.010, 100.0, 0.0], [0.0
 /// Largest number of steps of the search.
 const STEPS: usize = 400;
 
-/// Fits Sellmeier's formula with one to three resonances, n^2 = 1 + sum of K L^2 / (L^2 - M), by least squares in n (Levenberg
-/// and Marquardt). Strengths and poles are positive, and poles stay outside the range of the samples' wavelengths.
+/// Fits Sellmeier's formula with `terms` resonances (1 to 3), n^2 = 1 + sum of K L^2 / (L^2 - M), by least squares in n
+/// (Levenberg and Marquardt). Strengths K and poles M are positive, and poles stay outside the range of the samples' wavelengths.
 ///
 /// # Errors
-/// Fewer samples than coefficients (two a resonance), a sample that is no measurement, terms out of range.
+/// Fewer than two samples for each resonance, an invalid wavelength or index, terms out of range.
 pub fn sellmeier_least_squares(samples: &[Sample], terms: usize) -> Result<Fit, FitError> {
     if !(1..=3).contains(&terms) {
         return Err(FitError::Undetermined);

@@ -3,19 +3,19 @@
 use super::Formula;
 use std::fmt;
 
-/// A closed form of the refractive index.
+/// A closed form of the refractive index as a function of coefficients and wavelength.
 #[derive(Clone, Copy)]
 pub struct ClosedForm {
     /// Name of the form, as a person would look it up.
     pub name: &'static str,
-    /// Number of coefficients; those left out at the end are 0.
+    /// Number of coefficients; coefficients that are left out at the end are 0.
     pub count: usize,
     /// Function that returns the index from the coefficients, at least `count` of them, and the wavelength in micrometers.
     pub index: fn(&[f64], f64) -> f64,
 }
 
 impl ClosedForm {
-    /// Creates the formula with these coefficients, in micrometers.
+    /// Creates the formula of this form with the given coefficients, for wavelengths in micrometers.
     #[must_use]
     pub fn with(self, coefficients: &[f64]) -> Formula {
         let mut coefficients = coefficients.to_vec();
@@ -38,7 +38,7 @@ impl ClosedFormula {
         self.form.name
     }
 
-    /// Coefficients in the order of the form, in micrometers.
+    /// Coefficients in the order of the form, for wavelengths in micrometers.
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients

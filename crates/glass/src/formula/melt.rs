@@ -3,8 +3,8 @@
 use super::Formula;
 use crate::lines::{D, LineTriple};
 
-/// A glass with the dispersion of a catalogue glass, shifted and scaled to the nd and Vd of a melt sheet: n(lambda) = nd' +
-/// (n(lambda) - nd) (nF' - nC') / (nF - nC).
+/// A glass with the dispersion of a catalogue glass, shifted and scaled to the nd and Vd of a melt sheet. Its index is nd' +
+/// (n(lambda) - nd) (nF' - nC') / (nF - nC), where primes mark the melt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Melt {
     base: Formula,
@@ -13,7 +13,8 @@ pub struct Melt {
 }
 
 impl Melt {
-    /// Creates the melt of `base` with the measured `nd` and `vd`; `None` unless nd > 1, Vd > 0 and the glass disperses.
+    /// Creates the melt of the glass with formula `base`, with the measured `nd` and `vd`. `None` unless nd > 1, Vd > 0 and the
+    /// glass has dispersion.
     #[must_use]
     pub fn new(base: Formula, nd: f64, vd: f64) -> Option<Melt> {
         let n = |w| base.index(w);

@@ -65,7 +65,7 @@ spectra_core::declare!(FormulaEntry, Formula, "formula", "A registered dispersio
 /// Names and order of coefficients are those of the glass catalogue files of optical design programs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
-    /// n = c0, whatever the wavelength.
+    /// A constant index n = c0, whatever the wavelength.
     Constant(f64),
     /// One of the registered closed forms: Sellmeier, Schott, Cauchy and the others.
     Closed(ClosedFormula),
@@ -73,11 +73,11 @@ pub enum Formula {
     Numbered(NumberedFormula),
     /// A model glass on the normal lines of partial dispersion, from an index and an Abbe number.
     Model(ModelGlass),
-    /// A catalogue glass as it was measured on one melt.
+    /// A catalogue glass with the nd and Vd that were measured on one melt.
     Melt(Box<Melt>),
-    /// Measured points and a monotone cubic between them.
+    /// Measured points, with a monotone cubic between them.
     Table(Arc<Table>),
-    /// A formula written out, of the wavelength in nm.
+    /// A formula written out as a function of the wavelength in nm.
     Function(Arc<spectra_numerics::formula::Formula>),
 }
 
@@ -88,8 +88,8 @@ impl Formula {
         CAUCHY.with(coefficients)
     }
 
-    /// Refractive index at `wavelength_nm`. Outside the range for which the coefficients were fitted this extrapolates; a table
-    /// continues along its tangent. Not a number where the formula has no real index (at a pole, say).
+    /// Refractive index at `wavelength_nm`. Outside the range for which the coefficients were fitted it is extrapolated; a table
+    /// continues along its tangent. NaN where the formula has no real index, for example at a pole.
     #[must_use]
     pub fn index(&self, wavelength_nm: f64) -> f64 {
         let um = wavelength_nm * 1e-3;
@@ -118,8 +118,8 @@ impl Formula {
         }
     }
 
-    /// Returns the coefficients in the order of the form: for a model index and Abbe number; for a melt those of its catalogue
-    /// glass; for a table pairs of wavelength (nm) and index; none for a formula that is written out.
+    /// Returns the coefficients in the order of the form. A model has its index and Abbe number; a melt has the coefficients of
+    /// its catalogue glass; a table has pairs of wavelength (nm) and index. A formula that is written out has none.
     #[must_use]
     pub fn coefficients(&self) -> Vec<f64> {
         match self {

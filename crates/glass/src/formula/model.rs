@@ -89,13 +89,13 @@ impl ModelGlass {
         Some(ModelGlass { index_mid: n, abbe_number: v, lines, stated_lines: 1, constant, coefficients })
     }
 
-    /// Creates the model through the indices stated at several lines, and the stated Abbe numbers. What they leave open follows
-    /// the normal lines, as closely as real glasses keep to them: departures from the lines are weighted by their spread in the
-    /// catalogue.
+    /// Creates the model through the indices stated at several lines, and the stated Abbe numbers with their lines. What these
+    /// leave open follows the normal lines of partial dispersion. Departures from the normal lines are weighted by their spread
+    /// among the catalogue's glasses.
     ///
     /// The first index is met to the last bit, the others within 1e-6 unless they contradict each other; the caller has to
-    /// compare. `None` with fewer than two figures, an index below 1 or above 4, the same line twice, an Abbe number that is
-    /// not positive and finite, or figures without dispersion.
+    /// compare. `None` with fewer than two figures, an index below 1 or above 4, the same line twice, figures without dispersion,
+    /// or an Abbe number that is not positive and finite.
     #[must_use]
     pub fn through(indices: &[(Line, f64)], abbe: &[(f64, LineTriple)]) -> Option<ModelGlass> {
         if let (&[(line, n)], &[(v, lines)]) = (indices, abbe)
@@ -165,13 +165,13 @@ impl ModelGlass {
         model.index_mid.is_finite().then_some(model).filter(|m| m.abbe_number > 0.0)
     }
 
-    /// Index at a wavelength in nm.
+    /// Refractive index at a wavelength in nm.
     #[must_use]
     pub fn index(&self, wavelength_nm: f64) -> f64 {
         self.constant + sum(&self.coefficients, wavelength_nm)
     }
 
-    /// Returns whether the index falls all the way from 350 to 830 nm, as that of every glass does.
+    /// Returns whether the index falls with wavelength all the way from 350 to 830 nm, as in every glass.
     #[must_use]
     pub fn falls(&self) -> bool {
         (350..830).all(|nm| self.index(f64::from(nm)) > self.index(f64::from(nm + 1)))

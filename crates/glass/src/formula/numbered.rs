@@ -162,8 +162,8 @@ pub struct NumberedFormula {
 }
 
 impl NumberedFormula {
-    /// Creates form `number` with `coefficients`; missing ones at the end are 0. `None` unless `number` is 1 to 9 and the form
-    /// can have that many coefficients.
+    /// Creates form `number` with `coefficients`; coefficients that are missing at the end are 0. `None` unless `number` is 1 to
+    /// 9 and the form can have that many coefficients.
     #[must_use]
     pub fn new(number: u8, coefficients: &[f64]) -> Option<NumberedFormula> {
         let (at_least, at_most) = match number {

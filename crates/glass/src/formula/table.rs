@@ -2,22 +2,22 @@
 
 use thiserror::Error;
 
-/// Reason why points make no table.
+/// Reason why points cannot form a table.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum TableError {
-    /// Fewer than two points.
+    /// There are fewer than two points.
     #[error("a table needs at least two points")]
     TooFewPoints,
-    /// Point `row` (from 1) is not after the point before it.
+    /// The wavelength of a point is not larger than that of the point before it.
     #[error("row {row}: wavelengths must increase")]
     NotRising {
-        /// Row, from 1.
+        /// Row of the point, from 1.
         row: usize,
     },
-    /// A wavelength that is not positive, or a value that is not a number.
+    /// A wavelength is not positive, or a value is not a number.
     #[error("row {row}: wavelength and value must be finite and the wavelength positive")]
     NotANumber {
-        /// Row, from 1.
+        /// Row of the point, from 1.
         row: usize,
     },
 }
@@ -79,7 +79,7 @@ impl Table {
             + h * t * s * (self.slope[i] * s - self.slope[i + 1] * t)
     }
 
-    /// First and last wavelength, nm.
+    /// First and last wavelength of the points, nm.
     #[must_use]
     pub fn range_nm(&self) -> (f64, f64) {
         (self.wavelength_nm[0], self.wavelength_nm[self.wavelength_nm.len() - 1])

@@ -8,8 +8,8 @@ const SCHOTT_POWERS: [f64; 6] = [0.0, 2.0, -2.0, -4.0, -6.0, -8.0];
 const CONRADY_POWERS: [f64; 3] = [0.0, -1.0, -3.5];
 
 impl Formula {
-    /// Converts a formula whose coefficients were given for wavelengths in nanometers to micrometers. `None` for forms whose
-    /// conversion is not known.
+    /// Converts a formula with coefficients for wavelengths in nanometers to one with coefficients for micrometers. `None` for
+    /// forms whose conversion is not known.
     #[must_use]
     pub fn in_micrometers(self) -> Option<Self> {
         let Self::Closed(closed) = &self else {
